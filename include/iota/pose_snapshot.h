@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace iota {
+
+/// Where a body is drawn. The local frame has its origin at the centre of mass; for a body whose particles lie on one
+/// line, local +x runs from its first particle to its last.
+struct BodyPose {
+  std::uint32_t body;    ///< slot of the BodyId
+  float position[3];     ///< world frame, m
+  float orientation[4];  ///< unit quaternion x y z w
+};
+
+/// A user's hand on a body: the spring from `point` to `target`.
+struct HoldPose {
+  std::uint32_t client, hold, body;
+  float point[3], target[3];  ///< world frame, m
+  float force;                ///< N
+};
+
+struct BodyArticulate {
+  std::uint32_t body, articulate;
+};
+
+/// All that a viewer needs of one instant: an immutable copy, safe to hand to another thread.
+struct PoseSnapshot {
+  std::uint64_t step = 0;
+  double time = 0;  ///< s
+  std::uint32_t structure_version = 0;
+  bool paused = false;
+  float speed = 1;               ///< simulated seconds per real second that the user asked for
+  float step_ms = 0;             ///< mean time of the latest steps
+  float kinetic = 0, potential = 0;  ///< J
+  float gap = 0;                 ///< worst hinge separation or rigidity error, m
+  std::vector<BodyPose> bodies;
+  std::vector<HoldPose> holds;
+};
+
+}  // namespace iota

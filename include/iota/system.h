@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/ids.h>
+#include <iota/pose_snapshot.h>
+#include <iota/reports.h>
+#include <iota/vec3.h>
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// Iota: worlds of particles, bonds and exactly jointed rigid bodies that can be restructured while they run.
+/// SI units; world frame right-handed, y up. A `System` is used from one thread at a time.
+namespace iota {
+
+/// An id whose object is gone; the text says what became of it.
+struct StaleIdError : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+enum class IntegrationMode : std::uint8_t {
+  robust,          ///< backward Euler: never fails, dissipates
+  energy_keeping,  ///< mid-point discrete gradient with bisection; falls back to `robust` where it must, and says so
+};
+
+enum class BodyKind : std::uint8_t {
+  dynamic,
+  static_,   ///< never moves
+  scripted,  ///< moved by the script (set_position), infinite mass
+  inactive,  ///< kept, neither stepped nor drawn
+};
+
+struct SystemOptions {
+  Vec3 gravity{0, -9.81, 0};  ///< m/s^2
+  IntegrationMode mode = IntegrationMode::energy_keeping;
+  double damping = 0;  ///< 1/s, all bodies: velocities fall by exp(-damping t)
+};
+
+struct BodyOptions {
+  BodyKind kind = BodyKind::dynamic;
+  double damping = 0;  ///< 1/s, adds to the system's
+};
+
+/// f = -(stiffness (r - length) + damping r') along the line p-q. Solved implicitly: any stiffness is stable.
+struct SpringLaw {
+  double stiffness = 100;                                   ///< N/m
+  double damping = 0;                                       ///< N s/m, along the line
+  double length = std::numeric_limits<double>::quiet_NaN(); ///< rest length, m; NaN: the distance at creation
+};
+
+/// f = -damping (v_p - v_q): viscous drag between two particles, implicit.
+struct DragLaw {
+  double damping = 1;  ///< N s/m
+};
+
+/// What a scripted bond is shown, at the start of each step.
+struct BondState {
+  BondId bond;
+  Vec3 position_p, position_q;  ///< m
+  Vec3 velocity_p, velocity_q;  ///< m/s
+  double time;                  ///< s
+};
+
+/// Any function of the script: returns the force on p in N (q gets the opposite), evaluated once a step and held.
+/// A throw or a non-finite force switches the bond off and is reported by the step.
+struct ScriptedLaw {
+  std::function<Vec3(const BondState&)> force;
+  std::string name;  ///< for reports
+};
+
+using BondLaw = std::variant<SpringLaw, DragLaw, ScriptedLaw>;
+
+struct GripOptions {
+  std::uint32_t client = 0, hold = 0;  ///< whose hand; carried to the viewers
+  double frequency = 2.5;              ///< Hz of the critically damped spring
+  double max_acceleration = 60;        ///< m/s^2: caps the force at this times the mass it can feel
+};
+
+/// A whole system in bytes: everything but the functions of scripted bonds.
+struct Snapshot {
+  std::vector<std::byte> bytes;
+};
+
+/// A snapshot and all that happened since: replaying it gives the same hash after every step.
+struct Recording {
+  Snapshot start;
+  std::vector<std::byte> commands;
+  std::vector<std::uint64_t> hashes;  ///< one per step
+};
+
+class System {
+ public:
+  explicit System(const SystemOptions& options = {});
+  ~System();
+  System(System&&) noexcept;
+  System& operator=(System&&) noexcept;
+
+  /// @name Making and destroying. Throws std::invalid_argument on bad numbers, StaleIdError on stale ids.
+  /// Inside a scripted bond's function only destroy/combine/separate/nail/release are allowed, and are queued.
+  ///@{
+  BodyId create_body(const BodyOptions& options = {});
+  /// A new particle of `body`. mass > 0, kg. A body is the rigid set of its particles.
+  ParticleId create_particle(BodyId body, const Vec3& position, double mass = 1, const Vec3& velocity = {});
+  /// Gives a body of exactly two particles the mass and inertia of a solid cylinder between them (no spin about its
+  /// axis: exact for hinges on the axis). Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
+  void set_rod(BodyId body, double mass, double radius);
+  CosmeticBondId create_cosmetic_bond(ParticleId p, ParticleId q);
+  BondId create_bond(ParticleId p, ParticleId q, BondLaw law);
+  void destroy(BodyId body);          ///< with its particles and their bonds
+  void destroy(ParticleId particle);  ///< with its bonds; its body too if it was the last one
+  void destroy(BondId bond);
+  void destroy(CosmeticBondId bond);
+  ///@}
+
+  /// @name Restructuring (thesis Tables 4.1-4.3)
+  ///@{
+  /// Same particle: nothing. Same body: q is absorbed by p. Hinged: the hinge becomes rigid, q's body is absorbed by
+  /// p's. Unrelated: a hinge; particles that are apart meet at once (`over` = 0) or within `over` seconds.
+  RestructureReport combine(ParticleId p, ParticleId q, double over = 0);
+  /// Makes one rigid body of two, in place; b is absorbed.
+  RestructureReport combine(BodyId a, BodyId b);
+  /// Same particle: a second one at the same place, half the mass each. Same body: q becomes a one-particle body
+  /// hinged to p. Hinged: q leaves the ring. Unrelated: nothing.
+  RestructureReport separate(ParticleId p, ParticleId q);
+  void nail(ParticleId particle);                        ///< where it is
+  void nail(ParticleId particle, const Vec3& position);  ///< there; calling it again moves the nail
+  void release(ParticleId particle);
+  /// Particles still on their way to each other after `combine(p, q, over)`.
+  std::uint32_t closing_count() const;
+  ///@}
+
+  /// @name Hands
+  ///@{
+  /// local_point: in the body's drawn frame, m; it is put on the nearest place that the body's particles span.
+  GripId create_grip(BodyId body, const Vec3& local_point, const Vec3& target, const GripOptions& options = {});
+  void move_grip(GripId grip, const Vec3& target);
+  void destroy(GripId grip);
+  bool contains(GripId) const;
+  ///@}
+
+  /// @name Reading and assigning
+  ///@{
+  Vec3 gravity() const;
+  void set_gravity(const Vec3&);
+  IntegrationMode mode() const;
+  void set_mode(IntegrationMode);
+  double damping() const;
+  void set_damping(double per_second);
+  double time() const;
+  std::uint64_t step_count() const;
+  std::uint32_t structure_version() const;
+  Energy energy() const;
+  Vec3 momentum() const;
+  Vec3 angular_momentum() const;  ///< about the origin
+  double worst_gap() const;       ///< m
+
+  bool contains(BodyId) const;
+  bool contains(ParticleId) const;
+  bool contains(BondId) const;
+  /// What a retired id became (itself if alive), if it was absorbed within the last 65 536 retirements.
+  std::optional<ParticleId> survivor_of(ParticleId) const;
+  std::optional<BodyId> survivor_of(BodyId) const;
+
+  std::vector<BodyId> bodies() const;          ///< in order of slots
+  std::vector<ParticleId> particles() const;   ///< in order of slots
+  std::vector<BondId> bonds() const;
+  std::vector<std::vector<BodyId>> articulates() const;
+  std::uint32_t articulate_count() const;
+
+  std::vector<ParticleId> particles(BodyId) const;
+  std::uint32_t articulate(BodyId) const;  ///< equal for bodies that hang together
+  BodyKind kind(BodyId) const;
+  void set_kind(BodyId, BodyKind);
+  double damping(BodyId) const;
+  void set_damping(BodyId, double per_second);
+  double mass(BodyId) const;
+  Vec3 centre_of_mass(BodyId) const;
+  Quaternion orientation(BodyId) const;  ///< of the drawn frame
+
+  BodyId body(ParticleId) const;
+  std::vector<ParticleId> ring(ParticleId) const;  ///< every particle hinged with it, itself included
+  Vec3 position(ParticleId) const;
+  void set_position(ParticleId, const Vec3&);  ///< moves the whole ring; rigid distances of its bodies are taken anew
+  Vec3 velocity(ParticleId) const;
+  void set_velocity(ParticleId, const Vec3&);
+  double mass(ParticleId) const;  ///< its own share
+  void set_mass(ParticleId, double);
+  bool is_nailed(ParticleId) const;
+  Vec3 nail_force(ParticleId) const;           ///< by the nail on the particle in the last step, N
+  void apply_force(ParticleId, const Vec3&);   ///< added during the next step only, N
+
+  std::pair<ParticleId, ParticleId> ends(BondId) const;
+  bool is_active(BondId) const;
+  void set_active(BondId, bool);
+
+  /// (n, 3) in the order of particles(); out.size() == 3 n.
+  void read_positions(std::span<double> out) const;
+  void read_velocities(std::span<double> out) const;
+  PoseSnapshot poses() const;
+  std::vector<BodyArticulate> body_articulates() const;
+  ///@}
+
+  /// @name Time
+  ///@{
+  /// Advances by dt seconds (0 < dt <= 1). Never throws for numerical reasons.
+  StepReport step(double dt);
+  bool is_stepping() const;
+  ///@}
+
+  /// @name Save, restore, replay
+  ///@{
+  Snapshot snapshot() const;
+  /// Functions of scripted bonds stay those of this system. Throws std::invalid_argument on bytes that are no snapshot;
+  /// the system is then unchanged.
+  void restore(const Snapshot&);
+  std::uint64_t state_hash() const;
+  void start_recording();
+  Recording stop_recording();
+  /// Restores the recording's start and repeats it; returns the number of the first step whose hash differs, if any.
+  std::optional<std::uint64_t> replay(const Recording&);
+  ///@}
+
+  /// Walks the whole structure; one sentence per inconsistency, empty when whole.
+  std::vector<std::string> validate() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace iota

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace iota {
+
+/// Appends plain values to a byte vector. Writer and Reader have the same members, so one function serves both ways.
+class Writer {
+ public:
+  explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}
+  template <class T>
+  void value(T& v) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    append(&v, sizeof v);
+  }
+  template <class T>
+  void vector(std::vector<T>& v) {
+    auto count = static_cast<std::uint64_t>(v.size());
+    value(count);
+    append(v.data(), v.size() * sizeof(T));
+  }
+  void fail() {}
+
+ private:
+  void append(const void* data, std::size_t size) {
+    if (size == 0) return;
+    const auto* first = static_cast<const std::byte*>(data);
+    bytes_.insert(bytes_.end(), first, first + size);
+  }
+  std::vector<std::byte>& bytes_;
+};
+
+/// Reads what Writer wrote. After the first value that does not fit, `ok()` is false and everything reads as zero.
+class Reader {
+ public:
+  explicit Reader(const std::vector<std::byte>& bytes) : bytes_(bytes) {}
+  template <class T>
+  void value(T& v) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    take(&v, sizeof v);
+  }
+  template <class T>
+  void vector(std::vector<T>& v) {
+    std::uint64_t count = 0;
+    value(count);
+    if (count > (bytes_.size() - position_) / sizeof(T)) {
+      fail();
+      count = 0;
+    }
+    v.resize(count);
+    take(v.data(), count * sizeof(T));
+  }
+  void fail() { ok_ = false; }
+  bool ok() const { return ok_; }
+  bool at_end() const { return position_ == bytes_.size(); }
+
+ private:
+  void take(void* data, std::size_t size) {
+    if (size == 0) return;
+    if (!ok_ || size > bytes_.size() - position_) {
+      ok_ = false;
+      std::memset(data, 0, size);
+      return;
+    }
+    std::memcpy(data, bytes_.data() + position_, size);
+    position_ += size;
+  }
+  const std::vector<std::byte>& bytes_;
+  std::size_t position_ = 0;
+  bool ok_ = true;
+};
+
+/// 64-bit FNV-1a over the object bytes of plain values: equal bits give equal hashes.
+class Hasher {
+ public:
+  void bytes(const void* data, std::size_t size) {
+    const auto* p = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i) state_ = (state_ ^ p[i]) * 1099511628211ull;
+  }
+  template <class T>
+  void value(const T& v) {
+    static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);
+    bytes(&v, sizeof v);
+  }
+  std::uint64_t result() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 14695981039346656037ull;
+};
+
+}  // namespace iota

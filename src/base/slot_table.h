@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/archive.h"
+
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace iota {
+
+/// Objects by value under ids of slot + generation. Generations are odd while the slot is alive, so a zero generation is
+/// never alive and a reused slot never answers to an old id. Slots are reused last-in first-out (deterministic).
+template <class T, class IdType>
+class SlotTable {
+  static_assert(std::is_trivially_copyable_v<T>, "tables are saved as bytes");
+
+ public:
+  IdType create(const T& value) {
+    std::uint32_t slot;
+    if (free_.empty()) {
+      slot = static_cast<std::uint32_t>(items_.size());
+      items_.push_back(value);
+      generations_.push_back(1);
+    } else {
+      slot = free_.back();
+      free_.pop_back();
+      items_[slot] = value;
+      ++generations_[slot];
+    }
+    ++alive_count_;
+    return {slot, generations_[slot]};
+  }
+
+  void destroy(std::uint32_t slot) {
+    ++generations_[slot];
+    free_.push_back(slot);
+    --alive_count_;
+  }
+
+  bool is_alive(std::uint32_t slot) const { return slot < items_.size() && (generations_[slot] & 1u); }
+  bool contains(IdType id) const { return is_alive(id.slot) && generations_[id.slot] == id.generation; }
+  IdType id(std::uint32_t slot) const { return {slot, generations_[slot]}; }
+
+  T& operator[](std::uint32_t slot) { return items_[slot]; }
+  const T& operator[](std::uint32_t slot) const { return items_[slot]; }
+
+  std::uint32_t slot_count() const { return static_cast<std::uint32_t>(items_.size()); }
+  std::uint32_t size() const { return alive_count_; }
+
+  template <class Visit>
+  void for_each(Visit visit) const {
+    for (std::uint32_t slot = 0; slot < slot_count(); ++slot)
+      if (is_alive(slot)) visit(slot, items_[slot]);
+  }
+  template <class Visit>
+  void for_each(Visit visit) {
+    for (std::uint32_t slot = 0; slot < slot_count(); ++slot)
+      if (is_alive(slot)) visit(slot, items_[slot]);
+  }
+
+  template <class Archive>
+  void archive(Archive& ar) {
+    ar.vector(items_);
+    ar.vector(generations_);
+    ar.vector(free_);
+    ar.value(alive_count_);
+    if (items_.size() != generations_.size() || alive_count_ + free_.size() != items_.size()) ar.fail();
+  }
+
+ private:
+  std::vector<T> items_;
+  std::vector<std::uint32_t> generations_;
+  std::vector<std::uint32_t> free_;
+  std::uint32_t alive_count_ = 0;
+};
+
+}  // namespace iota

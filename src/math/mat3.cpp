@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/mat3.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota {
+
+Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance) {
+  // Eigenvalues by Jacobi rotations: for 3 x 3 simple, exact to round-off, and the rank decision is clean.
+  double s[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) s[i][j] = a.m[i][j];
+  for (int sweep = 0; sweep < 12; ++sweep)
+    for (int p = 0; p < 2; ++p)
+      for (int q = p + 1; q < 3; ++q) {
+        if (s[p][q] == 0) continue;
+        const double theta = (s[q][q] - s[p][p]) / (2 * s[p][q]);
+        const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
+        const double c = 1 / std::sqrt(t * t + 1), sine = t * c;
+        for (int k = 0; k < 3; ++k) {
+          const double kp = s[k][p], kq = s[k][q];
+          s[k][p] = c * kp - sine * kq, s[k][q] = sine * kp + c * kq;
+        }
+        for (int k = 0; k < 3; ++k) {
+          const double pk = s[p][k], qk = s[q][k];
+          s[p][k] = c * pk - sine * qk, s[q][k] = sine * pk + c * qk;
+          const double vp = v[k][p], vq = v[k][q];
+          v[k][p] = c * vp - sine * vq, v[k][q] = sine * vp + c * vq;
+        }
+      }
+  const double largest = std::max({s[0][0], s[1][1], s[2][2]});
+  Vec3 x;
+  for (int k = 0; k < 3; ++k) {
+    if (!(s[k][k] > tolerance * largest)) continue;
+    const Vec3 axis{v[0][k], v[1][k], v[2][k]};
+    x += (dot(axis, b) / s[k][k]) * axis;
+  }
+  return x;
+}
+
+Quaternion multiply(const Quaternion& a, const Quaternion& b) {
+  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+
+Quaternion normalised(const Quaternion& q) {
+  const double n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!(n > 0)) return {};
+  return {q.x / n, q.y / n, q.z / n, q.w / n};
+}
+
+Vec3 rotate(const Quaternion& q, const Vec3& v) {
+  const Vec3 u{q.x, q.y, q.z};
+  const Vec3 t = 2 * cross(u, v);
+  return v + q.w * t + cross(u, t);
+}
+
+Vec3 rotate_back(const Quaternion& q, const Vec3& v) { return rotate({-q.x, -q.y, -q.z, q.w}, v); }
+
+Quaternion axis_angle(const Vec3& axis, double angle) {
+  const double s = std::sin(angle / 2);
+  return {s * axis.x, s * axis.y, s * axis.z, std::cos(angle / 2)};
+}
+
+Quaternion shortest_turn(const Vec3& from, const Vec3& to) {
+  const double cosine = dot(from, to);
+  if (cosine < -1 + 1e-12) {
+    const Vec3 axis = any_perpendicular(from);
+    return {axis.x, axis.y, axis.z, 0};
+  }
+  const Vec3 c = cross(from, to);
+  return normalised({c.x, c.y, c.z, 1 + cosine});
+}
+
+Quaternion from_axes(const Vec3& x, const Vec3& y, const Vec3& z) {
+  const double trace = x.x + y.y + z.z;
+  if (trace > 0) return normalised({y.z - z.y, z.x - x.z, x.y - y.x, 1 + trace});
+  if (x.x > y.y && x.x > z.z) return normalised({1 + x.x - y.y - z.z, y.x + x.y, z.x + x.z, y.z - z.y});
+  if (y.y > z.z) return normalised({y.x + x.y, 1 + y.y - x.x - z.z, z.y + y.z, z.x - x.z});
+  return normalised({z.x + x.z, z.y + y.z, 1 + z.z - x.x - y.y, x.y - y.x});
+}
+
+Vec3 any_perpendicular(const Vec3& v) {
+  const Vec3 other = std::abs(v.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 p = cross(v, other);
+  return (1 / norm(p)) * p;
+}
+
+}  // namespace iota

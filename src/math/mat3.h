@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/vec3.h>
+
+#include <optional>
+
+namespace iota {
+
+/// Row-major 3 x 3 matrix.
+struct Mat3 {
+  double m[3][3] = {};
+
+  static Mat3 diagonal(double s) { return {{{s, 0, 0}, {0, s, 0}, {0, 0, s}}}; }
+  static Mat3 outer(const Vec3& a, const Vec3& b) {
+    return {{{a.x * b.x, a.x * b.y, a.x * b.z}, {a.y * b.x, a.y * b.y, a.y * b.z}, {a.z * b.x, a.z * b.y, a.z * b.z}}};
+  }
+  Mat3& operator+=(const Mat3& b) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) m[i][j] += b.m[i][j];
+    return *this;
+  }
+  Mat3& operator*=(double s) {
+    for (auto& row : m)
+      for (double& v : row) v *= s;
+    return *this;
+  }
+  friend Mat3 operator+(Mat3 a, const Mat3& b) { return a += b; }
+  friend Mat3 operator*(double s, Mat3 a) { return a *= s; }
+  Vec3 operator*(const Vec3& v) const {
+    return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z, m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
+            m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
+  }
+};
+
+/// Moment of inertia about the origin of a point mass at r: m (|r|^2 I - r r').
+inline Mat3 point_inertia(double mass, const Vec3& r) {
+  return mass * (Mat3::diagonal(dot(r, r)) + -1.0 * Mat3::outer(r, r));
+}
+
+/// Least-squares solution of A x = b for symmetric positive semi-definite A: directions in which A is (nearly) zero,
+/// below `tolerance` times its largest pivot, get no part. Diagonal pivoting.
+Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance = 1e-10);
+
+// Quaternions.
+Quaternion multiply(const Quaternion& a, const Quaternion& b);
+Quaternion normalised(const Quaternion& q);
+Vec3 rotate(const Quaternion& q, const Vec3& v);
+Vec3 rotate_back(const Quaternion& q, const Vec3& v);
+Quaternion axis_angle(const Vec3& unit_axis, double angle);
+/// The smallest turn that carries unit vector `from` onto unit vector `to`.
+Quaternion shortest_turn(const Vec3& from, const Vec3& to);
+/// The turn whose columns are the orthonormal, right-handed axes.
+Quaternion from_axes(const Vec3& x, const Vec3& y, const Vec3& z);
+/// A unit vector at right angles to unit vector v.
+Vec3 any_perpendicular(const Vec3& v);
+
+}  // namespace iota

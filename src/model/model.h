@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/archive.h"
+#include "base/slot_table.h"
+
+#include <iota/system.h>
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <vector>
+
+namespace iota::model {
+
+inline constexpr std::uint32_t none = 0xffffffff;
+
+/// One body's point. Points of different bodies in one ring share position and velocity; each holds its share of mass.
+struct Particle {
+  std::uint32_t body = none, ring = none;
+  std::uint32_t next_in_body = none, previous_in_body = none;
+  std::uint32_t next_in_ring = none, previous_in_ring = none;
+  std::uint32_t uses = 0;           ///< bonds and closings that need it as an unknown of its own
+  std::uint32_t cosmetic_uses = 0;  ///< cosmetic bonds
+  double mass = 1;         ///< kg
+  /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
+  std::int32_t basis_index = -1;
+  std::array<double, 4> weights{};
+  std::array<double, 3> multiplier{};  ///< of the rows that tie it to the basis, N; warm start
+};
+
+/// What the particles of a ring share: one position, one unknown of the solver. (The thesis: a particle is a ring of
+/// points.)
+struct Ring {
+  std::uint32_t first = none, last = none, count = 0;
+  Vec3 position, velocity;
+  Vec3 applied_force;  ///< for the next step only, N
+  std::uint8_t nailed = 0;
+  std::array<std::uint8_t, 7> padding{};
+  Vec3 nail, nail_before;  ///< where the nail is, and where it was at the last step, m
+  Vec3 nail_multiplier;    ///< minus the nail's force, N; warm start and reaction
+};
+
+/// A rigid set of particles, held by distance rows between its basis points.
+struct Body {
+  BodyKind kind = BodyKind::dynamic;
+  std::uint8_t rank = 0;  ///< basis points: 1 point, 2 on a line, 3 in a plane, 4 general
+  std::uint8_t row_count = 0;
+  std::uint8_t padding = 0;
+  std::uint32_t first = none, last = none, count = 0;
+  std::uint32_t articulate = none;
+  std::uint32_t next_in_articulate = none, previous_in_articulate = none;
+  std::uint32_t first_inertia = none;  ///< list of inertia pairs
+  std::uint32_t padding2 = 0;
+  double damping = 0;  ///< 1/s
+  std::array<std::uint32_t, 4> basis{none, none, none, none};
+  std::array<double, 6> lengths{};      ///< of the basis pairs (0,1) (0,2) (1,2) (0,3) (1,3) (2,3), m
+  std::array<double, 6> multipliers{};  ///< N; warm start
+  Quaternion orientation;               ///< of the drawn frame
+};
+
+/// Which two basis points the k-th rigidity row of a body joins.
+inline constexpr std::array<std::array<std::uint8_t, 2>, 6> basis_pairs{{{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}}};
+
+/// Kinetic energy 1/2 inertia |v_p - v_q|^2 beside that of the particles' own masses: with it two points carry the exact
+/// inertia of a rod.
+struct InertiaPair {
+  std::uint32_t body = none, next = none;
+  std::uint32_t p = none, q = none;
+  double inertia = 0;  ///< kg, may be negative
+};
+
+/// The bodies that hang together through hinges: one independent problem.
+struct Articulate {
+  std::uint32_t first = none, last = none, count = 0;
+  std::uint32_t version = 0;  ///< of its structure
+  std::uint32_t jolted = 0;   ///< velocities were assigned and may violate constraints: project before the next step
+};
+
+enum class BondKind : std::uint32_t { spring, drag, scripted };
+
+struct Bond {
+  std::uint32_t p = none, q = none;
+  BondKind kind = BondKind::spring;
+  std::uint32_t active = 1;
+  double stiffness = 0, damping = 0, length = 0;
+  std::uint64_t script = 0;  ///< key of the function, which lives outside the tables
+};
+
+struct CosmeticBond {
+  std::uint32_t p = none, q = none;
+};
+
+struct Grip {
+  std::uint32_t body = none, count = 0;
+  std::array<std::uint32_t, 4> points{};
+  std::array<double, 4> weights{};
+  Vec3 target;
+  std::uint32_t client = 0, hold = 0;
+  double frequency = 0, max_acceleration = 0;
+  double force = 0;  ///< in the last step, N
+};
+
+/// Two particles on their way to each other.
+struct Closing {
+  std::uint32_t p = none, q = none;
+  double distance = 0;  ///< at the start, m
+  double duration = 0, elapsed = 0;  ///< s
+  double multiplier = 0;
+};
+
+/// All of a system that is saved: plain tables under stable ids. It knows structure and book-keeping, not time stepping.
+class Model {
+ public:
+  SlotTable<Particle, ParticleId> particles;
+  SlotTable<Ring, Id<Ring>> rings;
+  SlotTable<Body, BodyId> bodies;
+  SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
+  SlotTable<Articulate, Id<Articulate>> articulates;
+  SlotTable<Bond, BondId> bonds;
+  SlotTable<CosmeticBond, CosmeticBondId> cosmetic_bonds;
+  SlotTable<Grip, GripId> grips;
+  SlotTable<Closing, Id<Closing>> closings;
+
+  Vec3 gravity{0, -9.81, 0};
+  IntegrationMode mode = IntegrationMode::energy_keeping;
+  double damping = 0;
+  double time = 0;
+  std::uint64_t step = 0;
+  std::uint32_t structure_version = 1;
+  double dissipated = 0, external_work = 0, edit_energy = 0;
+
+  /// @name Membership: cheap links only, no physics
+  ///@{
+  std::uint32_t make_particle(std::uint32_t body, const Vec3& position, double mass, const Vec3& velocity);
+  std::uint32_t make_body(BodyKind kind, double damping);  ///< in an articulate of its own
+  void remove_particle(std::uint32_t particle);            ///< from body and ring; both must be tidied by the caller
+  void add_to_body(std::uint32_t particle, std::uint32_t body);
+  void take_from_body(std::uint32_t particle);
+  void add_to_ring(std::uint32_t particle, std::uint32_t ring);
+  void take_from_ring(std::uint32_t particle);  ///< an empty ring is destroyed
+  void add_to_articulate(std::uint32_t body, std::uint32_t articulate);
+  void take_from_articulate(std::uint32_t body);  ///< an empty articulate is destroyed
+  void remove_body(std::uint32_t body);           ///< must have no particles left
+  void remove_inertia_of(std::uint32_t body, std::uint32_t particle);  ///< pairs that name the particle (none: all)
+  ///@}
+
+  /// @name Articulates (Algorithms 1 and 2 of the thesis, without the recursion)
+  ///@{
+  void join_articulates(std::uint32_t a, std::uint32_t b);  ///< the smaller is relabelled
+  /// After a cut between two bodies of one articulate: searches from both at once and, when the smaller side is
+  /// exhausted without meeting the other, gives it an articulate of its own. O(smaller side). True if split.
+  bool split_articulate(std::uint32_t body_a, std::uint32_t body_b);
+  void touch(std::uint32_t articulate) { ++articulates[articulate].version, ++revision; }
+  std::uint64_t revision = 0;  ///< rises with every touch; not saved
+  ///@}
+
+  /// Chooses a body's basis from where its particles are now, and takes its rigid distances.
+  void rebuild_basis(std::uint32_t body);
+
+  /// Whether a particle is an unknown of its own in the solver (basis points always are).
+  bool is_unknown(const Particle& p) const {
+    const Ring& r = rings[p.ring];
+    return p.basis_index >= 0 || r.count > 1 || r.nailed || p.uses > 0;
+  }
+
+  /// Held in place by a nail or by a static or scripted body in its ring.
+  bool is_pinned(std::uint32_t ring) const;
+
+  Vec3 position(std::uint32_t particle) const { return rings[particles[particle].ring].position; }
+  Vec3 velocity(std::uint32_t particle) const { return rings[particles[particle].ring].velocity; }
+  double body_mass(std::uint32_t body) const;
+  Vec3 centre_of_mass(std::uint32_t body) const;
+
+  template <class Visit>
+  void for_each_particle_of(std::uint32_t body, Visit visit) const {
+    for (std::uint32_t p = bodies[body].first, next; p != none; p = next) next = particles[p].next_in_body, visit(p);
+  }
+  template <class Visit>
+  void for_each_in_ring(std::uint32_t ring, Visit visit) const {
+    for (std::uint32_t p = rings[ring].first, next; p != none; p = next) next = particles[p].next_in_ring, visit(p);
+  }
+  template <class Visit>
+  void for_each_body_of(std::uint32_t articulate, Visit visit) const {
+    for (std::uint32_t b = articulates[articulate].first, next; b != none; b = next)
+      next = bodies[b].next_in_articulate, visit(b);
+  }
+  template <class Visit>
+  void for_each_inertia_of(std::uint32_t body, Visit visit) const {
+    for (std::uint32_t i = bodies[body].first_inertia; i != none; i = inertia_pairs[i].next) visit(i);
+  }
+
+  /// Remembers what a retired id became.
+  void record_survivor(ParticleId retired, ParticleId survivor);
+  void record_survivor(BodyId retired, BodyId survivor);
+  std::optional<ParticleId> survivor_of(ParticleId) const;
+  std::optional<BodyId> survivor_of(BodyId) const;
+
+  /// @name Quantities
+  ///@{
+  double kinetic_energy() const;    ///< J
+  double potential_energy() const;  ///< gravity and springs, J
+  Vec3 momentum() const;            ///< kg m/s
+  Vec3 angular_momentum() const;    ///< about the origin, kg m^2/s
+  double worst_gap() const;         ///< over rigid distances, tied points and nails, m
+  ///@}
+
+  std::vector<std::string> validate() const;
+  std::uint64_t hash() const;
+
+  template <class Archive>
+  void archive(Archive& ar);
+
+ private:
+  /// The last 65 536 retirements, oldest forgotten first.
+  template <class IdType>
+  struct Survivors {
+    std::map<IdType, IdType> became;
+    std::deque<IdType> in_order;
+    void record(IdType retired, IdType survivor);
+    std::optional<IdType> find(IdType id) const;
+    template <class Archive>
+    void archive(Archive& ar);
+  };
+  Survivors<ParticleId> particle_survivors_;
+  Survivors<BodyId> body_survivors_;
+};
+
+template <class IdType>
+template <class Archive>
+void Model::Survivors<IdType>::archive(Archive& ar) {
+  struct Pair { IdType retired, survivor; };
+  std::vector<Pair> pairs;
+  for (const IdType id : in_order) pairs.push_back({id, became.at(id)});
+  ar.vector(pairs);
+  became.clear(), in_order.clear();
+  for (const auto& [retired, survivor] : pairs) record(retired, survivor);
+}
+
+template <class Archive>
+void Model::archive(Archive& ar) {
+  particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), articulates.archive(ar);
+  bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
+  ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(time), ar.value(step), ar.value(structure_version);
+  ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);
+  particle_survivors_.archive(ar), body_survivors_.archive(ar);
+}
+
+}  // namespace iota::model

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::model {
+
+bool Model::is_pinned(std::uint32_t ring) const {
+  if (rings[ring].nailed) return true;
+  bool pinned = false;
+  for_each_in_ring(ring, [&](std::uint32_t p) {
+    const BodyKind kind = bodies[particles[p].body].kind;
+    pinned = pinned || kind == BodyKind::static_ || kind == BodyKind::scripted;
+  });
+  return pinned;
+}
+
+double Model::kinetic_energy() const {
+  double twice = 0;
+  particles.for_each([&](std::uint32_t, const Particle& p) {
+    const Vec3& v = rings[p.ring].velocity;
+    twice += p.mass * dot(v, v);
+  });
+  inertia_pairs.for_each([&](std::uint32_t, const InertiaPair& i) {
+    const Vec3 v = velocity(i.p) - velocity(i.q);
+    twice += i.inertia * dot(v, v);
+  });
+  return twice / 2;
+}
+
+double Model::potential_energy() const {
+  double energy = 0;
+  particles.for_each([&](std::uint32_t, const Particle& p) { energy -= p.mass * dot(gravity, rings[p.ring].position); });
+  bonds.for_each([&](std::uint32_t, const Bond& b) {
+    if (b.kind != BondKind::spring || !b.active) return;
+    const double stretch = norm(position(b.q) - position(b.p)) - b.length;
+    energy += 0.5 * b.stiffness * stretch * stretch;
+  });
+  return energy;
+}
+
+Vec3 Model::momentum() const {
+  Vec3 sum;
+  particles.for_each([&](std::uint32_t, const Particle& p) { sum += p.mass * rings[p.ring].velocity; });
+  return sum;
+}
+
+Vec3 Model::angular_momentum() const {
+  Vec3 sum;
+  particles.for_each([&](std::uint32_t, const Particle& p) {
+    sum += p.mass * cross(rings[p.ring].position, rings[p.ring].velocity);
+  });
+  inertia_pairs.for_each([&](std::uint32_t, const InertiaPair& i) {
+    sum += i.inertia * cross(position(i.p) - position(i.q), velocity(i.p) - velocity(i.q));
+  });
+  return sum;
+}
+
+double Model::worst_gap() const {
+  double worst = 0;
+  const auto add = [&](double gap) {
+    if (!(gap <= worst)) worst = gap;
+  };
+  bodies.for_each([&](std::uint32_t slot, const Body& b) {
+    if (b.kind == BodyKind::inactive) return;
+    for (int row = 0; row < b.row_count; ++row) {
+      const auto [i, j] = basis_pairs[row];
+      add(std::abs(norm(position(b.basis[j]) - position(b.basis[i])) - b.lengths[row]));
+    }
+    if (b.count == b.rank) return;
+    for_each_particle_of(slot, [&](std::uint32_t p) {
+      if (particles[p].basis_index >= 0) return;
+      Vec3 tied = -1.0 * position(p);
+      for (int i = 0; i < b.rank; ++i) tied += particles[p].weights[i] * position(b.basis[i]);
+      add(norm(tied));
+    });
+  });
+  rings.for_each([&](std::uint32_t, const Ring& r) {
+    if (r.nailed) add(norm(r.position - r.nail_before));
+  });
+  return worst;
+}
+
+}  // namespace iota::model

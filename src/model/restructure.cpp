@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/restructure.h"
+
+#include "math/mat3.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace iota::model {
+
+namespace {
+
+double ring_mass(const Model& model, std::uint32_t ring) {
+  double mass = 0;
+  model.for_each_in_ring(ring, [&](std::uint32_t p) { mass += model.particles[p].mass; });
+  return mass;
+}
+
+/// Merging two rings would put two particles of one body in one place, which no rigid body can.
+void require_no_shared_body(const Model& model, std::uint32_t ring_a, std::uint32_t ring_b, std::uint32_t except_body) {
+  model.for_each_in_ring(ring_a, [&](std::uint32_t a) {
+    model.for_each_in_ring(ring_b, [&](std::uint32_t b) {
+      const std::uint32_t body = model.particles[a].body;
+      if (body == model.particles[b].body && body != except_body)
+        throw std::invalid_argument("combine: body " + std::to_string(body) + " has particles (" + std::to_string(a) +
+                                    ", " + std::to_string(b) +
+                                    ") in both rings, and a rigid body cannot have both in one place; combine or "
+                                    "separate those two first");
+    });
+  });
+}
+
+/// All particles of `from` join `into`; position and velocity become the mass-weighted means, unless a nail decides.
+Edit merge_rings(Model& model, std::uint32_t into, std::uint32_t from) {
+  Ring& r = model.rings[into];
+  const Ring s = model.rings[from];
+  const double m_r = ring_mass(model, into), m_s = ring_mass(model, from), share = m_s / (m_r + m_s);
+  Edit edit{r.position != s.position, r.velocity != s.velocity || r.nailed || s.nailed};
+  if (r.nailed) {
+    // the first one's nail wins
+  } else if (s.nailed) {
+    r.nailed = 1, r.nail = s.nail, r.nail_before = s.nail_before, r.nail_multiplier = s.nail_multiplier;
+    r.position = s.position;
+  } else {
+    r.position += share * (s.position - r.position);
+  }
+  r.velocity += share * (s.velocity - r.velocity);
+  r.applied_force += s.applied_force;
+  for (std::uint32_t left = s.count; left > 0; --left) {  // the last one takes the ring `from` with it
+    const std::uint32_t moved = model.rings[from].first;
+    model.take_from_ring(moved);
+    model.add_to_ring(moved, into);
+  }
+  return edit;
+}
+
+/// Bonds and closings that named q now name p; those that would join p to itself go.
+void redirect_uses(Model& model, std::uint32_t q, std::uint32_t p) {
+  const auto redirect = [&](auto& item) {
+    if (item.p == q) item.p = p;
+    if (item.q == q) item.q = p;
+    return item.p == item.q;
+  };
+  std::vector<std::uint32_t> closed;
+  if (model.particles[q].uses > 0) {
+    model.particles[p].uses += model.particles[q].uses;
+    model.particles[q].uses = 0;
+    model.bonds.for_each([&](std::uint32_t slot, Bond& b) {
+      if (redirect(b)) closed.push_back(slot);
+    });
+    for (const std::uint32_t bond : closed) destroy_bond(model, bond);
+    closed.clear();
+    model.closings.for_each([&](std::uint32_t slot, Closing& c) {
+      if (redirect(c)) closed.push_back(slot);
+    });
+    for (const std::uint32_t closing : closed) destroy_closing(model, closing);
+    closed.clear();
+  }
+  if (model.particles[q].cosmetic_uses > 0) {
+    model.particles[p].cosmetic_uses += model.particles[q].cosmetic_uses;
+    model.cosmetic_bonds.for_each([&](std::uint32_t slot, CosmeticBond& b) {
+      if (redirect(b)) closed.push_back(slot);
+    });
+    for (const std::uint32_t bond : closed) {
+      model.particles[p].cosmetic_uses -= 2;
+      model.cosmetic_bonds.destroy(bond);
+    }
+  }
+}
+
+/// q, of the same body as p, becomes p: mass, bonds and inertia pairs. Both must be in one ring already or q alone in its.
+void absorb_particle(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
+  model.particles[p].mass += model.particles[q].mass;
+  redirect_uses(model, q, p);
+  const ParticleId retired = model.particles.id(q), survivor = model.particles.id(p);
+  model.record_survivor(retired, survivor);
+  report.absorbed_particles.push_back({retired, survivor});
+  model.remove_particle(q);
+}
+
+/// All particles of body b become body a's; where both have one in the same ring, one absorbs the other.
+void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
+  // Inertia pairs move with their particles, so take the list away before the particles leave.
+  const std::uint32_t pairs = model.bodies[b].first_inertia;
+  model.bodies[b].first_inertia = none;
+  for (std::uint32_t last = pairs; last != none; last = model.inertia_pairs[last].next) {
+    model.inertia_pairs[last].body = a;
+    if (model.inertia_pairs[last].next != none) continue;
+    model.inertia_pairs[last].next = model.bodies[a].first_inertia;
+    model.bodies[a].first_inertia = pairs;
+    break;
+  }
+  const auto twin_in = [&](std::uint32_t body, std::uint32_t particle) {
+    std::uint32_t twin = none;
+    model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t other) {
+      if (model.particles[other].body == body) twin = other;
+    });
+    return twin;
+  };
+  while (model.bodies[b].first != none) {
+    const std::uint32_t moved = model.bodies[b].first;
+    const std::uint32_t twin = twin_in(a, moved);
+    model.take_from_body(moved);
+    model.add_to_body(moved, a);
+    if (twin == none) continue;
+    model.for_each_inertia_of(a, [&](std::uint32_t i) {
+      InertiaPair& pair = model.inertia_pairs[i];
+      if (pair.p == moved) pair.p = twin;
+      if (pair.q == moved) pair.q = twin;
+    });
+    absorb_particle(model, twin, moved, report);
+  }
+  model.grips.for_each([&](std::uint32_t, Grip& g) {
+    if (g.body == b) g.body = a;
+  });
+  model.join_articulates(model.bodies[a].articulate, model.bodies[b].articulate);
+  const BodyId retired = model.bodies.id(b), survivor = model.bodies.id(a);
+  model.record_survivor(retired, survivor);
+  report.absorbed_bodies.push_back({retired, survivor});
+  model.remove_body(b);
+  model.rebuild_basis(a);
+  model.touch(model.bodies[a].articulate);
+}
+
+std::uint32_t closing_between(const Model& model, std::uint32_t p, std::uint32_t q) {
+  std::uint32_t found = none;
+  model.closings.for_each([&](std::uint32_t slot, const Closing& c) {
+    if ((c.p == p && c.q == q) || (c.p == q && c.q == p)) found = slot;
+  });
+  return found;
+}
+
+/// The bodies at the other members of a particle's ring.
+std::vector<std::uint32_t> ring_neighbours(const Model& model, std::uint32_t particle) {
+  std::vector<std::uint32_t> bodies;
+  model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t other) {
+    if (other != particle) bodies.push_back(model.particles[other].body);
+  });
+  return bodies;
+}
+
+/// Destroys what refers to a particle that is about to go; tells the bodies that a closing held to it.
+void destroy_uses(Model& model, std::uint32_t particle, std::vector<std::uint32_t>* held_bodies) {
+  const auto names = [&](const auto& item) { return item.p == particle || item.q == particle; };
+  if (model.particles[particle].uses > 0) {
+    for (std::uint32_t b = 0; b < model.bonds.slot_count(); ++b)
+      if (model.bonds.is_alive(b) && names(model.bonds[b])) destroy_bond(model, b);
+    for (std::uint32_t c = 0; c < model.closings.slot_count(); ++c)
+      if (model.closings.is_alive(c) && names(model.closings[c])) {
+        const std::uint32_t other = model.closings[c].p == particle ? model.closings[c].q : model.closings[c].p;
+        if (held_bodies) held_bodies->push_back(model.particles[other].body);
+        destroy_closing(model, c);
+      }
+  }
+  if (model.particles[particle].cosmetic_uses > 0)
+    for (std::uint32_t b = 0; b < model.cosmetic_bonds.slot_count(); ++b)
+      if (model.cosmetic_bonds.is_alive(b) && names(model.cosmetic_bonds[b])) {
+        --model.particles[model.cosmetic_bonds[b].p].cosmetic_uses;
+        --model.particles[model.cosmetic_bonds[b].q].cosmetic_uses;
+        model.cosmetic_bonds.destroy(b);
+      }
+}
+
+}  // namespace
+
+Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
+  if (p == q) return {};
+  const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
+  const std::uint32_t ring_p = model.particles[p].ring, ring_q = model.particles[q].ring;
+  report.changed = true;
+  report.closed_distance = norm(model.position(q) - model.position(p));
+
+  if (body_p == body_q) {  // same body: the latter is removed
+    if (ring_p != ring_q) require_no_shared_body(model, ring_p, ring_q, body_p);
+    // The body keeps its shape without q; what was hinged to q is then brought to p.
+    const bool q_was_hinged = model.rings[ring_q].count > 1;
+    const Vec3 momentum = model.particles[p].mass * model.velocity(p) + model.particles[q].mass * model.velocity(q);
+    const double mass = model.particles[p].mass + model.particles[q].mass;
+    Edit edit{false, true};
+    const Vec3 velocity = (1 / mass) * momentum;
+    const Ring left_behind = model.rings[ring_q];
+    if (model.rings[ring_p].count == 1) model.rings[ring_p].velocity = velocity;
+    if (!q_was_hinged && left_behind.nailed && !model.rings[ring_p].nailed) {
+      Ring& r = model.rings[ring_p];
+      r.nailed = 1, r.nail = left_behind.nail, r.nail_before = left_behind.nail_before;
+      edit.moved = true;
+    }
+    absorb_particle(model, p, q, report);
+    model.rebuild_basis(body_p);
+    if (q_was_hinged && ring_p != ring_q) edit = merge_rings(model, ring_p, ring_q);
+    model.touch(model.bodies[body_p].articulate);
+    return edit;
+  }
+
+  if (ring_p == ring_q) {  // a hinge: made rigid
+    absorb_body(model, body_p, body_q, report);
+    return {false, true};
+  }
+
+  require_no_shared_body(model, ring_p, ring_q, none);
+  if (const std::uint32_t closing = closing_between(model, p, q); closing != none) destroy_closing(model, closing);
+  const Edit edit = merge_rings(model, ring_p, ring_q);
+  model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
+  model.touch(model.bodies[body_p].articulate);
+  return edit;
+}
+
+Edit combine_bodies(Model& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
+  if (a == b) return {};
+  report.changed = true;
+  absorb_body(model, a, b, report);
+  return {false, true};
+}
+
+Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
+  const std::uint32_t body = model.particles[p].body;
+  if (p == q) {  // one particle: a second one at the same place
+    model.particles[p].mass /= 2;
+    const std::uint32_t twin =
+        model.make_particle(body, model.position(p), model.particles[p].mass, model.velocity(p));
+    model.rebuild_basis(body);
+    model.touch(model.bodies[body].articulate);
+    report.changed = true;
+    report.created_particles.push_back(model.particles.id(twin));
+    return {};
+  }
+
+  if (body == model.particles[q].body) {  // one body: q leaves it and is hinged to p
+    report.changed = true;
+    report.closed_distance = norm(model.position(q) - model.position(p));
+    std::vector<std::uint32_t> neighbours = ring_neighbours(model, q);
+    neighbours.push_back(body);
+    const Vec3 position = model.position(q), velocity = model.velocity(q);
+    model.take_from_ring(q);
+    model.take_from_body(q);
+    model.rebuild_basis(body);
+    const std::uint32_t own = model.make_body(model.bodies[body].kind, model.bodies[body].damping);
+    Ring ring;
+    ring.position = position, ring.velocity = velocity;
+    model.add_to_ring(q, model.rings.create(ring).slot);
+    model.add_to_body(q, own);
+    model.rebuild_basis(own);
+    const Edit edit = merge_rings(model, model.particles[p].ring, model.particles[q].ring);
+    model.join_articulates(model.bodies[body].articulate, model.bodies[own].articulate);
+    model.touch(model.bodies[body].articulate);
+    split_where_apart(model, neighbours);
+    report.created_bodies.push_back(model.bodies.id(own));
+    return {edit.moved, true};
+  }
+
+  const std::uint32_t ring = model.particles[p].ring;
+  if (ring == model.particles[q].ring) {  // hinged: q leaves the ring
+    report.changed = true;
+    Ring own;
+    own.position = model.rings[ring].position, own.velocity = model.rings[ring].velocity;
+    model.take_from_ring(q);
+    model.add_to_ring(q, model.rings.create(own).slot);
+    model.touch(model.bodies[body].articulate);
+    split_where_apart(model, {body, model.particles[q].body});
+    return {};
+  }
+
+  if (const std::uint32_t closing = closing_between(model, p, q); closing != none) {  // not met yet: called off
+    report.changed = true;
+    destroy_closing(model, closing);
+    split_where_apart(model, {body, model.particles[q].body});
+  }
+  return {};
+}
+
+void split_where_apart(Model& model, const std::vector<std::uint32_t>& bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t j = i + 1; j < bodies.size(); ++j)
+      if (model.bodies[bodies[i]].articulate == model.bodies[bodies[j]].articulate)
+        model.split_articulate(bodies[i], bodies[j]);
+}
+
+void destroy_particle(Model& model, std::uint32_t particle) {
+  const std::uint32_t body = model.particles[particle].body;
+  std::vector<std::uint32_t> apart = ring_neighbours(model, particle);
+  destroy_uses(model, particle, &apart);
+  model.remove_particle(particle);
+  model.touch(model.bodies[body].articulate);
+  if (model.bodies[body].count == 0) {
+    model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
+      if (g.body == body) model.grips.destroy(slot);
+    });
+    model.remove_body(body);
+  } else {
+    model.rebuild_basis(body);
+    apart.push_back(body);
+  }
+  split_where_apart(model, apart);
+}
+
+void destroy_body(Model& model, std::uint32_t body) {
+  std::vector<std::uint32_t> apart;
+  while (model.bodies[body].first != none) {
+    const std::uint32_t particle = model.bodies[body].first;
+    for (const std::uint32_t neighbour : ring_neighbours(model, particle)) apart.push_back(neighbour);
+    destroy_uses(model, particle, &apart);
+    model.remove_particle(particle);
+  }
+  model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
+    if (g.body == body) model.grips.destroy(slot);
+  });
+  model.remove_body(body);
+  std::erase(apart, body);
+  std::sort(apart.begin(), apart.end());
+  apart.erase(std::unique(apart.begin(), apart.end()), apart.end());
+  split_where_apart(model, apart);
+}
+
+void destroy_bond(Model& model, std::uint32_t bond) {
+  const Bond& b = model.bonds[bond];
+  for (const std::uint32_t end : {b.p, b.q}) {
+    --model.particles[end].uses;
+    model.touch(model.bodies[model.particles[end].body].articulate);
+  }
+  model.bonds.destroy(bond);
+}
+
+void destroy_closing(Model& model, std::uint32_t closing) {
+  const Closing& c = model.closings[closing];
+  for (const std::uint32_t end : {c.p, c.q}) {
+    --model.particles[end].uses;
+    model.touch(model.bodies[model.particles[end].body].articulate);
+  }
+  model.closings.destroy(closing);
+}
+
+Vec3 grip_point(const Model& model, const Grip& grip) {
+  Vec3 sum;
+  for (std::uint32_t i = 0; i < grip.count; ++i) sum += grip.weights[i] * model.position(grip.points[i]);
+  return sum;
+}
+
+void anchor_grip(const Model& model, Grip& grip, const Vec3& point) {
+  const Body& body = model.bodies[grip.body];
+  grip.count = body.rank;
+  grip.points.fill(0), grip.weights.fill(0);
+  const Vec3 origin = model.position(body.basis[0]);
+  std::array<Vec3, 3> vectors;
+  for (int i = 0; i < body.rank; ++i) {
+    grip.points[i] = body.basis[i];
+    if (i > 0) vectors[i - 1] = model.position(body.basis[i]) - origin;
+  }
+  Mat3 gram;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors[i], vectors[j]);
+  const Vec3 r = point - origin;
+  Vec3 c = solve_semidefinite(gram, {dot(vectors[0], r), dot(vectors[1], r), dot(vectors[2], r)}, 1e-12);
+  if (body.rank == 2) c.x = std::clamp(c.x, 0.0, 1.0);
+  grip.weights = {1 - c.x - c.y - c.z, c.x, c.y, c.z};
+}
+
+}  // namespace iota::model

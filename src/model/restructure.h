@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.h"
+
+namespace iota::model {
+
+/// What a structural edit leaves for physics to do; the step settles it.
+struct Edit {
+  bool moved = false;   ///< points that were apart now share a ring: positions must be projected
+  bool jolted = false;  ///< velocities may violate constraints, or mass has moved: they must be projected
+};
+
+/// The topology of Tables 4.2 and 4.3: who belongs to which body, ring and articulate, masses, positions and velocities of
+/// merged rings. All slots must be alive. Throws std::invalid_argument, before anything changes, for what cannot be.
+Edit combine_particles(Model&, std::uint32_t p, std::uint32_t q, RestructureReport&);
+Edit combine_bodies(Model&, std::uint32_t a, std::uint32_t b, RestructureReport&);
+Edit separate_particles(Model&, std::uint32_t p, std::uint32_t q, RestructureReport&);
+
+void destroy_particle(Model&, std::uint32_t particle);
+void destroy_body(Model&, std::uint32_t body);
+void destroy_bond(Model&, std::uint32_t bond);
+void destroy_closing(Model&, std::uint32_t closing);
+
+/// Splits the articulate of `bodies` wherever they no longer hang together.
+void split_where_apart(Model&, const std::vector<std::uint32_t>& bodies);
+
+/// Hangs a grip on the point of its body nearest to `point` (world frame): the span of the body's basis, for a rod
+/// between its ends.
+void anchor_grip(const Model&, Grip&, const Vec3& point);
+Vec3 grip_point(const Model&, const Grip&);
+
+}  // namespace iota::model

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+namespace iota::model {
+
+namespace {
+
+class Complaints {
+ public:
+  template <class... Parts>
+  void require(bool condition, const Parts&... parts) {
+    if (condition) return;
+    std::ostringstream text;
+    (text << ... << parts);
+    list.push_back(text.str());
+  }
+  std::vector<std::string> list;
+};
+
+}  // namespace
+
+// Independent of how edits keep the structure: everything is counted again from the particles.
+std::vector<std::string> Model::validate() const {
+  Complaints complaints;
+  std::vector<std::uint32_t> in_body(bodies.slot_count(), 0), in_ring(rings.slot_count(), 0),
+      in_articulate(articulates.slot_count(), 0), uses(particles.slot_count(), 0);
+
+  particles.for_each([&](std::uint32_t slot, const Particle& p) {
+    const bool linked = bodies.is_alive(p.body) && rings.is_alive(p.ring);
+    complaints.require(linked, "particle ", slot, " is in no living body or ring");
+    complaints.require(p.mass > 0 && std::isfinite(p.mass), "particle ", slot, " has mass ", p.mass);
+    if (!linked) return;
+    ++in_body[p.body], ++in_ring[p.ring];
+    double weight_sum = 0;
+    for (const double w : p.weights) weight_sum += w;
+    complaints.require(std::abs(weight_sum - 1) < 1e-9, "particle ", slot, " has basis weights that sum to ", weight_sum);
+  });
+
+  rings.for_each([&](std::uint32_t slot, const Ring& r) {
+    std::uint32_t walked = 0;
+    std::vector<std::uint32_t> owners;
+    for_each_in_ring(slot, [&](std::uint32_t p) {
+      ++walked;
+      complaints.require(particles.is_alive(p) && particles[p].ring == slot, "ring ", slot, " lists stranger ", p);
+      owners.push_back(particles[p].body);
+    });
+    complaints.require(walked == r.count && walked == in_ring[slot] && walked > 0, "ring ", slot, " counts ", r.count,
+                       " particles, lists ", walked, ", has ", in_ring[slot]);
+    std::sort(owners.begin(), owners.end());
+    complaints.require(std::adjacent_find(owners.begin(), owners.end()) == owners.end(), "ring ", slot,
+                       " holds two particles of one body");
+    complaints.require(is_finite(r.position) && is_finite(r.velocity), "ring ", slot, " is not finite");
+  });
+
+  bodies.for_each([&](std::uint32_t slot, const Body& b) {
+    std::uint32_t walked = 0;
+    for_each_particle_of(slot, [&](std::uint32_t p) {
+      ++walked;
+      complaints.require(particles.is_alive(p) && particles[p].body == slot, "body ", slot, " lists stranger ", p);
+    });
+    complaints.require(walked == b.count && walked == in_body[slot], "body ", slot, " counts ", b.count,
+                       " particles, lists ", walked, ", has ", in_body[slot]);
+    complaints.require(articulates.is_alive(b.articulate), "body ", slot, " is in no living articulate");
+    if (articulates.is_alive(b.articulate)) ++in_articulate[b.articulate];
+    complaints.require(b.row_count == b.rank * (b.rank - 1) / 2 || b.count == 0, "body ", slot, " has ",
+                       int(b.row_count), " rows at rank ", int(b.rank));
+    for (int i = 0; i < b.rank; ++i)
+      complaints.require(particles.is_alive(b.basis[i]) && particles[b.basis[i]].body == slot &&
+                             particles[b.basis[i]].basis_index == i,
+                         "body ", slot, " has a wrong basis point ", i);
+    for_each_inertia_of(slot, [&](std::uint32_t i) {
+      const InertiaPair& pair = inertia_pairs[i];
+      complaints.require(inertia_pairs.is_alive(i) && pair.body == slot && particles[pair.p].body == slot &&
+                             particles[pair.q].body == slot,
+                         "inertia pair ", i, " is not of body ", slot);
+    });
+  });
+
+  // Articulates are exactly the components of the hinge graph (closings count as hinges).
+  std::vector<std::uint32_t> parent(bodies.slot_count());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t b) {
+    while (parent[b] != b) b = parent[b] = parent[parent[b]];
+    return b;
+  };
+  rings.for_each([&](std::uint32_t, const Ring& r) {
+    if (r.first == none) return;
+    for (std::uint32_t p = particles[r.first].next_in_ring; p != none; p = particles[p].next_in_ring)
+      parent[root(particles[p].body)] = root(particles[r.first].body);
+  });
+  closings.for_each([&](std::uint32_t, const Closing& c) {
+    parent[root(particles[c.p].body)] = root(particles[c.q].body);
+    ++uses[c.p], ++uses[c.q];
+  });
+  std::vector<std::uint32_t> articulate_of_root(bodies.slot_count(), none), roots_of(articulates.slot_count(), 0);
+  bodies.for_each([&](std::uint32_t slot, const Body& b) {
+    const std::uint32_t r = root(slot);
+    if (articulate_of_root[r] == none) articulate_of_root[r] = b.articulate, ++roots_of[b.articulate];
+    complaints.require(articulate_of_root[r] == b.articulate, "bodies ", r, " and ", slot,
+                       " hang together but are in articulates ", articulate_of_root[r], " and ", b.articulate);
+  });
+  articulates.for_each([&](std::uint32_t slot, const Articulate& a) {
+    std::uint32_t walked = 0;
+    for_each_body_of(slot, [&](std::uint32_t b) {
+      ++walked;
+      complaints.require(bodies.is_alive(b) && bodies[b].articulate == slot, "articulate ", slot, " lists stranger ", b);
+    });
+    complaints.require(walked == a.count && walked == in_articulate[slot] && walked > 0, "articulate ", slot, " counts ",
+                       a.count, " bodies, lists ", walked, ", has ", in_articulate[slot]);
+    complaints.require(roots_of[slot] == 1, "articulate ", slot, " holds ", roots_of[slot], " separate pieces");
+  });
+
+  const auto require_ends = [&](const char* what, std::uint32_t slot, std::uint32_t p, std::uint32_t q) {
+    complaints.require(particles.is_alive(p) && particles.is_alive(q) && p != q, what, " ", slot, " joins ", p, " and ", q);
+  };
+  bonds.for_each([&](std::uint32_t slot, const Bond& b) {
+    require_ends("bond", slot, b.p, b.q);
+    ++uses[b.p], ++uses[b.q];
+  });
+  cosmetic_bonds.for_each([&](std::uint32_t slot, const CosmeticBond& b) { require_ends("cosmetic bond", slot, b.p, b.q); });
+  particles.for_each([&](std::uint32_t slot, const Particle& p) {
+    complaints.require(p.uses == uses[slot], "particle ", slot, " counts ", p.uses, " uses, has ", uses[slot]);
+  });
+  grips.for_each([&](std::uint32_t slot, const Grip& g) {
+    complaints.require(bodies.is_alive(g.body), "grip ", slot, " holds no living body");
+    for (std::uint32_t i = 0; i < g.count; ++i)
+      complaints.require(particles.is_alive(g.points[i]) && particles[g.points[i]].body == g.body, "grip ", slot,
+                         " hangs on a stranger");
+  });
+  return complaints.list;
+}
+
+}  // namespace iota::model

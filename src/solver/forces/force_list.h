@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "math/mat3.h"
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <tuple>
+
+namespace iota::solver {
+
+/// What every implicit force acts on: the vector e = sum_i w_i x_i - origin of a few points. A force F(e) acts on point i
+/// as w_i F, so that momentum is kept wherever the weights sum to zero.
+struct ForceArm {
+  static constexpr int max_nodes = 4;
+  std::array<std::uint32_t, max_nodes> nodes{};
+  std::array<double, max_nodes> weights{};
+  std::uint32_t count = 0;
+  Vec3 origin;
+
+  Vec3 value(const Vec3* x) const {
+    Vec3 e = -1.0 * origin;
+    for (std::uint32_t i = 0; i < count; ++i) e += weights[i] * x[nodes[i]];
+    return e;
+  }
+};
+
+/// Where in a step a force is taken: backward Euler at its end, the mid-point rule by a discrete gradient.
+struct ForceStage {
+  double h = 0;         ///< s
+  bool midpoint = false;
+  bool clamp = false;   ///< make stiffness blocks positive semi-definite
+};
+
+/// F = -k (|e| - L) e/|e| - c n n.(e1 - e0)/h, n along e0. Mid-point: the discrete gradient of k/2 (|e|-L)^2, which is
+/// -k (1 - 2L/(|e0|+|e1|)) (e0+e1)/2, so that F.(e1-e0) is exactly minus the change of energy.
+struct SpringForce {
+  ForceArm arm;
+  double stiffness = 0, damping = 0, length = 0;
+
+  static Vec3 direction(const Vec3& e) { return (1 / (norm(e) + 1e-300)) * e; }
+  double energy(const Vec3& e) const {
+    const double stretch = norm(e) - length;
+    return 0.5 * stiffness * stretch * stretch;
+  }
+  Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    const double r = s.midpoint ? (norm(e0) + norm(e1)) / 2 : norm(e1);
+    const Vec3 e = s.midpoint ? 0.5 * (e0 + e1) : e1;
+    const Vec3 n = direction(e0);
+    return (-stiffness * factor(r)) * e - (damping / s.h * dot(n, e1 - e0)) * n;
+  }
+  Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    const Vec3 n0 = direction(e0), n1 = direction(e1);
+    Mat3 k = (damping / s.h) * Mat3::outer(n0, n0);
+    if (s.midpoint) {
+      const double r = (norm(e0) + norm(e1)) / 2;
+      double across = factor(r);
+      if (s.clamp && across < 0) across = 0;
+      k += Mat3::diagonal(0.5 * stiffness * across);
+      k += (stiffness * length / (2 * r * r + 1e-300)) * Mat3::outer(0.5 * (e0 + e1), n1);
+    } else {
+      double across = factor(norm(e1));
+      if (s.clamp && across < 0) across = 0;
+      k += Mat3::diagonal(stiffness * across);
+      k += (stiffness * (1 - across)) * Mat3::outer(n1, n1);
+    }
+    return k;
+  }
+
+ private:
+  double factor(double r) const { return length == 0 ? 1 : 1 - length / (r + 1e-300); }
+};
+
+/// F = -c (e1 - e0)/h: viscous drag.
+struct DragForce {
+  ForceArm arm;
+  double damping = 0;
+
+  double energy(const Vec3&) const { return 0; }
+  Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const { return (-damping / s.h) * (e1 - e0); }
+  Mat3 stiffness_matrix(const Vec3&, const Vec3&, const ForceStage& s) const { return Mat3::diagonal(damping / s.h); }
+};
+
+/// A hand: F = -k e - c (e1 - e0)/h towards the arm's origin.
+struct GripForce {
+  ForceArm arm;
+  double stiffness = 0, damping = 0;
+
+  double energy(const Vec3& e) const { return 0.5 * stiffness * dot(e, e); }
+  Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    return -stiffness * (s.midpoint ? 0.5 * (e0 + e1) : e1) - (damping / s.h) * (e1 - e0);
+  }
+  Mat3 stiffness_matrix(const Vec3&, const Vec3&, const ForceStage& s) const {
+    return Mat3::diagonal((s.midpoint ? 0.5 : 1) * stiffness + damping / s.h);
+  }
+};
+
+template <class F>
+concept ImplicitForce = requires(const F& f, const Vec3& e, const ForceStage& stage) {
+  { f.arm } -> std::convertible_to<ForceArm>;
+  { f.energy(e) } -> std::convertible_to<double>;
+  { f.force(e, e, stage) } -> std::convertible_to<Vec3>;
+  { f.stiffness_matrix(e, e, stage) } -> std::convertible_to<Mat3>;
+};
+
+/// The one list of implicit forces.
+template <template <class> class Pool>
+using ForcePools = std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>>;
+
+static_assert(ImplicitForce<SpringForce> && ImplicitForce<DragForce> && ImplicitForce<GripForce>);
+
+}  // namespace iota::solver

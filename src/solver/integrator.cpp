@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::solver {
+
+namespace {
+
+constexpr int max_depth = 4;              // sub-steps down to a sixteenth
+constexpr double max_turn_cosine = 0.765; // cos 0.7 rad: beyond it Newton finds wrong branches (measured: prototype)
+constexpr double standing_conflict = 1e-5;  // relative start gap at which the mid-point rule never comes to rest
+
+}  // namespace
+
+void Integrator::compile(Problem& problem) {
+  newton_.compile(problem);
+  guess_.resize(problem.size()), velocity_.resize(problem.size());
+  std::size_t count = 0;
+  problem.for_each_constraint_pool([&](const auto& pool) { count += pool.multipliers.size(); });
+  multipliers_saved_.resize(count);
+}
+
+void Integrator::save_multipliers(const Problem& problem) {
+  auto out = multipliers_saved_.begin();
+  problem.for_each_constraint_pool([&](const auto& p) { out = std::copy(p.multipliers.begin(), p.multipliers.end(), out); });
+}
+
+void Integrator::restore_multipliers(Problem& problem) const {
+  auto in = multipliers_saved_.begin();
+  problem.for_each_constraint_pool([&](auto& pool) {
+    std::copy_n(in, pool.multipliers.size(), pool.multipliers.begin());
+    in += static_cast<std::ptrdiff_t>(pool.multipliers.size());
+  });
+}
+
+bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& report) {
+  for (std::size_t i = 0; i < problem.size(); ++i) guess_[i] = problem.position[i] + stage.h * problem.velocity[i];
+  const NewtonReport newton = newton_.solve(problem, stage, guess_);
+  ++report.solves;
+  report.iterations += newton.iterations;
+  report.iterations_max = std::max(report.iterations_max, newton.iterations);
+  return newton.converged;
+}
+
+void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& report) {
+  const auto x1 = newton_.solution();
+  const double before = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  double work = 0;
+  const auto add_work = [&](const auto& pool) {
+    const ForceStage force_stage{stage.h, stage.midpoint, false};
+    for (const auto& f : pool.items) {
+      const Vec3 e0 = f.arm.value(problem.position.data()), e1 = f.arm.value(x1.data());
+      work += dot(f.force(e0, e1, force_stage), e1 - e0) + f.energy(e1) - f.energy(e0);
+    }
+  };
+  add_work(std::get<ForcePool<GripForce>>(problem.forces));
+  for (const auto& c : std::get<ConstraintPool<AffineConstraint>>(problem.constraints).items)
+    if (c.target != c.target_start) {
+      const auto& pool = std::get<ConstraintPool<AffineConstraint>>(problem.constraints);
+      const double* l = pool.multiplier(static_cast<std::size_t>(&c - pool.items.data()));
+      Vec3 moved;
+      for (std::uint32_t i = 0; i < c.count; ++i)
+        moved += c.weights[i] * (x1[c.nodes[i]] - problem.position[c.nodes[i]]);
+      work -= dot(Vec3{l[0], l[1], l[2]}, moved);
+    }
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    const Vec3 moved = x1[i] - problem.position[i];
+    work += dot(problem.force[i], moved);
+    problem.velocity[i] =
+        stage.midpoint ? (2 / stage.h) * moved - problem.velocity[i] : (1 / stage.h) * moved;
+    problem.position[i] = x1[i];
+  }
+  const double after = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  report.external_work += work;
+  report.dissipated += before + work - after;
+  ++report.substeps;
+}
+
+bool Integrator::turns_too_far(const Problem& problem) const {
+  const auto x1 = newton_.solution();
+  for (const auto& c : std::get<ConstraintPool<DistanceConstraint>>(problem.constraints).items) {
+    const Vec3 d0 = problem.position[c.nodes[1]] - problem.position[c.nodes[0]];
+    const Vec3 d1 = x1[c.nodes[1]] - x1[c.nodes[0]];
+    const double d = dot(d0, d1);
+    if (d <= 0 || d * d < max_turn_cosine * max_turn_cosine * dot(d0, d0) * dot(d1, d1)) return true;
+  }
+  return false;
+}
+
+bool Integrator::gains_energy(const Problem& problem, const Stage& stage) {
+  if (!conservative_) return false;
+  const auto x1 = newton_.solution();
+  for (std::size_t i = 0; i < problem.size(); ++i) velocity_[i] = (1 / stage.h) * (x1[i] - problem.position[i]);
+  const double kinetic_before = problem.kinetic_energy(), kinetic_after = 0.5 * problem.mass_norm2(velocity_.data());
+  const double gain = kinetic_after - kinetic_before + problem.potential_energy(x1.data()) -
+                      problem.potential_energy(problem.position.data());
+  return !(gain <= 1e-9 * (kinetic_before + kinetic_after) + 1e-12);
+}
+
+void Integrator::advance_mid_point(Problem& problem, double h, double from, double to, int depth,
+                                   AdvanceReport& report) {
+  if (problem.worst_gap(problem.position.data(), true) > standing_conflict) {
+    ++report.fallbacks;
+    return advance_end_point(problem, h, from, to, depth, report);
+  }
+  save_multipliers(problem);
+  const Stage stage = Stage::mid_point(h, to);
+  if (try_step(problem, stage, report) && !turns_too_far(problem)) return commit(problem, stage, report);
+  restore_multipliers(problem);
+  if (depth == max_depth) {
+    ++report.fallbacks;
+    return advance_end_point(problem, h, from, to, depth, report);
+  }
+  const double middle = (from + to) / 2;
+  advance_mid_point(problem, h / 2, from, middle, depth + 1, report);
+  advance_mid_point(problem, h / 2, middle, to, depth + 1, report);
+}
+
+void Integrator::advance_end_point(Problem& problem, double h, double from, double to, int depth,
+                                   AdvanceReport& report) {
+  save_multipliers(problem);
+  Stage stage = Stage::end_point(h, to);
+  const bool solved = try_step(problem, stage, report);
+  if (solved && !(depth < max_depth && gains_energy(problem, stage))) return commit(problem, stage, report);
+  restore_multipliers(problem);
+  if (depth < max_depth) {
+    const double middle = (from + to) / 2;
+    advance_end_point(problem, h / 2, from, middle, depth + 1, report);
+    advance_end_point(problem, h / 2, middle, to, depth + 1, report);
+    return;
+  }
+  report.converged = false;
+  if (least_violation(problem, stage, report)) {
+    commit(problem, stage, report);
+  } else {
+    // Nothing could be found: the world stays where it is and comes to rest. Plausible, finite, and reported.
+    restore_multipliers(problem);
+    const double lost = problem.kinetic_energy();
+    std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
+    report.dissipated += lost;
+    ++report.substeps;
+  }
+}
+
+bool Integrator::least_violation(Problem& problem, Stage stage, AdvanceReport& report) {
+  // Rising compliance turns conflicting constraints into the springs that share the violation.
+  for (const double compliance : {1e-8, 1e-6, 1e-4, 1e-2}) {
+    stage.compliance = compliance;
+    restore_multipliers(problem);
+    if (try_step(problem, stage, report)) return true;
+  }
+  return false;
+}
+
+AdvanceReport Integrator::advance(Problem& problem, double h, Scheme scheme) {
+  AdvanceReport report;
+  conservative_ = std::get<ForcePool<GripForce>>(problem.forces).items.empty();
+  for (const Vec3& f : problem.force) conservative_ = conservative_ && f == Vec3{};
+  for (const auto& c : std::get<ConstraintPool<AffineConstraint>>(problem.constraints).items)
+    conservative_ = conservative_ && c.target == c.target_start;
+  for (const auto& c : std::get<ConstraintPool<DistanceConstraint>>(problem.constraints).items)
+    conservative_ = conservative_ && c.length == c.length_start;
+  if (scheme == Scheme::mid_point)
+    advance_mid_point(problem, h, 0, 1, 0, report);
+  else
+    advance_end_point(problem, h, 0, 1, 0, report);
+  return report;
+}
+
+bool Integrator::project_positions(Problem& problem) {
+  save_multipliers(problem);
+  problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
+  Stage stage = Stage::projection();
+  AdvanceReport ignored;
+  bool solved = try_step(problem, stage, ignored);
+  bool found = solved;
+  for (const double compliance : {1e-8, 1e-6, 1e-4, 1e-2, 1.0}) {
+    if (found) break;
+    stage.compliance = compliance;
+    problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
+    found = try_step(problem, stage, ignored);
+  }
+  if (found) std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
+  restore_multipliers(problem);
+  return solved;
+}
+
+}  // namespace iota::solver

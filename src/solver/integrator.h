@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solver/newton.h"
+
+namespace iota::solver {
+
+enum class Scheme : std::uint8_t {
+  end_point,  ///< backward Euler: v1 = (x1 - x0)/h
+  mid_point,  ///< energy-momentum: v1 = 2 (x1 - x0)/h - v0 (Betsch and Leyendecker 2006)
+};
+
+/// What one problem went through in one step.
+struct [[nodiscard]] AdvanceReport {
+  int solves = 0;
+  int iterations = 0;
+  int iterations_max = 0;
+  int substeps = 0;
+  int fallbacks = 0;  ///< mid-point sub-steps that had to be taken by the end-point scheme
+  bool converged = true;
+  double external_work = 0;  ///< of explicit forces, grips and moving targets, J
+  double dissipated = 0;     ///< J
+};
+
+/// Advances problems by one step each. One integrator serves one problem structure; it owns the work space, so a warm
+/// step allocates nothing.
+class Integrator {
+ public:
+  void compile(Problem& problem);
+
+  /// Positions, velocities and multipliers of `problem` become those after h seconds.
+  /// mid_point halves the step (to a sixteenth) when a link turns more than 0.7 rad in it or Newton fails, and then
+  /// falls back to end_point, which is used at once while constraints are violated at the start.
+  AdvanceReport advance(Problem& problem, double h, Scheme scheme);
+
+  /// Moves positions by the least mass-weighted displacement that meets all constraints; velocities stay.
+  /// Returns false where no solution was found: positions then violate the constraints as little as could be reached.
+  bool project_positions(Problem& problem);
+
+  void project_velocities(Problem& problem, double h = 0) { newton_.project_velocities(problem, h); }
+
+  const Newton& newton() const { return newton_; }
+
+ private:
+  bool try_step(Problem&, const Stage&, AdvanceReport&);
+  void commit(Problem&, const Stage&, AdvanceReport&);
+  void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
+  void advance_end_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
+  bool turns_too_far(const Problem&) const;
+  bool gains_energy(const Problem&, const Stage&);
+  void save_multipliers(const Problem&);
+  void restore_multipliers(Problem&) const;
+  bool least_violation(Problem&, Stage, AdvanceReport&);
+
+  Newton newton_;
+  std::vector<Vec3> guess_, velocity_;
+  std::vector<double> multipliers_saved_;
+  bool conservative_ = true;  ///< nothing outside does work during this step
+};
+
+}  // namespace iota::solver

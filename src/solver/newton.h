@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solver/problem.h"
+#include "solver/sparse/block_factor.h"
+
+#include <span>
+#include <vector>
+
+namespace iota::solver {
+
+/// Which equations a Newton solve closes. With u = x - x0 - h v0:
+///   inertia * M u - f(x) + Gh' lambda = 0,   g(x) - compliance * lambda = 0
+/// end point (backward Euler): inertia = 1/h^2, Gh = G(x);  mid-point: inertia = 2/h^2, Gh = (G(x0) + G(x)) / 2.
+struct Stage {
+  double h = 0;            ///< s; 0: a pure projection of positions, without velocities and forces
+  double inertia = 1;
+  bool midpoint = false;
+  double fraction = 1;     ///< of the step, for targets that move during it
+  double compliance = 1e-12;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
+
+  bool is_projection() const { return h == 0; }
+  static Stage end_point(double h, double fraction) { return {h, 1 / (h * h), false, fraction, 1e-12}; }
+  static Stage mid_point(double h, double fraction) { return {h, 2 / (h * h), true, fraction, 1e-12}; }
+  static Stage projection() { return {}; }
+};
+
+struct [[nodiscard]] NewtonReport {
+  bool converged = false;
+  int iterations = 0;
+  double residual = 0;  ///< scaled, dimensionless
+};
+
+/// Newton's method with exact geometric stiffness, globalised: a step is taken when the scaled residual or an l1 merit
+/// falls; the Hessian is clamped to positive semi-definite once full steps stop halving the residual or a pivot has the
+/// wrong sign. `docs/solver.md` gives the measurements behind each rule.
+class Newton {
+ public:
+  /// Analyses the structure of the problem; call again whenever nodes, constraints or forces were added or removed.
+  void compile(Problem& problem);
+
+  /// Solves for positions and multipliers, from `guess` and the pools' multipliers. On success `solution()` and the
+  /// pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.
+  NewtonReport solve(Problem& problem, const Stage& stage, std::span<const Vec3> guess);
+  std::span<const Vec3> solution() const { return x_; }
+
+  /// The velocity nearest to `velocity` in the mass norm with G(position) v = rate, in place; rate is that of targets and
+  /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what
+  /// nails take.
+  void project_velocities(Problem& problem, double h);
+
+  const BlockPattern& pattern() const { return pattern_; }
+  std::uint64_t analyses() const { return analyses_; }
+
+ private:
+  enum class Hessian { exact, clamped, none };
+  template <bool Midpoint>
+  NewtonReport solve_as(Problem&, const Stage&);
+  template <bool Midpoint>
+  double residual(const Problem&, const Stage&, const Vec3* x);
+  template <bool Midpoint>
+  int assemble_and_factor(const Problem&, const Stage&, Hessian);
+  double merit(const Problem&, const Stage&, const Vec3* x) const;
+  void solve_linear();
+  /// x + t dx and lambda + t d_lambda, from the saved iterate.
+  void move(Problem&, double t);
+
+  BlockPattern pattern_;
+  BlockFactor factor_;
+  std::vector<std::uint32_t> node_unknown_, node_diagonal_;
+  std::vector<std::uint8_t> node_stride_;
+  std::vector<Vec3> x_, x_saved_, u_, momentum_;
+  std::vector<double> residual_, step_, multipliers_saved_, merit_weights_;
+  std::vector<double> inverse_scale_;  // of the force residual of each node
+  double reference_length_ = 1;
+  std::uint64_t analyses_ = 0;
+};
+
+}  // namespace iota::solver

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::solver {
+
+double Problem::potential_energy(const Vec3* x) const {
+  double energy = 0;
+  for (std::size_t i = 0; i < size(); ++i) energy -= mass[i] * dot(gravity, x[i]);
+  for (const auto& c : mass_couplings) energy -= c.mass * dot(gravity, x[c.a] + x[c.b]);
+  for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items) energy += f.energy(f.arm.value(x));
+  });
+  return energy;
+}
+
+double Problem::worst_gap(const Vec3* x, bool relative) const {
+  double worst = 0;
+  for_each_constraint_pool([&](const auto& pool) {
+    for (const auto& c : pool.items) {
+      double g[3] = {};
+      c.value(x, 1, g);
+      double size2 = 0;
+      for (const double v : g) size2 += v * v;
+      const double size = std::sqrt(size2) / (relative ? c.reference_length() : 1);
+      if (!(size <= worst)) worst = size;
+    }
+  });
+  return worst;
+}
+
+}  // namespace iota::solver

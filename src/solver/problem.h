@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solver/constraints/constraint_list.h"
+#include "solver/forces/force_list.h"
+#include "solver/sparse/block_pattern.h"
+
+#include <iota/vec3.h>
+
+#include <array>
+#include <vector>
+
+namespace iota::solver {
+
+/// Constraints of one type with their multipliers (warm start in, solution out) and their places in the matrix.
+template <class C>
+struct ConstraintPool {
+  struct Slots {
+    std::uint32_t unknown = 0, diagonal = 0;
+    std::uint8_t stride = 1;
+    std::array<BlockPattern::GradientSlot, C::max_nodes> gradients{};
+    std::array<BlockPattern::PairSlot, C::has_curvature ? C::max_nodes*(C::max_nodes - 1) / 2 : 0> pairs{};
+  };
+  std::vector<C> items;
+  std::vector<double> multipliers;  ///< C::rows each, N
+  std::vector<Slots> slots;
+
+  const double* multiplier(std::size_t i) const { return multipliers.data() + i * C::rows; }
+  double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }
+};
+
+template <class F>
+struct ForcePool {
+  struct Slots {
+    std::array<BlockPattern::PairSlot, ForceArm::max_nodes*(ForceArm::max_nodes - 1) / 2> pairs{};
+  };
+  std::vector<F> items;
+  std::vector<Slots> slots;
+};
+
+/// One independent problem: points with masses, what constrains them and what pushes them. It knows no bodies; the step
+/// fills it from the model and reads positions, velocities and multipliers back.
+struct Problem {
+  struct MassCoupling {
+    std::uint32_t a, b;
+    double mass;  ///< off-diagonal entry of the constant mass matrix, kg
+    BlockPattern::PairSlot slot{};
+  };
+
+  std::vector<Vec3> position, velocity;  ///< m, m/s
+  std::vector<Vec3> force;               ///< explicit, held over the step, N
+  std::vector<double> mass;              ///< diagonal of the mass matrix, kg
+  std::vector<MassCoupling> mass_couplings;
+  ConstraintPools<ConstraintPool> constraints;
+  ForcePools<ForcePool> forces;
+  Vec3 gravity;
+
+  std::size_t size() const { return position.size(); }
+
+  template <class Visit>
+  void for_each_constraint_pool(Visit visit) {
+    std::apply([&](auto&... pool) { (visit(pool), ...); }, constraints);
+  }
+  template <class Visit>
+  void for_each_constraint_pool(Visit visit) const {
+    std::apply([&](const auto&... pool) { (visit(pool), ...); }, constraints);
+  }
+  template <class Visit>
+  void for_each_force_pool(Visit visit) {
+    std::apply([&](auto&... pool) { (visit(pool), ...); }, forces);
+  }
+  template <class Visit>
+  void for_each_force_pool(Visit visit) const {
+    std::apply([&](const auto&... pool) { (visit(pool), ...); }, forces);
+  }
+
+  /// out_i = sum_j M_ij u_j.
+  void multiply_mass(const Vec3* u, Vec3* out) const {
+    for (std::size_t i = 0; i < size(); ++i) out[i] = mass[i] * u[i];
+    for (const auto& c : mass_couplings) {
+      out[c.a] += c.mass * u[c.b];
+      out[c.b] += c.mass * u[c.a];
+    }
+  }
+  /// u' M u.
+  double mass_norm2(const Vec3* u) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < size(); ++i) sum += mass[i] * dot(u[i], u[i]);
+    for (const auto& c : mass_couplings) sum += 2 * c.mass * dot(u[c.a], u[c.b]);
+    return sum;
+  }
+  double kinetic_energy() const { return 0.5 * mass_norm2(velocity.data()); }
+  /// Gravity and implicit forces.
+  double potential_energy(const Vec3* x) const;
+  /// Largest violation at x, m; with `relative`, as a fraction of each constraint's reference length.
+  double worst_gap(const Vec3* x, bool relative = false) const;
+};
+
+}  // namespace iota::solver

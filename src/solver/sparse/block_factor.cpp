@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/sparse/block_factor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::solver {
+
+namespace {
+
+/// target (rows x columns, row stride `stride`) -= a (rows x Pivot) * b (columns x Pivot)'.
+template <int Pivot>
+void subtract_product(double* target, int stride, const double* a, int rows, const double* b, int columns) {
+  if (rows == 3 && columns == 3) {  // two nodes: nearly always
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) {
+        double sum = a[r * Pivot] * b[c * Pivot];
+        for (int k = 1; k < Pivot; ++k) sum += a[r * Pivot + k] * b[c * Pivot + k];
+        target[r * stride + c] -= sum;
+      }
+    return;
+  }
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      double sum = 0;
+      for (int k = 0; k < Pivot; ++k) sum += a[r * Pivot + k] * b[c * Pivot + k];
+      target[r * stride + c] -= sum;
+    }
+}
+
+/// Calls f.template operator()<Pivot>() for the run-time size of a pivot block.
+template <class Function>
+auto with_pivot(int pivot, Function f) {
+  switch (pivot) {
+    case 1: return f.template operator()<1>();
+    case 3: return f.template operator()<3>();
+    case 4: return f.template operator()<4>();
+    case 5: return f.template operator()<5>();
+    default: return f.template operator()<6>();
+  }
+}
+
+}  // namespace
+
+void BlockFactor::reset(const BlockPattern& pattern) {
+  pattern_ = &pattern;
+  lower_.assign(pattern.value_count(), 0);
+  upper_.clear();
+  upper_.reserve(pattern.value_count());
+  unscaled_.assign(static_cast<std::size_t>(pattern.widest_front()) * BlockPattern::max_pivot, 0);
+}
+
+void BlockFactor::clear(bool symmetric) {
+  symmetric_ = symmetric;
+  std::fill(lower_.begin(), lower_.end(), 0.0);
+  if (!symmetric) upper_.assign(lower_.size(), 0.0);
+}
+
+template <int Pivot, bool Symmetric>
+int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
+  double* const d = lower_.data() + v.diagonal;
+  int wrong = 0;
+
+  // The pivot block: unit lower L11 below the diagonal, reciprocal pivots on it, and for LU the rest of U11 above it.
+  for (int k = 0; k < Pivot; ++k) {
+    const double pivot = d[k * Pivot + k];
+    wrong += k < v.positives ? !(pivot > 0) : !(pivot < 0);
+    const double inverse = 1 / pivot;
+    d[k * Pivot + k] = inverse;
+    if constexpr (Symmetric) {
+      double column[Pivot];
+      for (int i = k + 1; i < Pivot; ++i) {
+        column[i] = d[i * Pivot + k];
+        const double l = column[i] * inverse;
+        for (int j = k + 1; j <= i; ++j) d[i * Pivot + j] -= l * column[j];
+        d[i * Pivot + k] = l;
+      }
+    } else {
+      for (int i = k + 1; i < Pivot; ++i) {
+        const double l = d[i * Pivot + k] * inverse;
+        for (int j = k + 1; j < Pivot; ++j) d[i * Pivot + j] -= l * d[k * Pivot + j];
+        d[i * Pivot + k] = l;
+      }
+    }
+  }
+  if (v.entry_count == 0) return wrong;
+
+  // The blocks below: L21 = A21 U11^-1, and the transposed U12 (symmetric: L21 D) beside it.
+  const auto entries = pattern_->entries().subspan(v.first_entry, v.entry_count);
+  int rows = 0;
+  for (const auto& e : entries) rows += e.width;
+  double* const l21 = lower_.data() + entries.front().offset;  // the blocks of a front are contiguous
+  double* const u12 = Symmetric ? unscaled_.data() : upper_.data() + entries.front().offset;
+  for (int r = 0; r < rows; ++r) {
+    double* const l = l21 + r * Pivot;
+    double* const u = u12 + r * Pivot;
+    if constexpr (Symmetric) {
+      for (int k = 0; k < Pivot; ++k) {
+        double value = l[k];
+        for (int j = 0; j < k; ++j) value -= u[j] * d[k * Pivot + j];
+        u[k] = value;
+      }
+      for (int k = 0; k < Pivot; ++k) l[k] = u[k] * d[k * Pivot + k];
+    } else {
+      for (int k = 0; k < Pivot; ++k) {
+        double lower_value = l[k], upper_value = u[k];
+        for (int j = 0; j < k; ++j) {
+          lower_value -= l[j] * d[j * Pivot + k];
+          upper_value -= u[j] * d[k * Pivot + j];
+        }
+        l[k] = lower_value * d[k * Pivot + k];
+        u[k] = upper_value;
+      }
+    }
+  }
+
+  // What is left for the later vertices.
+  const std::uint32_t* target = pattern_->pair_targets().data() + v.first_pair;
+  const auto vertices = pattern_->vertices();
+  const double* la = l21;
+  const double* ua = u12;
+  for (std::size_t a = 0; a < entries.size(); ++a) {
+    const int stride = vertices[entries[a].vertex].pivot;
+    const int width_a = entries[a].width;
+    subtract_product<Pivot>(lower_.data() + *target++, stride, la, width_a, ua, width_a);
+    const double* lb = la + width_a * Pivot;
+    const double* ub = ua + width_a * Pivot;
+    for (std::size_t b = a + 1; b < entries.size(); ++b, ++target) {
+      const int width_b = entries[b].width;
+      subtract_product<Pivot>(lower_.data() + *target, stride, lb, width_b, ua, width_a);
+      if constexpr (!Symmetric) subtract_product<Pivot>(upper_.data() + *target, stride, ub, width_b, la, width_a);
+      lb += width_b * Pivot;
+      ub += width_b * Pivot;
+    }
+    la += width_a * Pivot;
+    ua += width_a * Pivot;
+  }
+  return wrong;
+}
+
+int BlockFactor::factorise() {
+  int wrong = 0;
+  for (const auto& v : pattern_->vertices())
+    wrong += with_pivot(v.pivot, [&]<int Pivot> {
+      return symmetric_ ? eliminate<Pivot, true>(v) : eliminate<Pivot, false>(v);
+    });
+  return wrong;
+}
+
+template <int Pivot>
+void BlockFactor::forward(const BlockPattern::Vertex& v, double* b) const {
+  const double* const d = lower_.data() + v.diagonal;
+  double* const y = b + v.unknown;
+  for (int k = 1; k < Pivot; ++k)
+    for (int j = 0; j < k; ++j) y[k] -= d[k * Pivot + j] * y[j];
+  for (const auto& e : pattern_->entries().subspan(v.first_entry, v.entry_count)) {
+    const double* l = lower_.data() + e.offset;
+    for (int r = 0; r < e.width; ++r, l += Pivot) {
+      double sum = l[0] * y[0];
+      for (int k = 1; k < Pivot; ++k) sum += l[k] * y[k];
+      b[e.unknown + r] -= sum;
+    }
+  }
+}
+
+template <int Pivot, bool Symmetric>
+void BlockFactor::backward(const BlockPattern::Vertex& v, double* b) const {
+  const double* const d = lower_.data() + v.diagonal;
+  double* const x = b + v.unknown;
+  if constexpr (Symmetric)
+    for (int k = 0; k < Pivot; ++k) x[k] *= d[k * Pivot + k];
+  const double* const off_diagonal = Symmetric ? lower_.data() : upper_.data();
+  for (const auto& e : pattern_->entries().subspan(v.first_entry, v.entry_count)) {
+    const double* u = off_diagonal + e.offset;
+    for (int r = 0; r < e.width; ++r, u += Pivot)
+      for (int k = 0; k < Pivot; ++k) x[k] -= u[k] * b[e.unknown + r];
+  }
+  for (int k = Pivot - 1; k >= 0; --k) {
+    if constexpr (Symmetric) {
+      for (int j = k + 1; j < Pivot; ++j) x[k] -= d[j * Pivot + k] * x[j];
+    } else {
+      for (int j = k + 1; j < Pivot; ++j) x[k] -= d[k * Pivot + j] * x[j];
+      x[k] *= d[k * Pivot + k];
+    }
+  }
+}
+
+void BlockFactor::solve(std::span<double> unknowns) const {
+  double* const b = unknowns.data();
+  const auto vertices = pattern_->vertices();
+  for (const auto& v : vertices) with_pivot(v.pivot, [&]<int Pivot> { forward<Pivot>(v, b); });
+  for (auto v = vertices.rbegin(); v != vertices.rend(); ++v)
+    with_pivot(v->pivot, [&]<int Pivot> {
+      symmetric_ ? backward<Pivot, true>(*v, b) : backward<Pivot, false>(*v, b);
+    });
+}
+
+}  // namespace iota::solver

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solver/sparse/block_pattern.h"
+
+#include <span>
+#include <vector>
+
+namespace iota::solver {
+
+/// Values of a matrix with a `BlockPattern`, and its factors in place: L D L' for symmetric matrices, L U (without
+/// pivoting) for structurally symmetric ones. Nothing is allocated after `reset`.
+class BlockFactor {
+ public:
+  /// Sizes the storage. The pattern must outlive the factor.
+  void reset(const BlockPattern& pattern);
+
+  /// Sets all values to zero; `symmetric` tells which triangles are going to be filled.
+  void clear(bool symmetric);
+
+  /// Lower triangle: diagonal blocks and the blocks below them, at the offsets that the pattern gives.
+  double* lower() { return lower_.data(); }
+  /// Upper triangle of an unsymmetric matrix: element (i, j) above the diagonal blocks lies where (j, i) does in `lower`.
+  double* upper() { return upper_.data(); }
+
+  /// Factors in place; returns how many pivots have the wrong sign (not finite counts as wrong). Zero means that the
+  /// matrix has as many positive and negative pivots as a minimum under constraints should.
+  int factorise();
+
+  /// Solves in place: right-hand side in, solution out, both in the pattern's unknowns.
+  void solve(std::span<double> unknowns) const;
+
+ private:
+  template <int Pivot, bool Symmetric>
+  int eliminate(const BlockPattern::Vertex&);
+  template <int Pivot>
+  void forward(const BlockPattern::Vertex&, double* b) const;
+  template <int Pivot, bool Symmetric>
+  void backward(const BlockPattern::Vertex&, double* b) const;
+
+  const BlockPattern* pattern_ = nullptr;
+  bool symmetric_ = true;
+  std::vector<double> lower_, upper_;
+  std::vector<double> unscaled_;  // L D of the front at hand, symmetric case
+};
+
+}  // namespace iota::solver

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/sparse/block_pattern.h"
+
+#include <algorithm>
+
+namespace iota::solver {
+
+void BlockPattern::analyse(const CouplingGraph& graph) {
+  constexpr int max_rows_a_node = max_pivot - 3;
+  const std::uint32_t n = graph.node_count;
+
+  // 1. Order the nodes; a constraint makes a clique of its nodes, as the multipliers are eliminated among them.
+  std::vector<std::array<std::uint32_t, 2>> edges(graph.couplings);
+  for (const auto& c : graph.constraints)
+    for (int i = 0; i < c.node_count; ++i)
+      for (int j = i + 1; j < c.node_count; ++j) edges.push_back({c.nodes[i], c.nodes[j]});
+  const std::vector<std::uint32_t> order = minimum_degree_order(n, edges);
+  std::vector<std::uint32_t> rank(n);
+  for (std::uint32_t i = 0; i < n; ++i) rank[order[i]] = i;
+
+  // 2. Give each constraint a home: its first-eliminated node while there is room, widest constraints first.
+  struct Home {
+    bool own = false;
+    std::uint32_t node = 0;  // own: the last of its nodes
+    std::uint8_t row = 3;
+  };
+  std::vector<Home> homes(graph.constraints.size());
+  std::vector<std::uint8_t> rows_at(n, 0);
+  std::vector<std::vector<std::uint32_t>> own_after(n);
+  for (const std::uint8_t rows : {std::uint8_t{3}, std::uint8_t{1}}) {
+    for (std::uint32_t c = 0; c < graph.constraints.size(); ++c) {
+      const auto& constraint = graph.constraints[c];
+      if (constraint.rows != rows) continue;
+      const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank[a] < rank[b]; };
+      const auto begin = constraint.nodes.begin(), end = begin + constraint.node_count;
+      const std::uint32_t first = *std::min_element(begin, end, by_rank);
+      if (rows_at[first] + rows <= max_rows_a_node) {
+        homes[c] = {false, first, static_cast<std::uint8_t>(3 + rows_at[first])};
+        rows_at[first] = static_cast<std::uint8_t>(rows_at[first] + rows);
+      } else {
+        homes[c] = {true, *std::max_element(begin, end, by_rank), 0};
+        own_after[homes[c].node].push_back(c);
+      }
+    }
+  }
+
+  // 3. Vertices in order of elimination.
+  vertices_.clear();
+  node_vertex_.assign(n, 0);
+  std::vector<std::uint32_t> own_vertex(graph.constraints.size(), 0);
+  value_count_ = unknown_count_ = widest_front_ = 0;
+  const auto add_vertex = [&](std::uint8_t pivot, std::uint8_t positives) {
+    vertices_.push_back({.pivot = pivot, .positives = positives, .unknown = unknown_count_});
+    unknown_count_ += pivot;
+    return static_cast<std::uint32_t>(vertices_.size() - 1);
+  };
+  for (const std::uint32_t node : order) {
+    node_vertex_[node] = add_vertex(static_cast<std::uint8_t>(3 + rows_at[node]), 3);
+    for (const std::uint32_t c : own_after[node]) own_vertex[c] = add_vertex(graph.constraints[c].rows, 0);
+  }
+
+  // 4. Structure of each front: own couplings and what the children leave behind.
+  const std::uint32_t vertex_count = static_cast<std::uint32_t>(vertices_.size());
+  std::vector<std::vector<std::uint32_t>> later(vertex_count);
+  const auto couple = [&](std::uint32_t a, std::uint32_t b) {
+    if (a != b) later[std::min(a, b)].push_back(std::max(a, b));
+  };
+  for (auto [a, b] : edges) couple(node_vertex_[a], node_vertex_[b]);
+  for (std::uint32_t c = 0; c < graph.constraints.size(); ++c)
+    if (homes[c].own)
+      for (int i = 0; i < graph.constraints[c].node_count; ++i)
+        couple(own_vertex[c], node_vertex_[graph.constraints[c].nodes[i]]);
+  entries_.clear();
+  pair_targets_.clear();
+  for (std::uint32_t v = 0; v < vertex_count; ++v) {
+    auto& list = later[v];
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    Vertex& vertex = vertices_[v];
+    vertex.first_entry = static_cast<std::uint32_t>(entries_.size());
+    vertex.entry_count = static_cast<std::uint32_t>(list.size());
+    vertex.diagonal = value_count_;
+    value_count_ += vertex.pivot * vertex.pivot;
+    std::uint32_t width = 0;
+    for (const std::uint32_t w : list) {
+      const std::uint8_t columns = vertices_[w].positives ? 3 : vertices_[w].pivot;
+      entries_.push_back({w, value_count_, vertices_[w].unknown, columns});
+      value_count_ += columns * vertex.pivot;
+      width += columns;
+    }
+    widest_front_ = std::max(widest_front_, width);
+    if (list.size() > 1)  // the first of the later ones inherits the rest
+      later[list[0]].insert(later[list[0]].end(), list.begin() + 1, list.end());
+    list.shrink_to_fit();
+  }
+
+  // 5. Where each pair of entries of a front adds its product.
+  for (Vertex& vertex : vertices_) {
+    vertex.first_pair = static_cast<std::uint32_t>(pair_targets_.size());
+    for (std::uint32_t a = 0; a < vertex.entry_count; ++a) {
+      const std::uint32_t va = entries_[vertex.first_entry + a].vertex;
+      pair_targets_.push_back(vertices_[va].diagonal);
+      for (std::uint32_t b = a + 1; b < vertex.entry_count; ++b)
+        pair_targets_.push_back(entries_[find_entry(va, entries_[vertex.first_entry + b].vertex)].offset);
+    }
+  }
+
+  // 6. Where each constraint writes its gradients.
+  constraint_slots_.assign(graph.constraints.size(), {});
+  for (std::uint32_t c = 0; c < graph.constraints.size(); ++c) {
+    const auto& constraint = graph.constraints[c];
+    const std::uint32_t home = homes[c].own ? own_vertex[c] : node_vertex_[homes[c].node];
+    const Vertex& vertex = vertices_[home];
+    const std::uint8_t row = homes[c].row, pivot = vertex.pivot;
+    ConstraintSlot& slot = constraint_slots_[c];
+    slot.unknown = vertex.unknown + row;
+    slot.diagonal = vertex.diagonal + row * pivot + row;
+    slot.stride = pivot;
+    for (int i = 0; i < constraint.node_count; ++i) {
+      const std::uint32_t node = node_vertex_[constraint.nodes[i]];
+      GradientSlot& g = slot.gradients[i];
+      if (node == home) {
+        g = {vertex.diagonal + row * pivot, pivot, 1, true, true, vertex.diagonal + row, pivot};
+      } else if (node > home) {
+        g = {entries_[find_entry(home, node)].offset + row, 1, pivot, false, false, 0, pivot};
+      } else {
+        const std::uint8_t node_pivot = vertices_[node].pivot;
+        g = {entries_[find_entry(node, home)].offset, node_pivot, 1, false, true, 0, node_pivot};
+      }
+    }
+  }
+}
+
+std::uint32_t BlockPattern::find_entry(std::uint32_t vertex, std::uint32_t later_vertex) const {
+  const auto begin = entries_.begin() + vertices_[vertex].first_entry;
+  const auto end = begin + vertices_[vertex].entry_count;
+  const auto found = std::lower_bound(begin, end, later_vertex,
+                                      [](const Entry& e, std::uint32_t v) { return e.vertex < v; });
+  return static_cast<std::uint32_t>(found - entries_.begin());
+}
+
+BlockPattern::PairSlot BlockPattern::pair_slot(std::uint32_t a, std::uint32_t b) const {
+  const std::uint32_t va = node_vertex_[a], vb = node_vertex_[b];
+  const bool a_first = va < vb;
+  const std::uint32_t first = a_first ? va : vb, later = a_first ? vb : va;
+  return {entries_[find_entry(first, later)].offset, vertices_[first].pivot, a_first};
+}
+
+}  // namespace iota::solver

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace iota::solver {
+
+/// What couples with what, before any order is known. A node has three unknowns (its position); a constraint has 1 or 3
+/// rows and touches a few nodes; couplings are pairs of nodes with a 3 x 3 block between them.
+struct CouplingGraph {
+  static constexpr int max_constraint_nodes = 5;
+  struct Constraint {
+    std::uint8_t rows = 1;
+    std::uint8_t node_count = 0;
+    std::array<std::uint32_t, max_constraint_nodes> nodes{};
+  };
+  std::uint32_t node_count = 0;
+  std::vector<std::array<std::uint32_t, 2>> couplings;
+  std::vector<Constraint> constraints;
+};
+
+/// Elimination order and storage of a block-sparse matrix with the structure of
+///   [ A  G' ]   A: node blocks, G: constraint rows, C: small compliance.
+///   [ G -C  ]
+/// The rows of a constraint are eliminated together with the first-eliminated of its nodes (at most three rows a node),
+/// so a node's pivot block is [A G'; G -C] of size 3 + rows and no pivot is ever structurally zero. Rows that find no
+/// room become a vertex of their own right after the last of their nodes. Minimum degree on the node graph: no fill on
+/// trees, so everything is O(n) there.
+class BlockPattern {
+ public:
+  static constexpr int max_pivot = 6;
+
+  struct Vertex {
+    std::uint8_t pivot = 3;       ///< unknowns eliminated here
+    std::uint8_t positives = 3;   ///< of which the first so many should have positive pivots, the others negative
+    std::uint32_t first_entry = 0, entry_count = 0;
+    std::uint32_t diagonal = 0;   ///< offset of the pivot x pivot block
+    std::uint32_t unknown = 0;    ///< offset in right-hand side and solution
+    std::uint32_t first_pair = 0; ///< see pair_targets
+  };
+  /// An off-diagonal block: `width` rows of a later vertex by the pivot columns of this one, row-major.
+  struct Entry {
+    std::uint32_t vertex = 0;
+    std::uint32_t offset = 0;
+    std::uint32_t unknown = 0;
+    std::uint8_t width = 3;
+  };
+  /// Where the 3 x 3 block of two nodes lies: in the block of the first-eliminated one.
+  struct PairSlot {
+    std::uint32_t offset = 0;
+    std::uint8_t stride = 3;
+    bool a_first = true;  ///< rows belong to the later node
+  };
+  /// Where the gradient block (rows x 3) of a constraint and one of its nodes lies: element (row, column) at
+  /// offset + row*row_stride + column*column_stride.
+  struct GradientSlot {
+    std::uint32_t offset = 0;
+    std::uint8_t row_stride = 1, column_stride = 1;
+    bool in_diagonal = false;
+    bool lower_is_row = true;  ///< the lower triangle holds (row, node); otherwise (node, row)
+    std::uint32_t mirror = 0;  ///< in_diagonal: offset of the upper-triangle twin, strides exchanged with the pivot size
+    std::uint8_t pivot = 3;
+  };
+  struct ConstraintSlot {
+    std::uint32_t unknown = 0;   ///< of its first multiplier
+    std::uint32_t diagonal = 0;  ///< of its first multiplier's diagonal entry
+    std::uint8_t stride = 1;     ///< pivot size of its vertex: the next row's diagonal entry is stride + 1 further
+    std::array<GradientSlot, CouplingGraph::max_constraint_nodes> gradients{};
+  };
+
+  void analyse(const CouplingGraph&);
+
+  std::span<const Vertex> vertices() const { return vertices_; }
+  std::span<const Entry> entries() const { return entries_; }
+  std::span<const std::uint32_t> pair_targets() const { return pair_targets_; }
+  std::uint32_t value_count() const { return value_count_; }
+  std::uint32_t unknown_count() const { return unknown_count_; }
+  std::uint32_t widest_front() const { return widest_front_; }
+
+  std::uint32_t node_unknown(std::uint32_t node) const { return vertices_[node_vertex_[node]].unknown; }
+  std::uint32_t node_diagonal(std::uint32_t node) const { return vertices_[node_vertex_[node]].diagonal; }
+  std::uint8_t node_stride(std::uint32_t node) const { return vertices_[node_vertex_[node]].pivot; }
+  PairSlot pair_slot(std::uint32_t a, std::uint32_t b) const;
+  const ConstraintSlot& constraint_slot(std::size_t constraint) const { return constraint_slots_[constraint]; }
+
+ private:
+  std::uint32_t find_entry(std::uint32_t vertex, std::uint32_t later_vertex) const;
+
+  std::vector<Vertex> vertices_;  // in order of elimination
+  std::vector<Entry> entries_;    // of each vertex, in order of elimination
+  std::vector<std::uint32_t> pair_targets_;
+  std::vector<std::uint32_t> node_vertex_;
+  std::vector<ConstraintSlot> constraint_slots_;
+  std::uint32_t value_count_ = 0, unknown_count_ = 0, widest_front_ = 0;
+};
+
+/// Nodes in order of elimination: minimum degree, ties by number. O(n) on trees.
+std::vector<std::uint32_t> minimum_degree_order(std::uint32_t node_count,
+                                                std::span<const std::array<std::uint32_t, 2>> edges);
+
+}  // namespace iota::solver

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/sparse/block_pattern.h"
+
+#include <algorithm>
+
+namespace iota::solver {
+
+namespace {
+
+/// Adjacency lists of an undirected graph without duplicates or loops, in one array.
+struct Adjacency {
+  std::vector<std::uint32_t> first, neighbours;
+
+  Adjacency(std::uint32_t n, std::span<const std::array<std::uint32_t, 2>> edges) : first(n + 1, 0) {
+    for (auto [a, b] : edges)
+      if (a != b) ++first[a + 1], ++first[b + 1];
+    for (std::uint32_t i = 0; i < n; ++i) first[i + 1] += first[i];
+    neighbours.resize(first[n]);
+    std::vector<std::uint32_t> cursor(first.begin(), first.end() - 1);
+    for (auto [a, b] : edges)
+      if (a != b) neighbours[cursor[a]++] = b, neighbours[cursor[b]++] = a;
+    std::uint32_t write = 0;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const auto begin = neighbours.begin() + first[i], end = neighbours.begin() + first[i + 1];
+      std::sort(begin, end);
+      const auto unique_end = std::unique(begin, end);
+      first[i] = write;
+      write = static_cast<std::uint32_t>(std::copy(begin, unique_end, neighbours.begin() + write) - neighbours.begin());
+    }
+    first[n] = write;
+  }
+};
+
+}  // namespace
+
+// An elimination graph with explicit fill. Lists are cleaned of eliminated neighbours only when they are read, so that
+// a hub with a thousand leaves costs O(1) a leaf; the degree itself is counted exactly.
+std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::span<const std::array<std::uint32_t, 2>> edges) {
+  const Adjacency graph(n, edges);
+  std::vector<std::uint32_t> degree(n);
+  std::vector<std::vector<std::uint32_t>> filled(n);  // lists that fill has changed; empty: still the graph's own
+  std::vector<std::uint8_t> eliminated(n, 0);
+  std::vector<std::vector<std::uint32_t>> buckets;
+  const auto push = [&](std::uint32_t node) {
+    if (degree[node] >= buckets.size()) buckets.resize(degree[node] + 1);
+    buckets[degree[node]].push_back(node);
+  };
+  for (std::uint32_t i = 0; i < n; ++i) degree[i] = graph.first[i + 1] - graph.first[i];
+  for (std::uint32_t i = n; i-- > 0;) push(i);
+
+  std::vector<std::uint32_t> order, front, merged;
+  order.reserve(n);
+  std::size_t lowest = 0;
+  while (order.size() < n) {
+    while (buckets[lowest].empty()) ++lowest;
+    const std::uint32_t node = buckets[lowest].back();
+    buckets[lowest].pop_back();
+    if (eliminated[node] || degree[node] != lowest) continue;  // an outdated place in the queue
+    eliminated[node] = 1;
+    order.push_back(node);
+
+    front.clear();
+    const auto collect = [&](auto begin, auto end) {
+      for (auto it = begin; it != end; ++it)
+        if (!eliminated[*it]) front.push_back(*it);
+    };
+    if (filled[node].empty())
+      collect(graph.neighbours.begin() + graph.first[node], graph.neighbours.begin() + graph.first[node + 1]);
+    else
+      collect(filled[node].begin(), filled[node].end());
+    filled[node] = {};
+
+    for (const std::uint32_t neighbour : front) {
+      if (front.size() == 1) {
+        --degree[neighbour];
+      } else {
+        merged.clear();
+        const auto add_list = [&](auto begin, auto end) {
+          std::set_union(begin, end, front.begin(), front.end(), std::back_inserter(merged));
+        };
+        if (filled[neighbour].empty())
+          add_list(graph.neighbours.begin() + graph.first[neighbour],
+                   graph.neighbours.begin() + graph.first[neighbour + 1]);
+        else
+          add_list(filled[neighbour].begin(), filled[neighbour].end());
+        std::erase_if(merged, [&](std::uint32_t other) { return other == neighbour || eliminated[other]; });
+        filled[neighbour] = merged;
+        degree[neighbour] = static_cast<std::uint32_t>(merged.size());
+      }
+      push(neighbour);
+      lowest = std::min<std::size_t>(lowest, degree[neighbour]);
+    }
+  }
+  return order;
+}
+
+}  // namespace iota::solver

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// One step of the whole system, stage by stage; `docs/architecture.md` tells the same story.
+#include "step/implementation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota {
+
+namespace {
+
+/// "bond 3 (wind)".
+std::string bond_name(std::uint32_t slot, const ScriptedLaw& law) {
+  return "bond " + std::to_string(slot) + (law.name.empty() ? "" : " (" + law.name + ")");
+}
+
+}  // namespace
+
+StepReport System::Implementation::apply(const step::Step& command) {
+  const double h = command.dt;
+  if (!(h > 0 && h <= 1)) throw std::invalid_argument("step: dt must be above 0 and at most 1 s, got " + std::to_string(h));
+  StepReport report;
+  report.dt = h;
+  stepping = true;
+
+  // 1. Forces of the script, at the state at the start of the step.
+  run_scripts(report);
+
+  // 2. Islands whose structure changed are analysed anew; velocities that were assigned are made consistent.
+  islands.update(model);
+  model.articulates.for_each([&](std::uint32_t slot, model::Articulate& a) {
+    if (!a.jolted) return;
+    a.jolted = 0;
+    const double before = model.kinetic_energy();
+    (void)islands.of_articulate(slot)->settle(model, false);
+    model.edit_energy += model.kinetic_energy() - before;
+  });
+
+  // 3. Every island by itself, in a fixed order.
+  int solves = 0, iterations = 0;
+  for (const auto& island : islands.all()) {
+    const solver::AdvanceReport r = island->advance(model, h, model.mode);
+    solves += r.solves, iterations += r.iterations;
+    report.iterations_max = std::max(report.iterations_max, r.iterations_max);
+    report.substeps_max = std::max(report.substeps_max, r.substeps);
+    report.fallbacks += r.fallbacks;
+    report.unconverged += !r.converged;
+    model.dissipated += r.dissipated;
+    model.external_work += r.external_work;
+  }
+  report.iterations_mean = solves ? static_cast<double>(iterations) / solves : 0;
+  model.time += h;
+  ++model.step;
+  stepping = false;
+
+  // 4. Edits: particles that have met, then what was asked for during the step, in order.
+  finish_closings(report);
+  apply_queue(report);
+
+  report.step = model.step;
+  report.time = model.time;
+  report.worst_gap = model.worst_gap();
+  report.energy = {model.kinetic_energy(), model.potential_energy(), model.dissipated, model.external_work,
+                   model.edit_energy};
+  report.articulates = model.articulates.size();
+  report.structure_version = model.structure_version;
+  if (recording) recording->hashes.push_back(model.hash());
+  return report;
+}
+
+void System::Implementation::run_scripts(StepReport& report) {
+  if (scripts.empty()) return;
+  for (std::uint32_t slot = 0; slot < model.bonds.slot_count(); ++slot) {
+    if (!model.bonds.is_alive(slot)) continue;
+    const model::Bond bond = model.bonds[slot];
+    if (bond.kind != model::BondKind::scripted || !bond.active) continue;
+    const auto script = scripts.find(bond.script);
+    const auto quarantine = [&](const std::string& why) {
+      model.bonds[slot].active = 0;
+      report.warnings.push_back(why + "; the bond is switched off");
+    };
+    if (script == scripts.end()) {
+      quarantine("bond " + std::to_string(slot) + " has no function in this system");
+      continue;
+    }
+    const std::string name = bond_name(slot, script->second);
+    try {
+      const Vec3 force = script->second.force({model.bonds.id(slot), model.position(bond.p), model.position(bond.q),
+                                               model.velocity(bond.p), model.velocity(bond.q), model.time});
+      if (!is_finite(force)) {
+        quarantine(name + " returned a force that is not finite");
+        continue;
+      }
+      model.rings[model.particles[bond.p].ring].applied_force += force;
+      model.rings[model.particles[bond.q].ring].applied_force -= force;
+    } catch (const std::exception& error) {
+      quarantine(name + " raised: " + error.what());
+    } catch (...) {
+      quarantine(name + " raised");
+    }
+  }
+}
+
+void System::Implementation::finish_closings(StepReport& report) {
+  std::vector<step::CombineParticles> met;
+  model.closings.for_each([&](std::uint32_t, model::Closing& c) {
+    c.elapsed += report.dt;
+    if (c.elapsed >= c.duration) met.push_back({model.particles.id(c.p), model.particles.id(c.q), 0});
+  });
+  for (const auto& closed : met) {
+    if (!model.particles.contains(closed.p) || !model.particles.contains(closed.q)) continue;
+    try {
+      for (const std::string& note : apply(closed).notes) report.warnings.push_back(note);
+    } catch (const std::exception& error) {
+      report.warnings.push_back(error.what());
+    }
+  }
+}
+
+void System::Implementation::apply_queue(StepReport& report) {
+  std::vector<step::Command> edits;
+  edits.swap(queue);
+  for (const step::Command& edit : edits) {
+    try {
+      std::visit([&](const auto& c) { (void)apply(c); }, edit);
+    } catch (const std::exception& error) {
+      report.warnings.push_back(std::string("an edit asked for during the step could not be made: ") + error.what());
+    }
+  }
+}
+
+}  // namespace iota

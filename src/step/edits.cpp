@@ -1,0 +1,454 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each command does, and the physics that a structural edit owes.
+#include "math/mat3.h"
+#include "step/implementation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+namespace iota {
+
+using model::none;
+
+namespace {
+
+template <class... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream out;
+  (out << ... << parts);
+  return out.str();
+}
+
+std::string text_of(const Vec3& v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }
+
+void require_finite(std::string_view name, const Vec3& v) {
+  if (!is_finite(v)) throw std::invalid_argument(text(name, " must be finite, got ", text_of(v)));
+  constexpr double limit = 1e9;  // metres or m/s: beyond it a double no longer resolves micrometres
+  if (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > limit)
+    throw std::invalid_argument(text(name, " must stay within 1e9 of the origin, got ", text_of(v)));
+}
+void require_positive(std::string_view name, double v) {
+  if (!(v > 0) || !std::isfinite(v)) throw std::invalid_argument(text(name, " must be positive and finite, got ", v));
+}
+void require_mass(std::string_view name, double v) {
+  require_positive(name, v);
+  if (v < 1e-12 || v > 1e15) throw std::invalid_argument(text(name, " must be between 1e-12 and 1e15 kg, got ", v));
+}
+void require_not_negative(std::string_view name, double v) {
+  if (!(v >= 0) || !std::isfinite(v)) throw std::invalid_argument(text(name, " must be zero or more and finite, got ", v));
+}
+
+template <class IdType>
+[[noreturn]] void throw_stale(std::string_view kind, IdType id, const std::optional<IdType>& survivor) {
+  if (!id) throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
+  if (survivor) throw StaleIdError(text(kind, " ", id.slot, " is gone: it was absorbed by ", kind, " ", survivor->slot));
+  throw StaleIdError(text(kind, " ", id.slot, " is gone: it was destroyed"));
+}
+
+}  // namespace
+
+std::uint32_t System::Implementation::require(BodyId id) const {
+  if (!model.bodies.contains(id)) throw_stale("body", id, model.survivor_of(id));
+  return id.slot;
+}
+std::uint32_t System::Implementation::require(ParticleId id) const {
+  if (!model.particles.contains(id)) throw_stale("particle", id, model.survivor_of(id));
+  return id.slot;
+}
+std::uint32_t System::Implementation::require(BondId id) const {
+  if (!model.bonds.contains(id)) throw_stale("bond", id, std::optional<BondId>{});
+  return id.slot;
+}
+std::uint32_t System::Implementation::require(GripId id) const {
+  if (!model.grips.contains(id)) throw_stale("grip", id, std::optional<GripId>{});
+  return id.slot;
+}
+
+void System::Implementation::jolt(std::uint32_t particle) {
+  model.articulates[model.bodies[model.particles[particle].body].articulate].jolted = 1;
+}
+
+// --- settings ---------------------------------------------------------------------------------------------------------
+
+void System::Implementation::apply(const step::SetGravity& c) {
+  require_finite("gravity", c.value);
+  model.gravity = c.value;
+}
+void System::Implementation::apply(const step::SetMode& c) { model.mode = c.mode; }
+void System::Implementation::apply(const step::SetSystemDamping& c) {
+  require_not_negative("damping", c.per_second);
+  model.damping = c.per_second;
+}
+
+// --- making -----------------------------------------------------------------------------------------------------------
+
+BodyId System::Implementation::apply(const step::CreateBody& c) {
+  require_not_negative("damping", c.options.damping);
+  const std::uint32_t body = model.make_body(c.options.kind, c.options.damping);
+  structure_changed();
+  return model.bodies.id(body);
+}
+
+ParticleId System::Implementation::apply(const step::CreateParticle& c) {
+  const std::uint32_t body = require(c.body);
+  require_finite("position", c.position);
+  require_finite("velocity", c.velocity);
+  require_mass("mass", c.mass);
+  const std::uint32_t particle = model.make_particle(body, c.position, c.mass, c.velocity);
+  model.rebuild_basis(body);
+  model.touch(model.bodies[body].articulate);
+  jolt(particle);
+  structure_changed();
+  return model.particles.id(particle);
+}
+
+void System::Implementation::apply(const step::SetRod& c) {
+  const std::uint32_t body = require(c.body);
+  require_mass("mass", c.mass);
+  require_positive("radius", c.radius);
+  if (model.bodies[body].count != 2)
+    throw std::invalid_argument(text("set_rod needs a body of exactly two particles, body ", body, " has ",
+                                     model.bodies[body].count));
+  const std::uint32_t p = model.bodies[body].first, q = model.bodies[body].last;
+  const double length = norm(model.position(q) - model.position(p));
+  require_positive("the distance of the rod's two particles", length);
+  // Mass [A B; B A] as two point masses A+B = m/2 and a pair -B |v_p - v_q|^2 / 2, where A-B = 2 It/L^2.
+  const double transverse = c.mass * (3 * c.radius * c.radius + length * length) / 12;
+  const double sum = c.mass / 2, difference = 2 * transverse / (length * length);
+  model.remove_inertia_of(body, none);
+  for (const std::uint32_t end : {p, q}) model.particles[end].mass = sum;
+  model::InertiaPair pair{body, none, p, q, -(sum - difference) / 2};
+  model.bodies[body].first_inertia = model.inertia_pairs.create(pair).slot;
+  model.touch(model.bodies[body].articulate);
+}
+
+CosmeticBondId System::Implementation::apply(const step::CreateCosmeticBond& c) {
+  const std::uint32_t p = require(c.p), q = require(c.q);
+  if (p == q) throw std::invalid_argument(text("a cosmetic bond needs two particles, got particle ", p, " twice"));
+  if (model.particles[p].body != model.particles[q].body)
+    throw std::invalid_argument(text("a cosmetic bond joins particles of one body; particle ", p, " is of body ",
+                                     model.particles[p].body, ", particle ", q, " of body ", model.particles[q].body));
+  ++model.particles[p].cosmetic_uses, ++model.particles[q].cosmetic_uses;
+  structure_changed();
+  return model.cosmetic_bonds.create({p, q});
+}
+
+BondId System::Implementation::apply(const step::CreateBond& c) {
+  const std::uint32_t p = require(c.p), q = require(c.q);
+  if (p == q) throw std::invalid_argument(text("a bond needs two particles, got particle ", p, " twice"));
+  model::Bond bond;
+  bond.p = p, bond.q = q;
+  bond.kind = static_cast<model::BondKind>(c.type);
+  bond.script = c.script;
+  if (c.type != step::BondType::scripted) {
+    require_not_negative("damping", c.damping);
+    bond.damping = c.damping;
+  }
+  if (c.type == step::BondType::spring) {
+    require_not_negative("stiffness", c.stiffness);
+    bond.stiffness = c.stiffness;
+    bond.length = std::isnan(c.length) ? norm(model.position(q) - model.position(p)) : c.length;
+    require_not_negative("length", bond.length);
+  }
+  for (const std::uint32_t end : {p, q}) {
+    ++model.particles[end].uses;
+    model.touch(model.bodies[model.particles[end].body].articulate);
+  }
+  structure_changed();
+  return model.bonds.create(bond);
+}
+
+GripId System::Implementation::apply(const step::CreateGrip& c) {
+  const std::uint32_t body = require(c.body);
+  require_finite("local_point", c.local_point);
+  require_finite("target", c.target);
+  require_positive("frequency", c.options.frequency);
+  require_positive("max_acceleration", c.options.max_acceleration);
+  if (model.bodies[body].count == 0) throw std::invalid_argument(text("body ", body, " has no particles to hold"));
+  refresh_orientations();
+  model::Grip grip;
+  grip.body = body;
+  grip.client = c.options.client, grip.hold = c.options.hold;
+  grip.frequency = c.options.frequency, grip.max_acceleration = c.options.max_acceleration;
+  grip.target = c.target;
+  model::anchor_grip(model, grip,
+                     model.centre_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point));
+  model.touch(model.bodies[body].articulate);
+  return model.grips.create(grip);
+}
+
+void System::Implementation::apply(const step::MoveGrip& c) {
+  require_finite("target", c.target);
+  model.grips[require(c.grip)].target = c.target;
+}
+
+// --- assigning --------------------------------------------------------------------------------------------------------
+
+void System::Implementation::apply(const step::SetKind& c) {
+  const std::uint32_t body = require(c.body);
+  if (model.bodies[body].kind == c.kind) return;
+  model.bodies[body].kind = c.kind;
+  if (c.kind != BodyKind::dynamic)
+    model.for_each_particle_of(body, [&](std::uint32_t p) { model.rings[model.particles[p].ring].velocity = {}; });
+  model.touch(model.bodies[body].articulate);
+  structure_changed();
+}
+
+void System::Implementation::apply(const step::SetBodyDamping& c) {
+  require_not_negative("damping", c.per_second);
+  const std::uint32_t body = require(c.body);
+  model.bodies[body].damping = c.per_second;
+  model.touch(model.bodies[body].articulate);
+}
+
+void System::Implementation::apply(const step::SetPosition& c) {
+  const std::uint32_t particle = require(c.particle);
+  require_finite("position", c.value);
+  if (model.bodies[model.particles[particle].body].kind == BodyKind::scripted)
+    return apply(step::Nail{c.particle, false, c.value});  // carried there during the next step
+  const std::uint32_t ring = model.particles[particle].ring;
+  model::Ring& r = model.rings[ring];
+  r.position = c.value;
+  if (r.nailed) r.nail = r.nail_before = c.value;
+  model.for_each_in_ring(ring, [&](std::uint32_t p) {
+    model.rebuild_basis(model.particles[p].body);
+    model.touch(model.bodies[model.particles[p].body].articulate);
+  });
+  jolt(particle);
+}
+
+void System::Implementation::apply(const step::SetVelocity& c) {
+  const std::uint32_t particle = require(c.particle);
+  require_finite("velocity", c.value);
+  model.rings[model.particles[particle].ring].velocity = c.value;
+  jolt(particle);
+}
+
+void System::Implementation::apply(const step::SetMass& c) {
+  const std::uint32_t particle = require(c.particle);
+  require_mass("mass", c.value);
+  model.particles[particle].mass = c.value;
+  model.touch(model.bodies[model.particles[particle].body].articulate);
+}
+
+void System::Implementation::apply(const step::ApplyForce& c) {
+  const std::uint32_t particle = require(c.particle);
+  require_finite("force", c.value);
+  model.rings[model.particles[particle].ring].applied_force += c.value;
+}
+
+void System::Implementation::apply(const step::SetActive& c) {
+  model::Bond& bond = model.bonds[require(c.bond)];
+  if (bond.active == static_cast<std::uint32_t>(c.active)) return;
+  bond.active = c.active;
+  for (const std::uint32_t end : {bond.p, bond.q}) model.touch(model.bodies[model.particles[end].body].articulate);
+}
+
+// --- structural edits -------------------------------------------------------------------------------------------------
+
+template <class EditFunction>
+RestructureReport System::Implementation::restructure(std::vector<std::uint32_t> touched, EditFunction edit) {
+  RestructureReport report;
+  report.articulates_before = model.articulates.size();
+
+  // What a hand holds stays where it holds it.
+  std::vector<std::pair<std::uint32_t, Vec3>> held;
+  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
+    if (std::find(touched.begin(), touched.end(), g.body) != touched.end()) held.push_back({slot, grip_point(model, g)});
+  });
+
+  const double kinetic = model.kinetic_energy(), potential = model.potential_energy();
+  const Vec3 momentum = model.momentum(), angular_momentum = model.angular_momentum();
+  const model::Edit owed = edit(report);
+  if (!report.changed) {
+    report.articulates_after = report.articulates_before;
+    report.structure_version = model.structure_version;
+    return report;
+  }
+
+  for (const auto& [slot, point] : held)
+    if (model.grips.is_alive(slot)) {
+      anchor_grip(model, model.grips[slot], point);
+      model.touch(model.bodies[model.grips[slot].body].articulate);
+    }
+
+  if (owed.moved || owed.jolted) {
+    std::vector<std::uint32_t> articulates;
+    for (const std::uint32_t body : touched)
+      if (model.bodies.is_alive(body)) articulates.push_back(model.bodies[body].articulate);
+    for (const BodyId body : report.created_bodies) articulates.push_back(model.bodies[body.slot].articulate);
+    std::sort(articulates.begin(), articulates.end());
+    articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
+
+    islands.update(model);
+    std::vector<step::Island*> settled;
+    for (const std::uint32_t a : articulates) {
+      step::Island* island = islands.of_articulate(a);
+      if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
+      settled.push_back(island);
+      if (!island->settle(model, owed.moved)) {
+        report.remaining_gap = model.worst_gap();
+        report.notes.push_back(text("no position of the bodies lets the combined particles meet exactly; ",
+                                    report.remaining_gap, " m remain, shared by the constraints"));
+      }
+    }
+
+    // Displacements and moved masses change momenta; a rigid motion of all that was touched gives them back without
+    // disturbing any constraint. What hangs on a nail has none to give.
+    bool pinned = false;
+    double mass = 0;
+    Vec3 first_moment;
+    std::vector<std::uint32_t> bodies;
+    for (const std::uint32_t a : articulates) model.for_each_body_of(a, [&](std::uint32_t b) { bodies.push_back(b); });
+    const auto each_particle = [&](auto visit) {
+      for (const std::uint32_t b : bodies) model.for_each_particle_of(b, visit);
+    };
+    each_particle([&](std::uint32_t p) {
+      pinned = pinned || model.is_pinned(model.particles[p].ring);
+      mass += model.particles[p].mass;
+      first_moment += model.particles[p].mass * model.position(p);
+    });
+    if (!pinned && mass > 0) {
+      const Vec3 centre = (1 / mass) * first_moment;
+      for (int pass = 0; pass < 2; ++pass) {  // the second takes away the round-off of the first
+        const Vec3 lost = momentum - model.momentum();
+        const Vec3 lost_spin = angular_momentum - model.angular_momentum() - cross(centre, lost);
+        Mat3 inertia;
+        each_particle([&](std::uint32_t p) {
+          inertia += point_inertia(model.particles[p].mass, model.position(p) - centre);
+        });
+        for (const std::uint32_t b : bodies)
+          model.for_each_inertia_of(b, [&](std::uint32_t i) {
+            const model::InertiaPair& pair = model.inertia_pairs[i];
+            inertia += point_inertia(pair.inertia, model.position(pair.p) - model.position(pair.q));
+          });
+        const Vec3 turn = solve_semidefinite(inertia, lost_spin);
+        std::vector<std::uint32_t> rings;
+        each_particle([&](std::uint32_t p) { rings.push_back(model.particles[p].ring); });
+        std::sort(rings.begin(), rings.end());
+        rings.erase(std::unique(rings.begin(), rings.end()), rings.end());
+        for (const std::uint32_t ring : rings)
+          model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - centre);
+      }
+    }
+  }
+
+  const double kinetic_now = model.kinetic_energy(), potential_now = model.potential_energy();
+  report.energy_change = kinetic_now + potential_now - kinetic - potential;
+  model.edit_energy += report.energy_change;
+  report.momentum_change = model.momentum() - momentum;
+  report.angular_momentum_change = model.angular_momentum() - angular_momentum;
+  report.articulates_after = model.articulates.size();
+  structure_changed();
+  report.structure_version = model.structure_version;
+  return report;
+}
+
+RestructureReport System::Implementation::apply(const step::CombineParticles& c) {
+  const std::uint32_t p = require(c.p), q = require(c.q);
+  require_not_negative("over", c.over);
+  const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
+  const double distance = norm(model.position(q) - model.position(p));
+  const bool unrelated = body_p != body_q && model.particles[p].ring != model.particles[q].ring;
+  if (c.over > 0 && unrelated && distance > 1e-9) {
+    return restructure({body_p, body_q}, [&](RestructureReport& report) {
+      model.closings.for_each([&](std::uint32_t, const model::Closing& other) {
+        if ((other.p == p && other.q == q) || (other.p == q && other.q == p))
+          throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));
+      });
+      report.changed = true;
+      model.closings.create({p, q, distance, c.over, 0, 0});
+      for (const std::uint32_t end : {p, q}) {
+        ++model.particles[end].uses;
+        model.touch(model.bodies[model.particles[end].body].articulate);
+      }
+      model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
+      return model::Edit{false, true};
+    });
+  }
+  return restructure({body_p, body_q},
+                     [&](RestructureReport& report) { return combine_particles(model, p, q, report); });
+}
+
+RestructureReport System::Implementation::apply(const step::CombineBodies& c) {
+  const std::uint32_t a = require(c.a), b = require(c.b);
+  for (const std::uint32_t body : {a, b})
+    if (model.bodies[body].count == 0) throw std::invalid_argument(text("combine: body ", body, " has no particles"));
+  return restructure({a, b}, [&](RestructureReport& report) { return combine_bodies(model, a, b, report); });
+}
+
+RestructureReport System::Implementation::apply(const step::Separate& c) {
+  const std::uint32_t p = require(c.p), q = require(c.q);
+  return restructure({model.particles[p].body, model.particles[q].body},
+                     [&](RestructureReport& report) { return separate_particles(model, p, q, report); });
+}
+
+void System::Implementation::apply(const step::Nail& c) {
+  const std::uint32_t particle = require(c.particle);
+  const Vec3 position = c.in_place ? model.position(particle) : c.position;
+  require_finite("position", position);
+  model::Ring& ring = model.rings[model.particles[particle].ring];
+  if (ring.nailed) {
+    ring.nail = position;  // moves there during the next step
+    return;
+  }
+  (void)restructure({model.particles[particle].body}, [&](RestructureReport& report) {
+    report.changed = true;
+    const bool moved = ring.position != position;
+    ring.nailed = 1;
+    ring.nail = ring.nail_before = ring.position = position;
+    ring.velocity = {};
+    model.touch(model.bodies[model.particles[particle].body].articulate);
+    return model::Edit{moved, true};
+  });
+}
+
+void System::Implementation::apply(const step::Release& c) {
+  const std::uint32_t particle = require(c.particle);
+  model::Ring& ring = model.rings[model.particles[particle].ring];
+  if (!ring.nailed) return;
+  ring.nailed = 0;
+  ring.nail_multiplier = {};
+  model.touch(model.bodies[model.particles[particle].body].articulate);
+  structure_changed();
+}
+
+// Destroying takes what there was: mass, momentum and energy go with it, and the energy book says so.
+void System::Implementation::apply(const step::Destroy<BodyId>& c) {
+  const std::uint32_t body = require(c.id);
+  const double before = model.kinetic_energy() + model.potential_energy();
+  destroy_body(model, body);
+  model.edit_energy += model.kinetic_energy() + model.potential_energy() - before;
+  structure_changed();
+}
+void System::Implementation::apply(const step::Destroy<ParticleId>& c) {
+  const std::uint32_t particle = require(c.id);
+  const double before = model.kinetic_energy() + model.potential_energy();
+  destroy_particle(model, particle);
+  model.edit_energy += model.kinetic_energy() + model.potential_energy() - before;
+  structure_changed();
+}
+void System::Implementation::apply(const step::Destroy<BondId>& c) {
+  const std::uint32_t bond = require(c.id);
+  const double before = model.potential_energy();
+  if (!recording) scripts.erase(model.bonds[bond].script);  // a replay would miss it
+  destroy_bond(model, bond);
+  model.edit_energy += model.potential_energy() - before;
+  structure_changed();
+}
+void System::Implementation::apply(const step::Destroy<CosmeticBondId>& c) {
+  if (!model.cosmetic_bonds.contains(c.id)) throw_stale("cosmetic bond", c.id, std::optional<CosmeticBondId>{});
+  const model::CosmeticBond bond = model.cosmetic_bonds[c.id.slot];
+  --model.particles[bond.p].cosmetic_uses, --model.particles[bond.q].cosmetic_uses;
+  model.cosmetic_bonds.destroy(c.id.slot);
+  structure_changed();
+}
+void System::Implementation::apply(const step::Destroy<GripId>& c) {
+  const std::uint32_t grip = require(c.id);
+  model.touch(model.bodies[model.grips[grip].body].articulate);
+  model.grips.destroy(grip);
+}
+
+}  // namespace iota

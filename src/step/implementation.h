@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.h"
+#include "model/restructure.h"
+#include "step/commands.h"
+#include "step/island.h"
+
+#include <iota/system.h>
+
+#include <map>
+
+namespace iota {
+
+/// The model, its solver islands, and the one door through which everything changes: `execute`.
+struct System::Implementation {
+  model::Model model;
+  step::Islands islands;
+  std::map<std::uint64_t, ScriptedLaw> scripts;  // functions of scripted bonds; not part of the saved state
+  std::uint64_t next_script = 1;
+  bool stepping = false;
+  std::vector<step::Command> queue;  // edits asked for during a step
+  std::optional<Recording> recording;
+  std::uint64_t oriented_step = ~0ull;
+
+  /// Applies a command now, or queues it if it is a structural edit asked for during a step; records it.
+  /// Throws std::logic_error for anything else asked for during a step.
+  template <class C>
+  auto execute(const C& command);
+
+  // One apply per command; all checking of input is here.
+  void apply(const step::SetGravity&);
+  void apply(const step::SetMode&);
+  void apply(const step::SetSystemDamping&);
+  BodyId apply(const step::CreateBody&);
+  ParticleId apply(const step::CreateParticle&);
+  void apply(const step::SetRod&);
+  CosmeticBondId apply(const step::CreateCosmeticBond&);
+  BondId apply(const step::CreateBond&);
+  GripId apply(const step::CreateGrip&);
+  void apply(const step::MoveGrip&);
+  void apply(const step::SetKind&);
+  void apply(const step::SetBodyDamping&);
+  void apply(const step::SetPosition&);
+  void apply(const step::SetVelocity&);
+  void apply(const step::SetMass&);
+  void apply(const step::ApplyForce&);
+  void apply(const step::SetActive&);
+  StepReport apply(const step::Step&);
+  void apply(const step::Destroy<BodyId>&);
+  void apply(const step::Destroy<ParticleId>&);
+  void apply(const step::Destroy<BondId>&);
+  void apply(const step::Destroy<CosmeticBondId>&);
+  void apply(const step::Destroy<GripId>&);
+  RestructureReport apply(const step::CombineParticles&);
+  RestructureReport apply(const step::CombineBodies&);
+  RestructureReport apply(const step::Separate&);
+  void apply(const step::Nail&);
+  void apply(const step::Release&);
+
+  std::uint32_t require(BodyId) const;
+  std::uint32_t require(ParticleId) const;
+  std::uint32_t require(BondId) const;
+  std::uint32_t require(GripId) const;
+
+  /// Runs a structural edit and settles its physics: positions, velocities, momenta, energy; fills the report.
+  template <class EditFunction>
+  RestructureReport restructure(std::vector<std::uint32_t> touched_bodies, EditFunction edit);
+
+  void run_scripts(StepReport&);
+  void finish_closings(StepReport&);
+  void apply_queue(StepReport&);
+  void structure_changed() { ++model.structure_version; }
+  void jolt(std::uint32_t particle);
+  void refresh_orientations();
+  void restore(const Snapshot&);
+};
+
+}  // namespace iota

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "step/island.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+namespace iota::step {
+
+using model::Body;
+using model::Model;
+using model::none;
+using model::Particle;
+using model::Ring;
+
+namespace {
+
+/// Shrinks smoothly from 1 to a hundredth; the last bit is closed by projection (a distance row has no direction at 0).
+double closing_factor(double elapsed, double duration) {
+  const double s = std::clamp(elapsed / duration, 0.0, 1.0);
+  return 1 - 0.99 * s * s * (3 - 2 * s);
+}
+
+}  // namespace
+
+Island::Weighted Island::nodes_of(const Model& model, std::uint32_t particle,
+                                  const std::vector<std::uint32_t>& node_of_ring) const {
+  const Particle& p = model.particles[particle];
+  Weighted list{};
+  if (model.is_unknown(p)) {
+    list[0] = {node_of_ring[p.ring], 1.0};
+    return list;
+  }
+  const Body& body = model.bodies[p.body];
+  int used = 0;
+  for (int i = 0; i < body.rank; ++i)
+    if (p.weights[i] != 0) list[used++] = {node_of_ring[model.particles[body.basis[i]].ring], p.weights[i]};
+  return list;
+}
+
+void Island::add_mass_outer(const Weighted& a, double mass) {
+  for (std::size_t i = 0; i < a.size() && a[i].second != 0; ++i) {
+    problem_.mass[a[i].first] += mass * a[i].second * a[i].second;
+    for (std::size_t j = i + 1; j < a.size() && a[j].second != 0; ++j)
+      problem_.mass_couplings.push_back({a[i].first, a[j].first, mass * a[i].second * a[j].second});
+  }
+}
+
+void Island::add_masses(const Model& model, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring) {
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    add_mass_outer(nodes_of(model, p, node_of_ring), model.particles[p].mass);
+    if (!model.is_unknown(model.particles[p])) slaves_.push_back(p);
+  });
+  model.for_each_inertia_of(body, [&](std::uint32_t i) {
+    const model::InertiaPair& pair = model.inertia_pairs[i];
+    std::array<std::pair<std::uint32_t, double>, 8> difference{};
+    std::size_t used = 0;
+    const auto add = [&](const Weighted& list, double sign) {
+      for (const auto& [node, weight] : list) {
+        if (weight == 0) break;
+        auto* const end = difference.data() + used;
+        auto* const found = std::find_if(difference.data(), end, [&](const auto& d) { return d.first == node; });
+        if (found == end) difference[used++] = {node, 0};
+        found->second += sign * weight;
+      }
+    };
+    add(nodes_of(model, pair.p, node_of_ring), 1);
+    add(nodes_of(model, pair.q, node_of_ring), -1);
+    for (std::size_t a = 0; a < used; ++a) {
+      problem_.mass[difference[a].first] += pair.inertia * difference[a].second * difference[a].second;
+      for (std::size_t b = a + 1; b < used; ++b)
+        problem_.mass_couplings.push_back(
+            {difference[a].first, difference[b].first, pair.inertia * difference[a].second * difference[b].second});
+    }
+  });
+}
+
+void Island::add_constraints(const Model& model, std::uint32_t slot, const std::vector<std::uint32_t>& node_of_ring) {
+  const Body& body = model.bodies[slot];
+  auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints).items;
+  auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints).items;
+  const auto node_of = [&](std::uint32_t particle) { return node_of_ring[model.particles[particle].ring]; };
+  double extent = 0;
+  for (int row = 0; row < body.row_count; ++row) {
+    const auto [i, j] = model::basis_pairs[row];
+    const std::uint32_t a = node_of(body.basis[i]), b = node_of(body.basis[j]);
+    extent = std::max(extent, body.lengths[row]);
+    if (pinned_[a] && pinned_[b]) continue;
+    distances.push_back({{a, b}, body.lengths[row], body.lengths[row], body.lengths[row]});
+    rigid_rows_.push_back({slot, static_cast<std::uint8_t>(row)});
+  }
+  if (body.count == body.rank) return;
+  model.for_each_particle_of(slot, [&](std::uint32_t p) {
+    const Particle& particle = model.particles[p];
+    if (particle.basis_index >= 0 || !model.is_unknown(particle)) return;
+    solver::AffineConstraint tie;
+    tie.nodes[0] = node_of(p), tie.weights[0] = 1, tie.count = 1;
+    tie.reference = extent > 0 ? extent : 1;
+    bool movable = !pinned_[tie.nodes[0]];
+    for (int i = 0; i < body.rank; ++i) {
+      if (particle.weights[i] == 0) continue;
+      movable = movable || !pinned_[node_of(body.basis[i])];
+      tie.nodes[tie.count] = node_of(body.basis[i]);
+      tie.weights[tie.count++] = -particle.weights[i];
+    }
+    if (!movable) return;
+    affines.push_back(tie);
+    tied_.push_back(p);
+  });
+}
+
+void Island::add_bonds(const Model& model, const std::vector<std::uint32_t>& node_of_ring) {
+  const auto arm_between = [&](std::uint32_t p, std::uint32_t q) {
+    solver::ForceArm arm;
+    arm.nodes = {node_of_ring[model.particles[p].ring], node_of_ring[model.particles[q].ring]};
+    arm.weights = {-1, 1};
+    arm.count = 2;
+    return arm;
+  };
+  model.bonds.for_each([&](std::uint32_t slot, const model::Bond& b) {
+    if (!b.active || b.kind == model::BondKind::scripted) return;
+    const solver::ForceArm arm = arm_between(b.p, b.q);
+    if (arm.nodes[0] == none || arm.nodes[1] == none || arm.nodes[0] == arm.nodes[1]) return;
+    if (b.kind == model::BondKind::spring) {
+      std::get<solver::ForcePool<solver::SpringForce>>(problem_.forces)
+          .items.push_back({arm, b.stiffness, b.damping, b.length});
+      springs_.push_back(slot);
+    } else {
+      std::get<solver::ForcePool<solver::DragForce>>(problem_.forces).items.push_back({arm, b.damping});
+      drags_.push_back(slot);
+    }
+  });
+}
+
+void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
+                      std::vector<std::uint32_t>& node_of_ring) {
+  node_of_ring.resize(model.rings.slot_count(), none);
+  *this = Island{};
+  double total_mass = 0;
+  for (const std::uint32_t articulate : articulates)
+    model.for_each_body_of(articulate, [&](std::uint32_t body) {
+      if (model.bodies[body].kind == BodyKind::inactive || model.bodies[body].count == 0) return;
+      bodies_.push_back(body);
+      if (model.bodies[body].kind == BodyKind::dynamic) total_mass += model.body_mass(body);
+      model.for_each_particle_of(body, [&](std::uint32_t p) {
+        const Particle& particle = model.particles[p];
+        if (!model.is_unknown(particle) || node_of_ring[particle.ring] != none) return;
+        node_of_ring[particle.ring] = static_cast<std::uint32_t>(rings_.size());
+        rings_.push_back(particle.ring);
+        pinned_.push_back(model.is_pinned(particle.ring));
+      });
+    });
+  idle_ = std::all_of(pinned_.begin(), pinned_.end(), [](std::uint8_t p) { return p != 0; });
+
+  const std::size_t n = rings_.size();
+  problem_.position.resize(n), problem_.velocity.resize(n), problem_.force.resize(n);
+  problem_.mass.assign(n, 0), node_damping_.assign(n, 0);
+  for (const std::uint32_t body : bodies_) {
+    add_masses(model, body, node_of_ring);
+    add_constraints(model, body, node_of_ring);
+    if (const double k = model.bodies[body].damping; k > 0)
+      model.for_each_particle_of(body, [&](std::uint32_t p) {
+        const std::uint32_t node = node_of_ring[model.particles[p].ring];
+        if (node != none) node_damping_[node] += k * model.particles[p].mass, damped_ = true;
+      });
+  }
+  if (damped_)
+    for (std::size_t i = 0; i < n; ++i) node_damping_[i] /= problem_.mass[i];
+
+  auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints).items;
+  model.closings.for_each([&](std::uint32_t slot, const model::Closing& c) {
+    const std::uint32_t a = node_of_ring[model.particles[c.p].ring], b = node_of_ring[model.particles[c.q].ring];
+    if (a == none || b == none) return;
+    distances.push_back({{a, b}, c.distance, c.distance, c.distance});
+    closings_.push_back(slot);
+  });
+  auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints).items;
+  for (std::uint32_t node = 0; node < n; ++node) {
+    if (!pinned_[node]) continue;
+    solver::AffineConstraint nail;
+    nail.nodes[0] = node, nail.weights[0] = 1, nail.count = 1;
+    affines.push_back(nail);
+    nails_.push_back(node);
+  }
+  if (model.bonds.size() > 0) add_bonds(model, node_of_ring);
+  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
+    if (model.bodies[g.body].kind != BodyKind::dynamic) return;
+    solver::GripForce force;
+    for (std::uint32_t i = 0; i < g.count; ++i) {
+      const std::uint32_t node = node_of_ring[model.particles[g.points[i]].ring];
+      if (node == none) return;
+      force.arm.nodes[i] = node, force.arm.weights[i] = g.weights[i];
+    }
+    force.arm.count = g.count;
+    std::get<solver::ForcePool<solver::GripForce>>(problem_.forces).items.push_back(force);
+    grips_.push_back(slot);
+    // A hand feels the body it holds and, through the hinges, part of what hangs on it: enough to lift it all.
+    const double own = model.body_mass(g.body);
+    grip_masses_.push_back(own + 0.5 * (total_mass - own));
+  });
+  integrator_.compile(problem_);
+  for (const std::uint32_t ring : rings_) node_of_ring[ring] = none;
+}
+
+void Island::load(const Model& model, double h) {
+  problem_.gravity = model.gravity;
+  for (std::size_t i = 0; i < rings_.size(); ++i) {
+    const Ring& r = model.rings[rings_[i]];
+    problem_.position[i] = r.position;
+    problem_.velocity[i] = r.velocity;
+    problem_.force[i] = r.applied_force;
+  }
+  for (const std::uint32_t p : slaves_) {  // forces on carried particles act through the basis
+    const Vec3& f = model.rings[model.particles[p].ring].applied_force;
+    if (f == Vec3{}) continue;
+    const Body& body = model.bodies[model.particles[p].body];
+    for (int i = 0; i < body.rank; ++i) {
+      const auto node = std::find(rings_.begin(), rings_.end(), model.particles[body.basis[i]].ring) - rings_.begin();
+      problem_.force[static_cast<std::size_t>(node)] += model.particles[p].weights[i] * f;
+    }
+  }
+  auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints);
+  for (std::size_t i = 0; i < rigid_rows_.size(); ++i)
+    distances.multipliers[i] = model.bodies[rigid_rows_[i].body].multipliers[rigid_rows_[i].row];
+  for (std::size_t i = 0; i < closings_.size(); ++i) {
+    const model::Closing& c = model.closings[closings_[i]];
+    const std::size_t k = rigid_rows_.size() + i;
+    distances.multipliers[k] = c.multiplier;
+    distances.items[k].length_start = c.distance * closing_factor(c.elapsed, c.duration);
+    distances.items[k].length = c.distance * closing_factor(c.elapsed + h, c.duration);
+  }
+  auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints);
+  for (std::size_t i = 0; i < tied_.size(); ++i)
+    std::copy_n(model.particles[tied_[i]].multiplier.begin(), 3, affines.multiplier(i));
+  for (std::size_t i = 0; i < nails_.size(); ++i) {
+    const Ring& r = model.rings[rings_[nails_[i]]];
+    auto& nail = affines.items[tied_.size() + i];
+    nail.target = r.nailed ? r.nail : r.position;
+    nail.target_start = r.nailed && h > 0 ? r.nail_before : nail.target;
+    double* const l = affines.multiplier(tied_.size() + i);
+    l[0] = r.nail_multiplier.x, l[1] = r.nail_multiplier.y, l[2] = r.nail_multiplier.z;
+  }
+  auto& grips = std::get<solver::ForcePool<solver::GripForce>>(problem_.forces).items;
+  for (std::size_t i = 0; i < grips_.size(); ++i) {
+    const model::Grip& g = model.grips[grips_[i]];
+    const double omega = 2 * std::numbers::pi * g.frequency, mass = grip_masses_[i];
+    grips[i].arm.origin = g.target;
+    // The cap makes the spring constant-force far away: stiffness is what gives the capped force at this distance.
+    const double distance = norm(grips[i].arm.value(problem_.position.data()));
+    grips[i].stiffness = mass * std::min(omega * omega, g.max_acceleration / (distance + 1e-12));
+    grips[i].damping = 2 * mass * omega;
+  }
+}
+
+void Island::store(Model& model, bool stepped) {
+  for (std::size_t i = 0; i < rings_.size(); ++i) {
+    Ring& r = model.rings[rings_[i]];
+    r.position = problem_.position[i];
+    r.velocity = problem_.velocity[i];
+    if (stepped) r.applied_force = {};
+  }
+  for (const std::uint32_t p : slaves_) {
+    const Particle& particle = model.particles[p];
+    const Body& body = model.bodies[particle.body];
+    Ring& r = model.rings[particle.ring];
+    Vec3 x, v;
+    for (int i = 0; i < body.rank; ++i) {
+      const Ring& b = model.rings[model.particles[body.basis[i]].ring];
+      x += particle.weights[i] * b.position;
+      v += particle.weights[i] * b.velocity;
+    }
+    r.position = x, r.velocity = v;
+    if (stepped) r.applied_force = {};
+  }
+  if (!stepped) return;
+  const auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints);
+  for (std::size_t i = 0; i < rigid_rows_.size(); ++i)
+    model.bodies[rigid_rows_[i].body].multipliers[rigid_rows_[i].row] = distances.multipliers[i];
+  for (std::size_t i = 0; i < closings_.size(); ++i)
+    model.closings[closings_[i]].multiplier = distances.multipliers[rigid_rows_.size() + i];
+  const auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints);
+  for (std::size_t i = 0; i < tied_.size(); ++i)
+    std::copy_n(affines.multiplier(i), 3, model.particles[tied_[i]].multiplier.begin());
+  for (std::size_t i = 0; i < nails_.size(); ++i) {
+    Ring& r = model.rings[rings_[nails_[i]]];
+    const double* const l = affines.multiplier(tied_.size() + i);
+    r.nail_multiplier = {l[0], l[1], l[2]};
+    r.nail_before = r.nail;
+  }
+  const auto& grips = std::get<solver::ForcePool<solver::GripForce>>(problem_.forces).items;
+  for (std::size_t i = 0; i < grips_.size(); ++i)
+    model.grips[grips_[i]].force = grips[i].stiffness * norm(grips[i].arm.value(problem_.position.data()));
+}
+
+solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mode) {
+  if (idle_) return {};
+  load(model, h);
+  // The mid-point rule would carry a jump of a nail's velocity along for ever, as a ringing of the reactions.
+  auto& nails = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints).items;
+  const auto nail_velocity = [&](std::size_t i) {
+    return (1 / h) * (nails[tied_.size() + i].target - nails[tied_.size() + i].target_start);
+  };
+  double jolt = 0;
+  for (std::size_t i = 0; i < nails_.size(); ++i) {
+    Vec3& velocity = problem_.velocity[nails_[i]];
+    jolt = std::max(jolt, norm(nail_velocity(i) - velocity));
+    velocity = nail_velocity(i);
+  }
+  double lost = 0;
+  if (jolt > 1e-9) {
+    lost = problem_.kinetic_energy();
+    integrator_.project_velocities(problem_, h);
+    lost -= problem_.kinetic_energy();
+  }
+  auto report = integrator_.advance(
+      problem_, h, mode == IntegrationMode::robust ? solver::Scheme::end_point : solver::Scheme::mid_point);
+  report.external_work -= lost;  // what a nail gives or takes at once
+  for (std::size_t i = 0; i < nails_.size(); ++i) problem_.velocity[nails_[i]] = nail_velocity(i);
+  if (damped_ || model.damping > 0) {
+    const double before = problem_.kinetic_energy();
+    for (std::size_t i = 0; i < rings_.size(); ++i)
+      problem_.velocity[i] *= std::exp(-(model.damping + node_damping_[i]) * h);
+    report.dissipated += before - problem_.kinetic_energy();
+  }
+  store(model, true);
+  return report;
+}
+
+bool Island::settle(Model& model, bool positions) {
+  load(model, 0);
+  bool met = true;
+  if (idle_) {
+    std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
+  } else {
+    met = !positions || integrator_.project_positions(problem_);
+    integrator_.project_velocities(problem_);
+  }
+  store(model, false);
+  return met;
+}
+
+void Islands::update(const Model& model) {
+  if (model.revision == seen_revision_) return;
+  seen_revision_ = model.revision;
+
+  // Articulates that implicit bonds tie together are solved together.
+  std::vector<std::uint32_t> parent(model.articulates.slot_count());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t a) {
+    while (parent[a] != a) a = parent[a] = parent[parent[a]];
+    return a;
+  };
+  model.bonds.for_each([&](std::uint32_t, const model::Bond& b) {
+    if (!b.active || b.kind == model::BondKind::scripted) return;
+    const std::uint32_t p = root(model.bodies[model.particles[b.p].body].articulate);
+    const std::uint32_t q = root(model.bodies[model.particles[b.q].body].articulate);
+    parent[std::max(p, q)] = std::min(p, q);  // the root is the lowest slot: groups come out in order
+  });
+  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
+  model.articulates.for_each([&](std::uint32_t slot, const model::Articulate&) { groups[root(slot)].push_back(slot); });
+
+  std::map<std::vector<std::uint64_t>, std::unique_ptr<Island>> kept;
+  for (std::size_t i = 0; i < in_order_.size(); ++i) kept[std::move(keys_[i])] = std::move(in_order_[i]);
+  keys_.clear(), in_order_.clear();
+  island_of_articulate_.assign(model.articulates.slot_count(), none);
+  for (const auto& [leader, members] : groups) {
+    std::vector<std::uint64_t> key;
+    for (const std::uint32_t a : members) {
+      island_of_articulate_[a] = static_cast<std::uint32_t>(in_order_.size());
+      key.push_back(std::uint64_t{model.articulates.id(a).generation} << 32 | a);
+      key.push_back(model.articulates[a].version);
+    }
+    auto found = kept.find(key);
+    if (found != kept.end()) {
+      in_order_.push_back(std::move(found->second));
+      kept.erase(found);
+    } else {
+      in_order_.push_back(std::make_unique<Island>());
+      in_order_.back()->assemble(model, members, node_of_ring_);
+    }
+    keys_.push_back(std::move(key));
+  }
+}
+
+Island* Islands::of_articulate(std::uint32_t articulate) const {
+  return in_order_[island_of_articulate_[articulate]].get();
+}
+
+}  // namespace iota::step

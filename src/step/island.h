@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.h"
+#include "solver/integrator.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace iota::step {
+
+/// Articulates that bonds tie together, as one problem for the solver: the only translation between model and solver.
+class Island {
+ public:
+  /// Builds the problem's structure; `node_of_ring` is scratch, `none` everywhere before and after.
+  void assemble(const model::Model&, std::span<const std::uint32_t> articulates,
+                std::vector<std::uint32_t>& node_of_ring);
+
+  /// State of the model into the problem, for a step of h seconds (h = 0: for projections).
+  void load(const model::Model&, double h);
+  /// The problem's state back, particles that are no unknowns of their own included. `stepped`: nails have arrived and
+  /// applied forces are spent.
+  void store(model::Model&, bool stepped);
+
+  solver::AdvanceReport advance(model::Model&, double h, IntegrationMode);
+
+  /// Projections after an edit; false where no position meets all constraints.
+  bool settle(model::Model&, bool positions);
+
+  bool is_idle() const { return idle_; }  ///< nothing in it can move
+
+ private:
+  using Weighted = std::array<std::pair<std::uint32_t, double>, 4>;  // nodes and weights; weight 0 ends the list
+  Weighted nodes_of(const model::Model&, std::uint32_t particle, const std::vector<std::uint32_t>& node_of_ring) const;
+  void add_masses(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
+  void add_mass_outer(const Weighted& a, double mass);
+  void add_constraints(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
+  void add_bonds(const model::Model&, const std::vector<std::uint32_t>& node_of_ring);
+
+  solver::Problem problem_;
+  solver::Integrator integrator_;
+  bool idle_ = false;
+  bool damped_ = false;
+  std::vector<std::uint32_t> rings_;     // of each node
+  std::vector<std::uint8_t> pinned_;     // of each node
+  std::vector<double> node_damping_;     // 1/s, without the system's
+  struct RigidRow { std::uint32_t body; std::uint8_t row; };
+  std::vector<RigidRow> rigid_rows_;     // of the first distance constraints
+  std::vector<std::uint32_t> closings_;  // of the distance constraints after them
+  std::vector<std::uint32_t> tied_;      // particles of the first affine constraints
+  std::vector<std::uint32_t> nails_;     // nodes of the affine constraints after them
+  std::vector<std::uint32_t> slaves_;    // particles carried by their basis
+  std::vector<std::uint32_t> springs_, drags_, grips_;
+  std::vector<double> grip_masses_;      // kg, what a hand can feel
+  std::vector<std::uint32_t> bodies_;
+};
+
+/// All islands of a model, re-made only where articulates or bonds changed.
+class Islands {
+ public:
+  void update(const model::Model&);
+  void forget() { keys_.clear(), in_order_.clear(), seen_revision_ = ~0ull; }
+  std::span<const std::unique_ptr<Island>> all() const { return in_order_; }
+  Island* of_articulate(std::uint32_t articulate) const;
+
+ private:
+  std::vector<std::vector<std::uint64_t>> keys_;  // of each island: slot, generation and version of its articulates
+  std::vector<std::unique_ptr<Island>> in_order_;
+  std::vector<std::uint32_t> island_of_articulate_;
+  std::vector<std::uint32_t> node_of_ring_;
+  std::uint64_t seen_revision_ = ~0ull;
+};
+
+}  // namespace iota::step

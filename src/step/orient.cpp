@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames for drawing. They are made when somebody looks, and nothing in the dynamics depends on them.
+#include "math/mat3.h"
+#include "step/implementation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota {
+
+namespace {
+
+Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
+  const double length = norm(v);
+  return length > 1e-12 ? (1 / length) * v : otherwise;
+}
+
+}  // namespace
+
+void System::Implementation::refresh_orientations() {
+  const std::uint64_t now = model.step << 32 | model.structure_version;
+  if (now == oriented_step) return;
+  oriented_step = now;
+
+  model.bodies.for_each([&](std::uint32_t, model::Body& b) {
+    if (b.rank < 2) return;
+    const Vec3 x0 = model.position(b.basis[0]);
+    const Vec3 old_x = rotate(b.orientation, {1, 0, 0});
+    const Vec3 x = unit_or(model.position(b.basis[1]) - x0, old_x);
+    if (b.rank == 2) {  // no spin is known: carry the frame along by the smallest turn
+      b.orientation = normalised(multiply(shortest_turn(old_x, x), b.orientation));
+      return;
+    }
+    const Vec3 in_plane = model.position(b.basis[2]) - x0;
+    const Vec3 y = unit_or(in_plane - dot(in_plane, x) * x, any_perpendicular(x));
+    b.orientation = from_axes(x, y, cross(x, y));
+  });
+
+  // Smallest turns add up to a twist between neighbours after a round trip. Rods are let back towards the frame of the
+  // rod they hang on, a little each time and never near a fold, so that chain links neither drift nor flip.
+  constexpr double share = 0.05, largest_turn = 0.1;
+  model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
+    if (b.rank != 2) return;
+    std::uint32_t upper = slot;
+    model.for_each_in_ring(model.particles[b.basis[0]].ring, [&](std::uint32_t p) {
+      const std::uint32_t other = model.particles[p].body;
+      if (other < upper && model.bodies[other].rank == 2) upper = other;
+    });
+    if (upper == slot) return;
+    const Quaternion& u = model.bodies[upper].orientation;
+    const Vec3 ux = rotate(u, {1, 0, 0}), x = rotate(b.orientation, {1, 0, 0});
+    if (dot(ux, x) < -0.7) return;
+    const Vec3 wanted = rotate(shortest_turn(ux, x), rotate(u, {0, 1, 0})), y = rotate(b.orientation, {0, 1, 0});
+    const double twist = std::atan2(dot(cross(y, wanted), x), dot(y, wanted));
+    b.orientation = normalised(
+        multiply(axis_angle(x, std::clamp(share * twist, -largest_turn, largest_turn)), b.orientation));
+  });
+}
+
+}  // namespace iota

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/mat3.h"
+#include "step/implementation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace iota {
+
+namespace {
+
+static_assert(std::is_trivially_copyable_v<step::Command>);
+
+/// Calls visit with a default-constructed command of the index-th type.
+template <std::size_t I = 0, class Visit>
+void with_command_type(std::size_t index, Visit visit) {
+  if constexpr (I < std::variant_size_v<step::Command>) {
+    if (index == I)
+      visit(std::variant_alternative_t<I, step::Command>{});
+    else
+      with_command_type<I + 1>(index, visit);
+  }
+}
+
+template <class C, std::size_t I = 0>
+constexpr std::uint8_t index_of() {
+  if constexpr (std::is_same_v<C, std::variant_alternative_t<I, step::Command>>) return I;
+  else return index_of<C, I + 1>();
+}
+
+constexpr std::uint64_t snapshot_magic = 0x31'70616e'73'61746full;  // says what the bytes are, and their version
+
+std::uint64_t check_sum(const std::vector<std::byte>& bytes) {
+  Hasher hasher;
+  hasher.bytes(bytes.data(), bytes.size());
+  return hasher.result();
+}
+
+template <class Id, class Table>
+std::vector<Id> ids_of(const Table& table) {
+  std::vector<Id> ids;
+  ids.reserve(table.size());
+  table.for_each([&](std::uint32_t slot, const auto&) { ids.push_back(table.id(slot)); });
+  return ids;
+}
+
+}  // namespace
+
+template <class C>
+auto System::Implementation::execute(const C& command) {
+  using Result = decltype(apply(command));
+  if (stepping) {
+    if constexpr (step::is_queueable<C>) {
+      queue.push_back(command);
+      if constexpr (std::is_same_v<Result, RestructureReport>) {
+        RestructureReport report;
+        report.queued = true;
+        return report;
+      } else {
+        return;
+      }
+    } else {
+      throw std::logic_error("only structural edits (combine, separate, nail, release, destroy) may be asked for while "
+                             "the system steps; they are applied right after the step");
+    }
+  }
+  const auto record = [&] {
+    if (!recording) return;
+    Writer writer(recording->commands);
+    std::uint8_t index = index_of<C>();
+    C copy = command;
+    writer.value(index);
+    writer.value(copy);
+  };
+  if constexpr (std::is_void_v<Result>) {
+    apply(command);
+    record();
+  } else {
+    Result result = apply(command);
+    record();
+    return result;
+  }
+}
+
+System::System(const SystemOptions& options) : implementation_(std::make_unique<Implementation>()) {
+  set_gravity(options.gravity);
+  set_damping(options.damping);
+  set_mode(options.mode);
+}
+System::~System() = default;
+System::System(System&&) noexcept = default;
+System& System::operator=(System&&) noexcept = default;
+
+// --- changing ---------------------------------------------------------------------------------------------------------
+
+BodyId System::create_body(const BodyOptions& options) { return implementation_->execute(step::CreateBody{options}); }
+ParticleId System::create_particle(BodyId body, const Vec3& position, double mass, const Vec3& velocity) {
+  return implementation_->execute(step::CreateParticle{body, position, velocity, mass});
+}
+void System::set_rod(BodyId body, double mass, double radius) {
+  implementation_->execute(step::SetRod{body, mass, radius});
+}
+CosmeticBondId System::create_cosmetic_bond(ParticleId p, ParticleId q) {
+  return implementation_->execute(step::CreateCosmeticBond{p, q});
+}
+BondId System::create_bond(ParticleId p, ParticleId q, BondLaw law) {
+  step::CreateBond command{p, q, step::BondType::spring, 0, 0, 0, 0};
+  if (const auto* spring = std::get_if<SpringLaw>(&law)) {
+    command.stiffness = spring->stiffness, command.damping = spring->damping, command.length = spring->length;
+  } else if (const auto* drag = std::get_if<DragLaw>(&law)) {
+    command.type = step::BondType::drag, command.damping = drag->damping;
+  } else {
+    auto& scripted = std::get<ScriptedLaw>(law);
+    if (!scripted.force) throw std::invalid_argument("a scripted bond needs a function");
+    command.type = step::BondType::scripted, command.script = implementation_->next_script;
+    const BondId id = implementation_->execute(command);
+    implementation_->scripts[implementation_->next_script++] = std::move(scripted);
+    return id;
+  }
+  return implementation_->execute(command);
+}
+void System::destroy(BodyId id) { implementation_->execute(step::Destroy<BodyId>{id}); }
+void System::destroy(ParticleId id) { implementation_->execute(step::Destroy<ParticleId>{id}); }
+void System::destroy(BondId id) { implementation_->execute(step::Destroy<BondId>{id}); }
+void System::destroy(CosmeticBondId id) { implementation_->execute(step::Destroy<CosmeticBondId>{id}); }
+void System::destroy(GripId id) { implementation_->execute(step::Destroy<GripId>{id}); }
+
+RestructureReport System::combine(ParticleId p, ParticleId q, double over) {
+  return implementation_->execute(step::CombineParticles{p, q, over});
+}
+RestructureReport System::combine(BodyId a, BodyId b) { return implementation_->execute(step::CombineBodies{a, b}); }
+RestructureReport System::separate(ParticleId p, ParticleId q) {
+  return implementation_->execute(step::Separate{p, q});
+}
+void System::nail(ParticleId particle) { implementation_->execute(step::Nail{particle, true, {}}); }
+void System::nail(ParticleId particle, const Vec3& position) {
+  implementation_->execute(step::Nail{particle, false, position});
+}
+void System::release(ParticleId particle) { implementation_->execute(step::Release{particle}); }
+
+GripId System::create_grip(BodyId body, const Vec3& local_point, const Vec3& target, const GripOptions& options) {
+  return implementation_->execute(step::CreateGrip{body, local_point, target, options});
+}
+void System::move_grip(GripId grip, const Vec3& target) { implementation_->execute(step::MoveGrip{grip, target}); }
+
+void System::set_gravity(const Vec3& value) { implementation_->execute(step::SetGravity{value}); }
+void System::set_mode(IntegrationMode mode) { implementation_->execute(step::SetMode{mode}); }
+void System::set_damping(double per_second) { implementation_->execute(step::SetSystemDamping{per_second}); }
+void System::set_kind(BodyId body, BodyKind kind) { implementation_->execute(step::SetKind{body, kind}); }
+void System::set_damping(BodyId body, double per_second) {
+  implementation_->execute(step::SetBodyDamping{body, per_second});
+}
+void System::set_position(ParticleId p, const Vec3& value) { implementation_->execute(step::SetPosition{p, value}); }
+void System::set_velocity(ParticleId p, const Vec3& value) { implementation_->execute(step::SetVelocity{p, value}); }
+void System::set_mass(ParticleId p, double value) { implementation_->execute(step::SetMass{p, value}); }
+void System::apply_force(ParticleId p, const Vec3& value) { implementation_->execute(step::ApplyForce{p, value}); }
+void System::set_active(BondId bond, bool active) { implementation_->execute(step::SetActive{bond, active}); }
+StepReport System::step(double dt) { return implementation_->execute(step::Step{dt}); }
+
+// --- reading ----------------------------------------------------------------------------------------------------------
+
+Vec3 System::gravity() const { return implementation_->model.gravity; }
+IntegrationMode System::mode() const { return implementation_->model.mode; }
+double System::damping() const { return implementation_->model.damping; }
+double System::time() const { return implementation_->model.time; }
+std::uint64_t System::step_count() const { return implementation_->model.step; }
+std::uint32_t System::structure_version() const { return implementation_->model.structure_version; }
+Vec3 System::momentum() const { return implementation_->model.momentum(); }
+Vec3 System::angular_momentum() const { return implementation_->model.angular_momentum(); }
+double System::worst_gap() const { return implementation_->model.worst_gap(); }
+std::uint32_t System::closing_count() const { return implementation_->model.closings.size(); }
+std::uint32_t System::articulate_count() const { return implementation_->model.articulates.size(); }
+bool System::is_stepping() const { return implementation_->stepping; }
+std::vector<std::string> System::validate() const { return implementation_->model.validate(); }
+std::uint64_t System::state_hash() const { return implementation_->model.hash(); }
+
+Energy System::energy() const {
+  const model::Model& m = implementation_->model;
+  return {m.kinetic_energy(), m.potential_energy(), m.dissipated, m.external_work, m.edit_energy};
+}
+
+bool System::contains(BodyId id) const { return implementation_->model.bodies.contains(id); }
+bool System::contains(ParticleId id) const { return implementation_->model.particles.contains(id); }
+bool System::contains(BondId id) const { return implementation_->model.bonds.contains(id); }
+bool System::contains(GripId id) const { return implementation_->model.grips.contains(id); }
+std::optional<ParticleId> System::survivor_of(ParticleId id) const { return implementation_->model.survivor_of(id); }
+std::optional<BodyId> System::survivor_of(BodyId id) const { return implementation_->model.survivor_of(id); }
+
+std::vector<BodyId> System::bodies() const { return ids_of<BodyId>(implementation_->model.bodies); }
+std::vector<ParticleId> System::particles() const { return ids_of<ParticleId>(implementation_->model.particles); }
+std::vector<BondId> System::bonds() const { return ids_of<BondId>(implementation_->model.bonds); }
+
+std::vector<std::vector<BodyId>> System::articulates() const {
+  const model::Model& m = implementation_->model;
+  std::vector<std::vector<BodyId>> all;
+  m.articulates.for_each([&](std::uint32_t slot, const model::Articulate&) {
+    m.for_each_body_of(slot, [&, &bodies = all.emplace_back()](std::uint32_t b) { bodies.push_back(m.bodies.id(b)); });
+  });
+  return all;
+}
+
+std::vector<ParticleId> System::particles(BodyId body) const {
+  const model::Model& m = implementation_->model;
+  std::vector<ParticleId> ids;
+  m.for_each_particle_of(implementation_->require(body), [&](std::uint32_t p) { ids.push_back(m.particles.id(p)); });
+  return ids;
+}
+
+std::uint32_t System::articulate(BodyId id) const {
+  return implementation_->model.bodies[implementation_->require(id)].articulate;
+}
+BodyKind System::kind(BodyId id) const { return implementation_->model.bodies[implementation_->require(id)].kind; }
+double System::damping(BodyId id) const { return implementation_->model.bodies[implementation_->require(id)].damping; }
+double System::mass(BodyId id) const { return implementation_->model.body_mass(implementation_->require(id)); }
+Vec3 System::centre_of_mass(BodyId id) const {
+  return implementation_->model.centre_of_mass(implementation_->require(id));
+}
+Quaternion System::orientation(BodyId id) const {
+  const std::uint32_t body = implementation_->require(id);
+  implementation_->refresh_orientations();
+  return implementation_->model.bodies[body].orientation;
+}
+
+BodyId System::body(ParticleId id) const {
+  const model::Model& m = implementation_->model;
+  return m.bodies.id(m.particles[implementation_->require(id)].body);
+}
+std::vector<ParticleId> System::ring(ParticleId id) const {
+  const model::Model& m = implementation_->model;
+  std::vector<ParticleId> ids;
+  m.for_each_in_ring(m.particles[implementation_->require(id)].ring,
+                     [&](std::uint32_t p) { ids.push_back(m.particles.id(p)); });
+  return ids;
+}
+Vec3 System::position(ParticleId id) const { return implementation_->model.position(implementation_->require(id)); }
+Vec3 System::velocity(ParticleId id) const { return implementation_->model.velocity(implementation_->require(id)); }
+double System::mass(ParticleId id) const { return implementation_->model.particles[implementation_->require(id)].mass; }
+bool System::is_nailed(ParticleId id) const {
+  const model::Model& m = implementation_->model;
+  return m.rings[m.particles[implementation_->require(id)].ring].nailed;
+}
+Vec3 System::nail_force(ParticleId id) const {
+  const model::Model& m = implementation_->model;
+  return -m.rings[m.particles[implementation_->require(id)].ring].nail_multiplier;
+}
+
+std::pair<ParticleId, ParticleId> System::ends(BondId id) const {
+  const model::Model& m = implementation_->model;
+  const model::Bond& b = m.bonds[implementation_->require(id)];
+  return {m.particles.id(b.p), m.particles.id(b.q)};
+}
+bool System::is_active(BondId id) const { return implementation_->model.bonds[implementation_->require(id)].active; }
+
+void System::read_positions(std::span<double> out) const {
+  const model::Model& m = implementation_->model;
+  if (out.size() != 3 * std::size_t{m.particles.size()})
+    throw std::invalid_argument("read_positions needs room for 3 numbers a particle");
+  double* write = out.data();
+  m.particles.for_each([&](std::uint32_t, const model::Particle& p) {
+    const Vec3& x = m.rings[p.ring].position;
+    *write++ = x.x, *write++ = x.y, *write++ = x.z;
+  });
+}
+void System::read_velocities(std::span<double> out) const {
+  const model::Model& m = implementation_->model;
+  if (out.size() != 3 * std::size_t{m.particles.size()})
+    throw std::invalid_argument("read_velocities needs room for 3 numbers a particle");
+  double* write = out.data();
+  m.particles.for_each([&](std::uint32_t, const model::Particle& p) {
+    const Vec3& v = m.rings[p.ring].velocity;
+    *write++ = v.x, *write++ = v.y, *write++ = v.z;
+  });
+}
+
+PoseSnapshot System::poses() const {
+  implementation_->refresh_orientations();
+  const model::Model& m = implementation_->model;
+  PoseSnapshot snapshot;
+  snapshot.step = m.step, snapshot.time = m.time, snapshot.structure_version = m.structure_version;
+  snapshot.kinetic = static_cast<float>(m.kinetic_energy());
+  snapshot.potential = static_cast<float>(m.potential_energy());
+  snapshot.gap = static_cast<float>(m.worst_gap());
+  const auto put = [](float (&out)[3], const Vec3& v) {
+    out[0] = static_cast<float>(v.x), out[1] = static_cast<float>(v.y), out[2] = static_cast<float>(v.z);
+  };
+  snapshot.bodies.reserve(m.bodies.size());
+  m.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
+    if (b.kind == BodyKind::inactive || b.count == 0) return;
+    BodyPose& pose = snapshot.bodies.emplace_back();
+    pose.body = slot;
+    put(pose.position, m.centre_of_mass(slot));
+    const Quaternion& q = b.orientation;
+    const double values[4] = {q.x, q.y, q.z, q.w};
+    for (int i = 0; i < 4; ++i) pose.orientation[i] = static_cast<float>(values[i]);
+  });
+  m.grips.for_each([&](std::uint32_t, const model::Grip& g) {
+    HoldPose& hold = snapshot.holds.emplace_back();
+    hold.client = g.client, hold.hold = g.hold, hold.body = g.body;
+    put(hold.point, grip_point(m, g));
+    put(hold.target, g.target);
+    hold.force = static_cast<float>(g.force);
+  });
+  return snapshot;
+}
+
+std::vector<BodyArticulate> System::body_articulates() const {
+  std::vector<BodyArticulate> list;
+  implementation_->model.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
+    if (b.kind != BodyKind::inactive && b.count > 0) list.push_back({slot, b.articulate});
+  });
+  return list;
+}
+
+// --- save, restore, replay --------------------------------------------------------------------------------------------
+
+Snapshot System::snapshot() const {
+  std::vector<std::byte> content;
+  Writer content_writer(content);
+  implementation_->model.archive(content_writer);
+  Snapshot snapshot;
+  Writer writer(snapshot.bytes);
+  std::uint64_t magic = snapshot_magic, check = check_sum(content);
+  writer.value(magic), writer.value(check), writer.vector(content);
+  return snapshot;
+}
+
+void System::Implementation::restore(const Snapshot& snapshot) {
+  Reader reader(snapshot.bytes);
+  std::uint64_t magic = 0;
+  reader.value(magic);
+  if (magic != snapshot_magic) throw std::invalid_argument("restore: these bytes are no snapshot of this version of Iota");
+  std::uint64_t check = 0;
+  std::vector<std::byte> content;
+  reader.value(check), reader.vector(content);
+  if (!reader.ok() || !reader.at_end() || check != check_sum(content))
+    throw std::invalid_argument("restore: the snapshot is cut short or damaged");
+  Reader content_reader(content);
+  model::Model restored;
+  restored.archive(content_reader);
+  if (!content_reader.ok() || !content_reader.at_end())
+    throw std::invalid_argument("restore: the snapshot is of another build of Iota");
+  model = std::move(restored);
+  islands.forget();
+  oriented_step = ~0ull;
+}
+
+void System::restore(const Snapshot& snapshot) {
+  if (implementation_->stepping) throw std::logic_error("restore: not while the system steps");
+  if (implementation_->recording) throw std::logic_error("restore: stop the recording first");
+  implementation_->restore(snapshot);
+}
+
+void System::start_recording() { implementation_->recording = Recording{snapshot(), {}, {}}; }
+
+Recording System::stop_recording() {
+  if (!implementation_->recording) throw std::logic_error("stop_recording: nothing is being recorded");
+  Recording recording = std::move(*implementation_->recording);
+  implementation_->recording.reset();
+  return recording;
+}
+
+std::optional<std::uint64_t> System::replay(const Recording& recording) {
+  restore(recording.start);
+  Reader reader(recording.commands);
+  std::size_t steps = 0;
+  std::optional<std::uint64_t> differs;
+  while (reader.ok() && !reader.at_end() && !differs) {
+    std::uint8_t index = 0;
+    reader.value(index);
+    bool known = false;
+    with_command_type(index, [&]<class C>(C command) {
+      known = true;
+      reader.value(command);
+      if (!reader.ok()) return;
+      (void)implementation_->apply(command);
+      if constexpr (std::is_same_v<C, step::Step>)
+        if (steps >= recording.hashes.size() || state_hash() != recording.hashes[steps++])
+          differs = implementation_->model.step;
+    });
+    if (!known || !reader.ok()) throw std::invalid_argument("replay: the recording is cut short or damaged");
+  }
+  return differs;
+}
+
+}  // namespace iota

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables 4.2 and 4.3 and Figures 4.10-4.13 of the thesis, to the letter.
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace iota {
+namespace {
+
+#define EXPECT_WHOLE(system) EXPECT_EQ((system).validate(), std::vector<std::string>{})
+
+double relative(const Vec3& change, const Vec3& whole) { return norm(change) / (1e-3 + norm(whole)); }
+
+void expect_momenta_kept(const RestructureReport& report, const System& system) {
+  EXPECT_LT(relative(report.momentum_change, system.momentum()), 1e-12);
+  EXPECT_LT(relative(report.angular_momentum_change, system.angular_momentum()), 1e-12);
+}
+
+/// The scene of Figures 4.8-4.12: A={P1,P2,P3}, B={P3..P7}, C={P7,P8}, D={P9,P10}, E={P11}, hinged at P3 (A,B) and
+/// P7 (B,C), bonds P8-P9 and P10-P11. Everything moves, so that momenta mean something.
+struct WorkedExample : ::testing::Test {
+  System system{SystemOptions{.gravity = {0, 0, 0}}};
+  BodyId a, b, c, d, e;
+  ParticleId a1, a2, a3, b3, b4, b5, b6, b7, c7, c8, d9, d10, e11;
+  BondId b8_9, b10_11;
+
+  WorkedExample() {
+    a = system.create_body(), b = system.create_body(), c = system.create_body(), d = system.create_body(),
+    e = system.create_body();
+    a1 = system.create_particle(a, {0, 0, 0}, 1), a2 = system.create_particle(a, {1, 1, 0}, 2);
+    a3 = system.create_particle(a, {2, 0, 0.3}, 1.5);
+    b3 = system.create_particle(b, {2, 0, 0.3}, 0.5), b4 = system.create_particle(b, {3, 0.5, 0}, 1);
+    b5 = system.create_particle(b, {3, -1, 1}, 1), b6 = system.create_particle(b, {4, 0.5, -0.4}, 1.2);
+    b7 = system.create_particle(b, {5, 0, 0}, 0.7);
+    c7 = system.create_particle(c, {5, 0, 0}, 1), c8 = system.create_particle(c, {6, 1, 0}, 1);
+    d9 = system.create_particle(d, {8, 1, 0}, 1, {0, 0.4, 0}), d10 = system.create_particle(d, {9, 1, 1}, 2, {0, 0.4, 0});
+    e11 = system.create_particle(e, {11, 0, 0}, 3, {0.1, 0.2, 0.3});
+    (void)system.combine(a3, b3);
+    (void)system.combine(b7, c7);
+    b8_9 = system.create_bond(c8, d9, SpringLaw{5, 0.1});
+    b10_11 = system.create_bond(d10, e11, SpringLaw{5, 0.1});
+    system.set_velocity(a1, {0.3, -0.2, 0.5});
+    system.set_velocity(c8, {-0.3, 0.6, 0.1});
+    for (int i = 0; i < 30; ++i) (void)system.step(1.0 / 120);
+  }
+  void expect_runs() {
+    EXPECT_WHOLE(system);
+    for (int i = 0; i < 120; ++i) {
+      const StepReport report = system.step(1.0 / 120);
+      EXPECT_EQ(report.unconverged, 0);
+      ASSERT_LT(report.worst_gap, 1e-9);
+    }
+    EXPECT_WHOLE(system);
+  }
+};
+
+TEST_F(WorkedExample, figure_4_9_has_three_articulates) {
+  EXPECT_EQ(system.articulate_count(), 3u);
+  EXPECT_EQ(system.articulate(a), system.articulate(c));
+  EXPECT_NE(system.articulate(a), system.articulate(d));
+  EXPECT_NE(system.articulate(d), system.articulate(e));
+  EXPECT_EQ(system.ring(a3).size(), 2u);
+  EXPECT_DOUBLE_EQ(system.mass(a3) + system.mass(b3), 2.0);
+  expect_runs();
+}
+
+TEST_F(WorkedExample, figure_4_11a_combine_in_one_body_removes_the_latter) {
+  const RestructureReport report = system.combine(b6, b5);
+  EXPECT_TRUE(report.changed);
+  ASSERT_EQ(report.absorbed_particles.size(), 1u);
+  EXPECT_EQ(report.absorbed_particles[0].retired, b5);
+  EXPECT_EQ(report.absorbed_particles[0].survivor, b6);
+  EXPECT_FALSE(system.contains(b5));
+  EXPECT_EQ(system.survivor_of(b5), b6);
+  EXPECT_EQ(system.particles(b), (std::vector{b3, b4, b6, b7}));
+  EXPECT_DOUBLE_EQ(system.mass(b6), 2.2);
+  EXPECT_EQ(system.articulate_count(), 3u);
+  expect_momenta_kept(report, system);
+  expect_runs();
+}
+
+TEST_F(WorkedExample, figure_4_11b_combine_at_a_hinge_makes_one_rigid_body) {
+  (void)system.combine(b6, b5);
+  const RestructureReport report = system.combine(b7, c7);
+  EXPECT_FALSE(system.contains(c7));
+  EXPECT_FALSE(system.contains(c));
+  EXPECT_EQ(system.survivor_of(c), b);
+  EXPECT_EQ(system.body(c8), b);
+  EXPECT_EQ(system.particles(b), (std::vector{b3, b4, b6, b7, c8}));
+  EXPECT_DOUBLE_EQ(system.mass(b7), 1.7);
+  EXPECT_EQ(system.articulate_count(), 3u);
+  EXPECT_LE(report.energy_change, 1e-12);
+  expect_momenta_kept(report, system);
+  expect_runs();
+}
+
+TEST_F(WorkedExample, figures_4_11c_and_4_12_hinge_separate_and_detach) {
+  (void)system.combine(b6, b5);
+  (void)system.combine(b7, c7);
+  // 4.11(c): different bodies, apart: a hinge, and one articulate less.
+  const RestructureReport hinged = system.combine(d9, c8);
+  EXPECT_GT(hinged.closed_distance, 1.0);
+  EXPECT_LT(hinged.remaining_gap, 1e-9);
+  EXPECT_EQ(system.position(d9), system.position(c8));
+  EXPECT_EQ(system.ring(d9), (std::vector{d9, c8}));
+  EXPECT_EQ(system.articulate(d), system.articulate(a));
+  EXPECT_EQ(system.articulate_count(), 2u);
+  EXPECT_TRUE(system.contains(b8_9)) << "it sleeps while its particles are one, and acts again after a cut";
+  expect_momenta_kept(hinged, system);
+  EXPECT_WHOLE(system);
+
+  // 4.12(a): separate in one body: P10 becomes a one-particle body hinged to P9.
+  const RestructureReport pulled = system.separate(d9, d10);
+  ASSERT_EQ(pulled.created_bodies.size(), 1u);
+  EXPECT_EQ(system.body(d10), pulled.created_bodies[0]);
+  EXPECT_EQ(system.particles(d), std::vector{d9});
+  EXPECT_EQ(system.ring(d9).size(), 3u);
+  EXPECT_EQ(system.articulate(pulled.created_bodies[0]), system.articulate(d));
+  EXPECT_EQ(system.articulate_count(), 2u);
+  EXPECT_TRUE(system.contains(b10_11));
+  expect_momenta_kept(pulled, system);
+  EXPECT_WHOLE(system);
+
+  // 4.12(b): separate at a hinge: A gets an articulate of its own.
+  const RestructureReport cut = system.separate(b3, a3);
+  EXPECT_EQ(cut.articulates_before, 2u);
+  EXPECT_EQ(cut.articulates_after, 3u);
+  EXPECT_NE(system.articulate(a), system.articulate(b));
+  EXPECT_EQ(system.position(a3), system.position(b3)) << "cut, but still at the same place";
+  EXPECT_DOUBLE_EQ(system.mass(a3), 1.5);
+  expect_momenta_kept(cut, system);
+  expect_runs();
+}
+
+TEST(Combine, of_one_particle_with_itself_does_nothing) {
+  System system;
+  const BodyId body = system.create_body();
+  const ParticleId p = system.create_particle(body, {});
+  const auto version = system.structure_version();
+  EXPECT_FALSE(system.combine(p, p).changed);
+  EXPECT_EQ(system.structure_version(), version);
+}
+
+TEST(Separate, of_unrelated_particles_does_nothing) {
+  System system;
+  const ParticleId p = system.create_particle(system.create_body(), {}), q = system.create_particle(system.create_body(), {});
+  EXPECT_FALSE(system.separate(p, q).changed);
+}
+
+TEST(Separate, of_one_particle_makes_a_twin_with_half_the_mass_and_goes_on_to_a_free_body) {
+  // Figure 4.10 from left to right: single point, same body, hinged, unrelated.
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId body = system.create_body();
+  const ParticleId p = system.create_particle(body, {1, 2, 3}, 4, {1, 0, 0});
+  const RestructureReport single = system.separate(p, p);
+  ASSERT_EQ(single.created_particles.size(), 1u);
+  const ParticleId q = single.created_particles[0];
+  EXPECT_EQ(system.body(q), body);
+  EXPECT_DOUBLE_EQ(system.mass(p), 2);
+  EXPECT_DOUBLE_EQ(system.mass(q), 2);
+  EXPECT_WHOLE(system);
+  (void)system.step(0.01);
+
+  EXPECT_TRUE(system.separate(p, q).changed);
+  EXPECT_NE(system.body(q), body);
+  EXPECT_EQ(system.ring(p), (std::vector{p, q}));
+  EXPECT_EQ(system.articulate_count(), 1u);
+
+  EXPECT_TRUE(system.separate(p, q).changed);
+  EXPECT_EQ(system.ring(p), std::vector{p});
+  EXPECT_EQ(system.articulate_count(), 2u);
+  EXPECT_FALSE(system.separate(p, q).changed);
+  EXPECT_NEAR(norm(system.momentum() - Vec3{4, 0, 0}), 0, 1e-12);
+
+  // and back again
+  EXPECT_TRUE(system.combine(p, q).changed);
+  EXPECT_TRUE(system.combine(p, q).changed);
+  EXPECT_FALSE(system.contains(q));
+  EXPECT_DOUBLE_EQ(system.mass(p), 4);
+  EXPECT_EQ(system.articulate_count(), 1u);
+  EXPECT_WHOLE(system);
+}
+
+/// Figure 4.13: does a cut of one hinge make two articulates? Not in a cycle.
+struct FourBar : ::testing::Test {
+  System system;
+  std::vector<BodyId> bars;
+  std::vector<ParticleId> starts, ends;
+  FourBar() {
+    const Vec3 corners[4] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {0, -1, 0}};
+    for (int i = 0; i < 4; ++i) {
+      bars.push_back(system.create_body());
+      starts.push_back(system.create_particle(bars[i], corners[i]));
+      ends.push_back(system.create_particle(bars[i], corners[(i + 1) % 4]));
+    }
+    for (int i = 0; i < 4; ++i) (void)system.combine(ends[i], starts[(i + 1) % 4]);
+  }
+};
+
+TEST_F(FourBar, a_cycle_stays_one_articulate_after_the_first_cut_and_splits_after_the_second) {
+  EXPECT_EQ(system.articulate_count(), 1u);
+  EXPECT_WHOLE(system);
+  const RestructureReport first = system.separate(ends[0], starts[1]);
+  EXPECT_TRUE(first.changed);
+  EXPECT_EQ(first.articulates_after, 1u);
+  const RestructureReport second = system.separate(ends[2], starts[3]);
+  EXPECT_EQ(second.articulates_after, 2u);
+  EXPECT_EQ(system.articulate(bars[0]), system.articulate(bars[3]));
+  EXPECT_EQ(system.articulate(bars[1]), system.articulate(bars[2]));
+  EXPECT_WHOLE(system);
+  (void)system.combine(ends[2], starts[3]);
+  (void)system.combine(ends[0], starts[1]);
+  EXPECT_EQ(system.articulate_count(), 1u);
+  EXPECT_WHOLE(system);
+}
+
+TEST_F(FourBar, a_swinging_cycle_keeps_its_hinges_and_its_energy) {
+  system.nail(starts[0]);
+  const double start = system.energy().total();
+  for (int i = 0; i < 600; ++i) {
+    const StepReport report = system.step(1.0 / 120);
+    ASSERT_EQ(report.unconverged, 0);
+    ASSERT_LT(report.worst_gap, 1e-9);
+    ASSERT_LT(report.energy.total(), start + 1e-6);
+  }
+}
+
+TEST(Combine, brings_distant_ends_together_without_a_shot_of_energy) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId a = system.create_body(), b = system.create_body();
+  system.create_particle(a, {0, 0, 0});
+  const ParticleId p = system.create_particle(a, {1, 0, 0});
+  const ParticleId q = system.create_particle(b, {1.5, 0.4, 0});
+  system.create_particle(b, {2.5, 0.4, 0.3});
+  const RestructureReport report = system.combine(p, q);
+  EXPECT_NEAR(report.closed_distance, std::hypot(0.5, 0.4), 1e-12);
+  EXPECT_LT(report.remaining_gap, 1e-9);
+  EXPECT_NEAR(system.energy().kinetic, 0, 1e-20) << "the closing displacement must not become velocity";
+  EXPECT_LT(system.worst_gap(), 1e-9);
+  (void)system.step(1.0 / 60);
+  EXPECT_NEAR(system.energy().kinetic, 0, 1e-16);
+}
+
+TEST(Combine, over_a_time_closes_smoothly_and_then_makes_one_ring) {
+  System system{SystemOptions{.gravity = {}}};
+  const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}),
+                   q = system.create_particle(system.create_body(), {1, 0, 0}, 3);
+  EXPECT_TRUE(system.combine(p, q, 0.5).changed);
+  EXPECT_EQ(system.closing_count(), 1u);
+  EXPECT_EQ(system.articulate_count(), 1u);
+  double distance = 1;
+  for (int i = 0; i < 59; ++i) {
+    (void)system.step(1.0 / 120);
+    const double now = norm(system.position(q) - system.position(p));
+    EXPECT_LE(now, distance + 1e-12);
+    EXPECT_NEAR(norm(system.momentum()), 0, 1e-9);
+    distance = now;
+  }
+  for (int i = 0; i < 3; ++i) (void)system.step(1.0 / 120);
+  EXPECT_EQ(system.closing_count(), 0u);
+  EXPECT_EQ(system.ring(p).size(), 2u);
+  EXPECT_NEAR(system.position(p).x, 0.75, 1e-6) << "they meet at their common centre of mass";
+  EXPECT_WHOLE(system);
+}
+
+TEST(Combine, that_is_called_off_leaves_two_articulates) {
+  System system;
+  const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}),
+                   q = system.create_particle(system.create_body(), {1, 0, 0});
+  (void)system.combine(p, q, 5);
+  (void)system.step(0.01);
+  EXPECT_TRUE(system.separate(p, q).changed);
+  EXPECT_EQ(system.closing_count(), 0u);
+  EXPECT_EQ(system.articulate_count(), 2u);
+  EXPECT_WHOLE(system);
+}
+
+TEST(Combine, of_two_bodies_makes_one_rigid_body_that_keeps_momenta) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId a = system.create_body(), b = system.create_body();
+  system.create_particle(a, {0, 0, 0}, 1, {0, 1, 0}), system.create_particle(a, {1, 0, 0}, 1, {0, 1, 0});
+  system.create_particle(b, {0, 0, 1}, 2), system.create_particle(b, {1, 1, 1}, 2);
+  (void)system.step(0.01);
+  const RestructureReport report = system.combine(a, b);
+  EXPECT_EQ(system.survivor_of(b), a);
+  EXPECT_EQ(system.particles(a).size(), 4u);
+  EXPECT_LT(report.energy_change, 0) << "an inelastic join";
+  expect_momenta_kept(report, system);
+  EXPECT_WHOLE(system);
+  for (int i = 0; i < 100; ++i) ASSERT_LT(system.step(1.0 / 120).worst_gap, 1e-9);
+}
+
+TEST(Combine, refuses_to_put_two_particles_of_one_body_in_one_place) {
+  System system;
+  const BodyId rod = system.create_body(), other = system.create_body();
+  const ParticleId p = system.create_particle(rod, {0, 0, 0}), q = system.create_particle(rod, {1, 0, 0});
+  const ParticleId r = system.create_particle(other, {0, 0, 0});
+  (void)system.combine(p, r);
+  const auto hash = system.state_hash();
+  EXPECT_THROW((void)system.combine(r, q), std::invalid_argument);
+  EXPECT_EQ(system.state_hash(), hash) << "nothing may change";
+  EXPECT_WHOLE(system);
+}
+
+TEST(Combine, reports_what_a_nail_takes) {
+  System system{SystemOptions{.gravity = {}}};
+  const ParticleId nailed = system.create_particle(system.create_body(), {0, 0, 0}),
+                   flying = system.create_particle(system.create_body(), {0.1, 0, 0}, 2, {3, 0, 0});
+  system.nail(nailed);
+  const RestructureReport report = system.combine(nailed, flying);
+  EXPECT_NEAR(norm(report.momentum_change - Vec3{-6, 0, 0}), 0, 1e-12);
+  EXPECT_NEAR(report.energy_change, -9, 1e-12);
+}
+
+TEST(Destroying, a_body_in_the_middle_of_a_chain_leaves_two_articulates) {
+  System system;
+  std::vector<BodyId> bodies;
+  std::vector<ParticleId> ends;
+  for (int i = 0; i < 5; ++i) {
+    bodies.push_back(system.create_body());
+    const ParticleId start = system.create_particle(bodies[i], {double(i), 0, 0});
+    if (i > 0) (void)system.combine(ends.back(), start);
+    ends.push_back(system.create_particle(bodies[i], {double(i + 1), 0, 0}));
+  }
+  system.destroy(bodies[2]);
+  EXPECT_EQ(system.articulate_count(), 2u);
+  EXPECT_THROW((void)system.mass(bodies[2]), StaleIdError);
+  EXPECT_THROW((void)system.position(ends[2]), StaleIdError);
+  EXPECT_WHOLE(system);
+  (void)system.step(0.01);
+}
+
+}  // namespace
+}  // namespace iota
