@@ -10,7 +10,8 @@ namespace {
 
 constexpr int max_depth = 4;              // sub-steps down to a sixteenth
 constexpr double max_turn_cosine = 0.765; // cos 0.7 rad: beyond it Newton finds wrong branches (measured: prototype)
-constexpr double standing_conflict = 1e-5;  // relative start gap at which the mid-point rule never comes to rest
+constexpr double standing_gap = 1e-6;  // relative start gap beyond which positions are projected before the step
+constexpr int patience = 400;          // iterations after which sub-steps are no longer halved
 
 }  // namespace
 
@@ -101,15 +102,11 @@ bool Integrator::gains_energy(const Problem& problem, const Stage& stage) {
 
 void Integrator::advance_mid_point(Problem& problem, double h, double from, double to, int depth,
                                    AdvanceReport& report) {
-  if (problem.worst_gap(problem.position.data(), true) > standing_conflict) {
-    ++report.fallbacks;
-    return advance_end_point(problem, h, from, to, depth, report);
-  }
   save_multipliers(problem);
   const Stage stage = Stage::mid_point(h, to);
   if (try_step(problem, stage, report) && !turns_too_far(problem)) return commit(problem, stage, report);
   restore_multipliers(problem);
-  if (depth == max_depth) {
+  if (depth == max_depth || report.iterations > patience) {
     ++report.fallbacks;
     return advance_end_point(problem, h, from, to, depth, report);
   }
@@ -125,7 +122,7 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
   const bool solved = try_step(problem, stage, report);
   if (solved && !(depth < max_depth && gains_energy(problem, stage))) return commit(problem, stage, report);
   restore_multipliers(problem);
-  if (depth < max_depth) {
+  if (depth < max_depth && report.iterations <= patience) {
     const double middle = (from + to) / 2;
     advance_end_point(problem, h / 2, from, middle, depth + 1, report);
     advance_end_point(problem, h / 2, middle, to, depth + 1, report);
@@ -160,8 +157,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, Scheme scheme) {
   for (const Vec3& f : problem.force) conservative_ = conservative_ && f == Vec3{};
   for (const auto& c : std::get<ConstraintPool<AffineConstraint>>(problem.constraints).items)
     conservative_ = conservative_ && c.target == c.target_start;
-  for (const auto& c : std::get<ConstraintPool<DistanceConstraint>>(problem.constraints).items)
-    conservative_ = conservative_ && c.length == c.length_start;
+  close_gaps(problem, report);
   if (scheme == Scheme::mid_point)
     advance_mid_point(problem, h, 0, 1, 0, report);
   else
@@ -169,20 +165,42 @@ AdvanceReport Integrator::advance(Problem& problem, double h, Scheme scheme) {
   return report;
 }
 
+void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
+  if (holds_offsets_) problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
+  holds_offsets_ = false;
+  if (!(problem.worst_gap(problem.position.data(), 0, true) > standing_gap)) return;
+
+  const double before = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  if (!project_positions(problem)) {
+    report.converged = false;
+    holds_offsets_ = true;
+    problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+      for (std::size_t i = 0; i < pool.items.size(); ++i)
+        pool.items[i].value(problem.position.data(), 0, pool.offsets.data() + i * C::rows);
+    });
+  }
+  project_velocities(problem);
+  report.closing_energy += problem.kinetic_energy() + problem.potential_energy(problem.position.data()) - before;
+}
+
 bool Integrator::project_positions(Problem& problem) {
   save_multipliers(problem);
-  problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
-  Stage stage = Stage::projection();
   AdvanceReport ignored;
-  bool solved = try_step(problem, stage, ignored);
-  bool found = solved;
-  for (const double compliance : {1e-8, 1e-6, 1e-4, 1e-2, 1.0}) {
-    if (found) break;
-    stage.compliance = compliance;
+  const auto attempt = [&](double compliance, int iterations) {
     problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
-    found = try_step(problem, stage, ignored);
+    Stage stage = Stage::projection(compliance);
+    stage.fraction = 0;
+    stage.max_iterations = iterations;
+    const bool solved = try_step(problem, stage, ignored);
+    if (solved) std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
+    return solved;
+  };
+  // Exactly; else by soft steps, each of which lessens the violation and is easy to solve, and then exactly from there.
+  bool solved = attempt(1e-12, 20);
+  for (int soft = 0; soft < 3 && !solved; ++soft) {
+    if (!attempt(1e-3, 40)) break;
+    solved = attempt(1e-12, 12);
   }
-  if (found) std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
   restore_multipliers(problem);
   return solved;
 }

@@ -20,6 +20,7 @@ struct [[nodiscard]] AdvanceReport {
   bool converged = true;
   double external_work = 0;  ///< of explicit forces, grips and moving targets, J
   double dissipated = 0;     ///< J
+  double closing_energy = 0; ///< by moving violated constraints together before the step, J
 };
 
 /// Advances problems by one step each. One integrator serves one problem structure; it owns the work space, so a warm
@@ -30,11 +31,12 @@ class Integrator {
 
   /// Positions, velocities and multipliers of `problem` become those after h seconds.
   /// mid_point halves the step (to a sixteenth) when a link turns more than 0.7 rad in it or Newton fails, and then
-  /// falls back to end_point, which is used at once while constraints are violated at the start.
+  /// falls back to end_point. Constraints that are violated at the start are first closed by moving positions only; what
+  /// cannot be closed is held as it is during the step, so that a conflict neither shakes nor heats the world.
   AdvanceReport advance(Problem& problem, double h, Scheme scheme);
 
   /// Moves positions by the least mass-weighted displacement that meets all constraints; velocities stay.
-  /// Returns false where no solution was found: positions then violate the constraints as little as could be reached.
+  /// Returns false where no solution was found: the violation is then shared, and smaller after each call.
   bool project_positions(Problem& problem);
 
   void project_velocities(Problem& problem, double h = 0) { newton_.project_velocities(problem, h); }
@@ -51,11 +53,13 @@ class Integrator {
   void save_multipliers(const Problem&);
   void restore_multipliers(Problem&) const;
   bool least_violation(Problem&, Stage, AdvanceReport&);
+  void close_gaps(Problem&, AdvanceReport&);
 
   Newton newton_;
   std::vector<Vec3> guess_, velocity_;
   std::vector<double> multipliers_saved_;
   bool conservative_ = true;  ///< nothing outside does work during this step
+  bool holds_offsets_ = false;
 };
 
 }  // namespace iota::solver

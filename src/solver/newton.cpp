@@ -9,9 +9,9 @@ namespace iota::solver {
 
 namespace {
 
-constexpr int max_iterations = 40;
 constexpr int max_halvings = 12;
 constexpr double tolerance = 1e-10;        // of the scaled residual
+constexpr double largest_violation = 1e-6; // that still counts as met
 constexpr double round_off = 4e-15;        // of the largest scaled force: below it a residual is noise
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -69,6 +69,7 @@ void Newton::compile(Problem& problem) {
   std::size_t index = 0, multiplier_count = 0;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     pool.multipliers.resize(pool.items.size() * C::rows, 0.0);
+    pool.offsets.assign(pool.multipliers.size(), 0.0);
     multiplier_count += pool.multipliers.size();
     pool.slots.assign(pool.items.size(), {});
     for (std::size_t i = 0; i < pool.items.size(); ++i, ++index) {
@@ -128,14 +129,14 @@ double Newton::residual(const Problem& problem, const Stage& stage, const Vec3* 
     });
   }
 
-  Largest worst;
+  Largest worst, violation;
   double largest_multiplier = 0;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
       const double* const lambda = pool.multiplier(k);
       double g[C::rows];
-      c.value(x, stage.fraction, g);
+      pool.value(k, x, stage.fraction, g);
       double compliance = 0;
       for (int i = 0; i < c.node_count(); ++i) {
         Vec3 rows[C::rows];
@@ -153,10 +154,12 @@ double Newton::residual(const Problem& problem, const Stage& stage, const Vec3* 
         const double value = g[r] - compliance * lambda[r];
         residual_[pool.slots[k].unknown + r] = value;
         worst.add(std::abs(value) / c.reference_length());
+        violation.add(std::abs(g[r]) / c.reference_length());
         largest_multiplier = std::max(largest_multiplier, std::abs(lambda[r]));
       }
     }
   });
+  violation_ = violation.value;
   Largest worst_force;
   double largest_inverse_scale = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -280,9 +283,9 @@ double Newton::merit(const Problem& problem, const Stage& stage, const Vec3* x) 
   if (!stage.is_projection()) value += problem.potential_energy(x);
   std::size_t index = 0;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    for (const C& c : pool.items) {
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
       double g[C::rows];
-      c.value(x, stage.fraction, g);
+      pool.value(k, x, stage.fraction, g);
       for (int r = 0; r < C::rows; ++r) value += merit_weights_[index++] * std::abs(g[r]);
     }
   });
@@ -312,7 +315,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   NewtonReport report;
   report.residual = residual<Midpoint>(problem, stage, x_.data());
   Hessian hessian = Hessian::exact;
-  while (report.residual > tolerance && report.iterations < max_iterations) {
+  while (report.residual > tolerance && report.iterations < stage.max_iterations) {
     ++report.iterations;
     if (assemble_and_factor<Midpoint>(problem, stage, hessian) > 0 && hessian == Hessian::exact)
       (void)assemble_and_factor<Midpoint>(problem, stage, Hessian::clamped);
@@ -351,7 +354,9 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     }
     report.residual = after;
   }
-  report.converged = report.residual <= tolerance;
+  report.violation = violation_;
+  const bool exact = stage.compliance <= 1e-12;
+  report.converged = report.residual <= tolerance && (!exact || violation_ <= largest_violation);
   return report;
 }
 
@@ -363,35 +368,43 @@ NewtonReport Newton::solve(Problem& problem, const Stage& stage, std::span<const
 }
 
 void Newton::project_velocities(Problem& problem, double h) {
-  // min |v - velocity|_M with G v = 0: one linear solve with the matrix of a projection without curvature.
+  // min |v - velocity|_M with G v = rate: one linear solve with the matrix of a projection without curvature. Redundant
+  // rows (a closed loop in a plane) can leave no pivot at the usual compliance, so it may have to rise.
   std::copy(problem.position.begin(), problem.position.end(), x_.begin());
-  (void)assemble_and_factor<false>(problem, Stage::projection(), Hessian::none);
-  // The residual of this linear problem at v: zero force, G v on the rows. Twice, so that round-off and compliance
-  // leave nothing behind.
-  for (int pass = 0; pass < 2; ++pass) {
-    std::fill(residual_.begin(), residual_.end(), 0.0);
-    problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-      for (std::size_t k = 0; k < pool.items.size(); ++k) {
-        const C& c = pool.items[k];
-        if (h > 0) {
-          double start[C::rows], end[C::rows];
-          c.value(problem.position.data(), 0, start);
-          c.value(problem.position.data(), 1, end);
-          for (int r = 0; r < C::rows; ++r) residual_[pool.slots[k].unknown + r] = (end[r] - start[r]) / h;
-        }
-        for (int i = 0; i < c.node_count(); ++i) {
-          Vec3 rows[C::rows];
-          c.gradient(problem.position.data(), i, rows);
-          for (int r = 0; r < C::rows; ++r)
-            residual_[pool.slots[k].unknown + r] += dot(rows[r], problem.velocity[c.nodes[i]]);
-        }
+  std::copy(problem.velocity.begin(), problem.velocity.end(), u_.begin());
+  for (const double compliance : {1e-12, 1e-9, 1e-6, 1e-3}) {
+    (void)assemble_and_factor<false>(problem, Stage::projection(compliance), Hessian::none);
+    const double energy = problem.kinetic_energy();
+    for (int pass = 0; pass < 3; ++pass) project_once(problem, h);  // again: compliance and round-off leave a little
+    const double projected = problem.kinetic_energy();
+    if (std::isfinite(projected) && (h > 0 || projected <= energy * (1 + 1e-9))) return;
+    std::copy(u_.begin(), u_.end(), problem.velocity.begin());
+  }
+}
+
+void Newton::project_once(Problem& problem, double h) {
+  std::fill(residual_.begin(), residual_.end(), 0.0);
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      const C& c = pool.items[k];
+      double* const row = residual_.data() + pool.slots[k].unknown;
+      if (h > 0) {
+        double start[C::rows], end[C::rows];
+        c.value(problem.position.data(), 0, start);
+        c.value(problem.position.data(), 1, end);
+        for (int r = 0; r < C::rows; ++r) row[r] = (end[r] - start[r]) / h;
       }
-    });
-    solve_linear();
-    for (std::size_t i = 0; i < problem.size(); ++i) {
-      const double* const d = step_.data() + node_unknown_[i];
-      problem.velocity[i] += Vec3{d[0], d[1], d[2]};
+      for (int i = 0; i < c.node_count(); ++i) {
+        Vec3 rows[C::rows];
+        c.gradient(problem.position.data(), i, rows);
+        for (int r = 0; r < C::rows; ++r) row[r] += dot(rows[r], problem.velocity[c.nodes[i]]);
+      }
     }
+  });
+  solve_linear();
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    const double* const d = step_.data() + node_unknown_[i];
+    problem.velocity[i] += Vec3{d[0], d[1], d[2]};
   }
 }
 

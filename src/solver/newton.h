@@ -19,16 +19,20 @@ struct Stage {
   double fraction = 1;     ///< of the step, for targets that move during it
   double compliance = 1e-12;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
 
+  int max_iterations = 40;
+
   bool is_projection() const { return h == 0; }
-  static Stage end_point(double h, double fraction) { return {h, 1 / (h * h), false, fraction, 1e-12}; }
-  static Stage mid_point(double h, double fraction) { return {h, 2 / (h * h), true, fraction, 1e-12}; }
-  static Stage projection() { return {}; }
+  static Stage end_point(double h, double fraction) { return {.h = h, .inertia = 1 / (h * h), .fraction = fraction}; }
+  static Stage mid_point(double h, double fraction) { return {.h = h, .inertia = 2 / (h * h), .midpoint = true, .fraction = fraction}; }
+  static Stage projection(double compliance = 1e-12) { return {.compliance = compliance}; }
 };
 
 struct [[nodiscard]] NewtonReport {
   bool converged = false;
   int iterations = 0;
-  double residual = 0;  ///< scaled, dimensionless
+  double residual = 0;   ///< scaled, dimensionless
+  double violation = 0;  ///< of the constraints alone, as a fraction of their reference lengths: compliance lets conflicting
+                         ///< ones "converge" without being met
 };
 
 /// Newton's method with exact geometric stiffness, globalised: a step is taken when the scaled residual or an l1 merit
@@ -61,6 +65,7 @@ class Newton {
   template <bool Midpoint>
   int assemble_and_factor(const Problem&, const Stage&, Hessian);
   double merit(const Problem&, const Stage&, const Vec3* x) const;
+  void project_once(Problem&, double h);
   void solve_linear();
   /// x + t dx and lambda + t d_lambda, from the saved iterate.
   void move(Problem&, double t);
@@ -73,6 +78,7 @@ class Newton {
   std::vector<double> residual_, step_, multipliers_saved_, merit_weights_;
   std::vector<double> inverse_scale_;  // of the force residual of each node
   double reference_length_ = 1;
+  double violation_ = 0;  // found by the latest residual()
   std::uint64_t analyses_ = 0;
 };
 

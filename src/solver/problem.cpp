@@ -16,12 +16,12 @@ double Problem::potential_energy(const Vec3* x) const {
   return energy;
 }
 
-double Problem::worst_gap(const Vec3* x, bool relative) const {
+double Problem::worst_gap(const Vec3* x, double fraction, bool relative) const {
   double worst = 0;
   for_each_constraint_pool([&](const auto& pool) {
     for (const auto& c : pool.items) {
       double g[3] = {};
-      c.value(x, 1, g);
+      c.value(x, fraction, g);
       double size2 = 0;
       for (const double v : g) size2 += v * v;
       const double size = std::sqrt(size2) / (relative ? c.reference_length() : 1);

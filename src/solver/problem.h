@@ -23,9 +23,15 @@ struct ConstraintPool {
   };
   std::vector<C> items;
   std::vector<double> multipliers;  ///< C::rows each, N
+  std::vector<double> offsets;      ///< C::rows each: what cannot be closed and is held as it is, usually zero
   std::vector<Slots> slots;
 
   const double* multiplier(std::size_t i) const { return multipliers.data() + i * C::rows; }
+  /// What the solver brings to zero: the constraint less its offset.
+  void value(std::size_t i, const Vec3* x, double fraction, double* g) const {
+    items[i].value(x, fraction, g);
+    for (int r = 0; r < C::rows; ++r) g[r] -= offsets[i * C::rows + r];
+  }
   double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }
 };
 
@@ -92,8 +98,8 @@ struct Problem {
   double kinetic_energy() const { return 0.5 * mass_norm2(velocity.data()); }
   /// Gravity and implicit forces.
   double potential_energy(const Vec3* x) const;
-  /// Largest violation at x, m; with `relative`, as a fraction of each constraint's reference length.
-  double worst_gap(const Vec3* x, bool relative = false) const;
+  /// Largest violation at x, m, with targets as at `fraction` of the step; with `relative`, as a fraction of each constraint's reference length.
+  double worst_gap(const Vec3* x, double fraction = 1, bool relative = false) const;
 };
 
 }  // namespace iota::solver

@@ -47,6 +47,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
     report.unconverged += !r.converged;
     model.dissipated += r.dissipated;
     model.external_work += r.external_work;
+    model.edit_energy += r.closing_energy;
   }
   report.iterations_mean = solves ? static_cast<double>(iterations) / solves : 0;
   model.time += h;

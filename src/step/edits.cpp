@@ -274,6 +274,7 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
       model.touch(model.bodies[model.grips[slot].body].articulate);
     }
 
+  bool pinned = false;
   if (owed.moved || owed.jolted) {
     std::vector<std::uint32_t> articulates;
     for (const std::uint32_t body : touched)
@@ -297,7 +298,6 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
 
     // Displacements and moved masses change momenta; a rigid motion of all that was touched gives them back without
     // disturbing any constraint. What hangs on a nail has none to give.
-    bool pinned = false;
     double mass = 0;
     Vec3 first_moment;
     std::vector<std::uint32_t> bodies;
@@ -324,7 +324,9 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
             const model::InertiaPair& pair = model.inertia_pairs[i];
             inertia += point_inertia(pair.inertia, model.position(pair.p) - model.position(pair.q));
           });
-        const Vec3 turn = solve_semidefinite(inertia, lost_spin);
+        Vec3 turn = solve_semidefinite(inertia, lost_spin);
+        // Bodies that were pulled together to almost a point would have to spin absurdly to keep their angular momentum.
+        if (0.5 * dot(turn, lost_spin) > 10 * (kinetic + 1e-12)) turn = {};
         std::vector<std::uint32_t> rings;
         each_particle([&](std::uint32_t p) { rings.push_back(model.particles[p].ring); });
         std::sort(rings.begin(), rings.end());
@@ -340,6 +342,10 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
   model.edit_energy += report.energy_change;
   report.momentum_change = model.momentum() - momentum;
   report.angular_momentum_change = model.angular_momentum() - angular_momentum;
+  const double spin_change = norm(report.angular_momentum_change);
+  if (!pinned && spin_change > 1e-9 * (norm(angular_momentum) + 1e-3 * spin_change))
+    report.notes.push_back("what is left (a point, a rod, or bodies almost in one place) cannot carry all of the angular "
+                           "momentum; angular_momentum_change tells the rest");
   report.articulates_after = model.articulates.size();
   structure_changed();
   report.structure_version = model.structure_version;

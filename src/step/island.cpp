@@ -17,7 +17,8 @@ using model::Ring;
 
 namespace {
 
-/// Shrinks smoothly from 1 to a hundredth; the last bit is closed by projection (a distance row has no direction at 0).
+/// Shrinks smoothly from 1 to a hundredth, each step by moving positions only, since forces that close in a given time
+/// shoot (measured: 25 to 120 J where this adds 0.03 J); the last bit is closed by projection (a distance row has no direction at 0).
 double closing_factor(double elapsed, double duration) {
   const double s = std::clamp(elapsed / duration, 0.0, 1.0);
   return 1 - 0.99 * s * s * (3 - 2 * s);
@@ -88,7 +89,7 @@ void Island::add_constraints(const Model& model, std::uint32_t slot, const std::
     const std::uint32_t a = node_of(body.basis[i]), b = node_of(body.basis[j]);
     extent = std::max(extent, body.lengths[row]);
     if (pinned_[a] && pinned_[b]) continue;
-    distances.push_back({{a, b}, body.lengths[row], body.lengths[row], body.lengths[row]});
+    distances.push_back({{a, b}, body.lengths[row], body.lengths[row]});
     rigid_rows_.push_back({slot, static_cast<std::uint8_t>(row)});
   }
   if (body.count == body.rank) return;
@@ -173,7 +174,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   model.closings.for_each([&](std::uint32_t slot, const model::Closing& c) {
     const std::uint32_t a = node_of_ring[model.particles[c.p].ring], b = node_of_ring[model.particles[c.q].ring];
     if (a == none || b == none) return;
-    distances.push_back({{a, b}, c.distance, c.distance, c.distance});
+    distances.push_back({{a, b}, c.distance, c.distance});
     closings_.push_back(slot);
   });
   auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints).items;
@@ -228,7 +229,6 @@ void Island::load(const Model& model, double h) {
     const model::Closing& c = model.closings[closings_[i]];
     const std::size_t k = rigid_rows_.size() + i;
     distances.multipliers[k] = c.multiplier;
-    distances.items[k].length_start = c.distance * closing_factor(c.elapsed, c.duration);
     distances.items[k].length = c.distance * closing_factor(c.elapsed + h, c.duration);
   }
   auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints);
@@ -294,8 +294,15 @@ void Island::store(Model& model, bool stepped) {
     model.grips[grips_[i]].force = grips[i].stiffness * norm(grips[i].arm.value(problem_.position.data()));
 }
 
+bool Island::nails_move(const Model& model) const {
+  return std::any_of(nails_.begin(), nails_.end(), [&](std::uint32_t node) {
+    const Ring& r = model.rings[rings_[node]];
+    return (r.nailed && r.nail != r.nail_before) || r.velocity != Vec3{};
+  });
+}
+
 solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mode) {
-  if (idle_) return {};
+  if (idle_ && !nails_move(model)) return {};
   load(model, h);
   // The mid-point rule would carry a jump of a nail's velocity along for ever, as a ringing of the reactions.
   auto& nails = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints).items;
@@ -307,6 +314,11 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     Vec3& velocity = problem_.velocity[nails_[i]];
     jolt = std::max(jolt, norm(nail_velocity(i) - velocity));
     velocity = nail_velocity(i);
+  }
+  if (idle_) {  // carried by the script: there is nothing to solve
+    for (std::size_t i = 0; i < nails_.size(); ++i) problem_.position[nails_[i]] = nails[tied_.size() + i].target;
+    store(model, true);
+    return {};
   }
   double lost = 0;
   if (jolt > 1e-9) {

@@ -31,6 +31,7 @@ class Island {
   bool is_idle() const { return idle_; }  ///< nothing in it can move
 
  private:
+  bool nails_move(const model::Model&) const;
   using Weighted = std::array<std::pair<std::uint32_t, double>, 4>;  // nodes and weights; weight 0 ends the list
   Weighted nodes_of(const model::Model&, std::uint32_t particle, const std::vector<std::uint32_t>& node_of_ring) const;
   void add_masses(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);

@@ -12,7 +12,7 @@ namespace iota::solver {
 ///   constraint  g(x) = (|d|^2 - L^2) / (2 s),   d = x_b - x_a
 ///   gradient    dg/dx_b = d / s,  dg/dx_a = -d / s
 ///   Hessian     (1 / s) [I -I; -I I]: constant, so that the mean of two gradients is a discrete gradient
-/// L: wanted length, m; s: scale, m (L itself, or the initial length of one that shrinks to nothing). The multiplier is
+/// L: wanted length, m; s: scale, m (L itself, or the first length of a pair that is being brought together). The multiplier is
 /// then the tension in N (times |d|/s). Source: Garcia de Jalon, Twenty-five years of natural coordinates, 2007.
 struct DistanceConstraint {
   static constexpr int rows = 1;
@@ -20,15 +20,13 @@ struct DistanceConstraint {
   static constexpr bool has_curvature = true;
 
   std::array<std::uint32_t, max_nodes> nodes{};
-  double length = 1;        ///< at the end of the step
+  double length = 1;
   double scale = 1;
-  double length_start = 1;  ///< at its start: differs only while two particles are closing
 
   static constexpr int node_count() { return 2; }
-  void value(const Vec3* x, double fraction, double* g) const {
+  void value(const Vec3* x, double /*fraction*/, double* g) const {
     const Vec3 d = x[nodes[1]] - x[nodes[0]];
-    const double wanted = length_start + fraction * (length - length_start);
-    g[0] = (dot(d, d) - wanted * wanted) / (2 * scale);
+    g[0] = (dot(d, d) - length * length) / (2 * scale);
   }
   /// Gradient with respect to node i, at x, one Vec3 a row.
   void gradient(const Vec3* x, int i, Vec3* rows_out) const {

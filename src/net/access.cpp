@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "net/access.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace iota::net {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return out;
+}
+
+std::optional<std::string> unescape(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      out += text[i];
+      continue;
+    }
+    unsigned byte = 0;
+    if (i + 2 >= text.size()) return std::nullopt;
+    const auto [end, error] = std::from_chars(text.data() + i + 1, text.data() + i + 3, byte, 16);
+    if (error != std::errc() || end != text.data() + i + 3) return std::nullopt;
+    out += static_cast<char>(byte);
+    i += 2;
+  }
+  return out;
+}
+
+struct HostAndPort {
+  std::string host;
+  std::uint16_t port = 80;
+};
+
+/// "[::1]:8080", "localhost:8080" or "localhost".
+std::optional<HostAndPort> split_host(std::string_view text) {
+  const std::size_t bracket = text.rfind(']');
+  const std::size_t colon = text.find(':', bracket == std::string_view::npos ? 0 : bracket);
+  HostAndPort out;
+  out.host = lower(text.substr(0, colon));
+  if (!out.host.empty() && out.host.back() == '.') out.host.pop_back();
+  if (out.host.empty()) return std::nullopt;
+  if (colon == std::string_view::npos) return out;
+  const char* first = text.data() + colon + 1;
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, out.port);
+  if (error != std::errc() || end != last) return std::nullopt;
+  return out;
+}
+
+/// How an address or name stands in a Host header.
+std::string in_header(std::string_view host) {
+  return host.find(':') == std::string_view::npos ? lower(host) : "[" + lower(host) + "]";
+}
+
+}  // namespace
+
+std::optional<RequestTarget> parse_target(std::string_view target) {
+  if (target.empty() || target.front() != '/') return std::nullopt;
+  target = target.substr(0, target.find('#'));
+  const std::size_t mark = target.find('?');
+  auto path = unescape(target.substr(0, mark));
+  if (!path) return std::nullopt;
+  return RequestTarget{std::move(*path),
+                       std::string(mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1))};
+}
+
+std::string query_value(std::string_view query, std::string_view name) {
+  while (!query.empty()) {
+    const std::size_t end = std::min(query.find('&'), query.size());
+    const std::string_view pair = query.substr(0, end);
+    query.remove_prefix(std::min(end + 1, query.size()));
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos && pair.substr(0, equals) == name) {
+      return unescape(pair.substr(equals + 1)).value_or(std::string());
+    }
+  }
+  return {};
+}
+
+std::optional<std::string> refuse_host(std::string_view host, const Endpoint& endpoint) {
+  const auto found = split_host(host);
+  if (!found) return "the Host header is missing or malformed";
+  const std::array<std::string, 5> allowed{"localhost", "127.0.0.1", "[::1]", in_header(endpoint.bound_host),
+                                           in_header(endpoint.local_address)};
+  if (found->port != endpoint.port || std::find(allowed.begin(), allowed.end(), found->host) == allowed.end()) {
+    return "the Host header is not this server's, open http://localhost:" + std::to_string(endpoint.port);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> refuse_origin(std::string_view origin, std::string_view host) {
+  constexpr std::string_view scheme = "http://";
+  const std::string given = lower(origin);
+  if (given.compare(0, scheme.size(), scheme) == 0) {
+    const auto page = split_host(std::string_view(given).substr(scheme.size()));
+    const auto server = split_host(host);
+    if (page && server && page->host == server->host && page->port == server->port) return std::nullopt;
+  }
+  return "the Origin header is not this server's page";
+}
+
+}  // namespace iota::net

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who may talk to the server: checks of Host, Origin and token, and the reading of a request's target.
+//
+// A page of another site can make a browser send requests to a loopback port, and can point its own name at it (DNS
+// rebinding). The first is caught by Origin, the second by Host, other programs and users by the token.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace iota::net {
+
+/// "/a%20b?x=1" as path "/a b" and query "x=1".
+struct RequestTarget {
+  std::string path;
+  std::string query;
+};
+
+/// Empty when the target is not an absolute path or is badly escaped.
+std::optional<RequestTarget> parse_target(std::string_view target);
+
+/// Unescaped value of the first `name` in a query, empty when it is not there.
+std::string query_value(std::string_view query, std::string_view name);
+
+/// Where a request came in.
+struct Endpoint {
+  std::string bound_host;     ///< as given to the server
+  std::string local_address;  ///< address literal of this connection on our side
+  std::uint16_t port = 0;
+};
+
+/// Why a Host header is refused, or nothing. Allowed: localhost, 127.0.0.1, [::1], the bound host, and the very address
+/// that was connected to, each with our port. (An address literal is no danger: rebinding needs a name.)
+std::optional<std::string> refuse_host(std::string_view host, const Endpoint& endpoint);
+
+/// Why an Origin header is refused, or nothing: it has to be our own page's, "http://" and the Host.
+std::optional<std::string> refuse_origin(std::string_view origin, std::string_view host);
+
+}  // namespace iota::net

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "net/connection.h"
+
+#include "net/static_files.h"
+#include "net/token.h"
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#ifdef __linux__
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#endif
+
+namespace iota::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using error_code = boost::system::error_code;
+using namespace std::chrono_literals;
+
+constexpr auto request_time = 20s;  // a whole request, or a pause between two on one connection
+constexpr auto hello_time = 10s;    // from upgrade to first frame
+constexpr auto silence_time = 30s;  // without even an answer to a ping
+constexpr auto close_time = 1s;     // for the other side's part of a close
+constexpr auto keyframe_time = 1s;
+constexpr std::size_t max_connections = 256;
+
+/// The page loads only its own files and runs no inline code; three.js makes textures and workers from blobs. 'self' in
+/// connect-src does not cover ws: in every browser.
+constexpr const char* content_security_policy =
+    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; "
+    "connect-src 'self' ws: wss: blob: data:; img-src 'self' blob: data:; media-src 'self' blob: data:; "
+    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'";
+
+std::string_view to_view(beast::string_view text) { return {text.data(), text.size()}; }
+
+// -------------------------------------------------------------------------------------------------------- WebSocket
+
+class WebSocketSession final : public std::enable_shared_from_this<WebSocketSession>,
+                               public ClientLink,
+                               public OpenConnection {
+ public:
+  WebSocketSession(tcp::socket socket, ConnectionContext& context)
+      : context_(context),
+        hub_(context.hub),
+        socket_(std::move(socket)),
+        timer_(socket_.get_executor()),
+        queue_(context.options.max_queue_bytes) {
+    context_.opened(*this);
+  }
+  ~WebSocketSession() { context_.closed(*this); }
+  WebSocketSession(const WebSocketSession&) = delete;
+  WebSocketSession& operator=(const WebSocketSession&) = delete;
+
+  void start(const http::request<http::empty_body>& request) {
+    websocket::stream_base::timeout timeout{};
+    timeout.handshake_timeout = request_time;
+    timeout.idle_timeout = silence_time;
+    timeout.keep_alive_pings = true;
+    socket_.set_option(timeout);
+    socket_.read_message_max(protocol::max_client_frame_bytes);
+    socket_.auto_fragment(false);
+    socket_.binary(true);
+    // permessage-deflate stays off, as is Beast's default: poses hardly shrink, and it costs time and memory a client.
+    keep_send_buffer_short();
+    socket_.async_accept(request, [self = shared_from_this()](error_code error) {
+      if (error) return;
+      self->is_open_ = true;
+      self->wait_for_hello();
+      self->read();
+    });
+  }
+
+  // From the hub, and possibly in the midst of its loop over all clients: nothing here may call back into it.
+  void send(const Frame& frame, std::string_view key) override {
+    if (is_closing_) return;
+    if (!queue_.push(frame, key)) return drop("too slow: too much is waiting for this client");
+    pump();
+  }
+  void poses_changed() override { pump(); }
+  void drop(std::string_view reason) override {
+    if (is_closing_) return;
+    ++hub_.counters().clients_dropped;
+    queue_.clear();
+    close_when_sent(websocket::close_code::policy_error, reason);
+    start_close();
+  }
+
+  void finish() override { close_when_sent(websocket::close_code::going_away, "the server stops"); }
+
+ private:
+  /// A slow client should skip poses, not get them late from a long buffer in the kernel.
+  void keep_send_buffer_short() {
+    error_code ignored;
+    auto& socket = beast::get_lowest_layer(socket_).socket();
+    socket.set_option(asio::socket_base::send_buffer_size(256 * 1024), ignored);
+#if defined(__linux__) && defined(TCP_NOTSENT_LOWAT)
+    const int bytes = 16 * 1024;
+    ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &bytes, sizeof bytes);
+#endif
+  }
+
+  void wait_for_hello() {
+    timer_.expires_after(hello_time);
+    timer_.async_wait([weak = weak_from_this()](error_code error) {
+      const auto self = weak.lock();
+      if (!error && self && self->client_ == 0) self->refuse("no hello came");
+    });
+  }
+
+  void read() {
+    socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error) return self->ended();
+      if (!self->is_closing_) self->take_frame();
+      self->buffer_.consume(self->buffer_.size());
+      self->read();
+    });
+  }
+
+  void take_frame() {
+    const auto data = buffer_.cdata();
+    const std::span bytes(static_cast<const std::uint8_t*>(data.data()), data.size());
+    if (client_ == 0) return take_hello(bytes);
+    if (socket_.got_text()) return hub_.refuse_frame(client_, "the frame is text, not binary");
+    hub_.receive(client_, bytes);
+  }
+
+  void take_hello(std::span<const std::uint8_t> bytes) {
+    const auto decoded = protocol::decode_client_message(bytes);
+    const auto* hello = decoded ? std::get_if<protocol::Hello>(&*decoded.value) : nullptr;
+    if (hello == nullptr) {
+      ++hub_.counters().frames_refused;
+      return refuse(decoded ? "the first frame has to be hello" : "the first frame has to be hello: " + decoded.error);
+    }
+    auto [client, reason] = hub_.join(*this, *hello);
+    if (client == 0) return refuse(reason);
+    client_ = client;
+    timer_.cancel();
+    pump();
+  }
+
+  void refuse(const std::string& reason) {
+    if (is_closing_) return;
+    // A name from outside may stand in the reason, so it is known to be UTF-8 and short.
+    protocol::Refused message{reason.substr(0, 1024)};
+    send(std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message)), {});
+    close_when_sent(websocket::close_code::policy_error, "refused");
+  }
+
+  /// Sends what fits: edits first, then the newest poses, made only now so that they are the newest.
+  void pump() {
+    if (!is_open_ || is_writing_ || is_close_started_) return;
+    if (!queue_.empty()) {
+      outgoing_ = queue_.pop();
+      return write(asio::buffer(*outgoing_));
+    }
+    if (is_closing_) return start_close();
+    if (client_ == 0 || sent_pose_ == hub_.pose_number()) return;
+    if (sent_pose_ != 0) hub_.counters().frames_dropped += hub_.pose_number() - sent_pose_ - 1;
+    sent_pose_ = hub_.pose_number();
+    const auto now = std::chrono::steady_clock::now();
+    delta_.encode(hub_.poses(), now - keyframe_sent_ >= keyframe_time, pose_bytes_);
+    if (delta_.last_was_keyframe()) keyframe_sent_ = now;
+    write(asio::buffer(pose_bytes_));
+  }
+
+  void write(asio::const_buffer bytes) {
+    is_writing_ = true;
+    socket_.async_write(bytes, [self = shared_from_this()](error_code error, std::size_t size) {
+      self->is_writing_ = false;
+      if (error) return self->ended();
+      self->hub_.counters().bytes_sent += size;
+      ++self->hub_.counters().frames_sent;
+      self->pump();
+    });
+  }
+
+  void close_when_sent(websocket::close_code code, std::string_view reason) {
+    if (is_closing_) return;
+    is_closing_ = true;
+    // The protocol gives a reason 123 bytes.
+    close_reason_ = websocket::close_reason(code, beast::string_view(reason.substr(0, 123)));
+    timer_.expires_after(close_time);
+    timer_.async_wait([weak = weak_from_this()](error_code error) {
+      const auto self = weak.lock();
+      if (!error && self) self->ended();
+    });
+    pump();
+  }
+
+  void start_close() {
+    if (!is_open_ || std::exchange(is_close_started_, true)) return;
+    socket_.async_close(close_reason_, [self = shared_from_this()](error_code) { self->ended(); });
+  }
+
+  /// Called from handlers only, so the hub is never in the midst of a loop over its clients.
+  void ended() {
+    is_closing_ = true;
+    is_close_started_ = true;
+    timer_.cancel();
+    queue_.clear();
+    if (const std::uint32_t client = std::exchange(client_, 0); client != 0) hub_.leave(client);
+    beast::get_lowest_layer(socket_).close();
+  }
+
+  ConnectionContext& context_;
+  Hub& hub_;
+  websocket::stream<beast::tcp_stream> socket_;
+  asio::steady_timer timer_;
+  beast::flat_buffer buffer_;
+  OutQueue queue_;
+  Frame outgoing_;
+  std::vector<std::uint8_t> pose_bytes_;
+  PoseDelta delta_;
+  std::uint32_t client_ = 0;  ///< 0 until welcomed
+  std::uint64_t sent_pose_ = 0;
+  std::chrono::steady_clock::time_point keyframe_sent_;
+  websocket::close_reason close_reason_;
+  bool is_open_ = false, is_writing_ = false, is_closing_ = false, is_close_started_ = false;
+};
+
+// ------------------------------------------------------------------------------------------------------------- HTTP
+
+class HttpSession final : public std::enable_shared_from_this<HttpSession>, public OpenConnection {
+ public:
+  HttpSession(tcp::socket socket, ConnectionContext& context) : context_(context), stream_(std::move(socket)) {
+    context_.opened(*this);
+  }
+  ~HttpSession() { context_.closed(*this); }
+  HttpSession(const HttpSession&) = delete;
+  HttpSession& operator=(const HttpSession&) = delete;
+
+  void start() {
+    stream_.expires_after(request_time);
+    parser_.emplace();
+    parser_->header_limit(16 * 1024);
+    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error) return self->finish();
+      self->answer();
+    });
+  }
+
+  void finish() override { stream_.close(); }
+
+ private:
+  using Request = http::request<http::empty_body>;
+  using Response = http::response<http::string_body>;
+
+  void answer() {
+    const Request& request = parser_->get();
+    is_head_ = request.method() == http::verb::head;
+    const auto target = parse_target(to_view(request.target()));
+    if (const auto reason = refuse_by_host(request)) return refuse(*reason);
+    if (!target) return send_text(http::status::bad_request, "malformed target");
+    if ((parser_->content_length() && *parser_->content_length() > 0) || parser_->chunked()) {
+      must_close_ = true;  // the body stays unread
+      return send_text(http::status::bad_request, "no request here has a body");
+    }
+    if (target->path == "/ws") return upgrade(*target);
+    if (websocket::is_upgrade(request)) return send_text(http::status::not_found, "the WebSocket is at /ws");
+    if (request.method() != http::verb::get && !is_head_) {
+      return send_text(http::status::method_not_allowed, "only GET and HEAD");
+    }
+    if (target->path == "/healthz") return send_text(http::status::ok, "ok");
+    send_file(target->path);
+  }
+
+  std::optional<std::string> refuse_by_host(const Request& request) const {
+    error_code error;
+    const auto local = stream_.socket().local_endpoint(error);
+    const Endpoint endpoint{context_.options.host, error ? std::string() : local.address().to_string(), context_.port};
+    if (request.count(http::field::host) != 1) return "exactly one Host header is needed";
+    return refuse_host(to_view(request[http::field::host]), endpoint);
+  }
+
+  void upgrade(const RequestTarget& target) {
+    const Request& request = parser_->get();
+    if (!websocket::is_upgrade(request)) {
+      return send_text(http::status::upgrade_required, "this is the WebSocket's address");
+    }
+    if (request.count(http::field::origin) > 1) return refuse("more than one Origin header");
+    if (request.count(http::field::origin) == 1) {
+      const auto reason = refuse_origin(to_view(request[http::field::origin]), to_view(request[http::field::host]));
+      if (reason) return refuse(*reason);
+    }
+    if (!equal_in_constant_time(query_value(target.query, "token"), context_.options.token)) {
+      return refuse("the token is wrong: open the URL that the server printed");
+    }
+    stream_.expires_never();
+    std::make_shared<WebSocketSession>(stream_.release_socket(), context_)->start(request);
+  }
+
+  void refuse(const std::string& reason) {
+    ++context_.hub.counters().upgrades_refused;
+    must_close_ = true;
+    send_text(http::status::forbidden, reason);
+  }
+
+  void send_file(const std::string& path) {
+    const auto file = find_static_file(context_.options.page_folder, path);
+    if (!file) {
+      return send_text(http::status::not_found,
+                       path == "/" ? "the page has not been built: there is no index.html" : "there is no such file");
+    }
+    Response response = make_response(http::status::ok);
+    response.set(http::field::etag, file->etag);
+    response.set(http::field::cache_control,
+                 beast::string_view(file->cache_control.data(), file->cache_control.size()));
+    if (parser_->get()[http::field::if_none_match] == file->etag) {
+      response.result(http::status::not_modified);
+      return send(std::move(response));
+    }
+    auto contents = read_static_file(*file);
+    if (!contents) return send_text(http::status::internal_server_error, "the file cannot be read");
+    response.set(http::field::content_type, beast::string_view(file->mime_type.data(), file->mime_type.size()));
+    response.body() = std::move(*contents);
+    send(std::move(response));
+  }
+
+  void send_text(http::status status, std::string_view text) {
+    Response response = make_response(status);
+    response.set(http::field::content_type, "text/plain; charset=utf-8");
+    response.set(http::field::cache_control, "no-store");
+    if (status == http::status::method_not_allowed) response.set(http::field::allow, "GET, HEAD");
+    if (status == http::status::upgrade_required) response.set(http::field::upgrade, "websocket");
+    response.body() = text;
+    if (status != http::status::ok) response.body() += '\n';
+    send(std::move(response));
+  }
+
+  Response make_response(http::status status) const {
+    const Request& request = parser_->get();
+    Response response{status, request.version()};
+    response.set(http::field::server, "iota");
+    response.set("Content-Security-Policy", content_security_policy);
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Referrer-Policy", "no-referrer");  // the page's URL holds the token
+    response.set("Cross-Origin-Opener-Policy", "same-origin");
+    response.keep_alive(request.keep_alive() && !must_close_);
+    return response;
+  }
+
+  void send(Response&& response) {
+    if (response.result() == http::status::not_modified) {
+      response.content_length(boost::none);
+    } else {
+      response.prepare_payload();
+    }
+    if (is_head_) response.body().clear();  // the length stays that of the whole
+    response_.emplace(std::move(response));
+    stream_.expires_after(request_time);
+    const bool is_last = !response_->keep_alive();
+    http::async_write(stream_, *response_, [self = shared_from_this(), is_last](error_code error, std::size_t) {
+      if (error || self->context_.is_finishing) return self->finish();
+      if (!is_last) return self->start();
+      error_code ignored;
+      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    });
+  }
+
+  ConnectionContext& context_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  std::optional<Response> response_;
+  bool is_head_ = false;
+  bool must_close_ = false;
+};
+
+}  // namespace
+
+void start_connection(tcp::socket socket, ConnectionContext& context) {
+  if (context.is_finishing || context.open.size() >= max_connections) return;  // closes it
+  error_code ignored;
+  socket.set_option(tcp::no_delay(true), ignored);
+  std::make_shared<HttpSession>(std::move(socket), context)->start();
+}
+
+}  // namespace iota::net

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// One TCP connection: serves files of the page until the client asks for a WebSocket, then frames. Internal to the
+// server: this header and its two .cpp files are all that sees Boost.
+#pragma once
+
+#include "net/access.h"
+#include "net/hub.h"
+#include "net/server.h"
+
+#include <boost/asio/ip/tcp.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <unordered_set>
+
+namespace iota::net {
+
+/// A connection that the server can ask to end.
+class OpenConnection {
+ public:
+  /// Send what is queued, then close.
+  virtual void finish() = 0;
+
+ protected:
+  ~OpenConnection() = default;
+};
+
+/// What all connections share. Outlives them; used on the server's thread only.
+struct ConnectionContext {
+  const ServerOptions& options;
+  Hub& hub;
+  std::uint16_t port = 0;
+  std::unordered_set<OpenConnection*> open;
+  bool is_finishing = false;
+  std::function<void()> on_all_closed;  ///< called when the last one closes while finishing
+
+  void opened(OpenConnection& connection) { open.insert(&connection); }
+  void closed(OpenConnection& connection) {
+    open.erase(&connection);
+    if (is_finishing && open.empty() && on_all_closed) on_all_closed();
+  }
+};
+
+/// Takes over an accepted socket; the connection keeps itself alive as long as something is under way on it.
+void start_connection(boost::asio::ip::tcp::socket socket, ConnectionContext& context);
+
+}  // namespace iota::net

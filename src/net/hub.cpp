@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "net/hub.h"
+
+#include <algorithm>
+#include <memory>
+#include <variant>
+
+namespace iota::net {
+namespace {
+
+/// A client that has so many events waiting sends faster than any script can take (moves come as one).
+constexpr std::size_t max_waiting_input = 4096;
+constexpr std::size_t max_holds = 32;
+
+template <class Message>
+Frame make_frame(const Message& message) {
+  return std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message));
+}
+
+/// As much of `text` as fits, in whole UTF-8 characters; what is not UTF-8 becomes '?'. A notice often reports an error,
+/// so it must not fail itself.
+std::string fit_text(std::string_view text, std::size_t max_bytes) {
+  std::string out(text);
+  if (!protocol::detail::is_utf8(out)) {
+    std::replace_if(out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }, '?');
+  }
+  if (out.size() <= max_bytes) return out;
+  constexpr std::string_view ellipsis = "...";
+  std::size_t size = max_bytes - ellipsis.size();
+  while (size > 0 && (static_cast<unsigned char>(out[size]) & 0xC0) == 0x80) --size;
+  out.resize(size);
+  return out.append(ellipsis);
+}
+
+protocol::Notice make_notice(std::uint8_t level, std::string_view title, std::string_view text, std::string_view hint) {
+  return {static_cast<protocol::NoticeLevel>(std::min<std::uint8_t>(level, 2)), fit_text(title, 256),
+          fit_text(text, 8192), fit_text(hint, 1024)};
+}
+
+std::string scene_queue_key(const std::string& key) { return "scene/" + key; }
+
+}  // namespace
+
+Hub::Hub(std::string world, double dt, std::size_t max_clients)
+    : world_(std::move(world)), dt_(dt), max_clients_(std::min<std::size_t>(max_clients, 1024)) {}
+
+// ----------------------------------------------------------------------------------------------------- from any thread
+
+bool Hub::publish(const PoseSnapshot& snapshot) {
+  const std::lock_guard lock(out_mutex_);
+  snapshot_ = snapshot;  // its vectors are reused: no allocation once they are large enough
+  ++snapshot_number_;
+  return !std::exchange(is_delivery_due_, true);
+}
+
+bool Hub::post(Edit edit) {
+  const std::lock_guard lock(out_mutex_);
+  edits_.push_back(std::move(edit));
+  return !std::exchange(is_delivery_due_, true);
+}
+
+bool Hub::publish_structure(std::uint32_t structure_version, std::span<const BodyArticulate> articulates) {
+  protocol::Structure message;
+  message.structure_version = structure_version;
+  message.articulates.reserve(articulates.size());
+  for (const BodyArticulate& entry : articulates) message.articulates.push_back({entry.body, entry.articulate});
+  return post([this, frame = make_frame(message)] {
+    structure_ = frame;
+    broadcast(frame, "structure");
+  });
+}
+
+bool Hub::set_scene(std::string_view key, std::string_view json) {
+  const Frame frame = make_frame(protocol::Scene{std::string(key), std::string(json)});
+  return post([this, key = std::string(key), is_removed = json == "null", frame] {
+    store_scene(key, is_removed, frame);
+    broadcast(frame, scene_queue_key(key));
+  });
+}
+
+bool Hub::notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
+                 std::string_view hint) {
+  return post([this, client, frame = make_frame(make_notice(level, title, text, hint))] {
+    if (client == 0) return broadcast(frame);
+    if (const auto found = clients_.find(client); found != clients_.end()) found->second.link->send(frame, {});
+  });
+}
+
+bool Hub::effect(std::string_view kind, const Vec3f& position) {
+  return post([this, frame = make_frame(protocol::Effect{std::string(kind), position})] { broadcast(frame); });
+}
+
+std::vector<InputEvent> Hub::take_input() {
+  const std::lock_guard lock(in_mutex_);
+  input_counts_.clear();
+  return std::exchange(input_, {});
+}
+
+// -------------------------------------------------------------------------------------------- on the server's thread
+
+void Hub::deliver() {
+  delivering_.clear();
+  bool has_newer_poses = false;
+  {
+    const std::lock_guard lock(out_mutex_);
+    is_delivery_due_ = false;
+    std::swap(edits_, delivering_);
+    has_newer_poses = snapshot_number_ != pose_number_;
+    if (has_newer_poses) std::swap(snapshot_, delivered_);
+    pose_number_ = snapshot_number_;
+  }
+  // Edits first: whatever was said about a body before its pose was published is then known when the pose comes.
+  for (const Edit& edit : delivering_) edit();
+  delivering_.clear();
+  if (!has_newer_poses) return;
+  poses_.update(delivered_);
+  for (auto& [number, client] : clients_) client.link->poses_changed();
+}
+
+std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol::Hello& hello) {
+  if (hello.magic != protocol::protocol_magic) return {0, "this is not Iota's protocol"};
+  if (hello.version != protocol::protocol_version) {
+    return {0, "the page speaks protocol version " + std::to_string(hello.version) + ", the server version " +
+                   std::to_string(protocol::protocol_version) + ": reload the page"};
+  }
+  if (!hello.world.empty() && hello.world != world_) return {0, "there is no world '" + hello.world + "' here"};
+  if (clients_.size() >= max_clients_) {
+    return {0, "the world is full: " + std::to_string(max_clients_) + " clients are connected"};
+  }
+  const std::uint32_t number = next_client_++;
+  link.send(make_frame(protocol::Welcome{protocol::protocol_version, world_, number, dt_}), {});
+  for (const auto& [key, frame] : scene_) link.send(frame, scene_queue_key(key));
+  if (structure_) link.send(structure_, "structure");
+  clients_[number] = {&link, hello.name, protocol::no_body, {}};
+  counters_.clients = static_cast<std::uint32_t>(clients_.size());
+  broadcast_clients();
+  InputEvent event;
+  event.kind = InputEvent::Kind::join;
+  event.client = number;
+  event.name = hello.name;
+  push_input(std::move(event));
+  return {number, {}};
+}
+
+void Hub::leave(std::uint32_t client) {
+  if (clients_.erase(client) == 0) return;
+  counters_.clients = static_cast<std::uint32_t>(clients_.size());
+  broadcast_clients();
+  InputEvent event;
+  event.kind = InputEvent::Kind::leave;
+  event.client = client;
+  push_input(std::move(event));
+}
+
+void Hub::receive(std::uint32_t client, std::span<const std::uint8_t> bytes) {
+  const auto decoded = protocol::decode_client_message(bytes);
+  if (!decoded) return refuse_frame(client, decoded.error);
+  std::visit([&](const auto& message) { handle(client, message); }, *decoded.value);
+}
+
+void Hub::refuse_frame(std::uint32_t client, std::string_view reason) {
+  ++counters_.frames_refused;
+  const auto found = clients_.find(client);
+  if (found == clients_.end()) return;
+  found->second.link->send(make_frame(make_notice(2, "A message was not understood", reason, "Reload the page.")), {});
+}
+
+void Hub::broadcast(const Frame& frame, std::string_view key) {
+  for (auto& [number, client] : clients_) client.link->send(frame, key);
+}
+
+void Hub::broadcast_clients() {
+  protocol::Clients message;
+  for (const auto& [number, client] : clients_) message.clients.push_back({number, client.name, client.selected});
+  broadcast(make_frame(message), "clients");
+}
+
+void Hub::store_scene(const std::string& key, bool is_removed, const Frame& frame) {
+  const auto known = std::find_if(scene_.begin(), scene_.end(), [&](const auto& part) { return part.first == key; });
+  if (known == scene_.end()) {
+    if (!is_removed) scene_.emplace_back(key, frame);
+  } else if (is_removed) {
+    scene_.erase(known);
+  } else {
+    known->second = frame;
+  }
+}
+
+void Hub::push_input(InputEvent event) {
+  const std::uint32_t client = event.client;
+  {
+    const std::lock_guard lock(in_mutex_);
+    if (event.kind == InputEvent::Kind::grab_move) {
+      // Only the newest place of a hand counts; moves of different hands may change places.
+      for (auto i = input_.rbegin(); i != input_.rend() && i->kind == InputEvent::Kind::grab_move; ++i) {
+        if (i->client != client || i->hold != event.hold) continue;
+        i->target = event.target;
+        return;
+      }
+    }
+    const bool is_own = event.kind == InputEvent::Kind::join || event.kind == InputEvent::Kind::leave;
+    if (is_own || input_counts_[client]++ < max_waiting_input) {
+      input_.push_back(std::move(event));
+      return;
+    }
+  }
+  if (const auto found = clients_.find(client); found != clients_.end()) {
+    found->second.link->drop("more input than the script can take");
+  }
+}
+
+// --------------------------------------------------------------------------------------------------------- messages
+
+void Hub::handle(std::uint32_t client, const protocol::Hello&) { refuse_frame(client, "hello was said before"); }
+
+void Hub::handle(std::uint32_t client, const protocol::Select& message) {
+  Client& self = clients_.at(client);
+  if (self.selected == message.body) return;
+  self.selected = message.body;
+  broadcast_clients();
+  InputEvent event;
+  event.kind = InputEvent::Kind::select;
+  event.client = client;
+  event.body = message.body;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
+  Client& self = clients_.at(client);
+  if (self.holds.contains(message.hold)) return refuse_frame(client, "grab_start.hold is in use already");
+  if (self.holds.size() == max_holds) return refuse_frame(client, "grab_start: this client has too many hands");
+  self.holds.insert(message.hold);
+  InputEvent event;
+  event.kind = InputEvent::Kind::grab_start;
+  event.client = client;
+  event.hold = message.hold;
+  event.body = message.body;
+  event.local_point = message.local_point;
+  event.target = message.target;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::GrabMove& message) {
+  if (!clients_.at(client).holds.contains(message.hold)) return refuse_frame(client, "grab_move.hold holds nothing");
+  InputEvent event;
+  event.kind = InputEvent::Kind::grab_move;
+  event.client = client;
+  event.hold = message.hold;
+  event.target = message.target;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::GrabEnd& message) {
+  if (clients_.at(client).holds.erase(message.hold) == 0) return refuse_frame(client, "grab_end.hold holds nothing");
+  InputEvent event;
+  event.kind = InputEvent::Kind::grab_end;
+  event.client = client;
+  event.hold = message.hold;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::Action& message) {
+  InputEvent event;
+  event.kind = InputEvent::Kind::action;
+  event.client = client;
+  event.body = message.body;
+  event.name = message.name;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::Control& message) {
+  InputEvent event;
+  event.kind = InputEvent::Kind::control;
+  event.client = client;
+  event.command = static_cast<std::uint8_t>(message.command);
+  event.value = message.value;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::Ping& message) {
+  clients_.at(client).link->send(make_frame(protocol::Pong{message.client_time, poses_.poses().step}), {});
+}
+
+}  // namespace iota::net

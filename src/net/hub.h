@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the clients share: the scene so far, the newest poses, who is connected, and the two boxes through which the
+// stepping thread and the server's thread pass things to each other. Knows messages, not sockets.
+#pragma once
+
+#include "net/out_queue.h"
+#include "net/pose_encoder.h"
+#include "net/server.h"
+
+#include <iota_protocol.h>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace iota::net {
+
+/// A client's connection, as the hub sees it.
+class ClientLink {
+ public:
+  virtual void send(const Frame& frame, std::string_view key) = 0;
+  /// There is a newer pose; fetch it when there is room.
+  virtual void poses_changed() = 0;
+  /// Tell the reason and close.
+  virtual void drop(std::string_view reason) = 0;
+
+ protected:
+  ~ClientLink() = default;
+};
+
+struct Counters {
+  std::atomic<std::uint32_t> clients{0};
+  std::atomic<std::uint64_t> bytes_sent{0}, frames_sent{0}, frames_dropped{0}, frames_refused{0}, upgrades_refused{0},
+      clients_dropped{0};
+};
+
+class Hub {
+ public:
+  Hub(std::string world, double dt, std::size_t max_clients);
+
+  // --- from any thread. True: nothing was waiting, so deliver() has to be called on the server's thread.
+  [[nodiscard]] bool publish(const PoseSnapshot& snapshot);
+  [[nodiscard]] bool publish_structure(std::uint32_t structure_version, std::span<const BodyArticulate> articulates);
+  [[nodiscard]] bool set_scene(std::string_view key, std::string_view json);
+  [[nodiscard]] bool notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
+                            std::string_view hint);
+  [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position);
+  std::vector<InputEvent> take_input();
+  Counters& counters() { return counters_; }
+
+  // --- on the server's thread
+  /// Hands everything that was published on to the clients: edits in order, then the newest poses.
+  void deliver();
+  /// Welcomes the client on `link` and replays the scene to it; gives its number, or 0 and the reason of a refusal.
+  std::pair<std::uint32_t, std::string> join(ClientLink& link, const protocol::Hello& hello);
+  void leave(std::uint32_t client);
+  /// One frame of a welcomed client. What is not understood is answered by a notice.
+  void receive(std::uint32_t client, std::span<const std::uint8_t> bytes);
+  void refuse_frame(std::uint32_t client, std::string_view reason);
+  const PoseQuantiser& poses() const { return poses_; }
+  /// Number of the newest poses, 0 before the first.
+  std::uint64_t pose_number() const { return pose_number_; }
+
+ private:
+  struct Client {
+    ClientLink* link = nullptr;
+    std::string name;
+    std::uint32_t selected = protocol::no_body;
+    std::set<std::uint32_t> holds;
+  };
+  using Edit = std::function<void()>;
+
+  bool post(Edit edit);
+  void broadcast(const Frame& frame, std::string_view key = {});
+  void broadcast_clients();
+  void store_scene(const std::string& key, bool is_removed, const Frame& frame);
+  void push_input(InputEvent event);
+
+  void handle(std::uint32_t client, const protocol::Hello& message);
+  void handle(std::uint32_t client, const protocol::Select& message);
+  void handle(std::uint32_t client, const protocol::GrabStart& message);
+  void handle(std::uint32_t client, const protocol::GrabMove& message);
+  void handle(std::uint32_t client, const protocol::GrabEnd& message);
+  void handle(std::uint32_t client, const protocol::Action& message);
+  void handle(std::uint32_t client, const protocol::Control& message);
+  void handle(std::uint32_t client, const protocol::Ping& message);
+
+  const std::string world_;
+  const double dt_;
+  const std::size_t max_clients_;
+  Counters counters_;
+
+  // Between the threads: to the server ...
+  std::mutex out_mutex_;
+  std::vector<Edit> edits_;
+  PoseSnapshot snapshot_;
+  std::uint64_t snapshot_number_ = 0;
+  bool is_delivery_due_ = false;
+  // ... and to the stepping thread.
+  std::mutex in_mutex_;
+  std::vector<InputEvent> input_;
+  std::map<std::uint32_t, std::size_t> input_counts_;  ///< waiting events by client
+
+  // On the server's thread only.
+  std::map<std::uint32_t, Client> clients_;
+  std::uint32_t next_client_ = 1;
+  std::vector<std::pair<std::string, Frame>> scene_;  ///< in the order in which keys were first set
+  Frame structure_;
+  std::vector<Edit> delivering_;
+  PoseSnapshot delivered_;
+  PoseQuantiser poses_;
+  std::uint64_t pose_number_ = 0;
+};
+
+}  // namespace iota::net

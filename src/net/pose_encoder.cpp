@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "net/pose_encoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace iota::net {
+namespace {
+
+constexpr double steps = 65535;
+constexpr double half_range = 1 / std::numbers::sqrt2;  // no component but the largest can be beyond it
+constexpr double rotation_steps = 1023;
+
+/// Bodies that lie together within this are quantised together, whatever the spread at the start was, m.
+constexpr double least_limit = 64;
+
+/// A float has no useful grid beyond this, and the box would leave its range, m.
+constexpr float farthest = 1e9F;
+
+bool is_finite(const float (&v)[3]) {
+  return std::abs(v[0]) <= farthest && std::abs(v[1]) <= farthest && std::abs(v[2]) <= farthest;  // false for NaN
+}
+float finite_or_zero(float value) { return std::isfinite(value) ? value : 0.0F; }
+protocol::Vec3 to_vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+std::uint16_t quantise(float value, float low, float high) {
+  const double edge = static_cast<double>(high) - low;
+  const double step = std::round((static_cast<double>(value) - low) / edge * steps);
+  return static_cast<std::uint16_t>(std::clamp(step, 0.0, steps));
+}
+
+float unquantise(std::uint16_t step, float low, float high) {
+  return static_cast<float>(low + step / steps * (static_cast<double>(high) - low));
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> pack_rotation(const float (&orientation)[4]) {
+  double square = 0;
+  std::size_t largest = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    square += static_cast<double>(orientation[i]) * orientation[i];
+    if (std::abs(orientation[i]) > std::abs(orientation[largest])) largest = i;
+  }
+  if (!std::isfinite(square) || square < 1e-12) return std::nullopt;
+  // q and -q are the same rotation: the largest component is made positive, so its sign need not be sent.
+  const double scale = (orientation[largest] < 0 ? -1 : 1) / std::sqrt(square);
+  auto packed = static_cast<std::uint32_t>(largest);
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i == largest) continue;
+    const double step = std::round((orientation[i] * scale + half_range) / (2 * half_range) * rotation_steps);
+    packed = packed << 10 | static_cast<std::uint32_t>(std::clamp(step, 0.0, rotation_steps));
+  }
+  return packed;
+}
+
+std::array<float, 4> unpack_rotation(std::uint32_t packed) {
+  std::array<float, 4> out{};
+  const std::size_t largest = packed >> 30;
+  double rest = 1;
+  int shift = 20;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (i == largest) continue;
+    const double value = (packed >> shift & 1023U) / rotation_steps * 2 * half_range - half_range;
+    out[i] = static_cast<float>(value);
+    rest -= value * value;
+    shift -= 10;
+  }
+  out[largest] = static_cast<float>(std::sqrt(std::max(rest, 0.0)));
+  return out;
+}
+
+std::array<float, 3> unpack_position(const protocol::Poses& poses, const protocol::PoseBody& body) {
+  return {unquantise(body.x, poses.box_min[0], poses.box_max[0]),
+          unquantise(body.y, poses.box_min[1], poses.box_max[1]),
+          unquantise(body.z, poses.box_min[2], poses.box_max[2])};
+}
+
+// ----------------------------------------------------------------------------------------------------------- quantiser
+
+double PoseQuantiser::Bounds::longest_edge() const {
+  return std::max({max[0] - min[0], max[1] - min[1], max[2] - min[2]});
+}
+
+PoseQuantiser::Bounds PoseQuantiser::Bounds::with(const float (&position)[3]) const {
+  Bounds out = *this;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.min[i] = std::min<double>(out.min[i], position[i]);
+    out.max[i] = std::max<double>(out.max[i], position[i]);
+  }
+  return out;
+}
+
+bool PoseQuantiser::Bounds::contains(const float (&position)[3]) const {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(position[i] >= min[i] && position[i] <= max[i])) return false;  // also for NaN
+  }
+  return true;
+}
+
+/// From the 10th to the 90th of a hundred bodies on each axis: a few that are far off do not count.
+PoseQuantiser::Bounds PoseQuantiser::bulk_of(std::span<const BodyPose> bodies) {
+  Bounds out{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    sorted_.clear();
+    for (const BodyPose& body : bodies) {
+      if (is_finite(body.position)) sorted_.push_back(body.position[i]);
+    }
+    const auto at = [&](std::size_t rank) {
+      std::nth_element(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(rank), sorted_.end());
+      return static_cast<double>(sorted_[rank]);
+    };
+    if (sorted_.empty()) continue;
+    out.min[i] = at(sorted_.size() / 10);
+    out.max[i] = at(sorted_.size() - 1 - sorted_.size() / 10);
+  }
+  return out;
+}
+
+void PoseQuantiser::set_box(const Bounds& bulk) {
+  // Room to swing without another box soon; the error stays a small part of what is seen.
+  const double margin = std::max(0.5, bulk.longest_edge() / 2);
+  Bounds box = bulk;
+  for (std::size_t i = 0; i < 3; ++i) {
+    poses_.box_min[i] = static_cast<float>(bulk.min[i] - margin);
+    poses_.box_max[i] = static_cast<float>(bulk.max[i] + margin);
+    // Far from the origin a float's own grid can be coarser than the margin.
+    if (!(poses_.box_max[i] > poses_.box_min[i])) {
+      poses_.box_max[i] = std::nextafter(poses_.box_min[i], std::numeric_limits<float>::max());
+    }
+    box.min[i] = poses_.box_min[i];
+    box.max[i] = poses_.box_max[i];
+  }
+  box_ = box;
+  ++box_version_;
+}
+
+void PoseQuantiser::fit_box(std::span<const BodyPose> bodies) {
+  std::optional<Bounds> inside;
+  if (box_) {
+    for (const BodyPose& body : bodies) {
+      if (!box_->contains(body.position)) continue;
+      inside = inside ? inside->with(body.position)
+                      : Bounds{{body.position[0], body.position[1], body.position[2]},
+                               {body.position[0], body.position[1], body.position[2]}};
+    }
+  }
+  const bool is_new = !inside;
+  if (is_new) {
+    inside = bulk_of(bodies);
+    limit_ = std::max(least_limit, 4 * inside->longest_edge());
+  }
+  bool has_grown = false;
+  for (const BodyPose& body : bodies) {
+    if (!is_finite(body.position) || (!is_new && box_->contains(body.position))) continue;
+    const Bounds larger = inside->with(body.position);
+    if (larger.longest_edge() > limit_) continue;
+    inside = larger;
+    has_grown = true;
+  }
+  const bool is_too_wide = box_ && box_->longest_edge() > 4 * (2 * inside->longest_edge() + 1);
+  if (is_new || has_grown || is_too_wide) set_box(*inside);
+}
+
+void PoseQuantiser::add_body(const BodyPose& body) {
+  const auto rotation = pack_rotation(body.orientation);
+  if (!is_finite(body.position) || !rotation) return;
+  if (body.body > 0xFFFF || !box_->contains(body.position)) {
+    poses_.far_bodies.push_back({body.body, to_vec3(body.position), *rotation});
+    return;
+  }
+  poses_.bodies.push_back({static_cast<std::uint16_t>(body.body),
+                           quantise(body.position[0], poses_.box_min[0], poses_.box_max[0]),
+                           quantise(body.position[1], poses_.box_min[1], poses_.box_max[1]),
+                           quantise(body.position[2], poses_.box_min[2], poses_.box_max[2]), *rotation});
+}
+
+void PoseQuantiser::update(const PoseSnapshot& snapshot) {
+  poses_.step = snapshot.step;
+  poses_.time = std::isfinite(snapshot.time) ? snapshot.time : 0;
+  poses_.structure_version = snapshot.structure_version;
+  poses_.keyframe = true;
+  poses_.paused = snapshot.paused;
+  poses_.speed = finite_or_zero(snapshot.speed);
+  poses_.step_ms = finite_or_zero(snapshot.step_ms);
+  poses_.kinetic = finite_or_zero(snapshot.kinetic);
+  poses_.potential = finite_or_zero(snapshot.potential);
+  poses_.gap = finite_or_zero(snapshot.gap);
+  if (std::any_of(snapshot.bodies.begin(), snapshot.bodies.end(),
+                  [](const auto& b) { return is_finite(b.position); })) {
+    fit_box(snapshot.bodies);
+  }
+  poses_.bodies.clear();
+  poses_.far_bodies.clear();
+  for (const BodyPose& body : snapshot.bodies) add_body(body);
+  poses_.holds.clear();
+  for (const HoldPose& hold : snapshot.holds) {
+    if (poses_.holds.size() == 4096) break;  // the protocol's limit
+    if (!is_finite(hold.point) || !is_finite(hold.target)) continue;
+    poses_.holds.push_back(
+        {hold.client, hold.hold, hold.body, to_vec3(hold.point), to_vec3(hold.target), finite_or_zero(hold.force)});
+  }
+}
+
+// --------------------------------------------------------------------------------------------------------------- delta
+
+bool PoseDelta::note_near(const protocol::PoseBody& body) {
+  if (near_.size() <= body.body) near_.resize(body.body + 1U);
+  Near& known = near_[body.body];
+  if (!far_.empty()) far_.erase(body.body);
+  if (known.is_there && known.pose == body) return false;
+  known = {body, true};
+  return true;
+}
+
+bool PoseDelta::note_far(const protocol::PoseFarBody& body) {
+  if (body.body < near_.size()) near_[body.body].is_there = false;
+  const auto [known, is_new] = far_.try_emplace(body.body, body);
+  if (!is_new && known->second == body) return false;
+  known->second = body;
+  return true;
+}
+
+void PoseDelta::encode(const PoseQuantiser& latest, bool wants_keyframe, std::vector<std::uint8_t>& out) {
+  const protocol::Poses& all = latest.poses();
+  const bool is_keyframe =
+      wants_keyframe || box_version_ != latest.box_version() || structure_version_ != all.structure_version;
+  box_version_ = latest.box_version();
+  structure_version_ = all.structure_version;
+  if (is_keyframe) {
+    near_.assign(near_.size(), Near{});
+    far_.clear();
+  }
+  frame_.step = all.step;
+  frame_.time = all.time;
+  frame_.structure_version = all.structure_version;
+  frame_.keyframe = is_keyframe;
+  frame_.paused = all.paused;
+  frame_.speed = all.speed;
+  frame_.step_ms = all.step_ms;
+  frame_.kinetic = all.kinetic;
+  frame_.potential = all.potential;
+  frame_.gap = all.gap;
+  frame_.box_min = all.box_min;
+  frame_.box_max = all.box_max;
+  frame_.holds = all.holds;
+  frame_.bodies.clear();
+  frame_.far_bodies.clear();
+  for (const auto& body : all.bodies) {
+    if (note_near(body)) frame_.bodies.push_back(body);
+  }
+  for (const auto& body : all.far_bodies) {
+    if (note_far(body)) frame_.far_bodies.push_back(body);
+  }
+  out.clear();
+  protocol::encode(frame_, out);
+}
+
+}  // namespace iota::net

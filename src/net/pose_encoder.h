@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// From snapshots to poses frames: quantisation once per snapshot, then per client only what moved.
+//
+// A position takes 3 x 16 bits within a box around the bodies, a rotation 2 + 3 x 10 bits ("smallest three"): 12 bytes
+// a body with its slot. A body far from all others (a piece that fell off and falls on) would blow up the box and with
+// it everyone's error, so it travels on its own with a full float position, 20 bytes.
+// Errors: position at most half of box edge / 65535 per axis, rotation at most 5 mrad.
+#pragma once
+
+#include <iota/pose_snapshot.h>
+#include <iota_protocol.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace iota::net {
+
+/// The packed rotation of a quaternion (x y z w), normalised first; nothing when it is not finite or about zero.
+std::optional<std::uint32_t> pack_rotation(const float (&orientation)[4]);
+
+/// The unit quaternion (x y z w) of a packed rotation.
+std::array<float, 4> unpack_rotation(std::uint32_t packed);
+
+/// Position of `body` in the box of `poses`, world, m.
+std::array<float, 3> unpack_position(const protocol::Poses& poses, const protocol::PoseBody& body);
+
+/// Keeps the box and turns snapshots into frames that list every body.
+class PoseQuantiser {
+ public:
+  /// Bodies and holds that are not finite are left out. No allocation once the sizes have settled.
+  void update(const PoseSnapshot& snapshot);
+
+  /// The latest frame, a keyframe.
+  const protocol::Poses& poses() const { return poses_; }
+  /// Rises with each change of the box, which gives every number a new meaning.
+  std::uint32_t box_version() const { return box_version_; }
+
+ private:
+  struct Bounds {
+    std::array<double, 3> min, max;
+    double longest_edge() const;
+    Bounds with(const float (&position)[3]) const;
+    bool contains(const float (&position)[3]) const;
+  };
+  void fit_box(std::span<const BodyPose> bodies);
+  Bounds bulk_of(std::span<const BodyPose> bodies);
+  void set_box(const Bounds& bulk);
+  void add_body(const BodyPose& body);
+
+  protocol::Poses poses_;
+  std::optional<Bounds> box_;
+  std::uint32_t box_version_ = 0;
+  double limit_ = 0;  ///< longest edge that the bodies in the box may span, m
+  std::vector<float> sorted_;
+};
+
+/// What one client has got, so that it is sent only what differs.
+class PoseDelta {
+ public:
+  /// Replaces `out` by the next frame for this client. A keyframe when asked for, at first, and after a change of box
+  /// or structure.
+  void encode(const PoseQuantiser& latest, bool wants_keyframe, std::vector<std::uint8_t>& out);
+  bool last_was_keyframe() const { return frame_.keyframe; }
+
+ private:
+  struct Near {
+    protocol::PoseBody pose;
+    bool is_there = false;
+  };
+  bool note_near(const protocol::PoseBody& body);
+  bool note_far(const protocol::PoseFarBody& body);
+
+  protocol::Poses frame_;
+  std::vector<Near> near_;  ///< by slot
+  std::unordered_map<std::uint32_t, protocol::PoseFarBody> far_;
+  std::optional<std::uint32_t> box_version_, structure_version_;
+};
+
+}  // namespace iota::net

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The secret in the page's URL: 128 random bits as 32 hexadecimal digits, the same after a restart.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace iota::net {
+
+/// $XDG_STATE_HOME/iota, or ~/.local/state/iota. Throws std::runtime_error when neither variable names a folder.
+std::filesystem::path state_folder();
+
+/// 32 new hexadecimal digits from the system's random source.
+std::string make_token();
+
+/// The token kept in `folder`/token, made (mode 0600, written atomically) when there is none or it is damaged. Two
+/// processes that start at once get the same one. Throws std::system_error when it can be neither read nor written.
+std::string load_or_make_token(const std::filesystem::path& folder = state_folder());
+
+/// Whether they are equal, in a time that depends on the length of `given` only.
+bool equal_in_constant_time(std::string_view given, std::string_view expected);
+
+}  // namespace iota::net

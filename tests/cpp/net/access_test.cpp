@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "net/access.h"
+
+#include <gtest/gtest.h>
+
+namespace iota::net {
+namespace {
+
+const Endpoint loopback{"127.0.0.1", "127.0.0.1", 8080};
+
+TEST(Access, TheNamesOfThisMachineWithOurPortAreTaken) {
+  for (const char* host : {"localhost:8080", "LOCALHOST:8080", "127.0.0.1:8080", "[::1]:8080", "localhost.:8080"}) {
+    EXPECT_FALSE(refuse_host(host, loopback)) << host;
+  }
+  EXPECT_FALSE(refuse_host("desk.local:8080", {"desk.local", "192.168.1.5", 8080}));
+  EXPECT_FALSE(refuse_host("192.168.1.5:8080", {"0.0.0.0", "192.168.1.5", 8080}));
+  EXPECT_FALSE(refuse_host("[fe80::1]:8080", {"::", "fe80::1", 8080}));
+  EXPECT_FALSE(refuse_host("localhost", {"127.0.0.1", "127.0.0.1", 80}));
+}
+
+TEST(Access, OtherHostsAndPortsAreRefused) {
+  for (const char* host : {"", ":8080", "evil.example:8080", "localhost", "localhost:8081",
+                           "localhost:", "localhost:8080x", "127.0.0.1.evil.example:8080", "localhost:808080",
+                           "evil.example@localhost:8080", "127.0.0.1 :8080", "[::1]", "[::1", "::1:8080"}) {
+    EXPECT_TRUE(refuse_host(host, loopback)) << host;
+  }
+}
+
+TEST(Access, OnlyOurOwnPageIsAnOrigin) {
+  EXPECT_FALSE(refuse_origin("http://localhost:8080", "localhost:8080"));
+  EXPECT_FALSE(refuse_origin("HTTP://LocalHost:8080", "localhost:8080"));
+  EXPECT_FALSE(refuse_origin("http://localhost", "localhost:80"));
+  for (const char* origin :
+       {"null", "", "https://localhost:8080", "http://localhost:8081", "http://127.0.0.1:8080", "http://evil.example",
+        "http://localhost:8080.evil.example", "http://localhost:8080/", "localhost:8080"}) {
+    EXPECT_TRUE(refuse_origin(origin, "localhost:8080")) << origin;
+  }
+}
+
+TEST(Access, TargetsAreTakenApartAndUnescaped) {
+  const auto target = parse_target("/a%20b/c.js?token=x%2By&z=1#part");
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->path, "/a b/c.js");
+  EXPECT_EQ(query_value(target->query, "token"), "x+y");
+  EXPECT_EQ(query_value(target->query, "z"), "1");
+  EXPECT_EQ(query_value(target->query, "to"), "");
+  EXPECT_EQ(query_value("", "token"), "");
+  EXPECT_EQ(query_value("&&token=&token=2", "token"), "");
+}
+
+TEST(Access, MalformedTargetsAreRefused) {
+  for (const char* target : {"", "*", "a", "http://localhost/", "/%", "/%2", "/%zz", "/%-1"}) {
+    EXPECT_FALSE(parse_target(target)) << target;
+  }
+}
+
+}  // namespace
+}  // namespace iota::net

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "net/pose_encoder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace iota::net {
+namespace {
+
+constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+BodyPose make_pose(std::uint32_t body, float x, float y, float z) { return {body, {x, y, z}, {0, 0, 0, 1}}; }
+
+PoseSnapshot hanging_chain(std::uint32_t links) {
+  PoseSnapshot snapshot;
+  for (std::uint32_t i = 0; i < links; ++i) {
+    snapshot.bodies.push_back(make_pose(i, 0, -0.1F * static_cast<float>(i), 0));
+  }
+  return snapshot;
+}
+
+protocol::Poses decode(const std::vector<std::uint8_t>& bytes) {
+  const auto decoded = protocol::decode_server_message(bytes);
+  EXPECT_TRUE(decoded) << decoded.error;
+  return decoded ? std::get<protocol::Poses>(*decoded.value) : protocol::Poses{};
+}
+
+/// A client and what it is sent.
+struct Receiver {
+  PoseQuantiser quantiser;
+  PoseDelta delta;
+  std::vector<std::uint8_t> bytes;
+
+  protocol::Poses next(const PoseSnapshot& snapshot, bool wants_keyframe = false) {
+    quantiser.update(snapshot);
+    delta.encode(quantiser, wants_keyframe, bytes);
+    return decode(bytes);
+  }
+};
+
+double angle_between(const float (&a)[4], const std::array<float, 4>& b) {
+  double dot = 0;
+  double difference = 0;
+  for (std::size_t i = 0; i < 4; ++i) dot += static_cast<double>(a[i]) * b[i];
+  const double sign = dot < 0 ? -1 : 1;
+  for (std::size_t i = 0; i < 4; ++i) difference += std::pow(a[i] - sign * b[i], 2);
+  return 4 * std::asin(std::min(1.0, std::sqrt(difference) / 2));
+}
+
+TEST(PoseEncoder, RotationsComeBackWithinFiveMilliradians) {
+  std::mt19937 random(7);
+  std::normal_distribution<float> normal;
+  double worst = 0;
+  for (int i = 0; i < 100000; ++i) {
+    float q[4] = {normal(random), normal(random), normal(random), normal(random)};
+    if (i % 5 == 0) q[i % 4] *= 100;  // near an axis
+    const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    for (float& component : q) component /= length;
+    const auto packed = pack_rotation(q);
+    ASSERT_TRUE(packed);
+    worst = std::max(worst, angle_between(q, unpack_rotation(*packed)));
+  }
+  EXPECT_LT(worst, 5e-3);
+  RecordProperty("worst_angle_urad", static_cast<int>(worst * 1e6));
+}
+
+TEST(PoseEncoder, AQuaternionAndItsNegativeArePackedAlike) {
+  const float q[4] = {0.5F, -0.5F, 0.1F, 0.7F};
+  const float minus[4] = {-0.5F, 0.5F, -0.1F, -0.7F};
+  EXPECT_EQ(pack_rotation(q), pack_rotation(minus));
+}
+
+TEST(PoseEncoder, AQuaternionThatIsNoRotationIsRefused) {
+  EXPECT_FALSE(pack_rotation({0, 0, 0, 0}));
+  EXPECT_FALSE(pack_rotation({nan_value, 0, 0, 1}));
+  EXPECT_FALSE(pack_rotation({0, infinity, 0, 1}));
+}
+
+TEST(PoseEncoder, PositionsComeBackWithinHalfAStepOfTheBox) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> uniform(-3, 5);
+  PoseSnapshot snapshot;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    snapshot.bodies.push_back(make_pose(i, uniform(random), uniform(random), uniform(random)));
+  }
+  Receiver receiver;
+  const auto poses = receiver.next(snapshot);
+  ASSERT_EQ(poses.bodies.size(), 2000U);
+  for (std::size_t i = 0; i < 2000; ++i) {
+    const auto found = unpack_position(poses, poses.bodies[i]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float bound = (poses.box_max[k] - poses.box_min[k]) / 65535 / 2 + 2e-6F;
+      EXPECT_NEAR(found[k], snapshot.bodies[i].position[k], bound);
+    }
+  }
+}
+
+TEST(PoseEncoder, ABodyTakesTwelveBytes) {
+  Receiver receiver;
+  PoseSnapshot snapshot = hanging_chain(500);
+  receiver.next(snapshot);
+  const std::size_t before = receiver.bytes.size();
+  snapshot.bodies.resize(400);
+  receiver.next(snapshot, true);
+  EXPECT_EQ(receiver.bytes.size(), before - 1200);
+}
+
+TEST(PoseEncoder, OnlyWhatMovedIsListedAfterTheFirstFrame) {
+  Receiver receiver;
+  PoseSnapshot snapshot = hanging_chain(24);
+  auto poses = receiver.next(snapshot);
+  EXPECT_TRUE(poses.keyframe);
+  EXPECT_EQ(poses.bodies.size(), 24U);
+  poses = receiver.next(snapshot);
+  EXPECT_FALSE(poses.keyframe);
+  EXPECT_TRUE(poses.bodies.empty());
+  snapshot.bodies[5].position[0] += 0.01F;
+  snapshot.bodies[7].orientation[0] = 0.1F;
+  poses = receiver.next(snapshot);
+  ASSERT_EQ(poses.bodies.size(), 2U);
+  EXPECT_EQ(poses.bodies[0].body, 5);
+  EXPECT_EQ(poses.bodies[1].body, 7);
+  poses = receiver.next(snapshot, true);
+  EXPECT_TRUE(poses.keyframe);
+  EXPECT_EQ(poses.bodies.size(), 24U);
+}
+
+TEST(PoseEncoder, AChangeOfStructureOrOfTheBoxGivesAKeyframe) {
+  Receiver receiver;
+  PoseSnapshot snapshot = hanging_chain(24);
+  receiver.next(snapshot);
+  ++snapshot.structure_version;
+  EXPECT_TRUE(receiver.next(snapshot).keyframe);
+  EXPECT_FALSE(receiver.next(snapshot).keyframe);
+  snapshot.bodies[23].position[1] -= 10;
+  const auto poses = receiver.next(snapshot);
+  EXPECT_TRUE(poses.keyframe);
+  EXPECT_EQ(poses.bodies.size(), 24U);
+}
+
+TEST(PoseEncoder, AClientThatSkippedFramesGetsAllThatMovedMeanwhile) {
+  PoseQuantiser quantiser;
+  PoseDelta slow;
+  std::vector<std::uint8_t> bytes;
+  PoseSnapshot snapshot = hanging_chain(24);
+  quantiser.update(snapshot);
+  slow.encode(quantiser, false, bytes);
+  for (std::size_t i = 0; i < 10; ++i) {
+    snapshot.bodies[i].position[0] += 0.01F;
+    quantiser.update(snapshot);
+  }
+  slow.encode(quantiser, false, bytes);
+  EXPECT_EQ(decode(bytes).bodies.size(), 10U);
+}
+
+TEST(PoseEncoder, APieceThatFallsOnAndOnLeavesTheOthersExact) {
+  Receiver receiver;
+  PoseSnapshot snapshot = hanging_chain(24);
+  std::size_t keyframes = 0;
+  for (int step = 0; step < 120 * 60; ++step) {
+    const float time = static_cast<float>(step) / 120;
+    for (std::size_t i = 2; i < 24; ++i) {  // all but two fall
+      snapshot.bodies[i].position[1] = -0.1F * static_cast<float>(i) - 4.905F * time * time;
+    }
+    snapshot.step = static_cast<std::uint64_t>(step);
+    const auto poses = receiver.next(snapshot);
+    if (poses.keyframe) ++keyframes;
+    for (std::size_t k = 0; k < 3; ++k) ASSERT_LE(poses.box_max[k] - poses.box_min[k], 130);
+  }
+  EXPECT_LT(keyframes, 20U);
+  const auto poses = receiver.next(snapshot, true);
+  ASSERT_EQ(poses.bodies.size(), 2U);
+  ASSERT_EQ(poses.far_bodies.size(), 22U);
+  EXPECT_EQ(poses.far_bodies[0].position[1], snapshot.bodies[2].position[1]);
+  EXPECT_NEAR(unpack_position(poses, poses.bodies[1])[1], -0.1F, 1e-4);  // the box is small again
+}
+
+TEST(PoseEncoder, ABodyThatComesBackFromAfarIsListedAgain) {
+  Receiver receiver;
+  PoseSnapshot snapshot = hanging_chain(24);
+  receiver.next(snapshot);
+  const float home = snapshot.bodies[3].position[1];
+  snapshot.bodies[3].position[1] = -1e6F;
+  auto poses = receiver.next(snapshot);
+  EXPECT_TRUE(poses.bodies.empty());
+  EXPECT_EQ(poses.far_bodies.size(), 1U);
+  EXPECT_TRUE(receiver.next(snapshot).far_bodies.empty());
+  snapshot.bodies[3].position[1] = home;
+  poses = receiver.next(snapshot);
+  EXPECT_EQ(poses.bodies.size(), 1U);
+  snapshot.bodies[3].position[1] = -1e6F;
+  EXPECT_EQ(receiver.next(snapshot).far_bodies.size(), 1U);
+}
+
+TEST(PoseEncoder, ALongChainIsOneBox) {
+  Receiver receiver;
+  const auto poses = receiver.next(hanging_chain(4000));  // 400 m
+  EXPECT_EQ(poses.bodies.size(), 4000U);
+  EXPECT_TRUE(poses.far_bodies.empty());
+}
+
+TEST(PoseEncoder, SlotsAboveSixteenBitsTravelToo) {
+  Receiver receiver;
+  PoseSnapshot snapshot = hanging_chain(2);
+  snapshot.bodies.push_back(make_pose(70000, 0.1F, 0.2F, 0.3F));
+  const auto poses = receiver.next(snapshot);
+  ASSERT_EQ(poses.far_bodies.size(), 1U);
+  EXPECT_EQ(poses.far_bodies[0].body, 70000U);
+}
+
+TEST(PoseEncoder, WhatIsNotFiniteIsLeftOutAndTheRestIsSent) {
+  Receiver receiver;
+  PoseSnapshot snapshot = hanging_chain(6);
+  snapshot.bodies[0].position[1] = nan_value;
+  snapshot.bodies[1].position[0] = infinity;
+  snapshot.bodies[2].orientation[3] = nan_value;
+  snapshot.bodies[3].position[2] = 1e30F;
+  snapshot.kinetic = nan_value;
+  snapshot.time = infinity;
+  snapshot.holds.push_back({1, 2, 3, {0, nan_value, 0}, {0, 0, 0}, 1});
+  snapshot.holds.push_back({1, 3, 3, {0, 0, 0}, {0, 0, 0}, nan_value});
+  const auto poses = receiver.next(snapshot);
+  EXPECT_EQ(poses.bodies.size(), 2U);
+  EXPECT_EQ(poses.kinetic, 0);
+  ASSERT_EQ(poses.holds.size(), 1U);
+  EXPECT_EQ(poses.holds[0].hold, 3U);
+  for (auto& body : snapshot.bodies) body.position[0] = nan_value;
+  EXPECT_TRUE(receiver.next(snapshot, true).bodies.empty());
+  EXPECT_TRUE(receiver.next(PoseSnapshot{}, true).bodies.empty());
+}
+
+TEST(PoseEncoder, AWorldThatIsReplacedElsewhereGetsANewBox) {
+  Receiver receiver;
+  receiver.next(hanging_chain(24));
+  PoseSnapshot snapshot;
+  for (std::uint32_t i = 0; i < 10; ++i) snapshot.bodies.push_back(make_pose(i, 1e5F, 0.1F * static_cast<float>(i), 0));
+  const auto poses = receiver.next(snapshot);
+  EXPECT_EQ(poses.bodies.size(), 10U);
+}
+
+}  // namespace
+}  // namespace iota::net

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// The generated protocol against golden bytes that an independent encoder made (protocol/make_golden.py).
+#include "net/golden.h"
+
+#include <gtest/gtest.h>
+#include <iota_protocol.h>
+
+#include <chrono>
+#include <limits>
+#include <map>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <variant>
+
+namespace iota::protocol {
+namespace {
+
+using test::golden;
+
+/// The values of protocol/golden/vectors.json, by name.
+const std::map<std::string, ClientMessage>& client_vectors() {
+  static const std::map<std::string, ClientMessage> vectors{
+      {"hello", Hello{protocol_magic, 1, "default", "Ada \u00fc\u4e16\U0001F517"}},
+      {"hello_empty", Hello{protocol_magic, 1, "", ""}},
+      {"select", Select{23}},
+      {"select_none", Select{no_body}},
+      {"grab_start", GrabStart{7, 12, {0.5F, -0.25F, 0.0F}, {1.5F, -2.0F, 1024.125F}}},
+      {"grab_move", GrabMove{7, {-0.125F, 3.0F, 0.0625F}}},
+      {"grab_end", GrabEnd{4000000000}},
+      {"action", Action{"break", 5}},
+      {"control_pause", Control{ControlCommand::pause, 0}},
+      {"control_speed", Control{ControlCommand::speed, 0.25F}},
+      {"ping", Ping{1234.5678}},
+  };
+  return vectors;
+}
+
+const std::map<std::string, ServerMessage>& server_vectors() {
+  static const std::map<std::string, ServerMessage> vectors{
+      {"welcome", Welcome{1, "default", 3, 1.0 / 120}},
+      {"refused", Refused{"no such world"}},
+      {"scene", Scene{"world", "{\"title\":\"K\u00e4tte\"}"}},
+      {"structure", Structure{9, {{0, 0}, {1, 0}, {2, 70000}}}},
+      {"poses", Poses{0x0001000200030004,
+                      16.0625,
+                      9,
+                      true,
+                      false,
+                      1.0F,
+                      0.375F,
+                      2.5F,
+                      -7.25F,
+                      0.0009765625F,
+                      {-1, -2, -4},
+                      {1, 2, 4},
+                      {{0, 0, 65535, 32768, 0xDFF7FDFF}, {65535, 1, 2, 3, 0}},
+                      {{70000, {0, -4096.5F, 8}, 0xC0000001}},
+                      {{2, 7, 12, {0.5F, 1, 1.5F}, {0.5F, 1.25F, 1.5F}, 12.5F}}}},
+      {"poses_nothing_moved", Poses{5, 0.5, 1, false, true, 0, 0, 0, 0, 0, {}, {}, {}, {}, {}}},
+      {"notice", Notice{NoticeLevel::error, "chain.py", "ZeroDivisionError", ""}},
+      {"effect", Effect{"break", {0, 1.5F, -0.5F}}},
+      {"pong", Pong{1234.5678, 600}},
+      {"clients", Clients{{{1, "Ada", 4}, {2, "", no_body}}}},
+  };
+  return vectors;
+}
+
+template <class Variant>
+std::vector<std::uint8_t> encode_any(const Variant& message) {
+  return std::visit([](const auto& m) { return encode(m); }, message);
+}
+
+TEST(Protocol, GoldenBytesAreDecodedToTheirValuesAndEncodedBack) {
+  for (const auto& [name, message] : client_vectors()) {
+    const auto decoded = decode_client_message(golden(name));
+    ASSERT_TRUE(decoded) << name << ": " << decoded.error;
+    EXPECT_TRUE(*decoded.value == message) << name;
+    EXPECT_EQ(encode_any(message), golden(name)) << name;
+  }
+  for (const auto& [name, message] : server_vectors()) {
+    const auto decoded = decode_server_message(golden(name));
+    ASSERT_TRUE(decoded) << name << ": " << decoded.error;
+    EXPECT_TRUE(*decoded.value == message) << name;
+    EXPECT_EQ(encode_any(message), golden(name)) << name;
+  }
+}
+
+TEST(Protocol, EveryGoldenFileIsUsedAndEveryMessageHasOne) {
+  std::set<std::size_t> client_kinds;
+  std::set<std::size_t> server_kinds;
+  for (const auto& [name, message] : client_vectors()) client_kinds.insert(message.index());
+  for (const auto& [name, message] : server_vectors()) server_kinds.insert(message.index());
+  EXPECT_EQ(client_kinds.size(), std::variant_size_v<ClientMessage>);
+  EXPECT_EQ(server_kinds.size(), std::variant_size_v<ServerMessage>);
+  std::size_t good = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(test::golden_folder())) {
+    if (entry.path().extension() == ".hex" && entry.path().stem().string().rfind("bad_", 0) != 0) ++good;
+  }
+  EXPECT_EQ(good, client_vectors().size() + server_vectors().size());
+}
+
+TEST(Protocol, BadGoldenBytesAreRefusedWithTheirReason) {
+  const std::map<std::string, std::string> client_reasons{
+      {"bad_empty", "the frame is empty"},
+      {"bad_type", "has the type 9"},
+      {"bad_direction", "has the type 64"},
+      {"bad_short_select", "select.body ends early"},
+      {"bad_long_select", "the frame has 1 bytes too many"},
+      {"bad_nan", "grab_move.target is not a finite number"},
+      {"bad_infinity", "control.value is not a finite number"},
+      {"bad_nan_double", "ping.client_time is not a finite number"},
+      {"bad_command", "control.command has no meaning for the value 5"},
+      {"bad_string_length", "action.name ends early"},
+      {"bad_string_huge", "action.name has 4294967295 entries"},
+      {"bad_string_limit", "action.name has 129 entries"},
+      {"bad_utf8", "action.name is not UTF-8"},
+      {"bad_surrogate", "action.name is not UTF-8"},
+  };
+  const std::map<std::string, std::string> server_reasons{
+      {"bad_count", "structure.articulates ends early"},
+      {"bad_count_huge", "structure.articulates has 4294967295"},
+      {"bad_bool", "poses.keyframe is neither 0 nor 1"},
+      {"bad_poses_short", "poses.holds ends early"},
+  };
+  for (const auto& [name, reason] : client_reasons) {
+    const auto decoded = decode_client_message(golden(name));
+    EXPECT_FALSE(decoded) << name;
+    EXPECT_NE(decoded.error.find(reason), std::string::npos) << name << ": " << decoded.error;
+  }
+  for (const auto& [name, reason] : server_reasons) {
+    const auto decoded = decode_server_message(golden(name));
+    EXPECT_FALSE(decoded) << name;
+    EXPECT_NE(decoded.error.find(reason), std::string::npos) << name << ": " << decoded.error;
+  }
+}
+
+TEST(Protocol, FramesThatAreCutOrTooLongAreRefused) {
+  for (const auto& [name, message] : server_vectors()) {
+    auto bytes = golden(name);
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      EXPECT_FALSE(decode_server_message(std::span(bytes).first(size))) << name << " cut to " << size;
+    }
+    bytes.push_back(0);
+    EXPECT_FALSE(decode_server_message(bytes)) << name;
+  }
+}
+
+TEST(Protocol, EncodingRefusesWhatADecoderWouldRefuse) {
+  EXPECT_THROW(encode(Action{std::string(129, 'x'), 0}), std::length_error);
+  EXPECT_THROW(encode(Action{"\xff", 0}), std::invalid_argument);
+  EXPECT_THROW(encode(Effect{"break", {0, std::numeric_limits<float>::quiet_NaN(), 0}}), std::invalid_argument);
+  EXPECT_THROW(encode(Ping{std::numeric_limits<double>::infinity()}), std::invalid_argument);
+  std::vector<std::uint8_t> out{1, 2, 3};
+  EXPECT_THROW(encode(Effect{std::string(33, 'x'), {}}, out), std::length_error);
+  EXPECT_EQ(out, (std::vector<std::uint8_t>{1, 2, 3}));
+}
+
+/// What is decoded has to encode back to the very bytes: no two frames mean the same, nothing is passed over.
+template <class Decode>
+void expect_error_or_same(const std::vector<std::uint8_t>& bytes, Decode decode, std::size_t& valid) {
+  const auto decoded = decode(bytes);
+  if (!decoded) {
+    ASSERT_FALSE(decoded.error.empty());
+    return;
+  }
+  ++valid;
+  ASSERT_EQ(encode_any(*decoded.value), bytes);
+}
+
+TEST(Protocol, TwoHundredThousandDamagedFramesGiveAnErrorOrAValidMessage) {
+  std::mt19937 random(20240101);
+  std::vector<std::vector<std::uint8_t>> seeds;
+  for (const auto& entry : std::filesystem::directory_iterator(test::golden_folder())) {
+    if (entry.path().extension() == ".hex") seeds.push_back(test::read_hex(entry.path()));
+  }
+  ASSERT_GT(seeds.size(), 30U);
+  std::size_t valid = 0;
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  for (int round = 0; round < 200000; ++round) {
+    std::vector<std::uint8_t> bytes;
+    if (round % 4 == 0) {  // noise behind a type that exists
+      bytes.resize(1 + below(100));
+      for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
+      bytes[0] = static_cast<std::uint8_t>(random() % 2 == 0 ? 1 + below(8) : 64 + below(9));
+    } else {
+      bytes = seeds[below(seeds.size())];
+      for (std::size_t n = below(4); n > 0 && !bytes.empty(); --n) {
+        auto& byte = bytes[below(bytes.size())];
+        byte =
+            random() % 2 == 0 ? static_cast<std::uint8_t>(random()) : static_cast<std::uint8_t>(byte ^ 1U << below(8));
+      }
+      if (round % 4 == 2) bytes.resize(below(bytes.size() + 1));
+      if (round % 4 == 3) bytes.insert(bytes.end(), below(8), 0xFF);
+    }
+    expect_error_or_same(bytes, decode_client_message, valid);
+    expect_error_or_same(bytes, decode_server_message, valid);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(valid, 1000U);
+}
+
+}  // namespace
+}  // namespace iota::protocol

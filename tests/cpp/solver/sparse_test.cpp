@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/sparse/block_factor.h"
+#include "solver/sparse/block_pattern.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace iota::solver {
+namespace {
+
+using Edge = std::array<std::uint32_t, 2>;
+
+/// A matrix with the structure [A G'; G -C] in two forms: in the block pattern, and dense in the pattern's unknowns.
+struct Twin {
+  BlockPattern pattern;
+  BlockFactor factor;
+  std::vector<std::vector<double>> dense;
+  std::vector<double> right_side;
+
+  Twin(const CouplingGraph& graph, bool symmetric, std::mt19937& random) {
+    std::uniform_real_distribution<double> number(-1, 1);
+    pattern.analyse(graph);
+    factor.reset(pattern);
+    factor.clear(symmetric);
+    const std::size_t n = pattern.unknown_count();
+    dense.assign(n, std::vector<double>(n, 0));
+    const auto add_block = [&](std::uint32_t a, std::uint32_t b) {
+      const auto slot = pattern.pair_slot(a, b);
+      const std::uint32_t first = slot.a_first ? a : b, later = slot.a_first ? b : a;
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) {
+          const double below = number(random), above = symmetric ? below : number(random);
+          factor.lower()[slot.offset + r * slot.stride + c] += below;
+          if (!symmetric) factor.upper()[slot.offset + r * slot.stride + c] += above;
+          dense[pattern.node_unknown(later) + r][pattern.node_unknown(first) + c] += below;
+          dense[pattern.node_unknown(first) + c][pattern.node_unknown(later) + r] += above;
+        }
+    };
+    for (std::uint32_t i = 0; i < graph.node_count; ++i)
+      for (int r = 0; r < 3; ++r) {
+        factor.lower()[pattern.node_diagonal(i) + r * (pattern.node_stride(i) + 1)] += 40;
+        dense[pattern.node_unknown(i) + r][pattern.node_unknown(i) + r] += 40;
+      }
+    for (auto [a, b] : graph.couplings) add_block(a, b);
+    for (std::size_t k = 0; k < graph.constraints.size(); ++k) {
+      const auto& constraint = graph.constraints[k];
+      const auto& slot = pattern.constraint_slot(k);
+      for (int r = 0; r < constraint.rows; ++r) {
+        factor.lower()[slot.diagonal + r * (slot.stride + 1)] = -0.01;
+        dense[slot.unknown + r][slot.unknown + r] = -0.01;
+        for (int i = 0; i < constraint.node_count; ++i)
+          for (int c = 0; c < 3; ++c) {
+            const double in_row = number(random), in_column = symmetric ? in_row : number(random);
+            const auto& g = slot.gradients[i];
+            const std::uint32_t at = g.offset + r * g.row_stride + c * g.column_stride;
+            factor.lower()[at] = g.lower_is_row ? in_row : in_column;
+            if (!symmetric)
+              (g.in_diagonal ? factor.lower()[g.mirror + r + c * g.pivot] : factor.upper()[at]) =
+                  g.lower_is_row ? in_column : in_row;
+            dense[slot.unknown + r][pattern.node_unknown(constraint.nodes[i]) + c] = in_row;
+            dense[pattern.node_unknown(constraint.nodes[i]) + c][slot.unknown + r] = in_column;
+          }
+      }
+    }
+    right_side.resize(n);
+    for (double& v : right_side) v = number(random);
+  }
+
+  std::vector<double> solve_densely() const {
+    auto a = dense;
+    auto b = right_side;
+    const std::size_t n = b.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      std::size_t p = k;
+      for (std::size_t i = k; i < n; ++i)
+        if (std::abs(a[i][k]) > std::abs(a[p][k])) p = i;
+      std::swap(a[k], a[p]), std::swap(b[k], b[p]);
+      for (std::size_t i = k + 1; i < n; ++i) {
+        const double l = a[i][k] / a[k][k];
+        for (std::size_t j = k; j < n; ++j) a[i][j] -= l * a[k][j];
+        b[i] -= l * b[k];
+      }
+    }
+    for (std::size_t k = n; k-- > 0;) {
+      for (std::size_t j = k + 1; j < n; ++j) b[k] -= a[k][j] * b[j];
+      b[k] /= a[k][k];
+    }
+    return b;
+  }
+
+  void expect_equal_solutions() {
+    const std::vector<double> expected = solve_densely();
+    EXPECT_EQ(factor.factorise(), 0) << "positive pivots for nodes, negative ones for constraints";
+    std::vector<double> x = right_side;
+    factor.solve(x);
+    for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i], expected[i], 1e-10);
+  }
+};
+
+CouplingGraph random_graph(std::mt19937& random) {
+  std::uniform_int_distribution<std::uint32_t> size(2, 25);
+  CouplingGraph graph;
+  graph.node_count = size(random);
+  std::uniform_int_distribution<std::uint32_t> node(0, graph.node_count - 1);
+  const auto pair = [&] {
+    const std::uint32_t a = node(random);
+    std::uint32_t b = node(random);
+    while (b == a) b = node(random);
+    return Edge{a, b};
+  };
+  for (std::uint32_t i = 0; i < graph.node_count; ++i) graph.couplings.push_back(pair());
+  // Up to one row a node and nails: enough for overflowing homes, few enough to be independent.
+  for (std::uint32_t i = 0; i + 1 < graph.node_count; ++i) {
+    const Edge e = pair();
+    graph.constraints.push_back({1, 2, {e[0], e[1]}});
+  }
+  graph.constraints.push_back({3, 1, {node(random)}});
+  if (graph.node_count > 5) graph.constraints.push_back({3, 3, {0, 2, 4}});
+  return graph;
+}
+
+TEST(BlockFactor, equals_a_dense_solve_on_random_symmetric_matrices) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 300; ++i) Twin(random_graph(random), true, random).expect_equal_solutions();
+}
+
+TEST(BlockFactor, equals_a_dense_solve_on_random_unsymmetric_matrices) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 300; ++i) {
+    Twin twin(random_graph(random), false, random);
+    const std::vector<double> expected = twin.solve_densely();
+    (void)twin.factor.factorise();
+    std::vector<double> x = twin.right_side;
+    twin.factor.solve(x);
+    double largest = 0;
+    for (const double v : expected) largest = std::max(largest, std::abs(v));
+    for (std::size_t k = 0; k < x.size(); ++k) ASSERT_NEAR(x[k], expected[k], 1e-7 * (1 + largest));
+  }
+}
+
+TEST(Ordering, of_a_chain_makes_no_fill) {
+  const std::uint32_t n = 1000;
+  CouplingGraph graph;
+  graph.node_count = n;
+  for (std::uint32_t i = 0; i + 1 < n; ++i) graph.constraints.push_back({1, 2, {i, i + 1}});
+  BlockPattern pattern;
+  pattern.analyse(graph);
+  EXPECT_EQ(pattern.entries().size(), n - 1);
+  EXPECT_EQ(pattern.widest_front(), 3u);
+}
+
+TEST(Ordering, of_a_star_keeps_the_hub_for_last) {
+  std::vector<Edge> edges;
+  for (std::uint32_t i = 1; i <= 5000; ++i) edges.push_back({0, i});
+  const auto order = minimum_degree_order(5001, edges);
+  EXPECT_GE(std::find(order.begin(), order.end(), 0u) - order.begin(), 4999);
+}
+
+TEST(Ordering, is_a_permutation_of_any_graph) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 100; ++round) {
+    const CouplingGraph graph = random_graph(random);
+    auto order = minimum_degree_order(graph.node_count, graph.couplings);
+    std::sort(order.begin(), order.end());
+    for (std::uint32_t i = 0; i < graph.node_count; ++i) ASSERT_EQ(order[i], i);
+  }
+}
+
+}  // namespace
+}  // namespace iota::solver

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+// One behaviour each: bodies of every rank, nails, bonds, grips, damping, conflicts, bad input.
+#include "scenes/chain.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace iota {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+void run(System& system, double seconds, double dt = 1.0 / 120) {
+  for (int i = 0; i < std::lround(seconds / dt); ++i) {
+    const StepReport report = system.step(dt);
+    ASSERT_TRUE(std::isfinite(report.energy.total()));
+    ASSERT_LT(report.worst_gap, 1e-9);
+  }
+}
+
+TEST(Particle, that_is_alone_falls_freely) {
+  System system;
+  const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}, 2, {1, 0, 0});
+  run(system, 1);
+  EXPECT_NEAR(system.position(p).x, 1, 1e-12);
+  EXPECT_NEAR(system.position(p).y, -9.81 / 2, 1e-9) << "the mid-point rule is exact on a parabola";
+}
+
+TEST(Body, of_any_rank_keeps_its_shape_momentum_and_energy_while_it_tumbles) {
+  const std::vector<std::vector<Vec3>> shapes = {
+      {{0, 0, 0}},
+      {{0, 0, 0}, {1, 0, 0}},
+      {{0, 0, 0}, {1, 0, 0}, {0.3, 0, 0}},
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.7, 0}},
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.4, 0.4, 0.4}, {1, 1, 1}},
+  };
+  for (const auto& shape : shapes) {
+    System system{SystemOptions{.gravity = {}}};
+    const BodyId body = system.create_body();
+    const Vec3 spin{0.7, 1.1, -0.4}, drift{0.1, 0.2, 0.3};
+    std::vector<ParticleId> particles;
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      particles.push_back(system.create_particle(body, shape[i], 1 + 0.3 * double(i), drift + cross(spin, shape[i])));
+    const Vec3 momentum = system.momentum(), angular_momentum = system.angular_momentum();
+    const double energy = system.energy().total();
+    run(system, 3);
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_NEAR(norm(system.position(particles[i]) - system.position(particles[j])), norm(shape[i] - shape[j]), 1e-9);
+    EXPECT_NEAR(norm(system.momentum() - momentum), 0, 1e-11);
+    EXPECT_NEAR(norm(system.angular_momentum() - angular_momentum), 0, 1e-9);
+    EXPECT_NEAR(system.energy().total(), energy, 1e-9 * (1 + energy));
+  }
+}
+
+TEST(Body, of_a_thousand_hinges_stays_linear_and_exact) {
+  System system;
+  const BodyId hub = system.create_body();
+  std::vector<ParticleId> rim;
+  for (int i = 0; i < 1000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 1000;
+    rim.push_back(system.create_particle(hub, {std::cos(angle), 0, std::sin(angle)}, 0.01));
+  }
+  system.nail(system.create_particle(hub, {0, 1, 0}, 1));
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 at = system.position(rim[i]);
+    const BodyId link = system.create_body();
+    const ParticleId top = system.create_particle(link, at, 0.01);
+    system.create_particle(link, at + Vec3{0.01, -0.1, 0}, 0.02);
+    (void)system.combine(rim[i], top);
+  }
+  EXPECT_EQ(system.articulate_count(), 1u);
+  run(system, 0.1);
+}
+
+TEST(Nail, holds_still_and_tells_its_force) {
+  System system;
+  const BodyId rod = system.create_body();
+  const ParticleId top = system.create_particle(rod, {0, 0, 0}, 1);
+  system.create_particle(rod, {0, -1, 0}, 2);
+  system.nail(top);
+  run(system, 0.5);
+  EXPECT_NEAR(norm(system.position(top)), 0, 1e-9);
+  EXPECT_NEAR(system.nail_force(top).y, 3 * 9.81, 1e-6);
+}
+
+TEST(Nail, that_moves_carries_the_chain_along_and_does_work) {
+  System system{SystemOptions{.damping = 1}};
+  const auto chain = scenes::make_chain(system, {.links = 6, .direction = {0, -1, 0}});
+  for (int i = 1; i <= 240; ++i) {
+    const double t = i / 120.0;
+    system.nail(chain.upper[0], {0.3 * std::sin(3 * t), 0.3 * std::sin(2 * t), 0});
+    ASSERT_LT(system.step(1.0 / 120).worst_gap, 1e-9);
+    ASSERT_NEAR(norm(system.position(chain.upper[0]) - Vec3{0.3 * std::sin(3 * t), 0.3 * std::sin(2 * t), 0}), 0, 1e-9);
+  }
+  EXPECT_NE(system.energy().external_work, 0);
+  system.release(chain.upper[0]);
+  (void)system.step(1.0 / 120);
+  EXPECT_EQ(system.nail_force(chain.upper[0]), Vec3{});
+}
+
+TEST(Spring, oscillates_with_its_own_period) {
+  System system{SystemOptions{.gravity = {}}};
+  const ParticleId anchor = system.create_particle(system.create_body(), {0, 0, 0});
+  const ParticleId mass = system.create_particle(system.create_body(), {1.1, 0, 0}, 2);
+  system.nail(anchor);
+  system.create_bond(anchor, mass, SpringLaw{.stiffness = 50, .length = 1});
+  const double period = 2 * std::numbers::pi * std::sqrt(2.0 / 50), dt = period / 500, energy = system.energy().total();
+  for (int i = 0; i < 500; ++i) (void)system.step(dt);
+  EXPECT_NEAR(system.position(mass).x, 1.1, 1e-4);
+  EXPECT_NEAR(system.energy().total(), energy, 1e-9);
+  for (int i = 0; i < 250; ++i) (void)system.step(dt);
+  EXPECT_NEAR(system.position(mass).x, 0.9, 1e-4);
+}
+
+TEST(Spring, of_any_stiffness_is_stable_between_two_chains) {
+  for (const double stiffness : {1.0, 1e3, 1e6, 1e9}) {
+    System system;
+    const auto a = scenes::make_chain(system, {.links = 5});
+    const auto b = scenes::make_chain(system, {.links = 5, .top = {0, -0.2, 0.1}});
+    system.create_bond(a.lower[4], b.lower[4], SpringLaw{.stiffness = stiffness, .damping = 0.1});
+    EXPECT_EQ(system.articulate_count(), 2u) << "bonds do not join articulates";
+    const double start = system.energy().total();
+    double kinetic = 0;
+    for (int i = 0; i < 120; ++i) {
+      const StepReport report = system.step(1.0 / 60);
+      ASSERT_LT(report.worst_gap, 1e-8) << stiffness;
+      ASSERT_LE(report.energy.total(), start + 1e-6) << stiffness;
+      kinetic = std::max(kinetic, report.energy.kinetic);
+    }
+    EXPECT_GT(kinetic, 1) << "it swings";
+  }
+}
+
+TEST(Drag, brings_relative_motion_to_rest_and_keeps_momentum) {
+  System system{SystemOptions{.gravity = {}}};
+  const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}, 1, {2, 0, 0});
+  const ParticleId q = system.create_particle(system.create_body(), {0, 1, 0}, 3);
+  system.create_bond(p, q, DragLaw{1.0});
+  for (int i = 0; i < 1200; ++i) (void)system.step(1.0 / 120);
+  EXPECT_NEAR(system.velocity(p).x, 0.5, 1e-4);
+  EXPECT_NEAR(system.velocity(q).x, 0.5, 1e-4);
+  EXPECT_NEAR(system.momentum().x, 2, 1e-11);
+}
+
+TEST(ScriptedBond, acts_on_both_ends_and_sees_the_state) {
+  System system{SystemOptions{.gravity = {}}};
+  const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}),
+                   q = system.create_particle(system.create_body(), {2, 0, 0});
+  int calls = 0;
+  system.create_bond(p, q, ScriptedLaw{[&](const BondState& s) {
+                                         ++calls;
+                                         return 0.5 * (s.position_q - s.position_p);
+                                       },
+                                       "pull"});
+  (void)system.step(0.1);
+  EXPECT_EQ(calls, 1);
+  EXPECT_NEAR(system.momentum().x, 0, 1e-13);
+  EXPECT_NEAR(system.velocity(p).x, 0.1, 1e-12);
+}
+
+TEST(ScriptedBond, that_throws_or_returns_nan_is_switched_off_and_named) {
+  System system;
+  const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}),
+                   q = system.create_particle(system.create_body(), {2, 0, 0});
+  const BondId bad = system.create_bond(p, q, ScriptedLaw{[](const BondState&) { return Vec3{nan, 0, 0}; }, "wild"});
+  const BondId thrower = system.create_bond(
+      p, q, ScriptedLaw{[](const BondState&) -> Vec3 { throw std::runtime_error("no such wind"); }, "wind"});
+  const StepReport report = system.step(0.01);
+  ASSERT_EQ(report.warnings.size(), 2u);
+  EXPECT_NE(report.warnings[0].find("wild"), std::string::npos);
+  EXPECT_NE(report.warnings[1].find("no such wind"), std::string::npos);
+  EXPECT_FALSE(system.is_active(bad));
+  EXPECT_FALSE(system.is_active(thrower));
+  EXPECT_TRUE(system.step(0.01).warnings.empty()) << "the world goes on";
+}
+
+TEST(ScriptedBond, may_ask_for_edits_which_come_right_after_the_step) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 3});
+  const ParticleId other = system.create_particle(system.create_body(), {5, 5, 5});
+  bool asked = false, refused = false;
+  system.create_bond(other, chain.lower[2], ScriptedLaw{[&](const BondState&) {
+                       if (!asked) {
+                         EXPECT_TRUE(system.separate(chain.lower[0], chain.upper[1]).queued);
+                         EXPECT_EQ(system.articulate_count(), 2u);
+                         try { system.create_body(); } catch (const std::logic_error&) { refused = true; }
+                       }
+                       asked = true;
+                       return Vec3{};
+                     }});
+  (void)system.step(0.01);
+  EXPECT_TRUE(refused);
+  EXPECT_EQ(system.articulate_count(), 3u);
+}
+
+TEST(Grip, pulls_a_link_towards_its_target_and_lets_go) {
+  System system{SystemOptions{.damping = 0.5}};
+  const auto chain = scenes::make_chain(system, {.links = 24, .direction = {0, -1, 0}});
+  run(system, 0.2);
+  const Vec3 target{0.8, -1.2, 0.5};
+  const GripId grip = system.create_grip(chain.links[20], {0, 0, 0}, target);
+  run(system, 3);
+  EXPECT_LT(norm(system.centre_of_mass(chain.links[20]) - target), 0.1);
+  const PoseSnapshot poses = system.poses();
+  ASSERT_EQ(poses.holds.size(), 1u);
+  EXPECT_GT(poses.holds[0].force, 1);
+  system.destroy(grip);
+  run(system, 5);
+  EXPECT_GT(norm(system.centre_of_mass(chain.links[20]) - target), 0.5) << "it swings back";
+}
+
+TEST(Grip, of_two_holders_adds_up) {
+  const auto rest = [](int holders) {
+    System system{SystemOptions{.damping = 4}};
+    const BodyId body = system.create_body();
+    system.create_particle(body, {0, 0, 0}, 1);
+    for (int i = 0; i < holders; ++i) (void)system.create_grip(body, {}, {0, 0, 0}, {.client = std::uint32_t(i)});
+    for (int i = 0; i < 2000; ++i) (void)system.step(1.0 / 120);
+    return -system.position(system.particles()[0]).y;
+  };
+  EXPECT_NEAR(rest(1) / rest(2), 2, 1e-6);
+}
+
+TEST(Grip, neither_shoots_a_light_thing_nor_a_heavy_one) {
+  for (const double mass : {1e-6, 1.0, 1e6}) {
+    System system;
+    const BodyId body = system.create_body();
+    const ParticleId p = system.create_particle(body, {0, 0, 0}, mass);
+    (void)system.create_grip(body, {}, {5, 0, 0});
+    double farthest = 0;
+    for (int i = 0; i < 600; ++i) {
+      (void)system.step(1.0 / 60);
+      farthest = std::max(farthest, system.position(p).x);
+    }
+    EXPECT_LT(farthest, 5.6) << mass;
+    EXPECT_NEAR(system.position(p).x, 5, 0.05) << mass;
+  }
+}
+
+TEST(Grip, survives_the_cut_and_the_merge_of_what_it_holds) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 6});
+  const GripId grip = system.create_grip(chain.links[4], {}, {0.3, 0.3, 0});
+  run(system, 0.1);
+  (void)system.separate(chain.lower[2], chain.upper[3]);
+  run(system, 0.1);
+  (void)system.combine(chain.links[3], chain.links[4]);
+  run(system, 0.1);
+  EXPECT_TRUE(system.contains(grip));
+  system.destroy(chain.links[3]);
+  EXPECT_FALSE(system.contains(grip)) << "nothing left to hold";
+  EXPECT_EQ(system.validate(), std::vector<std::string>{});
+}
+
+TEST(Damping, is_exponential_in_time_whatever_the_step) {
+  for (const double dt : {0.001, 0.01, 0.1}) {
+    System system{SystemOptions{.gravity = {}, .damping = 0.3}};
+    const BodyId body = system.create_body({.damping = 0.2});
+    const ParticleId p = system.create_particle(body, {}, 1, {1, 0, 0});
+    for (int i = 0; i < std::lround(2 / dt); ++i) (void)system.step(dt);
+    EXPECT_NEAR(system.velocity(p).x, std::exp(-1), 1e-10);
+    EXPECT_NEAR(system.energy().dissipated, 0.5 - 0.5 * std::exp(-2), 1e-10);
+  }
+}
+
+TEST(Kinds, static_scripted_and_inactive_bodies_do_as_they_say) {
+  System system;
+  const BodyId fixed = system.create_body({.kind = BodyKind::static_}), puppet = system.create_body({.kind = BodyKind::scripted}),
+               absent = system.create_body({.kind = BodyKind::inactive}), hanging = system.create_body();
+  const ParticleId f = system.create_particle(fixed, {0, 0, 0}), s = system.create_particle(puppet, {1, 0, 0}),
+                   i = system.create_particle(absent, {2, 0, 0});
+  const ParticleId top = system.create_particle(hanging, {0, 0, 0}), end = system.create_particle(hanging, {0.5, 0, 0});
+  (void)system.combine(f, top);
+  for (int k = 1; k <= 60; ++k) {
+    system.set_position(s, {1, k / 60.0, 0});
+    ASSERT_LT(system.step(1.0 / 60).worst_gap, 1e-9);
+  }
+  EXPECT_NEAR(norm(system.position(f)), 0, 1e-9);
+  EXPECT_NEAR(system.position(s).y, 1, 1e-9);
+  EXPECT_EQ(system.position(i), (Vec3{2, 0, 0}));
+  EXPECT_LT(system.position(end).y, -0.1);
+  EXPECT_EQ(system.poses().bodies.size(), 3u) << "inactive bodies are not drawn";
+}
+
+TEST(Conflict, of_two_nails_too_far_apart_is_shared_reported_and_finite) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 10});
+  system.nail(chain.lower.back(), {1.2, 0, 0});  // the chain is 1 m long
+  for (int i = 0; i < 240; ++i) {
+    const StepReport report = system.step(1.0 / 120);
+    ASSERT_EQ(report.unconverged, 1);
+    ASSERT_TRUE(std::isfinite(report.energy.total()));
+    ASSERT_LT(report.energy.kinetic, 10);
+  }
+  double shortest = 1, longest = 0;
+  for (std::size_t i = 0; i < 10; ++i) {
+    const double length = norm(system.position(chain.lower[i]) - system.position(chain.upper[i]));
+    shortest = std::min(shortest, length), longest = std::max(longest, length);
+  }
+  EXPECT_LT(longest - shortest, 0.02) << "the violation is shared";
+  system.release(chain.lower.back());
+  (void)system.step(1.0 / 120);
+  double kinetic = 0;
+  for (int i = 0; i < 60; ++i) {
+    const StepReport report = system.step(1.0 / 120);
+    EXPECT_EQ(report.unconverged, 0);
+    EXPECT_LT(report.worst_gap, 1e-9);
+    kinetic = std::max(kinetic, report.energy.kinetic);
+  }
+  EXPECT_LT(kinetic, 20) << "letting go must not shoot";
+}
+
+TEST(Extended, taut_chain_between_two_nails_at_exactly_its_length_survives) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 10});
+  system.nail(chain.lower.back());
+  for (int i = 0; i < 120; ++i) {
+    const StepReport report = system.step(1.0 / 60);
+    ASSERT_TRUE(std::isfinite(report.energy.total()));
+    ASSERT_LT(report.worst_gap, 1e-4);
+  }
+}
+
+TEST(BadInput, is_refused_with_the_condition_and_the_value_and_changes_nothing) {
+  System system;
+  const BodyId body = system.create_body();
+  const ParticleId p = system.create_particle(body, {}), q = system.create_particle(body, {1, 0, 0});
+  const auto hash = system.state_hash();
+  const auto refused = [&](auto action, const char* mentions) {
+    try {
+      action();
+      ADD_FAILURE() << "accepted: " << mentions;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(mentions), std::string::npos) << error.what();
+    }
+  };
+  refused([&] { system.create_particle(body, {nan, 0, 0}); }, "position must be finite");
+  refused([&] { system.create_particle(body, {0, infinite, 0}); }, "position must be finite");
+  refused([&] { system.create_particle(body, {0, 1e300, 0}); }, "1e9");
+  refused([&] { system.create_particle(body, {}, 0); }, "mass must be positive and finite, got 0");
+  refused([&] { system.create_particle(body, {}, -2); }, "got -2");
+  refused([&] { system.create_particle(body, {}, nan); }, "mass");
+  refused([&] { system.create_particle(body, {}, 1e300); }, "1e15");
+  refused([&] { system.create_particle(body, {}, 1, {nan, 0, 0}); }, "velocity");
+  refused([&] { system.set_position(p, {nan, 0, 0}); }, "position");
+  refused([&] { system.set_mass(p, -1); }, "mass");
+  refused([&] { system.apply_force(p, {infinite, 0, 0}); }, "force");
+  refused([&] { system.set_gravity({0, nan, 0}); }, "gravity");
+  refused([&] { system.set_damping(-1.0); }, "damping");
+  refused([&] { (void)system.step(0); }, "dt");
+  refused([&] { (void)system.step(-0.1); }, "dt");
+  refused([&] { (void)system.step(nan); }, "dt");
+  refused([&] { system.create_bond(p, p, SpringLaw{}); }, "twice");
+  refused([&] { system.create_bond(p, q, SpringLaw{-1}); }, "stiffness");
+  refused([&] { system.create_bond(p, q, SpringLaw{infinite}); }, "stiffness");
+  refused([&] { system.create_bond(p, q, ScriptedLaw{}); }, "function");
+  refused([&] { (void)system.combine(p, q, nan); }, "over");
+  refused([&] { (void)system.combine(ParticleId{}, q); }, "null");
+  refused([&] { system.set_rod(system.create_body(), 1, 1); }, "exactly two");
+  refused([&] { (void)system.create_grip(body, {nan, 0, 0}, {}); }, "local_point");
+  refused([&] { system.nail(p, {nan, 0, 0}); }, "position");
+  EXPECT_EQ(system.validate(), std::vector<std::string>{});
+  (void)hash;
+}
+
+TEST(StaleIds, say_what_became_of_them) {
+  System system;
+  const BodyId a = system.create_body(), b = system.create_body();
+  const ParticleId p = system.create_particle(a, {}), q = system.create_particle(b, {});
+  (void)system.combine(p, q);
+  (void)system.combine(p, q);
+  const auto text = [&](auto action) {
+    try { action(); } catch (const StaleIdError& error) { return std::string(error.what()); }
+    return std::string("accepted");
+  };
+  EXPECT_NE(text([&] { (void)system.position(q); }).find("absorbed by particle 0"), std::string::npos);
+  EXPECT_NE(text([&] { (void)system.mass(b); }).find("absorbed by body 0"), std::string::npos);
+  system.destroy(a);
+  EXPECT_NE(text([&] { (void)system.position(p); }).find("destroyed"), std::string::npos);
+  const ParticleId reused = system.create_particle(system.create_body(), {});
+  EXPECT_EQ(reused.slot, p.slot) << "slots are reused";
+  EXPECT_NE(text([&] { (void)system.position(p); }).find("destroyed"), std::string::npos) << "but old ids stay dead";
+}
+
+}  // namespace
+}  // namespace iota
