@@ -30,7 +30,7 @@ class Integrator {
   void compile(Problem& problem);
 
   /// Positions, velocities and multipliers of `problem` become those after h seconds.
-  /// mid_point halves the step (to a sixteenth) when a link turns more than 0.7 rad in it or Newton fails, and then
+  /// mid_point halves the step (to a sixteenth) when a link turns more than 1.1 rad in it or Newton fails, and then
   /// falls back to end_point. Constraints that are violated at the start are first closed by moving positions only; what
   /// cannot be closed is held as it is during the step, so that a conflict neither shakes nor heats the world.
   AdvanceReport advance(Problem& problem, double h, Scheme scheme);
@@ -44,11 +44,14 @@ class Integrator {
   const Newton& newton() const { return newton_; }
 
  private:
+  void make_guess(const Problem&, const Stage&);
   bool try_step(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);
   void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   void advance_end_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
+  bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;
+  void smooth_multipliers(Problem&) const;
   bool gains_energy(const Problem&, const Stage&);
   void save_multipliers(const Problem&);
   void restore_multipliers(Problem&) const;
@@ -57,6 +60,7 @@ class Integrator {
 
   Newton newton_;
   std::vector<Vec3> guess_, velocity_;
+  std::vector<double> lumped_mass_;
   std::vector<double> multipliers_saved_;
   bool conservative_ = true;  ///< nothing outside does work during this step
   bool holds_offsets_ = false;

@@ -10,7 +10,6 @@ namespace iota::solver {
 namespace {
 
 constexpr int max_halvings = 12;
-constexpr double tolerance = 1e-10;        // of the scaled residual
 constexpr double largest_violation = 1e-6; // that still counts as met
 constexpr double round_off = 4e-15;        // of the largest scaled force: below it a residual is noise
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -315,7 +314,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   NewtonReport report;
   report.residual = residual<Midpoint>(problem, stage, x_.data());
   Hessian hessian = Hessian::exact;
-  while (report.residual > tolerance && report.iterations < stage.max_iterations) {
+  while (report.residual > stage.tolerance && report.iterations < stage.max_iterations) {
     ++report.iterations;
     if (assemble_and_factor<Midpoint>(problem, stage, hessian) > 0 && hessian == Hessian::exact)
       (void)assemble_and_factor<Midpoint>(problem, stage, Hessian::clamped);
@@ -356,7 +355,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   }
   report.violation = violation_;
   const bool exact = stage.compliance <= 1e-12;
-  report.converged = report.residual <= tolerance && (!exact || violation_ <= largest_violation);
+  report.converged = report.residual <= stage.tolerance && (!exact || violation_ <= largest_violation);
   return report;
 }
 
