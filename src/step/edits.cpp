@@ -249,7 +249,8 @@ void System::Implementation::apply(const step::SetActive& c) {
 // --- structural edits -------------------------------------------------------------------------------------------------
 
 template <class EditFunction>
-RestructureReport System::Implementation::restructure(std::vector<std::uint32_t> touched, EditFunction edit) {
+RestructureReport System::Implementation::restructure(std::vector<std::uint32_t> touched, bool gentle,
+                                                      EditFunction edit) {
   RestructureReport report;
   report.articulates_before = model.articulates.size();
 
@@ -259,8 +260,12 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
     if (std::find(touched.begin(), touched.end(), g.body) != touched.end()) held.push_back({slot, grip_point(model, g)});
   });
 
-  const double kinetic = model.kinetic_energy(), potential = model.potential_energy();
-  const Vec3 momentum = model.momentum(), angular_momentum = model.angular_momentum();
+  double kinetic = 0, potential = 0;
+  Vec3 momentum, angular_momentum;
+  if (!gentle) {
+    kinetic = model.kinetic_energy(), potential = model.potential_energy();
+    momentum = model.momentum(), angular_momentum = model.angular_momentum();
+  }
   const model::Edit owed = edit(report);
   if (!report.changed) {
     report.articulates_after = report.articulates_before;
@@ -337,6 +342,11 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
     }
   }
 
+  report.articulates_after = model.articulates.size();
+  structure_changed();
+  report.structure_version = model.structure_version;
+  if (gentle) return report;
+
   const double kinetic_now = model.kinetic_energy(), potential_now = model.potential_energy();
   report.energy_change = kinetic_now + potential_now - kinetic - potential;
   model.edit_energy += report.energy_change;
@@ -346,9 +356,6 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
   if (!pinned && spin_change > 1e-9 * (norm(angular_momentum) + 1e-3 * spin_change))
     report.notes.push_back("what is left (a point, a rod, or bodies almost in one place) cannot carry all of the angular "
                            "momentum; angular_momentum_change tells the rest");
-  report.articulates_after = model.articulates.size();
-  structure_changed();
-  report.structure_version = model.structure_version;
   return report;
 }
 
@@ -359,7 +366,7 @@ RestructureReport System::Implementation::apply(const step::CombineParticles& c)
   const double distance = norm(model.position(q) - model.position(p));
   const bool unrelated = body_p != body_q && model.particles[p].ring != model.particles[q].ring;
   if (c.over > 0 && unrelated && distance > 1e-9) {
-    return restructure({body_p, body_q}, [&](RestructureReport& report) {
+    return restructure({body_p, body_q}, false, [&](RestructureReport& report) {
       model.closings.for_each([&](std::uint32_t, const model::Closing& other) {
         if ((other.p == p && other.q == q) || (other.p == q && other.q == p))
           throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));
@@ -374,7 +381,11 @@ RestructureReport System::Implementation::apply(const step::CombineParticles& c)
       return model::Edit{false, true};
     });
   }
-  return restructure({body_p, body_q},
+  const model::Ring& ring_p = model.rings[model.particles[p].ring];
+  const model::Ring& ring_q = model.rings[model.particles[q].ring];
+  const bool gentle = unrelated && ring_p.position == ring_q.position && ring_p.velocity == ring_q.velocity &&
+                      !ring_p.nailed && !ring_q.nailed;
+  return restructure({body_p, body_q}, gentle,
                      [&](RestructureReport& report) { return combine_particles(model, p, q, report); });
 }
 
@@ -382,12 +393,14 @@ RestructureReport System::Implementation::apply(const step::CombineBodies& c) {
   const std::uint32_t a = require(c.a), b = require(c.b);
   for (const std::uint32_t body : {a, b})
     if (model.bodies[body].count == 0) throw std::invalid_argument(text("combine: body ", body, " has no particles"));
-  return restructure({a, b}, [&](RestructureReport& report) { return combine_bodies(model, a, b, report); });
+  return restructure({a, b}, false, [&](RestructureReport& report) { return combine_bodies(model, a, b, report); });
 }
 
 RestructureReport System::Implementation::apply(const step::Separate& c) {
   const std::uint32_t p = require(c.p), q = require(c.q);
-  return restructure({model.particles[p].body, model.particles[q].body},
+  const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
+  const bool gentle = p == q || body_p != body_q;
+  return restructure({body_p, body_q}, gentle,
                      [&](RestructureReport& report) { return separate_particles(model, p, q, report); });
 }
 
@@ -400,7 +413,7 @@ void System::Implementation::apply(const step::Nail& c) {
     ring.nail = position;  // moves there during the next step
     return;
   }
-  (void)restructure({model.particles[particle].body}, [&](RestructureReport& report) {
+  (void)restructure({model.particles[particle].body}, false, [&](RestructureReport& report) {
     report.changed = true;
     const bool moved = ring.position != position;
     ring.nailed = 1;

@@ -64,8 +64,9 @@ struct System::Implementation {
   std::uint32_t require(GripId) const;
 
   /// Runs a structural edit and settles its physics: positions, velocities, momenta, energy; fills the report.
+  /// `gentle` edits move nothing and no mass, so there is nothing to measure and their cost does not grow with the system.
   template <class EditFunction>
-  RestructureReport restructure(std::vector<std::uint32_t> touched_bodies, EditFunction edit);
+  RestructureReport restructure(std::vector<std::uint32_t> touched_bodies, bool gentle, EditFunction edit);
 
   void run_scripts(StepReport&);
   void finish_closings(StepReport&);
