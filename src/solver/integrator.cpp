@@ -8,7 +8,7 @@ namespace iota::solver {
 
 namespace {
 
-constexpr int max_depth = 4;              // sub-steps down to a sixteenth
+constexpr int max_depth = 6;              // sub-steps down to a 64th: a whip needs them, for a few steps
 constexpr double max_turn = 1.1;          // rad: a mid-point step that turns a link further is halved
 constexpr double max_turn_cosine = 0.4536;
 constexpr double standing_gap = 1e-6;  // relative start gap beyond which positions are projected before the step
@@ -190,13 +190,29 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
   if (least_violation(problem, stage, report)) {
     commit(problem, stage, report);
   } else {
-    // Nothing could be found: the world stays where it is and comes to rest. Plausible, finite, and reported.
-    restore_multipliers(problem);
-    const double lost = problem.kinetic_energy();
-    std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
-    report.dissipated += lost;
-    ++report.substeps;
+    coast(problem, h, report);
   }
+}
+
+// The last resort keeps moving: points fly on by their velocities, and positions and velocities are projected on the
+// constraints. First order and not energy-keeping, but plausible, finite, and reported.
+void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
+  restore_multipliers(problem);
+  const double before = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  const std::vector<Vec3> start = problem.position;  // allocates: this is no warm step
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    problem.velocity[i] += h * problem.gravity;
+    problem.position[i] += h * problem.velocity[i];
+  }
+  (void)project_positions(problem);
+  project_velocities(problem);
+  const double after = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  if (!std::isfinite(after)) {
+    problem.position = start;
+    std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
+  }
+  report.dissipated += before - problem.kinetic_energy() - problem.potential_energy(problem.position.data());
+  ++report.substeps;
 }
 
 bool Integrator::least_violation(Problem& problem, Stage stage, AdvanceReport& report) {

@@ -30,7 +30,7 @@ class Integrator {
   void compile(Problem& problem);
 
   /// Positions, velocities and multipliers of `problem` become those after h seconds.
-  /// mid_point halves the step (to a sixteenth) when a link turns more than 1.1 rad in it or Newton fails, and then
+  /// mid_point halves the step (to a 64th) when a link turns more than 1.1 rad in it or Newton fails, and then
   /// falls back to end_point. Constraints that are violated at the start are first closed by moving positions only; what
   /// cannot be closed is held as it is during the step, so that a conflict neither shakes nor heats the world.
   AdvanceReport advance(Problem& problem, double h, Scheme scheme);
@@ -56,6 +56,7 @@ class Integrator {
   void save_multipliers(const Problem&);
   void restore_multipliers(Problem&) const;
   bool least_violation(Problem&, Stage, AdvanceReport&);
+  void coast(Problem&, double h, AdvanceReport&);
   void close_gaps(Problem&, AdvanceReport&);
 
   Newton newton_;

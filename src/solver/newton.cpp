@@ -347,7 +347,8 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
         report.residual = after;
         return report;  // stuck
       }
-      hessian = Hessian::clamped;
+      // A full step that merely helped is no reason to give up quadratic convergence: wrong pivots would tell.
+      hessian = halvings == 0 && after < before ? Hessian::exact : Hessian::clamped;
     } else {
       hessian = Hessian::exact;
     }

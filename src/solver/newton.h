@@ -20,11 +20,11 @@ struct Stage {
   double compliance = 1e-12;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
 
   double tolerance = 1e-9;    ///< of the scaled residual; gaps end at about this fraction of a link
-  int max_iterations = 40;
+  int max_iterations = 60;
 
   bool is_projection() const { return h == 0; }
   static Stage end_point(double h, double fraction) { return {.h = h, .inertia = 1 / (h * h), .fraction = fraction}; }
-  static Stage mid_point(double h, double fraction) { return {.h = h, .inertia = 2 / (h * h), .midpoint = true, .fraction = fraction, .tolerance = 1e-10}; }
+  static Stage mid_point(double h, double fraction) { return {.h = h, .inertia = 2 / (h * h), .midpoint = true, .fraction = fraction, .tolerance = 1e-10, .max_iterations = 30}; }
   static Stage projection(double compliance = 1e-12) { return {.compliance = compliance, .tolerance = 1e-11}; }
 };
 

@@ -1,0 +1,269 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the engine's benchmarks and the packaged peers in one go and prints tables of ratios.
+
+    make bench                                       # build first, then this
+    python bench/run_bench.py --quick                # 8, 64 and 512 links, short
+    python bench/run_bench.py --no-peers --filter 'chain/rod/robust/120/512/'
+
+Everything runs on one core, one program after the other. The engine's chains run first and last, and each case keeps
+the faster of the two; how far the two differ is printed, since that is how far to trust a ratio. Results go to
+build/bench/results.json and build/bench/results.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+RESULTS = ROOT / "build" / "bench"
+LINKS = (8, 64, 512, 4096, 16384)
+AIM_US = {"robust": 0.35, "energy_keeping": 1.0}
+"""What a link and step may cost, microseconds."""
+
+Row = dict[str, Any]
+
+
+# --- running ---------------------------------------------------------------------------------------------------------
+
+
+def pin_to_one_core() -> int:
+    """Keeps this process and all that it starts on the last core it may use; returns its number, or -1."""
+    if not hasattr(os, "sched_setaffinity"):
+        return -1
+    core = max(os.sched_getaffinity(0))
+    os.sched_setaffinity(0, {core})
+    return core
+
+
+def run_engine(binary: Path, pattern: str) -> list[Row]:
+    """The cases of Google Benchmark whose names match, in their order."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "engine.json"
+        subprocess.run(
+            [binary, f"--benchmark_filter={pattern}", f"--benchmark_out={out}", "--benchmark_out_format=json",
+             "--benchmark_min_time=0.1"],
+            check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        # Google Benchmark writes nan and inf as they are, which is no JSON.
+        cases: list[Row] = json.loads(re.sub(r": -?(nan|inf)\b", ": null", out.read_text()))["benchmarks"]
+    return cases
+
+
+def faster_of(first: list[Row], second: list[Row]) -> tuple[list[Row], float]:
+    """The first list with each case's faster twin, and the median of slower / faster."""
+    spread, best = [], []
+    again = {case["name"]: case for case in second}
+    for a in first:
+        if a["name"] not in again:
+            best.append(a)
+            continue
+        b = again[a["name"]]
+        times = sorted((a["cpu_time"], b["cpu_time"]))
+        spread.append(times[1] / times[0] if times[0] > 0 else 1.0)
+        best.append(a if a["cpu_time"] <= b["cpu_time"] else b)
+    return best, sorted(spread)[len(spread) // 2] if spread else 1.0
+
+
+def run_peers(links: Sequence[int], hz: Sequence[int], cap: float) -> list[Row]:
+    """Every peer's row, with a line of progress for each."""
+    command = [sys.executable, str(HERE / "peers" / "run.py"), "--cap", str(cap)]
+    command += ["--links", *map(str, links), "--hz", *map(str, hz)]
+    rows: list[Row] = []
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout
+        for line in process.stdout:
+            if line.startswith("{"):
+                rows.append(json.loads(line))
+                show(
+                    f"peers: {rows[-1]['engine']} {rows[-1]['setting']}, {rows[-1]['links']} links, {rows[-1]['hz']} Hz"
+                )
+    return rows
+
+
+def show(text: str) -> None:
+    """A line of progress."""
+    print(f"[bench] {text}", file=sys.stderr, flush=True)
+
+
+# --- tables ----------------------------------------------------------------------------------------------------------
+
+
+def chain_row(case: Row) -> Row:
+    """An engine case chain/LINK/MODE/HZ/LINKS in the shape of a peer's row."""
+    _, link, mode, hz, links = case["name"].split("/")[:5]
+    warnings = [f"{case[key]:.0f} {key}" for key in ("fallbacks", "unconverged") if case[key]]
+    return {
+        "engine": "iota", "setting": f"{mode} {link}", "link": link, "mode": mode, "links": int(links), "hz": int(hz),
+        "us_per_link_step": case["us_per_link_step"], "worst_gap_m": case["gap_m"],
+        "energy_end": case["energy_change"], "energy_gain": case["energy_gain"], "simulated_s": case["simulated_s"],
+        "iterations_mean": case["iterations_mean"], "iterations_max": case["iterations_max"],
+        "step_ms_p50": case.get("step_ms_p50"), "step_ms_p99": case.get("step_ms_p99"), "blew_up": "",
+        "note": ", ".join(warnings),
+    }  # fmt: skip
+
+
+def text_of(value: float | None, style: str) -> str:
+    """A number for a table; a dash where there is none."""
+    return "-" if value is None else format(value, style)
+
+
+def table(title: str, head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
+    """A Markdown table that is also straight to the eye; nothing without lines."""
+    if not lines:
+        return ""
+    widths = [max(len(row[i]) for row in [head, *lines]) for i in range(len(head))]
+
+    def draw(row: Sequence[str]) -> str:
+        return "| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) + " |"
+
+    return "\n".join([f"### {title}", "", draw(head), draw(["-" * width for width in widths]), *map(draw, lines), ""])
+
+
+def chain_tables(rows: Sequence[Row]) -> list[str]:
+    """One table for each length and step: ratios to iota's robust rod, the twin of what the peers simulate."""
+    head = [
+        "engine",
+        "setting",
+        "ratio",
+        "us/link/step",
+        "worst gap m",
+        "energy end",
+        "gain",
+        "Newton",
+        "s",
+        "stays whole",
+    ]
+    tables = []
+    for hz in sorted({row["hz"] for row in rows}, reverse=True):
+        for links in sorted({row["links"] for row in rows}):
+            here = [row for row in rows if row["links"] == links and row["hz"] == hz]
+            base = next((r["us_per_link_step"] for r in here if r["setting"] == "robust rod"), None)
+            lines = []
+            for row in here:
+                cost = row["us_per_link_step"]
+                newton = (
+                    f"{row['iterations_mean']:.1f}/{row['iterations_max']:.0f}" if "iterations_mean" in row else "-"
+                )
+                whole = row.get("blew_up") or ("yes" if row.get("simulated_s", 0) >= 9.99 else "so far" if cost else "")
+                whole = ", ".join(part for part in (whole, row.get("note")) if part)
+                lines.append([
+                    row["engine"], row["setting"], text_of(cost / base if cost and base else None, ".2f"),
+                    text_of(cost, ".3f"), text_of(row.get("worst_gap_m"), ".1e"), text_of(row.get("energy_end"), ".1e"),
+                    text_of(row.get("energy_gain"), ".0e"), newton, text_of(row.get("simulated_s"), ".1f"), whole,
+                ])  # fmt: skip
+            tables.append(table(f"{links} links, 1/{hz} s", head, lines))
+    return tables
+
+
+def summary_table(rows: Sequence[Row]) -> str:
+    """What a link costs against the aim, and how flat that is in the length of the chain."""
+    head = ["mode", "link", "1/h", *map(str, sorted({r["links"] for r in rows})), "longest / 64", "Newton mean/max"]
+    lines = []
+    for key in dict.fromkeys((r["mode"], r["link"], r["hz"]) for r in rows):
+        here = sorted((r for r in rows if (r["mode"], r["link"], r["hz"]) == key), key=lambda r: r["links"])
+        cost = {r["links"]: r["us_per_link_step"] for r in here}
+        flat = cost[max(cost)] / cost[64] if 64 in cost else None
+        lines.append([
+            key[0], key[1], str(key[2]),
+            *(f"{cost[n]:.3f} ({cost[n] / AIM_US[key[0]]:.2f})" if n in cost else "-" for n in map(int, head[3:-2])),
+            text_of(flat, ".2f"),
+            f"{max(r['iterations_mean'] for r in here):.1f}/{max(r['iterations_max'] for r in here):.0f}",
+        ])  # fmt: skip
+    return table(
+        "iota: us per link and step (in parentheses: over the aim of 0.35 robust, 1 energy-keeping)", head, lines
+    )
+
+
+def frame_table(rows: Sequence[Row]) -> str:
+    """A chain of 2000 links against a sixtieth of a second."""
+    lines = [
+        [r["mode"], r["link"], str(r["hz"]), f"{r['step_ms_p50']:.2f}", f"{r['step_ms_p99']:.2f}",
+         f"{r['hz'] / 60 * r['step_ms_p99'] / (1000 / 60):.2f}"]
+        for r in rows if r["links"] == 2000
+    ]  # fmt: skip
+    head = ["mode", "link", "1/h", "step ms median", "99 %", "share of a 60 Hz frame (99 %)"]
+    return table("2000 links at 60 frames a second", head, lines)
+
+
+def other_table(cases: Sequence[Row]) -> str:
+    """Edits, building, snapshots: cost a link or edit, and over one step of one link of the same chain."""
+    lines = []
+    step = next((c["us_per_link_step"] for c in cases if c["name"].startswith("chain/rod/robust/120/64/")), None)
+    for case in cases:
+        if case["name"].startswith("chain/"):
+            continue
+        unit = next(key for key in ("us_per_edit", "us_per_link_step", "us_per_link") if key in case)
+        ratio = text_of(case[unit] / step if step else None, ".2f")
+        note = f"{case['bytes_per_link']:.0f} bytes a link" if "bytes_per_link" in case else ""
+        lines.append([case["name"], f"{case[unit]:.3f}", unit, ratio, note])
+    return table("Edits and snapshots", ["case", "us", "of", "over a robust rod's step (64 links)", ""], lines)
+
+
+def main() -> int:
+    """Runs what was asked for; 1 when the engine's benchmarks are not built."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--binary", type=Path, default=ROOT / "build" / "iota_bench")
+    parser.add_argument("--quick", action="store_true", help="8, 64 and 512 links, peers for at most 2 s a row")
+    parser.add_argument("--cap", type=float, default=5, help="most seconds of wall clock a peer's row")
+    parser.add_argument("--hz", nargs="+", type=int, default=[60, 120])
+    parser.add_argument("--filter", default="", help="of the engine's cases, a regular expression")
+    parser.add_argument("--no-peers", action="store_true")
+    parser.add_argument("--json", action="store_true", help="print results.json in place of the tables")
+    options = parser.parse_args()
+    if not options.binary.is_file():
+        print(f"run_bench.py: {options.binary} is not built; try: make bench", file=sys.stderr)
+        return 1
+    links = LINKS[:3] if options.quick else LINKS
+    pattern = options.filter or (f"chain/.*/({'|'.join(map(str, links))})/" if options.quick else ".")
+    core, began = pin_to_one_core(), time.time()
+
+    show("engine, first time")
+    first = run_engine(options.binary, pattern)
+    peers = [] if options.no_peers else run_peers(links, options.hz, 2 if options.quick else options.cap)
+    show("engine, second time")
+    cases, spread = faster_of(first, run_engine(options.binary, pattern if pattern != "." else "^chain/"))
+
+    own = [chain_row(case) for case in cases if case["name"].startswith("chain/")]
+    own = [row for row in own if row["hz"] in options.hz]
+    parts = [
+        "# Benchmarks\n",
+        f"{platform.machine()}, one core ({core}), load {os.getloadavg()[0]:.1f}; the engine's two runs differ by "
+        f"{100 * (spread - 1):.0f} % (median): trust ratios no further.\n"
+        "Time: processor time inside the step, mean over the run. Energies: over the largest kinetic energy. "
+        "`ratio`: to iota's robust rod in the same table.\n",
+    ]  # fmt: skip
+    if own:
+        parts.append(summary_table([row for row in own if row["links"] != 2000]))
+        parts.append(frame_table(own))
+        parts += chain_tables([row for row in own if row["links"] != 2000] + peers)
+    parts.append(other_table(cases))
+    text = "\n".join(part for part in parts if part)
+
+    RESULTS.mkdir(parents=True, exist_ok=True)
+    result = {
+        "when": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)), "machine": platform.machine(),
+        "python": platform.python_version(), "spread": spread, "chain": own, "peers": peers,
+        "other": [case for case in cases if not case["name"].startswith("chain/")],
+    }  # fmt: skip
+    (RESULTS / "results.json").write_text(json.dumps(result, indent=1) + "\n")
+    (RESULTS / "results.md").write_text(text)
+    print(json.dumps(result) if options.json else text)
+    show(f"{time.time() - began:.0f} s; written to {RESULTS / 'results.json'} and results.md")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What README and tutorial tell people to type is run here."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+
+def blocks(page: Path) -> list[str]:
+    """The Python blocks of a Markdown page."""
+    return re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S)
+
+
+def test_every_block_of_the_tutorial_runs() -> None:
+    names: dict[str, object] = {}
+    found = blocks(ROOT / "docs" / "tutorial.md")
+    assert len(found) >= 7
+    for number, block in enumerate(found, start=1):
+        exec(compile(block, f"docs/tutorial.md, block {number}", "exec"), names)
+
+
+def test_the_script_in_the_readme_is_the_example_and_at_most_twenty_lines_long() -> None:
+    (script,) = blocks(ROOT / "README.md")
+    example = (ROOT / "examples" / "python" / "pendulum.py").read_text()
+    assert example.removeprefix("# SPDX-License-Identifier: Apache-2.0\n") == script
+    assert len(script.splitlines()) <= 20
