@@ -77,31 +77,28 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
 }
 
 void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& report) {
-  const auto x1 = newton_.solution();
-  const double before = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  const Vec3* const x0 = problem.position.data();
+  const Vec3* const x1 = newton_.solution().data();
+  const double before = problem.kinetic_energy() + problem.potential_energy(x0);
   double work = 0;
-  const auto add_work = [&](const auto& pool) {
-    const ForceStage force_stage{stage.h, stage.midpoint, false};
-    for (const auto& f : pool.items) {
-      const Vec3 e0 = f.arm.value(problem.position.data()), e1 = f.arm.value(x1.data());
-      work += dot(f.force(e0, e1, force_stage), e1 - e0) + f.energy(e1) - f.energy(e0);
-    }
-  };
-  add_work(std::get<ForcePool<GripForce>>(problem.forces));
-  for (const auto& c : std::get<ConstraintPool<AffineConstraint>>(problem.constraints).items)
-    if (c.target != c.target_start) {
-      const auto& pool = std::get<ConstraintPool<AffineConstraint>>(problem.constraints);
-      const double* l = pool.multiplier(static_cast<std::size_t>(&c - pool.items.data()));
-      Vec3 moved;
-      for (std::uint32_t i = 0; i < c.count; ++i)
-        moved += c.weights[i] * (x1[c.nodes[i]] - problem.position[c.nodes[i]]);
-      work -= dot(Vec3{l[0], l[1], l[2]}, moved);
-    }
+  const ForceStage force_stage{stage.h, stage.midpoint, false};
+  for (const auto& f : std::get<ForcePool<GripForce>>(problem.forces).items) {
+    const Vec3 e0 = f.arm.value(x0), e1 = f.arm.value(x1);
+    work += dot(f.force(e0, e1, force_stage), e1 - e0);
+  }
+  const auto& affines = std::get<ConstraintPool<AffineConstraint>>(problem.constraints);
+  for (std::size_t k = 0; k < affines.items.size(); ++k) {
+    const AffineConstraint& c = affines.items[k];
+    if (c.target == c.target_start) continue;
+    const double* const l = affines.multiplier(k);
+    Vec3 moved;
+    for (std::uint32_t i = 0; i < c.count; ++i) moved += c.weights[i] * (x1[c.nodes[i]] - x0[c.nodes[i]]);
+    work -= dot(Vec3{l[0], l[1], l[2]}, moved);
+  }
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const Vec3 moved = x1[i] - problem.position[i];
     work += dot(problem.force[i], moved);
-    problem.velocity[i] =
-        stage.midpoint ? (2 / stage.h) * moved - problem.velocity[i] : (1 / stage.h) * moved;
+    problem.velocity[i] = stage.midpoint ? (2 / stage.h) * moved - problem.velocity[i] : (1 / stage.h) * moved;
     problem.position[i] = x1[i];
   }
   const double after = problem.kinetic_energy() + problem.potential_energy(problem.position.data());

@@ -279,7 +279,7 @@ double Newton::merit(const Problem& problem, const Stage& stage, const Vec3* x) 
     const auto u = [&](std::uint32_t i) { return x[i] - problem.position[i] - stage.h * problem.velocity[i]; };
     value += stage.inertia * c.mass * dot(u(c.a), u(c.b));
   }
-  if (!stage.is_projection()) value += problem.potential_energy(x);
+  if (!stage.is_projection()) value += problem.potential_energy(x, true);
   std::size_t index = 0;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {

@@ -6,11 +6,12 @@
 
 namespace iota::solver {
 
-double Problem::potential_energy(const Vec3* x) const {
+double Problem::potential_energy(const Vec3* x, bool with_external) const {
   double energy = 0;
   for (std::size_t i = 0; i < size(); ++i) energy -= mass[i] * dot(gravity, x[i]);
   for (const auto& c : mass_couplings) energy -= c.mass * dot(gravity, x[c.a] + x[c.b]);
-  for_each_force_pool([&](const auto& pool) {
+  for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
+    if (F::is_external && !with_external) return;
     for (const auto& f : pool.items) energy += f.energy(f.arm.value(x));
   });
   return energy;

@@ -96,8 +96,8 @@ struct Problem {
     return sum;
   }
   double kinetic_energy() const { return 0.5 * mass_norm2(velocity.data()); }
-  /// Gravity and implicit forces.
-  double potential_energy(const Vec3* x) const;
+  /// Gravity and implicit forces; external ones (hands) are no part of the world's energy, only of Newton's merit.
+  double potential_energy(const Vec3* x, bool with_external = false) const;
   /// Largest violation at x, m, with targets as at `fraction` of the step; with `relative`, as a fraction of each constraint's reference length.
   double worst_gap(const Vec3* x, double fraction = 1, bool relative = false) const;
 };

@@ -28,13 +28,16 @@ StepReport System::Implementation::apply(const step::Step& command) {
 
   // 2. Islands whose structure changed are analysed anew; velocities that were assigned are made consistent.
   islands.update(model);
+  std::vector<std::uint32_t> jolted;
   model.articulates.for_each([&](std::uint32_t slot, model::Articulate& a) {
-    if (!a.jolted) return;
+    if (a.jolted) jolted.push_back(slot);
     a.jolted = 0;
-    const double before = model.kinetic_energy();
-    (void)islands.of_articulate(slot)->settle(model, false);
-    model.edit_energy += model.kinetic_energy() - before;
   });
+  if (!jolted.empty()) {
+    const double before = model.kinetic_energy();
+    for (const std::uint32_t articulate : jolted) (void)islands.of_articulate(articulate)->settle(model, false);
+    model.edit_energy += model.kinetic_energy() - before;
+  }
 
   // 3. Every island by itself, in a fixed order.
   int solves = 0, iterations = 0;

@@ -210,7 +210,9 @@ void System::Implementation::apply(const step::SetPosition& c) {
     return apply(step::Nail{c.particle, false, c.value});  // carried there during the next step
   const std::uint32_t ring = model.particles[particle].ring;
   model::Ring& r = model.rings[ring];
+  const double before = model.potential_energy();
   r.position = c.value;
+  model.edit_energy += model.potential_energy() - before;
   if (r.nailed) r.nail = r.nail_before = c.value;
   model.for_each_in_ring(ring, [&](std::uint32_t p) {
     model.rebuild_basis(model.particles[p].body);
@@ -222,7 +224,9 @@ void System::Implementation::apply(const step::SetPosition& c) {
 void System::Implementation::apply(const step::SetVelocity& c) {
   const std::uint32_t particle = require(c.particle);
   require_finite("velocity", c.value);
+  const double before = model.kinetic_energy();
   model.rings[model.particles[particle].ring].velocity = c.value;
+  model.edit_energy += model.kinetic_energy() - before;
   jolt(particle);
 }
 

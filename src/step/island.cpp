@@ -310,25 +310,23 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     return (1 / h) * (nails[tied_.size() + i].target - nails[tied_.size() + i].target_start);
   };
   double jolt = 0;
-  for (std::size_t i = 0; i < nails_.size(); ++i) {
-    Vec3& velocity = problem_.velocity[nails_[i]];
-    jolt = std::max(jolt, norm(nail_velocity(i) - velocity));
-    velocity = nail_velocity(i);
-  }
+  for (std::size_t i = 0; i < nails_.size(); ++i)
+    jolt = std::max(jolt, norm(nail_velocity(i) - problem_.velocity[nails_[i]]));
+  const double before_jolt = jolt > 1e-9 ? problem_.kinetic_energy() : 0;
+  for (std::size_t i = 0; i < nails_.size(); ++i) problem_.velocity[nails_[i]] = nail_velocity(i);
   if (idle_) {  // carried by the script: there is nothing to solve
     for (std::size_t i = 0; i < nails_.size(); ++i) problem_.position[nails_[i]] = nails[tied_.size() + i].target;
     store(model, true);
     return {};
   }
-  double lost = 0;
+  double given = 0;  // by a nail at once, J
   if (jolt > 1e-9) {
-    lost = problem_.kinetic_energy();
     integrator_.project_velocities(problem_, h);
-    lost -= problem_.kinetic_energy();
+    given = problem_.kinetic_energy() - before_jolt;
   }
   auto report = integrator_.advance(
       problem_, h, mode == IntegrationMode::robust ? solver::Scheme::end_point : solver::Scheme::mid_point);
-  report.external_work -= lost;  // what a nail gives or takes at once
+  report.external_work += given;
   for (std::size_t i = 0; i < nails_.size(); ++i) problem_.velocity[nails_[i]] = nail_velocity(i);
   if (damped_ || model.damping > 0) {
     const double before = problem_.kinetic_energy();

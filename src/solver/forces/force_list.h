@@ -37,6 +37,7 @@ struct ForceStage {
 /// F = -k (|e| - L) e/|e| - c n n.(e1 - e0)/h, n along e0. Mid-point: the discrete gradient of k/2 (|e|-L)^2, which is
 /// -k (1 - 2L/(|e0|+|e1|)) (e0+e1)/2, so that F.(e1-e0) is exactly minus the change of energy.
 struct SpringForce {
+  static constexpr bool is_external = false;
   ForceArm arm;
   double stiffness = 0, damping = 0, length = 0;
 
@@ -75,6 +76,7 @@ struct SpringForce {
 
 /// F = -c (e1 - e0)/h: viscous drag.
 struct DragForce {
+  static constexpr bool is_external = false;
   ForceArm arm;
   double damping = 0;
 
@@ -85,6 +87,7 @@ struct DragForce {
 
 /// A hand: F = -k e - c (e1 - e0)/h towards the arm's origin.
 struct GripForce {
+  static constexpr bool is_external = true;
   ForceArm arm;
   double stiffness = 0, damping = 0;
 
@@ -99,6 +102,7 @@ struct GripForce {
 
 template <class F>
 concept ImplicitForce = requires(const F& f, const Vec3& e, const ForceStage& stage) {
+  { F::is_external } -> std::convertible_to<bool>;
   { f.arm } -> std::convertible_to<ForceArm>;
   { f.energy(e) } -> std::convertible_to<double>;
   { f.force(e, e, stage) } -> std::convertible_to<Vec3>;

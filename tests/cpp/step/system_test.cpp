@@ -287,6 +287,36 @@ TEST(Kinds, static_scripted_and_inactive_bodies_do_as_they_say) {
   EXPECT_EQ(system.poses().bodies.size(), 3u) << "inactive bodies are not drawn";
 }
 
+TEST(EnergyBook, adds_up_through_hands_nails_springs_damping_and_edits) {
+  for (const auto mode : {IntegrationMode::energy_keeping, IntegrationMode::robust}) {
+    System system{SystemOptions{.mode = mode, .damping = 0.2}};
+    const auto chain = scenes::make_chain(system, {.links = 12});
+    const auto other = scenes::make_chain(system, {.links = 4, .nailed = false, .top = {0, 0.5, 0}});
+    system.create_bond(chain.lower[5], other.lower[3], SpringLaw{.stiffness = 30, .damping = 0.2});
+    system.create_bond(chain.lower[8], other.lower[0],
+                       ScriptedLaw{[](const BondState& s) { return 0.3 * (s.position_q - s.position_p); }});
+    const auto book = [&] {
+      const Energy e = system.energy();
+      return e.total() + e.dissipated - e.external_work - e.edits;
+    };
+    const double start = book();
+    GripId grip;
+    for (int i = 0; i < 360; ++i) {
+      if (i > 40 && i < 200) system.nail(chain.upper[0], {0.2 * std::sin(0.05 * (i - 40)), 0, 0});
+      if (i == 60) grip = system.create_grip(chain.links[9], {}, {0.4, 0.2, 0.3});
+      if (i == 120) system.move_grip(grip, {-0.4, 0.2, 0});
+      if (i == 180) (void)system.separate(chain.lower[3], chain.upper[4]);
+      if (i == 220) (void)system.combine(chain.lower[3], chain.upper[4], 0.2);
+      if (i == 280) system.set_velocity(chain.lower[11], {0, 0, 3});
+      if (i == 300) system.destroy(grip);
+      (void)system.step(1.0 / 120);
+      ASSERT_NEAR(book(), start, 1e-6) << "at step " << i;
+    }
+    EXPECT_GT(system.energy().dissipated, 0.01);
+    EXPECT_NE(system.energy().edits, 0);
+  }
+}
+
 TEST(Conflict, of_two_nails_too_far_apart_is_shared_reported_and_finite) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 10});
