@@ -59,12 +59,12 @@ void Island::add_masses(const Model& model, std::uint32_t body, const std::vecto
     std::array<std::pair<std::uint32_t, double>, 8> difference{};
     std::size_t used = 0;
     const auto add = [&](const Weighted& list, double sign) {
-      for (const auto& [node, weight] : list) {
-        if (weight == 0) break;
+      for (const auto& entry : list) {
+        if (entry.second == 0) break;
         auto* const end = difference.data() + used;
-        auto* const found = std::find_if(difference.data(), end, [&](const auto& d) { return d.first == node; });
-        if (found == end) difference[used++] = {node, 0};
-        found->second += sign * weight;
+        auto* const found = std::find_if(difference.data(), end, [&](const auto& d) { return d.first == entry.first; });
+        if (found == end) difference[used++] = {entry.first, 0};
+        found->second += sign * entry.second;
       }
     };
     add(nodes_of(model, pair.p, node_of_ring), 1);
