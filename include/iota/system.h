@@ -164,6 +164,7 @@ class System {
   bool contains(BodyId) const;
   bool contains(ParticleId) const;
   bool contains(BondId) const;
+  bool contains(CosmeticBondId) const;
   /// What a retired id became (itself if alive), if it was absorbed within the last 65 536 retirements.
   std::optional<ParticleId> survivor_of(ParticleId) const;
   std::optional<BodyId> survivor_of(BodyId) const;
@@ -171,6 +172,7 @@ class System {
   std::vector<BodyId> bodies() const;          ///< in order of slots
   std::vector<ParticleId> particles() const;   ///< in order of slots
   std::vector<BondId> bonds() const;
+  std::vector<CosmeticBondId> cosmetic_bonds() const;
   std::vector<std::vector<BodyId>> articulates() const;
   std::uint32_t articulate_count() const;
 
@@ -197,6 +199,7 @@ class System {
   void apply_force(ParticleId, const Vec3&);   ///< added during the next step only, N
 
   std::pair<ParticleId, ParticleId> ends(BondId) const;
+  std::pair<ParticleId, ParticleId> ends(CosmeticBondId) const;
   bool is_active(BondId) const;
   void set_active(BondId, bool);
 

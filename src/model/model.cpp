@@ -125,24 +125,6 @@ Vec3 Model::centre_of_mass(std::uint32_t body) const {
   return mass > 0 ? (1 / mass) * sum : sum;
 }
 
-template <class IdType>
-void Model::Survivors<IdType>::record(IdType retired, IdType survivor) {
-  constexpr std::size_t remembered = 65536;
-  became[retired] = survivor;
-  in_order.push_back(retired);
-  if (in_order.size() > remembered) {
-    became.erase(in_order.front());
-    in_order.pop_front();
-  }
-}
-
-template <class IdType>
-std::optional<IdType> Model::Survivors<IdType>::find(IdType id) const {
-  const auto found = became.find(id);
-  if (found == became.end()) return std::nullopt;
-  return found->second;
-}
-
 void Model::record_survivor(ParticleId retired, ParticleId survivor) { particle_survivors_.record(retired, survivor); }
 void Model::record_survivor(BodyId retired, BodyId survivor) { body_survivors_.record(retired, survivor); }
 

@@ -228,6 +228,24 @@ class Model {
 };
 
 template <class IdType>
+void Model::Survivors<IdType>::record(IdType retired, IdType survivor) {
+  constexpr std::size_t remembered = 65536;
+  became[retired] = survivor;
+  in_order.push_back(retired);
+  if (in_order.size() > remembered) {
+    became.erase(in_order.front());
+    in_order.pop_front();
+  }
+}
+
+template <class IdType>
+std::optional<IdType> Model::Survivors<IdType>::find(IdType id) const {
+  const auto found = became.find(id);
+  if (found == became.end()) return std::nullopt;
+  return found->second;
+}
+
+template <class IdType>
 template <class Archive>
 void Model::Survivors<IdType>::archive(Archive& ar) {
   struct Pair { IdType retired, survivor; };

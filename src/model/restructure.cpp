@@ -289,6 +289,20 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
   return {};
 }
 
+void end_settled_closings(Model& model, std::vector<std::string>& notes) {
+  for (std::uint32_t slot = 0; slot < model.closings.slot_count(); ++slot) {
+    if (!model.closings.is_alive(slot)) continue;
+    const Particle& p = model.particles[model.closings[slot].p];
+    const Particle& q = model.particles[model.closings[slot].q];
+    if (p.ring != q.ring && p.body != q.body) continue;
+    if (p.ring != q.ring)
+      notes.push_back("particles " + std::to_string(model.closings[slot].p) + " and " +
+                      std::to_string(model.closings[slot].q) +
+                      " were on their way to each other, but are of one rigid body now: called off");
+    destroy_closing(model, slot);
+  }
+}
+
 void split_where_apart(Model& model, const std::vector<std::uint32_t>& bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j)

@@ -22,6 +22,10 @@ void destroy_body(Model&, std::uint32_t body);
 void destroy_bond(Model&, std::uint32_t bond);
 void destroy_closing(Model&, std::uint32_t closing);
 
+/// Ends closings whose two particles share a ring or a body by now: there is nothing left to close, or nothing that could.
+/// Says so in the notes.
+void end_settled_closings(Model&, std::vector<std::string>& notes);
+
 /// Splits the articulate of `bodies` wherever they no longer hang together.
 void split_where_apart(Model&, const std::vector<std::uint32_t>& bodies);
 

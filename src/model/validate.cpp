@@ -96,6 +96,8 @@ std::vector<std::string> Model::validate() const {
   closings.for_each([&](std::uint32_t, const Closing& c) {
     parent[root(particles[c.p].body)] = root(particles[c.q].body);
     ++uses[c.p], ++uses[c.q];
+    complaints.require(particles[c.p].ring != particles[c.q].ring && particles[c.p].body != particles[c.q].body,
+                       "a closing of particles ", c.p, " and ", c.q, " has nothing to close");
   });
   std::vector<std::uint32_t> articulate_of_root(bodies.slot_count(), none), roots_of(articulates.slot_count(), 0);
   bodies.for_each([&](std::uint32_t slot, const Body& b) {

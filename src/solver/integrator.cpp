@@ -112,7 +112,10 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
 void Integrator::smooth_multipliers(Problem& problem) const {
   auto before = multipliers_saved_.begin();
   problem.for_each_constraint_pool([&](auto& pool) {
-    for (double& m : pool.multipliers) m = 0.5 * (m + *before++);
+    for (double& m : pool.multipliers) {
+      const double last = *before++;
+      if (last != 0) m = 0.5 * (m + last);  // zero: there was no last time
+    }
   });
 }
 

@@ -277,6 +277,7 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
     return report;
   }
 
+  if (model.closings.size() > 0) end_settled_closings(model, report.notes);
   for (const auto& [slot, point] : held)
     if (model.grips.is_alive(slot)) {
       anchor_grip(model, model.grips[slot], point);
@@ -456,7 +457,8 @@ void System::Implementation::apply(const step::Destroy<ParticleId>& c) {
 void System::Implementation::apply(const step::Destroy<BondId>& c) {
   const std::uint32_t bond = require(c.id);
   const double before = model.potential_energy();
-  if (!recording) scripts.erase(model.bonds[bond].script);  // a replay would miss it
+  // A restore or a replay may bring the bond back, if it was made before the latest snapshot.
+  if (!recording && model.bonds[bond].script >= scripts_saved_below) scripts.erase(model.bonds[bond].script);
   destroy_bond(model, bond);
   model.edit_energy += model.potential_energy() - before;
   structure_changed();

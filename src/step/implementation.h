@@ -18,6 +18,7 @@ struct System::Implementation {
   step::Islands islands;
   std::map<std::uint64_t, ScriptedLaw> scripts;  // functions of scripted bonds; not part of the saved state
   std::uint64_t next_script = 1;
+  std::uint64_t scripts_saved_below = 0;  // keys that the latest snapshot may name
   bool stepping = false;
   std::vector<step::Command> queue;  // edits asked for during a step
   std::optional<Recording> recording;

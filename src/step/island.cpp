@@ -153,7 +153,8 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
         pinned_.push_back(model.is_pinned(particle.ring));
       });
     });
-  idle_ = std::all_of(pinned_.begin(), pinned_.end(), [](std::uint8_t p) { return p != 0; });
+  idle_ = std::none_of(bodies_.begin(), bodies_.end(),
+                       [&](std::uint32_t b) { return model.bodies[b].kind == BodyKind::dynamic; });
 
   const std::size_t n = rings_.size();
   problem_.position.resize(n), problem_.velocity.resize(n), problem_.force.resize(n);

@@ -183,12 +183,16 @@ Energy System::energy() const {
 bool System::contains(BodyId id) const { return implementation_->model.bodies.contains(id); }
 bool System::contains(ParticleId id) const { return implementation_->model.particles.contains(id); }
 bool System::contains(BondId id) const { return implementation_->model.bonds.contains(id); }
+bool System::contains(CosmeticBondId id) const { return implementation_->model.cosmetic_bonds.contains(id); }
 bool System::contains(GripId id) const { return implementation_->model.grips.contains(id); }
 std::optional<ParticleId> System::survivor_of(ParticleId id) const { return implementation_->model.survivor_of(id); }
 std::optional<BodyId> System::survivor_of(BodyId id) const { return implementation_->model.survivor_of(id); }
 
 std::vector<BodyId> System::bodies() const { return ids_of<BodyId>(implementation_->model.bodies); }
 std::vector<ParticleId> System::particles() const { return ids_of<ParticleId>(implementation_->model.particles); }
+std::vector<CosmeticBondId> System::cosmetic_bonds() const {
+  return ids_of<CosmeticBondId>(implementation_->model.cosmetic_bonds);
+}
 std::vector<BondId> System::bonds() const { return ids_of<BondId>(implementation_->model.bonds); }
 
 std::vector<std::vector<BodyId>> System::articulates() const {
@@ -248,6 +252,12 @@ Vec3 System::nail_force(ParticleId id) const {
 std::pair<ParticleId, ParticleId> System::ends(BondId id) const {
   const model::Model& m = implementation_->model;
   const model::Bond& b = m.bonds[implementation_->require(id)];
+  return {m.particles.id(b.p), m.particles.id(b.q)};
+}
+std::pair<ParticleId, ParticleId> System::ends(CosmeticBondId id) const {
+  const model::Model& m = implementation_->model;
+  if (!contains(id)) throw StaleIdError("cosmetic bond " + std::to_string(id.slot) + " is gone");
+  const model::CosmeticBond& b = m.cosmetic_bonds[id.slot];
   return {m.particles.id(b.p), m.particles.id(b.q)};
 }
 bool System::is_active(BondId id) const { return implementation_->model.bonds[implementation_->require(id)].active; }
@@ -318,6 +328,7 @@ Snapshot System::snapshot() const {
   std::vector<std::byte> content;
   Writer content_writer(content);
   implementation_->model.archive(content_writer);
+  implementation_->scripts_saved_below = implementation_->next_script;
   Snapshot snapshot;
   Writer writer(snapshot.bytes);
   std::uint64_t magic = snapshot_magic, check = check_sum(content);

@@ -2,6 +2,7 @@
 #include "solver/sparse/block_pattern.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace iota::solver {
 
@@ -140,6 +141,7 @@ std::uint32_t BlockPattern::find_entry(std::uint32_t vertex, std::uint32_t later
 }
 
 BlockPattern::PairSlot BlockPattern::pair_slot(std::uint32_t a, std::uint32_t b) const {
+  if (a == b) throw std::logic_error("a node does not couple with itself");  // ours: nothing that a user can do
   const std::uint32_t va = node_vertex_[a], vb = node_vertex_[b];
   const bool a_first = va < vb;
   const std::uint32_t first = a_first ? va : vb, later = a_first ? vb : va;

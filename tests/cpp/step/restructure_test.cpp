@@ -277,6 +277,29 @@ TEST(Combine, that_is_called_off_leaves_two_articulates) {
   EXPECT_WHOLE(system);
 }
 
+TEST(Combine, over_a_time_is_called_off_when_both_become_one_rigid_body_or_one_ring) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId a = system.create_body(), b = system.create_body();
+  const ParticleId a1 = system.create_particle(a, {0, 0, 0}), a2 = system.create_particle(a, {1, 0, 0});
+  const ParticleId b1 = system.create_particle(b, {0, 1, 0});
+  system.create_particle(b, {1, 1, 0});
+  (void)system.combine(a1, b1, 1);
+  (void)system.step(0.01);
+  const RestructureReport report = system.combine(a, b);
+  EXPECT_EQ(system.closing_count(), 0u);
+  EXPECT_FALSE(report.notes.empty());
+  EXPECT_WHOLE(system);
+
+  const ParticleId p = system.create_particle(system.create_body(), {3, 0, 0}), q = system.create_particle(system.create_body(), {4, 0, 0});
+  (void)system.combine(p, q, 1);
+  (void)system.combine(a2, p);
+  (void)system.combine(a2, q);
+  EXPECT_EQ(system.closing_count(), 0u);
+  EXPECT_EQ(system.ring(a2).size(), 3u);
+  EXPECT_WHOLE(system);
+  (void)system.step(0.01);
+}
+
 TEST(Combine, of_two_bodies_makes_one_rigid_body_that_keeps_momenta) {
   System system{SystemOptions{.gravity = {}}};
   const BodyId a = system.create_body(), b = system.create_body();

@@ -88,6 +88,28 @@ TEST(Nail, holds_still_and_tells_its_force) {
   EXPECT_NEAR(system.nail_force(top).y, 3 * 9.81, 1e-4);
 }
 
+TEST(Nail, of_a_lone_particle_carries_its_weight) {
+  System system;
+  const ParticleId p = system.create_particle(system.create_body(), {0, 1, 0}, 2);
+  system.nail(p);
+  (void)system.step(1.0 / 120);
+  EXPECT_NEAR(system.nail_force(p).y, 2 * 9.81, 1e-5);
+}
+
+TEST(ScriptedBond, comes_back_with_its_function_when_a_snapshot_is_restored) {
+  System system{SystemOptions{.gravity = {}}};
+  const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}),
+                   q = system.create_particle(system.create_body(), {2, 0, 0});
+  const BondId bond = system.create_bond(p, q, ScriptedLaw{[](const BondState&) { return Vec3{1, 0, 0}; }});
+  const Snapshot snapshot = system.snapshot();
+  system.destroy(bond);
+  (void)system.step(0.1);
+  EXPECT_EQ(system.velocity(p).x, 0);
+  system.restore(snapshot);
+  EXPECT_TRUE(system.step(0.1).warnings.empty());
+  EXPECT_NEAR(system.velocity(p).x, 0.1, 1e-12);
+}
+
 TEST(Nail, that_moves_carries_the_chain_along_and_does_work) {
   System system{SystemOptions{.damping = 1}};
   const auto chain = scenes::make_chain(system, {.links = 6, .direction = {0, -1, 0}});

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "binders.h"
+
+namespace iota::bindings {
+
+namespace {
+
+constexpr const char* doc =
+    "A user's hand on a body: a critically damped, capped spring from a point of the body to a target.\n\n"
+    "local_point: in the body's drawn frame, m; it is put on the nearest place that the body's particles span. target:\n"
+    "world, m. client, hold: whose hand; carried to the viewers. frequency: Hz. max_acceleration: m/s^2, caps the force at\n"
+    "this times the mass it can feel. Forces of several grips add up.";
+
+}  // namespace
+
+void bind_grip(nb::module_& module) {
+  nb::class_<GripHandle> type(module, "Grip", doc, nb::type_slots(handle_slots<GripHandle>),
+                              nb::is_weak_referenceable());
+  type.def(
+      "__init__",
+      [](GripHandle* self, const BodyHandle& body, VectorArgument local_point, std::optional<VectorArgument> target,
+         std::uint32_t client, std::uint32_t hold, double frequency, double max_acceleration) {
+        const Vec3 point = to_vec3(local_point, "local_point");
+        GripOptions options{client, hold, finite_positive(frequency, "frequency", "Hz"),
+                            finite_positive(max_acceleration, "max_acceleration", "m/s^2")};
+        System& checked = body.use();
+        System& engine = body.system->use_between_steps("Grip(...)");
+        const Vec3 goal = target ? to_vec3(*target, "target") : checked.centre_of_mass(body.id);
+        new (self) GripHandle{body.system_object, body.system, engine.create_grip(body.id, point, goal, options)};
+      },
+      "body"_a, "local_point"_a = nb::make_tuple(0.0, 0.0, 0.0), "target"_a = nb::none(), nb::kw_only(), "client"_a = 0,
+      "hold"_a = 0, "frequency"_a = GripOptions{}.frequency, "max_acceleration"_a = GripOptions{}.max_acceleration);
+  def_identity(type);
+  type.def_prop_ro(
+          "alive", [](const GripHandle& self) { return self.is_alive(); },
+          "False once it was let go or its body is gone.")
+      .def(
+          "move",
+          [](const GripHandle& self, VectorArgument target) {
+            self.use();
+            self.system->use_between_steps("move").move_grip(self.id, to_vec3(target, "target"));
+          },
+          "target"_a, "Moves its target (world, m).")
+      .def(
+          "destroy",
+          [](const GripHandle& self) {
+            self.use();
+            self.system->use_between_steps("destroy").destroy(self.id);
+          },
+          "Lets go.")
+      .def("__repr__", [](const GripHandle& self) {
+        return self.is_alive() ? "<Grip " + std::to_string(self.id.slot) + ">" : stale_repr("Grip", self);
+      });
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "binders.h"
+
+namespace iota::bindings {
+
+namespace {
+
+constexpr const char* doc =
+    "A point with mass, in one body. Particles of different bodies that were combined share one place: a hinge.\n\n"
+    "position: m. mass: kg, above 0, its own share. velocity: m/s. Vectors are any 2 or 3 numbers; z is then 0.\n\n"
+    "    p = iota.Particle(body, position=(0, 1, 0), mass=0.2)\n"
+    "    p.velocity = (1, 0, 0)";
+
+std::string repr(const ParticleHandle& self) {
+  if (!self.is_alive()) return stale_repr("Particle", self);
+  const System& engine = self.system->engine;
+  return "<Particle " + std::to_string(self.id.slot) + " of body " + std::to_string(engine.body(self.id).slot) +
+         " at " + describe(engine.position(self.id)) + ">";
+}
+
+System& between_steps(const ParticleHandle& self, const char* what) {
+  System& engine = self.use();
+  self.system->use_between_steps(what);
+  return engine;
+}
+
+void bind_nails(nb::class_<ParticleHandle>& type) {
+  type.def(
+          "nail",
+          [](const ParticleHandle& self, std::optional<VectorArgument> position) {
+            System& engine = self.use();
+            const bool is_new = !engine.is_nailed(self.id);
+            if (position)
+              engine.nail(self.id, to_vec3(*position, "position"));
+            else
+              engine.nail(self.id);
+            if (is_new) self.system->note_edit("join", engine.position(self.id));
+          },
+          "position"_a = nb::none(),
+          "Holds it where it is, or at a place (m). Called again with another place, it moves the nail.")
+      .def(
+          "release",
+          [](const ParticleHandle& self) {
+            System& engine = self.use();
+            if (engine.is_nailed(self.id)) self.system->note_edit("break", engine.position(self.id));
+            engine.release(self.id);
+          },
+          "Takes its nail out.")
+      .def_prop_ro("is_nailed", [](const ParticleHandle& self) { return self.use().is_nailed(self.id); })
+      .def_prop_ro(
+          "nail_force", [](const ParticleHandle& self) { return self.use().nail_force(self.id); },
+          "By the nail on the particle in the last step, N.");
+}
+
+}  // namespace
+
+void bind_particle(nb::module_& module) {
+  nb::class_<ParticleHandle> type(module, "Particle", doc, nb::type_slots(handle_slots<ParticleHandle>),
+                                  nb::is_weak_referenceable());
+  type.def(
+      "__init__",
+      [](ParticleHandle* self, const BodyHandle& body, VectorArgument position, double mass, VectorArgument velocity) {
+        const Vec3 place = to_vec3(position, "position"), speed = to_vec3(velocity, "velocity");
+        finite_positive(mass, "mass", "kg");
+        body.use();
+        const ParticleId id =
+            body.system->use_between_steps("Particle(...)").create_particle(body.id, place, mass, speed);
+        new (self) ParticleHandle{body.system_object, body.system, id};
+      },
+      "body"_a, "position"_a = nb::make_tuple(0.0, 0.0, 0.0), "mass"_a = 1.0,
+      "velocity"_a = nb::make_tuple(0.0, 0.0, 0.0));
+  def_identity(type);
+  def_survival(type, "def survivor(self) -> Particle | None");
+  bind_nails(type);
+  type.def_prop_ro(
+          "body", [](const ParticleHandle& self) { return sibling(self, self.use().body(self.id)); },
+          "The body that it is a point of.")
+      .def_prop_ro(
+          "ring",
+          [](const ParticleHandle& self) {
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().ring(self.id));
+          },
+          "Every particle hinged with it, itself included.")
+      .def_prop_rw(
+          "position", [](const ParticleHandle& self) { return self.use().position(self.id); },
+          [](const ParticleHandle& self, VectorArgument v) {
+            between_steps(self, "position = ...").set_position(self.id, to_vec3(v, "position"));
+          },
+          "m. Assigning moves the whole ring; its bodies take the new distances as their rigid ones.")
+      .def_prop_rw(
+          "velocity", [](const ParticleHandle& self) { return self.use().velocity(self.id); },
+          [](const ParticleHandle& self, VectorArgument v) {
+            between_steps(self, "velocity = ...").set_velocity(self.id, to_vec3(v, "velocity"));
+          },
+          "m/s. What a rigid body cannot have of it is projected out by the next step.")
+      .def_prop_rw(
+          "mass", [](const ParticleHandle& self) { return self.use().mass(self.id); },
+          [](const ParticleHandle& self, double value) {
+            between_steps(self, "mass = ...").set_mass(self.id, finite_positive(value, "mass", "kg"));
+          },
+          "Its own share, kg, above 0. A ring weighs the sum of its particles.")
+      .def(
+          "apply_force",
+          [](const ParticleHandle& self, VectorArgument force) {
+            between_steps(self, "apply_force").apply_force(self.id, to_vec3(force, "force"));
+          },
+          "force"_a, "Adds a force (N) during the next step only.")
+      .def(
+          "destroy", [](const ParticleHandle& self) { self.use().destroy(self.id); },
+          "Removes it with its bonds; its body too if it was the last one. In a bond's function: right after the step.")
+      .def("__repr__", &repr);
+}
+
+}  // namespace iota::bindings

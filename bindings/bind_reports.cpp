@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "binders.h"
+#include "restructure_result.h"
+
+namespace iota::bindings {
+
+namespace {
+
+std::string text_of(const char* format, auto... values) {
+  char buffer[256];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+template <class Pairs>
+auto wrap_pairs(const RestructureResult& self, const Pairs& pairs) {
+  std::vector<std::pair<nb::object, nb::object>> out;
+  for (const auto& pair : pairs)
+    out.emplace_back(nb::cast(sibling(self, pair.retired)), nb::cast(sibling(self, pair.survivor)));
+  return out;
+}
+
+void bind_energy(nb::module_& module) {
+  nb::class_<Energy>(module, "Energy",
+                     "Energy book-keeping in J: kinetic + potential + dissipated - external_work - edits is constant "
+                     "up to round-off.")
+      .def_ro("kinetic", &Energy::kinetic)
+      .def_ro("potential", &Energy::potential, "Of gravity and springs.")
+      .def_ro("dissipated", &Energy::dissipated,
+              "Since the start, by damping, dashpots and the integrator; negative would be made-up energy.")
+      .def_ro("external_work", &Energy::external_work,
+              "Since the start, by grips, scripted bonds, moved nails and applied forces.")
+      .def_ro("edits", &Energy::edits, "Since the start, gained (+) or lost (-) by edits.")
+      .def_prop_ro("total", &Energy::total, "kinetic + potential.")
+      .def("__repr__", [](const Energy& e) {
+        return text_of(
+            "<Energy: kinetic %.6g J, potential %.6g J, dissipated %.6g J, external work %.6g J, edits %.6g J>",
+            e.kinetic, e.potential, e.dissipated, e.external_work, e.edits);
+      });
+}
+
+void bind_step_report(nb::module_& module) {
+  nb::class_<StepReport>(module, "StepReport", "What one `System.step` did. Not converged is a result, no exception.")
+      .def_ro("step", &StepReport::step, "Number of the step just finished, from 1.")
+      .def_ro("time", &StepReport::time, "Simulated time at its end, s.")
+      .def_ro("dt", &StepReport::dt, "Its length, s.")
+      .def_ro("iterations_mean", &StepReport::iterations_mean, "Newton iterations per articulate and (sub-)step.")
+      .def_ro("iterations_max", &StepReport::iterations_max)
+      .def_ro("substeps_max", &StepReport::substeps_max, "Sub-steps that the busiest articulate needed.")
+      .def_ro("fallbacks", &StepReport::fallbacks,
+              "(Sub-)steps handed from the energy-keeping scheme to the robust one.")
+      .def_ro("unconverged", &StepReport::unconverged, "Articulates left with a least violation instead of a solution.")
+      .def_ro("worst_gap", &StepReport::worst_gap, "Largest hinge separation or rigidity error, m.")
+      .def_ro("energy", &StepReport::energy)
+      .def_ro("articulates", &StepReport::articulates)
+      .def_ro("structure_version", &StepReport::structure_version)
+      .def_ro("warnings", &StepReport::warnings, "Plain sentences.")
+      .def("__repr__", [](const StepReport& r) {
+        return text_of("<StepReport: step %llu, %.6g s, %d articulates, gap %.3g m, %.3g iterations, energy %.6g J>",
+                       static_cast<unsigned long long>(r.step), r.time, static_cast<int>(r.articulates), r.worst_gap,
+                       r.iterations_mean, r.energy.total());
+      });
+}
+
+template <class Member>
+auto field(Member RestructureReport::* member) {
+  return [member](const RestructureResult& self) { return self.report.*member; };
+}
+
+void bind_restructure_report(nb::module_& module) {
+  nb::class_<RestructureResult>(module, "RestructureReport",
+                                "What one structural edit did. True where it changed something.",
+                                nb::type_slots(handle_slots<RestructureResult>))
+      .def("__bool__", field(&RestructureReport::changed))
+      .def_prop_ro("queued", field(&RestructureReport::queued),
+                   "True if it was asked for during a step: it is done right after it, and the rest is not known yet.")
+      .def_prop_ro("changed", field(&RestructureReport::changed),
+                   "False where there was nothing to do, e.g. in separating unrelated particles.")
+      .def_prop_ro("structure_version", field(&RestructureReport::structure_version))
+      .def_prop_ro("created_bodies",
+                   [](const RestructureResult& self) {
+                     return wrap_all<BodyHandle>(self.system_object, self.system, self.report.created_bodies);
+                   })
+      .def_prop_ro("created_particles",
+                   [](const RestructureResult& self) {
+                     return wrap_all<ParticleHandle>(self.system_object, self.system, self.report.created_particles);
+                   })
+      .def_prop_ro(
+          "absorbed_bodies",
+          [](const RestructureResult& self) { return wrap_pairs(self, self.report.absorbed_bodies); },
+          nb::sig("def absorbed_bodies(self) -> list[tuple[Body, Body]]"), "Pairs (retired, survivor).")
+      .def_prop_ro(
+          "absorbed_particles",
+          [](const RestructureResult& self) { return wrap_pairs(self, self.report.absorbed_particles); },
+          nb::sig("def absorbed_particles(self) -> list[tuple[Particle, Particle]]"), "Pairs (retired, survivor).")
+      .def_prop_ro("articulates_before", field(&RestructureReport::articulates_before), "Of the whole system.")
+      .def_prop_ro("articulates_after", field(&RestructureReport::articulates_after), "Of the whole system.")
+      .def_prop_ro("closed_distance", field(&RestructureReport::closed_distance),
+                   "How far apart the combined particles were, m.")
+      .def_prop_ro("remaining_gap", field(&RestructureReport::remaining_gap), "What no position could close, m.")
+      .def_prop_ro("energy_change", field(&RestructureReport::energy_change), "J")
+      .def_prop_ro("momentum_change", field(&RestructureReport::momentum_change),
+                   "What could not be kept, kg m/s: a nail took it.")
+      .def_prop_ro("angular_momentum_change", field(&RestructureReport::angular_momentum_change),
+                   "What could not be kept, about the origin, kg m^2/s.")
+      .def_prop_ro("notes", field(&RestructureReport::notes), "Plain sentences.")
+      .def("__repr__", [](const RestructureResult& self) {
+        const RestructureReport& r = self.report;
+        if (r.queued) return std::string("<RestructureReport: queued until the step is over>");
+        if (!r.changed) return std::string("<RestructureReport: nothing to do>");
+        return text_of("<RestructureReport: %u articulates (before: %u), energy %+.3g J, structure version %u>",
+                       r.articulates_after, r.articulates_before, r.energy_change, r.structure_version);
+      });
+}
+
+}  // namespace
+
+void bind_reports(nb::module_& module) {
+  bind_energy(module);
+  bind_step_report(module);
+  bind_restructure_report(module);
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "binders.h"
+#include "restructure_result.h"
+
+#include <algorithm>
+
+namespace iota::bindings {
+
+namespace {
+
+constexpr const char* combine_particles_doc =
+    "Joins two particles, or two bodies into one rigid one. Thesis, Tables 4.1 and 4.2.\n\n"
+    "Same particle: nothing. Same body: q is absorbed by p. Hinged: the hinge becomes rigid, q's body is absorbed by p's.\n"
+    "Unrelated: a hinge; particles that are apart meet at once (over=0) or within `over` seconds. Momentum is kept, and\n"
+    "what cannot be kept is reported. In a bond's function it is queued and done right after the step.\n\n"
+    "Raises ValueError for particles of two systems or a bad `over`, StaleIdError for handles whose object is gone.";
+
+constexpr const char* combine_bodies_doc = "Makes one rigid body of two, in place; b is absorbed.";
+
+constexpr const char* separate_doc =
+    "Cuts two particles apart. Thesis, Table 4.3.\n\n"
+    "Same particle: a second one at the same place, half the mass each. Same body: q becomes a one-particle body hinged\n"
+    "to p. Hinged: q leaves the ring. Unrelated: nothing (the report is then false).";
+
+RestructureResult combine_particles(const ParticleHandle& p, const ParticleHandle& q, double over) {
+  check_one_system(p, q, "combine");
+  finite_not_negative(over, "over", "s");
+  q.use();
+  System& engine = p.use();
+  const Vec3 place = 0.5 * (engine.position(p.id) + engine.position(q.id));
+  RestructureResult result{p.system_object, p.system, engine.combine(p.id, q.id, over)};
+  if (result.report.changed || result.report.queued) p.system->note_edit("join", place, over, p.id);
+  return result;
+}
+
+RestructureResult combine_bodies(const BodyHandle& a, const BodyHandle& b) {
+  check_one_system(a, b, "combine");
+  b.use();
+  System& engine = a.use();
+  const Vec3 place = 0.5 * (engine.centre_of_mass(a.id) + engine.centre_of_mass(b.id));
+  RestructureResult result{a.system_object, a.system, engine.combine(a.id, b.id)};
+  if (result.report.changed || result.report.queued) a.system->note_edit("join", place);
+  return result;
+}
+
+RestructureResult separate(const ParticleHandle& p, const ParticleHandle& q) {
+  check_one_system(p, q, "separate");
+  q.use();
+  System& engine = p.use();
+  const Vec3 place = engine.position(q.id);
+  RestructureResult result{p.system_object, p.system, engine.separate(p.id, q.id)};
+  if (result.report.changed || result.report.queued) p.system->note_edit("break", place);
+  return result;
+}
+
+/// The living body of a slot, if any: what the page names bodies by.
+nb::object body_at(SystemObject& self, std::uint32_t slot) {
+  const std::vector<BodyId> bodies = self.use().bodies();
+  const auto found = std::ranges::lower_bound(bodies, slot, {}, &BodyId::slot);
+  if (found == bodies.end() || found->slot != slot) return nb::none();
+  return nb::cast(BodyHandle{nb::find(&self), &self, *found});
+}
+
+template <class HandleType, class Read>
+auto all_of(Read read) {
+  return [read](nb::handle_t<SystemObject> self) {
+    SystemObject* object = nb::inst_ptr<SystemObject>(self);
+    return wrap_all<HandleType>(nb::borrow(self), object, read(object->use()));
+  };
+}
+
+std::vector<std::vector<BodyHandle>> articulates(nb::handle_t<SystemObject> self) {
+  SystemObject* object = nb::inst_ptr<SystemObject>(self);
+  std::vector<std::vector<BodyHandle>> out;
+  for (const auto& members : object->use().articulates())
+    out.push_back(wrap_all<BodyHandle>(nb::borrow(self), object, members));
+  return out;
+}
+
+/// Cosmetic bonds of which both ends are alive, as pairs of particles.
+std::vector<std::pair<ParticleHandle, ParticleHandle>> cosmetic_lines(nb::handle_t<SystemObject> self) {
+  SystemObject* object = nb::inst_ptr<SystemObject>(self);
+  System& engine = object->use();
+  std::vector<std::pair<ParticleHandle, ParticleHandle>> out;
+  for (const auto& bond : object->cosmetic_bonds) {
+    const auto p = engine.survivor_of(bond.p), q = engine.survivor_of(bond.q);
+    if (p && q) out.push_back({{nb::borrow(self), object, *p}, {nb::borrow(self), object, *q}});
+  }
+  return out;
+}
+
+nb::list take_edits(nb::handle_t<SystemObject> self) {
+  SystemObject* object = nb::inst_ptr<SystemObject>(self);
+  object->use();
+  nb::list out;
+  for (const VisibleEdit& edit : object->edits) {
+    nb::object particle = nb::none();
+    if (edit.particle) particle = nb::cast(ParticleHandle{nb::borrow(self), object, edit.particle});
+    out.append(nb::make_tuple(edit.kind, edit.position, edit.delay, particle));
+  }
+  object->edits.clear();
+  return out;
+}
+
+}  // namespace
+
+void bind_restructuring(nb::module_& module) {
+  module.def("combine", &combine_particles, "p"_a, "q"_a, "over"_a = 0.0, combine_particles_doc);
+  module.def("combine", &combine_bodies, "a"_a, "b"_a, combine_bodies_doc);
+  module.def("separate", &separate, "p"_a, "q"_a, separate_doc);
+
+  nb::object system = module.attr("System");
+  auto type = nb::borrow<nb::class_<SystemObject>>(system);
+  type.def_prop_ro("bodies", all_of<BodyHandle>([](System& engine) { return engine.bodies(); }), "In order of slots.")
+      .def_prop_ro("particles", all_of<ParticleHandle>([](System& engine) { return engine.particles(); }),
+                   "In order of slots: the order of the rows of `positions`.")
+      .def_prop_ro("bonds", all_of<BondHandle>([](System& engine) { return engine.bonds(); }), "In order of slots.")
+      .def_prop_ro("articulates", &articulates, "The groups of bodies that hang together.")
+      .def_prop_ro("cosmetic_lines", &cosmetic_lines, "The ends of all cosmetic bonds.")
+      .def("body_at", &body_at, "slot"_a, nb::sig("def body_at(self, slot: int) -> Body | None"),
+           "The living body with this slot, or None.")
+      .def(
+          "combine",
+          [](SystemObject&, const ParticleHandle& p, const ParticleHandle& q, double over) {
+            return combine_particles(p, q, over);
+          },
+          "p"_a, "q"_a, "over"_a = 0.0, "As `iota.combine`.")
+      .def(
+          "combine", [](SystemObject&, const BodyHandle& a, const BodyHandle& b) { return combine_bodies(a, b); },
+          "a"_a, "b"_a)
+      .def(
+          "separate", [](SystemObject&, const ParticleHandle& p, const ParticleHandle& q) { return separate(p, q); },
+          "p"_a, "q"_a, "As `iota.separate`.")
+      .def(
+          "watch_edits", [](SystemObject& self, bool on) { self.watch_edits = on; }, "on"_a,
+          "For World: whether structural edits are noted for `take_edits`.")
+      .def(
+          "take_edits", &take_edits, nb::sig("def take_edits(self) -> list[tuple[str, Vec3, float, Particle | None]]"),
+          "For World: (kind, place, delay in s, particle to be there then) of each structural edit since the last call.");
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "binders.h"
+#include "names.h"
+
+namespace iota::bindings {
+
+namespace {
+
+PyType_Slot system_slots[] = {
+    {Py_tp_traverse, reinterpret_cast<void*>(+[](PyObject* self, visitproc visit, void* arg) -> int {
+       Py_VISIT(Py_TYPE(self));
+       return nb::inst_ready(self) ? nb::inst_ptr<SystemObject>(self)->traverse(visit, arg) : 0;
+     })},
+    {Py_tp_clear, reinterpret_cast<void*>(+[](PyObject* self) -> int {
+       if (nb::inst_ready(self)) nb::inst_ptr<SystemObject>(self)->clear();
+       return 0;
+     })},
+    {0, nullptr}};
+
+constexpr const char* doc =
+    "A world of particles, bodies and bonds that is advanced step by step. SI units, right-handed, y up.\n\n"
+    "gravity: m/s^2. mode: 'energy_keeping' (mid-point discrete gradient; falls back to 'robust' where it must, and says\n"
+    "so) or 'robust' (backward Euler; never fails, dissipates). damping: 1/s, all velocities fall by exp(-damping t).\n\n"
+    "A system belongs to the thread that made it; while a World runs it, to the World's. Other threads get\n"
+    "WrongThreadError.\n\n"
+    "    system = iota.System()\n"
+    "    ball = iota.Particle(iota.Body(system), position=(0, 1, 0))\n"
+    "    report = system.step(1 / 120)";
+
+/// The rows of an array or nested sequence of shape (n, 3).
+std::vector<double> rows(nb::handle values, std::size_t count, const char* name) {
+  nb::object array = nb::module_::import_("numpy").attr("ascontiguousarray")(values, "float64");
+  const auto view = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(array);
+  if (view.ndim() != 2 || view.shape(0) != count || view.shape(1) != 3) {
+    const std::string text = std::string(name) + " must have the shape (" + std::to_string(count) +
+                             ", 3), one row a particle, not " + nb::repr(array.attr("shape")).c_str();
+    throw nb::value_error(text.c_str());
+  }
+  std::vector<double> numbers(view.data(), view.data() + 3 * count);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (std::isfinite(numbers[i])) continue;
+    const std::string text = std::string(name) + " must be finite; row " + std::to_string(i / 3) + " is not";
+    throw nb::value_error(text.c_str());
+  }
+  return numbers;
+}
+
+template <class Read>
+nb::object read_rows(System& engine, Read read) {
+  std::vector<double> numbers(3 * engine.particles().size());
+  (engine.*read)(numbers);
+  return nb::cast(make_vector3_array(std::move(numbers)));
+}
+
+template <class Assign>
+void assign_rows(System& engine, nb::handle values, const char* name, Assign assign) {
+  const std::vector<ParticleId> particles = engine.particles();
+  const std::vector<double> numbers = rows(values, particles.size(), name);
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    (engine.*assign)(particles[i], Vec3{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]});
+}
+
+void bind_settings(nb::class_<SystemObject>& type) {
+  type.def_prop_rw(
+          "gravity", [](SystemObject& self) { return self.use().gravity(); },
+          [](SystemObject& self, VectorArgument v) {
+            self.use_between_steps("gravity = ...").set_gravity(to_vec3(v, "gravity"));
+          },
+          nb::for_setter(nb::arg("value")), "m/s^2")
+      .def_prop_rw(
+          "mode", [](SystemObject& self) { return ModeWord{to_word(mode_words, self.use().mode())}; },
+          [](SystemObject& self, const ModeWord& mode) {
+            self.use_between_steps("mode = ...").set_mode(to_mode(mode));
+          },
+          "'energy_keeping' or 'robust'")
+      .def_prop_rw(
+          "damping", [](SystemObject& self) { return self.use().damping(); },
+          [](SystemObject& self, double value) {
+            self.use_between_steps("damping = ...").set_damping(finite_not_negative(value, "damping", "1/s"));
+          },
+          "1/s: all velocities fall by exp(-damping t).");
+}
+
+void bind_readings(nb::class_<SystemObject>& type) {
+  type.def_prop_ro(
+          "time", [](SystemObject& self) { return self.use().time(); }, "Simulated time, s.")
+      .def_prop_ro("step_count", [](SystemObject& self) { return self.use().step_count(); })
+      .def_prop_ro(
+          "structure_version", [](SystemObject& self) { return self.use().structure_version(); },
+          "Rises with each batch of structural edits.")
+      .def_prop_ro("energy", [](SystemObject& self) { return self.use().energy(); })
+      .def_prop_ro(
+          "momentum", [](SystemObject& self) { return self.use().momentum(); }, "kg m/s")
+      .def_prop_ro(
+          "angular_momentum", [](SystemObject& self) { return self.use().angular_momentum(); },
+          "About the origin, kg m^2/s.")
+      .def_prop_ro(
+          "worst_gap", [](SystemObject& self) { return self.use().worst_gap(); },
+          "Largest hinge separation or rigidity error, m.")
+      .def_prop_ro(
+          "articulate_count", [](SystemObject& self) { return self.use().articulate_count(); },
+          "Number of groups of bodies that hang together.")
+      .def_prop_ro(
+          "closing_count", [](SystemObject& self) { return self.use().closing_count(); },
+          "Particles still on their way to each other after `combine(p, q, over)`.")
+      .def_prop_rw(
+          "positions", [](SystemObject& self) { return read_rows(self.use(), &System::read_positions); },
+          [](SystemObject& self, nb::handle values) {
+            assign_rows(self.use_between_steps("positions = ..."), values, "positions", &System::set_position);
+          },
+          nb::for_getter(nb::sig("def positions(self) -> numpy.typing.NDArray[numpy.float64]")),
+          nb::for_setter(nb::sig("def positions(self, value: numpy.typing.ArrayLike, /) -> None")),
+          "Places of all particles, m: float64, shape (n, 3), in the order of `particles`. A copy; assign to set\n"
+          "them. Particles of one ring move together, so the last of them decides.")
+      .def_prop_rw(
+          "velocities", [](SystemObject& self) { return read_rows(self.use(), &System::read_velocities); },
+          [](SystemObject& self, nb::handle values) {
+            assign_rows(self.use_between_steps("velocities = ..."), values, "velocities", &System::set_velocity);
+          },
+          nb::for_getter(nb::sig("def velocities(self) -> numpy.typing.NDArray[numpy.float64]")),
+          nb::for_setter(nb::sig("def velocities(self, value: numpy.typing.ArrayLike, /) -> None")),
+          "As `positions`, in m/s.");
+}
+
+void bind_poses(nb::class_<SystemObject>& type) {
+  type.def(
+      "poses",
+      [](SystemObject& self) {
+        const PoseSnapshot snapshot = self.use().poses();
+        const std::size_t count = snapshot.bodies.size();
+        auto* slots = new std::uint32_t[count];
+        auto* places = new float[count * 7];
+        for (std::size_t i = 0; i < count; ++i) {
+          slots[i] = snapshot.bodies[i].body;
+          std::copy_n(snapshot.bodies[i].position, 3, places + 7 * i);
+          std::copy_n(snapshot.bodies[i].orientation, 4, places + 7 * i + 3);
+        }
+        nb::capsule slot_owner(slots, [](void* p) noexcept { delete[] static_cast<std::uint32_t*>(p); });
+        nb::capsule place_owner(places, [](void* p) noexcept { delete[] static_cast<float*>(p); });
+        return nb::make_tuple(nb::ndarray<nb::numpy, std::uint32_t, nb::ndim<1>>(slots, {count}, slot_owner),
+                              nb::ndarray<nb::numpy, float, nb::shape<-1, 7>>(places, {count, 7}, place_owner));
+      },
+      nb::sig("def poses(self) -> tuple[numpy.typing.NDArray[numpy.uint32], numpy.typing.NDArray[numpy.float32]]"),
+      "Where each body is drawn: slots, uint32 (n,), and float32 (n, 7): centre of mass (m) and unit quaternion\n"
+      "x y z w. A body whose particles lie on one line has its local +x from its first particle to its last.");
+}
+
+void bind_time(nb::class_<SystemObject>& type) {
+  type.def(
+          "step", [](SystemObject& self, double dt) { return self.step(dt); }, "dt"_a = 1.0 / 120,
+          "Advances by dt seconds, 0 < dt <= 1. Never raises for numerical reasons: see the report.\n\n"
+          "Raises BondError, after the step is done, for a bond whose function raised or gave no finite force; that bond\n"
+          "is switched off.")
+      .def(
+          "snapshot",
+          [](SystemObject& self) {
+            const Snapshot snapshot = self.use_between_steps("snapshot").snapshot();
+            return nb::bytes(snapshot.bytes.data(), snapshot.bytes.size());
+          },
+          "The whole system in bytes: everything but the functions of scripted bonds.")
+      .def(
+          "restore",
+          [](SystemObject& self, const nb::bytes& data) {
+            const auto* bytes = reinterpret_cast<const std::byte*>(data.c_str());
+            self.use_between_steps("restore").restore(Snapshot{{bytes, bytes + data.size()}});
+          },
+          "snapshot"_a,
+          "Goes back to a snapshot; handles from then are good again. Functions of scripted bonds stay those of this\n"
+          "system. Raises ValueError for bytes that are no snapshot; the system is then unchanged.")
+      .def(
+          "state_hash", [](SystemObject& self) { return self.use().state_hash(); },
+          "64 bits of the whole state: equal for equal runs.")
+      .def(
+          "start_recording", [](SystemObject& self) { self.use_between_steps("start_recording").start_recording(); },
+          "Notes all edits and inputs from here on, and the hash after each step.")
+      .def(
+          "stop_recording",
+          [](SystemObject& self) { return self.use_between_steps("stop_recording").stop_recording(); },
+          "The Recording since `start_recording`.")
+      .def(
+          "replay",
+          [](SystemObject& self, const Recording& recording) {
+            return self.use_between_steps("replay").replay(recording);
+          },
+          "recording"_a,
+          "Restores the recording's start and repeats it. Returns the number of the first step whose hash differs, None\n"
+          "when all are equal.")
+      .def(
+          "validate", [](SystemObject& self) { return self.use_between_steps("validate").validate(); },
+          "Walks the whole structure; one sentence per inconsistency, empty when whole.")
+      .def("adopt", &SystemObject::adopt,
+           "Makes the calling thread the owner. Raises RuntimeError while a step is under way.");
+}
+
+}  // namespace
+
+void bind_system(nb::module_& module) {
+  nb::class_<SystemObject> type(module, "System", doc, nb::type_slots(system_slots), nb::is_weak_referenceable());
+  type.def(
+      "__init__",
+      [](SystemObject* self, VectorArgument gravity, const ModeWord& mode, double damping) {
+        SystemOptions options;
+        options.gravity = to_vec3(gravity, "gravity");
+        options.mode = to_mode(mode);
+        options.damping = finite_not_negative(damping, "damping", "1/s");
+        new (self) SystemObject(options);
+      },
+      "gravity"_a = nb::make_tuple(0.0, -9.81, 0.0), "mode"_a = ModeWord{"energy_keeping"}, "damping"_a = 0.0);
+  bind_settings(type);
+  bind_readings(type);
+  bind_poses(type);
+  bind_time(type);
+  type.def("__repr__", [](SystemObject& self) {
+    if (self.owner != std::this_thread::get_id()) return std::string("<System of another thread>");
+    return "<System: " + std::to_string(self.engine.bodies().size()) + " bodies in " +
+           std::to_string(self.engine.articulate_count()) + " articulates at " + std::to_string(self.engine.time()) +
+           " s>";
+  });
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "system_object.h"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
+
+#include <string>
+#include <string_view>
+
+namespace iota::bindings {
+
+using namespace nb::literals;
+
+/// A float64 array (n, 3), C order, that owns its numbers.
+using Vector3Array = nb::ndarray<nb::numpy, double, nb::shape<-1, 3>, nb::c_contig>;
+
+Vector3Array make_vector3_array(std::vector<double> numbers);
+
+void bind_vector(nb::module_&);
+void bind_reports(nb::module_&);
+void bind_recording(nb::module_&);
+void bind_system(nb::module_&);
+void bind_body(nb::module_&);
+void bind_particle(nb::module_&);
+void bind_bonds(nb::module_&);
+void bind_grip(nb::module_&);
+void bind_restructuring(nb::module_&);
+void bind_server(nb::module_&);
+
+// --- handles --------------------------------------------------------------------------------------------------------
+
+/// A scripted function may refer to handles and the system, and the system holds the function: the garbage collector
+/// has to see these references to free such a ring.
+template <class HandleType>
+inline PyType_Slot handle_slots[] = {
+    {Py_tp_traverse, reinterpret_cast<void*>(+[](PyObject* self, visitproc visit, void* arg) -> int {
+       Py_VISIT(Py_TYPE(self));
+       if (nb::inst_ready(self)) Py_VISIT(nb::inst_ptr<HandleType>(self)->system_object.ptr());
+       return 0;
+     })},
+    {Py_tp_clear, reinterpret_cast<void*>(+[](PyObject* self) -> int {
+       HandleType& handle = *nb::inst_ptr<HandleType>(self);
+       handle.system = nullptr;
+       handle.system_object.reset();
+       return 0;
+     })},
+    {0, nullptr}};
+
+/// Equality by system and id, hash, `system`, `slot`.
+template <class HandleType>
+void def_identity(nb::class_<HandleType>& type) {
+  type.def(
+          "__eq__",
+          [](const HandleType& self, nb::handle other) -> nb::object {
+            const HandleType* handle = nullptr;
+            if (!nb::try_cast<const HandleType*>(other, handle) || !handle) return nb::borrow(Py_NotImplemented);
+            return nb::bool_(self.same_as(*handle));
+          },
+          nb::sig("def __eq__(self, other: object, /) -> bool"), nb::is_operator())
+      .def("__hash__",
+           [](const HandleType& self) {
+             const std::uint64_t id = (std::uint64_t(self.id.generation) << 32 | self.id.slot) * 0x9E3779B97F4A7C15u;
+             return Py_hash_t((id ^ reinterpret_cast<std::uintptr_t>(self.system)) >> 1);
+           })
+      .def_prop_ro(
+          "system", [](const HandleType& self) { return self.system_object; }, nb::sig("def system(self) -> System"),
+          "The system that owns it.")
+      .def_prop_ro(
+          "slot", [](const HandleType& self) { return self.id.slot; },
+          "Its number, as error texts and the page show it. Used again once it is gone; handles are not.");
+}
+
+/// `alive` and `survivor`, for kinds that can be absorbed.
+template <class HandleType>
+void def_survival(nb::class_<HandleType>& type, const char* survivor_signature) {
+  type.def_prop_ro(
+          "alive", [](const HandleType& self) { return self.is_alive(); },
+          "False once it was destroyed or absorbed. Never raises for a stale handle.")
+      .def_prop_ro(
+          "survivor",
+          [](const HandleType& self) -> nb::object {
+            const auto id = self.system->use().survivor_of(self.id);
+            return id ? nb::cast(sibling(self, *id)) : nb::object(nb::none());
+          },
+          nb::sig(survivor_signature),
+          "What it lives on in: itself if alive, what absorbed it, None if it was destroyed.");
+}
+
+template <class HandleType>
+std::string stale_repr(const char* type, const HandleType& self) {
+  return std::string("<") + type + " " + std::to_string(self.id.slot) + ", gone>";
+}
+
+}  // namespace iota::bindings

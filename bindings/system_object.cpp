@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "system_object.h"
+
+#include "bond_view.h"
+
+#include <algorithm>
+
+namespace iota::bindings {
+
+namespace {
+
+/// Looked up when needed: the module must import without its package, for the generator of the stub file.
+nb::object error_class(const char* name) { return nb::module_::import_("iota.errors").attr(name); }
+
+[[noreturn]] void raise_object(const nb::object& error) {
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
+  throw nb::python_error();
+}
+
+[[noreturn]] void raise_stale_as(const std::string& text, const nb::object& survivor) {
+  raise_object(error_class("StaleIdError")(text, survivor));
+}
+
+/// What the engine says of a stale id; `touch` is any call that checks it.
+template <class Touch>
+std::string engine_text(const Touch& touch, const std::string& otherwise) {
+  try {
+    touch();
+  } catch (const StaleIdError& error) {
+    return error.what();
+  }
+  return otherwise;
+}
+
+template <class HandleType>
+[[noreturn]] void raise_stale_with_survivor(const HandleType& handle, const std::string& text) {
+  const auto survivor = handle.system->engine.survivor_of(handle.id);
+  raise_stale_as(text, survivor ? nb::cast(sibling(handle, *survivor)) : nb::object(nb::none()));
+}
+
+}  // namespace
+
+void register_errors() {
+  nb::register_exception_translator([](const std::exception_ptr& pointer, void*) {
+    try {
+      std::rethrow_exception(pointer);
+    } catch (const StaleIdError& error) {
+      nb::object raised = error_class("StaleIdError")(error.what());
+      PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(raised.ptr())), raised.ptr());
+    }
+  });
+}
+
+void raise_stale(const BodyHandle& handle) {
+  raise_stale_with_survivor(
+      handle, engine_text([&] { (void)handle.system->engine.mass(handle.id); }, name_of(handle.id) + " is gone"));
+}
+
+void raise_stale(const ParticleHandle& handle) {
+  raise_stale_with_survivor(
+      handle, engine_text([&] { (void)handle.system->engine.position(handle.id); }, name_of(handle.id) + " is gone"));
+}
+
+void raise_stale(const BondHandle& handle) {
+  raise_stale_as(
+      engine_text([&] { (void)handle.system->engine.is_active(handle.id); }, name_of(handle.id) + " is gone"),
+      nb::none());
+}
+
+void raise_stale(const GripHandle& handle) {
+  raise_stale_as(name_of(handle.id) + " was let go, or its body is gone", nb::none());
+}
+
+void raise_runtime(const std::string& text) {
+  PyErr_SetString(PyExc_RuntimeError, text.c_str());
+  throw nb::python_error();
+}
+
+void SystemObject::raise_foreign_thread() {
+  nb::object error = error_class("WrongThreadError");
+  PyErr_SetString(error.ptr(),
+                  "a system belongs to one thread: the one that made it, or the one that runs its World. "
+                  "Use world.call(function) to run something there, or system.adopt() to take over a system at rest");
+  throw nb::python_error();
+}
+
+System& SystemObject::use_between_steps(const char* what) {
+  System& system = use();
+  if (system.is_stepping())
+    raise_runtime(std::string(what) +
+                  " is not possible in a bond's function, as a step is under way. There, only combine, separate, nail, "
+                  "release and destroy are taken, and done right after the step");
+  return system;
+}
+
+void SystemObject::adopt() {
+  if (engine.is_stepping()) raise_runtime("adopt: a step is under way in another thread");
+  owner = std::this_thread::get_id();
+}
+
+BondLaw SystemObject::make_scripted_law(std::shared_ptr<BondFunction> function, std::string name) {
+  ScriptedLaw law;
+  law.name = std::move(name);
+  law.force = [this, function = std::move(function)](const BondState& state) -> Vec3 {
+    nb::gil_scoped_acquire lock;
+    try {
+      Vec3 force;
+      nb::object result = function->function(BondView{nb::find(this), this, function, state});
+      if (!try_vec3(result, force)) {
+        const std::string text = "the force must be 2 or 3 numbers (N), not " + describe(result);
+        throw nb::type_error(text.c_str());
+      }
+      if (!is_finite(force)) {
+        const std::string text = "the force must be finite (N), not " + describe(force);
+        throw nb::value_error(text.c_str());
+      }
+      return force;
+    } catch (nb::python_error& error) {
+      const bool is_signal = !error.matches(PyExc_Exception);
+      failures.push_back({function, nb::borrow(error.value())});
+      // Ctrl-C happens to arrive here as anywhere: the bond is not to blame.
+      if (is_signal) return {};
+    } catch (nb::builtin_exception& error) {
+      PyObject* type = error.type() == nb::exception_type::type_error ? PyExc_TypeError : PyExc_ValueError;
+      failures.push_back({function, nb::borrow(type)(error.what())});
+    }
+    throw std::runtime_error("the bond's function raised");  // the engine switches the bond off and reports it
+  };
+  return law;
+}
+
+StepReport SystemObject::step(double dt) {
+  System& system = use_between_steps("step");
+  finite_positive(dt, "dt", "s");
+  failures.clear();
+  StepReport report;
+  {
+    nb::gil_scoped_release unlocked;
+    report = system.step(dt);
+  }
+  // Functions that the engine has dropped: ours is the only reference left.
+  std::erase_if(functions, [](const auto& function) { return function.use_count() == 1; });
+  if (!failures.empty()) raise_failures(report);
+  return report;
+}
+
+void SystemObject::raise_failures(const StepReport& report) {
+  std::vector<BondFailure> all;
+  all.swap(failures);
+  for (const BondFailure& failure : all) {
+    if (!PyObject_IsInstance(failure.exception.ptr(), PyExc_Exception)) raise_object(failure.exception);
+  }
+  const BondFailure& first = all.front();
+  std::string text = name_of(first.bond->bond) + " between " + name_of(first.bond->p) + " and " +
+                     name_of(first.bond->q) + " was switched off: its function raised " +
+                     nb::type_name(first.exception.type()).c_str() + ": " + nb::str(first.exception).c_str();
+  if (all.size() > 1) text += " (and " + std::to_string(all.size() - 1) + " more in this step)";
+  nb::object self = nb::find(this);
+  nb::object error = error_class("BondError")(text, BondHandle{self, this, first.bond->bond}, nb::cast(report));
+  PyException_SetCause(error.ptr(), nb::object(first.exception).release().ptr());
+  raise_object(error);
+}
+
+int SystemObject::traverse(visitproc visit, void* arg) {
+  for (const auto& function : functions) Py_VISIT(function->function.ptr());
+  for (const auto& failure : failures) Py_VISIT(failure.exception.ptr());
+  return 0;
+}
+
+void SystemObject::clear() {
+  for (const auto& function : functions) function->function.reset();
+  failures.clear();
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vector_argument.h"
+
+#include <iota/system.h>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace iota::bindings {
+
+namespace nb = nanobind;
+
+/// The function of one scripted bond. The engine's copy of the law holds it by shared_ptr and may drop it while the
+/// interpreter lock is released; `SystemObject` holds it too, so that the function itself always dies with the lock.
+struct BondFunction {
+  nb::object function;
+  BondId bond;
+  ParticleId p, q;
+};
+
+/// A bond's function that raised, or a signal that arrived in it.
+struct BondFailure {
+  std::shared_ptr<BondFunction> bond;
+  nb::object exception;
+};
+
+/// A structural edit that a viewer should see and hear.
+struct VisibleEdit {
+  const char* kind;  ///< "join" or "break"
+  Vec3 position;
+  double delay;         ///< s until it shows
+  ParticleId particle;  ///< where it shows then, if it is not null and still alive
+};
+
+/// What a Python `System` holds: the engine's system, its owner thread and the functions of its scripted bonds.
+class SystemObject {
+ public:
+  explicit SystemObject(const SystemOptions& options) : engine(options), owner(std::this_thread::get_id()) {}
+
+  /// The engine's system, for a caller on the owner thread; throws `RuntimeError` on any other.
+  System& use() {
+    if (owner != std::this_thread::get_id()) raise_foreign_thread();
+    return engine;
+  }
+  /// The same, for calls that a bond's function must not make.
+  System& use_between_steps(const char* what);
+
+  void adopt();
+  StepReport step(double dt);
+  BondLaw make_scripted_law(std::shared_ptr<BondFunction> function, std::string name);
+  void keep(std::shared_ptr<BondFunction> function) { functions.push_back(std::move(function)); }
+  void note_edit(const char* kind, const Vec3& position, double delay = 0, ParticleId particle = {}) {
+    if (watch_edits) edits.push_back({kind, position, delay, particle});
+  }
+
+  int traverse(visitproc visit, void* argument);
+  void clear();
+
+  System engine;
+  std::thread::id owner;
+  std::vector<std::shared_ptr<BondFunction>> functions;
+  std::vector<BondFailure> failures;  ///< of the step under way
+  struct CosmeticBond {
+    CosmeticBondId id;
+    ParticleId p, q;
+  };
+  std::vector<CosmeticBond> cosmetic_bonds;
+  bool watch_edits = false;
+  std::vector<VisibleEdit> edits;
+
+ private:
+  [[noreturn]] static void raise_foreign_thread();
+  [[noreturn]] void raise_failures(const StepReport& report);
+};
+
+/// A Python handle: a system and an id in it.
+template <class IdType>
+struct Handle {
+  nb::object system_object;  ///< keeps the system alive
+  SystemObject* system = nullptr;
+  IdType id;
+
+  /// The engine, after checking that the caller is on the owner thread and that the handle is not stale.
+  System& use() const;
+  bool is_alive() const;
+  bool same_as(const Handle& other) const { return system == other.system && id == other.id; }
+};
+
+using BodyHandle = Handle<BodyId>;
+using ParticleHandle = Handle<ParticleId>;
+using BondHandle = Handle<BondId>;
+using GripHandle = Handle<GripId>;
+struct CosmeticBondHandle : Handle<CosmeticBondId> {
+  ParticleId p, q;
+};
+
+constexpr const char* kind_name(BodyId) { return "body"; }
+constexpr const char* kind_name(ParticleId) { return "particle"; }
+constexpr const char* kind_name(BondId) { return "bond"; }
+constexpr const char* kind_name(GripId) { return "grip"; }
+constexpr const char* kind_name(CosmeticBondId) { return "cosmetic bond"; }
+
+template <class IdType>
+std::string name_of(IdType id) {
+  return std::string(kind_name(id)) + " " + std::to_string(id.slot);
+}
+
+/// Makes the engine's StaleIdError Python's, for ids that it finds stale itself.
+void register_errors();
+
+/// Throws Python's RuntimeError.
+[[noreturn]] void raise_runtime(const std::string& text);
+
+/// Another object of the same system.
+template <class Other, class IdType>
+Handle<IdType> sibling(const Other& handle, IdType id) {
+  return {handle.system_object, handle.system, id};
+}
+
+[[noreturn]] void raise_stale(const BodyHandle&);
+[[noreturn]] void raise_stale(const ParticleHandle&);
+[[noreturn]] void raise_stale(const BondHandle&);
+[[noreturn]] void raise_stale(const GripHandle&);
+[[noreturn]] void raise_stale(const Handle<CosmeticBondId>&);
+
+template <class IdType>
+bool Handle<IdType>::is_alive() const {
+  return system != nullptr && system->use().contains(id);
+}
+
+template <class IdType>
+System& Handle<IdType>::use() const {
+  if (!system) throw nb::value_error("this handle was cleared by the garbage collector");
+  System& engine = system->use();
+  if (!engine.contains(id)) raise_stale(*this);
+  return engine;
+}
+
+template <class HandleType>
+std::vector<HandleType> wrap_all(const nb::object& system_object, SystemObject* system, const auto& ids) {
+  std::vector<HandleType> handles;
+  handles.reserve(ids.size());
+  for (const auto id : ids) handles.push_back({system_object, system, id});
+  return handles;
+}
+
+/// Throws ValueError unless both belong to one system.
+template <class HandleType>
+void check_one_system(const HandleType& a, const HandleType& b, const char* call) {
+  if (a.system == b.system) return;
+  const std::string text = std::string(call) + " takes two of one system, but " + name_of(a.id) + " and " +
+                           name_of(b.id) + " belong to different systems";
+  throw nb::value_error(text.c_str());
+}
+
+}  // namespace iota::bindings

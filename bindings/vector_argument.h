@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/vec3.h>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+
+namespace iota::bindings {
+
+namespace nb = nanobind;
+
+/// Whatever a caller passed where a vector is asked for. Converted by `to_vec3`, not by nanobind, so that the error
+/// names the argument and its value.
+struct VectorArgument {
+  nb::handle value;
+};
+
+/// A `Vec3`, or any sequence or array of 2 or 3 numbers (z is then 0). False where `value` is something else.
+bool try_vec3(nb::handle value, Vec3& out);
+
+/// As `try_vec3`; TypeError where it is no vector, ValueError where it is not finite. `name` goes into the text.
+Vec3 to_vec3(VectorArgument argument, const char* name);
+
+/// `value` in short, for error texts.
+std::string describe(nb::handle value);
+std::string describe(const Vec3& value);
+
+double finite(double value, const char* name);
+double finite_positive(double value, const char* name, const char* unit);
+double finite_not_negative(double value, const char* name, const char* unit);
+
+}  // namespace iota::bindings
+
+namespace nanobind::detail {
+
+template <>
+struct type_caster<iota::bindings::VectorArgument> {
+  NB_TYPE_CASTER(iota::bindings::VectorArgument,
+                 const_name("Vec3 | collections.abc.Sequence[float] | numpy.typing.NDArray[numpy.float64]"))
+  bool from_python(handle source, uint8_t, cleanup_list*) noexcept {
+    value.value = source;
+    return !source.is_none();
+  }
+  static handle from_cpp(const iota::bindings::VectorArgument& source, rv_policy, cleanup_list*) noexcept {
+    return source.value.inc_ref();
+  }
+};
+
+}  // namespace nanobind::detail

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Iota: worlds of particles, bonds and exactly jointed bodies that can be restructured while they run.
+
+    import iota
+
+    system = iota.System()
+    links = iota.builder.chain(system, links=24)
+    world = iota.World(system, title="chain")
+    world.run()          # prints the address of a page that shows it
+
+SI units; right-handed, y up. Vectors are any 2 or 3 numbers (z is then 0) and come back as `Vec3`.
+"""
+
+from collections.abc import Sequence
+
+from iota import builder, forces, looks
+from iota._core import (
+    Body,
+    Bond,
+    BondState,
+    CBond,
+    Energy,
+    Grip,
+    Particle,
+    Recording,
+    RestructureReport,
+    StepReport,
+    System,
+    Vec3,
+    combine,
+    separate,
+)
+from iota._core import version as __version__
+from iota.errors import BondError, PageMissingError, StaleIdError, WrongThreadError
+from iota.world import Camera, Client, Event, RunSummary, World
+
+Sequence.register(Vec3)
+
+__all__ = [
+    "Body",
+    "Bond",
+    "BondError",
+    "BondState",
+    "CBond",
+    "Camera",
+    "Client",
+    "Energy",
+    "Event",
+    "Grip",
+    "PageMissingError",
+    "Particle",
+    "Recording",
+    "RestructureReport",
+    "RunSummary",
+    "StaleIdError",
+    "StepReport",
+    "System",
+    "Vec3",
+    "World",
+    "WrongThreadError",
+    "__version__",
+    "builder",
+    "combine",
+    "forces",
+    "looks",
+    "separate",
+]

@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command line: `iota list`, `iota run`, `iota bench`."""
+
+from iota.cli.main import main
+
+__all__ = ["main"]

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments, and errors as one clear line."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from types import FrameType
+from typing import NoReturn
+
+import iota
+from iota.cli import bench, run
+from iota.cli.failure import Failure
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, without the usage text before it."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}. Try: {self.prog} --help\n")
+
+
+def positive(text: str) -> float:
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be above 0, not {text}")
+    return value
+
+
+def count(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"must be 1 or more, not {text}")
+    return value
+
+
+def port(text: str) -> int:
+    value = int(text)
+    if not 0 <= value <= 65535:
+        raise argparse.ArgumentTypeError(f"must be from 0 to 65535, not {text}")
+    return value
+
+
+def make_parser() -> Parser:
+    parser = Parser(prog="iota", description="Jointed bodies that can be grabbed, broken and rejoined while they move.")
+    parser.add_argument("--version", action="version", version=f"iota {iota.__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    listing = commands.add_parser("list", help="the studies that come with iota")
+    listing.set_defaults(function=run.list_studies)
+
+    running = commands.add_parser("run", help="runs a study, or a script of your own, and serves its page")
+    running.add_argument("what", metavar="NAME|FILE.py")
+    running.add_argument("--links", type=count, help="number of links, for what has a build(links=...)")
+    running.add_argument("--port", type=port, help="of the page; 0 for any free one (default: 8080)")
+    running.add_argument("--seconds", type=positive, help="stop by itself after so long")
+    running.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
+    running.add_argument(
+        "--headless", action="store_true", help="serve nothing; run so many simulated seconds (default: 10)"
+    )
+    running.add_argument("--json", action="store_true", help="print the run's figures as one JSON object at its end")
+    running.set_defaults(function=run.run)
+
+    benching = commands.add_parser("bench", help="measures the engine through Python")
+    benching.add_argument("what", choices=["chain"])
+    benching.add_argument("--links", type=count, nargs="+", default=list(bench.LINKS), help="chain lengths")
+    benching.add_argument("--json", action="store_true", help="print one JSON object instead of a table")
+    benching.set_defaults(function=bench.run)
+    return parser
+
+
+def _stop(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Returns the exit code: 0, 1 for what failed, 2 for wrong arguments."""
+    parsed = make_parser().parse_args(arguments)
+    signal.signal(signal.SIGTERM, _stop)  # `kill` ends a server as cleanly as Ctrl-C
+    try:
+        parsed.function(parsed)
+    except Failure as failure:
+        print(f"iota: {failure}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:  # `iota list | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    return 0

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`iota list` and `iota run`."""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import difflib
+import errno
+import importlib
+import inspect
+import json
+import os
+import runpy
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from iota import studies
+from iota.cli.failure import Failure
+from iota.errors import PageMissingError
+from iota.world import World
+from iota.world.callbacks import print_error
+from iota.world.options import RunOptions, use
+
+NOT_MAIN = "__iota__"  # run name of a script whose build() is called for it
+
+
+def list_studies(arguments: argparse.Namespace) -> None:
+    """Names and first lines of their descriptions."""
+    names = studies.names()
+    width = max(map(len, names))
+    for name in names:
+        doc = inspect.getdoc(importlib.import_module(f"iota.studies.{name}")) or ""
+        print(f"{name:{width}}  {doc.splitlines()[0] if doc else ''}")
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Runs a study or a script under the options given; prints figures with --json."""
+    options = RunOptions(
+        port=arguments.port,
+        seconds=arguments.seconds,
+        open=not arguments.no_open and not arguments.headless and can_show_a_page(),
+        headless=arguments.headless,
+    )
+    start = find(arguments.what)
+    with use(options), plain_failures(arguments.port):
+        start(arguments.links)
+        if not options.ran:
+            raise Failure(
+                f"{arguments.what} made no World run: call world.run(), or define build() that returns a World"
+            )
+    if arguments.json and options.summary is not None:
+        print(json.dumps(options.summary.as_dict()))
+
+
+def can_show_a_page() -> bool:
+    """Somebody sits at this machine: without a display, Python would look for a browser in the terminal."""
+    has_display = sys.platform in ("darwin", "win32") or "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
+    return has_display and sys.stdout.isatty()
+
+
+def find(what: str) -> Callable[[int | None], None]:
+    """What runs a study by name, or a file."""
+    names = studies.names()
+    if what in names:
+        return lambda links: run_study(what, links)
+    path = Path(what)
+    if what.endswith(".py") or path.is_file():
+        if not path.is_file():
+            raise Failure(f"there is no file {what}")
+        return lambda links: run_file(path, links)
+    near = difflib.get_close_matches(what, names, n=1)
+    hint = f"Did you mean {near[0]}?" if near else f"There is: {', '.join(names)}; or a file that ends in .py"
+    raise Failure(f"there is no study {what!r}. {hint}")
+
+
+def run_study(name: str, links: int | None) -> None:
+    module = importlib.import_module(f"iota.studies.{name}")
+    build_and_run(module.build, links, name)
+
+
+def run_file(path: Path, links: int | None) -> None:
+    """Runs a script as Python would. With --links, or where it runs no World itself, its build() is called."""
+    tree = parse(path)
+    has_build = any(isinstance(node, ast.FunctionDef) and node.name == "build" for node in tree.body)
+    if links is not None and not has_build:
+        raise Failure(f"{path} has no build(links=...), so --links means nothing to it")
+    sys.argv = [str(path)]
+    sys.path.insert(0, str(path.resolve().parent))
+    space = runpy.run_path(str(path), run_name="__main__" if links is None else NOT_MAIN)
+    from iota.world.options import current
+
+    if not current().ran and has_build:
+        build_and_run(space["build"], links, str(path))
+
+
+def parse(path: Path) -> ast.Module:
+    try:
+        return ast.parse(path.read_bytes(), filename=str(path))
+    except SyntaxError as error:
+        raise Failure(f"{path}, line {error.lineno}: {error.msg}") from None
+    except (OSError, ValueError) as error:
+        raise Failure(f"{path} cannot be read: {error}") from None
+
+
+def build_and_run(build: Callable[..., Any], links: int | None, name: str) -> None:
+    given: dict[str, int] = {}
+    if links is not None:
+        if "links" not in inspect.signature(build).parameters:
+            raise Failure(f"build() of {name} takes no links")
+        given["links"] = links
+    world = build(**given)
+    if not isinstance(world, World):
+        raise Failure(f"build() of {name} must return a World, not {type(world).__name__}")
+    world.run()
+
+
+@contextmanager
+def plain_failures(port: int | None) -> Iterator[None]:
+    """Errors as one line at the end, after the traceback in the user's own file where it is the script that failed."""
+    try:
+        yield
+    except (Failure, KeyboardInterrupt):
+        raise
+    except SystemExit as leave:
+        if leave.code not in (None, 0):
+            raise
+    except PageMissingError as error:
+        raise Failure(str(error)) from None
+    except OSError as error:
+        if error.errno in (errno.EADDRINUSE, errno.EACCES, errno.EADDRNOTAVAIL) and error.filename is None:
+            other = 8081 if port in (None, 8080) else 0
+            raise Failure(f"{error.strerror}. Try: --port {other}") from None
+        fail_with_traceback(error)
+    except Exception as error:
+        fail_with_traceback(error)
+
+
+def fail_with_traceback(error: Exception) -> None:
+    from iota.world.callbacks import one_line
+
+    print_error(error)
+    raise Failure(one_line(error)) from None

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shapes that the page draws bodies with, as plain dictionaries.
+
+A *class* of bodies has a shape, or a list of shapes, per look; users switch looks on the page while it runs. The look
+"*" is used for every look:
+
+    world.classes["link"] = {"rope": looks.cylinder(0.012, "rope"), "chain": looks.chain_link(0.1)}
+    world.look(links, "link")
+
+Lengths in m, colours as "#rrggbb", materials one of `MATERIALS`. The body's frame has its origin at the centre of mass
+and +x from its first particle to its last.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, TypeAlias
+
+Shape: TypeAlias = dict[str, Any]
+Looks: TypeAlias = dict[str, Shape | list[Shape]]
+
+MATERIALS = ("steel", "brass", "rubber", "wood", "rope", "glass", "paint")
+
+
+def _shape(kind: str, material: str, more: dict[str, Any], **sizes: float | None) -> Shape:
+    if material not in MATERIALS:
+        raise ValueError(f"material must be one of {', '.join(MATERIALS)}, not {material!r}")
+    for name, size in sizes.items():
+        if size is not None and not (math.isfinite(size) and size >= 0):
+            raise ValueError(f"{name} of a {kind} must be finite and at least 0 m, not {size}")
+    unknown = more.keys() - {"color", "offset", "rotation", "turn"}
+    if unknown:
+        raise TypeError(f"a {kind} has no {', '.join(sorted(unknown))}")
+    return {"type": kind, "material": material, **{n: s for n, s in sizes.items() if s is not None}, **more}
+
+
+def sphere(radius: float, material: str = "brass", **more: Any) -> Shape:
+    """A ball of `radius` m. `more`: color, offset=(x, y, z) and rotation=(x, y, z, w) in the body's frame."""
+    return _shape("sphere", material, more, radius=radius)
+
+
+def cylinder(radius: float, material: str = "steel", length: float | None = None, **more: Any) -> Shape:
+    """A cylinder along local x. Without `length` it is as long as the body: from first to last particle."""
+    return _shape("cylinder", material, more, radius=radius, length=length)
+
+
+def capsule(radius: float, material: str = "steel", length: float | None = None, **more: Any) -> Shape:
+    """A cylinder with round ends; `length` is that of the cylinder."""
+    return _shape("capsule", material, more, radius=radius, length=length)
+
+
+def torus(radius: float, tube: float, material: str = "steel", stretch: float = 0.0, **more: Any) -> Shape:
+    """A ring in the local x-y plane: centre line `radius`, wire radius `tube`, both halves pulled apart along x by
+    `stretch`. `turn`: radians about local x for every other body of the class."""
+    return _shape("torus", material, more, radius=radius, tube=tube, stretch=stretch)
+
+
+def box(size: Sequence[float], material: str = "wood", **more: Any) -> Shape:
+    """A box with edges `size` = (x, y, z)."""
+    x, y, z = (float(edge) for edge in size)
+    _shape("box", material, dict(more), x=x, y=y, z=z)
+    return {"type": "box", "material": material, "size": [x, y, z], **more}
+
+
+def chain_link(length: float, material: str = "steel") -> Shape:
+    """A link of a real chain for a body of `length` m: neighbours touch where they are hinged, turned by 90 degrees."""
+    tube, radius = 0.085 * length, 0.26 * length
+    return torus(radius, tube, material, stretch=length + 2 * (tube - radius), turn=math.pi / 2)

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A chain on a nail: drag it, break it with b, rejoin it with c; now and then it falls apart and mends itself."""
+
+from __future__ import annotations
+
+import iota
+from iota import looks
+
+NAIL = (0.0, 2.8, 0.0)
+LENGTH = 2.4
+EIGHTH_TURN = (-0.3827, 0, 0, 0.9239)  # about x
+
+
+def build(links: int = 24, repeat: bool = True) -> iota.World:
+    """The world of the study. repeat: whether the chain goes on breaking and mending itself, or does so once."""
+    system = iota.System(damping=0.05)
+    chain = iota.builder.chain(system, links, LENGTH, top=NAIL, direction=(0.85, -0.55, 0.1))
+    world = iota.World(system, title="chain", look="rope")
+    present(world, chain)
+    iota.forces.floor(world)
+
+    @world.action("break", key="b", button="b", help="separates the held or selected link from the one above")
+    def break_link(event: iota.Event) -> None:
+        hinge = hinge_above(event.body)
+        if hinge is None:
+            world.notice("Nothing to break", "This link has none above it.", client=event.client)
+        else:
+            iota.separate(*hinge)
+
+    @world.action("join", key="c", button="a", help="joins the held or selected part to the nearest loose end")
+    def join_part(event: iota.Event) -> None:
+        pair = nearest_ends(event.body)
+        if pair is None:
+            world.notice("Nothing to join", "Everything hangs together already.", client=event.client)
+        else:
+            iota.combine(*pair, over=max(0.2, abs(pair[0].position - pair[1].position) / 2.5))
+
+    script_break(world, chain, repeat)
+    return world
+
+
+def present(world: iota.World, chain: list[iota.Body]) -> None:
+    """Two looks for the links, and the gallows with the eye that they hang from."""
+    link = LENGTH / len(chain)
+    radius = min(0.014, 0.3 * link)
+    world.classes["link"] = {
+        "rope": looks.capsule(radius, "rope"),
+        "chain": looks.chain_link(link),
+    }
+    world.look(chain, "link")
+    x, y, z = NAIL
+    world.add_static(looks.box((0.10, 0.12, 1.16), "wood"), (x, y + 0.11, z - 0.44))
+    world.add_static(looks.box((0.10, y + 0.05, 0.10), "wood"), (x, (y + 0.05) / 2, z - 0.92))
+    world.add_static(looks.box((0.07, 0.07, 0.70), "wood"), (x, y - 0.17, z - 0.65), EIGHTH_TURN)
+    world.add_static(looks.box((0.60, 0.06, 0.45), "wood"), (x, 0.03, z - 0.92))
+    world.add_static(looks.torus(0.03, 0.007, "steel"), (x, y + 0.03, z))
+    world.camera = iota.Camera(position=(1.6, 1.75, 4.4), target=(0, 1.5, 0))
+
+
+def script_break(world: iota.World, chain: list[iota.Body], repeat: bool) -> None:
+    """Thesis 5.1.2: the lower part falls off, is kept near by a force, pulled close by a second one, and rejoined."""
+    cut = len(chain) * 2 // 3
+    if cut == 0:
+        return
+    hook, eye = chain[cut - 1].particles[-1], chain[cut].particles[0]
+    weight = 9.81 * sum(link.mass for link in chain[cut:])  # N, what the forces have to carry
+    bonds: list[iota.Bond] = []
+
+    def pull(bond: iota.BondState) -> iota.Vec3:
+        return weight * min(10 * bond.distance, 2.5) * bond.direction
+
+    def fall_off() -> None:
+        if world.held() or system.articulate_count > 1:
+            return  # somebody is at it
+        iota.separate(hook, eye)
+        bonds.append(iota.Bond(hook, eye, "spring", stiffness=weight / 0.25, damping=weight / 3, length=0))
+        world.after(2.5)(come_close)
+        world.after(4.0)(rejoin)
+
+    def come_close() -> None:
+        bonds.append(iota.Bond(hook, eye, pull))
+        bonds.append(iota.Bond(hook, eye, "drag", damping=weight / 2))
+
+    def rejoin() -> None:
+        while bonds:
+            bonds.pop().destroy()
+        if hook.body.articulate != eye.body.articulate:
+            iota.combine(hook, eye, over=0.4)
+
+    system = world.system
+    world.on_reset(bonds.clear)
+    if repeat:
+        world.every(18.0, start=4.0)(fall_off)
+    else:
+        world.at(4.0)(fall_off)
+
+
+# --- which link hangs on which ----------------------------------------------------------------------------------------
+
+
+def loose_ends(bodies: list[iota.Body]) -> list[iota.Particle]:
+    """The particles that nothing is hinged to and no nail holds."""
+    return [p for body in bodies for p in body.particles if len(p.ring) == 1 and not p.is_nailed]
+
+
+def part_of(link: iota.Body) -> list[iota.Body]:
+    """All links that hang together with `link`."""
+    return next(part for part in link.system.articulates if link in part)
+
+
+def hinge_above(link: iota.Body) -> tuple[iota.Particle, iota.Particle] | None:
+    """The hinge towards the nail, or towards the highest end of a part that has none: (the one above, the link's own)."""
+    part = part_of(link)
+    roots = [p for body in part for p in body.particles if p.is_nailed]
+    roots = roots or [max(loose_ends(part), key=lambda p: p.position.y)]
+    reached = {p.body for p in roots}
+    waiting = list(reached)
+    while waiting:
+        body = waiting.pop()
+        for above in body.particles:
+            for own in above.ring:
+                if own.body in reached:
+                    continue
+                if own.body == link:
+                    return above, own
+                reached.add(own.body)
+                waiting.append(own.body)
+    return None
+
+
+def nearest_ends(link: iota.Body) -> tuple[iota.Particle, iota.Particle] | None:
+    """The loose end elsewhere and the one of this link's part that are nearest to each other; None without any."""
+    part = part_of(link)
+    others = [body for other in link.system.articulates if link not in other for body in other]
+    pairs = [(theirs, own) for theirs in loose_ends(others) for own in loose_ends(part)]
+    return min(pairs, key=lambda pair: abs(pair[0].position - pair[1].position), default=None)
+
+
+if __name__ == "__main__":
+    build().run()

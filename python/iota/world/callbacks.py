@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Calls the script's functions so that one that raises or dawdles is named, and the world goes on."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+SLOW = 0.5  # s
+GO_ON = "The world goes on. Correct the script and run it again."
+_PACKAGE = str(Path(__file__).parent.parent)  # as frames name it, symbolic links and all
+
+Tell = Callable[[str, str, str], None]  # title, text, hint
+
+
+def wants_event(function: Callable[..., Any]) -> bool:
+    """True where the function has to be given an argument; decided when it is registered."""
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):
+        return False
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    needed = [p for p in signature.parameters.values() if p.kind in positional and p.default is p.empty]
+    if len(needed) > 1:
+        raise TypeError(
+            f"{function_name(function)} takes {len(needed)} arguments; a callback gets one event, or nothing"
+        )
+    return bool(needed)
+
+
+@dataclass(frozen=True, eq=False)
+class Hook:
+    """A function of the script, as it was registered."""
+
+    function: Callable[..., Any]
+    takes_event: bool
+    name: str
+
+    @classmethod
+    def of(cls, function: Callable[..., Any]) -> Hook:
+        return cls(function, wants_event(function), function_name(function))
+
+
+def function_name(function: Callable[..., Any]) -> str:
+    return getattr(function, "__qualname__", None) or type(function).__name__
+
+
+def script_frames(trace: TracebackType | None) -> list[traceback.FrameSummary]:
+    """The frames of a traceback that are not iota's own."""
+    return [
+        frame
+        for frame in traceback.extract_tb(trace)
+        if not frame.filename.startswith((_PACKAGE, "<frozen ")) or "studies" in Path(frame.filename).parts
+    ]
+
+
+def one_line(error: BaseException) -> str:
+    """'ZeroDivisionError: division by zero (chain.py, line 12)'."""
+    text = traceback.format_exception_only(type(error), error)[-1].strip()
+    frames = script_frames(error.__traceback__)
+    return f"{text} ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else text
+
+
+def print_error(error: BaseException) -> None:
+    """The traceback on stderr, without iota's own frames."""
+    frames = script_frames(error.__traceback__)
+    lines = ["Traceback (most recent call last):\n", *traceback.format_list(frames)] if frames else []
+    cause = error.__cause__
+    if cause is not None:
+        lines = [*traceback.format_exception(type(cause), cause, cause.__traceback__), "\n", *lines]
+    lines += traceback.format_exception_only(type(error), error)
+    sys.stderr.write("".join(lines))
+    sys.stderr.flush()
+
+
+class Guard:
+    """Calls functions of the script; tells of errors and slowness by `tell(title, text, hint)`.
+
+    A watching thread tells of a slow function while it still runs: the page, served by another thread, goes on drawing.
+    """
+
+    def __init__(self, tell_error: Tell, tell_slow: Tell) -> None:
+        self._tell_error, self._tell_slow = tell_error, tell_slow
+        self._running: tuple[str, float] | None = None
+        self._told: tuple[str, float] | None = None
+        self._stop = threading.Event()
+        self._watcher: threading.Thread | None = None
+
+    def call(self, what: str, function: Callable[..., Any], *arguments: Any, hint: str = GO_ON) -> bool:
+        """Calls it; False when it raised, which is told. KeyboardInterrupt and SystemExit pass."""
+        before, self._running = self._running, (what, time.monotonic())
+        try:
+            function(*arguments)
+        except Exception as error:
+            self.failed(what, error, hint)
+            return False
+        finally:
+            self._finish(what)
+            self._running = before
+        return True
+
+    def failed(self, what: str, error: Exception, hint: str = GO_ON) -> None:
+        print_error(error)
+        self._tell_error(f"{what} failed", one_line(error), hint)
+
+    def watch(self) -> None:
+        """Starts the watching thread."""
+        if self._watcher is None:
+            self._stop.clear()
+            self._watcher = threading.Thread(target=self._watch, name="iota-slow-callbacks", daemon=True)
+            self._watcher.start()
+
+    def close(self) -> None:
+        self._stop.set()
+        if self._watcher is not None:
+            self._watcher.join()
+            self._watcher = None
+
+    def _finish(self, what: str) -> None:
+        running = self._running
+        if running is None or running[0] != what:
+            return
+        seconds = time.monotonic() - running[1]
+        if seconds > SLOW:
+            print(f"iota: {what} took {seconds:.1f} s; the world stood still meanwhile", file=sys.stderr)
+
+    def _watch(self) -> None:
+        while not self._stop.wait(0.1):
+            running = self._running
+            if running and running != self._told and time.monotonic() - running[1] > SLOW:
+                self._told = running
+                hint = "Do long work elsewhere, or in small pieces once a step."
+                self._tell_slow(f"{running[0]} is slow", "The world waits for it; the page goes on.", hint)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Who is there, what they have selected, and what they hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from iota._core import Body, Grip, InputEvent, System
+
+
+@dataclass
+class Hold:
+    """One hand of a client on a body."""
+
+    body: Body
+    grip: Grip
+
+
+@dataclass
+class Client:
+    """One open page. selected: its selection. holds: by the page's own number of the hand."""
+
+    id: int
+    name: str = ""
+    selected: Body | None = None
+    holds: dict[int, Hold] = field(default_factory=dict)
+
+
+def alive(body: Body | None) -> Body | None:
+    """The body, or what it was absorbed by; None if it is gone."""
+    return None if body is None else body.survivor
+
+
+class Hands:
+    """Turns input events into grips. Forces of several holders add up, as each has a grip of its own."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self.clients: dict[int, Client] = {}
+
+    def take(self, event: InputEvent) -> None:
+        """One event of kind join, leave, select or grab_*. What names a body that is gone does nothing: the page will
+        learn of it with the next structure."""
+        if event.kind == "join":
+            self.clients[event.client] = Client(event.client, event.name)
+            return
+        client = self.clients.get(event.client)
+        if client is None:
+            return
+        if event.kind == "leave":
+            self.let_go(client)
+            del self.clients[event.client]
+        elif event.kind == "select":
+            client.selected = None if event.body is None else self._system.body_at(event.body)
+        elif event.kind == "grab_start":
+            self._grab(client, event)
+        elif event.kind == "grab_move":
+            hold = client.holds.get(event.hold)
+            if hold is not None and hold.grip.alive:
+                hold.grip.move(event.target)
+        elif event.kind == "grab_end":
+            self._release(client, event.hold)
+
+    def held(self, client: int | None = None) -> Body | None:
+        """The body held last by a client, or by anyone."""
+        clients = self.clients.values() if client is None else [c for c in self.clients.values() if c.id == client]
+        bodies = [alive(hold.body) for c in clients for hold in c.holds.values() if hold.grip.alive]
+        return next((body for body in reversed(bodies) if body is not None), None)
+
+    def selected(self, client: int) -> Body | None:
+        """The body selected by a client."""
+        found = self.clients.get(client)
+        return None if found is None else alive(found.selected)
+
+    def let_go(self, client: Client) -> None:
+        for hold in list(client.holds):
+            self._release(client, hold)
+
+    def forget(self) -> None:
+        """After the system was restored: its grips are those of then, which are none of ours."""
+        for client in self.clients.values():
+            client.holds.clear()
+
+    def _grab(self, client: Client, event: InputEvent) -> None:
+        body = None if event.body is None else self._system.body_at(event.body)
+        if body is None or body.kind == "inactive":
+            return
+        self._release(client, event.hold)
+        grip = Grip(body, event.local_point, event.target, client=client.id, hold=event.hold)
+        client.holds[event.hold] = Hold(body, grip)
+
+    @staticmethod
+    def _release(client: Client, hold: int) -> None:
+        found = client.holds.pop(hold, None)
+        if found is not None and found.grip.alive:
+            found.grip.destroy()

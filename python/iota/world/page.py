@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the built page is, and the token that a browser needs to talk to us."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from iota._core import kept_token, make_token
+from iota.errors import PageMissingError
+
+
+def page_folder() -> Path:
+    """The folder with the page's index.html: inside the package, or where the repository builds it."""
+    package = Path(__file__).resolve().parent.parent
+    candidates = [package / "page", package.parent.parent / "web" / "dist"]
+    for folder in candidates:
+        if (folder / "index.html").is_file():
+            return folder
+    raise PageMissingError(f"the page is not built: there is no {candidates[0] / 'index.html'}. Try: make build")
+
+
+def token() -> str:
+    """The secret in the page's address, kept in $XDG_STATE_HOME/iota or ~/.local/state/iota with mode 0600, so that open
+    pages find a restarted server again; a fresh one each time where that cannot be written."""
+    try:
+        return kept_token()
+    except OSError:
+        return make_token()

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Timed events, in simulated time."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from iota.world.callbacks import Hook
+
+
+@dataclass(order=True)
+class Task:
+    """A hook and when it is due; tasks due at one time run in the order in which they were asked for."""
+
+    time: float
+    order: int
+    hook: Hook = field(compare=False)
+    period: float | None = field(compare=False, default=None)
+
+
+class Schedule:
+    """Tasks by time. Those asked for before `begin` come back with `rewind`; later ones belong to their run only."""
+
+    def __init__(self) -> None:
+        self._waiting: list[Task] = []
+        self._plan: list[Task] = []
+        self._order = 0
+        self._begun = False
+
+    def add(self, time: float, hook: Hook, period: float | None = None) -> None:
+        if not math.isfinite(time):
+            raise ValueError(f"the time of an event must be finite, not {time} s")
+        if period is not None and not (math.isfinite(period) and period > 0):
+            raise ValueError(f"the period of an event must be finite and above 0 s, not {period}")
+        self._order += 1
+        task = Task(time, self._order, hook, period)
+        if not self._begun:
+            self._plan.append(task)
+        heapq.heappush(self._waiting, task)
+
+    def begin(self) -> None:
+        self._begun = True
+
+    def rewind(self) -> None:
+        """As at `begin`."""
+        self._waiting = list(self._plan)
+        heapq.heapify(self._waiting)
+
+    def due(self, time: float) -> Iterator[Task]:
+        """Takes out what is due; a periodic task is put back for its next time first, so that it may raise."""
+        while self._waiting and self._waiting[0].time <= time:
+            task = heapq.heappop(self._waiting)
+            if task.period is not None:
+                # Counted from the task's own time: no drift.
+                again = Task(task.time + task.period, task.order, task.hook, task.period)
+                heapq.heappush(self._waiting, again)
+            yield task
+
+    def drop(self, hook: Hook) -> None:
+        """Forgets a hook until the next rewind."""
+        self._waiting = [task for task in self._waiting if task.hook is not hook]
+        heapq.heapify(self._waiting)

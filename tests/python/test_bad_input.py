@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a script can get wrong: each is refused with the condition and the value, and the system stays as it was."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+
+import iota
+
+NAN, INF = math.nan, math.inf
+
+
+def particle(system: iota.System) -> iota.Particle:
+    return system.particles[0]
+
+
+BAD_VALUES: dict[str, tuple[Callable[[iota.System], object], str]] = {
+    "nan position": (lambda s: iota.Particle(s.bodies[0], (NAN, 0, 0)), r"position must be finite, not \(nan, 0, 0\)"),
+    "infinite position": (lambda s: iota.Particle(s.bodies[0], (0, INF, 0)), r"position.*\(0, inf, 0\)"),
+    "nan velocity": (lambda s: iota.Particle(s.bodies[0], velocity=(0, 0, NAN)), "velocity must be finite"),
+    "zero mass": (lambda s: iota.Particle(s.bodies[0], mass=0), "mass must be finite and above 0 kg, not 0"),
+    "negative mass": (lambda s: iota.Particle(s.bodies[0], mass=-1), "mass.*above 0 kg, not -1"),
+    "nan mass": (lambda s: iota.Particle(s.bodies[0], mass=NAN), "mass.*not nan"),
+    "infinite mass": (lambda s: iota.Particle(s.bodies[0], mass=INF), "mass.*not inf"),
+    "assigned position": (lambda s: setattr(particle(s), "position", (INF, 0)), "position must be finite"),
+    "assigned velocity": (lambda s: setattr(particle(s), "velocity", (0, NAN)), "velocity must be finite"),
+    "assigned mass": (lambda s: setattr(particle(s), "mass", 0.0), "mass.*not 0"),
+    "force": (lambda s: particle(s).apply_force((NAN, 0, 0)), "force must be finite"),
+    "nail": (lambda s: particle(s).nail((NAN, 0, 0)), "position must be finite"),
+    "gravity": (lambda s: setattr(s, "gravity", (0, NAN)), "gravity must be finite"),
+    "damping": (lambda s: setattr(s, "damping", -1.0), "damping must be finite and at least 0 1/s, not -1"),
+    "body damping": (lambda s: iota.Body(s, damping=NAN), "damping"),
+    "mode": (lambda s: setattr(s, "mode", "robut"), "mode must be one of 'energy_keeping', 'robust', not 'robut'"),
+    "kind": (lambda s: iota.Body(s, kind="frozen"), "kind must be one of 'dynamic', 'static'.* not 'frozen'"),
+    "dt zero": (lambda s: s.step(0), "dt"),
+    "dt negative": (lambda s: s.step(-0.01), "dt"),
+    "dt nan": (lambda s: s.step(NAN), "dt"),
+    "dt too long": (lambda s: s.step(1.5), "dt"),
+    "law": (
+        lambda s: iota.Bond(*s.particles[:2], "sprong"),
+        "law must be 'spring', 'drag' or a function, not 'sprong'",
+    ),
+    "stiffness": (lambda s: iota.Bond(*s.particles[:2], "spring", stiffness=-1), "stiffness.*not -1"),
+    "length": (lambda s: iota.Bond(*s.particles[:2], "spring", length=INF), "length.*not inf"),
+    "drag damping": (lambda s: iota.Bond(*s.particles[:2], "drag", damping=NAN), "damping.*not nan"),
+    "over": (lambda s: iota.combine(*s.particles[:2], over=-1), "over.*at least 0 s, not -1"),
+    "rod mass": (lambda s: s.bodies[0].set_rod(0, 0.1), "mass"),
+    "rod radius": (lambda s: s.bodies[0].set_rod(1, -0.1), "radius"),
+    "rod of one particle": (lambda s: s.bodies[2].set_rod(1, 0.1), "two particles"),
+    "grip point": (lambda s: iota.Grip(s.bodies[0], (NAN, 0, 0)), "local_point"),
+    "grip target": (lambda s: iota.Grip(s.bodies[0], target=(0, INF)), "target"),
+    "grip frequency": (lambda s: iota.Grip(s.bodies[0], frequency=0), "frequency"),
+    "snapshot": (lambda s: s.restore(b"this is no snapshot"), "snapshot"),
+    "empty snapshot": (lambda s: s.restore(b""), "snapshot"),
+    "cut snapshot": (lambda s: s.restore(s.snapshot()[:-8]), "snapshot"),
+    "chain links": (lambda s: iota.builder.chain(s, links=0), "links must be a whole number from 1 up, not 0"),
+    "chain length": (lambda s: iota.builder.chain(s, length=-2), "length must be above 0 m, not -2"),
+    "chain direction": (lambda s: iota.builder.chain(s, direction=(0, 0, 0)), "direction must not be zero"),
+    "world dt": (lambda s: iota.World(s, dt=0), "dt must be above 0"),
+    "world speed": (lambda s: setattr(iota.World(s), "speed", NAN), "speed"),
+    "event time": (lambda s: iota.World(s).at(NAN)(print), "time"),
+    "event period": (lambda s: iota.World(s).every(0)(print), "period"),
+}
+
+BAD_TYPES: dict[str, tuple[Callable[[iota.System], object], str]] = {
+    "drag with a length": (lambda s: iota.Bond(*s.particles[:2], "drag", length=1), "a drag has no length"),
+    "function with a stiffness": (
+        lambda s: iota.Bond(*s.particles[:2], lambda b: (0, 0, 0), stiffness=1),
+        "a function has no stiffness",
+    ),
+    "no law": (lambda s: iota.Bond(*s.particles[:2], 7), "law must be 'spring', 'drag' or a function, not 7"),
+    "text for a number": (lambda s: iota.Particle(s.bodies[0], mass="heavy"), "mass"),
+    "body for a particle": (lambda s: iota.separate(s.bodies[0], s.bodies[1]), "incompatible"),
+    "two arguments": (lambda s: iota.World(s).on_step(lambda a, b: None), "takes 2 arguments"),
+}
+
+
+def two_rods_and_a_ball() -> iota.System:
+    system = iota.System()
+    for x in (0, 2):
+        body = iota.Body(system)
+        iota.Particle(body, (x, 0, 0))
+        iota.Particle(body, (x + 1, 0, 0))
+    iota.Particle(iota.Body(system), (5, 0, 0))
+    return system
+
+
+@pytest.mark.parametrize("name", BAD_VALUES)
+def test_a_bad_value_is_refused_with_its_condition(name: str) -> None:
+    system = two_rods_and_a_ball()
+    before = system.state_hash()
+    use, text = BAD_VALUES[name]
+    with pytest.raises(ValueError, match=text):
+        use(system)
+    assert system.validate() == []
+    if not name.startswith(("chain", "body")):
+        assert system.state_hash() == before, "the system changed"
+
+
+@pytest.mark.parametrize("name", BAD_TYPES)
+def test_a_wrong_kind_of_thing_is_a_type_error(name: str) -> None:
+    system = two_rods_and_a_ball()
+    use, text = BAD_TYPES[name]
+    with pytest.raises(TypeError, match=text):
+        use(system)
+    assert system.validate() == []
+
+
+def test_particles_of_two_systems_cannot_be_combined() -> None:
+    one, other = two_rods_and_a_ball(), two_rods_and_a_ball()
+    p, q = one.particles[0], other.particles[1]
+    text = "combine takes two of one system, but particle 0 and particle 1 belong to different systems"
+    with pytest.raises(ValueError, match=text):
+        iota.combine(p, q)
+    for use in (iota.separate, iota.CBond, lambda a, b: iota.Bond(a, b, "spring")):
+        with pytest.raises(ValueError, match="different systems"):
+            use(p, q)
+    with pytest.raises(ValueError, match="different systems"):
+        iota.combine(p.body, q.body)
+    assert one.validate() == other.validate() == []
+
+
+def test_an_empty_system_steps() -> None:
+    report = iota.System().step(1 / 60)
+    assert report.articulates == 0 and report.energy.total == 0
+
+
+def test_a_body_without_particles_steps() -> None:
+    system = iota.System()
+    body = iota.Body(system)
+    system.step()
+    assert body.particles == [] and system.validate() == []

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command line as a user meets it: its own process, exit codes, what is on which stream."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import pytest
+
+import iota
+from iota.cli import main
+
+KEYS = [
+    "steps",
+    "dt_s",
+    "simulated_s",
+    "cpu_s",
+    "worst_gap_m",
+    "energy_start_j",
+    "energy_end_j",
+    "energy_max_j",
+    "iterations_mean",
+    "iterations_max",
+    "fallbacks",
+    "articulates",
+    "structure_version",
+]
+
+
+def run(*arguments: str | Path, seconds: float = 30) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "iota", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=seconds, stdin=subprocess.DEVNULL)
+
+
+def fails_with_one_line(*arguments: str | Path, code: int = 1) -> str:
+    done = run(*arguments)
+    assert done.returncode == code, done.stderr
+    assert done.stdout == "" and done.stderr.count("\n") == 1, done.stderr
+    return done.stderr.strip()
+
+
+@pytest.fixture
+def script(tmp_path: Path) -> Path:
+    path = tmp_path / "mine.py"
+    path.write_text(
+        textwrap.dedent("""
+        import iota
+        def build(links=3):
+            system = iota.System()
+            iota.builder.chain(system, links=links)
+            return iota.World(system, title="mine")
+        if __name__ == "__main__":
+            build().run()
+        """)
+    )
+    return path
+
+
+def test_list_names_the_studies() -> None:
+    done = run("list")
+    assert done.returncode == 0 and done.stderr == ""
+    assert re.search(r"^chain +A chain on a nail", done.stdout, re.MULTILINE)
+
+
+def test_version() -> None:
+    assert run("--version").stdout == f"iota {iota.__version__}\n"
+
+
+def test_headless_json_has_the_figures_and_is_the_same_each_time() -> None:
+    figures = []
+    for _ in range(2):
+        done = run("run", "chain", "--headless", "--seconds", "10", "--json")
+        assert done.returncode == 0 and done.stderr == ""
+        figures.append(json.loads(done.stdout))
+    first, second = figures
+    assert list(first) == KEYS
+    assert first["steps"] == 1200 and first["simulated_s"] == pytest.approx(10)
+    assert first["worst_gap_m"] <= 1e-9 and first["cpu_s"] < 5
+    first.pop("cpu_s"), second.pop("cpu_s")
+    assert first == second
+
+
+def test_headless_runs_ten_seconds_by_itself_and_takes_links() -> None:
+    done = run("run", "chain", "--headless", "--links", "200", "--seconds", "1", "--json")
+    assert json.loads(done.stdout)["steps"] == 120
+    assert run("run", "chain", "--headless", "--json").stdout.startswith('{"steps": 1200')
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text", "code"),
+    [
+        (["run", "chian"], "iota: there is no study 'chian'. Did you mean chain?", 1),
+        (["run", "zzz"], "iota: there is no study 'zzz'. There is: chain; or a file that ends in .py", 1),
+        (["run", "missing.py"], "iota: there is no file missing.py", 1),
+        (["run", "chain", "--links", "0"], "argument --links: must be 1 or more, not 0. Try: iota run --help", 2),
+        (["run", "chain", "--seconds", "-1"], "argument --seconds: must be above 0, not -1", 2),
+        (["run", "chain", "--seconds", "nan"], "must be above 0, not nan", 2),
+        (["run", "chain", "--port", "70000"], "argument --port: must be from 0 to 65535, not 70000", 2),
+        (["run", "chain", "--port", "x"], "argument --port: invalid port value: 'x'", 2),
+        (["run"], "the following arguments are required: NAME|FILE.py", 2),
+        (["fly"], "invalid choice: 'fly'", 2),
+        ([], "the following arguments are required: COMMAND", 2),
+    ],
+)
+def test_wrong_arguments_are_one_clear_line(arguments: list[str], text: str, code: int) -> None:
+    assert text in fails_with_one_line(*arguments, code=code)
+
+
+def test_a_script_runs_as_main_and_with_links(script: Path) -> None:
+    done = run("run", script, "--headless", "--seconds", "0.5", "--json")
+    assert json.loads(done.stdout)["steps"] == 60
+    done = run("run", script, "--links", "7", "--headless", "--seconds", "0.5", "--json")
+    assert done.returncode == 0 and json.loads(done.stdout)["steps"] == 60
+
+
+def test_a_script_with_only_a_build_runs_too(tmp_path: Path, script: Path) -> None:
+    only = tmp_path / "only.py"
+    only.write_text(script.read_text().split("if __name__")[0])
+    assert json.loads(run("run", only, "--headless", "--seconds", "0.5", "--json").stdout)["steps"] == 60
+
+
+def test_a_script_with_its_own_loop_stops_by_itself(tmp_path: Path) -> None:
+    own = tmp_path / "own.py"
+    own.write_text("import iota\nworld = iota.World(iota.System())\nwhile True:\n    world.step()\n")
+    done = run("run", own, "--headless", "--seconds", "0.5", "--json")
+    assert done.returncode == 0 and json.loads(done.stdout)["steps"] == 60
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("import iota\nsystem = iota.System()\n1 / 0\n", r"iota: ZeroDivisionError: division by zero \(bad.py, line 3\)"),
+        ("import iota\niota.Particle(iota.Body(iota.System()), mass=-1)\n", r"mass must be.*above 0 kg, not -1 \(bad.py, line 2\)"),
+        ("import nothing_like_this\n", r"ModuleNotFoundError.*\(bad.py, line 1\)"),
+        ("def build():\n    return 5\n", r"build\(\) of .*bad.py must return a World, not int"),
+        ("import iota\n", "made no World run"),
+    ],
+)  # fmt: skip
+def test_a_script_that_fails_ends_with_one_clear_line(tmp_path: Path, text: str, said: str) -> None:
+    path = tmp_path / "bad.py"
+    path.write_text(text)
+    done = run("run", path, "--headless", "--seconds", "0.1")
+    assert done.returncode == 1 and done.stdout == ""
+    assert re.search(said, done.stderr.splitlines()[-1]), done.stderr
+    assert "runpy" not in done.stderr and "cli/run.py" not in done.stderr, "frames of others are left out"
+
+
+def test_a_script_that_cannot_be_read_is_one_line(tmp_path: Path, script: Path) -> None:
+    path = tmp_path / "bad.py"
+    path.write_text("def (:\n")
+    assert re.search(r"bad\.py, line 1: invalid syntax", fails_with_one_line("run", path))
+    path.write_bytes(b"\x00\xff\xfe")
+    assert "bad.py" in fails_with_one_line("run", path)
+    path.write_text("import iota\n")
+    assert "--links means nothing to it" in fails_with_one_line("run", path, "--links", "3")
+
+
+def test_a_taken_port_is_one_line(script: Path) -> None:
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        line = fails_with_one_line("run", "chain", "--no-open", "--port", str(port))
+    assert str(port) in line and "Try: --port" in line
+
+
+def test_a_missing_page_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(Path, "is_file", lambda path: False)
+    assert main(["run", "chain", "--no-open", "--port", "0"]) == 1
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.count("\n") == 1
+    assert "the page is not built" in said.err and "Try: make build" in said.err
+
+
+def test_run_serves_prints_the_address_and_keys_and_stops_by_itself() -> None:
+    done = run("run", "chain", "--no-open", "--port", "0", "--seconds", "1", "--json")
+    assert done.returncode == 0 and done.stderr == ""
+    lines = done.stdout.splitlines()
+    assert re.fullmatch(r"chain: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0])
+    assert [line.split()[0] for line in lines[1:3]] == ["b", "c"]
+    assert 30 <= json.loads(lines[3])["steps"] <= 125 and len(lines) == 4
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_ends_cleanly_when_told_to(number: signal.Signals) -> None:
+    command = [sys.executable, "-m", "iota", "run", "chain", "--no-open", "--port", "0"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ)
+    assert process.stdout is not None and process.stderr is not None
+    assert "http://" in process.stdout.readline()
+    time.sleep(0.3)
+    process.send_signal(number)
+    assert process.wait(10) == 0
+    assert process.stderr.read() == ""
+    process.stdout.close(), process.stderr.close()
+
+
+def test_bench_prints_json_rows() -> None:
+    done = run("bench", "chain", "--links", "8", "64", "--json", seconds=60)
+    assert done.returncode == 0, done.stderr
+    cases = json.loads(done.stdout)["cases"]
+    assert len(cases) == 2 * 2 * 2 * 2
+    assert {(case["links"], case["kind"], case["mode"], round(1 / case["dt_s"])) for case in cases} == {
+        (links, kind, mode, rate)
+        for links in (8, 64)
+        for kind in ("two_point", "rod")
+        for mode in ("robust", "energy_keeping")
+        for rate in (60, 120)
+    }
+    assert all(case["us_per_link_step"] > 0 and case["worst_gap_m"] < 1e-6 for case in cases)

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+
+import iota
+
+
+def names(bodies: list[list[iota.Body]]) -> list[list[int]]:
+    return sorted(sorted(body.slot for body in part) for part in bodies)
+
+
+@pytest.fixture
+def space() -> iota.System:
+    return iota.System(gravity=(0, 0, 0))
+
+
+def rod(system: iota.System, x: float, y: float = 0.0) -> tuple[iota.Particle, iota.Particle]:
+    body = iota.Body(system)
+    return iota.Particle(body, (x, y, 0)), iota.Particle(body, (x + 1, y, 0))
+
+
+def test_combine_makes_a_hinge_of_particles_of_unrelated_bodies(space: iota.System) -> None:
+    (_, p), (q, _) = rod(space, 0), rod(space, 1)
+    report = iota.combine(p, q)
+    assert report and report.changed and not report.queued
+    assert set(p.ring) == {p, q} and p.body != q.body
+    assert names(space.articulates) == [[0, 1]] and space.articulate_count == 1
+    assert (report.articulates_before, report.articulates_after) == (2, 1)
+    assert report.structure_version == space.structure_version
+
+
+def test_combine_again_makes_the_hinge_rigid_and_absorbs_the_body(space: iota.System) -> None:
+    (a, p), (q, b) = rod(space, 0), rod(space, 1)
+    first, second = p.body, q.body
+    iota.combine(p, q)
+    report = iota.combine(p, q)
+    assert report.absorbed_bodies == [(second, first)]
+    assert not second.alive and second.survivor == first
+    assert b.body == a.body == first
+    assert space.validate() == []
+
+
+def test_combine_of_one_particle_with_itself_does_nothing(space: iota.System) -> None:
+    p, _ = rod(space, 0)
+    version = space.structure_version
+    assert not iota.combine(p, p)
+    assert space.structure_version == version
+
+
+def test_combine_in_one_body_absorbs_the_second_particle(space: iota.System) -> None:
+    p, q = rod(space, 0)
+    report = iota.combine(p, q)
+    assert report.absorbed_particles == [(q, p)]
+    assert q.survivor == p and p.body.particles == [p] and p.mass == 2
+
+
+def test_combine_brings_particles_together_that_are_apart(space: iota.System) -> None:
+    (_, p), (q, _) = rod(space, 0), rod(space, 1.5, 0.5)
+    report = iota.combine(p, q)
+    assert report.closed_distance == pytest.approx(0.5**0.5 * 1.0, rel=1e-9)
+    assert report.remaining_gap < 1e-9
+    assert p.position == q.position
+    assert abs(space.momentum) < 1e-12 and space.step().worst_gap < 1e-9
+
+
+def test_combine_over_a_time_closes_smoothly(space: iota.System) -> None:
+    (_, p), (q, _) = rod(space, 0), rod(space, 1.5, 0.5)
+    iota.combine(p, q, over=0.5)
+    assert space.closing_count == 1
+    gaps = []
+    for _ in range(66):
+        space.step()
+        gaps.append(abs(p.position - q.position))
+    assert space.closing_count == 0 and gaps[-1] == 0
+    assert all(late <= early + 1e-12 for early, late in pairwise(gaps))
+    assert 0.05 < gaps[len(gaps) // 2] < 0.65
+
+
+def test_combine_of_bodies_makes_one_rigid_body_in_place(space: iota.System) -> None:
+    (a, _), (c, d) = rod(space, 0), rod(space, 3, 1)
+    report = iota.combine(a.body, c.body)
+    assert report.absorbed_bodies[0][1] == a.body == c.body == d.body
+    assert c.position == pytest.approx((3, 1, 0))
+    a.velocity = (0, 0, 1)
+    for _ in range(60):
+        space.step()
+    assert abs(abs(a.position - d.position) - 17**0.5) < 1e-9, "distances stay"
+
+
+def test_separate_undoes_a_hinge(space: iota.System) -> None:
+    (_, p), (q, _) = rod(space, 0), rod(space, 1)
+    iota.combine(p, q)
+    report = space.separate(p, q)
+    assert report.changed and (report.articulates_before, report.articulates_after) == (1, 2)
+    assert p.ring == [p] and q.ring == [q]
+
+
+def test_separate_of_unrelated_particles_does_nothing(space: iota.System) -> None:
+    (_, p), (q, _) = rod(space, 0), rod(space, 1)
+    assert not iota.separate(p, q)
+
+
+def test_separate_of_one_particle_makes_a_second_one_of_half_the_mass(space: iota.System) -> None:
+    p, _ = rod(space, 0)
+    report = iota.separate(p, p)
+    (twin,) = report.created_particles
+    assert twin.position == p.position and twin.mass == p.mass == 0.5
+
+
+def test_separate_in_one_body_makes_the_second_a_body_hinged_to_the_first(space: iota.System) -> None:
+    p, q = rod(space, 0)
+    iota.Particle(p.body, (0, 1, 0))
+    report = iota.separate(p, q)
+    assert report.created_bodies == [q.body] and q.body != p.body
+    assert q in p.ring
+
+
+def test_a_cut_chain_falls_and_conserves_momentum(system: iota.System, chain: list[iota.Body]) -> None:
+    for _ in range(30):
+        system.step()
+    before = system.momentum, system.energy.total
+    iota.separate(chain[2].particles[1], chain[3].particles[0])
+    assert abs(system.momentum - before[0]) < 1e-12 and system.energy.total == pytest.approx(before[1])
+    assert names(system.articulates) == [[0, 1, 2], [3, 4, 5]]
+    height = chain[4].centre_of_mass.y
+    for _ in range(60):
+        system.step()
+    assert chain[4].centre_of_mass.y < height - 1.0
+    assert chain[0].particles[0].position == pytest.approx((0, 2, 0))
+
+
+def test_a_nail_holds_moves_and_lets_go(system: iota.System) -> None:
+    particle = iota.Particle(iota.Body(system), (0, 1, 0), mass=2)
+    particle.nail()
+    system.step()
+    assert particle.is_nailed and particle.position == (0, 1, 0)
+    assert particle.nail_force == pytest.approx((0, 2 * 9.81, 0))
+    particle.nail((1, 1, 0))
+    system.step()
+    assert particle.position == pytest.approx((1, 1, 0))
+    particle.release()
+    system.step()
+    assert not particle.is_nailed
+
+
+def test_two_grips_pull_with_the_sum_of_their_forces(space: iota.System) -> None:
+    speeds = []
+    for count in (1, 2):
+        system = iota.System(gravity=(0, 0, 0))
+        body = iota.Body(system)
+        iota.Particle(body)
+        grips = [iota.Grip(body, target=(0.05, 0, 0), hold=i) for i in range(count)]
+        system.step()
+        speeds.append(system.momentum.x)
+        grips[0].destroy()
+        assert not grips[0].alive
+    assert speeds[1] == pytest.approx(2 * speeds[0], rel=0.2) and speeds[0] > 0
+
+
+def test_static_bodies_stay_and_scripted_ones_go_where_they_are_put(system: iota.System) -> None:
+    bodies = [iota.Body(system, kind=kind) for kind in ("static", "scripted", "inactive", "dynamic")]
+    particles = [iota.Particle(body, (0, 1, 0)) for body in bodies]
+    for _ in range(10):
+        particles[1].position += (0.01, 0, 0)
+        system.step()
+    static, scripted, inactive, dynamic = particles
+    assert static.position == inactive.position == (0, 1, 0)
+    assert scripted.position == pytest.approx((0.1, 1, 0))
+    assert dynamic.position.y < 1
+
+
+def test_a_chain_of_rods_keeps_its_inertia() -> None:
+    """A rod that turns about its end swings slower than two point masses at its ends would."""
+    lows = []
+    for rods in (False, True):
+        system = iota.System()
+        (link,) = iota.builder.chain(system, links=1, length=1.0, top=(0, 0, 0), direction=(1, 0, 0), rods=rods)
+        for _ in range(24):
+            system.step()
+        lows.append(link.particles[1].position.y)
+    # 3/2 g against g for the angular acceleration at the start.
+    assert lows[1] / lows[0] == pytest.approx(1.5, rel=0.03)

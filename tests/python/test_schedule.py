@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import time
+
+import pytest
+
+import iota
+from iota.world.callbacks import Hook
+from iota.world.pacer import MAX_CATCH_UP, Pacer
+from iota.world.schedule import Schedule
+
+
+def names(schedule: Schedule, at: float) -> list[str]:
+    return [task.hook.name for task in schedule.due(at)]
+
+
+def hook(name: str) -> Hook:
+    return Hook(lambda: None, False, name)
+
+
+def test_events_come_in_order_of_time_then_of_asking() -> None:
+    schedule = Schedule()
+    for name, at in (("b", 2.0), ("a", 1.0), ("c", 2.0)):
+        schedule.add(at, hook(name))
+    assert names(schedule, 0.5) == []
+    assert names(schedule, 5.0) == ["a", "b", "c"]
+    assert names(schedule, 5.0) == []
+
+
+def test_periodic_events_do_not_drift() -> None:
+    schedule = Schedule()
+    schedule.add(0.3, hook("tick"), period=0.1)
+    times = [step for step in range(1, 1000) for _ in schedule.due(step * 0.01 + 1e-9)]
+    assert times == list(range(30, 1000, 10))
+
+
+def test_rewind_brings_back_what_was_asked_for_before_the_run_only() -> None:
+    schedule = Schedule()
+    schedule.add(1.0, hook("planned"))
+    schedule.begin()
+    schedule.add(2.0, hook("later"))
+    assert names(schedule, 3.0) == ["planned", "later"]
+    schedule.rewind()
+    assert names(schedule, 3.0) == ["planned"]
+
+
+def run_headless(world: iota.World, seconds: float) -> iota.RunSummary:
+    from iota.world.options import RunOptions, use
+
+    with use(RunOptions(headless=True)):
+        return world.run(seconds)
+
+
+def test_a_world_calls_its_timed_events_at_their_steps() -> None:
+    system = iota.System()
+    world = iota.World(system, dt=0.01)
+    seen: list[tuple[str, float]] = []
+
+    @world.at(0.05)
+    def once() -> None:
+        seen.append(("once", system.time))
+        world.after(0.03)(lambda: seen.append(("after", system.time)))
+
+    @world.every(0.1)
+    def often(event: iota.Event) -> None:
+        assert event.world is world and event.system is system and event.target is None
+        seen.append(("often", system.time))
+
+    steps: list[int] = []
+    world.on_step(lambda: steps.append(system.step_count))
+    summary = run_headless(world, 0.35)
+    expected = [("once", 0.05), ("after", 0.08), ("often", 0.1), ("often", 0.2), ("often", 0.3)]
+    assert seen == [(name, pytest.approx(at)) for name, at in expected]
+    assert steps == list(range(35)) and summary.steps == 35
+
+
+def test_an_event_that_raises_is_told_and_the_world_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
+    world = iota.World(iota.System(), dt=0.01)
+    seen: list[float] = []
+
+    @world.every(0.02)
+    def broken() -> None:
+        seen.append(world.system.time)
+        raise ZeroDivisionError("on purpose")
+
+    @world.at(0.05)
+    def broken_once() -> None:
+        raise KeyError("once")
+
+    assert run_headless(world, 0.2).steps == 20
+    told = capsys.readouterr().err
+    assert told.count("ZeroDivisionError: on purpose") == 1 and len(seen) == 1, "a periodic event is switched off"
+    assert "KeyError: 'once'" in told
+    assert "test_schedule.py" in told and "world/callbacks.py" not in told, "frames of iota itself are left out"
+
+
+def test_an_on_step_that_raises_is_switched_off(capsys: pytest.CaptureFixture[str]) -> None:
+    world = iota.World(iota.System(), dt=0.01)
+    calls: list[int] = []
+
+    @world.on_step
+    def broken() -> None:
+        calls.append(1)
+        raise ValueError("on purpose")
+
+    world.on_step(lambda: calls.append(2))
+    run_headless(world, 0.05)
+    assert calls == [1, 2, 2, 2, 2, 2]
+    assert capsys.readouterr().err.count("ValueError: on purpose") == 1
+
+
+def test_a_bond_that_fails_in_a_world_is_told_and_the_world_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
+    system = iota.System()
+    p, q = iota.Particle(iota.Body(system)), iota.Particle(iota.Body(system), (1, 0, 0))
+    bond = iota.Bond(p, q, lambda bond: 1 / 0)
+    assert run_headless(iota.World(system, dt=0.01), 0.05).steps == 5
+    assert not bond.active
+    assert "bond 0 between particle 0 and particle 1 was switched off" in capsys.readouterr().err
+
+
+def test_the_pacer_takes_as_many_steps_as_time_has_passed() -> None:
+    pacer = Pacer(dt=0.01)
+    taken, end = 0, time.perf_counter() + 0.3
+    while time.perf_counter() < end:
+        taken += pacer.due(paused=False)
+        pacer.sleep(paused=False)
+    assert 10 <= taken <= 31, "no more than real time; fewer on a busy machine"
+
+
+def test_the_pacer_lets_time_go_that_cannot_be_caught_up() -> None:
+    pacer = Pacer(dt=0.001)
+    time.sleep(0.05)
+    assert pacer.due(paused=False) == MAX_CATCH_UP
+    assert pacer.due(paused=False) <= 1, "no debt is left"
+    assert pacer.reached < 1
+
+
+def test_the_pacer_rests_while_paused() -> None:
+    pacer = Pacer(dt=0.001)
+    time.sleep(0.02)
+    assert pacer.due(paused=True) == 0
+    assert pacer.due(paused=False) <= 1

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import iota
+from iota.studies import chain as study
+from iota.world.options import RunOptions, use
+
+
+def run(world: iota.World, seconds: float) -> iota.RunSummary:
+    with use(RunOptions(headless=True)):
+        return world.run(seconds)
+
+
+def test_it_breaks_and_mends_itself_by_forces() -> None:
+    world = study.build()
+    system = world.system
+    parts: dict[float, int] = {}
+    bonds: dict[float, int] = {}
+
+    @world.on_step
+    def watch() -> None:
+        parts[round(system.time, 2)] = system.articulate_count
+        bonds[round(system.time, 2)] = len(system.bonds)
+
+    summary = run(world, 10)
+    assert (parts[3.9], parts[4.1], parts[7.9], parts[8.1], parts[9.9]) == (1, 2, 2, 1, 1)
+    assert bonds[3.9] == 0 and bonds[5.0] == 1 and bonds[7.0] > 1 and bonds[8.1] == 0
+    assert summary.steps == 1200 and summary.articulates == 1
+    assert summary.worst_gap_m < 1e-9
+    assert summary.energy_max_j <= summary.energy_start_j * (1 + 1e-12)
+
+
+def test_it_is_alive_at_once_and_the_same_each_time() -> None:
+    ends = []
+    for _ in range(2):
+        world = study.build()
+        run(world, 9)
+        ends.append(world.system.state_hash())
+    assert ends[0] == ends[1]
+    world = study.build()
+    run(world, 0.5)
+    assert world.system.energy.kinetic > 0.5
+
+
+def test_it_can_do_so_once() -> None:
+    world = study.build(repeat=False)
+    run(world, 23)
+    assert world.system.articulate_count == 1
+
+
+@pytest.mark.parametrize("links", [1, 2, 3, 60])
+def test_it_runs_with_any_number_of_links(links: int) -> None:
+    summary = run(study.build(links=links), 9)
+    assert summary.steps == 1080 and math.isfinite(summary.energy_end_j)
+
+
+def test_a_cut_off_part_lies_on_the_floor() -> None:
+    world = study.build(repeat=False)
+    links = world.system.bodies
+    world.at(0.1)(lambda: iota.separate(links[11].particles[1], links[12].particles[0]))
+    run(world, 3.5)
+    lowest = world.system.positions[:, 1].min()
+    assert -0.05 < lowest < 0.1
+
+
+def test_the_link_above_is_the_one_towards_the_nail() -> None:
+    world = study.build()
+    links = world.system.bodies
+    assert study.hinge_above(links[0]) is None
+    hinge = study.hinge_above(links[7])
+    assert hinge == (links[6].particles[1], links[7].particles[0])
+    iota.separate(*hinge)
+    assert study.hinge_above(links[7]) is None or study.hinge_above(links[23]) is not None
+
+
+def test_join_finds_the_nearest_loose_ends() -> None:
+    world = study.build()
+    links = world.system.bodies
+    assert study.nearest_ends(links[5]) is None
+    iota.separate(links[9].particles[1], links[10].particles[0])
+    assert study.nearest_ends(links[12]) == (links[9].particles[1], links[10].particles[0])
+    assert study.nearest_ends(links[2]) == (links[10].particles[0], links[9].particles[1])

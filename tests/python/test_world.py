@@ -1,0 +1,346 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Worlds with their real server, and pages that speak the real protocol."""
+
+from __future__ import annotations
+
+import struct
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from page_client import PageClient, encode
+
+import iota
+from iota.studies import chain as study
+
+Runner = Callable[[iota.World], str]
+NONE = 0xFFFFFFFF
+
+
+@pytest.fixture
+def world() -> iota.World:
+    """The study, without its scripted break."""
+    world = study.build(repeat=False)
+    world._schedule._plan.clear()
+    world._schedule.rewind()
+    return world
+
+
+def test_a_page_learns_what_there_is_and_sees_it_move(world: iota.World, run_world: Runner) -> None:
+    with PageClient(run_world(world)) as page:
+        assert page.last["welcome"]["dt"] == 1 / 120
+        page.wait_for(lambda: {"world", "classes", "bodies", "statics", "actions"} <= page.scene.keys())
+        assert page.scene["world"]["title"] == "chain"
+        assert page.scene["world"]["looks"] == ["rope", "chain"]
+        assert [body["class"] for body in page.scene["bodies"]] == ["link"] * 24
+        assert len(page.scene["statics"]) > 0, "what it hangs from is visible"
+        actions = {action["key"]: action for action in page.scene["actions"]}
+        assert actions["b"]["name"] == "break" and actions["b"]["button"] == "b" and actions["c"]["on"] == "body"
+        page.wait_for(lambda: len(page.places) == 24 and page.parts() == 1)
+        before = page.places[23]
+        page.wait_for(lambda: abs(page.places[23][1] - before[1]) > 0.01)
+
+
+def test_b_breaks_and_c_rejoins_in_python_and_on_the_page(world: iota.World, run_world: Runner) -> None:
+    system = world.system
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.parts() == 1)
+        page.send("select", body=11)
+        page.send("action", name="break", body=11)
+        page.wait_for(lambda: page.parts() == 2)
+        assert world.call(lambda: system.articulate_count) == 2
+        assert page.articulates[10] != page.articulates[11]
+        flash = page.wait_for(lambda: [e for e in page.effects if e["kind"] == "break"])
+        assert flash[0]["position"][1] > 0
+        page.send("action", name="join", body=NONE)  # what is selected
+        page.wait_for(lambda: page.parts() == 1)
+        assert world.call(lambda: system.articulate_count) == 1
+        page.wait_for(lambda: [e for e in page.effects if e["kind"] == "join"])
+        assert page.notices == []
+
+
+def test_a_dragged_link_follows_and_swings_back(world: iota.World, run_world: Runner) -> None:
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: 23 in page.places)
+        page.send("grab_start", hold=1, body=23, local_point=(0, 0, 0), target=(1.2, 1.2, 1.0))
+        page.wait_for(lambda: abs(page.places[23][2] - 1.0) < 0.15, seconds=10)
+        (hold,) = page.wait_for(lambda: page.last["poses"]["holds"])
+        assert hold["client"] == page.id and hold["hold"] == 1 and hold["body"] == 23 and hold["force"] > 0
+        assert world.call(lambda: world.held(page.id)) == world.call(lambda: world.held())
+        assert world.call(lambda: world.held(page.id).slot) == 23
+        page.send("grab_move", hold=1, target=(-1.2, 1.2, 0.0))
+        page.wait_for(lambda: page.places[23][0] < -0.8, seconds=10)
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: not page.last["poses"]["holds"])
+        page.wait_for(lambda: page.places[23][0] > -0.3, seconds=10)
+
+
+def test_two_pages_have_their_own_selections_and_agree_on_the_rest(world: iota.World, run_world: Runner) -> None:
+    bodies = world.system.bodies
+    url = run_world(world)
+    with PageClient(url, "one") as one, PageClient(url, "two") as two:
+        one.send("select", body=3)
+        two.send("select", body=20)
+        one.wait_for(lambda: len(one.last["clients"]["clients"]) == 2)
+        two.wait_for(lambda: {c["selected"] for c in two.last["clients"]["clients"]} == {3, 20})
+        for page, slot in ((one, 3), (two, 20)):
+            page.wait_for(lambda p=page, s=slot: world.call(lambda: world.selected(p.id)) == bodies[s])
+        assert sorted(client.name for client in world.call(lambda: world.clients)) == ["one", "two"]
+        two.send("action", name="break", body=NONE)
+        one.wait_for(lambda: one.parts() == 2)
+        two.wait_for(lambda: two.parts() == 2)
+        assert one.articulates == two.articulates
+
+
+def test_the_forces_of_two_holders_add_up(run_world: Runner) -> None:
+    system = iota.System(gravity=(0, 0, 0), damping=1.0)
+    body = iota.Body(system)
+    iota.Particle(body, (0, 1, 0))
+    url = run_world(iota.World(system))
+    with PageClient(url) as one, PageClient(url) as two:
+        one.send("grab_start", hold=1, body=0, local_point=(0, 0, 0), target=(1, 1, 0))
+        two.send("grab_start", hold=1, body=0, local_point=(0, 0, 0), target=(0, 2, 0))
+        one.wait_for(lambda: len(one.last["poses"]["holds"]) == 2)
+        two.wait_for(lambda: two.places[0] == pytest.approx((0.5, 1.5, 0), abs=0.01))
+
+
+def test_what_a_leaving_page_held_is_let_go(world: iota.World, run_world: Runner) -> None:
+    url = run_world(world)
+    with PageClient(url) as stays:
+        with PageClient(url) as leaves:
+            leaves.send("grab_start", hold=7, body=5, local_point=(0, 0, 0), target=(0, 2, 2))
+            stays.wait_for(lambda: stays.last["poses"]["holds"])
+        stays.wait_for(lambda: not stays.last["poses"]["holds"])
+        assert len(world.call(lambda: world.clients)) == 1
+
+
+def test_pause_step_speed_and_reset(world: iota.World, run_world: Runner) -> None:
+    system = world.system
+    with PageClient(run_world(world)) as page:
+        page.send("control", command=0, value=0)
+        page.wait_for(lambda: page.last["poses"]["paused"])
+        step = world.call(lambda: system.step_count)
+        page.send("control", command=2, value=0)
+        page.wait_for(lambda: page.last["poses"]["step"] == step + 1)
+        page.send("control", command=4, value=0.5)
+        page.send("control", command=1, value=0)
+        page.wait_for(lambda: page.last["poses"]["speed"] == 0.5 and not page.last["poses"]["paused"])
+        page.send("action", name="break", body=9)
+        page.wait_for(lambda: page.parts() == 2)
+        page.send("grab_start", hold=1, body=3, local_point=(0, 0, 0), target=(0, 0, 2))
+        page.wait_for(lambda: page.last["poses"]["holds"])
+        page.send("control", command=3, value=0)
+        page.wait_for(lambda: page.parts() == 1 and page.last["poses"]["time"] < 1 and not page.last["poses"]["holds"])
+        page.send("grab_move", hold=1, target=(0, 0, 1))  # a hand from before the reset holds nothing
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: page.last["poses"]["step"] > 10)
+        assert page.notices == []
+
+
+def test_reset_runs_timed_events_again_and_tells_the_script(run_world: Runner) -> None:
+    system = iota.System()
+    iota.Particle(iota.Body(system), (0, 1, 0))
+    world = iota.World(system)
+    calls: list[str] = []
+    world.at(0.05)(lambda: calls.append("event"))
+    world.on_reset(lambda: calls.append("reset"))
+    run_world(world)
+    for _ in range(100):
+        time.sleep(0.02)
+        if calls.count("event") == 1 and "reset" not in calls:
+            world.call(world.reset)
+        if calls.count("event") == 2:
+            break
+    assert calls == ["event", "reset", "event"]
+
+
+def test_an_action_that_raises_is_told_on_the_page_with_its_line(
+    run_world: Runner, capsys: pytest.CaptureFixture[str]
+) -> None:
+    system = iota.System()
+    iota.Particle(iota.Body(system))
+    world = iota.World(system)
+
+    @world.action("burn", key="x", on="world")
+    def burn(event: iota.Event) -> None:
+        raise RuntimeError("too hot")
+
+    line = burn.__code__.co_firstlineno + 2
+    with PageClient(run_world(world)) as page:
+        page.send("action", name="burn", body=NONE)
+        (notice,) = page.wait_for(lambda: page.notices)
+        assert notice["level"] == 2 and "'burn' failed" in notice["title"]
+        assert notice["text"] == f"RuntimeError: too hot (test_world.py, line {line})"
+        assert "goes on" in notice["hint"]
+        step = page.last["poses"]["step"]
+        page.wait_for(lambda: page.last["poses"]["step"] > step + 10)
+    assert "RuntimeError: too hot" in capsys.readouterr().err
+
+
+def test_an_action_without_a_body_says_what_to_do(world: iota.World, run_world: Runner) -> None:
+    url = run_world(world)
+    with PageClient(url) as page, PageClient(url) as other:
+        page.send("action", name="break", body=NONE)
+        (notice,) = page.wait_for(lambda: page.notices)
+        assert notice["title"] == "Nothing to break" and "Hold or select" in notice["hint"]
+        page.send("action", name="dance", body=NONE)
+        page.wait_for(lambda: "no action 'dance'" in page.notices[-1]["text"])
+        page.send("action", name="break", body=4000)  # no such body
+        page.wait_for(lambda: len(page.notices) == 3)
+        assert other.notices == [], "told to the one who asked"
+
+
+def test_a_slow_callback_is_named_while_it_runs_and_stepping_resumes(
+    run_world: Runner, capsys: pytest.CaptureFixture[str]
+) -> None:
+    system = iota.System()
+    iota.Particle(iota.Body(system))
+    world = iota.World(system)
+
+    @world.action("ponder", key="p", on="world")
+    def ponder() -> None:
+        time.sleep(2.0)
+
+    with PageClient(run_world(world)) as page:
+        page.send("action", name="ponder", body=NONE)
+        asked = time.monotonic()
+        (notice,) = page.wait_for(lambda: page.notices)
+        assert time.monotonic() - asked < 1.9, "told before it is over"
+        assert "'ponder' is slow" in notice["title"]
+        step = page.last["poses"]["step"]
+        page.wait_for(lambda: page.last["poses"]["step"] > step + 10)
+    assert "'ponder' took 2.0 s" in capsys.readouterr().err
+
+
+def test_garbage_frames_are_refused_with_a_reason_and_the_session_lives(world: iota.World, run_world: Runner) -> None:
+    good = encode("grab_start", hold=1, body=3, local_point=(0, 0, 0), target=(0, 0, 0))
+    with PageClient(run_world(world)) as page:
+        garbage = [
+            b"",
+            b"\xff",
+            b"\x00" * 50,
+            good[:-1],
+            good + b"\0",
+            good[:-4] + struct.pack("<f", float("nan")),
+            b"\x06" + struct.pack("<I", 0xFFFFFFFF),
+            b"\x06" + struct.pack("<I", 2) + b"\xff\xfe" + struct.pack("<I", 0),
+        ]
+        for number, frame in enumerate(garbage):
+            page.send_bytes(frame)
+            page.wait_for(lambda n=number: len(page.notices) == n + 1)
+            assert page.notices[-1]["level"] == 2 and page.notices[-1]["text"]
+        page.send("grab_start", hold=1, body=9999, local_point=(0, 0, 0), target=(0, 0, 0))
+        page.send("grab_move", hold=77, target=(0, 0, 0))
+        page.send("grab_end", hold=78)
+        page.send("select", body=9999)
+        page.send("action", name="break", body=12)
+        page.wait_for(lambda: page.parts() == 2)
+
+
+def test_a_text_that_is_too_long_ends_that_session_only(world: iota.World, run_world: Runner) -> None:
+    url = run_world(world)
+    with PageClient(url) as good, PageClient(url) as bad:
+        bad.send_bytes(b"\x06" + bytes(70_000))
+        assert bad.closed.wait(5)
+        step = good.last["poses"]["step"]
+        good.wait_for(lambda: good.last["poses"]["step"] > step + 10)
+
+
+@pytest.mark.parametrize("change", ["token", "origin", "host", "version"])
+def test_strangers_are_refused(world: iota.World, run_world: Runner, change: str) -> None:
+    from websockets.exceptions import InvalidStatus
+    from websockets.sync.client import connect
+
+    url = run_world(world)
+    address = url.replace("http://", "ws://").replace("/?", "/ws?")
+    if change == "version":
+        with connect(address, proxy=None) as socket:
+            socket.send(encode("hello", magic=0x41544F49, version=99, world="", name=""))
+            reply = socket.recv(timeout=5)
+            assert isinstance(reply, bytes) and reply[0] == 65 and b"version" in reply
+        return
+    address = address[:-1] + ("0" if address[-1] != "0" else "1") if change == "token" else address
+    headers = {"Host": "evil.example"} if change == "host" else {}
+    origin = "http://evil.example" if change == "origin" else None
+    with (
+        pytest.raises(InvalidStatus) as caught,
+        connect(address, origin=origin, additional_headers=headers, proxy=None),
+    ):
+        pass
+    assert caught.value.response.status_code in (400, 403)
+
+
+def test_the_page_and_its_health_are_served(world: iota.World, run_world: Runner) -> None:
+    url = run_world(world)
+    opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+    with opener.open(url) as page:
+        assert page.status == 200 and b"<html" in page.read().lower()
+    with opener.open(url.split("?")[0] + "healthz") as health:
+        assert health.read().strip() == b"ok"
+    with pytest.raises(urllib.error.HTTPError) as caught:
+        opener.open(url.split("?")[0] + "..%2f..%2fetc/passwd")
+    assert caught.value.code in (400, 403, 404)
+
+
+def test_the_token_is_kept_and_secret(world: iota.World, run_world: Runner, tmp_path: Path) -> None:
+    first = run_world(world)
+    world.stop()
+    second = run_world(world)
+    assert first.split("token=")[1] == second.split("token=")[1]
+    kept = tmp_path / "state" / "iota" / "token"
+    assert kept.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_taken_port_is_an_os_error(world: iota.World, run_world: Runner) -> None:
+    port = int(run_world(world).split(":")[2].split("/")[0])
+    other = iota.World(iota.System())
+    with pytest.raises(OSError, match=str(port)):
+        other.start(port=port)
+    assert other.url is None
+    other.system.step()  # the system is the caller's again
+
+
+def test_a_script_may_have_a_loop_of_its_own(world: iota.World) -> None:
+    with PageClient(world.serve(port=0)) as page:
+        began = time.monotonic()
+        for _ in range(60):
+            world.step()
+        assert time.monotonic() - began > 0.4, "in real time"
+        page.wait_for(lambda: page.last["poses"]["step"] >= 55)
+    world.close()
+
+
+def test_structure_changes_reach_the_page_with_looks_for_what_is_new(
+    system: iota.System, chain: list[iota.Body], run_world: Runner
+) -> None:
+    world = iota.World(system)
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: len(page.scene.get("bodies", [])) == 6)
+
+        def edit() -> None:
+            iota.Particle(iota.Body(system), (1, 1, 0))
+            chain[-1].destroy()
+            iota.combine(chain[0], chain[1])
+
+        world.call(edit)
+        page.wait_for(lambda: len(page.scene["bodies"]) == 5)
+        classes = {body["body"]: body["class"] for body in page.scene["bodies"]}
+        assert classes[0] == "(body 0)" and all(name in page.scene["classes"] for name in classes.values())
+
+
+def test_bad_actions_are_refused() -> None:
+    world = iota.World(iota.System())
+    world.action("a", key="k")(lambda: None)
+    for arguments in (
+        {"name": "a"},
+        {"name": "b", "key": "k"},
+        {"name": "b", "on": "moon"},
+        {"name": "b", "button": "x"},
+    ):
+        with pytest.raises(ValueError, match=r"taken|already|must be"):
+            world.action(**arguments)
+    with pytest.raises(ValueError, match="level"):
+        world.notice("x", level="loud")
