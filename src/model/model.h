@@ -168,6 +168,10 @@ class Model {
   /// Held in place by a nail or by a static or scripted body in its ring.
   bool is_pinned(std::uint32_t ring) const;
 
+  /// Whether a particle is where and as fast as its body's basis says. Not so only in a conflict; it then matters when the
+  /// particle ceases to be an unknown of its own.
+  bool follows_basis(std::uint32_t particle) const;
+
   Vec3 position(std::uint32_t particle) const { return rings[particles[particle].ring].position; }
   Vec3 velocity(std::uint32_t particle) const { return rings[particles[particle].ring].velocity; }
   double body_mass(std::uint32_t body) const;

@@ -16,6 +16,18 @@ bool Model::is_pinned(std::uint32_t ring) const {
   return pinned;
 }
 
+bool Model::follows_basis(std::uint32_t particle) const {
+  const Particle& p = particles[particle];
+  if (p.basis_index >= 0) return true;
+  const Body& body = bodies[p.body];
+  Vec3 x = -1.0 * position(particle), v = -1.0 * velocity(particle);
+  for (int i = 0; i < body.rank; ++i) {
+    x += p.weights[i] * position(body.basis[i]);
+    v += p.weights[i] * velocity(body.basis[i]);
+  }
+  return norm(x) < 1e-9 && norm(v) < 1e-9;
+}
+
 double Model::kinetic_energy() const {
   double twice = 0;
   particles.for_each([&](std::uint32_t, const Particle& p) {

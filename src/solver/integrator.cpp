@@ -19,6 +19,7 @@ constexpr int patience = 400;          // iterations after which sub-steps are n
 void Integrator::compile(Problem& problem) {
   newton_.compile(problem);
   guess_.resize(problem.size()), velocity_.resize(problem.size());
+  start_position_.resize(problem.size()), start_velocity_.resize(problem.size());
   lumped_mass_ = problem.mass;
   for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
   std::size_t count = 0;
@@ -199,7 +200,6 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
 void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
   restore_multipliers(problem);
   const double before = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
-  const std::vector<Vec3> start = problem.position;  // allocates: this is no warm step
   for (std::size_t i = 0; i < problem.size(); ++i) {
     problem.velocity[i] += h * problem.gravity;
     problem.position[i] += h * problem.velocity[i];
@@ -208,7 +208,7 @@ void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
   project_velocities(problem);
   const double after = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
   if (!std::isfinite(after)) {
-    problem.position = start;
+    problem.position = start_position_;
     std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
   }
   report.dissipated += before - problem.kinetic_energy() - problem.potential_energy(problem.position.data());
@@ -232,11 +232,29 @@ AdvanceReport Integrator::advance(Problem& problem, double h, Scheme scheme) {
   for (const auto& c : std::get<ConstraintPool<AffineConstraint>>(problem.constraints).items)
     conservative_ = conservative_ && c.target == c.target_start;
   close_gaps(problem, report);
+  std::copy(problem.position.begin(), problem.position.end(), start_position_.begin());
+  std::copy(problem.velocity.begin(), problem.velocity.end(), start_velocity_.begin());
   if (scheme == Scheme::mid_point)
     advance_mid_point(problem, h, 0, 1, 0, report);
   else
     advance_end_point(problem, h, 0, 1, 0, report);
+  if (!report.converged || report.fallbacks > 0) refuse_made_up_energy(problem, h, report);
   return report;
+}
+
+// Where Newton found no solution, what it found instead may be anything; made-up energy gives it away.
+void Integrator::refuse_made_up_energy(Problem& problem, double h, AdvanceReport& report) {
+  if (!conservative_) return;
+  problem.velocity.swap(start_velocity_), problem.position.swap(start_position_);
+  const double kinetic = problem.kinetic_energy(), before = kinetic + problem.potential_energy(problem.position.data());
+  problem.velocity.swap(start_velocity_), problem.position.swap(start_position_);
+  const double after = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  if (after <= before + 0.1 * kinetic + 1e-9 * std::abs(before)) return;
+  std::copy(start_position_.begin(), start_position_.end(), problem.position.begin());
+  std::copy(start_velocity_.begin(), start_velocity_.end(), problem.velocity.begin());
+  report.dissipated += after - before;  // taken out of the book again
+  report.converged = false;
+  coast(problem, h, report);
 }
 
 void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {

@@ -56,11 +56,12 @@ class Integrator {
   void save_multipliers(const Problem&);
   void restore_multipliers(Problem&) const;
   bool least_violation(Problem&, Stage, AdvanceReport&);
+  void refuse_made_up_energy(Problem&, double h, AdvanceReport&);
   void coast(Problem&, double h, AdvanceReport&);
   void close_gaps(Problem&, AdvanceReport&);
 
   Newton newton_;
-  std::vector<Vec3> guess_, velocity_;
+  std::vector<Vec3> guess_, velocity_, start_position_, start_velocity_;
   std::vector<double> lumped_mass_;
   std::vector<double> multipliers_saved_;
   bool conservative_ = true;  ///< nothing outside does work during this step

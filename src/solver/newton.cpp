@@ -11,6 +11,7 @@ namespace {
 
 constexpr int max_halvings = 12;
 constexpr double largest_violation = 1e-6; // that still counts as met
+constexpr double largest_noise = 1e-8;      // of the scaled force residual
 constexpr double round_off = 4e-15;        // of the largest scaled force: below it a residual is noise
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -167,8 +168,8 @@ double Newton::residual(const Problem& problem, const Stage& stage, const Vec3* 
     worst_force.add(largest_component(momentum_[i]) * inverse_scale_[i]);
     largest_inverse_scale = std::max(largest_inverse_scale, inverse_scale_[i]);
   }
-  // Forces that cancel leave round-off; do not chase it.
-  const double noise = round_off * largest_multiplier * largest_inverse_scale;
+  // Forces that cancel leave round-off; do not chase it. Enormous multipliers mean a conflict, not noise.
+  const double noise = std::min(round_off * largest_multiplier * largest_inverse_scale, largest_noise);
   worst.add(worst_force.value > noise ? worst_force.value : 0);
   return worst.value;
 }
@@ -372,14 +373,35 @@ void Newton::project_velocities(Problem& problem, double h) {
   // rows (a closed loop in a plane) can leave no pivot at the usual compliance, so it may have to rise.
   std::copy(problem.position.begin(), problem.position.end(), x_.begin());
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_.begin());
+  bool found = false;
   for (const double compliance : {1e-12, 1e-9, 1e-6, 1e-3}) {
     (void)assemble_and_factor<false>(problem, Stage::projection(compliance), Hessian::none);
     const double energy = problem.kinetic_energy();
     for (int pass = 0; pass < 3; ++pass) project_once(problem, h);  // again: compliance and round-off leave a little
     const double projected = problem.kinetic_energy();
-    if (std::isfinite(projected) && (h > 0 || projected <= energy * (1 + 1e-9))) return;
+    found = std::isfinite(projected) && (h > 0 || projected <= energy * (1 + 1e-9));
+    if (found) break;
     std::copy(u_.begin(), u_.end(), problem.velocity.begin());
   }
+
+  // Nearly redundant rows have huge multipliers that cancel only to round-off. Where nothing outside holds on, momentum
+  // is given back by a translation, which no internal constraint notices.
+  bool internal = found;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    for (const auto& c : pool.items) internal = internal && c.is_internal();
+  });
+  if (!internal) return;
+  double mass = 0;
+  Vec3 lost;
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    mass += problem.mass[i];
+    lost += problem.mass[i] * (u_[i] - problem.velocity[i]);
+  }
+  for (const auto& c : problem.mass_couplings) {
+    mass += 2 * c.mass;
+    lost += c.mass * (u_[c.a] - problem.velocity[c.a] + u_[c.b] - problem.velocity[c.b]);
+  }
+  for (Vec3& v : problem.velocity) v += (1 / mass) * lost;
 }
 
 void Newton::project_once(Problem& problem, double h) {

@@ -106,16 +106,18 @@ void System::Implementation::run_scripts(StepReport& report) {
 }
 
 void System::Implementation::finish_closings(StepReport& report) {
-  std::vector<step::CombineParticles> met;
-  model.closings.for_each([&](std::uint32_t, model::Closing& c) {
+  std::vector<std::pair<Id<model::Closing>, step::CombineParticles>> met;
+  model.closings.for_each([&](std::uint32_t slot, model::Closing& c) {
     c.elapsed += report.dt;
-    if (c.elapsed >= c.duration) met.push_back({model.particles.id(c.p), model.particles.id(c.q), 0});
+    if (c.elapsed >= c.duration)
+      met.push_back({model.closings.id(slot), {model.particles.id(c.p), model.particles.id(c.q), 0}});
   });
-  for (const auto& closed : met) {
-    if (!model.particles.contains(closed.p) || !model.particles.contains(closed.q)) continue;
+  for (const auto& [closing, combine] : met) {
+    if (!model.closings.contains(closing)) continue;  // an earlier one has settled it
     try {
-      for (const std::string& note : apply(closed).notes) report.warnings.push_back(note);
-    } catch (const std::exception& error) {
+      for (const std::string& note : apply(combine).notes) report.warnings.push_back(note);
+    } catch (const std::exception& error) {  // it cannot be; give up rather than ask again at every step
+      (void)call_off(closing.slot);
       report.warnings.push_back(error.what());
     }
   }

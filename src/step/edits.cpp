@@ -336,7 +336,7 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
           });
         Vec3 turn = solve_semidefinite(inertia, lost_spin);
         // Bodies that were pulled together to almost a point would have to spin absurdly to keep their angular momentum.
-        if (0.5 * dot(turn, lost_spin) > 10 * (kinetic + 1e-12)) turn = {};
+        if (0.5 * dot(turn, lost_spin) > 3 * (kinetic + 1e-12)) turn = {};
         std::vector<std::uint32_t> rings;
         each_particle([&](std::uint32_t p) { rings.push_back(model.particles[p].ring); });
         std::sort(rings.begin(), rings.end());
@@ -404,9 +404,24 @@ RestructureReport System::Implementation::apply(const step::CombineBodies& c) {
 RestructureReport System::Implementation::apply(const step::Separate& c) {
   const std::uint32_t p = require(c.p), q = require(c.q);
   const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
-  const bool gentle = p == q || body_p != body_q;
-  return restructure({body_p, body_q}, gentle,
-                     [&](RestructureReport& report) { return separate_particles(model, p, q, report); });
+  bool gentle = p == q || (body_p != body_q && model.particles[p].ring == model.particles[q].ring);
+  model.for_each_in_ring(model.particles[q].ring, [&](std::uint32_t r) { gentle = gentle && model.follows_basis(r); });
+  return restructure({body_p, body_q}, gentle, [&](RestructureReport& report) {
+    model::Edit edit = separate_particles(model, p, q, report);
+    edit.jolted = !gentle;
+    return edit;
+  });
+}
+
+RestructureReport System::Implementation::call_off(std::uint32_t closing) {
+  const std::vector<std::uint32_t> bodies{model.particles[model.closings[closing].p].body,
+                                          model.particles[model.closings[closing].q].body};
+  return restructure(bodies, false, [&](RestructureReport& report) {
+    report.changed = true;
+    destroy_closing(model, closing);
+    split_where_apart(model, bodies);
+    return model::Edit{false, true};
+  });
 }
 
 void System::Implementation::apply(const step::Nail& c) {

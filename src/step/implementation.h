@@ -69,6 +69,8 @@ struct System::Implementation {
   template <class EditFunction>
   RestructureReport restructure(std::vector<std::uint32_t> touched_bodies, bool gentle, EditFunction edit);
 
+  /// Ends a closing before its particles have met.
+  RestructureReport call_off(std::uint32_t closing);
   void run_scripts(StepReport&);
   void finish_closings(StepReport&);
   void apply_queue(StepReport&);

@@ -38,7 +38,7 @@ void System::Implementation::refresh_orientations() {
 
   // Smallest turns add up to a twist between neighbours after a round trip. Rods are let back towards the frame of the
   // rod they hang on, a little each time and never near a fold, so that chain links neither drift nor flip.
-  constexpr double share = 0.05, largest_turn = 0.1;
+  constexpr double share = 0.15, largest_turn = 0.15;
   model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
     if (b.rank != 2) return;
     std::uint32_t upper = slot;

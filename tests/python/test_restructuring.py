@@ -136,7 +136,7 @@ def test_a_nail_holds_moves_and_lets_go(system: iota.System) -> None:
     particle = iota.Particle(iota.Body(system), (0, 1, 0), mass=2)
     particle.nail()
     system.step()
-    assert particle.is_nailed and particle.position == (0, 1, 0)
+    assert particle.is_nailed and particle.position == pytest.approx((0, 1, 0))
     assert particle.nail_force == pytest.approx((0, 2 * 9.81, 0))
     particle.nail((1, 1, 0))
     system.step()

@@ -4,6 +4,7 @@
 #include <iota/vec3.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace iota::solver {
@@ -35,6 +36,11 @@ struct AffineConstraint {
   }
   double curvature(const double*, int, int) const { return 0; }
   double reference_length() const { return reference; }
+  bool is_internal() const {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < count; ++i) sum += weights[i];
+    return std::abs(sum) < 1e-9;
+  }
 };
 
 }  // namespace iota::solver

@@ -21,6 +21,7 @@ concept Constraint = requires(const C& c, const Vec3* x, double* g, Vec3* rows, 
   c.gradient(x, 0, rows);
   { c.curvature(multiplier, 0, 0) } -> std::convertible_to<double>;
   { c.reference_length() } -> std::convertible_to<double>;
+  { c.is_internal() } -> std::convertible_to<bool>;
 };
 
 /// The one list of constraint types; pools, sparsity, assembly and reports are folds over it.

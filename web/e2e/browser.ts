@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Debian's Chromium, headless, drawing with Mesa's llvmpipe; and hands for the tests.
+
+import { mkdirSync, mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { chromium, type BrowserContext, type CDPSession, type Page } from "playwright-core";
+import type { IotaDebug } from "../src/app/debug.ts";
+import { artefacts } from "./server.ts";
+
+declare global {
+  // The same object as window.iota, as scripts of the page see it.
+  var iota: IotaDebug;
+}
+
+const flags = [
+  "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
+  "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist",
+];
+
+export interface BrowserOptions {
+  readonly width: number;
+  readonly height: number;
+  readonly touch?: boolean;
+  readonly dark?: boolean;
+  /** Drawn pixels for a css pixel; a half unless told. */
+  readonly density?: number;
+}
+
+/** Small windows, coarsely drawn: software rendering pays for each pixel, and what is tested does not depend on it. */
+export const small: BrowserOptions = { width: 640, height: 360 };
+
+export class Browser {
+  readonly context: BrowserContext;
+  private readonly profile_: string;
+
+  private constructor(context: BrowserContext, profile: string) {
+    this.context = context;
+    this.profile_ = profile;
+  }
+
+  static async start(options: BrowserOptions = small): Promise<Browser> {
+    const profile = mkdtempSync(path.join(tmpdir(), "iota-profile-"));
+    const context = await chromium.launchPersistentContext(profile, {
+      executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
+      args: flags,
+      env: { ...process.env, LIBGL_ALWAYS_SOFTWARE: "1" },
+      deviceScaleFactor: options.density ?? 0.5,
+      viewport: { width: options.width, height: options.height },
+      colorScheme: options.dark === true ? "dark" : "light",
+      ...(options.touch === true ? { hasTouch: true, isMobile: true } : {}),
+    });
+    return new Browser(context, profile);
+  }
+
+  async stop(): Promise<void> {
+    await this.context.close();
+    rmSync(this.profile_, { recursive: true, force: true });
+  }
+
+  /** A tab with the world drawn in it. */
+  async open(url: string): Promise<Tab> {
+    const blank = this.context.pages().find((page) => page.url() === "about:blank");
+    const tab = new Tab(blank ?? (await this.context.newPage()));
+    await tab.page.goto(url);
+    await tab.until("the world is drawn", () => globalThis.iota?.connected && iota.bodies().length > 0 && iota.step > 0);
+    return tab;
+  }
+}
+
+export type Place = readonly [number, number];
+
+export class Tab {
+  readonly page: Page;
+  /** Errors that the page's scripts threw, and what its console complained about. */
+  readonly complaints: string[] = [];
+  private touch_: CDPSession | null = null;
+  private fingers_ = 0;
+
+  constructor(page: Page) {
+    this.page = page;
+    page.on("pageerror", (error) => this.complaints.push(String(error)));
+    page.on("console", (message) => {
+      if (message.type() === "error") this.complaints.push(message.text());
+    });
+  }
+
+  /** Waits until a function of the page is true, and says what for when it never is. */
+  async until<T>(what: string, condition: (argument: T) => unknown, argument?: T, timeout = 12_000): Promise<void> {
+    try {
+      await this.page.waitForFunction(condition as (argument: unknown) => unknown, argument, { timeout, polling: 50 });
+    } catch (error) {
+      const state = await this.page.evaluate(() => (globalThis.iota === undefined ? "no page" : JSON.stringify({
+        connected: iota.connected, step: iota.step, held: iota.held, selected: iota.selected, articulates: new Set(iota.articulates().values()).size,
+      })));
+      throw new Error(`waited in vain until ${what}; ${state}`, { cause: error });
+    }
+  }
+
+  async articulates(): Promise<number> {
+    return this.page.evaluate(() => new Set(iota.articulates().values()).size);
+  }
+
+  async position(body: number): Promise<[number, number, number]> {
+    return this.page.evaluate((id) => iota.bodyPosition(id), body);
+  }
+
+  async place(body: number): Promise<Place> {
+    const place = await this.page.evaluate((id) => iota.screenPosition(id), body);
+    if (place === null) throw new Error(`body ${body} is behind the camera`);
+    return place;
+  }
+
+  async pause(paused: boolean): Promise<void> {
+    if ((await this.page.evaluate(() => iota.paused)) !== paused) await this.page.keyboard.press(" ");
+    await this.until(paused ? "the world is paused" : "the world runs", (wanted) => iota.paused === wanted, paused);
+  }
+
+  /** Stops the world and waits until what is drawn has come to rest too: then a body is where it seems to be. */
+  async freeze(): Promise<void> {
+    await this.pause(true);
+    const rested = await this.page.evaluate(async () => {
+      const began = performance.now();
+      const drawn = () => iota.bodies().flatMap((body) => iota.bodyPosition(body).map((value) => value.toFixed(4))).join();
+      let before = "";
+      for (let still = 0; still < 3 && performance.now() - began < 15_000;) {
+        // A frame, or half a second where drawing stalls: it cannot be waited for without end.
+        await Promise.race([new Promise(requestAnimationFrame), new Promise((resolve) => setTimeout(resolve, 500))]);
+        const now = drawn();
+        still = now === before ? still + 1 : 0;
+        before = now;
+      }
+      return performance.now() - began < 15_000;
+    });
+    if (!rested) throw new Error("the paused world goes on moving");
+  }
+
+  async reset(): Promise<void> {
+    await this.page.keyboard.press("Escape");
+    await this.page.keyboard.press("r");
+    await this.until("the chain is whole again", () => new Set(iota.articulates().values()).size === 1 && iota.time < 1.5);
+  }
+
+  /** Freezes the world at a moment when a body is well in view, and nothing of the page's controls before it. */
+  async freezeInView(body: number): Promise<Place> {
+    for (let trial = 0; trial < 20; trial++) {
+      await this.freeze();
+      const at = await this.place(body);
+      const free = await this.page.evaluate(([x, y]) => (
+        x > 0.12 * innerWidth && x < 0.88 * innerWidth && y > 0.08 * innerHeight && y < 0.92 * innerHeight
+        && document.elementFromPoint(x, y)?.id === "view"
+      ), at);
+      if (free) return at;
+      await this.pause(false);
+      await this.page.waitForTimeout(250);
+    }
+    throw new Error(`body ${body} never came into view`);
+  }
+
+  /** A place some way from a body's towards the first link: there the chain is slack and a hand can go anywhere. */
+  async slack(from: Place, share: number): Promise<Place> {
+    const [x, y] = await this.place(0);
+    return [from[0] + (x - from[0]) * share, from[1] + (y - from[1]) * share];
+  }
+
+  /** Presses the mouse on a body of a frozen world and lets it run again. Returns the place of the press. */
+  async take(body: number): Promise<Place> {
+    const at = await this.freezeInView(body);
+    await this.page.mouse.move(...at);
+    await this.page.mouse.down();
+    await this.until(`body ${body} is held`, (id) => iota.held === id, body);
+    await this.pause(false);
+    return at;
+  }
+
+  async click(body: number): Promise<void> {
+    await this.page.mouse.click(...(await this.freezeInView(body)));
+    await this.until(`body ${body} is selected`, (id) => iota.selected === id, body);
+    await this.pause(false);
+  }
+
+  /** Fingers on the screen. */
+  async touch(type: "touchStart" | "touchMove", fingers: readonly Place[]): Promise<void> {
+    this.fingers_ = fingers.length;
+    await this.sendTouch_(type, fingers);
+  }
+
+  async lift(): Promise<void> {
+    if (this.fingers_ > 0) await this.sendTouch_("touchEnd", []);
+    this.fingers_ = 0;
+  }
+
+  private async sendTouch_(type: "touchStart" | "touchMove" | "touchEnd", fingers: readonly Place[]): Promise<void> {
+    this.touch_ ??= await this.page.context().newCDPSession(this.page);
+    await this.touch_.send("Input.dispatchTouchEvent", { type, touchPoints: fingers.map(([x, y], id) => ({ x, y, id })) });
+  }
+
+  async picture(name: string): Promise<void> {
+    mkdirSync(artefacts, { recursive: true });
+    const file = path.join(artefacts, `${name}.png`);
+    for (let trial = 0; trial < 3; trial++) {
+      try {
+        await this.page.screenshot({ path: file, timeout: 8000 });
+        return;
+      } catch (error) {
+        // A busy machine's software renderer may take seconds for a frame; a missing picture is no failed behaviour.
+        console.warn(`no picture ${name}: ${String(error).split("\n")[0]}`);
+      }
+    }
+  }
+}
+
+export function distance(a: readonly number[], b: readonly number[]): number {
+  return Math.hypot(...a.map((value, axis) => value - b[axis]));
+}

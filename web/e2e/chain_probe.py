@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The study `chain` without its timed break, for browser tests; prints what Python knows as JSON lines."""
+
+from __future__ import annotations
+
+import json
+
+import iota
+from iota.studies import chain
+
+
+def build(links: int = 24) -> iota.World:
+    chain.script_break = lambda world, links, repeat: None  # the tests break it themselves
+    world = chain.build(links)
+    last: list[dict[str, int]] = []
+
+    @world.every(0.05)
+    def report() -> None:
+        system = world.system
+        now = {
+            "articulates": system.articulate_count,
+            "structure_version": system.structure_version,
+            "held": sum(1 for client in world.clients if world.held(client.id) is not None),
+        }
+        if not last or last[0] != now:
+            last[:] = [now]
+            print(json.dumps(now), flush=True)
+
+    return world

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// A person with an emulated headset: looks, points, pulls triggers, pinches, presses panels.
+
+import { mkdirSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import type { Browser, Tab } from "./browser.ts";
+import { artefacts } from "./server.ts";
+import type { IotaXR } from "../src/xr/debug.ts";
+
+declare global {
+  var iotaXR: IotaXR | undefined;
+}
+
+export type Side = "left" | "right";
+type Point = readonly [number, number, number];
+export type ButtonId = "trigger" | "squeeze" | "a-button" | "b-button" | "x-button" | "y-button";
+
+export class HeadsetTab {
+  readonly tab: Tab;
+
+  constructor(tab: Tab) {
+    this.tab = tab;
+  }
+
+  static async open(browser: Browser, url: string): Promise<HeadsetTab> {
+    return new HeadsetTab(await browser.open(`${url}&emulate=quest3`));
+  }
+
+  async enter(): Promise<void> {
+    // The bar hides itself after a while; the mouse brings it back.
+    await this.tab.page.mouse.move(200, 120);
+    await this.tab.page.mouse.move(210, 120);
+    await this.tab.page.click("#enter-xr");
+    await this.tab.until("the session runs", () => iotaXR?.presenting && iotaXR.inputs().length === 2 && iotaXR.panelButton("play") !== null);
+  }
+
+  /** A function of the page, after so many frames. */
+  async frames(count: number): Promise<void> {
+    await this.tab.page.evaluate(async (frames) => {
+      for (let frame = 0; frame < frames; frame++) await new Promise((resolve) => requestAnimationFrame(resolve));
+    }, count);
+  }
+
+  /** Puts a controller or hand somewhere (reference space) and points its ray at a point of the same space. */
+  async point(side: Side, at: Point, target: Point): Promise<void> {
+    await this.tab.page.evaluate(([which, from, to]) => {
+      const device = iotaXR!.device!;
+      const length = Math.hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+      const [x, y, z] = [0, 1, 2].map((axis) => (to[axis] - from[axis]) / length);
+      // The rotation that takes -z to the direction: half-way quaternion of (0, 0, -1) and it.
+      const half = Math.hypot(y, -x, 1 - z);
+      for (const part of [device.controllers[which], device.hands[which]]) {
+        part?.position.set(from[0], from[1], from[2]);
+        part?.quaternion.set(y / half, -x / half, 0, (1 - z) / half);
+      }
+    }, [side, at, target] as const);
+    await this.frames(2);
+  }
+
+  /** The same, at a body of the world. */
+  async pointAtBody(side: Side, at: Point, body: number): Promise<void> {
+    const target = await this.tab.page.evaluate((id) => iotaXR!.toSpace(iota.bodyPosition(id)), body);
+    await this.point(side, at, target);
+  }
+
+  async bodyInSpace(body: number): Promise<[number, number, number]> {
+    return this.tab.page.evaluate((id) => iotaXR!.toSpace(iota.bodyPosition(id)), body);
+  }
+
+  async button(side: Side, id: ButtonId, value: number): Promise<void> {
+    await this.tab.page.evaluate(([which, name, amount]) => iotaXR!.device!.controllers[which]!.updateButtonValue(name, amount), [side, id, value] as const);
+    await this.frames(2);
+  }
+
+  async click(side: Side, id: ButtonId): Promise<void> {
+    await this.button(side, id, 1);
+    await this.button(side, id, 0);
+  }
+
+  async stick(side: Side, x: number, y: number): Promise<void> {
+    await this.tab.page.evaluate(([which, right, down]) => iotaXR!.device!.controllers[which]!.updateAxes("thumbstick", right, down), [side, x, y] as const);
+    await this.frames(2);
+  }
+
+  async pinch(side: Side, value: number): Promise<void> {
+    await this.tab.page.evaluate(([which, amount]) => iotaXR!.device!.hands[which]!.updatePinchValue(amount), [side, value] as const);
+    await this.frames(2);
+  }
+
+  async useHands(hands: boolean): Promise<void> {
+    await this.tab.page.evaluate((wanted) => {
+      iotaXR!.device!.primaryInputMode = wanted ? "hand" : "controller";
+    }, hands);
+    await this.tab.until("hands and controllers have changed over", (wanted) => {
+      const inputs = iotaXR!.inputs();
+      return inputs.length === 2 && inputs.every((input) => input.hand === wanted);
+    }, hands);
+  }
+
+  /** Both eyes' views side by side, as drawn: taken from the canvas within a frame, which no busy compositor can delay. */
+  async picture(name: string): Promise<void> {
+    const address = await this.tab.page.evaluate(() => new Promise<string>((resolve) => {
+      requestAnimationFrame(() => resolve(iota.page.renderer.domElement.toDataURL("image/png")));
+    }));
+    mkdirSync(artefacts, { recursive: true });
+    writeFileSync(path.join(artefacts, `${name}.png`), Buffer.from(address.slice(address.indexOf(",") + 1), "base64"));
+  }
+
+  /** Turns the head: rad to the left, rad up. */
+  async look(yaw: number, pitch: number): Promise<void> {
+    await this.tab.page.evaluate(([left, up]) => {
+      const [cy, sy, cp, sp] = [Math.cos(left / 2), Math.sin(left / 2), Math.cos(up / 2), Math.sin(up / 2)];
+      iotaXR!.device!.quaternion.set(cy * sp, sy * cp, -sy * sp, cy * cp);
+    }, [yaw, pitch] as const);
+    await this.frames(2);
+  }
+
+  /** Points a ray at a button of the wrist panel. */
+  async pointAtPanel(side: Side, at: Point, name: string): Promise<void> {
+    await this.tab.until(`the panel has a button ${name}`, (wanted) => iotaXR!.panelButton(wanted), name);
+    await this.frames(6);
+    const button = await this.tab.page.evaluate((wanted) => iotaXR!.panelButton(wanted)!, name);
+    await this.point(side, at, button.at);
+    await this.tab.until(`the ray is on ${name}`, (wanted) => iotaXR!.inputs().some((input) => input.panelButton === wanted), name);
+  }
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// A real `iota run ...` for a test, on a port of its own, with a state folder of its own.
+
+import { spawn, type ChildProcess } from "node:child_process";
+import { existsSync, mkdtempSync } from "node:fs";
+import { createServer } from "node:net";
+import { tmpdir } from "node:os";
+import path from "node:path";
+
+const root = path.resolve(import.meta.dirname, "..", "..");
+const iota = path.join(root, ".venv", "bin", "iota");
+const startsWithinMs = 20_000;
+
+export const artefacts = path.join(root, "build", "artefacts");
+export const probe = path.join(import.meta.dirname, "chain_probe.py");
+
+export async function freePort(): Promise<number> {
+  return new Promise((resolve, reject) => {
+    const server = createServer();
+    server.on("error", reject);
+    server.listen(0, "127.0.0.1", () => {
+      const address = server.address();
+      server.close(() => (typeof address === "object" && address !== null ? resolve(address.port) : reject(new Error("no port"))));
+    });
+  });
+}
+
+export class WorldServer {
+  readonly port: number;
+  /** The page's address with its token. */
+  readonly url: string;
+  private readonly process_: ChildProcess;
+  private readonly lines_: string[];
+
+  private constructor(port: number, url: string, process: ChildProcess, lines: string[]) {
+    this.port = port;
+    this.url = url;
+    this.process_ = process;
+    this.lines_ = lines;
+  }
+
+  /** Starts `iota run WHAT` and waits for its address. The state folder keeps the token over a restart. */
+  static async start(what: readonly string[], port: number, stateFolder = mkdtempSync(path.join(tmpdir(), "iota-state-"))): Promise<WorldServer> {
+    if (!existsSync(iota)) throw new Error(`${iota} is missing: run make build first`);
+    const process_ = spawn(iota, ["run", ...what, "--no-open", "--port", String(port)], {
+      cwd: root, env: { ...process.env, XDG_STATE_HOME: stateFolder, PYTHONUNBUFFERED: "1" },
+    });
+    const lines: string[] = [];
+    const url = await new Promise<string>((resolve, reject) => {
+      const timer = setTimeout(() => reject(new Error(`no address after ${startsWithinMs} ms:\n${lines.join("\n")}`)), startsWithinMs);
+      const take = (chunk: Buffer) => {
+        for (const line of chunk.toString().split("\n")) {
+          if (line === "") continue;
+          lines.push(line);
+          const found = /https?:\/\/\S*[?&]token=\S+/.exec(line);
+          if (found === null) continue;
+          clearTimeout(timer);
+          resolve(found[0]);
+        }
+      };
+      process_.stdout.on("data", take);
+      process_.stderr.on("data", take);
+      process_.on("exit", (code) => {
+        clearTimeout(timer);
+        reject(new Error(`iota run ended with ${code}:\n${lines.join("\n")}`));
+      });
+    });
+    return new WorldServer(port, url, process_, lines);
+  }
+
+  /** The newest JSON object that the script printed. */
+  get report(): { articulates: number; held: number; structure_version: number } | null {
+    const line = this.lines_.findLast((text) => text.startsWith("{"));
+    return line === undefined ? null : (JSON.parse(line) as { articulates: number; held: number; structure_version: number });
+  }
+
+  get output(): string {
+    return this.lines_.join("\n");
+  }
+
+  async stop(signal: NodeJS.Signals = "SIGINT"): Promise<void> {
+    if (this.process_.exitCode !== null || this.process_.signalCode !== null) return;
+    await new Promise<void>((resolve) => {
+      const hard = setTimeout(() => this.process_.kill("SIGKILL"), 4000);
+      this.process_.on("exit", () => {
+        clearTimeout(hard);
+        resolve();
+      });
+      this.process_.kill(signal);
+    });
+  }
+}

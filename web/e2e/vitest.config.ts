@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+import path from "node:path";
+import { defineConfig } from "vitest/config";
+
+// One browser and one server at a time: they share few cores, and software rendering needs them.
+export default defineConfig({
+  root: path.resolve(import.meta.dirname, ".."),
+  test: { include: ["e2e/**/*.test.ts"], fileParallelism: false, testTimeout: 60_000, hookTimeout: 60_000 },
+});

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// An emulated Quest 3 on a real world: enters, drags by ray and by pinch, breaks and rejoins by face
+// buttons and by the panel, turns, teleports, leaves.
+
+import { afterAll, beforeAll, beforeEach, describe, expect, it } from "vitest";
+import { Browser, distance, small } from "./browser.ts";
+import { HeadsetTab } from "./headset.ts";
+import { freePort, probe, WorldServer } from "./server.ts";
+
+let server: WorldServer;
+let browser: Browser;
+let me: HeadsetTab;
+
+/** Software rendering pays for each pixel of both eyes; only the pictures need many. */
+const size = { width: 400, height: 224 };
+const pictureSize = { width: 1200, height: 600 };
+const rightRest = [0.2, 1.32, -0.38] as const;
+const leftRest = [-0.2, 1.32, -0.38] as const;
+const link = 14;
+
+beforeAll(async () => {
+  server = await WorldServer.start([probe], await freePort());
+  browser = await Browser.start(size);
+  me = await HeadsetTab.open(browser, server.url);
+  await me.enter();
+});
+
+afterAll(async () => {
+  await browser?.stop();
+  await server?.stop();
+});
+
+beforeEach(async () => {
+  await me.point("right", rightRest, [0.2, 1.32, -2]);
+  await me.point("left", leftRest, [-0.2, 1.32, -2]);
+});
+
+async function untilParts(count: number): Promise<void> {
+  await me.tab.until(`there are ${count} parts`, (wanted) => new Set(iota.articulates().values()).size === wanted, count);
+  await expect.poll(() => server.report?.articulates, { timeout: 5000 }).toBe(count);
+}
+
+/** Points the right ray at a link of a world that stands still. */
+async function pointAtLink(body: number): Promise<void> {
+  await me.tab.freeze();
+  await me.pointAtBody("right", rightRest, body);
+  await me.tab.until(`the ray is on link ${body}`, (id) => iotaXR!.inputs().some((input) => input.hovered === id), body);
+}
+
+async function holdIsStrong(): Promise<void> {
+  await me.tab.until("the hold pulls", () => iota.holds().length === 1 && iota.holds()[0].force > 1);
+}
+
+async function swingsBack(body: number, from: readonly number[]): Promise<void> {
+  await me.tab.until("the hold is gone", () => iota.holds().length === 0 && iota.held === -1);
+  await me.tab.until("the link has swung back", ([id, at]) => {
+    const now = iota.bodyPosition(id as number);
+    return Math.hypot(...now.map((value, axis) => value - (at as number[])[axis])) > 0.15;
+  }, [body, from] as const);
+}
+
+describe("an emulated headset", () => {
+  it("draws two different views and stands a step before the chain, facing it", async () => {
+    const seen = await me.tab.page.evaluate(() => {
+      const { page } = iota;
+      const eyes = page.renderer.xr.getCamera().cameras;
+      const target = page.model.settings.camera!.target;
+      const head = iotaXR!.head();
+      const ahead = page.camera.getWorldDirection(page.camera.position.clone());
+      const [dx, dz] = [target[0] - head[0], target[2] - head[2]];
+      return {
+        views: eyes.map((eye) => [eye.viewport!.x, eye.viewport!.width]),
+        apart: Math.hypot(...[12, 13, 14].map((at) => eyes[0].matrixWorld.elements[at] - eyes[1].matrixWorld.elements[at])),
+        away: Math.hypot(dx, dz),
+        facing: (ahead.x * dx + ahead.z * dz) / Math.hypot(dx, dz),
+        ground: page.model.settings.ground, feet: iotaXR!.rig().position[1],
+      };
+    });
+    expect(seen.views).toEqual([[0, size.width / 2], [size.width / 2, size.width / 2]]);
+    expect(seen.apart).toBeCloseTo(0.063, 3);
+    expect(seen.away).toBeGreaterThan(0.8);
+    expect(seen.away).toBeLessThan(2);
+    expect(seen.facing).toBeGreaterThan(0.99);
+    expect(seen.feet).toBe(seen.ground);
+    expect(me.tab.complaints).toEqual([]);
+  });
+
+  it("takes hold by ray and trigger, drags, pushes with the stick, and lets go", async () => {
+    await pointAtLink(link);
+    await me.button("right", "trigger", 1);
+    await me.tab.until("the link is held", (id) => iota.held === id, link);
+    await me.tab.pause(false);
+    const [x, y, z] = await me.bodyInSpace(link);
+    await me.point("right", rightRest, [x + 0.3, y + 0.35, z]);
+    await holdIsStrong();
+    await me.tab.until("the link has come to the hand", (id) => {
+      const [hold] = iota.holds();
+      return Math.hypot(...iota.bodyPosition(id).map((value, axis) => value - hold.target[axis])) < 0.15;
+    }, link);
+    const before = await me.tab.page.evaluate(() => iota.holds()[0].target);
+    await me.stick("right", 0, -1);
+    await me.tab.until("the stick pushes it away", (was) => {
+      const hold = iota.holds().at(0);
+      return hold !== undefined && Math.hypot(...hold.target.map((value, axis) => value - was[axis])) > 0.1;
+    }, before);
+    await me.stick("right", 0, 0);
+    const held = await me.tab.position(link);
+    await me.button("right", "trigger", 0);
+    await swingsBack(link, held);
+    expect(await me.tab.page.evaluate(() => iota.selected)).toBe(link);
+  });
+
+  it("breaks with B and rejoins with A what the ray is on", async () => {
+    await pointAtLink(link);
+    await me.tab.pause(false);
+    await me.click("right", "b-button");
+    await untilParts(2);
+    await me.click("right", "a-button");
+    await untilParts(1);
+    await me.click("right", "a-button");
+    await me.tab.until("the headset says so too", () => iotaXR!.cards().includes("Nothing to join"));
+  });
+
+  it("breaks and rejoins by the panel at the left wrist", async () => {
+    await me.tab.page.evaluate((id) => iota.select(id), link);
+    await me.tab.pause(false);
+    await me.look(0.3, -0.25);
+    await me.pointAtPanel("right", [0.12, 1.38, -0.2], "action break");
+    await me.click("right", "trigger");
+    await untilParts(2);
+    await me.pointAtPanel("right", [0.12, 1.38, -0.2], "action join");
+    await me.click("right", "trigger");
+    await untilParts(1);
+    await me.pointAtPanel("right", [0.12, 1.38, -0.2], "play");
+    await me.click("right", "trigger");
+    await me.tab.until("the panel has paused the world", () => iota.paused);
+    await me.look(0, 0);
+  });
+
+  it("turns by 30 degrees about the head with the stick", async () => {
+    const before = await me.tab.page.evaluate(() => ({ rig: iotaXR!.rig(), head: iotaXR!.head() }));
+    await me.stick("right", 1, 0);
+    await me.stick("right", 1, 0);
+    await me.stick("right", 0, 0);
+    const after = await me.tab.page.evaluate(() => ({ rig: iotaXR!.rig(), head: iotaXR!.head() }));
+    expect(((before.rig.yaw - after.rig.yaw) * 180) / Math.PI).toBeCloseTo(30, 3);
+    expect(distance(before.head, after.head)).toBeLessThan(1e-4);
+  });
+
+  it("teleports along the arc when the stick is let go", async () => {
+    await me.point("left", leftRest, [-0.2, 1.0, -1.5]);
+    await me.stick("left", 0, -1);
+    await me.frames(2);
+    const landing = await me.tab.page.evaluate(() => iotaXR!.landing());
+    expect(landing).not.toBeNull();
+    const before = await me.tab.page.evaluate(() => iotaXR!.head());
+    await me.stick("left", 0, 0);
+    const after = await me.tab.page.evaluate(() => iotaXR!.head());
+    expect(distance(before, after)).toBeGreaterThan(0.5);
+    expect(distance([after[0], after[2]], [landing![0], landing![2]])).toBeLessThan(1e-3);
+    expect(after[1]).toBeCloseTo(before[1], 4);
+  });
+});
+
+describe("bare hands in an emulated headset", () => {
+  beforeAll(async () => {
+    await me.tab.page.evaluate(() => iotaXR!.device!.recenter());
+    await me.useHands(true);
+    await me.frames(3);
+  });
+
+  it("take hold by a pinch near a link, drag it and let go", async () => {
+    await me.tab.freeze();
+    const [x, y, z] = await me.bodyInSpace(link);
+    // The pinch of this hand happens about here from its ray's origin.
+    const tip = await me.tab.page.evaluate(() => {
+      const input = iotaXR!.headset.inputs.find((each) => each.pointer.name === "right hand")!;
+      return iotaXR!.toSpace([...input.pointer.tip]);
+    });
+    const reach = [x - (tip[0] - rightRest[0]), y - (tip[1] - rightRest[1]), z - (tip[2] - rightRest[2])] as const;
+    await me.point("right", reach, [reach[0], reach[1], reach[2] - 1]);
+    await me.tab.until("the hand is near the link", () => iotaXR!.inputs().some((input) => input.near));
+    const body = await me.tab.page.evaluate(() => iotaXR!.inputs().find((input) => input.near)!.hovered);
+    await me.pinch("right", 1);
+    await me.tab.until("the link is held", (id) => iota.held === id, body);
+    await me.tab.pause(false);
+    const moved = [reach[0] + 0.25, reach[1] + 0.3, reach[2] + 0.1] as const;
+    await me.point("right", moved, [moved[0], moved[1], moved[2] - 1]);
+    await holdIsStrong();
+    await me.tab.until("the link has come to the hand", (id) => {
+      const [hold] = iota.holds();
+      return Math.hypot(...iota.bodyPosition(id).map((value, axis) => value - hold.target[axis])) < 0.15;
+    }, body);
+    const held = await me.tab.position(body);
+    await me.pinch("right", 0);
+    await swingsBack(body, held);
+  });
+
+  it("press the panel with a fingertip, once for each touch", async () => {
+    await me.tab.page.evaluate((id) => iota.select(id), link);
+    const press = async (name: string) => {
+      await me.tab.until(`the panel has a button ${name}`, (wanted) => iotaXR!.panelButton(wanted), name);
+      const path = await me.tab.page.evaluate((wanted) => {
+        const { at, facing } = iotaXR!.panelButton(wanted)!;
+        const input = iotaXR!.headset.inputs.find((each) => each.pointer.name === "right hand")!;
+        const finger = iotaXR!.toSpace([...input.finger]);
+        const { position } = iotaXR!.device!.hands.right!;
+        const offset = [finger[0] - position.x, finger[1] - position.y, finger[2] - position.z];
+        return [0.06, 0.025, -0.01].map((out) => at.map((value, axis) => value + out * facing[axis] - offset[axis]) as [number, number, number]);
+      }, name);
+      for (const at of path) await me.point("right", at, [at[0], at[1], at[2] - 1]);
+      await me.frames(1);
+      await me.point("right", rightRest, [0.2, 1.32, -2]);
+    };
+    await press("action break");
+    await untilParts(2);
+    await press("action join");
+    await untilParts(1);
+  });
+
+  it("teleport by the panel's button, the arc and a pinch", async () => {
+    await me.pointAtPanel("right", [0.1, 1.38, -0.15], "go");
+    await me.pinch("right", 1);
+    await me.pinch("right", 0);
+    await me.point("right", rightRest, [0.3, 0.9, -1.6]);
+    await me.tab.until("the arc lands", () => iotaXR!.landing());
+    const before = await me.tab.page.evaluate(() => iotaXR!.head());
+    const landing = await me.tab.page.evaluate(() => iotaXR!.landing()!);
+    await me.pinch("right", 1);
+    await me.pinch("right", 0);
+    const after = await me.tab.page.evaluate(() => iotaXR!.head());
+    expect(distance(before, after)).toBeGreaterThan(0.5);
+    expect(distance([after[0], after[2]], [landing[0], landing[2]])).toBeLessThan(1e-3);
+  });
+});
+
+describe("leaving and coming back", () => {
+  it("brings the flat page back as it was", async () => {
+    await me.useHands(false);
+    await me.tab.page.evaluate(() => iotaXR!.leave());
+    await me.tab.until("the session is over", () => !iotaXR!.presenting);
+    await me.tab.until("the canvas lies under the bar again", () => document.getElementById("view")?.parentElement === document.body
+      && document.getElementById("view")?.nextElementSibling?.id === "cards" && iota.page.camera.aspect > 1.5);
+    const flat = await me.tab.page.evaluate(() => ({
+      rig: iotaXR!.rig(), pointers: iota.page.gestures.pointers.map((pointer) => pointer.name),
+      size: [iota.page.renderer.domElement.clientWidth, iota.page.renderer.domElement.clientHeight],
+    }));
+    expect(flat).toEqual({ rig: { position: [0, 0, 0], yaw: 0 }, pointers: ["mouse"], size: [size.width, size.height] });
+    await me.tab.page.setViewportSize(small);
+    await me.tab.click(link);
+    expect(me.tab.complaints).toEqual([]);
+  });
+
+  it("lets the mouse be a hand of the emulated headset", async () => {
+    await me.tab.page.setViewportSize(size);
+    await me.enter();
+    await me.look(0.1, -0.1);
+    await me.tab.freeze();
+    const [x, y] = await me.tab.page.evaluate((id) => {
+      const eye = iota.page.renderer.xr.getCamera().cameras[0];
+      const point = iota.page.camera.position.clone().set(...iota.bodyPosition(id)).project(eye);
+      return [((point.x + 1) / 4) * innerWidth, ((1 - point.y) / 2) * innerHeight];
+    }, link);
+    await me.tab.page.mouse.move(x + 20, y);
+    await me.tab.page.mouse.move(x, y);
+    await me.frames(3);
+    await me.tab.page.mouse.down();
+    await me.tab.until("the mouse's hand holds something", () => iotaXR!.inputs().some((input) => input.name === "right" && input.held >= 0));
+    await me.tab.page.mouse.up();
+    await me.tab.until("and lets go", () => iota.held === -1);
+    await me.tab.page.keyboard.press("Escape");
+    await me.tab.until("the session is over", () => !iotaXR!.presenting);
+  });
+});
+
+describe("pictures for people to look at", () => {
+  beforeAll(async () => {
+    await me.tab.page.setViewportSize(pictureSize);
+    await me.enter();
+    await me.tab.page.evaluate(() => iotaXR!.headset.notices.clear());
+    await me.look(0.15, -0.2);
+    await me.point("left", [-0.22, 1.36, -0.42], [-0.3, 1.3, -2]);
+  });
+
+  it("show a drag by the ray, the panel, the arc and hands in stereo", async () => {
+    await pointAtLink(link);
+    await me.button("right", "trigger", 1);
+    const [x, y, z] = await me.bodyInSpace(link);
+    await me.tab.pause(false);
+    await me.point("right", rightRest, [x + 0.1, y + 0.25, z + 0.2]);
+    await me.frames(4);
+    await me.picture("xr-ray");
+    await me.button("right", "trigger", 0);
+    await me.pointAtPanel("right", [0.14, 1.3, -0.3], "action break");
+    await me.picture("xr-panel");
+    await me.point("right", [0.16, 1.32, -0.4], [0.35, 0.9, -1.8]);
+    await me.stick("right", 0, -1);
+    await me.picture("xr-teleport");
+    await me.useHands(true);
+    await me.point("right", [0.16, 1.3, -0.4], [0.1, 1.25, -2]);
+    await me.pinch("right", 0.7);
+    await me.picture("xr-hands");
+  });
+
+  it("show the card that says that the world is gone", async () => {
+    await server.stop();
+    await me.tab.until("a card says so", () => iotaXR!.cards().includes("The world is not answering"));
+    await me.frames(3);
+    await me.picture("xr-lost");
+    await me.tab.page.keyboard.press("Escape");
+    await me.tab.until("the session is over", () => !iotaXR!.presenting);
+  });
+});

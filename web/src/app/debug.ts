@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// window.iota: the page seen from a browser's console and from tests. Documented in README.md.
+
+import { Vector3 } from "three";
+import type { Page } from "./page.ts";
+
+export interface IotaDebug {
+  readonly clientId: number;
+  readonly connected: boolean;
+  readonly step: number;
+  /** Simulated, s. */
+  readonly time: number;
+  readonly paused: boolean;
+  readonly structureVersion: number;
+  /** -1: none. */
+  readonly selected: number;
+  /** -1: none. */
+  readonly held: number;
+  readonly look: string;
+  readonly looks: readonly string[];
+  readonly frameMs: number;
+  /** Our own script a frame, ms. */
+  readonly scriptMs: number;
+  readonly roundTripMs: number;
+  /** Frames from the server that could not be read. */
+  readonly badFrames: number;
+  /** All holds of all clients as the server last told; force in N. */
+  holds(): { client: number; hold: number; body: number; force: number; target: number[] }[];
+  clients(): { client: number; name: string; selected: number }[];
+  articulates(): Map<number, number>;
+  /** Slots that are drawn. */
+  bodies(): number[];
+  /** World, m, as drawn. */
+  bodyPosition(body: number): [number, number, number];
+  /** x y z w, as drawn. */
+  bodyRotation(body: number): [number, number, number, number];
+  /** css px of a body's origin; null behind the camera. */
+  screenPosition(body: number): [number, number] | null;
+  setLook(look: string): void;
+  select(body: number): void;
+  /** The parts themselves, for the console. */
+  readonly page: Page;
+}
+
+declare global {
+  interface Window {
+    iota: IotaDebug;
+  }
+}
+
+export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
+  const point = new Vector3();
+  const positionOf = (body: number): [number, number, number] => {
+    if (!page.view.has(body)) throw new Error(`body ${body} is not drawn`);
+    const { position } = page.view.poses;
+    return [position[3 * body], position[3 * body + 1], position[3 * body + 2]];
+  };
+  return {
+    page,
+    get clientId() { return page.connection.clientId; },
+    get connected() { return page.connection.connected; },
+    get step() { return page.model.step; },
+    get time() { return page.model.time; },
+    get paused() { return page.model.paused; },
+    get structureVersion() { return page.model.structureVersion; },
+    get selected() { return page.selected; },
+    get held() { return page.held; },
+    get look() { return page.look; },
+    get looks() { return page.model.settings.looks; },
+    get frameMs() { return page.timing.frameMs; },
+    get scriptMs() { return page.timing.scriptMs; },
+    get roundTripMs() { return page.connection.roundTripMs; },
+    get badFrames() { return page.connection.badFrames; },
+    holds: () => page.model.holds.slice(0, page.model.holdCount).map((hold) => ({
+      client: hold.client, hold: hold.hold, body: hold.body, force: hold.force, target: [...hold.target],
+    })),
+    clients: () => page.model.clients.map((client) => ({ ...client })),
+    articulates: () => new Map(page.model.articulateOf),
+    bodies: () => [...page.model.bodies.keys()].filter((body) => page.view.has(body)),
+    bodyPosition: positionOf,
+    bodyRotation: (body) => {
+      positionOf(body);
+      const { rotation } = page.view.poses;
+      return [rotation[4 * body], rotation[4 * body + 1], rotation[4 * body + 2], rotation[4 * body + 3]];
+    },
+    screenPosition: (body) => {
+      point.set(...positionOf(body));
+      page.camera.updateMatrixWorld();
+      point.project(page.camera);
+      if (point.z > 1) return null;
+      const box = canvas.getBoundingClientRect();
+      return [box.left + ((point.x + 1) / 2) * box.width, box.top + ((1 - point.y) / 2) * box.height];
+    },
+    setLook: (look) => page.setLook(look),
+    select: (body) => page.select(body),
+  };
+}

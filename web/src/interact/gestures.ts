@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// One pipeline for mouse, touch, controller ray, near grab and pinch: hover, start, update, end.
+// A source fills in a Pointer and calls update(); this file decides what it means. It acts on presses
+// and releases only and needs no hover before a press, since a pinch may appear at the very moment of
+// its start.
+
+import { Hit, pickPoint, pickRay, toWorld, type PickScene } from "./picking.ts";
+
+/**
+ * How a held thing follows. plane: stays under the pointer in the plane that faces the viewer (mouse,
+ * touch). ray: stays at its distance on the ray (controller).
+ */
+export type RayDrag = "plane" | "ray";
+
+/** What a source of input knows; its owner writes the fields, then calls Gestures.update(pointer). */
+export class Pointer {
+  /** For people and tests: "mouse", "touch 1", "right". */
+  readonly name: string;
+  /** Off: hovers nothing and lets go. */
+  active = false;
+  pressed = false;
+  /** Ray in the world: origin in m, unit direction. */
+  readonly origin = new Float32Array(3);
+  readonly direction = new Float32Array([0, 0, -1]);
+  /** Half-angle of the cone in which a near miss still counts, as a tangent. */
+  tolerance = 0.004;
+  /** Where a hand would close, world, m; used only when `nearReach` is above 0. */
+  readonly tip = new Float32Array(3);
+  /** Distance from the tip within which a near grab wins over the ray, m; 0: never. */
+  nearReach = 0;
+  /** Whether the ray may pick at all (off for hands that only grab near). */
+  far = true;
+  drag: RayDrag = "plane";
+  /** Unit normal of the drag plane, pointing away from the viewer; for drag "plane". */
+  readonly facing = new Float32Array([0, 0, -1]);
+  /** What is held is pushed this far away from the viewer, m; its owner adds to it (wheel, thumbstick). */
+  depth = 0;
+  /** A haptic pulse; strength 0..1. */
+  pulse: (strength: number, milliseconds: number) => void = () => {};
+
+  /** Below: written by Gestures, for its owner to read. */
+  hovered = -1;
+  /** The body under the pointer is within near reach. */
+  near = false;
+  readonly hit = new Hit();
+  grab: Grab | null = null;
+
+  constructor(name: string) {
+    this.name = name;
+  }
+}
+
+/** One hand on one body. */
+export class Grab {
+  /** This client's number for the hold, as told to the server. */
+  readonly hold: number;
+  readonly body: number;
+  readonly pointer: Pointer;
+  readonly near: boolean;
+  /** In the body's frame, m. */
+  readonly localPoint: Float32Array;
+  /** Where the hand is, world, m. */
+  readonly target: Float32Array;
+  /** Grabbed point at the start, world, m. */
+  readonly start: Float32Array;
+  /** Distance along the ray at the start, m. */
+  readonly distance: number;
+  /** From where the pointer means to where the point is, at the start, m: a near miss must not jerk the body. */
+  readonly offset = new Float32Array(3);
+  readonly startedAt: number;
+
+  constructor(hold: number, pointer: Pointer, hit: Hit, near: boolean, now: number) {
+    this.hold = hold;
+    this.body = hit.body;
+    this.pointer = pointer;
+    this.near = near;
+    this.localPoint = hit.localPoint.slice();
+    this.start = hit.point.slice();
+    this.target = hit.point.slice();
+    this.distance = hit.distance;
+    this.startedAt = now;
+  }
+}
+
+export interface GestureListener {
+  /** The body under a pointer changed; -1: none. */
+  hovered(pointer: Pointer, body: number): void;
+  grabStarted(grab: Grab): void;
+  /** The target moved. */
+  grabMoved(grab: Grab): void;
+  grabEnded(grab: Grab): void;
+  /** A press that met no body: orbit, teleport, clear the selection, as the source likes. */
+  pressedNothing(pointer: Pointer): void;
+}
+
+const farthest = 100;
+/** Targets that move less than this are not sent again, m. */
+const still = 1e-5;
+
+export class Gestures {
+  readonly grabs: Grab[] = [];
+  private readonly scene_: PickScene;
+  private readonly listener_: GestureListener;
+  private readonly pointers_: Pointer[] = [];
+  private readonly wasPressed_ = new Set<Pointer>();
+  private nextHold_ = 1;
+  private readonly target_ = new Float32Array(3);
+
+  constructor(scene: PickScene, listener: GestureListener) {
+    this.scene_ = scene;
+    this.listener_ = listener;
+  }
+
+  get pointers(): readonly Pointer[] {
+    return this.pointers_;
+  }
+
+  add(pointer: Pointer): void {
+    if (!this.pointers_.includes(pointer)) this.pointers_.push(pointer);
+  }
+
+  /** Lets go and forgets. */
+  remove(pointer: Pointer): void {
+    pointer.active = false;
+    pointer.pressed = false;
+    this.update(pointer);
+    const index = this.pointers_.indexOf(pointer);
+    if (index >= 0) this.pointers_.splice(index, 1);
+    this.wasPressed_.delete(pointer);
+  }
+
+  /** Once a frame, after poses were sampled: things move under pointers that rest. */
+  updateAll(): void {
+    for (let index = 0; index < this.pointers_.length; index++) this.update(this.pointers_[index]);
+  }
+
+  /** Now, for one pointer; sources call it at once on press and release. */
+  update(pointer: Pointer): void {
+    const pressed = pointer.active && pointer.pressed;
+    const before = this.wasPressed_.has(pointer);
+    if (pressed && !before) {
+      this.wasPressed_.add(pointer);
+      this.press_(pointer);
+      return;
+    }
+    if (!pressed && before) {
+      this.wasPressed_.delete(pointer);
+      this.release(pointer);
+    }
+    if (pointer.grab !== null) this.follow_(pointer.grab);
+    else if (!pressed) this.hover_(pointer);
+  }
+
+  /** Ends the pointer's grab, if it has one. */
+  release(pointer: Pointer): void {
+    const grab = pointer.grab;
+    if (grab === null) return;
+    pointer.grab = null;
+    this.grabs.splice(this.grabs.indexOf(grab), 1);
+    this.listener_.grabEnded(grab);
+  }
+
+  /** Ends all grabs (connection lost, session over), or those on one body (it vanished). */
+  releaseAll(body = -1): void {
+    for (const grab of this.grabs.slice()) if (body < 0 || grab.body === body) this.release(grab.pointer);
+  }
+
+  private pick_(pointer: Pointer): boolean {
+    pointer.near = pointer.nearReach > 0 && pickPoint(this.scene_, pointer.tip, pointer.nearReach, pointer.hit);
+    if (pointer.near) return true;
+    return pointer.far
+      && pickRay(this.scene_, pointer.origin, pointer.direction, pointer.tolerance, farthest, pointer.hit);
+  }
+
+  private hover_(pointer: Pointer): void {
+    const body = pointer.active && this.pick_(pointer) ? pointer.hit.body : -1;
+    if (body === pointer.hovered) return;
+    pointer.hovered = body;
+    this.listener_.hovered(pointer, body);
+  }
+
+  private press_(pointer: Pointer): void {
+    if (!this.pick_(pointer)) {
+      this.listener_.pressedNothing(pointer);
+      return;
+    }
+    if (pointer.hovered !== pointer.hit.body) {
+      pointer.hovered = pointer.hit.body;
+      this.listener_.hovered(pointer, pointer.hit.body);
+    }
+    pointer.depth = 0;
+    const grab = new Grab(this.nextHold_++, pointer, pointer.hit, pointer.near, performance.now());
+    if (this.calcTarget_(grab, this.target_)) {
+      for (let axis = 0; axis < 3; axis++) grab.offset[axis] = grab.start[axis] - this.target_[axis];
+    }
+    pointer.grab = grab;
+    this.grabs.push(grab);
+    this.listener_.grabStarted(grab);
+  }
+
+  private follow_(grab: Grab): void {
+    const target = this.target_;
+    if (!this.calcTarget_(grab, target)) return;
+    const moved = Math.hypot(target[0] - grab.target[0], target[1] - grab.target[1], target[2] - grab.target[2]);
+    if (moved < still) return;
+    grab.target.set(target);
+    this.listener_.grabMoved(grab);
+  }
+
+  private calcTarget_(grab: Grab, out: Float32Array): boolean {
+    const { origin, direction, facing, tip, depth } = grab.pointer;
+    if (grab.near) {
+      for (let axis = 0; axis < 3; axis++) out[axis] = tip[axis] + grab.offset[axis];
+      return true;
+    }
+    let along = Math.max(grab.distance + depth, 0.05);
+    if (grab.pointer.drag === "plane") {
+      const slope = direction[0] * facing[0] + direction[1] * facing[1] + direction[2] * facing[2];
+      // Nearly along the plane the point would run away to the horizon.
+      if (slope < 0.05) return false;
+      const away = (grab.start[0] - origin[0]) * facing[0] + (grab.start[1] - origin[1]) * facing[1]
+        + (grab.start[2] - origin[2]) * facing[2];
+      along = Math.min(Math.max((away + depth) / slope, 0.05), farthest);
+    }
+    for (let axis = 0; axis < 3; axis++) out[axis] = origin[axis] + direction[axis] * along + grab.offset[axis];
+    return true;
+  }
+
+  /** Where a grab's point is drawn now, world, m. */
+  grabbedPoint(grab: Grab, out: Float32Array): void {
+    toWorld(this.scene_, grab.body, grab.localPoint, out);
+  }
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mouse, pen and fingers on the canvas: on a body they grab, on nothing they move the camera.
+
+import { Vector3, type PerspectiveCamera } from "three";
+import type { Navigation } from "../navigate/navigation.ts";
+import { Pointer, type Gestures } from "./gestures.ts";
+
+export interface ScreenInputHost {
+  /** A click or tap on nothing, without a drag. */
+  clickNothing(): void;
+  /** Long press, double tap or right click on a body: what can be done with it? (css px) */
+  menu(body: number, x: number, y: number): void;
+  /** Any sign of life, for what hides itself. */
+  stir(): void;
+}
+
+const tapPixels = 8;
+const tapMs = 350;
+const longPressMs = 480;
+const doubleTapMs = 320;
+
+interface Finger {
+  readonly pointer: Pointer;
+  readonly touch: boolean;
+  readonly button: number;
+  x: number;
+  y: number;
+  readonly startX: number;
+  readonly startY: number;
+  readonly startedAt: number;
+  moved: boolean;
+  longPress: number | undefined;
+}
+
+export class ScreenInput {
+  readonly mouse = new Pointer("mouse");
+
+  private readonly canvas_: HTMLCanvasElement;
+  private readonly camera_: PerspectiveCamera;
+  private readonly gestures_: Gestures;
+  private readonly navigation_: Navigation;
+  private readonly host_: ScreenInputHost;
+  private readonly fingers_ = new Map<number, Finger>();
+  private readonly freePointers_: Pointer[] = [];
+  private touches_ = 0;
+  private lastTap_ = { at: -Infinity, x: 0, y: 0 };
+  private readonly ray_ = new Vector3();
+  private readonly lastMouse_ = { x: 0, y: 0 };
+
+  constructor(
+    canvas: HTMLCanvasElement, camera: PerspectiveCamera, gestures: Gestures, navigation: Navigation, host: ScreenInputHost,
+  ) {
+    this.canvas_ = canvas;
+    this.camera_ = camera;
+    this.gestures_ = gestures;
+    this.navigation_ = navigation;
+    this.host_ = host;
+    gestures.add(this.mouse);
+    canvas.addEventListener("pointerdown", (event) => this.down_(event));
+    canvas.addEventListener("pointermove", (event) => this.move_(event));
+    canvas.addEventListener("pointerup", (event) => this.up_(event, false));
+    canvas.addEventListener("pointercancel", (event) => this.up_(event, true));
+    canvas.addEventListener("pointerleave", () => {
+      if (!this.mouse.pressed) this.mouse.active = false;
+    });
+    canvas.addEventListener("wheel", (event) => this.wheel_(event), { passive: false });
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+
+  /** Aims all pointers anew from where the camera is now; once a frame, before the gestures. */
+  aim(): void {
+    if (this.mouse.active) this.aimAt_(this.mouse, this.lastMouse_.x, this.lastMouse_.y);
+    for (const finger of this.fingers_.values()) if (finger.touch) this.aimAt_(finger.pointer, finger.x, finger.y);
+  }
+
+  private aimAt_(pointer: Pointer, x: number, y: number): void {
+    // The canvas fills the window; asking for its box would make an object each frame.
+    const ndcX = (x / innerWidth) * 2 - 1;
+    const ndcY = 1 - (y / innerHeight) * 2;
+    this.camera_.updateMatrixWorld();
+    this.ray_.set(ndcX, ndcY, 0.5).unproject(this.camera_).sub(this.camera_.position).normalize();
+    this.camera_.position.toArray(pointer.origin);
+    this.ray_.toArray(pointer.direction);
+    this.camera_.getWorldDirection(this.ray_).toArray(pointer.facing);
+    // A finger covers about 22 px; a mouse is steadier, but things swing.
+    const pixels = pointer === this.mouse ? 8 : 22;
+    pointer.tolerance = (pixels * 2 * Math.tan((this.camera_.fov * Math.PI) / 360)) / innerHeight;
+  }
+
+  private down_(event: PointerEvent): void {
+    this.host_.stir();
+    const touch = event.pointerType === "touch";
+    // Only the first button of a mouse grabs; the others steer the camera while a grab goes on.
+    if (!touch && this.fingers_.has(event.pointerId)) return;
+    const pointer = touch ? (this.freePointers_.pop() ?? new Pointer(`touch ${++this.touches_}`)) : this.mouse;
+    const finger: Finger = {
+      pointer, touch, button: event.button, x: event.clientX, y: event.clientY,
+      startX: event.clientX, startY: event.clientY, startedAt: performance.now(), moved: false, longPress: undefined,
+    };
+    this.fingers_.set(event.pointerId, finger);
+    this.canvas_.setPointerCapture(event.pointerId);
+    if (touch) {
+      pointer.pulse = (strength, milliseconds) => navigator.vibrate?.(Math.round(milliseconds * Math.min(1, strength)));
+      this.gestures_.add(pointer);
+    } else {
+      this.lastMouse_.x = event.clientX;
+      this.lastMouse_.y = event.clientY;
+    }
+    pointer.active = true;
+    this.aimAt_(pointer, event.clientX, event.clientY);
+    if (event.button === 0 && !event.shiftKey) {
+      pointer.pressed = true;
+      this.gestures_.update(pointer);
+    }
+    if (touch && pointer.grab !== null) {
+      const body = pointer.grab.body;
+      finger.longPress = window.setTimeout(() => {
+        if (!finger.moved) this.host_.menu(body, finger.x, finger.y);
+      }, longPressMs);
+    }
+  }
+
+  private move_(event: PointerEvent): void {
+    this.host_.stir();
+    const finger = this.fingers_.get(event.pointerId);
+    if (event.pointerType !== "touch") {
+      this.lastMouse_.x = event.clientX;
+      this.lastMouse_.y = event.clientY;
+      this.mouse.active = true;
+    }
+    if (finger === undefined) return;
+    const dx = event.clientX - finger.x;
+    const dy = event.clientY - finger.y;
+    const pinch = finger.touch ? this.partner_(finger) : null;
+    const apart = pinch === null ? 0 : Math.hypot(finger.x - pinch.x, finger.y - pinch.y);
+    finger.x = event.clientX;
+    finger.y = event.clientY;
+    if (Math.hypot(finger.x - finger.startX, finger.y - finger.startY) > tapPixels) {
+      finger.moved = true;
+      window.clearTimeout(finger.longPress);
+    }
+    const grab = finger.pointer.grab;
+    if (grab !== null) {
+      if (event.shiftKey) {
+        // Up is away. What is left of the move keeps the target under the pointer.
+        finger.pointer.depth -= dy * 0.006 * Math.max(grab.distance, 0.3);
+      }
+      return;
+    }
+    if (pinch !== null) this.pinch_(finger, pinch, dx, dy, apart);
+    else this.steer_(finger, event, dx, dy);
+  }
+
+  /** Another finger that holds nothing either. */
+  private partner_(finger: Finger): Finger | null {
+    for (const other of this.fingers_.values()) {
+      if (other !== finger && other.touch && other.pointer.grab === null) return other;
+    }
+    return null;
+  }
+
+  private pinch_(finger: Finger, other: Finger, dx: number, dy: number, apart: number): void {
+    const now = Math.hypot(finger.x - other.x, finger.y - other.y);
+    if (apart > 1 && now > 1) this.navigation_.zoom(apart / now);
+    // Each finger moves the middle by half.
+    this.navigation_.pan(dx / 2, dy / 2, this.canvas_.clientHeight);
+  }
+
+  private steer_(finger: Finger, event: PointerEvent, dx: number, dy: number): void {
+    if (finger.touch || finger.button === 0) {
+      if (event.shiftKey) this.navigation_.pan(dx, dy, this.canvas_.clientHeight);
+      else if (this.navigation_.flying) this.navigation_.look(dx, dy);
+      else this.navigation_.orbit(dx, dy);
+    } else if (finger.button === 1) {
+      this.navigation_.pan(dx, dy, this.canvas_.clientHeight);
+    } else {
+      this.navigation_.look(dx, dy);
+    }
+  }
+
+  private up_(event: PointerEvent, cancelled: boolean): void {
+    const finger = this.fingers_.get(event.pointerId);
+    if (finger === undefined || (!finger.touch && !cancelled && event.buttons !== 0)) return;
+    this.fingers_.delete(event.pointerId);
+    window.clearTimeout(finger.longPress);
+    const { pointer } = finger;
+    const body = pointer.grab?.body ?? (finger.button === 2 ? pointer.hovered : -1);
+    pointer.pressed = false;
+    if (finger.touch) {
+      this.gestures_.remove(pointer);
+      this.freePointers_.push(pointer);
+    } else {
+      this.gestures_.update(pointer);
+    }
+    const tap = !cancelled && !finger.moved && performance.now() - finger.startedAt < tapMs;
+    if (tap) this.tap_(finger, body);
+  }
+
+  private tap_(finger: Finger, body: number): void {
+    if (finger.button === 2) {
+      if (body >= 0) this.host_.menu(body, finger.x, finger.y);
+      return;
+    }
+    if (finger.button !== 0) return;
+    if (body < 0) {
+      this.host_.clickNothing();
+      return;
+    }
+    const now = performance.now();
+    const near = Math.hypot(finger.x - this.lastTap_.x, finger.y - this.lastTap_.y) < 40;
+    const again = now - this.lastTap_.at < doubleTapMs && near;
+    this.lastTap_ = { at: again ? -Infinity : now, x: finger.x, y: finger.y };
+    if (again) this.host_.menu(body, finger.x, finger.y);
+  }
+
+  private wheel_(event: WheelEvent): void {
+    event.preventDefault();
+    this.host_.stir();
+    const lines = event.deltaMode === 1 ? 33 : 1;
+    const amount = Math.min(Math.max(event.deltaY * lines, -240), 240);
+    const grab = this.mouse.grab;
+    if (grab !== null) this.mouse.depth -= amount * 0.0006 * Math.max(grab.distance, 0.3);
+    else this.navigation_.zoom(Math.exp(amount * 0.0011));
+  }
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// The socket to the world: hello, back-off reconnect, ping. Decoded messages go to one listener;
+// pose frames go into one buffer that is filled again and again.
+
+import {
+  decodePosesInto, decodeServerMessage, encodeClientMessage, MessageType, messageTypeOf, PosesBuffer,
+  PROTOCOL_MAGIC, PROTOCOL_VERSION, type ClientMessage, type ServerMessage,
+} from "../protocol/generated.ts";
+
+/** connecting: first try; lost: was connected or never was, trying again; refused: the server said no. */
+export type LinkState = "connecting" | "connected" | "lost" | "refused";
+
+export interface ConnectionListener {
+  /** A message other than poses and pong. */
+  message(message: ServerMessage): void;
+  /** A pose frame; `poses` is only valid during the call. `now` in ms of performance.now(). */
+  poses(poses: PosesBuffer, now: number): void;
+  /** `reason` is a sentence for a person, may be empty. */
+  state(state: LinkState, reason: string): void;
+}
+
+const pingEveryMs = 2000;
+/** Pose frames come at least once a second, so a silent socket is a dead one. */
+const silentForMs = 6000;
+const firstDelayMs = 250;
+const longestDelayMs = 4000;
+
+export class Connection {
+  state: LinkState = "connecting";
+  /** This client's number at the server; 0 before the first welcome. */
+  clientId = 0;
+  /** Last measured round trip, ms. */
+  roundTripMs = 0;
+  /** Frames that could not be read since the page was loaded. */
+  badFrames = 0;
+
+  private readonly url_: string;
+  private readonly listener_: ConnectionListener;
+  private readonly name_: string;
+  private readonly poses_ = new PosesBuffer();
+  private socket_: WebSocket | null = null;
+  private delayMs_ = firstDelayMs;
+  private retry_: number | undefined;
+  private ping_: number | undefined;
+  private heardMs_ = 0;
+  private opened_ = false;
+  private refusal_ = "";
+
+  constructor(url: string, name: string, listener: ConnectionListener) {
+    this.url_ = url;
+    this.name_ = name;
+    this.listener_ = listener;
+    const hurry = () => this.hurry();
+    window.addEventListener("online", hurry);
+    document.addEventListener("visibilitychange", () => {
+      if (document.visibilityState === "visible") hurry();
+    });
+  }
+
+  get connected(): boolean {
+    return this.state === "connected";
+  }
+
+  open(): void {
+    this.close_();
+    this.opened_ = false;
+    this.refusal_ = "";
+    const socket = new WebSocket(this.url_);
+    socket.binaryType = "arraybuffer";
+    this.socket_ = socket;
+    socket.onopen = () => {
+      this.opened_ = true;
+      this.heardMs_ = performance.now();
+      this.sendNow_({
+        type: "hello", magic: PROTOCOL_MAGIC, version: PROTOCOL_VERSION, world: "", name: this.name_,
+      });
+    };
+    socket.onmessage = (event: MessageEvent<unknown>) => this.receive_(event.data);
+    socket.onclose = () => {
+      if (this.socket_ === socket) this.lost_();
+    };
+    this.ping_ = window.setInterval(() => this.beat_(), pingEveryMs);
+  }
+
+  /** Sends when connected; returns whether it was sent. Nothing is queued for later: old gestures are stale. */
+  send(message: ClientMessage): boolean {
+    if (this.state !== "connected") return false;
+    this.sendNow_(message);
+    return true;
+  }
+
+  /** Tries again at once instead of waiting for the back-off. */
+  hurry(): void {
+    if (this.retry_ === undefined) return;
+    this.delayMs_ = firstDelayMs;
+    window.clearTimeout(this.retry_);
+    this.retry_ = undefined;
+    this.open();
+  }
+
+  private sendNow_(message: ClientMessage): void {
+    if (this.socket_?.readyState === WebSocket.OPEN) this.socket_.send(encodeClientMessage(message));
+  }
+
+  private beat_(): void {
+    if (!this.opened_) return;
+    if (performance.now() - this.heardMs_ > silentForMs) {
+      this.lost_();
+      return;
+    }
+    this.sendNow_({ type: "ping", clientTime: performance.now() / 1000 });
+  }
+
+  private receive_(data: unknown): void {
+    const now = performance.now();
+    this.heardMs_ = now;
+    try {
+      if (!(data instanceof ArrayBuffer)) throw new Error("a text frame");
+      if (messageTypeOf(data) === MessageType.poses) {
+        decodePosesInto(data, this.poses_);
+        this.listener_.poses(this.poses_, now);
+        return;
+      }
+      this.handle_(decodeServerMessage(data), now);
+    } catch (error) {
+      this.badFrames++;
+      // The first few are enough to see what is wrong; a stream of them must not fill the console.
+      if (this.badFrames <= 5) console.warn("iota: a frame from the server was dropped:", error);
+    }
+  }
+
+  private handle_(message: ServerMessage, now: number): void {
+    switch (message.type) {
+      case "welcome":
+        this.clientId = message.client;
+        this.delayMs_ = firstDelayMs;
+        this.change_("connected", "");
+        break;
+      case "refused":
+        this.refusal_ = message.reason;
+        return;
+      case "pong":
+        this.roundTripMs = now - message.clientTime * 1000;
+        return;
+      default:
+        break;
+    }
+    this.listener_.message(message);
+  }
+
+  private lost_(): void {
+    const opened = this.opened_;
+    this.close_();
+    if (this.refusal_ !== "") this.change_("refused", this.refusal_);
+    else this.change_("lost", "");
+    this.retry_ = window.setTimeout(() => {
+      this.retry_ = undefined;
+      this.open();
+    }, this.delayMs_ * (0.8 + 0.4 * Math.random()));
+    this.delayMs_ = Math.min(this.delayMs_ * 1.7, longestDelayMs);
+    if (!opened) void this.explain_();
+  }
+
+  /** A refused upgrade looks like a dead server to a page; the health address tells them apart. */
+  private async explain_(): Promise<void> {
+    try {
+      const answer = await fetch("healthz", { cache: "no-store" });
+      if (answer.ok && this.state !== "connected" && !this.opened_) {
+        this.change_("refused", "The server is running but does not accept this address. Open the address that the terminal printed; it ends in a token.");
+      }
+    } catch {
+      // Not running at all: "lost" already says so.
+    }
+  }
+
+  private close_(): void {
+    window.clearInterval(this.ping_);
+    if (this.socket_ === null) return;
+    this.socket_.onopen = this.socket_.onmessage = this.socket_.onclose = null;
+    this.socket_.close();
+    this.socket_ = null;
+  }
+
+  private change_(state: LinkState, reason: string): void {
+    this.state = state;
+    this.listener_.state(state, reason);
+  }
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// A short ring of light where something broke, joined or was taken.
+
+import { AdditiveBlending, Color, DoubleSide, Group, Mesh, MeshBasicMaterial, RingGeometry, type Camera } from "three";
+import { palette } from "./materials.ts";
+
+const most = 8;
+const seconds = 0.38;
+
+interface Flash {
+  readonly mesh: Mesh<RingGeometry, MeshBasicMaterial>;
+  age: number;
+  size: number;
+}
+
+const colours: Record<string, Color> = { break: palette.aboutToBreak, join: palette.calm, grab: palette.hoverOnDark };
+
+export class Flashes {
+  readonly root = new Group();
+  private readonly flashes_: Flash[] = [];
+  private next_ = 0;
+
+  constructor() {
+    const ring = new RingGeometry(0.72, 1, 40);
+    for (let index = 0; index < most; index++) {
+      const material = new MeshBasicMaterial({
+        transparent: true, blending: AdditiveBlending, side: DoubleSide, depthTest: false, depthWrite: false, fog: false,
+      });
+      const mesh = new Mesh(ring, material);
+      mesh.visible = false;
+      this.root.add(mesh);
+      this.flashes_.push({ mesh, age: seconds, size: 0.1 });
+    }
+  }
+
+  add(kind: string, position: ArrayLike<number>): void {
+    const flash = this.flashes_[this.next_];
+    this.next_ = (this.next_ + 1) % most;
+    flash.age = 0;
+    flash.size = kind === "grab" ? 0.04 : 0.13;
+    flash.mesh.material.color.copy(colours[kind] ?? palette.hoverOnDark);
+    flash.mesh.position.set(position[0], position[1], position[2]);
+  }
+
+  update(dt: number, camera: Camera): void {
+    for (const flash of this.flashes_) {
+      flash.age = Math.min(flash.age + dt, seconds);
+      const t = flash.age / seconds;
+      flash.mesh.visible = t < 1;
+      if (t >= 1) continue;
+      camera.getWorldQuaternion(flash.mesh.quaternion);
+      flash.mesh.scale.setScalar(flash.size * (0.15 + 0.85 * Math.sqrt(t)));
+      flash.mesh.material.opacity = (1 - t) * (1 - t);
+    }
+  }
+}

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// The small palette that all worlds share, and the shader patches for tinted instances and outlines.
+
+import { BackSide, Color, MeshBasicMaterial, MeshStandardMaterial, type Material, type MeshStandardMaterialParameters, type Texture } from "three";
+import { makeBrushedRoughness, makePlain, makeRopeColour, makeRopeNormals, makeWoodColour } from "./textures.ts";
+
+/** Colours that mean something, the same everywhere (page, headset, bar). */
+export const palette = {
+  held: new Color("#e8452c"),
+  aboutToBreak: new Color("#f2a324"),
+  calm: new Color("#4fb3a5"),
+  selected: new Color("#2f9d92"),
+  hoverOnLight: new Color("#2e3338"),
+  hoverOnDark: new Color("#f6f1e7"),
+} as const;
+
+/** Line colour for a force in N: sea glass when gentle, amber near 10 N, coral from 60 N. */
+export function forceColour(newtons: number, out: Color): Color {
+  const strain = Math.min(Math.max(Math.log10(Math.max(newtons, 0.1) / 1) / 1.8, 0), 1);
+  return strain < 0.5
+    ? out.lerpColors(palette.calm, palette.aboutToBreak, strain * 2)
+    : out.lerpColors(palette.aboutToBreak, palette.held, strain * 2 - 1);
+}
+
+const textures = new Map<string, Texture>();
+
+function texture(name: string, make: () => Texture): Texture {
+  let found = textures.get(name);
+  if (found === undefined) {
+    found = make();
+    textures.set(name, found);
+  }
+  return found;
+}
+
+/** Every material has all three textures, plain ones if need be: so all share one program, compiled once at the start. */
+function makeBase(name: string): MeshStandardMaterial {
+  const material = new MeshStandardMaterial({
+    map: texture("white", () => makePlain(255, 255, 255)),
+    roughnessMap: texture("white", () => makePlain(255, 255, 255)),
+    normalMap: texture("flat", () => makePlain(128, 128, 255)),
+  });
+  const set = (values: MeshStandardMaterialParameters) => material.setValues(values);
+  switch (name) {
+    case "steel":
+      set({ color: "#b9bec3", metalness: 1, roughness: 0.42, roughnessMap: texture("brushed", makeBrushedRoughness) });
+      break;
+    case "brass":
+      set({ color: "#c79a4b", metalness: 1, roughness: 0.38, roughnessMap: texture("brushed", makeBrushedRoughness) });
+      break;
+    case "rubber":
+      set({ color: "#26282b", roughness: 0.86 });
+      break;
+    case "wood":
+      set({ roughness: 0.55, map: texture("wood", makeWoodColour) });
+      break;
+    case "rope":
+      set({ roughness: 0.9, map: texture("rope", makeRopeColour), normalMap: texture("rope_normals", makeRopeNormals) });
+      break;
+    case "glass":
+      set({ color: "#8fc9bd", roughness: 0.18, transparent: true, opacity: 0.72 });
+      break;
+    default:
+      set({ color: "#c9c4ba", roughness: 0.6 });
+  }
+  return material;
+}
+
+function tint(material: MeshStandardMaterial): void {
+  material.onBeforeCompile = (shader) => {
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nattribute vec4 tint;\nvarying vec4 vTint;")
+      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvTint = tint;");
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", "#include <common>\nvarying vec4 vTint;")
+      .replace(
+        "#include <color_fragment>",
+        "#include <color_fragment>\nfloat shade = 0.55 + 0.45 * min(1.0, 1.6 * max(diffuseColor.r, diffuseColor.g));\ndiffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * shade, vTint.a);",
+      )
+      .replace("#include <metalnessmap_fragment>", "#include <metalnessmap_fragment>\nmetalnessFactor *= 1.0 - 0.8 * vTint.a;")
+      .replace("#include <emissivemap_fragment>", "#include <emissivemap_fragment>\ntotalEmissiveRadiance += vTint.rgb * vTint.a * 0.3;");
+  };
+  material.customProgramCacheKey = () => "iota-tint";
+}
+
+const materials = new Map<string, MeshStandardMaterial>();
+
+/**
+ * Material of a name in the scene description, for instanced meshes with a `tint` attribute an instance (rgb and amount),
+ * which also dulls metal and glows a little. Unknown names are paint; `color` replaces the base colour. Shared: do not dispose of it.
+ */
+export function materialOf(name: string, color: string | null): MeshStandardMaterial {
+  const key = `${name} ${color ?? ""}`;
+  let material = materials.get(key);
+  if (material === undefined) {
+    material = makeBase(name);
+    if (color !== null && /^#[0-9a-fA-F]{6}$/.test(color)) material.color.set(color);
+    tint(material);
+    materials.set(key, material);
+  }
+  return material;
+}
+
+/** Thickness is an angle (m at 1 m), so that an outline is as wide far away and in a headset. */
+export interface OutlineMaterial extends Material {
+  readonly color: Color;
+  readonly thickness: { value: number };
+}
+
+export function makeOutlineMaterial(color: Color): OutlineMaterial {
+  const thickness = { value: 0.003 };
+  const material = new MeshBasicMaterial({ color, side: BackSide, toneMapped: false, fog: false });
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms["thickness"] = thickness;
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nuniform float thickness;")
+      .replace(
+        "#include <project_vertex>",
+        "#include <project_vertex>\nmvPosition.xyz += normalize(normalMatrix * normal) * thickness * -mvPosition.z;\ngl_Position = projectionMatrix * mvPosition;",
+      );
+  };
+  material.customProgramCacheKey = () => "iota-outline";
+  return Object.assign(material, { thickness });
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small helpers for the overlay.
+
+import type { Commands } from "../app/commands.ts";
+import type { ActionEntry } from "../scene/world_model.ts";
+
+/** The element of index.html with this id; throws when page and script do not fit. */
+export function byId<T extends HTMLElement>(id: string, type: new () => T): T {
+  const found = document.getElementById(id);
+  if (!(found instanceof type)) throw new Error(`index.html has no ${type.name} with the id ${id}`);
+  return found;
+}
+
+export function make<K extends keyof HTMLElementTagNameMap>(
+  tag: K, className = "", text = "",
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  if (className !== "") element.className = className;
+  if (text !== "") element.textContent = text;
+  return element;
+}
+
+/** How a key is written on the page. */
+export function keyName(key: string): string {
+  const names: Record<string, string> = { " ": "space", Escape: "esc", ArrowUp: "↑", ArrowDown: "↓", ArrowLeft: "←", ArrowRight: "→", Enter: "enter" };
+  return names[key] ?? key;
+}
+
+export function makeActionButton(action: ActionEntry, commands: Commands, body: () => number, after?: () => void): HTMLButtonElement {
+  const button = make("button", "action", action.label);
+  button.type = "button";
+  if (action.help !== "") button.title = action.help;
+  if (action.key !== "") button.append(make("kbd", "", keyName(action.key)));
+  button.addEventListener("click", () => {
+    commands.act(action, body());
+    after?.();
+  });
+  return button;
+}
+
+/** Moves a fixed element next to a place in css px, kept inside the window. */
+export function placeNear(element: HTMLElement, x: number, y: number, gap: number): void {
+  const { offsetWidth: width, offsetHeight: height } = element;
+  const left = x + gap + width + 8 > innerWidth ? x - gap - width : x + gap;
+  const top = y + gap + height + 8 > innerHeight ? y - gap - height : y + gap;
+  element.style.transform = `translate(${Math.round(Math.max(8, left))}px, ${Math.round(Math.max(8, top))}px)`;
+}

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// The emulated headset in the hands of a person with a mouse. Only while it presents; README.md lists
+// the keys. Positions are in the device's own space: the floor at 0, m.
+
+import { Euler, Quaternion, Vector3 } from "three";
+import type { XRDevice } from "iwer";
+import type { Page, PageListener } from "../app/page.ts";
+import { Hit, pickRay } from "../interact/picking.ts";
+import { rayOnPlate, Spot, type Plate } from "./plate.ts";
+
+type Side = "left" | "right";
+
+const walkSpeed = 1.2;
+const handAt = { left: new Vector3(-0.2, -0.26, -0.4), right: new Vector3(0.2, -0.24, -0.4) } as const;
+/** The ray of a hand meets the line of sight under the mouse at what lies there, or else at this distance, m. */
+const meetsAt = 1.6;
+/** A mouse is about so exact, as a tangent. */
+const tolerance = 0.012;
+const forward = new Vector3(0, 0, -1);
+const upward = new Vector3(0, 1, 0);
+const walkKeys: Record<string, readonly [number, number, number]> = {
+  w: [0, 0, -1], s: [0, 0, 1], a: [-1, 0, 0], d: [1, 0, 0], q: [0, -1, 0], e: [0, 1, 0],
+};
+const stickKeys: Record<string, readonly [number, number]> = {
+  ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
+};
+
+export class DeskControls implements PageListener {
+  /** Panels that the mouse may mean; set once they exist. */
+  plates: readonly (Plate & { readonly ready: boolean })[] = [];
+
+  private readonly page_: Page;
+  private readonly device_: XRDevice;
+  private readonly down_ = new Set<string>();
+  private readonly mouse_ = { x: 0, y: 0, known: false };
+  private side_: Side = "right";
+  private pressed_ = false;
+  private distance_ = meetsAt;
+  /** Of the head, as the device has it. */
+  private readonly turn_ = new Quaternion();
+  private readonly angles_ = new Euler(0, 0, 0, "YXZ");
+  private readonly ray_ = new Vector3();
+  private readonly at_ = new Vector3();
+  private readonly flat_ = new Vector3();
+  private readonly aim_ = new Quaternion();
+  private readonly sight_ = new Vector3();
+  private readonly origin_ = new Float32Array(3);
+  private readonly direction_ = new Float32Array(3);
+  private readonly hit_ = new Hit();
+  private readonly spot_ = new Spot();
+
+  constructor(page: Page, canvas: HTMLCanvasElement, device: XRDevice) {
+    this.page_ = page;
+    this.device_ = device;
+    // Before the page's own listeners: while the headset is on, the mouse is a hand.
+    const take = (type: string, act: (event: Event) => void) => window.addEventListener(type, (event) => {
+      if (this.on_ && (event.target === canvas || event instanceof KeyboardEvent)) act(event);
+    }, { capture: true, passive: false });
+    take("pointermove", (event) => this.move_(event as PointerEvent));
+    take("pointerdown", (event) => this.press_(event as PointerEvent, 1));
+    take("pointerup", (event) => this.press_(event as PointerEvent, 0));
+    take("contextmenu", (event) => event.preventDefault());
+    take("wheel", (event) => this.wheel_(event as WheelEvent));
+    take("keydown", (event) => this.key_(event as KeyboardEvent, true));
+    take("keyup", (event) => this.key_(event as KeyboardEvent, false));
+  }
+
+  beforeGestures(seconds: number): void {
+    if (!this.on_ || this.down_.size === 0) return;
+    this.flat_.set(0, 0, 0);
+    for (const key of this.down_) {
+      const walk = walkKeys[key] as readonly [number, number, number] | undefined;
+      if (walk !== undefined) this.flat_.x += walk[0];
+      if (walk !== undefined) this.flat_.y += walk[1];
+      if (walk !== undefined) this.flat_.z += walk[2];
+    }
+    if (this.flat_.lengthSq() === 0) return;
+    this.readHead_();
+    this.flat_.applyAxisAngle(upward, this.angles_.y).multiplyScalar(walkSpeed * seconds);
+    const { position } = this.device_;
+    position.set(position.x + this.flat_.x, Math.max(position.y + this.flat_.y, 0.2), position.z + this.flat_.z);
+    this.moveHands_();
+  }
+
+  private get on_(): boolean {
+    return this.page_.renderer.xr.isPresenting;
+  }
+
+  private move_(event: PointerEvent): void {
+    event.stopImmediatePropagation();
+    const { mouse_ } = this;
+    // A browser tells of moves when things move under a mouse that rests.
+    if (mouse_.known && event.clientX === mouse_.x && event.clientY === mouse_.y) return;
+    const dx = event.clientX - mouse_.x;
+    const dy = event.clientY - mouse_.y;
+    const first = !mouse_.known;
+    mouse_.x = event.clientX;
+    mouse_.y = event.clientY;
+    mouse_.known = true;
+    if (first) return;
+    if ((event.buttons & 2) !== 0) {
+      this.readHead_();
+      this.angles_.set(Math.min(Math.max(this.angles_.x - dy * 0.005, -1.4), 1.4), this.angles_.y - dx * 0.005, 0);
+      this.turn_.setFromEuler(this.angles_);
+      this.device_.quaternion.set(this.turn_.x, this.turn_.y, this.turn_.z, this.turn_.w);
+      this.moveHands_();
+    }
+    this.side_ = event.shiftKey ? "left" : "right";
+    this.aimHand_();
+  }
+
+  private press_(event: PointerEvent, value: 0 | 1): void {
+    event.stopImmediatePropagation();
+    if (event.button !== 0) return;
+    this.pressed_ = value === 1;
+    for (const side of value === 1 ? [this.side_] : (["left", "right"] as const)) {
+      this.device_.controllers[side]?.updateButtonValue("trigger", value);
+      this.device_.hands[side]?.updatePinchValue(value);
+    }
+  }
+
+  private wheel_(event: WheelEvent): void {
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    const controller = this.device_.controllers[this.side_];
+    controller?.updateAxes("thumbstick", 0, Math.sign(event.deltaY) * 0.6);
+    window.setTimeout(() => controller?.updateAxes("thumbstick", 0, 0), 120);
+  }
+
+  private key_(event: KeyboardEvent, down: boolean): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const { key } = event;
+    // Keys of the script win over ours, as on the page.
+    if (this.page_.model.actions.some((action) => action.key === key) || !this.own_(key, down, event.repeat)) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  }
+
+  private own_(key: string, down: boolean, repeat: boolean): boolean {
+    if (key.toLowerCase() in walkKeys) {
+      if (down) this.down_.add(key.toLowerCase());
+      else this.down_.delete(key.toLowerCase());
+      return true;
+    }
+    const controller = this.device_.controllers[this.side_];
+    if (key in stickKeys) {
+      const [x, y] = down ? stickKeys[key] : [0, 0];
+      controller?.updateAxes("thumbstick", x, y);
+      return true;
+    }
+    if (key === "1" || key === "2") {
+      const id = { left: { 1: "x-button", 2: "y-button" }, right: { 1: "a-button", 2: "b-button" } }[this.side_][key];
+      controller?.updateButtonValue(id, down ? 1 : 0);
+      return true;
+    }
+    if (key !== "h" && key !== "v" && key !== "Escape") return false;
+    if (!down || repeat) return true;
+    if (key === "h") this.device_.primaryInputMode = this.device_.primaryInputMode === "hand" ? "controller" : "hand";
+    if (key === "v") this.device_.stereoEnabled = !this.device_.stereoEnabled;
+    if (key === "Escape") void this.device_.activeSession?.end();
+    return true;
+  }
+
+  private readHead_(): void {
+    const { quaternion } = this.device_;
+    this.turn_.set(quaternion.x, quaternion.y, quaternion.z, quaternion.w);
+    this.angles_.setFromQuaternion(this.turn_);
+  }
+
+  private placeHand_(side: Side, turn: Quaternion): void {
+    const { position } = this.device_;
+    this.at_.copy(handAt[side]).applyQuaternion(this.turn_);
+    for (const part of [this.device_.controllers[side], this.device_.hands[side]]) {
+      part?.position.set(position.x + this.at_.x, position.y + this.at_.y, position.z + this.at_.z);
+      part?.quaternion.set(turn.x, turn.y, turn.z, turn.w);
+    }
+  }
+
+  /** Hands go with the head. */
+  private moveHands_(): void {
+    this.placeHand_("left", this.turn_);
+    this.placeHand_("right", this.turn_);
+    this.aimHand_();
+  }
+
+  /** Points the hand at what the mouse is over, in whichever eye's picture that is. */
+  private aimHand_(): void {
+    const { stereoEnabled, fovy, ipd } = this.device_;
+    this.readHead_();
+    const half = stereoEnabled ? innerWidth / 2 : innerWidth;
+    const eye = stereoEnabled && this.mouse_.x >= half ? 1 : 0;
+    const slope = Math.tan(fovy / 2);
+    const x = ((this.mouse_.x - eye * half) / half) * 2 - 1;
+    const y = 1 - (this.mouse_.y / innerHeight) * 2;
+    this.ray_.set(x * slope * (half / innerHeight), y * slope, -1).normalize();
+    // What is held stays as far away as it was.
+    if (!this.pressed_) this.distance_ = this.look_(eye);
+    this.ray_.multiplyScalar(this.distance_);
+    this.ray_.x += (eye - 0.5) * ipd;
+    this.ray_.sub(handAt[this.side_]).normalize().applyQuaternion(this.turn_);
+    this.placeHand_(this.side_, this.aim_.setFromUnitVectors(forward, this.ray_));
+  }
+
+  /** How far away the thing is that an eye sees along the ray, m. */
+  private look_(eye: number): number {
+    const camera = this.page_.renderer.xr.getCamera().cameras.at(eye);
+    if (camera === undefined) return meetsAt;
+    this.sight_.setFromMatrixPosition(camera.matrixWorld).toArray(this.origin_);
+    this.sight_.copy(this.ray_).transformDirection(camera.matrixWorld).toArray(this.direction_);
+    for (const plate of this.plates) {
+      if (plate.ready && rayOnPlate(plate, this.origin_, this.direction_, this.spot_)) return this.spot_.distance;
+    }
+    return pickRay(this.page_.view, this.origin_, this.direction_, tolerance, 50, this.hit_) ? this.hit_.distance : meetsAt;
+  }
+}

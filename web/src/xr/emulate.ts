@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// ?emulate=quest3: a headset made of software (IWER), for tests and for people without one.
+
+import { metaQuest3, XRDevice } from "iwer";
+import type { Page } from "../app/page.ts";
+import { DeskControls } from "./desk_controls.ts";
+
+const eyeHeight = 1.6;
+/** Narrower than in a headset, whose edges nobody looks at: on a flat picture they only stretch, rad. */
+const fovy = 1.35;
+
+export interface Emulation {
+  readonly device: XRDevice;
+  readonly desk: DeskControls;
+}
+
+/** Installs the emulated headset as navigator.xr. Throws on a model it does not know. */
+export function emulate(page: Page, canvas: HTMLCanvasElement, model: string): Emulation {
+  if (model !== "quest3") throw new Error(`?emulate= knows quest3, not ${model}`);
+  shadowClears(page.renderer.getContext() as WebGL2RenderingContext);
+  const device = new XRDevice(metaQuest3, { stereoEnabled: true, fovy });
+  // Browsers have a navigator.xr of their own even where no headset is.
+  device.installRuntime({ forceInstall: true });
+  device.position.set(0, eyeHeight, 0);
+  restHands(device);
+  keepCanvasPlace(page, canvas);
+  const desk = new DeskControls(page, canvas, device);
+  page.listeners.push(desk);
+  return { device, desk };
+}
+
+/** Hands where a standing person holds them. */
+function restHands(device: XRDevice): void {
+  for (const [side, x] of [["left", -0.2], ["right", 0.2]] as const) {
+    device.controllers[side]?.position.set(x, eyeHeight - 0.28, -0.38);
+    device.hands[side]?.position.set(x, eyeHeight - 0.28, -0.38);
+  }
+}
+
+/**
+ * The emulator asks for the clear values each frame, which makes a software renderer wait for all that
+ * is drawn (46 ms a frame, measured). They are remembered here and answered from memory, as copies: it
+ * keeps the answer while it sets others.
+ */
+function shadowClears(gl: WebGL2RenderingContext): void {
+  const colour = Float32Array.from(gl.getParameter(gl.COLOR_CLEAR_VALUE) as Float32Array);
+  let depth = gl.getParameter(gl.DEPTH_CLEAR_VALUE) as number;
+  let stencil = gl.getParameter(gl.STENCIL_CLEAR_VALUE) as number;
+  const { clearColor, clearDepth, clearStencil, getParameter } = gl;
+  gl.clearColor = (red, green, blue, alpha) => {
+    colour[0] = red;
+    colour[1] = green;
+    colour[2] = blue;
+    colour[3] = alpha;
+    clearColor.call(gl, red, green, blue, alpha);
+  };
+  gl.clearDepth = (value) => {
+    depth = value;
+    clearDepth.call(gl, value);
+  };
+  gl.clearStencil = (value) => {
+    stencil = value;
+    clearStencil.call(gl, value);
+  };
+  gl.getParameter = (name: GLenum): unknown => {
+    switch (name) {
+      case gl.COLOR_CLEAR_VALUE: return colour.slice();
+      case gl.DEPTH_CLEAR_VALUE: return depth;
+      case gl.STENCIL_CLEAR_VALUE: return stencil;
+      default: return getParameter.call(gl, name);
+    }
+  };
+}
+
+/** The emulator moves the canvas while it presents and puts it back last among its siblings, over the page's bar. */
+function keepCanvasPlace(page: Page, canvas: HTMLCanvasElement): void {
+  const { parentElement: parent, nextSibling: next } = canvas;
+  page.renderer.xr.addEventListener("sessionend", () => {
+    // After the emulator's own handler, whichever comes first.
+    setTimeout(() => {
+      parent?.insertBefore(canvas, next);
+      window.dispatchEvent(new Event("resize"));
+    });
+  });
+}

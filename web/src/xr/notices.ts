@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page says on cards, said in the headset: a card in front of the user, a little below the
+// gaze, that stays where it is and comes along only when the user has turned away from it.
+
+import { Vector3, type Matrix4, type Object3D } from "three";
+import { Board, font, roundedBox, wrapText, type Colours } from "./board.ts";
+import { faceReader } from "./wrist_panel.ts";
+
+export type NoticeLevel = 0 | 1 | 2;
+
+interface Card {
+  readonly key: string;
+  readonly level: number;
+  readonly title: string;
+  readonly text: string;
+  readonly hint: string;
+  /** Seconds left; Infinity: until it is pressed or taken away. */
+  left: number;
+  readonly lasting: boolean;
+}
+
+const width = 820;
+const edge = 34;
+const density = width / 0.5;
+const shownSeconds = [6, 9, Infinity];
+const most = 3;
+const away = 0.95;
+const below = 0.3;
+/** To the right: the wrist panel is at the left. */
+const aside = 0.24;
+/** Cosine of the angle at which it comes along: 38 degrees. */
+const lostFromView = 0.79;
+const easeSeconds = 0.18;
+
+export class Notices {
+  readonly board = new Board(density);
+
+  private cards_: Card[] = [];
+  private placed_ = false;
+  private coming_ = false;
+  private readonly at_ = new Vector3();
+  private readonly goal_ = new Vector3();
+  private readonly head_ = new Vector3();
+  private readonly ahead_ = new Vector3();
+  private readonly measure_: CanvasRenderingContext2D;
+
+  constructor(rig: Object3D) {
+    const context = document.createElement("canvas").getContext("2d");
+    if (context === null) throw new Error("no 2-D canvas");
+    this.measure_ = context;
+    this.board.paint = (target, colours) => this.paint_(target, colours);
+    this.board.press = () => this.dismiss_();
+    rig.add(this.board.mesh);
+  }
+
+  get titles(): string[] {
+    return this.cards_.map((card) => card.title);
+  }
+
+  show(level: number, title: string, text: string, hint: string, key = title, lasting = false): void {
+    this.cards_ = this.cards_.filter((card) => card.key !== key);
+    this.cards_.push({ key, level, title, text, hint, left: lasting ? Infinity : (shownSeconds[level] ?? 6), lasting });
+    if (this.cards_.length > most) this.cards_.shift();
+    this.arrange_();
+  }
+
+  remove(key: string): void {
+    const before = this.cards_.length;
+    this.cards_ = this.cards_.filter((card) => card.key !== key);
+    if (this.cards_.length !== before) this.arrange_();
+  }
+
+  clear(): void {
+    this.cards_ = [];
+    this.board.hide();
+    this.placed_ = false;
+  }
+
+  /** `head`: viewer in the reference space. */
+  update(head: Matrix4, seconds: number): void {
+    let gone = false;
+    for (const card of this.cards_) {
+      card.left -= seconds;
+      gone ||= card.left <= 0;
+    }
+    if (gone) {
+      this.cards_ = this.cards_.filter((card) => card.left > 0);
+      this.arrange_();
+    }
+    if (this.cards_.length === 0 && !this.board.mesh.visible) {
+      this.placed_ = false;
+      return;
+    }
+    this.place_(head, seconds);
+  }
+
+  private place_(head: Matrix4, seconds: number): void {
+    this.head_.setFromMatrixPosition(head);
+    this.ahead_.setFromMatrixColumn(head, 2).negate().setY(0);
+    if (this.ahead_.lengthSq() < 1e-4) this.ahead_.set(0, 0, -1);
+    this.ahead_.normalize();
+    const apart = this.goal_.subVectors(this.at_, this.head_).setY(0).normalize().dot(this.ahead_);
+    if (!this.placed_ || apart < lostFromView) this.coming_ = true;
+    if (this.coming_) {
+      this.goal_.copy(this.head_).addScaledVector(this.ahead_, away);
+      this.goal_.x -= aside * this.ahead_.z;
+      this.goal_.z += aside * this.ahead_.x;
+      this.goal_.y -= below;
+      if (this.placed_) this.at_.lerp(this.goal_, 1 - Math.exp(-seconds / easeSeconds));
+      else this.at_.copy(this.goal_);
+      this.placed_ = true;
+      if (this.at_.distanceToSquared(this.goal_) < 1e-4) this.coming_ = false;
+    }
+    faceReader(this.at_, this.head_, this.board.mesh.matrix);
+    this.board.mesh.updateMatrixWorld(true);
+  }
+
+  /** A press takes away what is not lasting. */
+  private dismiss_(): void {
+    this.cards_ = this.cards_.filter((card) => card.lasting);
+    this.arrange_();
+  }
+
+  private arrange_(): void {
+    this.board.shown = this.cards_.length > 0;
+    if (this.cards_.length === 0) {
+      this.board.buttons = [];
+      return;
+    }
+    const height = this.lay_(this.measure_, null);
+    this.board.resize(width, height);
+    // What goes by itself lets rays through to the things behind it.
+    this.board.buttons = this.cards_.some((card) => card.level > 0 && !card.lasting) ? [{ x: 0, y: 0, width, height }] : [];
+  }
+
+  private paint_(context: CanvasRenderingContext2D, colours: Colours): void {
+    this.lay_(context, colours);
+  }
+
+  /** Measures (without colours) or paints; returns the height, px. */
+  private lay_(context: CanvasRenderingContext2D, colours: Colours | null): number {
+    let y = 0;
+    context.textAlign = "left";
+    context.textBaseline = "alphabetic";
+    for (const card of this.cards_) {
+      context.font = `600 40px ${font}`;
+      const title = wrapText(context, card.title, width - 2 * edge - 20);
+      context.font = `34px ${font}`;
+      const text = card.text === "" ? [] : wrapText(context, card.text, width - 2 * edge - 20);
+      const hint = card.hint === "" ? [] : wrapText(context, card.hint, width - 2 * edge - 20);
+      const height = 2 * edge - 4 + 50 * title.length + 44 * (text.length + hint.length) + (hint.length > 0 ? 8 : 0);
+      if (colours !== null) {
+        const accent = [colours.calm, colours.warn, colours.error][card.level] ?? colours.calm;
+        roundedBox(context, { x: 0, y, width, height }, 32, colours.line);
+        roundedBox(context, { x: 3, y: y + 3, width: width - 6, height: height - 6 }, 30, colours.paper);
+        roundedBox(context, { x: 18, y: y + 26, width: 8, height: height - 52 }, 4, accent);
+        let line = y + edge + 34;
+        const write = (lines: string[], style: string, colour: string, pitch: number) => {
+          context.font = style;
+          context.fillStyle = colour;
+          for (const each of lines) {
+            context.fillText(each, edge + 12, line);
+            line += pitch;
+          }
+        };
+        write(title, `600 40px ${font}`, colours.ink, 50);
+        write(text, `34px ${font}`, colours.ink, 44);
+        line += 8;
+        write(hint, `34px ${font}`, colours.faint, 44);
+      }
+      y += height + 16;
+    }
+    return Math.ceil(y - 16);
+  }
+}

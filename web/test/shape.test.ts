@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+import { describe, expect, it } from "vitest";
+import { bodyDistance, bodyReach, parseShape, placeShape, shapeDistance, shapeReach } from "../src/scene/shape.ts";
+
+const shapes = [
+  parseShape({ type: "sphere", radius: 0.3 }),
+  parseShape({ type: "capsule", radius: 0.1, length: 0.5 }),
+  parseShape({ type: "cylinder", radius: 0.1, length: 0.5 }),
+  parseShape({ type: "torus", radius: 0.2, tube: 0.05, stretch: 0.3 }),
+  parseShape({ type: "box", size: [0.2, 0.3, 0.4] }),
+];
+
+describe("a shape of the scene description", () => {
+  it("takes defaults for what is left out", () => {
+    const shape = parseShape({ type: "capsule", radius: 0.01, length: 0.1 });
+    expect(shape).toMatchObject({ material: "paint", color: null, turn: 0, offset: [0, 0, 0], rotation: [0, 0, 0, 1] });
+  });
+
+  it.each([
+    [null, /object/], [{ type: "cone" }, /unknown shape type "cone"/], [{ type: "sphere", radius: -1 }, /radius must be positive/],
+    [{ type: "sphere", radius: "1" }, /radius must be a finite number/], [{ type: "box", size: [1, 2] }, /size must be 3 numbers/],
+    [{ type: "sphere", rotation: [0, 0, 0, 0] }, /rotation must not be zero/],
+  ])("is refused with the name of the wrong field: %j", (json, reason) => {
+    expect(() => parseShape(json)).toThrow(reason);
+  });
+});
+
+describe("the distance function", () => {
+  it("is zero on the surface, negative inside, positive outside", () => {
+    expect(shapeDistance(shapes[0], 0.3, 0, 0)).toBeCloseTo(0, 9);
+    expect(shapeDistance(shapes[1], 0.35, 0, 0)).toBeCloseTo(0, 9);
+    expect(shapeDistance(shapes[2], 0.25, 0.05, 0)).toBeCloseTo(0, 9);
+    expect(shapeDistance(shapes[2], 0.35, 0.1, 0)).toBeCloseTo(0.1, 9);
+    expect(shapeDistance(shapes[3], 0.4, 0, 0)).toBeCloseTo(0, 9);
+    expect(shapeDistance(shapes[3], 0, 0, 0)).toBeCloseTo(0.15, 9);
+    expect(shapeDistance(shapes[4], 0, 0, 0)).toBeCloseTo(-0.1, 9);
+  });
+
+  it("never grows faster than the way walked, so that marching along a ray cannot jump through", () => {
+    let seed = 7;
+    const random = () => ((seed = (seed * 16807) % 2147483647) / 2147483647) - 0.5;
+    for (const shape of shapes) {
+      for (let trial = 0; trial < 500; trial++) {
+        const a = [random(), random(), random()] as const;
+        const b = [a[0] + 0.1 * random(), a[1] + 0.1 * random(), a[2] + 0.1 * random()] as const;
+        const way = Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+        expect(Math.abs(shapeDistance(shape, ...a) - shapeDistance(shape, ...b))).toBeLessThanOrEqual(way + 1e-12);
+        if (shapeDistance(shape, ...a) < 0) expect(Math.hypot(...a)).toBeLessThanOrEqual(shapeReach(shape) + 1e-12);
+      }
+    }
+  });
+});
+
+describe("a shape on a body", () => {
+  it("is turned about x on odd bodies only", () => {
+    const link = parseShape({ type: "torus", radius: 0.05, tube: 0.01, turn: Math.PI / 2 });
+    const even = [placeShape(link, false, null)];
+    const odd = [placeShape(link, true, null)];
+    expect(bodyDistance(even, 0, 0.05, 0)).toBeCloseTo(-0.01, 9);
+    expect(bodyDistance(odd, 0, 0.05, 0)).toBeGreaterThan(0.03);
+    expect(bodyDistance(odd, 0, 0, 0.05)).toBeCloseTo(-0.01, 9);
+  });
+
+  it("takes the body's length for rods, not for links", () => {
+    const rod = parseShape({ type: "capsule", radius: 0.01, length: 0.1 });
+    const link = parseShape({ type: "torus", radius: 0.05, tube: 0.01 });
+    expect(placeShape(rod, false, 0.3).shape.length).toBe(0.3);
+    expect(placeShape(link, false, 0.3).shape).toBe(link);
+  });
+
+  it("reaches as far as its offset and size", () => {
+    const ball = parseShape({ type: "sphere", radius: 0.1, offset: [0, 0.2, 0] });
+    expect(bodyReach([placeShape(ball, false, null)])).toBeCloseTo(0.3, 9);
+  });
+});
