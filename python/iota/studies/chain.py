@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+import math
+
 import iota
 from iota import looks
 
 NAIL = (0.0, 2.8, 0.0)
 LENGTH = 2.4
-EIGHTH_TURN = (-0.3827, 0, 0, 0.9239)  # about x
 
 
 def build(links: int = 24, repeat: bool = True) -> iota.World:
@@ -40,7 +41,7 @@ def build(links: int = 24, repeat: bool = True) -> iota.World:
 
 
 def present(world: iota.World, chain: list[iota.Body]) -> None:
-    """Two looks for the links, and the gallows with the eye that they hang from."""
+    """Two looks for the links, and the tripod with the eye that they hang from."""
     link = LENGTH / len(chain)
     radius = min(0.014, 0.3 * link)
     world.classes["link"] = {
@@ -49,12 +50,14 @@ def present(world: iota.World, chain: list[iota.Body]) -> None:
     }
     world.look(chain, "link")
     x, y, z = NAIL
-    world.add_static(looks.box((0.10, 0.12, 1.16), "wood"), (x, y + 0.11, z - 0.44))
-    world.add_static(looks.box((0.10, y + 0.05, 0.10), "wood"), (x, (y + 0.05) / 2, z - 0.92))
-    world.add_static(looks.box((0.07, 0.07, 0.70), "wood"), (x, y - 0.17, z - 0.65), EIGHTH_TURN)
-    world.add_static(looks.box((0.60, 0.06, 0.45), "wood"), (x, 0.03, z - 0.92))
+    for foot in ((-1.25, 0, 0.5), (1.25, 0, 0.5), (0, 0, -1.35)):
+        side = math.hypot(foot[0], foot[2])
+        top = (x + 0.035 * foot[0] / side, y + 0.16, z + 0.035 * foot[2] / side)
+        world.add_strut(foot, top, looks.cylinder(0.028, "wood"))
+    world.add_strut((x, y + 0.10, z), (x, y + 0.22, z), looks.cylinder(0.06, "brass"))
     world.add_static(looks.torus(0.03, 0.007, "steel"), (x, y + 0.03, z))
-    world.camera = iota.Camera(position=(1.6, 1.75, 4.4), target=(0, 1.5, 0))
+    world.add_strut((x, y + 0.06, z), (x, y + 0.10, z), looks.cylinder(0.012, "steel"))
+    world.camera = iota.Camera(position=(0.9, 1.7, 4.3), target=(0, 1.5, 0))
 
 
 def script_break(world: iota.World, chain: list[iota.Body], repeat: bool) -> None:

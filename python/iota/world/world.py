@@ -23,7 +23,7 @@ from iota.world.hands import Client, Hands
 from iota.world.inputs import MAX_SPEED, Inputs
 from iota.world.pacer import Pacer
 from iota.world.publisher import LEVELS, Action, Publisher
-from iota.world.scene import Camera, Scene
+from iota.world.scene import Camera, Scene, turn_from_x
 from iota.world.schedule import Schedule
 from iota.world.summary import RunSummary, Tally
 
@@ -157,6 +157,18 @@ class World:
         """Adds something that is only drawn: a beam, a stand. position: m. rotation: quaternion x y z w."""
         self.statics.append({"shape": shape, "position": list(Vec3(*position)), "rotation": list(rotation)})
         self._dirty = True
+
+    def add_strut(self, start: Sequence[float], end: Sequence[float], shape: Shape) -> None:
+        """Adds a shape that is only drawn from `start` to `end` (m): its local x runs along the line, and a cylinder or
+        capsule without a length gets that of the line."""
+        a, b = Vec3(*start), Vec3(*end)
+        length = abs(b - a)
+        if not length > 0:
+            raise ValueError(f"a strut needs two different ends, not {a} twice")
+        direction = (b - a) * (1 / length)
+        if shape["type"] in ("cylinder", "capsule"):
+            shape = {"length": length, **shape}
+        self.add_static(shape, (a + b) * 0.5, turn_from_x(direction))
 
     def notice(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# Thin: the work and the progress lines are in tools/build.py, the test suites in tools/run_tests.py.
+
+PYTHON ?= python3
+PORT ?= 8080
+# How long `make demo` serves, in seconds; without it, until Ctrl-C. Not taken from the environment: bash has a SECONDS.
+ifneq ($(origin SECONDS),command line)
+SECONDS :=
+endif
+# Which suites `make test` runs; all when empty. `make test SUITES="cpp python"`
+SUITES ?=
+# Arguments of bench/run_bench.py.
+BENCH ?=
+
+iota = .venv/bin/iota
+cpp_presets = debug asan ubsan tsan coverage strict
+
+.DEFAULT_GOAL := help
+.PHONY: help build demo test bench wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
+
+help: ## what there is to make (this list)
+	@awk 'BEGIN { FS = ":.*## " } /^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@echo "  make check-X    C++ tests under a preset: $(cpp_presets)"
+
+build: ## install what is missing, build engine, bindings and page; the command line is .venv/bin/iota
+	@$(PYTHON) tools/build.py build
+
+demo: ## build, then serve the chain and print its address (PORT=8080, SECONDS= to stop by itself)
+	@$(PYTHON) tools/build.py build
+	@exec $(iota) run chain --port $(PORT) $(if $(SECONDS),--seconds $(SECONDS))
+
+test: ## build, then run every test of every language (SUITES="cpp python" for some)
+	@$(PYTHON) tools/build.py test
+	@.venv/bin/python tools/run_tests.py $(SUITES)
+
+bench: ## build, then measure engine and packaged peers in one run (BENCH="--quick")
+	@$(PYTHON) tools/build.py bench
+	@.venv/bin/python bench/run_bench.py $(BENCH)
+
+wheel: ## build/wheel/*.whl with engine, server and page
+	@$(PYTHON) tools/build.py wheel
+
+format: ## format C++ and Python
+	@$(PYTHON) tools/build.py lint
+	@.venv/bin/python tools/lint.py --format
+
+lint: ## check formatting, types and style of every language; print the folder graph
+	@$(PYTHON) tools/build.py lint
+	@.venv/bin/python tools/lint.py
+
+tidy: ## clang-tidy over all C++ (minutes)
+	@$(PYTHON) tools/build.py test
+	@$(PYTHON) tools/build.py lint
+	@.venv/bin/python tools/lint.py --tidy
+
+clean: ## remove what was built (keeps .venv and web/node_modules)
+	rm -rf build web/dist web/dist.new web/dist.old web/src/protocol/generated.ts python/iota/_core.* python/iota/page
+
+distclean: clean ## remove everything that make made
+	rm -rf .venv web/node_modules
+
+$(addprefix check-,$(cpp_presets)): check-%:
+	@$(PYTHON) tools/build.py cpp --preset $*
+	@build/$*/iota_tests --gtest_brief=1

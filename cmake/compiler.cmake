@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+# How every target of ours is compiled.
+
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON) # the static libraries end up in a shared Python module
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(IOTA_CCACHE ccache)
+if(IOTA_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${IOTA_CCACHE}")
+endif()
+
+# iota_compile(TARGET): language level, warnings, reproducible arithmetic, sanitizers.
+function(iota_compile target)
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic
+    # Leaving the rest of an options struct to its defaults is how this interface is meant to be called.
+    -Wno-missing-field-initializers
+    # A fused multiply-add rounds once where a product and a sum round twice. Whether the compiler fuses depends on
+    # optimisation level and on what it inlines, so replays and hashes would differ between builds.
+    -ffp-contract=off
+    # Nothing here reads errno; without this a square root is a call instead of one instruction. Results are the same.
+    -fno-math-errno)
+  # No -march=native: a release must run on another machine than the one that built it.
+  if(IOTA_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(IOTA_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${IOTA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_link_options(${target} PUBLIC -fsanitize=${IOTA_SANITIZE})
+  endif()
+  if(IOTA_COVERAGE)
+    target_compile_options(${target} PRIVATE --coverage)
+    target_link_options(${target} PUBLIC --coverage)
+  endif()
+endfunction()

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+# iota_protocol: the message structs, encoders and decoders, generated from protocol/schema.json.
+
+find_package(Python 3.10 REQUIRED COMPONENTS Interpreter)
+
+set(iota_generated_dir "${CMAKE_CURRENT_BINARY_DIR}/generated")
+set(iota_protocol_header "${iota_generated_dir}/iota_protocol.h")
+set(iota_protocol_generator "${CMAKE_CURRENT_SOURCE_DIR}/tools/generate_protocol.py")
+
+add_custom_command(
+  OUTPUT "${iota_protocol_header}"
+  COMMAND "${Python_EXECUTABLE}" "${iota_protocol_generator}" --cpp "${iota_protocol_header}"
+  DEPENDS "${iota_protocol_generator}" "${CMAKE_CURRENT_SOURCE_DIR}/protocol/schema.json"
+  COMMENT "Generating iota_protocol.h"
+  VERBATIM)
+add_custom_target(iota_protocol_files DEPENDS "${iota_protocol_header}")
+
+add_library(iota_protocol INTERFACE)
+add_dependencies(iota_protocol iota_protocol_files)
+target_include_directories(iota_protocol INTERFACE "${iota_generated_dir}")
