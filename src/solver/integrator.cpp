@@ -18,7 +18,7 @@ constexpr int patience = 400;          // iterations after which sub-steps are n
 
 void Integrator::compile(Problem& problem) {
   newton_.compile(problem);
-  guess_.resize(problem.size()), velocity_.resize(problem.size());
+  guess_.resize(problem.size()), pull_.resize(problem.size()), velocity_.resize(problem.size());
   start_position_.resize(problem.size()), start_velocity_.resize(problem.size());
   lumped_mass_ = problem.mass;
   for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
@@ -45,27 +45,36 @@ void Integrator::restore_multipliers(Problem& problem) const {
 // Mid-point: plain x0 + h v0, since its multipliers ring from step to step (measured: twice the iterations otherwise).
 void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   const std::size_t n = problem.size();
-  if (stage.midpoint) {
-    for (std::size_t i = 0; i < n; ++i) guess_[i] = problem.position[i] + stage.h * problem.velocity[i];
-    return;
-  }
-  for (std::size_t i = 0; i < n; ++i) guess_[i] = problem.force[i] + lumped_mass_[i] * problem.gravity;
-  if (stage.is_projection()) {
-    std::copy(problem.position.begin(), problem.position.end(), guess_.begin());
-    return;
-  }
+  for (std::size_t i = 0; i < n; ++i) guess_[i] = problem.position[i] + stage.h * problem.velocity[i];
+  if (stage.midpoint || stage.is_projection()) return;
+
+  for (std::size_t i = 0; i < n; ++i) pull_[i] = problem.force[i] + lumped_mass_[i] * problem.gravity;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
       for (int i = 0; i < c.node_count(); ++i) {
         Vec3 rows[C::rows];
         c.gradient(problem.position.data(), i, rows);
-        for (int r = 0; r < C::rows; ++r) guess_[c.nodes[i]] -= pool.multiplier(k)[r] * rows[r];
+        for (int r = 0; r < C::rows; ++r) pull_[c.nodes[i]] -= pool.multiplier(k)[r] * rows[r];
       }
     }
   });
-  for (std::size_t i = 0; i < n; ++i)
-    guess_[i] = problem.position[i] + stage.h * problem.velocity[i] + (1 / (stage.inertia * lumped_mass_[i])) * guess_[i];
+  const ForceStage force_stage{stage.h, false, false};
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items) {
+      const Vec3 force = f.force(f.arm.value(problem.position.data()), f.arm.value(guess_.data()), force_stage);
+      for (std::uint32_t i = 0; i < f.arm.count; ++i) pull_[f.arm.nodes[i]] += f.arm.weights[i] * force;
+    }
+  });
+  // A pull that would fling points away (a stiff spring, an outdated multiplier) is no help.
+  const double limit = newton_.reference_length() * newton_.reference_length();
+  double farthest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    pull_[i] *= 1 / (stage.inertia * lumped_mass_[i]);
+    farthest = std::max(farthest, dot(pull_[i], pull_[i]));
+  }
+  if (farthest < limit)
+    for (std::size_t i = 0; i < n; ++i) guess_[i] += pull_[i];
 }
 
 bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& report) {
@@ -258,7 +267,8 @@ void Integrator::refuse_made_up_energy(Problem& problem, double h, AdvanceReport
 }
 
 void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
-  if (holds_offsets_) problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
+  if (holds_offsets_)
+    problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
   holds_offsets_ = false;
   if (!(problem.worst_gap(problem.position.data(), 0, true) > standing_gap)) return;
 
@@ -277,6 +287,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
 
 bool Integrator::project_positions(Problem& problem) {
   save_multipliers(problem);
+  problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
   AdvanceReport ignored;
   const auto attempt = [&](double compliance, int iterations) {
     problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
@@ -287,14 +298,37 @@ bool Integrator::project_positions(Problem& problem) {
     if (solved) std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
     return solved;
   };
-  // Exactly; else by soft steps, each of which lessens the violation and is easy to solve, and then exactly from there.
-  bool solved = attempt(1e-12, 20);
+  // At once; else bit by bit, as far as there is a way; else by soft steps, each of which shares what cannot be closed.
+  bool solved = attempt(1e-12, 20) || close_bit_by_bit(problem, attempt);
   for (int soft = 0; soft < 3 && !solved; ++soft) {
     if (!attempt(1e-3, 40)) break;
     solved = attempt(1e-12, 12);
   }
   restore_multipliers(problem);
   return solved;
+}
+
+// Many links away from a solution Newton gets lost, but a part of the way it finds (a fine chain pulled together over
+// centimetres). What remains is held as offsets meanwhile.
+template <class Attempt>
+bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
+  double remaining = 1, part = 0.25;
+  bool solved = false;
+  for (int tries = 0; tries < 60 && remaining > 0 && part > 2e-3; ++tries) {
+    part = std::min(part, remaining);
+    problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+      for (std::size_t i = 0; i < pool.items.size(); ++i) {
+        double* const offset = pool.offsets.data() + i * C::rows;
+        pool.items[i].value(problem.position.data(), 0, offset);
+        for (int r = 0; r < C::rows; ++r) offset[r] *= (remaining - part) / remaining;
+      }
+    });
+    solved = attempt(1e-12, 10);
+    if (solved) remaining -= part, part *= 2;
+    else part /= 4;
+  }
+  problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
+  return solved && !(remaining > 0);
 }
 
 }  // namespace iota::solver

@@ -58,10 +58,12 @@ class Integrator {
   bool least_violation(Problem&, Stage, AdvanceReport&);
   void refuse_made_up_energy(Problem&, double h, AdvanceReport&);
   void coast(Problem&, double h, AdvanceReport&);
+  template <class Attempt>
+  bool close_bit_by_bit(Problem&, Attempt);
   void close_gaps(Problem&, AdvanceReport&);
 
   Newton newton_;
-  std::vector<Vec3> guess_, velocity_, start_position_, start_velocity_;
+  std::vector<Vec3> guess_, pull_, velocity_, start_position_, start_velocity_;
   std::vector<double> lumped_mass_;
   std::vector<double> multipliers_saved_;
   bool conservative_ = true;  ///< nothing outside does work during this step

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int max_halvings = 12;
 constexpr double largest_violation = 1e-6; // that still counts as met
+constexpr double round_off_floor = 1e-8;    // a residual below it that no step lessens is as good as zero
 constexpr double largest_noise = 1e-8;      // of the scaled force residual
 constexpr double round_off = 4e-15;        // of the largest scaled force: below it a residual is noise
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -57,7 +58,6 @@ void Newton::compile(Problem& problem) {
 
   pattern_.analyse(graph);
   factor_.reset(pattern_);
-  ++analyses_;
 
   node_unknown_.resize(n), node_diagonal_.resize(n), node_stride_.resize(n);
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -315,6 +315,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   NewtonReport report;
   report.residual = residual<Midpoint>(problem, stage, x_.data());
   Hessian hessian = Hessian::exact;
+  bool stuck = false;
   while (report.residual > stage.tolerance && report.iterations < stage.max_iterations) {
     ++report.iterations;
     if (assemble_and_factor<Midpoint>(problem, stage, hessian) > 0 && hessian == Hessian::exact)
@@ -346,7 +347,8 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       }
       if (halvings == max_halvings && !(after < before)) {
         report.residual = after;
-        return report;  // stuck
+        stuck = true;  // at the bottom of round-off, or lost
+        break;
       }
       // A full step that merely helped is no reason to give up quadratic convergence: wrong pivots would tell.
       hessian = halvings == 0 && after < before ? Hessian::exact : Hessian::clamped;
@@ -357,7 +359,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   }
   report.violation = violation_;
   const bool exact = stage.compliance <= 1e-12;
-  report.converged = report.residual <= stage.tolerance && (!exact || violation_ <= largest_violation);
+  report.converged = report.residual <= std::max(stage.tolerance, stuck ? round_off_floor : 0) && (!exact || violation_ <= largest_violation);
   return report;
 }
 

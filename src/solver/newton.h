@@ -25,7 +25,7 @@ struct Stage {
   bool is_projection() const { return h == 0; }
   static Stage end_point(double h, double fraction) { return {.h = h, .inertia = 1 / (h * h), .fraction = fraction}; }
   static Stage mid_point(double h, double fraction) { return {.h = h, .inertia = 2 / (h * h), .midpoint = true, .fraction = fraction, .tolerance = 1e-10, .max_iterations = 30}; }
-  static Stage projection(double compliance = 1e-12) { return {.compliance = compliance, .tolerance = 1e-11}; }
+  static Stage projection(double compliance = 1e-12) { return {.compliance = compliance}; }
 };
 
 struct [[nodiscard]] NewtonReport {
@@ -55,7 +55,7 @@ class Newton {
   void project_velocities(Problem& problem, double h);
 
   const BlockPattern& pattern() const { return pattern_; }
-  std::uint64_t analyses() const { return analyses_; }
+  double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
 
  private:
   enum class Hessian { exact, clamped, none };
@@ -80,7 +80,6 @@ class Newton {
   std::vector<double> inverse_scale_;  // of the force residual of each node
   double reference_length_ = 1;
   double violation_ = 0;  // found by the latest residual()
-  std::uint64_t analyses_ = 0;
 };
 
 }  // namespace iota::solver

@@ -168,7 +168,7 @@ class World:
         direction = (b - a) * (1 / length)
         if shape["type"] in ("cylinder", "capsule"):
             shape = {"length": length, **shape}
-        self.add_static(shape, (a + b) * 0.5, turn_from_x(direction))
+        self.add_static(shape, list((a + b) * 0.5), turn_from_x(direction))
 
     def notice(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""
