@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 
 namespace iota::step {
 
@@ -22,6 +23,19 @@ namespace {
 double closing_factor(double elapsed, double duration) {
   const double s = std::clamp(elapsed / duration, 0.0, 1.0);
   return 1 - 0.99 * s * s * (3 - 2 * s);
+}
+
+/// Position and velocity that its body's basis gives a particle.
+std::pair<Vec3, Vec3> carried(const Model& model, std::uint32_t p) {
+  const Particle& particle = model.particles[p];
+  const Body& body = model.bodies[particle.body];
+  Vec3 x, v;
+  for (int i = 0; i < body.rank; ++i) {
+    const Ring& b = model.rings[model.particles[body.basis[i]].ring];
+    x += particle.weights[i] * b.position;
+    v += particle.weights[i] * b.velocity;
+  }
+  return {x, v};
 }
 
 }  // namespace
@@ -206,6 +220,22 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   for (const std::uint32_t ring : rings_) node_of_ring[ring] = none;
 }
 
+void Island::carry_along(Model& model) const {
+  Vec3 lost;
+  for (const std::uint32_t p : slaves_) {
+    Ring& r = model.rings[model.particles[p].ring];
+    const auto [x, v] = carried(model, p);
+    lost += model.particles[p].mass * (r.velocity - v);
+    r.position = x, r.velocity = v;
+  }
+  if (lost == Vec3{} || std::any_of(pinned_.begin(), pinned_.end(), [](std::uint8_t p) { return p != 0; })) return;
+  double mass = 0;
+  for (const std::uint32_t b : bodies_) mass += model.body_mass(b);
+  const Vec3 given = (1 / mass) * lost;
+  for (const std::uint32_t ring : rings_) model.rings[ring].velocity += given;
+  for (const std::uint32_t p : slaves_) model.rings[model.particles[p].ring].velocity += given;
+}
+
 void Island::load(const Model& model, double h) {
   problem_.gravity = model.gravity;
   for (std::size_t i = 0; i < rings_.size(); ++i) {
@@ -263,16 +293,8 @@ void Island::store(Model& model, bool stepped) {
     if (stepped) r.applied_force = {};
   }
   for (const std::uint32_t p : slaves_) {
-    const Particle& particle = model.particles[p];
-    const Body& body = model.bodies[particle.body];
-    Ring& r = model.rings[particle.ring];
-    Vec3 x, v;
-    for (int i = 0; i < body.rank; ++i) {
-      const Ring& b = model.rings[model.particles[body.basis[i]].ring];
-      x += particle.weights[i] * b.position;
-      v += particle.weights[i] * b.velocity;
-    }
-    r.position = x, r.velocity = v;
+    Ring& r = model.rings[model.particles[p].ring];
+    std::tie(r.position, r.velocity) = carried(model, p);
     if (stepped) r.applied_force = {};
   }
   if (!stepped) return;
@@ -352,7 +374,7 @@ bool Island::settle(Model& model, bool positions) {
   return met;
 }
 
-void Islands::update(const Model& model) {
+void Islands::update(Model& model) {
   if (model.revision == seen_revision_) return;
   seen_revision_ = model.revision;
 
@@ -390,6 +412,7 @@ void Islands::update(const Model& model) {
     } else {
       in_order_.push_back(std::make_unique<Island>());
       in_order_.back()->assemble(model, members, node_of_ring_);
+      in_order_.back()->carry_along(model);
     }
     keys_.push_back(std::move(key));
   }

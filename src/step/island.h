@@ -17,6 +17,10 @@ class Island {
   void assemble(const model::Model&, std::span<const std::uint32_t> articulates,
                 std::vector<std::uint32_t>& node_of_ring);
 
+  /// Puts carried particles where their basis has them. In a conflict that moves them; momentum is then given back by a
+  /// translation, unless something is pinned.
+  void carry_along(model::Model&) const;
+
   /// State of the model into the problem, for a step of h seconds (h = 0: for projections).
   void load(const model::Model&, double h);
   /// The problem's state back, particles that are no unknowns of their own included. `stepped`: nails have arrived and
@@ -60,7 +64,7 @@ class Island {
 /// All islands of a model, re-made only where articulates or bonds changed.
 class Islands {
  public:
-  void update(const model::Model&);
+  void update(model::Model&);
   void forget() { keys_.clear(), in_order_.clear(), seen_revision_ = ~0ull; }
   std::span<const std::unique_ptr<Island>> all() const { return in_order_; }
   Island* of_articulate(std::uint32_t articulate) const;
