@@ -10,14 +10,14 @@ namespace iota::scenes {
 
 struct ChainOptions {
   int links = 24;
-  double link_length = 0.1;     ///< m
-  double link_mass = 0.1;       ///< kg
-  double radius = 0.005;        ///< m, of rods
-  bool rods = false;            ///< cylinder inertia; otherwise half the mass at each end
-  bool nailed = true;           ///< at the upper end
-  double heavy_end = 1;         ///< the last link's mass, in links
+  double link_length = 0.1;  ///< m
+  double link_mass = 0.1;    ///< kg
+  double radius = 0.005;     ///< m, of rods
+  bool rods = false;         ///< cylinder inertia; otherwise half the mass at each end
+  bool nailed = true;        ///< at the upper end
+  double heavy_end = 1;      ///< the last link's mass, in links
   Vec3 top{0, 0, 0};
-  Vec3 direction{1, 0, 0};      ///< unit; horizontal: released from the side
+  Vec3 direction{1, 0, 0};  ///< unit; horizontal: released from the side
 };
 
 struct Chain {

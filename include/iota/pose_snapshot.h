@@ -31,10 +31,10 @@ struct PoseSnapshot {
   double time = 0;  ///< s
   std::uint32_t structure_version = 0;
   bool paused = false;
-  float speed = 1;               ///< simulated seconds per real second that the user asked for
-  float step_ms = 0;             ///< mean time of the latest steps
+  float speed = 1;                   ///< simulated seconds per real second that the user asked for
+  float step_ms = 0;                 ///< mean time of the latest steps
   float kinetic = 0, potential = 0;  ///< J
-  float gap = 0;                 ///< worst hinge separation or rigidity error, m
+  float gap = 0;                     ///< worst hinge separation or rigidity error, m
   std::vector<BodyPose> bodies;
   std::vector<HoldPose> holds;
 };

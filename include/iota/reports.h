@@ -13,8 +13,9 @@ namespace iota {
 /// Energy book-keeping, J. `kinetic + potential + dissipated - external_work - edits` is constant up to round-off.
 struct Energy {
   double kinetic = 0;
-  double potential = 0;      ///< gravity and springs
-  double dissipated = 0;     ///< since the start, by damping, dashpots and the integrator; negative would be made-up energy
+  double potential = 0;  ///< gravity and springs
+  double dissipated =
+      0;  ///< since the start, by damping, dashpots and the integrator; negative would be made-up energy
   double external_work = 0;  ///< since the start, by grips, scripted bonds, moved nails and applied forces
   double edits = 0;          ///< since the start, gained (+) or lost (-) by edits
   double total() const { return kinetic + potential; }
@@ -22,9 +23,9 @@ struct Energy {
 
 /// What one `step` did. Not converged is a result, never an exception.
 struct [[nodiscard]] StepReport {
-  std::uint64_t step = 0;  ///< number of the step just finished, from 1
-  double time = 0;         ///< simulated time at its end, s
-  double dt = 0;           ///< s
+  std::uint64_t step = 0;      ///< number of the step just finished, from 1
+  double time = 0;             ///< simulated time at its end, s
+  double dt = 0;               ///< s
   double iterations_mean = 0;  ///< Newton iterations per articulate and (sub-)step
   int iterations_max = 0;
   int substeps_max = 1;  ///< sub-steps that the busiest articulate needed
@@ -44,17 +45,21 @@ struct RestructureReport {
   std::uint32_t structure_version = 0;
   std::vector<BodyId> created_bodies;
   std::vector<ParticleId> created_particles;
-  struct AbsorbedParticle { ParticleId retired, survivor; };
-  struct AbsorbedBody { BodyId retired, survivor; };
+  struct AbsorbedParticle {
+    ParticleId retired, survivor;
+  };
+  struct AbsorbedBody {
+    BodyId retired, survivor;
+  };
   std::vector<AbsorbedParticle> absorbed_particles;
   std::vector<AbsorbedBody> absorbed_bodies;
   std::uint32_t articulates_before = 0, articulates_after = 0;  ///< of the whole system
-  double closed_distance = 0;      ///< how far apart the combined particles were, m
-  double remaining_gap = 0;        ///< what no position could close, m
-  double energy_change = 0;        ///< J
-  Vec3 momentum_change;            ///< what could not be kept, kg m/s (a nail took it)
-  Vec3 angular_momentum_change;    ///< about the origin, kg m^2/s
-  std::vector<std::string> notes;  ///< plain sentences
+  double closed_distance = 0;                                   ///< how far apart the combined particles were, m
+  double remaining_gap = 0;                                     ///< what no position could close, m
+  double energy_change = 0;                                     ///< J
+  Vec3 momentum_change;                                         ///< what could not be kept, kg m/s (a nail took it)
+  Vec3 angular_momentum_change;                                 ///< about the origin, kg m^2/s
+  std::vector<std::string> notes;                               ///< plain sentences
 };
 
 }  // namespace iota

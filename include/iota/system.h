@@ -50,9 +50,9 @@ struct BodyOptions {
 
 /// f = -(stiffness (r - length) + damping r') along the line p-q. Solved implicitly: any stiffness is stable.
 struct SpringLaw {
-  double stiffness = 100;                                   ///< N/m
-  double damping = 0;                                       ///< N s/m, along the line
-  double length = std::numeric_limits<double>::quiet_NaN(); ///< rest length, m; NaN: the distance at creation
+  double stiffness = 100;                                    ///< N/m
+  double damping = 0;                                        ///< N s/m, along the line
+  double length = std::numeric_limits<double>::quiet_NaN();  ///< rest length, m; NaN: the distance at creation
 };
 
 /// f = -damping (v_p - v_q): viscous drag between two particles, implicit.
@@ -169,8 +169,8 @@ class System {
   std::optional<ParticleId> survivor_of(ParticleId) const;
   std::optional<BodyId> survivor_of(BodyId) const;
 
-  std::vector<BodyId> bodies() const;          ///< in order of slots
-  std::vector<ParticleId> particles() const;   ///< in order of slots
+  std::vector<BodyId> bodies() const;         ///< in order of slots
+  std::vector<ParticleId> particles() const;  ///< in order of slots
   std::vector<BondId> bonds() const;
   std::vector<CosmeticBondId> cosmetic_bonds() const;
   std::vector<std::vector<BodyId>> articulates() const;
@@ -195,8 +195,8 @@ class System {
   double mass(ParticleId) const;  ///< its own share
   void set_mass(ParticleId, double);
   bool is_nailed(ParticleId) const;
-  Vec3 nail_force(ParticleId) const;           ///< by the nail on the particle in the last step, N
-  void apply_force(ParticleId, const Vec3&);   ///< added during the next step only, N
+  Vec3 nail_force(ParticleId) const;          ///< by the nail on the particle in the last step, N
+  void apply_force(ParticleId, const Vec3&);  ///< added during the next step only, N
 
   std::pair<ParticleId, ParticleId> ends(BondId) const;
   std::pair<ParticleId, ParticleId> ends(CosmeticBondId) const;

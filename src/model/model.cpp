@@ -148,9 +148,8 @@ std::uint64_t Model::hash() const {
     h.value(slot), h.value(r.first), h.value(r.count);
     add(r.position), add(r.velocity);
   });
-  particles.for_each([&](std::uint32_t slot, const Particle& p) {
-    h.value(slot), h.value(p.body), h.value(p.ring), h.value(p.mass);
-  });
+  particles.for_each(
+      [&](std::uint32_t slot, const Particle& p) { h.value(slot), h.value(p.body), h.value(p.ring), h.value(p.mass); });
   bodies.for_each([&](std::uint32_t slot, const Body& b) { h.value(slot), h.value(b.articulate), h.value(b.count); });
   return h.result();
 }

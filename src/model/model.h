@@ -23,7 +23,7 @@ struct Particle {
   std::uint32_t next_in_ring = none, previous_in_ring = none;
   std::uint32_t uses = 0;           ///< bonds and closings that need it as an unknown of its own
   std::uint32_t cosmetic_uses = 0;  ///< cosmetic bonds
-  double mass = 1;         ///< kg
+  double mass = 1;                  ///< kg
   /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
   std::int32_t basis_index = -1;
   std::array<double, 4> weights{};
@@ -61,7 +61,8 @@ struct Body {
 };
 
 /// Which two basis points the k-th rigidity row of a body joins.
-inline constexpr std::array<std::array<std::uint8_t, 2>, 6> basis_pairs{{{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}}};
+inline constexpr std::array<std::array<std::uint8_t, 2>, 6> basis_pairs{
+    {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
 /// Kinetic energy 1/2 inertia |v_p - v_q|^2 beside that of the particles' own masses: with it two points carry the exact
 /// inertia of a rod.
@@ -105,7 +106,7 @@ struct Grip {
 /// Two particles on their way to each other.
 struct Closing {
   std::uint32_t p = none, q = none;
-  double distance = 0;  ///< at the start, m
+  double distance = 0;               ///< at the start, m
   double duration = 0, elapsed = 0;  ///< s
   double multiplier = 0;
 };
@@ -141,8 +142,8 @@ class Model {
   void add_to_ring(std::uint32_t particle, std::uint32_t ring);
   void take_from_ring(std::uint32_t particle);  ///< an empty ring is destroyed
   void add_to_articulate(std::uint32_t body, std::uint32_t articulate);
-  void take_from_articulate(std::uint32_t body);  ///< an empty articulate is destroyed
-  void remove_body(std::uint32_t body);           ///< must have no particles left
+  void take_from_articulate(std::uint32_t body);                       ///< an empty articulate is destroyed
+  void remove_body(std::uint32_t body);                                ///< must have no particles left
   void remove_inertia_of(std::uint32_t body, std::uint32_t particle);  ///< pairs that name the particle (none: all)
   ///@}
 
@@ -252,7 +253,9 @@ std::optional<IdType> Model::Survivors<IdType>::find(IdType id) const {
 template <class IdType>
 template <class Archive>
 void Model::Survivors<IdType>::archive(Archive& ar) {
-  struct Pair { IdType retired, survivor; };
+  struct Pair {
+    IdType retired, survivor;
+  };
   std::vector<Pair> pairs;
   for (const IdType id : in_order) pairs.push_back({id, became.at(id)});
   ar.vector(pairs);

@@ -43,7 +43,8 @@ double Model::kinetic_energy() const {
 
 double Model::potential_energy() const {
   double energy = 0;
-  particles.for_each([&](std::uint32_t, const Particle& p) { energy -= p.mass * dot(gravity, rings[p.ring].position); });
+  particles.for_each(
+      [&](std::uint32_t, const Particle& p) { energy -= p.mass * dot(gravity, rings[p.ring].position); });
   bonds.for_each([&](std::uint32_t, const Bond& b) {
     if (b.kind != BondKind::spring || !b.active) return;
     const double stretch = norm(position(b.q) - position(b.p)) - b.length;
@@ -60,9 +61,8 @@ Vec3 Model::momentum() const {
 
 Vec3 Model::angular_momentum() const {
   Vec3 sum;
-  particles.for_each([&](std::uint32_t, const Particle& p) {
-    sum += p.mass * cross(rings[p.ring].position, rings[p.ring].velocity);
-  });
+  particles.for_each(
+      [&](std::uint32_t, const Particle& p) { sum += p.mass * cross(rings[p.ring].position, rings[p.ring].velocity); });
   inertia_pairs.for_each([&](std::uint32_t, const InertiaPair& i) {
     sum += i.inertia * cross(position(i.p) - position(i.q), velocity(i.p) - velocity(i.q));
   });

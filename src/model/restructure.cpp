@@ -237,8 +237,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
   const std::uint32_t body = model.particles[p].body;
   if (p == q) {  // one particle: a second one at the same place
     model.particles[p].mass /= 2;
-    const std::uint32_t twin =
-        model.make_particle(body, model.position(p), model.particles[p].mass, model.velocity(p));
+    const std::uint32_t twin = model.make_particle(body, model.position(p), model.particles[p].mass, model.velocity(p));
     model.rebuild_basis(body);
     model.touch(model.bodies[body].articulate);
     report.changed = true;

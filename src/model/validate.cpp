@@ -38,7 +38,8 @@ std::vector<std::string> Model::validate() const {
     ++in_body[p.body], ++in_ring[p.ring];
     double weight_sum = 0;
     for (const double w : p.weights) weight_sum += w;
-    complaints.require(std::abs(weight_sum - 1) < 1e-9, "particle ", slot, " has basis weights that sum to ", weight_sum);
+    complaints.require(std::abs(weight_sum - 1) < 1e-9, "particle ", slot, " has basis weights that sum to ",
+                       weight_sum);
   });
 
   rings.for_each([&](std::uint32_t slot, const Ring& r) {
@@ -110,21 +111,24 @@ std::vector<std::string> Model::validate() const {
     std::uint32_t walked = 0;
     for_each_body_of(slot, [&](std::uint32_t b) {
       ++walked;
-      complaints.require(bodies.is_alive(b) && bodies[b].articulate == slot, "articulate ", slot, " lists stranger ", b);
+      complaints.require(bodies.is_alive(b) && bodies[b].articulate == slot, "articulate ", slot, " lists stranger ",
+                         b);
     });
-    complaints.require(walked == a.count && walked == in_articulate[slot] && walked > 0, "articulate ", slot, " counts ",
-                       a.count, " bodies, lists ", walked, ", has ", in_articulate[slot]);
+    complaints.require(walked == a.count && walked == in_articulate[slot] && walked > 0, "articulate ", slot,
+                       " counts ", a.count, " bodies, lists ", walked, ", has ", in_articulate[slot]);
     complaints.require(roots_of[slot] == 1, "articulate ", slot, " holds ", roots_of[slot], " separate pieces");
   });
 
   const auto require_ends = [&](const char* what, std::uint32_t slot, std::uint32_t p, std::uint32_t q) {
-    complaints.require(particles.is_alive(p) && particles.is_alive(q) && p != q, what, " ", slot, " joins ", p, " and ", q);
+    complaints.require(particles.is_alive(p) && particles.is_alive(q) && p != q, what, " ", slot, " joins ", p, " and ",
+                       q);
   };
   bonds.for_each([&](std::uint32_t slot, const Bond& b) {
     require_ends("bond", slot, b.p, b.q);
     ++uses[b.p], ++uses[b.q];
   });
-  cosmetic_bonds.for_each([&](std::uint32_t slot, const CosmeticBond& b) { require_ends("cosmetic bond", slot, b.p, b.q); });
+  cosmetic_bonds.for_each(
+      [&](std::uint32_t slot, const CosmeticBond& b) { require_ends("cosmetic bond", slot, b.p, b.q); });
   particles.for_each([&](std::uint32_t slot, const Particle& p) {
     complaints.require(p.uses == uses[slot], "particle ", slot, " counts ", p.uses, " uses, has ", uses[slot]);
   });

@@ -8,8 +8,8 @@ namespace iota::solver {
 
 namespace {
 
-constexpr int max_depth = 6;              // sub-steps down to a 64th: a whip needs them, for a few steps
-constexpr double max_turn = 1.1;          // rad: a mid-point step that turns a link further is halved
+constexpr int max_depth = 6;      // sub-steps down to a 64th: a whip needs them, for a few steps
+constexpr double max_turn = 1.1;  // rad: a mid-point step that turns a link further is halved
 constexpr double max_turn_cosine = 0.4536;
 constexpr double standing_gap = 1e-6;  // relative start gap beyond which positions are projected before the step
 constexpr int patience = 400;          // iterations after which sub-steps are no longer halved
@@ -29,7 +29,8 @@ void Integrator::compile(Problem& problem) {
 
 void Integrator::save_multipliers(const Problem& problem) {
   auto out = multipliers_saved_.begin();
-  problem.for_each_constraint_pool([&](const auto& p) { out = std::copy(p.multipliers.begin(), p.multipliers.end(), out); });
+  problem.for_each_constraint_pool(
+      [&](const auto& p) { out = std::copy(p.multipliers.begin(), p.multipliers.end(), out); });
 }
 
 void Integrator::restore_multipliers(Problem& problem) const {
@@ -267,8 +268,7 @@ void Integrator::refuse_made_up_energy(Problem& problem, double h, AdvanceReport
 }
 
 void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
-  if (holds_offsets_)
-    problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
+  if (holds_offsets_) problem.clear_offsets();
   holds_offsets_ = false;
   if (!(problem.worst_gap(problem.position.data(), 0, true) > standing_gap)) return;
 
@@ -287,10 +287,10 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
 
 bool Integrator::project_positions(Problem& problem) {
   save_multipliers(problem);
-  problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
+  problem.clear_offsets();
   AdvanceReport ignored;
   const auto attempt = [&](double compliance, int iterations) {
-    problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
+    problem.clear_multipliers();
     Stage stage = Stage::projection(compliance);
     stage.fraction = 0;
     stage.max_iterations = iterations;
@@ -324,10 +324,12 @@ bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
       }
     });
     solved = attempt(1e-12, 10);
-    if (solved) remaining -= part, part *= 2;
-    else part /= 4;
+    if (solved)
+      remaining -= part, part *= 2;
+    else
+      part /= 4;
   }
-  problem.for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
+  problem.clear_offsets();
   return solved && !(remaining > 0);
 }
 

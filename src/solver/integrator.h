@@ -18,9 +18,9 @@ struct [[nodiscard]] AdvanceReport {
   int substeps = 0;
   int fallbacks = 0;  ///< mid-point sub-steps that had to be taken by the end-point scheme
   bool converged = true;
-  double external_work = 0;  ///< of explicit forces, grips and moving targets, J
-  double dissipated = 0;     ///< J
-  double closing_energy = 0; ///< by moving violated constraints together before the step, J
+  double external_work = 0;   ///< of explicit forces, grips and moving targets, J
+  double dissipated = 0;      ///< J
+  double closing_energy = 0;  ///< by moving violated constraints together before the step, J
 };
 
 /// Advances problems by one step each. One integrator serves one problem structure; it owns the work space, so a warm

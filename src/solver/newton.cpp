@@ -10,10 +10,10 @@ namespace iota::solver {
 namespace {
 
 constexpr int max_halvings = 12;
-constexpr double largest_violation = 1e-6; // that still counts as met
+constexpr double largest_violation = 1e-6;  // that still counts as met
 constexpr double round_off_floor = 1e-8;    // a residual below it that no step lessens is as good as zero
 constexpr double largest_noise = 1e-8;      // of the scaled force residual
-constexpr double round_off = 4e-15;        // of the largest scaled force: below it a residual is noise
+constexpr double round_off = 4e-15;         // of the largest scaled force: below it a residual is noise
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Largest of many, where a NaN counts as infinite (std::max would drop it).
@@ -359,7 +359,8 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   }
   report.violation = violation_;
   const bool exact = stage.compliance <= 1e-12;
-  report.converged = report.residual <= std::max(stage.tolerance, stuck ? round_off_floor : 0) && (!exact || violation_ <= largest_violation);
+  report.converged = report.residual <= std::max(stage.tolerance, stuck ? round_off_floor : 0) &&
+                     (!exact || violation_ <= largest_violation);
   return report;
 }
 

@@ -13,27 +13,35 @@ namespace iota::solver {
 ///   inertia * M u - f(x) + Gh' lambda = 0,   g(x) - compliance * lambda = 0
 /// end point (backward Euler): inertia = 1/h^2, Gh = G(x);  mid-point: inertia = 2/h^2, Gh = (G(x0) + G(x)) / 2.
 struct Stage {
-  double h = 0;            ///< s; 0: a pure projection of positions, without velocities and forces
+  double h = 0;  ///< s; 0: a pure projection of positions, without velocities and forces
   double inertia = 1;
   bool midpoint = false;
-  double fraction = 1;     ///< of the step, for targets that move during it
+  double fraction = 1;        ///< of the step, for targets that move during it
   double compliance = 1e-12;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
 
-  double tolerance = 1e-9;    ///< of the scaled residual; gaps end at about this fraction of a link
+  double tolerance = 1e-9;  ///< of the scaled residual; gaps end at about this fraction of a link
   int max_iterations = 60;
 
   bool is_projection() const { return h == 0; }
   static Stage end_point(double h, double fraction) { return {.h = h, .inertia = 1 / (h * h), .fraction = fraction}; }
-  static Stage mid_point(double h, double fraction) { return {.h = h, .inertia = 2 / (h * h), .midpoint = true, .fraction = fraction, .tolerance = 1e-10, .max_iterations = 30}; }
+  static Stage mid_point(double h, double fraction) {
+    return {.h = h,
+            .inertia = 2 / (h * h),
+            .midpoint = true,
+            .fraction = fraction,
+            .tolerance = 1e-10,
+            .max_iterations = 30};
+  }
   static Stage projection(double compliance = 1e-12) { return {.compliance = compliance}; }
 };
 
 struct [[nodiscard]] NewtonReport {
   bool converged = false;
   int iterations = 0;
-  double residual = 0;   ///< scaled, dimensionless
-  double violation = 0;  ///< of the constraints alone, as a fraction of their reference lengths: compliance lets conflicting
-                         ///< ones "converge" without being met
+  double residual = 0;  ///< scaled, dimensionless
+  double violation =
+      0;  ///< of the constraints alone, as a fraction of their reference lengths: compliance lets conflicting
+          ///< ones "converge" without being met
 };
 
 /// Newton's method with exact geometric stiffness, globalised: a step is taken when the scaled residual or an l1 merit

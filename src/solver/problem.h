@@ -7,6 +7,7 @@
 
 #include <iota/vec3.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct ConstraintPool {
     std::uint32_t unknown = 0, diagonal = 0;
     std::uint8_t stride = 1;
     std::array<BlockPattern::GradientSlot, C::max_nodes> gradients{};
-    std::array<BlockPattern::PairSlot, C::has_curvature ? C::max_nodes*(C::max_nodes - 1) / 2 : 0> pairs{};
+    std::array<BlockPattern::PairSlot, C::has_curvature ? C::max_nodes * (C::max_nodes - 1) / 2 : 0> pairs{};
   };
   std::vector<C> items;
   std::vector<double> multipliers;  ///< C::rows each, N
@@ -80,14 +81,13 @@ struct Problem {
     std::apply([&](const auto&... pool) { (visit(pool), ...); }, forces);
   }
 
-  /// out_i = sum_j M_ij u_j.
-  void multiply_mass(const Vec3* u, Vec3* out) const {
-    for (std::size_t i = 0; i < size(); ++i) out[i] = mass[i] * u[i];
-    for (const auto& c : mass_couplings) {
-      out[c.a] += c.mass * u[c.b];
-      out[c.b] += c.mass * u[c.a];
-    }
+  void clear_multipliers() {
+    for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
   }
+  void clear_offsets() {
+    for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
+  }
+
   /// u' M u.
   double mass_norm2(const Vec3* u) const {
     double sum = 0;

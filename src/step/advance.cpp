@@ -18,7 +18,8 @@ std::string bond_name(std::uint32_t slot, const ScriptedLaw& law) {
 
 StepReport System::Implementation::apply(const step::Step& command) {
   const double h = command.dt;
-  if (!(h > 0 && h <= 1)) throw std::invalid_argument("step: dt must be above 0 and at most 1 s, got " + std::to_string(h));
+  if (!(h > 0 && h <= 1))
+    throw std::invalid_argument("step: dt must be above 0 and at most 1 s, got " + std::to_string(h));
   StepReport report;
   report.dt = h;
   stepping = true;

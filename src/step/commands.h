@@ -9,49 +9,121 @@
 /// a struct, a line in `Command` and an `apply` in system.cpp.
 namespace iota::step {
 
-struct SetGravity { Vec3 value; };
-struct SetMode { IntegrationMode mode; };
-struct SetSystemDamping { double per_second; };
-struct CreateBody { BodyOptions options; };
-struct CreateParticle { BodyId body; Vec3 position, velocity; double mass; };
-struct SetRod { BodyId body; double mass, radius; };
-struct CreateCosmeticBond { ParticleId p, q; };
+struct SetGravity {
+  Vec3 value;
+};
+struct SetMode {
+  IntegrationMode mode;
+};
+struct SetSystemDamping {
+  double per_second;
+};
+struct CreateBody {
+  BodyOptions options;
+};
+struct CreateParticle {
+  BodyId body;
+  Vec3 position, velocity;
+  double mass;
+};
+struct SetRod {
+  BodyId body;
+  double mass, radius;
+};
+struct CreateCosmeticBond {
+  ParticleId p, q;
+};
 enum class BondType : std::uint32_t { spring, drag, scripted };
-struct CreateBond { ParticleId p, q; BondType type; double stiffness, damping, length; std::uint64_t script; };
-struct CreateGrip { BodyId body; Vec3 local_point, target; GripOptions options; };
-struct MoveGrip { GripId grip; Vec3 target; };
-struct SetKind { BodyId body; BodyKind kind; };
-struct SetBodyDamping { BodyId body; double per_second; };
-struct SetPosition { ParticleId particle; Vec3 value; };
-struct SetVelocity { ParticleId particle; Vec3 value; };
-struct SetMass { ParticleId particle; double value; };
-struct ApplyForce { ParticleId particle; Vec3 value; };
-struct SetActive { BondId bond; bool active; };
-struct Step { double dt; };
+struct CreateBond {
+  ParticleId p, q;
+  BondType type;
+  double stiffness, damping, length;
+  std::uint64_t script;
+};
+struct CreateGrip {
+  BodyId body;
+  Vec3 local_point, target;
+  GripOptions options;
+};
+struct MoveGrip {
+  GripId grip;
+  Vec3 target;
+};
+struct SetKind {
+  BodyId body;
+  BodyKind kind;
+};
+struct SetBodyDamping {
+  BodyId body;
+  double per_second;
+};
+struct SetPosition {
+  ParticleId particle;
+  Vec3 value;
+};
+struct SetVelocity {
+  ParticleId particle;
+  Vec3 value;
+};
+struct SetMass {
+  ParticleId particle;
+  double value;
+};
+struct ApplyForce {
+  ParticleId particle;
+  Vec3 value;
+};
+struct SetActive {
+  BondId bond;
+  bool active;
+};
+struct Step {
+  double dt;
+};
 
 // Edits of the structure: queued when asked for during a step.
 template <class IdType>
-struct Destroy { IdType id; };
-struct CombineParticles { ParticleId p, q; double over; };
-struct CombineBodies { BodyId a, b; };
-struct Separate { ParticleId p, q; };
-struct Nail { ParticleId particle; bool in_place; Vec3 position; };
-struct Release { ParticleId particle; };
+struct Destroy {
+  IdType id;
+};
+struct CombineParticles {
+  ParticleId p, q;
+  double over;
+};
+struct CombineBodies {
+  BodyId a, b;
+};
+struct Separate {
+  ParticleId p, q;
+};
+struct Nail {
+  ParticleId particle;
+  bool in_place;
+  Vec3 position;
+};
+struct Release {
+  ParticleId particle;
+};
 
-using Command = std::variant<SetGravity, SetMode, SetSystemDamping, CreateBody, CreateParticle, SetRod, CreateCosmeticBond,
-                             CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping, SetPosition, SetVelocity, SetMass,
-                             ApplyForce, SetActive, Step, Destroy<BodyId>, Destroy<ParticleId>, Destroy<BondId>,
-                             Destroy<CosmeticBondId>, Destroy<GripId>, CombineParticles, CombineBodies, Separate, Nail,
-                             Release>;
+using Command =
+    std::variant<SetGravity, SetMode, SetSystemDamping, CreateBody, CreateParticle, SetRod, CreateCosmeticBond,
+                 CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping, SetPosition, SetVelocity, SetMass,
+                 ApplyForce, SetActive, Step, Destroy<BodyId>, Destroy<ParticleId>, Destroy<BondId>,
+                 Destroy<CosmeticBondId>, Destroy<GripId>, CombineParticles, CombineBodies, Separate, Nail, Release>;
 
 template <class C>
 inline constexpr bool is_queueable = false;
 template <class IdType>
 inline constexpr bool is_queueable<Destroy<IdType>> = true;
-template <> inline constexpr bool is_queueable<CombineParticles> = true;
-template <> inline constexpr bool is_queueable<CombineBodies> = true;
-template <> inline constexpr bool is_queueable<Separate> = true;
-template <> inline constexpr bool is_queueable<Nail> = true;
-template <> inline constexpr bool is_queueable<Release> = true;
+template <>
+inline constexpr bool is_queueable<CombineParticles> = true;
+template <>
+inline constexpr bool is_queueable<CombineBodies> = true;
+template <>
+inline constexpr bool is_queueable<Separate> = true;
+template <>
+inline constexpr bool is_queueable<Nail> = true;
+template <>
+inline constexpr bool is_queueable<Release> = true;
 
 }  // namespace iota::step

@@ -37,13 +37,15 @@ void require_mass(std::string_view name, double v) {
   if (v < 1e-12 || v > 1e15) throw std::invalid_argument(text(name, " must be between 1e-12 and 1e15 kg, got ", v));
 }
 void require_not_negative(std::string_view name, double v) {
-  if (!(v >= 0) || !std::isfinite(v)) throw std::invalid_argument(text(name, " must be zero or more and finite, got ", v));
+  if (!(v >= 0) || !std::isfinite(v))
+    throw std::invalid_argument(text(name, " must be zero or more and finite, got ", v));
 }
 
 template <class IdType>
 [[noreturn]] void throw_stale(std::string_view kind, IdType id, const std::optional<IdType>& survivor) {
   if (!id) throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
-  if (survivor) throw StaleIdError(text(kind, " ", id.slot, " is gone: it was absorbed by ", kind, " ", survivor->slot));
+  if (survivor)
+    throw StaleIdError(text(kind, " ", id.slot, " is gone: it was absorbed by ", kind, " ", survivor->slot));
   throw StaleIdError(text(kind, " ", id.slot, " is gone: it was destroyed"));
 }
 
@@ -109,8 +111,8 @@ void System::Implementation::apply(const step::SetRod& c) {
   require_mass("mass", c.mass);
   require_positive("radius", c.radius);
   if (model.bodies[body].count != 2)
-    throw std::invalid_argument(text("set_rod needs a body of exactly two particles, body ", body, " has ",
-                                     model.bodies[body].count));
+    throw std::invalid_argument(
+        text("set_rod needs a body of exactly two particles, body ", body, " has ", model.bodies[body].count));
   const std::uint32_t p = model.bodies[body].first, q = model.bodies[body].last;
   const double length = norm(model.position(q) - model.position(p));
   require_positive("the distance of the rod's two particles", length);
@@ -173,8 +175,7 @@ GripId System::Implementation::apply(const step::CreateGrip& c) {
   grip.client = c.options.client, grip.hold = c.options.hold;
   grip.frequency = c.options.frequency, grip.max_acceleration = c.options.max_acceleration;
   grip.target = c.target;
-  model::anchor_grip(model, grip,
-                     model.centre_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point));
+  model::anchor_grip(model, grip, model.centre_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point));
   model.touch(model.bodies[body].articulate);
   return model.grips.create(grip);
 }
@@ -261,7 +262,8 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
   // What a hand holds stays where it holds it.
   std::vector<std::pair<std::uint32_t, Vec3>> held;
   model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
-    if (std::find(touched.begin(), touched.end(), g.body) != touched.end()) held.push_back({slot, grip_point(model, g)});
+    if (std::find(touched.begin(), touched.end(), g.body) != touched.end())
+      held.push_back({slot, grip_point(model, g)});
   });
 
   double kinetic = 0, potential = 0;
@@ -326,9 +328,8 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
         const Vec3 lost = momentum - model.momentum();
         const Vec3 lost_spin = angular_momentum - model.angular_momentum() - cross(centre, lost);
         Mat3 inertia;
-        each_particle([&](std::uint32_t p) {
-          inertia += point_inertia(model.particles[p].mass, model.position(p) - centre);
-        });
+        each_particle(
+            [&](std::uint32_t p) { inertia += point_inertia(model.particles[p].mass, model.position(p) - centre); });
         for (const std::uint32_t b : bodies)
           model.for_each_inertia_of(b, [&](std::uint32_t i) {
             const model::InertiaPair& pair = model.inertia_pairs[i];
@@ -359,8 +360,9 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
   report.angular_momentum_change = model.angular_momentum() - angular_momentum;
   const double spin_change = norm(report.angular_momentum_change);
   if (!pinned && spin_change > 1e-9 * (norm(angular_momentum) + 1e-3 * spin_change))
-    report.notes.push_back("what is left (a point, a rod, or bodies almost in one place) cannot carry all of the angular "
-                           "momentum; angular_momentum_change tells the rest");
+    report.notes.push_back(
+        "what is left (a point, a rod, or bodies almost in one place) cannot carry all of the angular "
+        "momentum; angular_momentum_change tells the rest");
   return report;
 }
 

@@ -47,17 +47,20 @@ class Island {
   solver::Integrator integrator_;
   bool idle_ = false;
   bool damped_ = false;
-  std::vector<std::uint32_t> rings_;     // of each node
-  std::vector<std::uint8_t> pinned_;     // of each node
-  std::vector<double> node_damping_;     // 1/s, without the system's
-  struct RigidRow { std::uint32_t body; std::uint8_t row; };
+  std::vector<std::uint32_t> rings_;  // of each node
+  std::vector<std::uint8_t> pinned_;  // of each node
+  std::vector<double> node_damping_;  // 1/s, without the system's
+  struct RigidRow {
+    std::uint32_t body;
+    std::uint8_t row;
+  };
   std::vector<RigidRow> rigid_rows_;     // of the first distance constraints
   std::vector<std::uint32_t> closings_;  // of the distance constraints after them
   std::vector<std::uint32_t> tied_;      // particles of the first affine constraints
   std::vector<std::uint32_t> nails_;     // nodes of the affine constraints after them
   std::vector<std::uint32_t> slaves_;    // particles carried by their basis
   std::vector<std::uint32_t> springs_, drags_, grips_;
-  std::vector<double> grip_masses_;      // kg, what a hand can feel
+  std::vector<double> grip_masses_;  // kg, what a hand can feel
   std::vector<std::uint32_t> bodies_;
 };
 

@@ -52,8 +52,8 @@ void System::Implementation::refresh_orientations() {
     if (dot(ux, x) < -0.7) return;
     const Vec3 wanted = rotate(shortest_turn(ux, x), rotate(u, {0, 1, 0})), y = rotate(b.orientation, {0, 1, 0});
     const double twist = std::atan2(dot(cross(y, wanted), x), dot(y, wanted));
-    b.orientation = normalised(
-        multiply(axis_angle(x, std::clamp(share * twist, -largest_turn, largest_turn)), b.orientation));
+    b.orientation =
+        normalised(multiply(axis_angle(x, std::clamp(share * twist, -largest_turn, largest_turn)), b.orientation));
   });
 }
 

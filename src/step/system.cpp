@@ -25,8 +25,10 @@ void with_command_type(std::size_t index, Visit visit) {
 
 template <class C, std::size_t I = 0>
 constexpr std::uint8_t index_of() {
-  if constexpr (std::is_same_v<C, std::variant_alternative_t<I, step::Command>>) return I;
-  else return index_of<C, I + 1>();
+  if constexpr (std::is_same_v<C, std::variant_alternative_t<I, step::Command>>)
+    return I;
+  else
+    return index_of<C, I + 1>();
 }
 
 constexpr std::uint64_t snapshot_magic = 0x31'70616e'73'61746full;  // says what the bytes are, and their version
@@ -61,8 +63,9 @@ auto System::Implementation::execute(const C& command) {
         return;
       }
     } else {
-      throw std::logic_error("only structural edits (combine, separate, nail, release, destroy) may be asked for while "
-                             "the system steps; they are applied right after the step");
+      throw std::logic_error(
+          "only structural edits (combine, separate, nail, release, destroy) may be asked for while "
+          "the system steps; they are applied right after the step");
     }
   }
   const auto record = [&] {
@@ -340,7 +343,8 @@ void System::Implementation::restore(const Snapshot& snapshot) {
   Reader reader(snapshot.bytes);
   std::uint64_t magic = 0;
   reader.value(magic);
-  if (magic != snapshot_magic) throw std::invalid_argument("restore: these bytes are no snapshot of this version of Iota");
+  if (magic != snapshot_magic)
+    throw std::invalid_argument("restore: these bytes are no snapshot of this version of Iota");
   std::uint64_t check = 0;
   std::vector<std::byte> content;
   reader.value(check), reader.vector(content);

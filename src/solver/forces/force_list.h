@@ -29,9 +29,9 @@ struct ForceArm {
 
 /// Where in a step a force is taken: backward Euler at its end, the mid-point rule by a discrete gradient.
 struct ForceStage {
-  double h = 0;         ///< s
+  double h = 0;  ///< s
   bool midpoint = false;
-  bool clamp = false;   ///< make stiffness blocks positive semi-definite
+  bool clamp = false;  ///< make stiffness blocks positive semi-definite
 };
 
 /// F = -k (|e| - L) e/|e| - c n n.(e1 - e0)/h, n along e0. Mid-point: the discrete gradient of k/2 (|e|-L)^2, which is

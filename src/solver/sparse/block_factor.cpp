@@ -141,9 +141,8 @@ int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
 int BlockFactor::factorise() {
   int wrong = 0;
   for (const auto& v : pattern_->vertices())
-    wrong += with_pivot(v.pivot, [&]<int Pivot> {
-      return symmetric_ ? eliminate<Pivot, true>(v) : eliminate<Pivot, false>(v);
-    });
+    wrong += with_pivot(v.pivot,
+                        [&]<int Pivot> { return symmetric_ ? eliminate<Pivot, true>(v) : eliminate<Pivot, false>(v); });
   return wrong;
 }
 
@@ -190,9 +189,7 @@ void BlockFactor::solve(std::span<double> unknowns) const {
   const auto vertices = pattern_->vertices();
   for (const auto& v : vertices) with_pivot(v.pivot, [&]<int Pivot> { forward<Pivot>(v, b); });
   for (auto v = vertices.rbegin(); v != vertices.rend(); ++v)
-    with_pivot(v->pivot, [&]<int Pivot> {
-      symmetric_ ? backward<Pivot, true>(*v, b) : backward<Pivot, false>(*v, b);
-    });
+    with_pivot(v->pivot, [&]<int Pivot> { symmetric_ ? backward<Pivot, true>(*v, b) : backward<Pivot, false>(*v, b); });
 }
 
 }  // namespace iota::solver

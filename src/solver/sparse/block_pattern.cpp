@@ -135,8 +135,8 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
 std::uint32_t BlockPattern::find_entry(std::uint32_t vertex, std::uint32_t later_vertex) const {
   const auto begin = entries_.begin() + vertices_[vertex].first_entry;
   const auto end = begin + vertices_[vertex].entry_count;
-  const auto found = std::lower_bound(begin, end, later_vertex,
-                                      [](const Entry& e, std::uint32_t v) { return e.vertex < v; });
+  const auto found =
+      std::lower_bound(begin, end, later_vertex, [](const Entry& e, std::uint32_t v) { return e.vertex < v; });
   return static_cast<std::uint32_t>(found - entries_.begin());
 }
 

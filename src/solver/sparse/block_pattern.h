@@ -34,12 +34,12 @@ class BlockPattern {
   static constexpr int max_pivot = 6;
 
   struct Vertex {
-    std::uint8_t pivot = 3;       ///< unknowns eliminated here
-    std::uint8_t positives = 3;   ///< of which the first so many should have positive pivots, the others negative
+    std::uint8_t pivot = 3;      ///< unknowns eliminated here
+    std::uint8_t positives = 3;  ///< of which the first so many should have positive pivots, the others negative
     std::uint32_t first_entry = 0, entry_count = 0;
-    std::uint32_t diagonal = 0;   ///< offset of the pivot x pivot block
-    std::uint32_t unknown = 0;    ///< offset in right-hand side and solution
-    std::uint32_t first_pair = 0; ///< see pair_targets
+    std::uint32_t diagonal = 0;    ///< offset of the pivot x pivot block
+    std::uint32_t unknown = 0;     ///< offset in right-hand side and solution
+    std::uint32_t first_pair = 0;  ///< see pair_targets
   };
   /// An off-diagonal block: `width` rows of a later vertex by the pivot columns of this one, row-major.
   struct Entry {
@@ -61,7 +61,8 @@ class BlockPattern {
     std::uint8_t row_stride = 1, column_stride = 1;
     bool in_diagonal = false;
     bool lower_is_row = true;  ///< the lower triangle holds (row, node); otherwise (node, row)
-    std::uint32_t mirror = 0;  ///< in_diagonal: offset of the upper-triangle twin, strides exchanged with the pivot size
+    std::uint32_t mirror =
+        0;  ///< in_diagonal: offset of the upper-triangle twin, strides exchanged with the pivot size
     std::uint8_t pivot = 3;
   };
   struct ConstraintSlot {

@@ -39,7 +39,6 @@ Swing swing(IntegrationMode mode, const ChainOptions& options, double dt, double
   return run;
 }
 
-
 void expect_exact(const Swing& run, const char* what, const Swing& twin) {
   EXPECT_LE(run.gap, 1e-9);
   EXPECT_EQ(run.unconverged, 0);
@@ -49,8 +48,9 @@ void expect_exact(const Swing& run, const char* what, const Swing& twin) {
   EXPECT_GT(run.kinetic, 0.5 * twin.kinetic) << "a dead world would pass the rest";
   EXPECT_LT(run.book_error, 1e-6 * run.kinetic);
   const double loss = (run.start - run.end) / run.kinetic, twin_loss = (twin.start - twin.end) / twin.kinetic;
-  std::printf("  %s: gap %.1e m, energy lost %.2e of the largest kinetic energy; the implicit Euler of robust mode loses %.2e\n", what,
-              run.gap, loss, twin_loss);
+  std::printf(
+      "  %s: gap %.1e m, energy lost %.2e of the largest kinetic energy; the implicit Euler of robust mode loses %.2e\n",
+      what, run.gap, loss, twin_loss);
   EXPECT_LT(std::abs(loss), std::max(1e-6, 0.5 * twin_loss));
 }
 

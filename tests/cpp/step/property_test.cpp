@@ -39,7 +39,8 @@ struct RandomWorld {
   void add_body() {
     const BodyId body = system.create_body();
     const std::size_t count = 1 + index(5);
-    for (std::size_t i = 0; i < count; ++i) system.create_particle(body, point(), std::pow(10, uniform(-2, 2)), point());
+    for (std::size_t i = 0; i < count; ++i)
+      system.create_particle(body, point(), std::pow(10, uniform(-2, 2)), point());
   }
   ParticleId any_particle() {
     const auto all = system.particles();
@@ -57,8 +58,12 @@ struct RandomWorld {
     RestructureReport report;
     try {
       switch (index(10)) {
-        case 0: case 1: case 2: report = system.combine(p, q); break;
-        case 3: case 4: case 5: {
+        case 0:
+        case 1:
+        case 2: report = system.combine(p, q); break;
+        case 3:
+        case 4:
+        case 5: {
           const auto ring = system.ring(p);
           report = system.separate(p, ring[index(ring.size())]);
           break;
@@ -66,7 +71,10 @@ struct RandomWorld {
         case 6: report = system.separate(p, q); break;
         case 7: report = system.combine(system.body(p), system.body(q)); break;
         case 8:
-          if (system.is_nailed(p)) system.release(p); else if (index(8) == 0) system.nail(p);
+          if (system.is_nailed(p))
+            system.release(p);
+          else if (index(8) == 0)
+            system.nail(p);
           break;
         default: report = system.combine(p, q, 0.05); break;
       }
@@ -99,7 +107,8 @@ TEST(RandomEdits, ten_thousand_keep_the_structure_whole_and_finite) {
         const StepReport report = world.system.step(1.0 / 60);
         ASSERT_TRUE(std::isfinite(report.energy.total())) << "seed " << seed << " edit " << i;
         // Conflicts, closings and cuts of all kinds, and yet no step may make up energy on a grand scale.
-        ASSERT_LT(report.energy.total(), before.total() + 20 * before.kinetic + 1e4) << "seed " << seed << " edit " << i;
+        ASSERT_LT(report.energy.total(), before.total() + 20 * before.kinetic + 1e4)
+            << "seed " << seed << " edit " << i;
       }
       if (world.system.bodies().size() < 6) world.add_body();
     }
@@ -118,7 +127,10 @@ void drive(System& system, std::uint64_t seed, int steps, std::vector<std::uint6
     if (i % 20 == 5) (void)system.separate(ring.front(), ring.back());
     if (i % 20 == 15) {
       const ParticleId q = particles[random() % particles.size()];
-      try { (void)system.combine(p, q, i % 40 < 20 ? 0 : 0.1); } catch (const std::invalid_argument&) {}
+      try {
+        (void)system.combine(p, q, i % 40 < 20 ? 0 : 0.1);
+      } catch (const std::invalid_argument&) {
+      }
     }
     if (i == 30) (void)system.create_grip(bodies[5], {0.01, 0, 0}, {0.5, 0.5, 0.5});
     if (i == 10) system.apply_force(p, {0, 3, 0});
@@ -155,7 +167,7 @@ TEST(Determinism, a_replay_gives_equal_hashes_and_a_changed_one_does_not) {
   recording.hashes[50] ^= 1;
   EXPECT_EQ(other.replay(recording), 51u);
   recording.commands.resize(recording.commands.size() / 2);
-  EXPECT_NO_FATAL_FAILURE(try { (void)other.replay(recording); } catch (const std::invalid_argument&) {});
+  EXPECT_NO_FATAL_FAILURE(try { (void)other.replay(recording); } catch (const std::invalid_argument&){});
 }
 
 TEST(Determinism, a_restored_snapshot_goes_on_with_the_same_bits_and_the_same_ids) {
@@ -181,8 +193,10 @@ TEST(Restore, refuses_damaged_bytes_and_changes_nothing) {
   std::mt19937 random(1);
   for (int i = 0; i < 500; ++i) {
     Snapshot bad = good;
-    if (i % 2) bad.bytes.resize(random() % bad.bytes.size());
-    else bad.bytes[random() % bad.bytes.size()] ^= std::byte(1 + random() % 255);
+    if (i % 2)
+      bad.bytes.resize(random() % bad.bytes.size());
+    else
+      bad.bytes[random() % bad.bytes.size()] ^= std::byte(1 + random() % 255);
     EXPECT_THROW(system.restore(bad), std::invalid_argument);
   }
   EXPECT_EQ(system.state_hash(), hash);

@@ -35,7 +35,8 @@ struct WorkedExample : ::testing::Test {
     b5 = system.create_particle(b, {3, -1, 1}, 1), b6 = system.create_particle(b, {4, 0.5, -0.4}, 1.2);
     b7 = system.create_particle(b, {5, 0, 0}, 0.7);
     c7 = system.create_particle(c, {5, 0, 0}, 1), c8 = system.create_particle(c, {6, 1, 0}, 1);
-    d9 = system.create_particle(d, {8, 1, 0}, 1, {0, 0.4, 0}), d10 = system.create_particle(d, {9, 1, 1}, 2, {0, 0.4, 0});
+    d9 = system.create_particle(d, {8, 1, 0}, 1, {0, 0.4, 0}),
+    d10 = system.create_particle(d, {9, 1, 1}, 2, {0, 0.4, 0});
     e11 = system.create_particle(e, {11, 0, 0}, 3, {0.1, 0.2, 0.3});
     (void)system.combine(a3, b3);
     (void)system.combine(b7, c7);
@@ -145,7 +146,8 @@ TEST(Combine, of_one_particle_with_itself_does_nothing) {
 
 TEST(Separate, of_unrelated_particles_does_nothing) {
   System system;
-  const ParticleId p = system.create_particle(system.create_body(), {}), q = system.create_particle(system.create_body(), {});
+  const ParticleId p = system.create_particle(system.create_body(), {}),
+                   q = system.create_particle(system.create_body(), {});
   EXPECT_FALSE(system.separate(p, q).changed);
 }
 
@@ -290,7 +292,8 @@ TEST(Combine, over_a_time_is_called_off_when_both_become_one_rigid_body_or_one_r
   EXPECT_FALSE(report.notes.empty());
   EXPECT_WHOLE(system);
 
-  const ParticleId p = system.create_particle(system.create_body(), {3, 0, 0}), q = system.create_particle(system.create_body(), {4, 0, 0});
+  const ParticleId p = system.create_particle(system.create_body(), {3, 0, 0}),
+                   q = system.create_particle(system.create_body(), {4, 0, 0});
   (void)system.combine(p, q, 1);
   (void)system.combine(a2, p);
   (void)system.combine(a2, q);

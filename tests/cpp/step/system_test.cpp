@@ -50,7 +50,8 @@ TEST(Body, of_any_rank_keeps_its_shape_momentum_and_energy_while_it_tumbles) {
     run(system, 3);
     for (std::size_t i = 0; i < shape.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
-        EXPECT_NEAR(norm(system.position(particles[i]) - system.position(particles[j])), norm(shape[i] - shape[j]), 1e-9);
+        EXPECT_NEAR(norm(system.position(particles[i]) - system.position(particles[j])), norm(shape[i] - shape[j]),
+                    1e-9);
     EXPECT_NEAR(norm(system.momentum() - momentum), 0, 1e-11);
     EXPECT_NEAR(norm(system.angular_momentum() - angular_momentum), 0, 1e-9);
     EXPECT_NEAR(system.energy().total(), energy, 1e-9 * (1 + energy));
@@ -174,11 +175,12 @@ TEST(ScriptedBond, acts_on_both_ends_and_sees_the_state) {
   const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}),
                    q = system.create_particle(system.create_body(), {2, 0, 0});
   int calls = 0;
-  system.create_bond(p, q, ScriptedLaw{[&](const BondState& s) {
-                                         ++calls;
-                                         return 0.5 * (s.position_q - s.position_p);
-                                       },
-                                       "pull"});
+  system.create_bond(p, q,
+                     ScriptedLaw{[&](const BondState& s) {
+                                   ++calls;
+                                   return 0.5 * (s.position_q - s.position_p);
+                                 },
+                                 "pull"});
   (void)system.step(0.1);
   EXPECT_EQ(calls, 1);
   EXPECT_NEAR(system.momentum().x, 0, 1e-13);
@@ -210,7 +212,11 @@ TEST(ScriptedBond, may_ask_for_edits_which_come_right_after_the_step) {
                        if (!asked) {
                          EXPECT_TRUE(system.separate(chain.lower[0], chain.upper[1]).queued);
                          EXPECT_EQ(system.articulate_count(), 2u);
-                         try { system.create_body(); } catch (const std::logic_error&) { refused = true; }
+                         try {
+                           system.create_body();
+                         } catch (const std::logic_error&) {
+                           refused = true;
+                         }
                        }
                        asked = true;
                        return Vec3{};
@@ -292,7 +298,8 @@ TEST(Damping, is_exponential_in_time_whatever_the_step) {
 
 TEST(Kinds, static_scripted_and_inactive_bodies_do_as_they_say) {
   System system;
-  const BodyId fixed = system.create_body({.kind = BodyKind::static_}), puppet = system.create_body({.kind = BodyKind::scripted}),
+  const BodyId fixed = system.create_body({.kind = BodyKind::static_}),
+               puppet = system.create_body({.kind = BodyKind::scripted}),
                absent = system.create_body({.kind = BodyKind::inactive}), hanging = system.create_body();
   const ParticleId f = system.create_particle(fixed, {0, 0, 0}), s = system.create_particle(puppet, {1, 0, 0}),
                    i = system.create_particle(absent, {2, 0, 0});
@@ -427,7 +434,11 @@ TEST(StaleIds, say_what_became_of_them) {
   (void)system.combine(p, q);
   (void)system.combine(p, q);
   const auto text = [&](auto action) {
-    try { action(); } catch (const StaleIdError& error) { return std::string(error.what()); }
+    try {
+      action();
+    } catch (const StaleIdError& error) {
+      return std::string(error.what());
+    }
     return std::string("accepted");
   };
   EXPECT_NE(text([&] { (void)system.position(q); }).find("absorbed by particle 0"), std::string::npos);
