@@ -32,7 +32,6 @@ class Island {
   /// Projections after an edit; false where no position meets all constraints.
   bool settle(model::Model&, bool positions);
 
-  bool is_idle() const { return idle_; }  ///< static and scripted bodies only: nothing to solve
 
  private:
   bool nails_move(const model::Model&) const;

@@ -86,12 +86,13 @@ export class Tab {
   }
 
   /** Waits until a function of the page is true, and says what for when it never is. */
-  async until<T>(what: string, condition: (argument: T) => unknown, argument?: T, timeout = 12_000): Promise<void> {
+  async until<T>(what: string, condition: (argument: T) => unknown, argument?: T, timeout = 25_000): Promise<void> {
     try {
       await this.page.waitForFunction(condition as (argument: unknown) => unknown, argument, { timeout, polling: 50 });
     } catch (error) {
       const state = await this.page.evaluate(() => (globalThis.iota === undefined ? "no page" : JSON.stringify({
-        connected: iota.connected, step: iota.step, held: iota.held, selected: iota.selected, articulates: new Set(iota.articulates().values()).size,
+        connected: iota.connected, step: iota.step, held: iota.held, selected: iota.selected, articulates: new Set(iota.articulates().values()).size, paused: iota.paused,
+        holds: iota.holds().map((hold) => ({ ...hold, at: iota.bodyPosition(hold.body) })),
       })));
       throw new Error(`waited in vain until ${what}; ${state}`, { cause: error });
     }
