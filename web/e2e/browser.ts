@@ -113,8 +113,15 @@ export class Tab {
   }
 
   async pause(paused: boolean): Promise<void> {
-    if ((await this.page.evaluate(() => iota.paused)) !== paused) await this.page.keyboard.press(" ");
-    await this.until(paused ? "the world is paused" : "the world runs", (wanted) => iota.paused === wanted, paused);
+    // The key toggles, and two tabs share the world: ask again where the other one's key came in between.
+    for (let trial = 0; trial < 3; trial++) {
+      if ((await this.page.evaluate(() => iota.paused)) === paused) return;
+      await this.page.bringToFront();
+      await this.page.keyboard.press(" ");
+      const done = this.until(paused ? "the world is paused" : "the world runs", (wanted) => iota.paused === wanted, paused, 8000);
+      if (await done.then(() => true, () => false)) return;
+    }
+    throw new Error(`the world will not ${paused ? "pause" : "run"}`);
   }
 
   /** Stops the world and waits until what is drawn has come to rest too: then a body is where it seems to be. */
