@@ -41,6 +41,11 @@ void require_not_negative(std::string_view name, double v) {
     throw std::invalid_argument(text(name, " must be zero or more and finite, got ", v));
 }
 
+void sort_unique(std::vector<std::uint32_t>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
 template <class IdType>
 [[noreturn]] void throw_stale(std::string_view kind, IdType id, const std::optional<IdType>& survivor) {
   if (!id) throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
@@ -258,112 +263,114 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
                                                       EditFunction edit) {
   RestructureReport report;
   report.articulates_before = model.articulates.size();
+  const std::vector<HeldPoint> held = held_points(touched);
+  const Conserved before = gentle ? Conserved{} : conserved();
 
-  // What a hand holds stays where it holds it.
-  std::vector<std::pair<std::uint32_t, Vec3>> held;
-  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
-    if (std::find(touched.begin(), touched.end(), g.body) != touched.end())
-      held.push_back({slot, grip_point(model, g)});
-  });
-
-  double kinetic = 0, potential = 0;
-  Vec3 momentum, angular_momentum;
-  if (!gentle) {
-    kinetic = model.kinetic_energy(), potential = model.potential_energy();
-    momentum = model.momentum(), angular_momentum = model.angular_momentum();
-  }
   const model::Edit owed = edit(report);
-  if (!report.changed) {
-    report.articulates_after = report.articulates_before;
-    report.structure_version = model.structure_version;
-    return report;
+  if (report.changed) {
+    if (model.closings.size() > 0) end_settled_closings(model, report.notes);
+    hold_again(held);
+    structure_changed();
   }
-
-  if (model.closings.size() > 0) end_settled_closings(model, report.notes);
-  for (const auto& [slot, point] : held)
-    if (model.grips.is_alive(slot)) {
-      anchor_grip(model, model.grips[slot], point);
-      model.touch(model.bodies[model.grips[slot].body].articulate);
-    }
+  report.articulates_after = model.articulates.size();
+  report.structure_version = model.structure_version;
+  if (gentle || !report.changed) return report;
 
   bool pinned = false;
   if (owed.moved || owed.jolted) {
-    std::vector<std::uint32_t> articulates;
-    for (const std::uint32_t body : touched)
-      if (model.bodies.is_alive(body)) articulates.push_back(model.bodies[body].articulate);
-    for (const BodyId body : report.created_bodies) articulates.push_back(model.bodies[body.slot].articulate);
-    std::sort(articulates.begin(), articulates.end());
-    articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
-
-    islands.update(model);
-    std::vector<step::Island*> settled;
-    for (const std::uint32_t a : articulates) {
-      step::Island* island = islands.of_articulate(a);
-      if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
-      settled.push_back(island);
-      if (!island->settle(model, owed.moved)) {
-        report.remaining_gap = model.worst_gap();
-        report.notes.push_back(text("no position of the bodies lets the combined particles meet exactly; ",
-                                    report.remaining_gap, " m remain, shared by the constraints"));
-      }
-    }
-
-    // Displacements and moved masses change momenta; a rigid motion of all that was touched gives them back without
-    // disturbing any constraint. What hangs on a nail has none to give.
-    double mass = 0;
-    Vec3 first_moment;
-    std::vector<std::uint32_t> bodies;
-    for (const std::uint32_t a : articulates) model.for_each_body_of(a, [&](std::uint32_t b) { bodies.push_back(b); });
-    const auto each_particle = [&](auto visit) {
-      for (const std::uint32_t b : bodies) model.for_each_particle_of(b, visit);
-    };
-    each_particle([&](std::uint32_t p) {
-      pinned = pinned || model.is_pinned(model.particles[p].ring);
-      mass += model.particles[p].mass;
-      first_moment += model.particles[p].mass * model.position(p);
-    });
-    if (!pinned && mass > 0) {
-      const Vec3 centre = (1 / mass) * first_moment;
-      for (int pass = 0; pass < 2; ++pass) {  // the second takes away the round-off of the first
-        const Vec3 lost = momentum - model.momentum();
-        const Vec3 lost_spin = angular_momentum - model.angular_momentum() - cross(centre, lost);
-        Mat3 inertia;
-        each_particle(
-            [&](std::uint32_t p) { inertia += point_inertia(model.particles[p].mass, model.position(p) - centre); });
-        for (const std::uint32_t b : bodies)
-          model.for_each_inertia_of(b, [&](std::uint32_t i) {
-            const model::InertiaPair& pair = model.inertia_pairs[i];
-            inertia += point_inertia(pair.inertia, model.position(pair.p) - model.position(pair.q));
-          });
-        Vec3 turn = solve_semidefinite(inertia, lost_spin);
-        // Bodies that were pulled together to almost a point would have to spin absurdly to keep their angular momentum.
-        if (0.5 * dot(turn, lost_spin) > 3 * (kinetic + 1e-12)) turn = {};
-        std::vector<std::uint32_t> rings;
-        each_particle([&](std::uint32_t p) { rings.push_back(model.particles[p].ring); });
-        std::sort(rings.begin(), rings.end());
-        rings.erase(std::unique(rings.begin(), rings.end()), rings.end());
-        for (const std::uint32_t ring : rings)
-          model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - centre);
-      }
-    }
+    for (const BodyId body : report.created_bodies) touched.push_back(body.slot);
+    std::erase_if(touched, [&](std::uint32_t body) { return !model.bodies.is_alive(body); });
+    settle(touched, owed.moved, report);
+    pinned = !give_back_momenta(touched, before);
   }
-
-  report.articulates_after = model.articulates.size();
-  structure_changed();
-  report.structure_version = model.structure_version;
-  if (gentle) return report;
-
-  const double kinetic_now = model.kinetic_energy(), potential_now = model.potential_energy();
-  report.energy_change = kinetic_now + potential_now - kinetic - potential;
+  const Conserved after = conserved();
+  report.energy_change = after.kinetic + after.potential - before.kinetic - before.potential;
   model.edit_energy += report.energy_change;
-  report.momentum_change = model.momentum() - momentum;
-  report.angular_momentum_change = model.angular_momentum() - angular_momentum;
+  report.momentum_change = after.momentum - before.momentum;
+  report.angular_momentum_change = after.angular_momentum - before.angular_momentum;
   const double spin_change = norm(report.angular_momentum_change);
-  if (!pinned && spin_change > 1e-9 * (norm(angular_momentum) + 1e-3 * spin_change))
+  if (!pinned && spin_change > 1e-9 * (norm(before.angular_momentum) + 1e-3 * spin_change))
     report.notes.push_back(
         "what is left (a point, a rod, or bodies almost in one place) cannot carry all of the angular "
         "momentum; angular_momentum_change tells the rest");
   return report;
+}
+
+System::Implementation::Conserved System::Implementation::conserved() const {
+  return {model.kinetic_energy(), model.potential_energy(), model.momentum(), model.angular_momentum()};
+}
+
+std::vector<System::Implementation::HeldPoint> System::Implementation::held_points(
+    const std::vector<std::uint32_t>& bodies) const {
+  std::vector<HeldPoint> held;
+  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
+    if (std::find(bodies.begin(), bodies.end(), g.body) != bodies.end()) held.push_back({slot, grip_point(model, g)});
+  });
+  return held;
+}
+
+void System::Implementation::hold_again(const std::vector<HeldPoint>& held) {
+  for (const auto& [slot, point] : held) {
+    if (!model.grips.is_alive(slot)) continue;
+    anchor_grip(model, model.grips[slot], point);
+    model.touch(model.bodies[model.grips[slot].body].articulate);
+  }
+}
+
+void System::Implementation::settle(const std::vector<std::uint32_t>& bodies, bool positions, RestructureReport& report) {
+  islands.update(model);
+  std::vector<step::Island*> settled;
+  for (const std::uint32_t body : bodies) {
+    step::Island* island = islands.of_articulate(model.bodies[body].articulate);
+    if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
+    settled.push_back(island);
+    if (island->settle(model, positions)) continue;
+    report.remaining_gap = model.worst_gap();
+    report.notes.push_back(text("no position of the bodies lets the combined particles meet exactly; ",
+                                report.remaining_gap, " m remain, shared by the constraints"));
+  }
+}
+
+bool System::Implementation::give_back_momenta(const std::vector<std::uint32_t>& bodies, const Conserved& before) {
+  std::vector<std::uint32_t> articulates, members, rings;
+  for (const std::uint32_t body : bodies) articulates.push_back(model.bodies[body].articulate);
+  sort_unique(articulates);
+  for (const std::uint32_t a : articulates) model.for_each_body_of(a, [&](std::uint32_t b) { members.push_back(b); });
+
+  double mass = 0;
+  Vec3 first_moment;
+  bool pinned = false;
+  for (const std::uint32_t b : members)
+    model.for_each_particle_of(b, [&](std::uint32_t p) {
+      rings.push_back(model.particles[p].ring);
+      pinned = pinned || model.is_pinned(model.particles[p].ring);
+      mass += model.particles[p].mass;
+      first_moment += model.particles[p].mass * model.position(p);
+    });
+  if (pinned || !(mass > 0)) return false;
+  sort_unique(rings);
+
+  const Vec3 centre = (1 / mass) * first_moment;
+  Mat3 inertia;
+  for (const std::uint32_t b : members) {
+    model.for_each_particle_of(b, [&](std::uint32_t p) {
+      inertia += point_inertia(model.particles[p].mass, model.position(p) - centre);
+    });
+    model.for_each_inertia_of(b, [&](std::uint32_t i) {
+      const model::InertiaPair& pair = model.inertia_pairs[i];
+      inertia += point_inertia(pair.inertia, model.position(pair.p) - model.position(pair.q));
+    });
+  }
+  for (int pass = 0; pass < 2; ++pass) {  // the second takes away the round-off of the first
+    const Vec3 lost = before.momentum - model.momentum();
+    const Vec3 lost_spin = before.angular_momentum - model.angular_momentum() - cross(centre, lost);
+    Vec3 turn = solve_semidefinite(inertia, lost_spin);
+    // Bodies that were pulled together to almost a point would have to spin absurdly to keep their angular momentum.
+    if (0.5 * dot(turn, lost_spin) > 3 * (before.kinetic + 1e-12)) turn = {};
+    for (const std::uint32_t ring : rings)
+      model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - centre);
+  }
+  return true;
 }
 
 RestructureReport System::Implementation::apply(const step::CombineParticles& c) {

@@ -69,6 +69,20 @@ struct System::Implementation {
   template <class EditFunction>
   RestructureReport restructure(std::vector<std::uint32_t> touched_bodies, bool gentle, EditFunction edit);
 
+  struct Conserved {
+    double kinetic = 0, potential = 0;
+    Vec3 momentum, angular_momentum;
+  };
+  Conserved conserved() const;
+  /// What a hand holds stays where it holds it, whatever becomes of the body.
+  using HeldPoint = std::pair<std::uint32_t, Vec3>;
+  std::vector<HeldPoint> held_points(const std::vector<std::uint32_t>& bodies) const;
+  void hold_again(const std::vector<HeldPoint>&);
+  /// Projects positions and velocities of the islands that the bodies are in.
+  void settle(const std::vector<std::uint32_t>& bodies, bool positions, RestructureReport&);
+  /// Displacements and moved masses change momenta; a rigid motion of all that hangs together with the bodies gives them
+  /// back without disturbing any constraint. False where something is pinned: the rest of the world has taken them.
+  bool give_back_momenta(const std::vector<std::uint32_t>& bodies, const Conserved& before);
   /// Ends a closing before its particles have met.
   RestructureReport call_off(std::uint32_t closing);
   void run_scripts(StepReport&);
