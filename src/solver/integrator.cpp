@@ -90,7 +90,7 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
 void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const Vec3* const x0 = problem.position.data();
   const Vec3* const x1 = newton_.solution().data();
-  const double before = problem.kinetic_energy() + problem.potential_energy(x0);
+  const double before = energy_;
   double work = 0;
   const ForceStage force_stage{stage.h, stage.midpoint, false};
   for (const auto& f : std::get<ForcePool<GripForce>>(problem.forces).items) {
@@ -112,10 +112,15 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
     problem.velocity[i] = stage.midpoint ? (2 / stage.h) * moved - problem.velocity[i] : (1 / stage.h) * moved;
     problem.position[i] = x1[i];
   }
-  const double after = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  take_stock(problem);
   report.external_work += work;
-  report.dissipated += before + work - after;
+  report.dissipated += before + work - energy_;
   ++report.substeps;
+}
+
+void Integrator::take_stock(const Problem& problem) {
+  kinetic_ = problem.kinetic_energy();
+  energy_ = kinetic_ + problem.potential_energy(problem.position.data());
 }
 
 // The mid-point rule only fixes the mean of two successive multipliers; the mean is the better start for the next solve
@@ -154,10 +159,9 @@ bool Integrator::gains_energy(const Problem& problem, const Stage& stage) {
   if (!conservative_) return false;
   const auto x1 = newton_.solution();
   for (std::size_t i = 0; i < problem.size(); ++i) velocity_[i] = (1 / stage.h) * (x1[i] - problem.position[i]);
-  const double kinetic_before = problem.kinetic_energy(), kinetic_after = 0.5 * problem.mass_norm2(velocity_.data());
-  const double gain = kinetic_after - kinetic_before + problem.potential_energy(x1.data()) -
-                      problem.potential_energy(problem.position.data());
-  return !(gain <= 1e-9 * (kinetic_before + kinetic_after) + 1e-12);
+  const double kinetic = 0.5 * problem.mass_norm2(velocity_.data());
+  const double gain = kinetic + problem.potential_energy(x1.data()) - energy_;
+  return !(gain <= 1e-9 * (kinetic_ + kinetic) + 1e-12);
 }
 
 void Integrator::advance_mid_point(Problem& problem, double h, double from, double to, int depth,
@@ -209,19 +213,20 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
 // constraints. First order and not energy-keeping, but plausible, finite, and reported.
 void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
   restore_multipliers(problem);
-  const double before = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  const double before = energy_;
   for (std::size_t i = 0; i < problem.size(); ++i) {
     problem.velocity[i] += h * problem.gravity;
     problem.position[i] += h * problem.velocity[i];
   }
   (void)project_positions(problem);
   project_velocities(problem);
-  const double after = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
-  if (!std::isfinite(after)) {
+  take_stock(problem);
+  if (!std::isfinite(energy_)) {
     problem.position = start_position_;
     std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
+    take_stock(problem);
   }
-  report.dissipated += before - problem.kinetic_energy() - problem.potential_energy(problem.position.data());
+  report.dissipated += before - energy_;
   ++report.substeps;
 }
 
@@ -244,27 +249,23 @@ AdvanceReport Integrator::advance(Problem& problem, double h, Scheme scheme) {
   close_gaps(problem, report);
   std::copy(problem.position.begin(), problem.position.end(), start_position_.begin());
   std::copy(problem.velocity.begin(), problem.velocity.end(), start_velocity_.begin());
+  take_stock(problem);
+  const double start_kinetic = kinetic_, start_energy = energy_;
   if (scheme == Scheme::mid_point)
     advance_mid_point(problem, h, 0, 1, 0, report);
   else
     advance_end_point(problem, h, 0, 1, 0, report);
-  if (!report.converged || report.fallbacks > 0) refuse_made_up_energy(problem, h, report);
+  // Where Newton found no solution, what it found instead may be anything; made-up energy gives it away.
+  const bool found = report.converged && report.fallbacks == 0;
+  if (!found && conservative_ && energy_ > start_energy + 0.1 * start_kinetic + 1e-9 * std::abs(start_energy)) {
+    std::copy(start_position_.begin(), start_position_.end(), problem.position.begin());
+    std::copy(start_velocity_.begin(), start_velocity_.end(), problem.velocity.begin());
+    report.dissipated += energy_ - start_energy;  // taken out of the book again
+    report.converged = false;
+    take_stock(problem);
+    coast(problem, h, report);
+  }
   return report;
-}
-
-// Where Newton found no solution, what it found instead may be anything; made-up energy gives it away.
-void Integrator::refuse_made_up_energy(Problem& problem, double h, AdvanceReport& report) {
-  if (!conservative_) return;
-  problem.velocity.swap(start_velocity_), problem.position.swap(start_position_);
-  const double kinetic = problem.kinetic_energy(), before = kinetic + problem.potential_energy(problem.position.data());
-  problem.velocity.swap(start_velocity_), problem.position.swap(start_position_);
-  const double after = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
-  if (after <= before + 0.1 * kinetic + 1e-9 * std::abs(before)) return;
-  std::copy(start_position_.begin(), start_position_.end(), problem.position.begin());
-  std::copy(start_velocity_.begin(), start_velocity_.end(), problem.velocity.begin());
-  report.dissipated += after - before;  // taken out of the book again
-  report.converged = false;
-  coast(problem, h, report);
 }
 
 void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {

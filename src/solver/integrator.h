@@ -47,6 +47,7 @@ class Integrator {
   void make_guess(const Problem&, const Stage&);
   bool try_step(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);
+  void take_stock(const Problem&);
   void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   void advance_end_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   bool will_turn_too_far(const Problem&, double h) const;
@@ -56,7 +57,6 @@ class Integrator {
   void save_multipliers(const Problem&);
   void restore_multipliers(Problem&) const;
   bool least_violation(Problem&, Stage, AdvanceReport&);
-  void refuse_made_up_energy(Problem&, double h, AdvanceReport&);
   void coast(Problem&, double h, AdvanceReport&);
   template <class Attempt>
   bool close_bit_by_bit(Problem&, Attempt);
@@ -66,7 +66,8 @@ class Integrator {
   std::vector<Vec3> guess_, pull_, velocity_, start_position_, start_velocity_;
   std::vector<double> lumped_mass_;
   std::vector<double> multipliers_saved_;
-  bool conservative_ = true;  ///< nothing outside does work during this step
+  double kinetic_ = 0, energy_ = 0;  ///< of the problem's state as it is now, J
+  bool conservative_ = true;         ///< nothing outside does work during this step
   bool holds_offsets_ = false;
 };
 

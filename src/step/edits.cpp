@@ -317,7 +317,8 @@ void System::Implementation::hold_again(const std::vector<HeldPoint>& held) {
   }
 }
 
-void System::Implementation::settle(const std::vector<std::uint32_t>& bodies, bool positions, RestructureReport& report) {
+void System::Implementation::settle(const std::vector<std::uint32_t>& bodies, bool positions,
+                                    RestructureReport& report) {
   islands.update(model);
   std::vector<step::Island*> settled;
   for (const std::uint32_t body : bodies) {
@@ -353,9 +354,8 @@ bool System::Implementation::give_back_momenta(const std::vector<std::uint32_t>&
   const Vec3 centre = (1 / mass) * first_moment;
   Mat3 inertia;
   for (const std::uint32_t b : members) {
-    model.for_each_particle_of(b, [&](std::uint32_t p) {
-      inertia += point_inertia(model.particles[p].mass, model.position(p) - centre);
-    });
+    model.for_each_particle_of(
+        b, [&](std::uint32_t p) { inertia += point_inertia(model.particles[p].mass, model.position(p) - centre); });
     model.for_each_inertia_of(b, [&](std::uint32_t i) {
       const model::InertiaPair& pair = model.inertia_pairs[i];
       inertia += point_inertia(pair.inertia, model.position(pair.p) - model.position(pair.q));

@@ -32,7 +32,6 @@ class Island {
   /// Projections after an edit; false where no position meets all constraints.
   bool settle(model::Model&, bool positions);
 
-
  private:
   bool nails_move(const model::Model&) const;
   using Weighted = std::array<std::pair<std::uint32_t, double>, 4>;  // nodes and weights; weight 0 ends the list
