@@ -56,8 +56,6 @@ Vec3 rotate(const Quaternion& q, const Vec3& v) {
   return v + q.w * t + cross(u, t);
 }
 
-Vec3 rotate_back(const Quaternion& q, const Vec3& v) { return rotate({-q.x, -q.y, -q.z, q.w}, v); }
-
 Quaternion axis_angle(const Vec3& axis, double angle) {
   const double s = std::sin(angle / 2);
   return {s * axis.x, s * axis.y, s * axis.z, std::cos(angle / 2)};

@@ -46,7 +46,6 @@ Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance = 1e-10);
 Quaternion multiply(const Quaternion& a, const Quaternion& b);
 Quaternion normalised(const Quaternion& q);
 Vec3 rotate(const Quaternion& q, const Vec3& v);
-Vec3 rotate_back(const Quaternion& q, const Vec3& v);
 Quaternion axis_angle(const Vec3& unit_axis, double angle);
 /// The smallest turn that carries unit vector `from` onto unit vector `to`.
 Quaternion shortest_turn(const Vec3& from, const Vec3& to);

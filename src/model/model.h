@@ -172,6 +172,8 @@ class Model {
   /// Whether a particle is where and as fast as its body's basis says. Not so only in a conflict; it then matters when the
   /// particle ceases to be an unknown of its own.
   bool follows_basis(std::uint32_t particle) const;
+  /// Position and velocity that its body's basis gives a particle.
+  std::pair<Vec3, Vec3> carried(std::uint32_t particle) const;
 
   Vec3 position(std::uint32_t particle) const { return rings[particles[particle].ring].position; }
   Vec3 velocity(std::uint32_t particle) const { return rings[particles[particle].ring].velocity; }

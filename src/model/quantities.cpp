@@ -16,16 +16,22 @@ bool Model::is_pinned(std::uint32_t ring) const {
   return pinned;
 }
 
-bool Model::follows_basis(std::uint32_t particle) const {
+std::pair<Vec3, Vec3> Model::carried(std::uint32_t particle) const {
   const Particle& p = particles[particle];
-  if (p.basis_index >= 0) return true;
   const Body& body = bodies[p.body];
-  Vec3 x = -1.0 * position(particle), v = -1.0 * velocity(particle);
+  Vec3 x, v;
   for (int i = 0; i < body.rank; ++i) {
-    x += p.weights[i] * position(body.basis[i]);
-    v += p.weights[i] * velocity(body.basis[i]);
+    const Ring& b = rings[particles[body.basis[i]].ring];
+    x += p.weights[i] * b.position;
+    v += p.weights[i] * b.velocity;
   }
-  return norm(x) < 1e-9 && norm(v) < 1e-9;
+  return {x, v};
+}
+
+bool Model::follows_basis(std::uint32_t particle) const {
+  if (particles[particle].basis_index >= 0) return true;
+  const auto [x, v] = carried(particle);
+  return norm(x - position(particle)) < 1e-9 && norm(v - velocity(particle)) < 1e-9;
 }
 
 double Model::kinetic_energy() const {
@@ -83,9 +89,7 @@ double Model::worst_gap() const {
     if (b.count == b.rank) return;
     for_each_particle_of(slot, [&](std::uint32_t p) {
       if (particles[p].basis_index >= 0) return;
-      Vec3 tied = -1.0 * position(p);
-      for (int i = 0; i < b.rank; ++i) tied += particles[p].weights[i] * position(b.basis[i]);
-      add(norm(tied));
+      add(norm(carried(p).first - position(p)));
     });
   });
   rings.for_each([&](std::uint32_t, const Ring& r) {

@@ -143,14 +143,6 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
   model.touch(model.bodies[a].articulate);
 }
 
-std::uint32_t closing_between(const Model& model, std::uint32_t p, std::uint32_t q) {
-  std::uint32_t found = none;
-  model.closings.for_each([&](std::uint32_t slot, const Closing& c) {
-    if ((c.p == p && c.q == q) || (c.p == q && c.q == p)) found = slot;
-  });
-  return found;
-}
-
 /// The bodies at the other members of a particle's ring.
 std::vector<std::uint32_t> ring_neighbours(const Model& model, std::uint32_t particle) {
   std::vector<std::uint32_t> bodies;
@@ -183,6 +175,21 @@ void destroy_uses(Model& model, std::uint32_t particle, std::vector<std::uint32_
 }
 
 }  // namespace
+
+std::uint32_t closing_between(const Model& model, std::uint32_t p, std::uint32_t q) {
+  std::uint32_t found = none;
+  model.closings.for_each([&](std::uint32_t slot, const Closing& c) {
+    if ((c.p == p && c.q == q) || (c.p == q && c.q == p)) found = slot;
+  });
+  return found;
+}
+
+void call_off(Model& model, std::uint32_t closing) {
+  const std::vector<std::uint32_t> bodies{model.particles[model.closings[closing].p].body,
+                                          model.particles[model.closings[closing].q].body};
+  destroy_closing(model, closing);
+  split_where_apart(model, bodies);
+}
 
 Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
   if (p == q) return {};
@@ -282,8 +289,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
 
   if (const std::uint32_t closing = closing_between(model, p, q); closing != none) {  // not met yet: called off
     report.changed = true;
-    destroy_closing(model, closing);
-    split_where_apart(model, {body, model.particles[q].body});
+    call_off(model, closing);
   }
   return {};
 }

@@ -22,6 +22,10 @@ void destroy_body(Model&, std::uint32_t body);
 void destroy_bond(Model&, std::uint32_t bond);
 void destroy_closing(Model&, std::uint32_t closing);
 
+/// The closing of two particles, in either order; `none` without one.
+std::uint32_t closing_between(const Model&, std::uint32_t p, std::uint32_t q);
+/// Ends a closing before its particles have met; what it held together may fall apart.
+void call_off(Model&, std::uint32_t closing);
 /// Ends closings whose two particles share a ring or a body by now: there is nothing left to close, or nothing that could.
 /// Says so in the notes.
 void end_settled_closings(Model&, std::vector<std::string>& notes);

@@ -146,9 +146,7 @@ void Hub::leave(std::uint32_t client) {
   if (clients_.erase(client) == 0) return;
   counters_.clients = static_cast<std::uint32_t>(clients_.size());
   broadcast_clients();
-  InputEvent event;
-  event.kind = InputEvent::Kind::leave;
-  event.client = client;
+  InputEvent event{.kind = InputEvent::Kind::leave, .client = client};
   push_input(std::move(event));
 }
 
@@ -218,9 +216,7 @@ void Hub::handle(std::uint32_t client, const protocol::Select& message) {
   if (self.selected == message.body) return;
   self.selected = message.body;
   broadcast_clients();
-  InputEvent event;
-  event.kind = InputEvent::Kind::select;
-  event.client = client;
+  InputEvent event{.kind = InputEvent::Kind::select, .client = client};
   event.body = message.body;
   push_input(std::move(event));
 }
@@ -230,9 +226,7 @@ void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
   if (self.holds.contains(message.hold)) return refuse_frame(client, "grab_start.hold is in use already");
   if (self.holds.size() == max_holds) return refuse_frame(client, "grab_start: this client has too many hands");
   self.holds.insert(message.hold);
-  InputEvent event;
-  event.kind = InputEvent::Kind::grab_start;
-  event.client = client;
+  InputEvent event{.kind = InputEvent::Kind::grab_start, .client = client};
   event.hold = message.hold;
   event.body = message.body;
   event.local_point = message.local_point;
@@ -242,9 +236,7 @@ void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
 
 void Hub::handle(std::uint32_t client, const protocol::GrabMove& message) {
   if (!clients_.at(client).holds.contains(message.hold)) return refuse_frame(client, "grab_move.hold holds nothing");
-  InputEvent event;
-  event.kind = InputEvent::Kind::grab_move;
-  event.client = client;
+  InputEvent event{.kind = InputEvent::Kind::grab_move, .client = client};
   event.hold = message.hold;
   event.target = message.target;
   push_input(std::move(event));
@@ -252,26 +244,20 @@ void Hub::handle(std::uint32_t client, const protocol::GrabMove& message) {
 
 void Hub::handle(std::uint32_t client, const protocol::GrabEnd& message) {
   if (clients_.at(client).holds.erase(message.hold) == 0) return refuse_frame(client, "grab_end.hold holds nothing");
-  InputEvent event;
-  event.kind = InputEvent::Kind::grab_end;
-  event.client = client;
+  InputEvent event{.kind = InputEvent::Kind::grab_end, .client = client};
   event.hold = message.hold;
   push_input(std::move(event));
 }
 
 void Hub::handle(std::uint32_t client, const protocol::Action& message) {
-  InputEvent event;
-  event.kind = InputEvent::Kind::action;
-  event.client = client;
+  InputEvent event{.kind = InputEvent::Kind::action, .client = client};
   event.body = message.body;
   event.name = message.name;
   push_input(std::move(event));
 }
 
 void Hub::handle(std::uint32_t client, const protocol::Control& message) {
-  InputEvent event;
-  event.kind = InputEvent::Kind::control;
-  event.client = client;
+  InputEvent event{.kind = InputEvent::Kind::control, .client = client};
   event.command = static_cast<std::uint8_t>(message.command);
   event.value = message.value;
   push_input(std::move(event));

@@ -166,12 +166,12 @@ bool Integrator::gains_energy(const Problem& problem, const Stage& stage) {
 
 void Integrator::advance_mid_point(Problem& problem, double h, double from, double to, int depth,
                                    AdvanceReport& report) {
-  const double middle = (from + to) / 2;
-  if (depth < max_depth && will_turn_too_far(problem, h)) {  // do not even try
+  const auto halve = [&] {
+    const double middle = (from + to) / 2;
     advance_mid_point(problem, h / 2, from, middle, depth + 1, report);
     advance_mid_point(problem, h / 2, middle, to, depth + 1, report);
-    return;
-  }
+  };
+  if (depth < max_depth && will_turn_too_far(problem, h)) return halve();  // do not even try
   save_multipliers(problem);
   const Stage stage = Stage::mid_point(h, to);
   if (try_step(problem, stage, report) && !turns_too_far(problem)) {
@@ -184,8 +184,7 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
     ++report.fallbacks;
     return advance_end_point(problem, h, from, to, depth, report);
   }
-  advance_mid_point(problem, h / 2, from, middle, depth + 1, report);
-  advance_mid_point(problem, h / 2, middle, to, depth + 1, report);
+  halve();
 }
 
 void Integrator::advance_end_point(Problem& problem, double h, double from, double to, int depth,

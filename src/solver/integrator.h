@@ -41,8 +41,6 @@ class Integrator {
 
   void project_velocities(Problem& problem, double h = 0) { newton_.project_velocities(problem, h); }
 
-  const Newton& newton() const { return newton_; }
-
  private:
   void make_guess(const Problem&, const Stage&);
   bool try_step(Problem&, const Stage&, AdvanceReport&);

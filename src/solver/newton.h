@@ -62,7 +62,6 @@ class Newton {
   /// nails take.
   void project_velocities(Problem& problem, double h);
 
-  const BlockPattern& pattern() const { return pattern_; }
   double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
 
  private:

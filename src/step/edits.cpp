@@ -209,6 +209,29 @@ void System::Implementation::apply(const step::SetBodyDamping& c) {
   model.touch(model.bodies[body].articulate);
 }
 
+double System::Implementation::ring_potential(std::uint32_t ring) const {
+  double energy = 0;
+  bool bonded = false;
+  model.for_each_in_ring(ring, [&](std::uint32_t p) {
+    energy -= model.particles[p].mass * dot(model.gravity, model.rings[ring].position);
+    bonded = bonded || model.particles[p].uses > 0;
+  });
+  return bonded ? model.potential_energy() : energy;
+}
+
+double System::Implementation::ring_kinetic(std::uint32_t ring) const {
+  double twice = 0;
+  const auto add = [&](double mass, const Vec3& v) { twice += mass * dot(v, v); };
+  model.for_each_in_ring(ring, [&](std::uint32_t p) {
+    add(model.particles[p].mass, model.rings[ring].velocity);
+    model.for_each_inertia_of(model.particles[p].body, [&](std::uint32_t i) {
+      const model::InertiaPair& pair = model.inertia_pairs[i];
+      add(pair.inertia, model.velocity(pair.p) - model.velocity(pair.q));
+    });
+  });
+  return twice / 2;
+}
+
 void System::Implementation::apply(const step::SetPosition& c) {
   const std::uint32_t particle = require(c.particle);
   require_finite("position", c.value);
@@ -216,9 +239,9 @@ void System::Implementation::apply(const step::SetPosition& c) {
     return apply(step::Nail{c.particle, false, c.value});  // carried there during the next step
   const std::uint32_t ring = model.particles[particle].ring;
   model::Ring& r = model.rings[ring];
-  const double before = model.potential_energy();
+  const double before = ring_potential(ring);
   r.position = c.value;
-  model.edit_energy += model.potential_energy() - before;
+  model.edit_energy += ring_potential(ring) - before;
   if (r.nailed) r.nail = r.nail_before = c.value;
   model.for_each_in_ring(ring, [&](std::uint32_t p) {
     model.rebuild_basis(model.particles[p].body);
@@ -230,9 +253,10 @@ void System::Implementation::apply(const step::SetPosition& c) {
 void System::Implementation::apply(const step::SetVelocity& c) {
   const std::uint32_t particle = require(c.particle);
   require_finite("velocity", c.value);
-  const double before = model.kinetic_energy();
-  model.rings[model.particles[particle].ring].velocity = c.value;
-  model.edit_energy += model.kinetic_energy() - before;
+  const std::uint32_t ring = model.particles[particle].ring;
+  const double before = ring_kinetic(ring);
+  model.rings[ring].velocity = c.value;
+  model.edit_energy += ring_kinetic(ring) - before;
   jolt(particle);
 }
 
@@ -381,10 +405,8 @@ RestructureReport System::Implementation::apply(const step::CombineParticles& c)
   const bool unrelated = body_p != body_q && model.particles[p].ring != model.particles[q].ring;
   if (c.over > 0 && unrelated && distance > 1e-9) {
     return restructure({body_p, body_q}, false, [&](RestructureReport& report) {
-      model.closings.for_each([&](std::uint32_t, const model::Closing& other) {
-        if ((other.p == p && other.q == q) || (other.p == q && other.q == p))
-          throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));
-      });
+      if (closing_between(model, p, q) != none)
+        throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));
       report.changed = true;
       model.closings.create({p, q, distance, c.over, 0, 0});
       for (const std::uint32_t end : {p, q}) {
@@ -427,8 +449,7 @@ RestructureReport System::Implementation::call_off(std::uint32_t closing) {
                                           model.particles[model.closings[closing].q].body};
   return restructure(bodies, false, [&](RestructureReport& report) {
     report.changed = true;
-    destroy_closing(model, closing);
-    split_where_apart(model, bodies);
+    model::call_off(model, closing);
     return model::Edit{false, true};
   });
 }

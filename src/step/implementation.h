@@ -83,6 +83,9 @@ struct System::Implementation {
   /// Displacements and moved masses change momenta; a rigid motion of all that hangs together with the bodies gives them
   /// back without disturbing any constraint. False where something is pinned: the rest of the world has taken them.
   bool give_back_momenta(const std::vector<std::uint32_t>& bodies, const Conserved& before);
+  /// Energies that change with a ring's position or velocity, up to a constant: assigning costs what it touches.
+  double ring_potential(std::uint32_t ring) const;
+  double ring_kinetic(std::uint32_t ring) const;
   /// Ends a closing before its particles have met.
   RestructureReport call_off(std::uint32_t closing);
   void run_scripts(StepReport&);

@@ -25,19 +25,6 @@ double closing_factor(double elapsed, double duration) {
   return 1 - 0.99 * s * s * (3 - 2 * s);
 }
 
-/// Position and velocity that its body's basis gives a particle.
-std::pair<Vec3, Vec3> carried(const Model& model, std::uint32_t p) {
-  const Particle& particle = model.particles[p];
-  const Body& body = model.bodies[particle.body];
-  Vec3 x, v;
-  for (int i = 0; i < body.rank; ++i) {
-    const Ring& b = model.rings[model.particles[body.basis[i]].ring];
-    x += particle.weights[i] * b.position;
-    v += particle.weights[i] * b.velocity;
-  }
-  return {x, v};
-}
-
 }  // namespace
 
 Island::Weighted Island::nodes_of(const Model& model, std::uint32_t particle,
@@ -224,7 +211,7 @@ void Island::carry_along(Model& model) const {
   Vec3 lost;
   for (const std::uint32_t p : slaves_) {
     Ring& r = model.rings[model.particles[p].ring];
-    const auto [x, v] = carried(model, p);
+    const auto [x, v] = model.carried(p);
     lost += model.particles[p].mass * (r.velocity - v);
     r.position = x, r.velocity = v;
   }
@@ -294,7 +281,7 @@ void Island::store(Model& model, bool stepped) {
   }
   for (const std::uint32_t p : slaves_) {
     Ring& r = model.rings[model.particles[p].ring];
-    std::tie(r.position, r.velocity) = carried(model, p);
+    std::tie(r.position, r.velocity) = model.carried(p);
     if (stepped) r.applied_force = {};
   }
   if (!stepped) return;
