@@ -30,8 +30,9 @@ class Writer {
  private:
   void append(const void* data, std::size_t size) {
     if (size == 0) return;
-    const auto* first = static_cast<const std::byte*>(data);
-    bytes_.insert(bytes_.end(), first, first + size);
+    const std::size_t end = bytes_.size();
+    bytes_.resize(end + size);  // insert() would do, but gcc 12 warns of an overflow that cannot be
+    std::memcpy(bytes_.data() + end, data, size);
   }
   std::vector<std::byte>& bytes_;
 };
