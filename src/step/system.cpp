@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/mat3.h"
-#include "step/implementation.h"
+#include "step/execute.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,14 +23,6 @@ void with_command_type(std::size_t index, Visit visit) {
   }
 }
 
-template <class C, std::size_t I = 0>
-constexpr std::uint8_t index_of() {
-  if constexpr (std::is_same_v<C, std::variant_alternative_t<I, step::Command>>)
-    return I;
-  else
-    return index_of<C, I + 1>();
-}
-
 constexpr std::uint64_t snapshot_magic = 0x31'70616e'73'61746full;  // says what the bytes are, and their version
 
 std::uint64_t check_sum(const std::vector<std::byte>& bytes) {
@@ -48,43 +40,6 @@ std::vector<Id> ids_of(const Table& table) {
 }
 
 }  // namespace
-
-template <class C>
-auto System::Implementation::execute(const C& command) {
-  using Result = decltype(apply(command));
-  if (stepping) {
-    if constexpr (step::is_queueable<C>) {
-      queue.push_back(command);
-      if constexpr (std::is_same_v<Result, RestructureReport>) {
-        RestructureReport report;
-        report.queued = true;
-        return report;
-      } else {
-        return;
-      }
-    } else {
-      throw std::logic_error(
-          "only structural edits (combine, separate, nail, release, destroy) may be asked for while "
-          "the system steps; they are applied right after the step");
-    }
-  }
-  const auto record = [&] {
-    if (!recording) return;
-    Writer writer(recording->commands);
-    std::uint8_t index = index_of<C>();
-    C copy = command;
-    writer.value(index);
-    writer.value(copy);
-  };
-  if constexpr (std::is_void_v<Result>) {
-    apply(command);
-    record();
-  } else {
-    Result result = apply(command);
-    record();
-    return result;
-  }
-}
 
 System::System(const SystemOptions& options) : implementation_(std::make_unique<Implementation>()) {
   set_gravity(options.gravity);
