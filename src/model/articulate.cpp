@@ -1,65 +1,99 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/model.h"
 
-#include <unordered_map>
+#include <algorithm>
 
 namespace iota::model {
 
+void Model::touch(std::uint32_t articulate) {
+  ++articulates[articulate].version;
+  if (is_touched_.size() <= articulate) is_touched_.resize(articulates.slot_count(), 0);
+  if (is_touched_[articulate]) return;
+  is_touched_[articulate] = 1;
+  touched_.push_back(articulate);
+}
+
+void Model::take_touched(std::vector<std::uint32_t>& slots) {
+  slots.swap(touched_);
+  touched_.clear();
+  for (const std::uint32_t slot : slots) is_touched_[slot] = 0;
+}
+
+// The smaller list is hung behind the larger as it is; only its bodies have to learn where they are now.
 void Model::join_articulates(std::uint32_t a, std::uint32_t b) {
   if (a == b) return;
   if (articulates[a].count < articulates[b].count) std::swap(a, b);
-  while (articulates[b].count > 1) {
-    const std::uint32_t body = articulates[b].first;
-    take_from_articulate(body);
-    add_to_articulate(body, a);
-  }
-  const std::uint32_t body = articulates[b].first;  // the last one takes the articulate with it
-  take_from_articulate(body);
-  add_to_articulate(body, a);
+  touch(a), touch(b);
+  Articulate &into = articulates[a], &from = articulates[b];
+  for_each_body_of(b, [&](std::uint32_t body) { bodies[body].articulate = a; });
+  bodies[from.first].previous_in_articulate = into.last;
+  bodies[into.last].next_in_articulate = from.first;
+  into.last = from.last;
+  into.count += from.count;
+  into.jolted |= from.jolted;
+  articulates.destroy(b);
 }
 
 bool Model::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   if (body_a == body_b) return false;
-  // Two breadth-first floods in turn, each a list of bodies that also serves as its queue.
-  struct Flood {
-    std::vector<std::uint32_t> reached;
-    std::size_t next = 0;
-  };
-  std::array<Flood, 2> floods;
-  std::unordered_map<std::uint32_t, int> side{{body_a, 0}, {body_b, 1}};
-  floods[0].reached.push_back(body_a);
-  floods[1].reached.push_back(body_b);
-
+  // Two breadth-first floods in turn, each a list of bodies that also serves as its queue. A mark says whose a body is.
+  Marks& marks = body_marks_;
+  marks.of.resize(bodies.slot_count(), 0);
+  if (marks.current > 0xfffffff0u) std::fill(marks.of.begin(), marks.of.end(), marks.current = 0);
+  const std::uint32_t first_mark = marks.current + 1;
+  marks.current += 2;
+  std::array<std::size_t, 2> next{};
   bool met = false;
-  const auto reach = [&](int which, std::uint32_t body) {
-    const auto [found, is_new] = side.try_emplace(body, which);
-    if (is_new)
-      floods[which].reached.push_back(body);
-    else
-      met = met || found->second != which;
+  const auto reach = [&](std::uint32_t which, std::uint32_t body) {
+    std::uint32_t& mark = marks.of[body];
+    if (mark < first_mark) {
+      mark = first_mark + which;
+      floods_[which].push_back(body);
+    } else {
+      met = met || mark != first_mark + which;
+    }
   };
-  const auto advance = [&](int which) {
-    for_each_particle_of(floods[which].reached[floods[which].next++], [&](std::uint32_t p) {
-      for_each_in_ring(particles[p].ring, [&](std::uint32_t hinged) { reach(which, particles[hinged].body); });
-      if (particles[p].uses == 0 || closings.size() == 0) return;
-      closings.for_each([&](std::uint32_t, const Closing& c) {  // on their way to each other: already one problem
-        if (c.p == p) reach(which, particles[c.q].body);
-        if (c.q == p) reach(which, particles[c.p].body);
+  for (const std::uint32_t which : {0u, 1u}) floods_[which].clear(), reach(which, which ? body_b : body_a);
+  const auto advance = [&](std::uint32_t which) {
+    for_each_particle_of(floods_[which][next[which]++], [&](std::uint32_t p) {
+      for_each_in_ring(particles[p].ring, [&](std::uint32_t hinged) {
+        if (hinged != p) reach(which, particles[hinged].body);
+      });
+      for_each_closing_of(p, [&](std::uint32_t c) {  // on their way to each other: already one problem
+        reach(which, particles[closings[c].p == p ? closings[c].q : closings[c].p].body);
       });
     });
   };
-  for (int which = 0; !met; which = 1 - which) {
-    if (floods[which].next == floods[which].reached.size()) {
-      const std::uint32_t own = articulates.create({}).slot;
-      for (const std::uint32_t body : floods[which].reached) {
-        take_from_articulate(body);
-        add_to_articulate(body, own);
-      }
-      return true;
-    }
-    advance(which);
+  std::uint32_t which = 0;
+  for (; !met && next[which] < floods_[which].size(); which = 1 - which) advance(which);
+  if (met) return false;
+
+  const std::uint32_t own = articulates.create({}).slot;
+  articulates[own].jolted = articulates[bodies[body_a].articulate].jolted;
+  for (const std::uint32_t body : floods_[which]) {
+    take_from_articulate(body);
+    add_to_articulate(body, own);
   }
-  return false;
+  return true;
+}
+
+std::vector<std::uint32_t> Model::tied_bodies(std::span<const std::uint32_t> start) const {
+  std::vector<std::uint32_t> reached, articulates_reached;
+  std::vector<std::uint8_t> is_reached(articulates.slot_count(), 0);
+  const auto reach = [&](std::uint32_t body) {
+    const std::uint32_t a = bodies[body].articulate;
+    if (is_reached[a]) return;
+    is_reached[a] = 1;
+    for_each_body_of(a, [&](std::uint32_t b) { reached.push_back(b); });
+  };
+  for (const std::uint32_t body : start) reach(body);
+  for (std::size_t next = 0; next < reached.size(); ++next)
+    for_each_particle_of(reached[next], [&](std::uint32_t p) {
+      for_each_bond_of(p, [&](std::uint32_t b) {
+        if (bonds[b].ties()) reach(particles[bonds[b].p == p ? bonds[b].q : bonds[b].p].body);
+      });
+    });
+  return reached;
 }
 
 }  // namespace iota::model

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <span>
 #include <vector>
 
 namespace iota::model {
@@ -21,9 +22,9 @@ struct Particle {
   std::uint32_t body = none, ring = none;
   std::uint32_t next_in_body = none, previous_in_body = none;
   std::uint32_t next_in_ring = none, previous_in_ring = none;
-  std::uint32_t uses = 0;           ///< bonds and closings that need it as an unknown of its own
-  std::uint32_t cosmetic_uses = 0;  ///< cosmetic bonds
-  double mass = 1;                  ///< kg
+  std::uint32_t uses = 0;  ///< bonds and closings that need it as an unknown of its own
+  std::uint32_t first_bond = none, first_closing = none, first_cosmetic_bond = none;  ///< see `Ends`
+  double mass = 1;                                                                    ///< kg
   /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
   std::int32_t basis_index = -1;
   std::array<double, 4> weights{};
@@ -79,19 +80,26 @@ struct Articulate {
   std::uint32_t jolted = 0;   ///< velocities were assigned and may violate constraints: project before the next step
 };
 
+/// What joins two particles is in a list of each of them, so that looking after one particle's uses costs what it has.
+/// A link is slot * 2 + end: which end of the next item is at this particle.
+struct Ends {
+  std::uint32_t p = none, q = none;
+  std::array<std::uint32_t, 2> next{none, none}, previous{none, none};
+};
+
 enum class BondKind : std::uint32_t { spring, drag, scripted };
 
-struct Bond {
-  std::uint32_t p = none, q = none;
+struct Bond : Ends {
   BondKind kind = BondKind::spring;
   std::uint32_t active = 1;
   double stiffness = 0, damping = 0, length = 0;
   std::uint64_t script = 0;  ///< key of the function, which lives outside the tables
+
+  /// Whether it is solved implicitly, so that its two ends belong to one problem.
+  bool ties() const { return active && kind != BondKind::scripted; }
 };
 
-struct CosmeticBond {
-  std::uint32_t p = none, q = none;
-};
+struct CosmeticBond : Ends {};
 
 struct Grip {
   std::uint32_t body = none, count = 0;
@@ -104,8 +112,7 @@ struct Grip {
 };
 
 /// Two particles on their way to each other.
-struct Closing {
-  std::uint32_t p = none, q = none;
+struct Closing : Ends {
   double distance = 0;               ///< at the start, m
   double duration = 0, elapsed = 0;  ///< s
   double multiplier = 0;
@@ -153,8 +160,26 @@ class Model {
   /// After a cut between two bodies of one articulate: searches from both at once and, when the smaller side is
   /// exhausted without meeting the other, gives it an articulate of its own. O(smaller side). True if split.
   bool split_articulate(std::uint32_t body_a, std::uint32_t body_b);
-  void touch(std::uint32_t articulate) { ++articulates[articulate].version, ++revision; }
-  std::uint64_t revision = 0;  ///< rises with every touch; not saved
+  void touch(std::uint32_t articulate);
+  void touch_body(std::uint32_t body) { touch(bodies[body].articulate); }
+  void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
+  /// The slots of all articulates touched since the last call, destroyed ones too, each once.
+  void take_touched(std::vector<std::uint32_t>& slots);
+  /// The bodies of the articulates of `bodies` and of all that implicit bonds tie to those: what one problem solves.
+  /// In order of discovery.
+  std::vector<std::uint32_t> tied_bodies(std::span<const std::uint32_t> bodies) const;
+  ///@}
+
+  /// @name What joins two particles. Adding and removing keeps the particles' lists and touches the articulates.
+  ///@{
+  std::uint32_t add_bond(const Bond&);
+  std::uint32_t add_closing(const Closing&);
+  std::uint32_t add_cosmetic_bond(const CosmeticBond&);
+  void remove_bond(std::uint32_t bond);
+  void remove_closing(std::uint32_t closing);
+  void remove_cosmetic_bond(std::uint32_t bond);
+  /// Bonds and closings of q become p's; those that would join p to itself are removed.
+  void redirect_uses(std::uint32_t q, std::uint32_t p);
   ///@}
 
   /// Chooses a body's basis from where its particles are now, and takes its rigid distances.
@@ -193,6 +218,19 @@ class Model {
     for (std::uint32_t b = articulates[articulate].first, next; b != none; b = next)
       next = bodies[b].next_in_articulate, visit(b);
   }
+  /// visit(slot of the bond); it may remove that bond.
+  template <class Visit>
+  void for_each_bond_of(std::uint32_t particle, Visit visit) const {
+    visit_uses(bonds, particles[particle].first_bond, visit);
+  }
+  template <class Visit>
+  void for_each_closing_of(std::uint32_t particle, Visit visit) const {
+    visit_uses(closings, particles[particle].first_closing, visit);
+  }
+  template <class Visit>
+  void for_each_cosmetic_bond_of(std::uint32_t particle, Visit visit) const {
+    visit_uses(cosmetic_bonds, particles[particle].first_cosmetic_bond, visit);
+  }
   template <class Visit>
   void for_each_inertia_of(std::uint32_t body, Visit visit) const {
     for (std::uint32_t i = bodies[body].first_inertia; i != none; i = inertia_pairs[i].next) visit(i);
@@ -206,11 +244,12 @@ class Model {
 
   /// @name Quantities
   ///@{
-  double kinetic_energy() const;    ///< J
-  double potential_energy() const;  ///< gravity and springs, J
-  Vec3 momentum() const;            ///< kg m/s
-  Vec3 angular_momentum() const;    ///< about the origin, kg m^2/s
-  double worst_gap() const;         ///< over rigid distances, tied points and nails, m
+  double kinetic_energy() const;                 ///< J
+  double potential_energy() const;               ///< gravity and springs, J
+  double bond_energy(std::uint32_t bond) const;  ///< J
+  Vec3 momentum() const;                         ///< kg m/s
+  Vec3 angular_momentum() const;                 ///< about the origin, kg m^2/s
+  double worst_gap() const;                      ///< over rigid distances, tied points and nails, m
   ///@}
 
   std::vector<std::string> validate() const;
@@ -220,6 +259,20 @@ class Model {
   void archive(Archive& ar);
 
  private:
+  template <class Table, class Visit>
+  static void visit_uses(const Table& items, std::uint32_t link, Visit visit) {
+    for (std::uint32_t next; link != none; link = next) next = items[link / 2].next[link % 2], visit(link / 2);
+  }
+  /// Bodies marked in the search at hand: those with the current mark. Not saved.
+  struct Marks {
+    std::vector<std::uint32_t> of;
+    std::uint32_t current = 0;
+  };
+  Marks body_marks_;
+  std::array<std::vector<std::uint32_t>, 2> floods_;  ///< of split_articulate
+  std::vector<std::uint32_t> touched_;
+  std::vector<std::uint8_t> is_touched_;
+
   /// The last 65 536 retirements, oldest forgotten first.
   template <class IdType>
   struct Survivors {

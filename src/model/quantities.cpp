@@ -51,12 +51,15 @@ double Model::potential_energy() const {
   double energy = 0;
   particles.for_each(
       [&](std::uint32_t, const Particle& p) { energy -= p.mass * dot(gravity, rings[p.ring].position); });
-  bonds.for_each([&](std::uint32_t, const Bond& b) {
-    if (b.kind != BondKind::spring || !b.active) return;
-    const double stretch = norm(position(b.q) - position(b.p)) - b.length;
-    energy += 0.5 * b.stiffness * stretch * stretch;
-  });
+  bonds.for_each([&](std::uint32_t slot, const Bond&) { energy += bond_energy(slot); });
   return energy;
+}
+
+double Model::bond_energy(std::uint32_t slot) const {
+  const Bond& b = bonds[slot];
+  if (b.kind != BondKind::spring || !b.active) return 0;
+  const double stretch = norm(position(b.q) - position(b.p)) - b.length;
+  return 0.5 * b.stiffness * stretch * stretch;
 }
 
 Vec3 Model::momentum() const {

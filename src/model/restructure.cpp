@@ -55,44 +55,10 @@ Edit merge_rings(Model& model, std::uint32_t into, std::uint32_t from) {
   return edit;
 }
 
-/// Bonds and closings that named q now name p; those that would join p to itself go.
-void redirect_uses(Model& model, std::uint32_t q, std::uint32_t p) {
-  const auto redirect = [&](auto& item) {
-    if (item.p == q) item.p = p;
-    if (item.q == q) item.q = p;
-    return item.p == item.q;
-  };
-  std::vector<std::uint32_t> closed;
-  if (model.particles[q].uses > 0) {
-    model.particles[p].uses += model.particles[q].uses;
-    model.particles[q].uses = 0;
-    model.bonds.for_each([&](std::uint32_t slot, Bond& b) {
-      if (redirect(b)) closed.push_back(slot);
-    });
-    for (const std::uint32_t bond : closed) destroy_bond(model, bond);
-    closed.clear();
-    model.closings.for_each([&](std::uint32_t slot, Closing& c) {
-      if (redirect(c)) closed.push_back(slot);
-    });
-    for (const std::uint32_t closing : closed) destroy_closing(model, closing);
-    closed.clear();
-  }
-  if (model.particles[q].cosmetic_uses > 0) {
-    model.particles[p].cosmetic_uses += model.particles[q].cosmetic_uses;
-    model.cosmetic_bonds.for_each([&](std::uint32_t slot, CosmeticBond& b) {
-      if (redirect(b)) closed.push_back(slot);
-    });
-    for (const std::uint32_t bond : closed) {
-      model.particles[p].cosmetic_uses -= 2;
-      model.cosmetic_bonds.destroy(bond);
-    }
-  }
-}
-
 /// q, of the same body as p, becomes p: mass, bonds and inertia pairs. Both must be in one ring already or q alone in its.
 void absorb_particle(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
   model.particles[p].mass += model.particles[q].mass;
-  redirect_uses(model, q, p);
+  model.redirect_uses(q, p);
   const ParticleId retired = model.particles.id(q), survivor = model.particles.id(p);
   model.record_survivor(retired, survivor);
   report.absorbed_particles.push_back({retired, survivor});
@@ -154,32 +120,21 @@ std::vector<std::uint32_t> ring_neighbours(const Model& model, std::uint32_t par
 
 /// Destroys what refers to a particle that is about to go; tells the bodies that a closing held to it.
 void destroy_uses(Model& model, std::uint32_t particle, std::vector<std::uint32_t>* held_bodies) {
-  const auto names = [&](const auto& item) { return item.p == particle || item.q == particle; };
-  if (model.particles[particle].uses > 0) {
-    for (std::uint32_t b = 0; b < model.bonds.slot_count(); ++b)
-      if (model.bonds.is_alive(b) && names(model.bonds[b])) destroy_bond(model, b);
-    for (std::uint32_t c = 0; c < model.closings.slot_count(); ++c)
-      if (model.closings.is_alive(c) && names(model.closings[c])) {
-        const std::uint32_t other = model.closings[c].p == particle ? model.closings[c].q : model.closings[c].p;
-        if (held_bodies) held_bodies->push_back(model.particles[other].body);
-        destroy_closing(model, c);
-      }
-  }
-  if (model.particles[particle].cosmetic_uses > 0)
-    for (std::uint32_t b = 0; b < model.cosmetic_bonds.slot_count(); ++b)
-      if (model.cosmetic_bonds.is_alive(b) && names(model.cosmetic_bonds[b])) {
-        --model.particles[model.cosmetic_bonds[b].p].cosmetic_uses;
-        --model.particles[model.cosmetic_bonds[b].q].cosmetic_uses;
-        model.cosmetic_bonds.destroy(b);
-      }
+  model.for_each_bond_of(particle, [&](std::uint32_t b) { model.remove_bond(b); });
+  model.for_each_closing_of(particle, [&](std::uint32_t c) {
+    const Closing& closing = model.closings[c];
+    if (held_bodies) held_bodies->push_back(model.particles[closing.p == particle ? closing.q : closing.p].body);
+    model.remove_closing(c);
+  });
+  model.for_each_cosmetic_bond_of(particle, [&](std::uint32_t b) { model.remove_cosmetic_bond(b); });
 }
 
 }  // namespace
 
 std::uint32_t closing_between(const Model& model, std::uint32_t p, std::uint32_t q) {
   std::uint32_t found = none;
-  model.closings.for_each([&](std::uint32_t slot, const Closing& c) {
-    if ((c.p == p && c.q == q) || (c.p == q && c.q == p)) found = slot;
+  model.for_each_closing_of(p, [&](std::uint32_t slot) {
+    if (model.closings[slot].p == q || model.closings[slot].q == q) found = slot;
   });
   return found;
 }
@@ -187,7 +142,7 @@ std::uint32_t closing_between(const Model& model, std::uint32_t p, std::uint32_t
 void call_off(Model& model, std::uint32_t closing) {
   const std::vector<std::uint32_t> bodies{model.particles[model.closings[closing].p].body,
                                           model.particles[model.closings[closing].q].body};
-  destroy_closing(model, closing);
+  model.remove_closing(closing);
   split_where_apart(model, bodies);
 }
 
@@ -226,7 +181,7 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
   }
 
   require_no_shared_body(model, ring_p, ring_q, none);
-  if (const std::uint32_t closing = closing_between(model, p, q); closing != none) destroy_closing(model, closing);
+  if (const std::uint32_t closing = closing_between(model, p, q); closing != none) model.remove_closing(closing);
   const Edit edit = merge_rings(model, ring_p, ring_q);
   model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
   model.touch(model.bodies[body_p].articulate);
@@ -283,7 +238,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     model.take_from_ring(q);
     model.add_to_ring(q, model.rings.create(own).slot);
     model.touch(model.bodies[body].articulate);
-    split_where_apart(model, {body, model.particles[q].body});
+    split_where_apart(model, std::array{body, model.particles[q].body});
     return {};
   }
 
@@ -304,11 +259,11 @@ void end_settled_closings(Model& model, std::vector<std::string>& notes) {
       notes.push_back("particles " + std::to_string(model.closings[slot].p) + " and " +
                       std::to_string(model.closings[slot].q) +
                       " were on their way to each other, but are of one rigid body now: called off");
-    destroy_closing(model, slot);
+    model.remove_closing(slot);
   }
 }
 
-void split_where_apart(Model& model, const std::vector<std::uint32_t>& bodies) {
+void split_where_apart(Model& model, std::span<const std::uint32_t> bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j)
       if (model.bodies[bodies[i]].articulate == model.bodies[bodies[j]].articulate)
@@ -349,24 +304,6 @@ void destroy_body(Model& model, std::uint32_t body) {
   std::sort(apart.begin(), apart.end());
   apart.erase(std::unique(apart.begin(), apart.end()), apart.end());
   split_where_apart(model, apart);
-}
-
-void destroy_bond(Model& model, std::uint32_t bond) {
-  const Bond& b = model.bonds[bond];
-  for (const std::uint32_t end : {b.p, b.q}) {
-    --model.particles[end].uses;
-    model.touch(model.bodies[model.particles[end].body].articulate);
-  }
-  model.bonds.destroy(bond);
-}
-
-void destroy_closing(Model& model, std::uint32_t closing) {
-  const Closing& c = model.closings[closing];
-  for (const std::uint32_t end : {c.p, c.q}) {
-    --model.particles[end].uses;
-    model.touch(model.bodies[model.particles[end].body].articulate);
-  }
-  model.closings.destroy(closing);
 }
 
 Vec3 grip_point(const Model& model, const Grip& grip) {

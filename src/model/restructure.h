@@ -19,8 +19,6 @@ Edit separate_particles(Model&, std::uint32_t p, std::uint32_t q, RestructureRep
 
 void destroy_particle(Model&, std::uint32_t particle);
 void destroy_body(Model&, std::uint32_t body);
-void destroy_bond(Model&, std::uint32_t bond);
-void destroy_closing(Model&, std::uint32_t closing);
 
 /// The closing of two particles, in either order; `none` without one.
 std::uint32_t closing_between(const Model&, std::uint32_t p, std::uint32_t q);
@@ -31,7 +29,7 @@ void call_off(Model&, std::uint32_t closing);
 void end_settled_closings(Model&, std::vector<std::string>& notes);
 
 /// Splits the articulate of `bodies` wherever they no longer hang together.
-void split_where_apart(Model&, const std::vector<std::uint32_t>& bodies);
+void split_where_apart(Model&, std::span<const std::uint32_t> bodies);
 
 /// Hangs a grip on the point of its body nearest to `point` (world frame): the span of the body's basis, for a rod
 /// between its ends.

@@ -129,6 +129,22 @@ std::vector<std::string> Model::validate() const {
   });
   cosmetic_bonds.for_each(
       [&](std::uint32_t slot, const CosmeticBond& b) { require_ends("cosmetic bond", slot, b.p, b.q); });
+  // Every end is in the list of its particle, and in no other.
+  const auto require_listed = [&](const char* what, const auto& items, std::uint32_t Particle::* first) {
+    std::uint32_t listed = 0;
+    particles.for_each([&](std::uint32_t slot, const Particle& p) {
+      for (std::uint32_t link = p.*first; link != none; link = items[link / 2].next[link % 2]) {
+        const bool good = items.is_alive(link / 2) && (link % 2 ? items[link / 2].q : items[link / 2].p) == slot;
+        complaints.require(good, "particle ", slot, " lists ", what, " ", link / 2, ", which does not end there");
+        if (!good || ++listed > 2 * items.size()) return;
+      }
+    });
+    complaints.require(listed == 2 * items.size(), "the particles list ", listed, " ends of ", items.size(), " ", what,
+                       "s");
+  };
+  require_listed("bond", bonds, &Particle::first_bond);
+  require_listed("closing", closings, &Particle::first_closing);
+  require_listed("cosmetic bond", cosmetic_bonds, &Particle::first_cosmetic_bond);
   particles.for_each([&](std::uint32_t slot, const Particle& p) {
     complaints.require(p.uses == uses[slot], "particle ", slot, " counts ", p.uses, " uses, has ", uses[slot]);
   });

@@ -102,9 +102,8 @@ CosmeticBondId System::Implementation::apply(const step::CreateCosmeticBond& c) 
   if (model.particles[p].body != model.particles[q].body)
     throw std::invalid_argument(text("a cosmetic bond joins particles of one body; particle ", p, " is of body ",
                                      model.particles[p].body, ", particle ", q, " of body ", model.particles[q].body));
-  ++model.particles[p].cosmetic_uses, ++model.particles[q].cosmetic_uses;
   structure_changed();
-  return model.cosmetic_bonds.create({p, q});
+  return model.cosmetic_bonds.id(model.add_cosmetic_bond({{p, q}}));
 }
 
 BondId System::Implementation::apply(const step::CreateBond& c) {
@@ -124,12 +123,8 @@ BondId System::Implementation::apply(const step::CreateBond& c) {
     bond.length = std::isnan(c.length) ? norm(model.position(q) - model.position(p)) : c.length;
     require_not_negative("length", bond.length);
   }
-  for (const std::uint32_t end : {p, q}) {
-    ++model.particles[end].uses;
-    model.touch(model.bodies[model.particles[end].body].articulate);
-  }
   structure_changed();
-  return model.bonds.create(bond);
+  return model.bonds.id(model.add_bond(bond));
 }
 
 GripId System::Implementation::apply(const step::CreateGrip& c) {
@@ -181,7 +176,11 @@ double System::Implementation::ring_potential(std::uint32_t ring) const {
     energy -= model.particles[p].mass * dot(model.gravity, model.rings[ring].position);
     bonded = bonded || model.particles[p].uses > 0;
   });
-  return bonded ? model.potential_energy() : energy;
+  if (!bonded) return energy;
+  model.for_each_in_ring(ring, [&](std::uint32_t p) {
+    model.for_each_bond_of(p, [&](std::uint32_t b) { energy += model.bond_energy(b); });
+  });
+  return energy;
 }
 
 double System::Implementation::ring_kinetic(std::uint32_t ring) const {
@@ -248,12 +247,15 @@ void System::Implementation::apply(const step::SetActive& c) {
 // --- structural edits -------------------------------------------------------------------------------------------------
 
 template <class EditFunction>
-RestructureReport System::Implementation::restructure(std::vector<std::uint32_t> touched, bool gentle,
+RestructureReport System::Implementation::restructure(std::span<const std::uint32_t> edited, bool gentle,
                                                       EditFunction edit) {
   RestructureReport report;
   report.articulates_before = model.articulates.size();
-  const std::vector<HeldPoint> held = held_points(touched);
-  const Conserved before = gentle ? Conserved{} : conserved();
+  const std::vector<HeldPoint> held = held_points(edited);
+  // Nothing beyond what bonds tie to the edited bodies can move or change its velocity.
+  std::vector<std::uint32_t> affected;
+  if (!gentle) affected = model.tied_bodies(edited);
+  const Conserved before = conserved(affected);
 
   const model::Edit owed = edit(report);
   if (report.changed) {
@@ -266,13 +268,16 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
   if (gentle || !report.changed) return report;
 
   bool pinned = false;
+  for (const BodyId body : report.created_bodies) affected.push_back(body.slot);
+  std::erase_if(affected, [&](std::uint32_t body) { return !model.bodies.is_alive(body); });
   if (owed.moved || owed.jolted) {
+    std::vector<std::uint32_t> touched(edited.begin(), edited.end());
     for (const BodyId body : report.created_bodies) touched.push_back(body.slot);
     std::erase_if(touched, [&](std::uint32_t body) { return !model.bodies.is_alive(body); });
     settle(touched, owed.moved, report);
-    pinned = !give_back_momenta(touched, before);
+    pinned = !give_back_momenta(touched, affected, before);
   }
-  const Conserved after = conserved();
+  const Conserved after = conserved(affected);
   report.energy_change = after.kinetic + after.potential - before.kinetic - before.potential;
   model.edit_energy += report.energy_change;
   report.momentum_change = after.momentum - before.momentum;
@@ -285,12 +290,34 @@ RestructureReport System::Implementation::restructure(std::vector<std::uint32_t>
   return report;
 }
 
-System::Implementation::Conserved System::Implementation::conserved() const {
-  return {model.kinetic_energy(), model.potential_energy(), model.momentum(), model.angular_momentum()};
+System::Implementation::Conserved System::Implementation::conserved(std::span<const std::uint32_t> bodies) const {
+  Conserved sum;
+  for (const std::uint32_t body : bodies) {
+    if (!model.bodies.is_alive(body)) continue;
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      const double mass = model.particles[p].mass;
+      const Vec3 x = model.position(p), v = model.velocity(p);
+      sum.kinetic += 0.5 * mass * dot(v, v);
+      sum.potential -= mass * dot(model.gravity, x);
+      sum.momentum += mass * v;
+      sum.angular_momentum += mass * cross(x, v);
+      model.for_each_bond_of(p, [&](std::uint32_t b) {
+        if (model.bonds[b].p == p) sum.potential += model.bond_energy(b);
+      });
+    });
+    model.for_each_inertia_of(body, [&](std::uint32_t i) {
+      const model::InertiaPair& pair = model.inertia_pairs[i];
+      const Vec3 x = model.position(pair.p) - model.position(pair.q);
+      const Vec3 v = model.velocity(pair.p) - model.velocity(pair.q);
+      sum.kinetic += 0.5 * pair.inertia * dot(v, v);
+      sum.angular_momentum += pair.inertia * cross(x, v);
+    });
+  }
+  return sum;
 }
 
 std::vector<System::Implementation::HeldPoint> System::Implementation::held_points(
-    const std::vector<std::uint32_t>& bodies) const {
+    std::span<const std::uint32_t> bodies) const {
   std::vector<HeldPoint> held;
   model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
     if (std::find(bodies.begin(), bodies.end(), g.body) != bodies.end()) held.push_back({slot, grip_point(model, g)});
@@ -306,8 +333,7 @@ void System::Implementation::hold_again(const std::vector<HeldPoint>& held) {
   }
 }
 
-void System::Implementation::settle(const std::vector<std::uint32_t>& bodies, bool positions,
-                                    RestructureReport& report) {
+void System::Implementation::settle(std::span<const std::uint32_t> bodies, bool positions, RestructureReport& report) {
   islands.update(model);
   std::vector<step::Island*> settled;
   for (const std::uint32_t body : bodies) {
@@ -321,7 +347,8 @@ void System::Implementation::settle(const std::vector<std::uint32_t>& bodies, bo
   }
 }
 
-bool System::Implementation::give_back_momenta(const std::vector<std::uint32_t>& bodies, const Conserved& before) {
+bool System::Implementation::give_back_momenta(std::span<const std::uint32_t> bodies,
+                                               std::span<const std::uint32_t> affected, const Conserved& before) {
   std::vector<std::uint32_t> articulates, members, rings;
   for (const std::uint32_t body : bodies) articulates.push_back(model.bodies[body].articulate);
   sort_unique(articulates);
@@ -350,12 +377,15 @@ bool System::Implementation::give_back_momenta(const std::vector<std::uint32_t>&
       inertia += point_inertia(pair.inertia, model.position(pair.p) - model.position(pair.q));
     });
   }
+  const double trace = inertia.m[0][0] + inertia.m[1][1] + inertia.m[2][2];
+  const bool is_a_point = !(trace > 1e-24 * mass * dot(centre, centre));  // what there is of it is round-off
   for (int pass = 0; pass < 2; ++pass) {  // the second takes away the round-off of the first
-    const Vec3 lost = before.momentum - model.momentum();
-    const Vec3 lost_spin = before.angular_momentum - model.angular_momentum() - cross(centre, lost);
+    const Conserved now = conserved(affected);
+    const Vec3 lost = before.momentum - now.momentum;
+    const Vec3 lost_spin = before.angular_momentum - now.angular_momentum - cross(centre, lost);
     Vec3 turn = solve_semidefinite(inertia, lost_spin);
     // Bodies that were pulled together to almost a point would have to spin absurdly to keep their angular momentum.
-    if (0.5 * dot(turn, lost_spin) > 3 * (before.kinetic + 1e-12)) turn = {};
+    if (is_a_point || 0.5 * dot(turn, lost_spin) > 3 * (before.kinetic + 1e-12)) turn = {};
     for (const std::uint32_t ring : rings)
       model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - centre);
   }
@@ -369,15 +399,11 @@ RestructureReport System::Implementation::apply(const step::CombineParticles& c)
   const double distance = norm(model.position(q) - model.position(p));
   const bool unrelated = body_p != body_q && model.particles[p].ring != model.particles[q].ring;
   if (c.over > 0 && unrelated && distance > 1e-9) {
-    return restructure({body_p, body_q}, false, [&](RestructureReport& report) {
+    return restructure(std::array{body_p, body_q}, false, [&](RestructureReport& report) {
       if (closing_between(model, p, q) != none)
         throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));
       report.changed = true;
-      model.closings.create({p, q, distance, c.over, 0, 0});
-      for (const std::uint32_t end : {p, q}) {
-        ++model.particles[end].uses;
-        model.touch(model.bodies[model.particles[end].body].articulate);
-      }
+      (void)model.add_closing({{p, q}, distance, c.over, 0, 0});
       model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
       return model::Edit{false, true};
     });
@@ -386,7 +412,7 @@ RestructureReport System::Implementation::apply(const step::CombineParticles& c)
   const model::Ring& ring_q = model.rings[model.particles[q].ring];
   const bool gentle = unrelated && ring_p.position == ring_q.position && ring_p.velocity == ring_q.velocity &&
                       !ring_p.nailed && !ring_q.nailed;
-  return restructure({body_p, body_q}, gentle,
+  return restructure(std::array{body_p, body_q}, gentle,
                      [&](RestructureReport& report) { return combine_particles(model, p, q, report); });
 }
 
@@ -394,7 +420,8 @@ RestructureReport System::Implementation::apply(const step::CombineBodies& c) {
   const std::uint32_t a = require(c.a), b = require(c.b);
   for (const std::uint32_t body : {a, b})
     if (model.bodies[body].count == 0) throw std::invalid_argument(text("combine: body ", body, " has no particles"));
-  return restructure({a, b}, false, [&](RestructureReport& report) { return combine_bodies(model, a, b, report); });
+  return restructure(std::array{a, b}, false,
+                     [&](RestructureReport& report) { return combine_bodies(model, a, b, report); });
 }
 
 RestructureReport System::Implementation::apply(const step::Separate& c) {
@@ -402,7 +429,7 @@ RestructureReport System::Implementation::apply(const step::Separate& c) {
   const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
   bool gentle = p == q || (body_p != body_q && model.particles[p].ring == model.particles[q].ring);
   model.for_each_in_ring(model.particles[q].ring, [&](std::uint32_t r) { gentle = gentle && model.follows_basis(r); });
-  return restructure({body_p, body_q}, gentle, [&](RestructureReport& report) {
+  return restructure(std::array{body_p, body_q}, gentle, [&](RestructureReport& report) {
     model::Edit edit = separate_particles(model, p, q, report);
     edit.jolted = !gentle;
     return edit;
@@ -428,7 +455,7 @@ void System::Implementation::apply(const step::Nail& c) {
     ring.nail = position;  // moves there during the next step
     return;
   }
-  (void)restructure({model.particles[particle].body}, false, [&](RestructureReport& report) {
+  (void)restructure(std::array{model.particles[particle].body}, false, [&](RestructureReport& report) {
     report.changed = true;
     const bool moved = ring.position != position;
     ring.nailed = 1;
@@ -452,32 +479,31 @@ void System::Implementation::apply(const step::Release& c) {
 // Destroying takes what there was: mass, momentum and energy go with it, and the energy book says so.
 void System::Implementation::apply(const step::Destroy<BodyId>& c) {
   const std::uint32_t body = require(c.id);
-  const double before = model.kinetic_energy() + model.potential_energy();
+  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
+  const double before = conserved(affected).energy();
   destroy_body(model, body);
-  model.edit_energy += model.kinetic_energy() + model.potential_energy() - before;
+  model.edit_energy += conserved(affected).energy() - before;
   structure_changed();
 }
 void System::Implementation::apply(const step::Destroy<ParticleId>& c) {
   const std::uint32_t particle = require(c.id);
-  const double before = model.kinetic_energy() + model.potential_energy();
+  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{model.particles[particle].body});
+  const double before = conserved(affected).energy();
   destroy_particle(model, particle);
-  model.edit_energy += model.kinetic_energy() + model.potential_energy() - before;
+  model.edit_energy += conserved(affected).energy() - before;
   structure_changed();
 }
 void System::Implementation::apply(const step::Destroy<BondId>& c) {
   const std::uint32_t bond = require(c.id);
-  const double before = model.potential_energy();
+  model.edit_energy -= model.bond_energy(bond);
   // A restore or a replay may bring the bond back, if it was made before the latest snapshot.
   if (!recording && model.bonds[bond].script >= scripts_saved_below) scripts.erase(model.bonds[bond].script);
-  destroy_bond(model, bond);
-  model.edit_energy += model.potential_energy() - before;
+  model.remove_bond(bond);
   structure_changed();
 }
 void System::Implementation::apply(const step::Destroy<CosmeticBondId>& c) {
   if (!model.cosmetic_bonds.contains(c.id)) throw_stale("cosmetic bond", c.id, std::optional<CosmeticBondId>{});
-  const model::CosmeticBond bond = model.cosmetic_bonds[c.id.slot];
-  --model.particles[bond.p].cosmetic_uses, --model.particles[bond.q].cosmetic_uses;
-  model.cosmetic_bonds.destroy(c.id.slot);
+  model.remove_cosmetic_bond(c.id.slot);
   structure_changed();
 }
 void System::Implementation::apply(const step::Destroy<GripId>& c) {

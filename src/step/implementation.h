@@ -4,7 +4,7 @@
 #include "model/model.h"
 #include "model/restructure.h"
 #include "step/commands.h"
-#include "step/island.h"
+#include "step/islands.h"
 
 #include <iota/system.h>
 
@@ -67,22 +67,25 @@ struct System::Implementation {
   /// Runs a structural edit and settles its physics: positions, velocities, momenta, energy; fills the report.
   /// `gentle` edits move nothing and no mass, so there is nothing to measure and their cost does not grow with the system.
   template <class EditFunction>
-  RestructureReport restructure(std::vector<std::uint32_t> touched_bodies, bool gentle, EditFunction edit);
+  RestructureReport restructure(std::span<const std::uint32_t> touched_bodies, bool gentle, EditFunction edit);
 
   struct Conserved {
     double kinetic = 0, potential = 0;
     Vec3 momentum, angular_momentum;
+    double energy() const { return kinetic + potential; }
   };
-  Conserved conserved() const;
+  /// Of these bodies and the springs between them; those no longer alive count as nothing.
+  Conserved conserved(std::span<const std::uint32_t> bodies) const;
   /// What a hand holds stays where it holds it, whatever becomes of the body.
   using HeldPoint = std::pair<std::uint32_t, Vec3>;
-  std::vector<HeldPoint> held_points(const std::vector<std::uint32_t>& bodies) const;
+  std::vector<HeldPoint> held_points(std::span<const std::uint32_t> bodies) const;
   void hold_again(const std::vector<HeldPoint>&);
   /// Projects positions and velocities of the islands that the bodies are in.
-  void settle(const std::vector<std::uint32_t>& bodies, bool positions, RestructureReport&);
+  void settle(std::span<const std::uint32_t> bodies, bool positions, RestructureReport&);
   /// Displacements and moved masses change momenta; a rigid motion of all that hangs together with the bodies gives them
-  /// back without disturbing any constraint. False where something is pinned: the rest of the world has taken them.
-  bool give_back_momenta(const std::vector<std::uint32_t>& bodies, const Conserved& before);
+  /// back without disturbing any constraint; `affected` is what `before` was taken of. False where something is pinned: the rest of the world has taken them.
+  bool give_back_momenta(std::span<const std::uint32_t> bodies, std::span<const std::uint32_t> affected,
+                         const Conserved& before);
   /// Energies that change with a ring's position or velocity, up to a constant: assigning costs what it touches.
   double ring_potential(std::uint32_t ring) const;
   double ring_kinetic(std::uint32_t ring) const;

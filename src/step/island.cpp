@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 
 namespace iota::step {
@@ -121,10 +119,18 @@ void Island::add_bonds(const Model& model, const std::vector<std::uint32_t>& nod
     arm.count = 2;
     return arm;
   };
-  model.bonds.for_each([&](std::uint32_t slot, const model::Bond& b) {
-    if (!b.active || b.kind == model::BondKind::scripted) return;
+  std::vector<std::uint32_t> bonds;  // each once, in order of slots
+  for (const std::uint32_t body : bodies_)
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      model.for_each_bond_of(p, [&](std::uint32_t b) {
+        if (model.bonds[b].p == p && model.bonds[b].ties()) bonds.push_back(b);
+      });
+    });
+  std::sort(bonds.begin(), bonds.end());
+  for (const std::uint32_t slot : bonds) {
+    const model::Bond& b = model.bonds[slot];
     const solver::ForceArm arm = arm_between(b.p, b.q);
-    if (arm.nodes[0] == none || arm.nodes[1] == none || arm.nodes[0] == arm.nodes[1]) return;
+    if (arm.nodes[0] == none || arm.nodes[1] == none || arm.nodes[0] == arm.nodes[1]) continue;
     if (b.kind == model::BondKind::spring) {
       std::get<solver::ForcePool<solver::SpringForce>>(problem_.forces)
           .items.push_back({arm, b.stiffness, b.damping, b.length});
@@ -133,7 +139,7 @@ void Island::add_bonds(const Model& model, const std::vector<std::uint32_t>& nod
       std::get<solver::ForcePool<solver::DragForce>>(problem_.forces).items.push_back({arm, b.damping});
       drags_.push_back(slot);
     }
-  });
+  }
 }
 
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
@@ -173,12 +179,22 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
     for (std::size_t i = 0; i < n; ++i) node_damping_[i] /= problem_.mass[i];
 
   auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints).items;
-  model.closings.for_each([&](std::uint32_t slot, const model::Closing& c) {
-    const std::uint32_t a = node_of_ring[model.particles[c.p].ring], b = node_of_ring[model.particles[c.q].ring];
-    if (a == none || b == none) return;
-    distances.push_back({{a, b}, c.distance, c.distance});
-    closings_.push_back(slot);
-  });
+  if (model.closings.size() > 0) {
+    for (const std::uint32_t body : bodies_)
+      model.for_each_particle_of(body, [&](std::uint32_t p) {
+        model.for_each_closing_of(p, [&](std::uint32_t c) {
+          if (model.closings[c].p == p) closings_.push_back(c);
+        });
+      });
+    std::sort(closings_.begin(), closings_.end());
+    std::erase_if(closings_, [&](std::uint32_t slot) {
+      const model::Closing& c = model.closings[slot];
+      const std::uint32_t a = node_of_ring[model.particles[c.p].ring], b = node_of_ring[model.particles[c.q].ring];
+      if (a == none || b == none) return true;
+      distances.push_back({{a, b}, c.distance, c.distance});
+      return false;
+    });
+  }
   auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints).items;
   for (std::uint32_t node = 0; node < n; ++node) {
     if (!pinned_[node]) continue;
@@ -359,54 +375,6 @@ bool Island::settle(Model& model, bool positions) {
   }
   store(model, false);
   return met;
-}
-
-void Islands::update(Model& model) {
-  if (model.revision == seen_revision_) return;
-  seen_revision_ = model.revision;
-
-  // Articulates that implicit bonds tie together are solved together.
-  std::vector<std::uint32_t> parent(model.articulates.slot_count());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t a) {
-    while (parent[a] != a) a = parent[a] = parent[parent[a]];
-    return a;
-  };
-  model.bonds.for_each([&](std::uint32_t, const model::Bond& b) {
-    if (!b.active || b.kind == model::BondKind::scripted) return;
-    const std::uint32_t p = root(model.bodies[model.particles[b.p].body].articulate);
-    const std::uint32_t q = root(model.bodies[model.particles[b.q].body].articulate);
-    parent[std::max(p, q)] = std::min(p, q);  // the root is the lowest slot: groups come out in order
-  });
-  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
-  model.articulates.for_each([&](std::uint32_t slot, const model::Articulate&) { groups[root(slot)].push_back(slot); });
-
-  std::map<std::vector<std::uint64_t>, std::unique_ptr<Island>> kept;
-  for (std::size_t i = 0; i < in_order_.size(); ++i) kept[std::move(keys_[i])] = std::move(in_order_[i]);
-  keys_.clear(), in_order_.clear();
-  island_of_articulate_.assign(model.articulates.slot_count(), none);
-  for (const auto& [leader, members] : groups) {
-    std::vector<std::uint64_t> key;
-    for (const std::uint32_t a : members) {
-      island_of_articulate_[a] = static_cast<std::uint32_t>(in_order_.size());
-      key.push_back(std::uint64_t{model.articulates.id(a).generation} << 32 | a);
-      key.push_back(model.articulates[a].version);
-    }
-    auto found = kept.find(key);
-    if (found != kept.end()) {
-      in_order_.push_back(std::move(found->second));
-      kept.erase(found);
-    } else {
-      in_order_.push_back(std::make_unique<Island>());
-      in_order_.back()->assemble(model, members, node_of_ring_);
-      in_order_.back()->carry_along(model);
-    }
-    keys_.push_back(std::move(key));
-  }
-}
-
-Island* Islands::of_articulate(std::uint32_t articulate) const {
-  return in_order_[island_of_articulate_[articulate]].get();
 }
 
 }  // namespace iota::step

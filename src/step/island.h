@@ -62,20 +62,4 @@ class Island {
   std::vector<std::uint32_t> bodies_;
 };
 
-/// All islands of a model, re-made only where articulates or bonds changed.
-class Islands {
- public:
-  void update(model::Model&);
-  void forget() { keys_.clear(), in_order_.clear(), seen_revision_ = ~0ull; }
-  std::span<const std::unique_ptr<Island>> all() const { return in_order_; }
-  Island* of_articulate(std::uint32_t articulate) const;
-
- private:
-  std::vector<std::vector<std::uint64_t>> keys_;  // of each island: slot, generation and version of its articulates
-  std::vector<std::unique_ptr<Island>> in_order_;
-  std::vector<std::uint32_t> island_of_articulate_;
-  std::vector<std::uint32_t> node_of_ring_;
-  std::uint64_t seen_revision_ = ~0ull;
-};
-
 }  // namespace iota::step

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists of what joins two particles: each item is linked at both its ends.
+#include "model/model.h"
+
+namespace iota::model {
+
+namespace {
+
+/// Puts one end of an item at the front of its particle's list.
+template <class Table>
+void link(Table& items, std::uint32_t& first, std::uint32_t slot, std::uint32_t end) {
+  Ends& item = items[slot];
+  item.next[end] = first, item.previous[end] = none;
+  if (first != none) items[first / 2].previous[first % 2] = 2 * slot + end;
+  first = 2 * slot + end;
+}
+
+template <class Table>
+void unlink(Table& items, std::uint32_t& first, std::uint32_t slot, std::uint32_t end) {
+  const Ends& item = items[slot];
+  const std::uint32_t before = item.previous[end], after = item.next[end];
+  (before == none ? first : items[before / 2].next[before % 2]) = after;
+  if (after != none) items[after / 2].previous[after % 2] = before;
+}
+
+std::uint32_t particle_at(const Ends& item, std::uint32_t end) { return end == 0 ? item.p : item.q; }
+
+}  // namespace
+
+std::uint32_t Model::add_bond(const Bond& bond) {
+  const std::uint32_t slot = bonds.create(bond).slot;
+  for (const std::uint32_t end : {0u, 1u}) {
+    const std::uint32_t particle = particle_at(bond, end);
+    link(bonds, particles[particle].first_bond, slot, end);
+    ++particles[particle].uses;
+    touch_particle(particle);
+  }
+  return slot;
+}
+
+std::uint32_t Model::add_closing(const Closing& closing) {
+  const std::uint32_t slot = closings.create(closing).slot;
+  for (const std::uint32_t end : {0u, 1u}) {
+    const std::uint32_t particle = particle_at(closing, end);
+    link(closings, particles[particle].first_closing, slot, end);
+    ++particles[particle].uses;
+    touch_particle(particle);
+  }
+  return slot;
+}
+
+std::uint32_t Model::add_cosmetic_bond(const CosmeticBond& bond) {
+  const std::uint32_t slot = cosmetic_bonds.create(bond).slot;
+  for (const std::uint32_t end : {0u, 1u})
+    link(cosmetic_bonds, particles[particle_at(bond, end)].first_cosmetic_bond, slot, end);
+  return slot;
+}
+
+void Model::remove_bond(std::uint32_t slot) {
+  for (const std::uint32_t end : {0u, 1u}) {
+    const std::uint32_t particle = particle_at(bonds[slot], end);
+    unlink(bonds, particles[particle].first_bond, slot, end);
+    --particles[particle].uses;
+    touch_particle(particle);
+  }
+  bonds.destroy(slot);
+}
+
+void Model::remove_closing(std::uint32_t slot) {
+  for (const std::uint32_t end : {0u, 1u}) {
+    const std::uint32_t particle = particle_at(closings[slot], end);
+    unlink(closings, particles[particle].first_closing, slot, end);
+    --particles[particle].uses;
+    touch_particle(particle);
+  }
+  closings.destroy(slot);
+}
+
+void Model::remove_cosmetic_bond(std::uint32_t slot) {
+  for (const std::uint32_t end : {0u, 1u})
+    unlink(cosmetic_bonds, particles[particle_at(cosmetic_bonds[slot], end)].first_cosmetic_bond, slot, end);
+  cosmetic_bonds.destroy(slot);
+}
+
+void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
+  const auto redirect = [&](auto& items, std::uint32_t Particle::* first, auto remove) {
+    while (particles[q].*first != none) {
+      const std::uint32_t slot = particles[q].*first / 2, end = particles[q].*first % 2;
+      if (particle_at(items[slot], 1 - end) == p) {
+        remove(slot);
+        continue;
+      }
+      unlink(items, particles[q].*first, slot, end);
+      (end == 0 ? items[slot].p : items[slot].q) = p;
+      link(items, particles[p].*first, slot, end);
+    }
+  };
+  const std::uint32_t uses = particles[q].uses;
+  redirect(bonds, &Particle::first_bond, [&](std::uint32_t slot) { remove_bond(slot); });
+  redirect(closings, &Particle::first_closing, [&](std::uint32_t slot) { remove_closing(slot); });
+  redirect(cosmetic_bonds, &Particle::first_cosmetic_bond, [&](std::uint32_t slot) { remove_cosmetic_bond(slot); });
+  const std::uint32_t moved = particles[q].uses;  // the others were removed, and counted off
+  particles[p].uses += moved, particles[q].uses = 0;
+  if (uses > 0) touch_particle(p);
+}
+
+}  // namespace iota::model

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "step/island.h"
+
+namespace iota::step {
+
+/// All islands of a model, re-made only where articulates or what ties them changed: an edit costs what it touches.
+class Islands {
+ public:
+  void update(model::Model&);
+  void forget();
+  /// In the order of the lowest slot among their articulates, so that a restored model has the same.
+  std::span<Island* const> all();
+  Island* of_articulate(std::uint32_t articulate) const { return island_of_leader_[leader_of_[articulate]].get(); }
+
+ private:
+  void drop(std::uint32_t leader);
+
+  // All by articulate slot. The leader of an island is the lowest of its articulates.
+  std::vector<std::unique_ptr<Island>> island_of_leader_;
+  std::vector<std::uint32_t> leader_of_;
+  std::vector<std::uint32_t> next_member_;  // list of the articulates of one island, from its leader on
+  std::vector<std::uint8_t> is_waiting_;    // to be put into an island
+  std::vector<std::uint32_t> touched_, waiting_, members_;
+  std::vector<Island*> in_order_;
+  std::vector<std::uint32_t> node_of_ring_;
+  bool knows_all_ = false, order_is_old_ = true;
+};
+
+}  // namespace iota::step
