@@ -17,4 +17,5 @@ NB_MODULE(_core, module) {
   bind_grip(module);
   bind_restructuring(module);
   bind_server(module);
+  bind_solvers(module);
 }

@@ -379,7 +379,13 @@ def wheel() -> Step:
 
     def now() -> str:
         built = sorted((BUILD / "python" / "iota").glob("_core.*"))
-        project = [ROOT / "pyproject.toml", ROOT / "README.md", ROOT / "LICENSE", ROOT / "cmake" / "python.cmake"]
+        project = [
+            ROOT / "pyproject.toml",
+            ROOT / "README.md",
+            ROOT / "LICENSE",
+            ROOT / "LICENSES" / "SUNDIALS.txt",
+            ROOT / "cmake" / "python.cmake",
+        ]
         return digest(project, built, files_under(PAGE), files_under(PACKAGE, skip=["page"]))
 
     def work(log: Path) -> None:
@@ -406,6 +412,22 @@ def installed_version(package: str) -> str:
     return found.name.removesuffix(".dist-info").split("-")[1]
 
 
+def sundials() -> Step:
+    """KINSOL, the second solver for equations. The engine is whole without it: no network is no failure."""
+    folder = VENV / "sundials"
+
+    def work(log: Path) -> None:
+        try:
+            run(log, ROOT / "tools" / "fetch_sundials.sh", folder)
+        except StepError:
+            print(' left out: there will be no solver "kinsol"', end="")
+
+    def needed() -> bool:
+        return shutil.which("apt-get") is not None and not (folder / "include" / "kinsol" / "kinsol.h").is_file()
+
+    return Step("sundials", "fetching SUNDIALS for the solver kinsol", work, needed, "")
+
+
 # --- goals ----------------------------------------------------------------------------------------------------------
 
 
@@ -418,11 +440,13 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         return [
             system_packages("build"),
             python_environment("build"),
+            sundials(),
             cmake_build(f"cpp-{preset}", title, preset, "iota_tests"),
         ]
     steps = [
         system_packages("build", "test") if goal == "test" else system_packages("build"),
         python_environment("build"),
+        sundials(),
         page_packages(),
         page(),
         engine,

@@ -32,6 +32,7 @@ from iota._core import (
 )
 from iota._core import version as __version__
 from iota.errors import BondError, PageMissingError, StaleIdError, WrongThreadError
+from iota.solvers import Problem, Solution, solve, solver, solver_names
 from iota.world import Camera, Client, Event, RunSummary, World
 
 Sequence.register(Vec3)
@@ -49,9 +50,11 @@ __all__ = [
     "Grip",
     "PageMissingError",
     "Particle",
+    "Problem",
     "Recording",
     "RestructureReport",
     "RunSummary",
+    "Solution",
     "StaleIdError",
     "StepReport",
     "System",
@@ -64,4 +67,7 @@ __all__ = [
     "forces",
     "looks",
     "separate",
+    "solve",
+    "solver",
+    "solver_names",
 ]

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/general/dense.h"
+
+#include <iota/solver.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+namespace iota {
+namespace {
+
+using Equations = std::function<void(std::span<const double>, std::span<double>)>;
+
+struct Given : NonlinearProblem {
+  Given(std::size_t n, Equations f, Equations j = nullptr) : n(n), f(std::move(f)), j(std::move(j)) {}
+  std::size_t size() const override { return n; }
+  void evaluate(std::span<const double> x, std::span<double> out) override { f(x, out); }
+  bool jacobian(std::span<const double> x, std::span<double> out) override {
+    if (j) j(x, out);
+    return static_cast<bool>(j);
+  }
+  std::size_t n;
+  Equations f, j;
+};
+
+Given rosenbrock() {
+  return {2, [](auto x, auto f) { f[0] = 10 * (x[1] - x[0] * x[0]), f[1] = 1 - x[0]; },
+          [](auto x, auto j) { j[0] = -20 * x[0], j[1] = 10, j[2] = -1, j[3] = 0; }};
+}
+
+Given cube_roots_of_one() {
+  return {2, [](auto x, auto f) {
+            f[0] = x[0] * x[0] * x[0] - 3 * x[0] * x[1] * x[1] - 1, f[1] = 3 * x[0] * x[0] * x[1] - x[1] * x[1] * x[1];
+          }};
+}
+
+// Every test below holds for each solver that this build has.
+class AnySolver : public testing::TestWithParam<std::string> {
+ protected:
+  SolverReport solve(NonlinearProblem& problem, std::vector<double>& x, SolverOptions options = {}) {
+    return make_solver(GetParam())->solve(problem, x, options);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(ByName, AnySolver, testing::ValuesIn(solver_names()),
+                         [](const auto& info) { return info.param; });
+
+TEST_P(AnySolver, FindsTheMinimumOfRosenbrocksValleyFromWhereNewtonAloneOvershoots) {
+  Given problem = rosenbrock();
+  std::vector<double> x{-1.2, 1};
+  const SolverReport report = solve(problem, x);
+  EXPECT_TRUE(report.converged) << report.reason;
+  EXPECT_NEAR(x[0], 1, 1e-9);
+  EXPECT_NEAR(x[1], 1, 1e-9);
+  EXPECT_LE(report.residual, 1e-10);
+  EXPECT_GT(report.iterations, 0);
+}
+
+TEST_P(AnySolver, SolvesPowellsBadlyScaledEquations) {
+  Given problem{
+      2, [](auto x, auto f) { f[0] = 1e4 * x[0] * x[1] - 1, f[1] = std::exp(-x[0]) + std::exp(-x[1]) - 1.0001; }};
+  std::vector<double> x{0, 1};
+  const SolverReport report = solve(problem, x);
+  EXPECT_TRUE(report.converged) << report.reason;
+  EXPECT_NEAR(x[0] / 1.098159e-5, 1, 1e-5);  // More, Garbow and Hillstrom 1981, problem 3
+  EXPECT_NEAR(x[1] / 9.106146, 1, 1e-5);
+}
+
+TEST_P(AnySolver, FindsACubeRootOfOneFromNearlyEverywhere) {
+  Given problem = cube_roots_of_one();
+  int found = 0, tried = 0;
+  for (int i = -6; i <= 6; ++i)
+    for (int k = -6; k <= 6; ++k) {
+      std::vector<double> x{0.31 * i + 0.01, 0.29 * k + 0.02};
+      ++tried;
+      if (!solve(problem, x).converged) continue;
+      ++found;
+      const double angle = std::atan2(x[1], x[0]) / (2 * std::numbers::pi / 3);
+      EXPECT_NEAR(std::hypot(x[0], x[1]), 1, 1e-9);
+      EXPECT_NEAR(angle, std::round(angle), 1e-9);
+    }
+  EXPECT_GE(found, 0.97 * tried) << "the line search can end where |f| has a minimum on its way";
+}
+
+TEST_P(AnySolver, NeedsNoJacobian) {
+  Given exact = rosenbrock(), differences{2, exact.f};
+  std::vector<double> x{-1.2, 1};
+  const SolverReport report = solve(differences, x);
+  EXPECT_TRUE(report.converged) << report.reason;
+  EXPECT_GT(report.evaluations, 2 * report.iterations) << "differences count as evaluations";
+}
+
+TEST_P(AnySolver, SolvesLinearEquationsAtOnce) {
+  Given problem{
+      3, [](auto x, auto f) { f[0] = 2 * x[0] + x[1] - 3, f[1] = x[0] - x[1] + x[2], f[2] = 4 * x[2] - x[0] - 2; }};
+  std::vector<double> x{0, 0, 0};
+  const SolverReport report = solve(problem, x);
+  EXPECT_TRUE(report.converged) << report.reason;
+  EXPECT_LE(report.iterations, 3);
+}
+
+TEST_P(AnySolver, SaysSoWhereThereIsNoRoot) {
+  Given problem{1, [](auto x, auto f) { f[0] = x[0] * x[0] + 1; }};
+  std::vector<double> x{3};
+  const SolverReport report = solve(problem, x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_GE(report.residual, 1);
+  EXPECT_FALSE(report.reason.empty());
+  EXPECT_TRUE(std::isfinite(x[0]));
+}
+
+TEST_P(AnySolver, LetsWhatTheEquationsThrowPassAndLeavesTheGuess) {
+  int calls = 0;
+  Given problem{1, [&](auto x, auto f) {
+                  if (++calls == 3) throw std::runtime_error("no such ship");
+                  f[0] = x[0] * x[0] - 2;
+                }};
+  std::vector<double> x{5};
+  EXPECT_THROW((void)solve(problem, x), std::runtime_error);
+  EXPECT_EQ(x[0], 5);
+}
+
+TEST_P(AnySolver, StepsBackFromWhereTheEquationsAreNotFinite) {
+  Given problem{1, [](auto x, auto f) { f[0] = x[0] > 0 ? std::log(x[0]) : std::numeric_limits<double>::quiet_NaN(); }};
+  std::vector<double> x{3};  // Newton's first step leads to 3 - 3 log 3 < 0
+  const SolverReport report = solve(problem, x);
+  EXPECT_TRUE(report.converged) << report.reason;
+  EXPECT_NEAR(x[0], 1, 1e-9);
+}
+
+TEST_P(AnySolver, ReportsEquationsThatAreNowhereFinite) {
+  Given problem{1, [](auto, auto f) { f[0] = std::numeric_limits<double>::quiet_NaN(); }};
+  std::vector<double> x{1};
+  const SolverReport report = solve(problem, x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.residual, std::numeric_limits<double>::infinity());
+}
+
+TEST_P(AnySolver, RefusesBadGuessesAndOptions) {
+  Given problem = rosenbrock();
+  std::vector<double> short_one{1}, not_finite{1, std::numeric_limits<double>::quiet_NaN()}, good{1, 2};
+  EXPECT_THROW((void)solve(problem, short_one), std::invalid_argument);
+  EXPECT_THROW((void)solve(problem, not_finite), std::invalid_argument);
+  EXPECT_THROW((void)solve(problem, good, {.tolerance = 0}), std::invalid_argument);
+  EXPECT_THROW((void)solve(problem, good, {.max_iterations = 0}), std::invalid_argument);
+}
+
+TEST_P(AnySolver, HasNothingToDoForNoEquations) {
+  Given problem{0, [](auto, auto) {}};
+  std::vector<double> x;
+  EXPECT_TRUE(solve(problem, x).converged);
+}
+
+TEST(NewtonRaphson, TakesTheShortestStepWhereTheJacobianIsSingular) {
+  // x + y = 2 twice: a line of roots; the nearest to (3, 0) is (2.5, -0.5).
+  Given problem{2, [](auto x, auto f) { f[0] = x[0] + x[1] - 2, f[1] = 2 * f[0]; },
+                [](auto, auto j) { j[0] = j[1] = 1, j[2] = j[3] = 2; }};
+  std::vector<double> x{3, 0};
+  EXPECT_TRUE(make_solver("newton")->solve(problem, x).converged);
+  EXPECT_NEAR(x[0], 2.5, 1e-12);
+  EXPECT_NEAR(x[1], -0.5, 1e-12);
+}
+
+TEST(NewtonRaphson, SaysThatItStandsAtAMinimumOfTheSizeAndNoRoot) {
+  Given problem = cube_roots_of_one();
+  std::vector<double> x{0, 0};  // f' = 0
+  const SolverReport report = make_solver("newton")->solve(problem, x);
+  EXPECT_FALSE(report.converged);
+  EXPECT_NE(report.reason.find("minimum"), std::string::npos) << report.reason;
+}
+
+TEST(Solvers, CanBeRegisteredUnderANameOfOnesOwn) {
+  struct Bisection final : Solver {
+    Ending search(NonlinearProblem& problem, std::span<double> x, const SolverOptions& options) override {
+      double low = 0, high = 2, f = 0;
+      int count = 0;
+      for (; count < 60; ++count) {
+        x[0] = (low + high) / 2;
+        problem.evaluate(x, {&f, 1});
+        if (std::abs(f) <= options.tolerance) break;
+        (f > 0 ? high : low) = x[0];
+      }
+      return {count, "converged"};
+    }
+  };
+  register_solver("bisection", [] { return std::make_unique<Bisection>(); });
+  Given problem{1, [](auto x, auto f) { f[0] = x[0] * x[0] - 2; }};
+  std::vector<double> x{0};
+  EXPECT_TRUE(make_solver("bisection")->solve(problem, x).converged);
+  EXPECT_NEAR(x[0], std::numbers::sqrt2, 1e-9);
+  Given rootless{1, [](auto, auto f) { f[0] = 1; }};
+  EXPECT_FALSE(make_solver("bisection")->solve(rootless, x).converged) << "what a solver claims is checked";
+}
+
+TEST(Solvers, AreRefusedByNameWithTheNamesThatThereAre) {
+  try {
+    (void)make_solver("nwton");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("\"newton\""), std::string::npos);
+  }
+  const auto factory = [] { return make_solver("newton"); };
+  EXPECT_THROW(register_solver("", factory), std::invalid_argument);
+  EXPECT_THROW(register_solver("direct", factory), std::invalid_argument);
+  EXPECT_THROW(register_solver(std::string(40, 'x'), factory), std::invalid_argument);
+  EXPECT_THROW(register_solver("none", nullptr), std::invalid_argument);
+}
+
+TEST(Svd, RebuildsRandomMatricesOfAnyShape) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (const auto& [rows, columns] : {std::pair{1, 1}, {4, 4}, {7, 3}, {3, 7}, {12, 12}}) {
+    solver::Dense a(static_cast<std::size_t>(rows), static_cast<std::size_t>(columns));
+    for (double& v : a.values) v = number(random);
+    const solver::Svd svd = solver::calc_svd(a);
+    EXPECT_TRUE(std::is_sorted(svd.s.rbegin(), svd.s.rend()));
+    for (std::size_t i = 0; i < a.rows; ++i)
+      for (std::size_t j = 0; j < a.columns; ++j) {
+        double value = 0;
+        for (std::size_t k = 0; k < svd.s.size(); ++k) value += svd.u(i, k) * svd.s[k] * svd.v(j, k);
+        EXPECT_NEAR(value, a(i, j), 1e-14);
+      }
+  }
+}
+
+TEST(Svd, KnowsTheConditionOfAHilbertMatrix) {
+  solver::Dense hilbert(8, 8);
+  for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t j = 0; j < 8; ++j) hilbert(i, j) = 1.0 / static_cast<double>(i + j + 1);
+  const solver::Svd svd = solver::calc_svd(hilbert);
+  EXPECT_NEAR(svd.s.front() / svd.s.back() / 1.5257575e10, 1, 1e-5);  // e.g. Higham 2002, table 28.1
+}
+
+TEST(Svd, CountsTheRankOfRedundantRows) {
+  solver::Dense a(4, 3);
+  for (std::size_t j = 0; j < 3; ++j)
+    a(0, j) = 1.0 + double(j), a(1, j) = double(j * j), a(2, j) = a(0, j) - 2 * a(1, j);
+  const solver::Svd svd = solver::calc_svd(a);
+  EXPECT_EQ(svd.rank(1e-12), 2u);
+}
+
+TEST(DenseLu, RefusesSingularMatricesAndSolvesOthers) {
+  solver::Dense a(2, 2);
+  a(0, 1) = 2, a(1, 0) = 3, a(1, 1) = 1;
+  solver::DenseLu lu;
+  ASSERT_TRUE(lu.factorise(a));
+  std::vector<double> b{4, 5};
+  lu.solve(b);
+  EXPECT_NEAR(b[0], 1, 1e-15);
+  EXPECT_NEAR(b[1], 2, 1e-15);
+  a(0, 1) = 0;
+  EXPECT_FALSE(lu.factorise(a));
+}
+
+}  // namespace
+}  // namespace iota
