@@ -16,7 +16,8 @@ if(SKBUILD)
 endif()
 
 if(SKBUILD AND IOTA_PREBUILT)
-  install(DIRECTORY "${IOTA_PREBUILT}/" DESTINATION iota COMPONENT python FILES_MATCHING PATTERN "_core.*")
+  install(DIRECTORY "${IOTA_PREBUILT}/" DESTINATION iota COMPONENT python
+          FILES_MATCHING PATTERN "_core.*" PATTERN "libtbb.so*")
   add_custom_target(everyday)
   return()
 endif()
@@ -41,6 +42,14 @@ target_link_libraries(_core PRIVATE iota_engine iota_net)
 # Only the module's entry point is seen from outside: nothing of Boost or of ours can clash with another extension.
 target_link_options(_core PRIVATE "$<$<PLATFORM_ID:Linux>:-Wl,--exclude-libs,ALL>")
 
+# oneTBB goes along: a wheel works where it is not installed. (Apache-2.0, see LICENSES/oneTBB.txt.)
+if(IOTA_THREADS)
+  add_custom_command(TARGET _core POST_BUILD
+    COMMAND "${CMAKE_COMMAND}" -E copy_if_different "$<TARGET_FILE:TBB::tbb>"
+            "$<TARGET_FILE_DIR:_core>/$<TARGET_SONAME_FILE_NAME:TBB::tbb>")
+  set_target_properties(_core PROPERTIES BUILD_RPATH_USE_ORIGIN ON BUILD_RPATH "$ORIGIN" INSTALL_RPATH "$ORIGIN")
+endif()
+
 set(iota_stub "${CMAKE_CURRENT_BINARY_DIR}/python/iota/_core.pyi")
 set(iota_stub_patterns "${CMAKE_CURRENT_SOURCE_DIR}/bindings/stub_patterns.txt")
 if(NOT EXISTS "${iota_stub_patterns}")
@@ -58,4 +67,7 @@ add_custom_target(everyday DEPENDS _core iota_stub)
 if(SKBUILD)
   install(TARGETS _core LIBRARY DESTINATION iota COMPONENT python)
   install(FILES "${iota_stub}" DESTINATION iota COMPONENT python)
+  if(IOTA_THREADS)
+    install(FILES "$<TARGET_FILE_DIR:_core>/$<TARGET_SONAME_FILE_NAME:TBB::tbb>" DESTINATION iota COMPONENT python)
+  endif()
 endif()

@@ -378,7 +378,7 @@ def wheel() -> Step:
     stamp = BUILD / "stamps" / "wheel"
 
     def now() -> str:
-        built = sorted((BUILD / "python" / "iota").glob("_core.*"))
+        built = sorted(path for path in (BUILD / "python" / "iota").glob("*") if path.is_file())
         project = [
             ROOT / "pyproject.toml",
             ROOT / "README.md",

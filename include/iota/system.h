@@ -41,6 +41,7 @@ struct SystemOptions {
   Vec3 gravity{0, -9.81, 0};  ///< m/s^2
   IntegrationMode mode = IntegrationMode::energy_keeping;
   double damping = 0;  ///< 1/s, all bodies: velocities fall by exp(-damping t)
+  int threads = 0;     ///< that share a step, 0: one a core. Results are the same bits for any number
 };
 
 struct BodyOptions {
@@ -212,6 +213,10 @@ class System {
 
   /// @name Time
   ///@{
+  int threads() const;
+  /// How many threads share a step; 0: one a core. No part of the state: it changes how soon, not what. Small steps are
+  /// taken by the calling thread alone.
+  void set_threads(int);
   /// Advances by dt seconds (0 < dt <= 1). Never throws for numerical reasons.
   StepReport step(double dt);
   bool is_stepping() const;

@@ -334,7 +334,7 @@ void System::Implementation::hold_again(const std::vector<HeldPoint>& held) {
 }
 
 void System::Implementation::settle(std::span<const std::uint32_t> bodies, bool positions, RestructureReport& report) {
-  islands.update(model);
+  islands.update(model, parallel);
   std::vector<step::Island*> settled;
   for (const std::uint32_t body : bodies) {
     step::Island* island = islands.of_articulate(model.bodies[body].articulate);
@@ -411,7 +411,7 @@ RestructureReport System::Implementation::apply(const step::CombineParticles& c)
   const model::Ring& ring_p = model.rings[model.particles[p].ring];
   const model::Ring& ring_q = model.rings[model.particles[q].ring];
   const bool gentle = unrelated && ring_p.position == ring_q.position && ring_p.velocity == ring_q.velocity &&
-                      !ring_p.nailed && !ring_q.nailed;
+                      !(ring_p.nailed && ring_q.nailed);
   return restructure(std::array{body_p, body_q}, gentle,
                      [&](RestructureReport& report) { return combine_particles(model, p, q, report); });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/parallel.h"
 #include "model/model.h"
 #include "model/restructure.h"
 #include "step/commands.h"
@@ -16,6 +17,8 @@ namespace iota {
 struct System::Implementation {
   model::Model model;
   step::Islands islands;
+  Parallel parallel;
+  std::vector<solver::AdvanceReport> advanced;  // of each island, in the step at hand
   std::map<std::uint64_t, ScriptedLaw> scripts;  // functions of scripted bonds; not part of the saved state
   std::uint64_t next_script = 1;
   std::uint64_t scripts_saved_below = 0;  // keys that the latest snapshot may name

@@ -144,7 +144,6 @@ void Island::add_bonds(const Model& model, const std::vector<std::uint32_t>& nod
 
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
                       std::vector<std::uint32_t>& node_of_ring) {
-  node_of_ring.resize(model.rings.slot_count(), none);
   *this = Island{};
   double total_mass = 0;
   for (const std::uint32_t articulate : articulates)

@@ -13,9 +13,13 @@ namespace iota::step {
 /// Articulates that bonds tie together, as one problem for the solver: the only translation between model and solver.
 class Island {
  public:
-  /// Builds the problem's structure; `node_of_ring` is scratch, `none` everywhere before and after.
+  /// Builds the problem's structure; `node_of_ring` is scratch for all rings, `none` everywhere before and after. Islands
+  /// have no ring in common, so they may be built at once with the same scratch.
   void assemble(const model::Model&, std::span<const std::uint32_t> articulates,
                 std::vector<std::uint32_t>& node_of_ring);
+
+  /// Points to solve for: a measure of the work.
+  std::size_t size() const { return rings_.size(); }
 
   /// Puts carried particles where their basis has them. In a conflict that moves them; momentum is then given back by a
   /// translation, unless something is pinned.

@@ -22,7 +22,7 @@ void Islands::drop(std::uint32_t leader) {
   }
 }
 
-void Islands::update(Model& model) {
+void Islands::update(Model& model, const Parallel& parallel) {
   model.take_touched(touched_);
   if (!knows_all_) {
     touched_.clear();
@@ -36,7 +36,7 @@ void Islands::update(Model& model) {
   is_waiting_.resize(slots, 0);
 
   // 1. What was touched, and all that shared an island with it, is without one.
-  waiting_.clear();
+  waiting_.clear(), fresh_.clear();
   for (const std::uint32_t a : touched_) {
     if (leader_of_[a] != none)
       drop(leader_of_[a]);
@@ -72,20 +72,43 @@ void Islands::update(Model& model) {
       leader_of_[members_[m]] = leader;
       next_member_[members_[m]] = m + 1 < members_.size() ? members_[m + 1] : none;
     }
-    island_of_leader_[leader] = std::make_unique<Island>();
-    island_of_leader_[leader]->assemble(model, members_, node_of_ring_);
-    island_of_leader_[leader]->carry_along(model);
+    fresh_.push_back(leader);
   }
+
+  // 3. Build them; each by itself, so at once where there are many.
+  node_of_ring_.resize(model.rings.slot_count(), none);
+  for (const std::uint32_t leader : fresh_) island_of_leader_[leader] = std::make_unique<Island>();
+  parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
+    std::vector<std::uint32_t> members;
+    for (std::uint32_t a = fresh_[i]; a != none; a = next_member_[a]) members.push_back(a);
+    Island& island = *island_of_leader_[fresh_[i]];
+    island.assemble(model, members, node_of_ring_);
+    island.carry_along(model);
+  });
 }
 
 std::span<Island* const> Islands::all() {
   if (order_is_old_) {
     in_order_.clear();
-    for (const auto& island : island_of_leader_)
-      if (island) in_order_.push_back(island.get());
+    total_size_ = largest_size_ = 0;
+    for (const auto& island : island_of_leader_) {
+      if (!island) continue;
+      in_order_.push_back(island.get());
+      total_size_ += island->size();
+      largest_size_ = std::max(largest_size_, island->size());
+    }
     order_is_old_ = false;
   }
   return in_order_;
+}
+
+std::size_t Islands::grain(const Parallel& parallel) {
+  (void)all();
+  // A second thread takes about 20 us to join in; a point takes about a quarter of one. Where one island is most of the
+  // work there is nothing to share out.
+  constexpr std::size_t worthwhile = 400;  // points
+  if (parallel.threads() == 1 || total_size_ - largest_size_ < worthwhile) return in_order_.size();
+  return std::max<std::size_t>(1, in_order_.size() * 64 / total_size_);
 }
 
 }  // namespace iota::step

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/parallel.h"
 #include "step/island.h"
 
 namespace iota::step {
@@ -8,10 +9,12 @@ namespace iota::step {
 /// All islands of a model, re-made only where articulates or what ties them changed: an edit costs what it touches.
 class Islands {
  public:
-  void update(model::Model&);
+  void update(model::Model&, const Parallel&);
   void forget();
   /// In the order of the lowest slot among their articulates, so that a restored model has the same.
   std::span<Island* const> all();
+  /// How many islands a thread should take in one go: all where threads would not pay.
+  std::size_t grain(const Parallel&);
   Island* of_articulate(std::uint32_t articulate) const { return island_of_leader_[leader_of_[articulate]].get(); }
 
  private:
@@ -22,8 +25,9 @@ class Islands {
   std::vector<std::uint32_t> leader_of_;
   std::vector<std::uint32_t> next_member_;  // list of the articulates of one island, from its leader on
   std::vector<std::uint8_t> is_waiting_;    // to be put into an island
-  std::vector<std::uint32_t> touched_, waiting_, members_;
+  std::vector<std::uint32_t> touched_, waiting_, members_, fresh_;
   std::vector<Island*> in_order_;
+  std::size_t total_size_ = 0, largest_size_ = 0;  // of those in order, points
   std::vector<std::uint32_t> node_of_ring_;
   bool knows_all_ = false, order_is_old_ = true;
 };

@@ -42,6 +42,7 @@ std::vector<Id> ids_of(const Table& table) {
 }  // namespace
 
 System::System(const SystemOptions& options) : implementation_(std::make_unique<Implementation>()) {
+  set_threads(options.threads);
   set_gravity(options.gravity);
   set_damping(options.damping);
   set_mode(options.mode);
@@ -114,6 +115,11 @@ void System::set_velocity(ParticleId p, const Vec3& value) { implementation_->ex
 void System::set_mass(ParticleId p, double value) { implementation_->execute(step::SetMass{p, value}); }
 void System::apply_force(ParticleId p, const Vec3& value) { implementation_->execute(step::ApplyForce{p, value}); }
 void System::set_active(BondId bond, bool active) { implementation_->execute(step::SetActive{bond, active}); }
+int System::threads() const { return implementation_->parallel.threads(); }
+void System::set_threads(int threads) {
+  if (implementation_->stepping) throw std::logic_error("set_threads: not while the system steps");
+  implementation_->parallel = Parallel(threads);
+}
 StepReport System::step(double dt) { return implementation_->execute(step::Step{dt}); }
 
 // --- reading ----------------------------------------------------------------------------------------------------------

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Many small articulates: what a crowd costs a step, and what taking it apart and putting it together costs.
+#include "scenes/ragdoll.h"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+#include <vector>
+
+namespace iota::bench {
+namespace {
+
+std::vector<scenes::Ragdoll> make_crowd(System& system, int count) {
+  std::vector<scenes::Ragdoll> crowd;
+  for (int i = 0; i < count; ++i) crowd.push_back(scenes::make_ragdoll(system, {2.0 * (i % 32), 3, 2.0 * (i / 32)}));
+  for (scenes::Ragdoll& doll : crowd) system.nail(doll.hinges[5].second);  // each hangs by its neck and swings
+  return crowd;
+}
+
+/// One step at 60 Hz by the clock on the wall: threads count.
+void fall(benchmark::State& state, IntegrationMode mode) {
+  const int count = static_cast<int>(state.range(0));
+  System system({.mode = mode, .threads = static_cast<int>(state.range(1))});
+  (void)make_crowd(system, count);
+  const double start = system.energy().total();
+  double gap = 0, kinetic = 0, highest = start;
+  int fallbacks = 0, unconverged = 0;
+  std::vector<double> step_ms;
+  for (auto _ : state) {
+    const auto begin = std::chrono::steady_clock::now();
+    const StepReport report = system.step(1.0 / 60);
+    step_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    gap = std::max(gap, report.worst_gap);
+    kinetic = std::max(kinetic, report.energy.kinetic);
+    highest = std::max(highest, report.energy.total());
+    fallbacks += report.fallbacks, unconverged += report.unconverged;
+  }
+  std::sort(step_ms.begin(), step_ms.end());
+  state.counters["step_ms_p50"] = step_ms[step_ms.size() / 2];
+  state.counters["step_ms_p99"] = step_ms[step_ms.size() * 99 / 100];
+  state.counters["gap_m"] = gap;
+  state.counters["energy_gain"] = (highest - start) / kinetic;
+  state.counters["energy_change"] = (system.energy().total() - start) / kinetic;
+  state.counters["fallbacks"] = fallbacks;
+  state.counters["unconverged"] = unconverged;
+}
+BENCHMARK_CAPTURE(fall, robust, IntegrationMode::robust)
+    ->Name("ragdolls/robust")
+    ->Args({1000, 1})
+    ->Args({1000, 2})
+    ->Iterations(120)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(fall, energy_keeping, IntegrationMode::energy_keeping)
+    ->Name("ragdolls/energy_keeping")
+    ->Args({1000, 1})
+    ->Args({1000, 2})
+    ->Iterations(120)
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+/// One separate and one combine of a random hinge among 500 figures (10 000 bodies).
+void separate_combine(benchmark::State& state) {
+  System system;
+  const std::vector<scenes::Ragdoll> crowd = make_crowd(system, 500);
+  (void)system.step(1.0 / 60);
+  std::mt19937 random(1);
+  for (auto _ : state) {
+    const scenes::Ragdoll& doll = crowd[random() % crowd.size()];
+    const auto& [inner, outer] = doll.hinges[random() % doll.hinges.size()];
+    benchmark::DoNotOptimize(system.separate(inner, outer));
+    benchmark::DoNotOptimize(system.combine(inner, outer));
+  }
+  state.counters["pairs_per_s"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(separate_combine)->Name("ragdolls/separate_combine");
+
+}  // namespace
+}  // namespace iota::bench

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+
+namespace iota {
+
+/// Cores that this process may use, at least 1.
+int available_threads();
+
+/// Work shared among threads (oneTBB). What runs at once must touch different data; then results do not depend on the
+/// number of threads or on who took what. With one thread everything runs where it is called, in order.
+class Parallel {
+ public:
+  /// threads: how many, the calling one included; 0: all cores.
+  explicit Parallel(int threads = 0);
+  ~Parallel();
+  Parallel(Parallel&&) noexcept;
+  Parallel& operator=(Parallel&&) noexcept;
+
+  int threads() const { return threads_; }
+
+  /// Calls work(i) once for every i in [0, count), at most `grain` of them in one go. `work` must not throw.
+  /// Serial where there is no second thread or no second grain. Allocates nothing when warm.
+  template <class Work>
+  void for_each(std::size_t count, std::size_t grain, Work&& work) const {
+    if (threads_ == 1 || count <= grain) {
+      for (std::size_t i = 0; i < count; ++i) work(i);
+      return;
+    }
+    using Function = std::remove_reference_t<Work>;
+    run(count, grain, const_cast<void*>(static_cast<const void*>(&work)), [](void* function, std::size_t i) {
+      (*static_cast<Function*>(function))(i);
+    });
+  }
+
+ private:
+  void run(std::size_t count, std::size_t grain, void* work, void (*call)(void*, std::size_t)) const;
+
+  int threads_ = 1;
+  struct Arena;  // made when first needed
+  mutable std::unique_ptr<Arena> arena_;
+};
+
+}  // namespace iota
