@@ -20,7 +20,8 @@ PyType_Slot system_slots[] = {
 constexpr const char* doc =
     "A world of particles, bodies and bonds that is advanced step by step. SI units, right-handed, y up.\n\n"
     "gravity: m/s^2. mode: 'energy_keeping' (mid-point discrete gradient; falls back to 'robust' where it must, and says\n"
-    "so) or 'robust' (backward Euler; never fails, dissipates). damping: 1/s, all velocities fall by exp(-damping t).\n\n"
+    "so) or 'robust' (backward Euler; never fails, dissipates). damping: 1/s, all velocities fall by exp(-damping t).\n"
+    "threads: how many share a step, 0: one a core; the results are the same bits for any number.\n\n"
     "A system belongs to the thread that made it; while a World runs it, to the World's. Other threads get\n"
     "WrongThreadError.\n\n"
     "    system = iota.System()\n"
@@ -78,7 +79,11 @@ void bind_settings(nb::class_<SystemObject>& type) {
           [](SystemObject& self, double value) {
             self.use_between_steps("damping = ...").set_damping(finite_not_negative(value, "damping", "1/s"));
           },
-          "1/s: all velocities fall by exp(-damping t).");
+          "1/s: all velocities fall by exp(-damping t).")
+      .def_prop_rw(
+          "threads", [](SystemObject& self) { return self.use().threads(); },
+          [](SystemObject& self, int value) { self.use_between_steps("threads = ...").set_threads(value); },
+          "How many threads share a step; assign 0 for one a core. No part of the state: results are the same bits.");
 }
 
 void bind_readings(nb::class_<SystemObject>& type) {
@@ -198,14 +203,16 @@ void bind_system(nb::module_& module) {
   nb::class_<SystemObject> type(module, "System", doc, nb::type_slots(system_slots), nb::is_weak_referenceable());
   type.def(
       "__init__",
-      [](SystemObject* self, VectorArgument gravity, const ModeWord& mode, double damping) {
+      [](SystemObject* self, VectorArgument gravity, const ModeWord& mode, double damping, int threads) {
         SystemOptions options;
         options.gravity = to_vec3(gravity, "gravity");
         options.mode = to_mode(mode);
         options.damping = finite_not_negative(damping, "damping", "1/s");
+        options.threads = threads;
         new (self) SystemObject(options);
       },
-      "gravity"_a = nb::make_tuple(0.0, -9.81, 0.0), "mode"_a = ModeWord{"energy_keeping"}, "damping"_a = 0.0);
+      "gravity"_a = nb::make_tuple(0.0, -9.81, 0.0), "mode"_a = ModeWord{"energy_keeping"}, "damping"_a = 0.0,
+      "threads"_a = 0);
   bind_settings(type);
   bind_readings(type);
   bind_poses(type);

@@ -383,7 +383,7 @@ def wheel() -> Step:
             ROOT / "pyproject.toml",
             ROOT / "README.md",
             ROOT / "LICENSE",
-            ROOT / "LICENSES" / "SUNDIALS.txt",
+            *sorted((ROOT / "LICENSES").glob("*.txt")),
             ROOT / "cmake" / "python.cmake",
         ]
         return digest(project, built, files_under(PAGE), files_under(PACKAGE, skip=["page"]))

@@ -63,6 +63,18 @@ def test_the_wheel_holds_engine_page_stub_and_types_once_each(wheel: Path) -> No
     assert any(name.endswith("LICENSE") for name in names)
 
 
+def test_the_wheel_brings_its_own_onetbb(environment: Path, tmp_path: Path) -> None:
+    if not Path("/proc/self/maps").exists():
+        pytest.skip("only Linux tells which libraries a process has loaded")
+    code = "import iota; print(*[line.split()[-1] for line in open('/proc/self/maps') if 'libtbb.' in line], sep='\\n')"
+    done = subprocess.run(
+        [environment / "bin" / "python", "-c", code], cwd=tmp_path, env=bare_environment(), capture_output=True,
+        text=True, check=True,
+    )  # fmt: skip
+    loaded = set(done.stdout.split())
+    assert loaded and all(Path(name).is_relative_to(environment) for name in loaded), loaded
+
+
 def test_the_wheel_runs_the_chain_headless(environment: Path, tmp_path: Path) -> None:
     command = [environment / "bin" / "iota", "run", "chain", "--headless", "--seconds", "1", "--json"]
     done = subprocess.run(
