@@ -15,6 +15,11 @@ struct Mat3 {
   static Mat3 outer(const Vec3& a, const Vec3& b) {
     return {{{a.x * b.x, a.x * b.y, a.x * b.z}, {a.y * b.x, a.y * b.y, a.y * b.z}, {a.z * b.x, a.z * b.y, a.z * b.z}}};
   }
+  /// [v]x: times w it is v x w.
+  static Mat3 cross_matrix(const Vec3& v) { return {{{0, -v.z, v.y}, {v.z, 0, -v.x}, {-v.y, v.x, 0}}}; }
+  Mat3 transposed() const {
+    return {{{m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}}};
+  }
   Mat3& operator+=(const Mat3& b) {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) m[i][j] += b.m[i][j];

@@ -53,9 +53,10 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
+      const Gradients<C> gradients(c, problem.position.data(), stage.fraction_start);
       for (int i = 0; i < c.node_count(); ++i) {
         Vec3 rows[C::rows];
-        c.gradient(problem.position.data(), i, rows);
+        gradients.of_node(i, rows);
         for (int r = 0; r < C::rows; ++r) pull_[c.nodes[i]] -= pool.multiplier(k)[r] * rows[r];
       }
     }
@@ -82,6 +83,7 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
   make_guess(problem, stage);
   const NewtonReport newton = newton_.solve(problem, stage, guess_);
   ++report.solves;
+  switched_ = newton.switched;
   report.iterations += newton.iterations;
   report.iterations_max = std::max(report.iterations_max, newton.iterations);
   return newton.converged;
@@ -106,21 +108,48 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
     for (std::uint32_t i = 0; i < c.count; ++i) moved += c.weights[i] * (x1[c.nodes[i]] - x0[c.nodes[i]]);
     work -= dot(Vec3{l[0], l[1], l[2]}, moved);
   }
+  work += work_of_drives(problem, stage);
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const Vec3 moved = x1[i] - problem.position[i];
     work += dot(problem.force[i], moved);
     problem.velocity[i] = stage.midpoint ? (2 / stage.h) * moved - problem.velocity[i] : (1 / stage.h) * moved;
     problem.position[i] = x1[i];
   }
-  take_stock(problem);
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    if constexpr (TrackingConstraint<C>)
+      for (C& c : pool.items) c.track(problem.position.data(), stage.fraction);
+  });
+  take_stock(problem, stage.fraction);
   report.external_work += work;
   report.dissipated += before + work - energy_;
   ++report.substeps;
 }
 
-void Integrator::take_stock(const Problem& problem) {
+// What moving targets feed in: lambda dg/dt. A motor that does not keep up is a drive behind a slipping clutch: what slips
+// away is dissipated.
+double Integrator::work_of_drives(const Problem& problem, const Stage& stage) const {
+  double work = 0;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      if constexpr (GeneralConstraint<C>)
+        if (pool.items[k].is_moving()) {
+          double before[C::rows], after[C::rows];
+          pool.items[k].value(newton_.solution().data(), stage.fraction_start, before);
+          pool.items[k].value(newton_.solution().data(), stage.fraction, after);
+          for (int r = 0; r < C::rows; ++r) work += pool.multiplier(k)[r] * (after[r] - before[r]);
+        }
+      if (pool.has_laws())
+        for (int r = 0; r < C::rows; ++r)
+          if (pool.law(k)[r].hold) work -= pool.multiplier(k)[r] * pool.law(k)[r].rate * stage.h;
+    }
+  });
+  return work;
+}
+
+void Integrator::take_stock(const Problem& problem, double fraction) {
   kinetic_ = problem.kinetic_energy();
-  energy_ = kinetic_ + problem.potential_energy(problem.position.data());
+  energy_ = kinetic_ + problem.potential_energy(problem.position.data()) +
+            problem.row_energy(problem.position.data(), fraction);
 }
 
 // The mid-point rule only fixes the mean of two successive multipliers; the mean is the better start for the next solve
@@ -160,7 +189,8 @@ bool Integrator::gains_energy(const Problem& problem, const Stage& stage) {
   const auto x1 = newton_.solution();
   for (std::size_t i = 0; i < problem.size(); ++i) velocity_[i] = (1 / stage.h) * (x1[i] - problem.position[i]);
   const double kinetic = 0.5 * problem.mass_norm2(velocity_.data());
-  const double gain = kinetic + problem.potential_energy(x1.data()) - energy_;
+  const double gain =
+      kinetic + problem.potential_energy(x1.data()) + problem.row_energy(x1.data(), stage.fraction) - energy_;
   return !(gain <= 1e-9 * (kinetic_ + kinetic) + 1e-12);
 }
 
@@ -173,8 +203,15 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
   };
   if (depth < max_depth && will_turn_too_far(problem, h)) return halve();  // do not even try
   save_multipliers(problem);
-  const Stage stage = Stage::mid_point(h, to);
-  if (try_step(problem, stage, report) && !turns_too_far(problem)) {
+  const Stage stage = Stage::mid_point(h, from, to);
+  const bool solved = try_step(problem, stage, report);
+  if (solved && switched_ > 0) {
+    restore_multipliers(problem);
+    ++report.impacts;
+    advance_end_point(problem, h, from, to, depth, report);
+    return absorb_impact(problem, to, report);
+  }
+  if (solved && !turns_too_far(problem)) {
     commit(problem, stage, report);
     smooth_multipliers(problem);
     return;
@@ -187,10 +224,18 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
   halve();
 }
 
+// Rows that have just met leave velocities that they no longer allow; the mid-point rule would throw them back.
+void Integrator::absorb_impact(Problem& problem, double to, AdvanceReport& report) {
+  const double before = energy_;
+  newton_.project_velocities(problem, conservative_ ? 0 : step_length_, true);
+  take_stock(problem, to);
+  report.dissipated += before - energy_;
+}
+
 void Integrator::advance_end_point(Problem& problem, double h, double from, double to, int depth,
                                    AdvanceReport& report) {
   save_multipliers(problem);
-  Stage stage = Stage::end_point(h, to);
+  Stage stage = Stage::end_point(h, from, to);
   const bool solved = try_step(problem, stage, report);
   if (solved && !(depth < max_depth && gains_energy(problem, stage))) return commit(problem, stage, report);
   restore_multipliers(problem);
@@ -219,11 +264,11 @@ void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
   }
   (void)project_positions(problem);
   project_velocities(problem);
-  take_stock(problem);
+  take_stock(problem, 1);
   if (!std::isfinite(energy_)) {
     problem.position = start_position_;
     std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
-    take_stock(problem);
+    take_stock(problem, 1);
   }
   report.dissipated += before - energy_;
   ++report.substeps;
@@ -243,12 +288,15 @@ AdvanceReport Integrator::advance(Problem& problem, double h, Scheme scheme) {
   AdvanceReport report;
   conservative_ = std::get<ForcePool<GripForce>>(problem.forces).items.empty();
   for (const Vec3& f : problem.force) conservative_ = conservative_ && f == Vec3{};
-  for (const auto& c : std::get<ConstraintPool<AffineConstraint>>(problem.constraints).items)
-    conservative_ = conservative_ && c.target == c.target_start;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    for (const auto& c : pool.items) conservative_ = conservative_ && !c.is_moving();
+    for (const RowLaw& law : pool.laws) conservative_ = conservative_ && (law.rate == 0 || law.is_off());
+  });
+  step_length_ = h;
   close_gaps(problem, report);
   std::copy(problem.position.begin(), problem.position.end(), start_position_.begin());
   std::copy(problem.velocity.begin(), problem.velocity.end(), start_velocity_.begin());
-  take_stock(problem);
+  take_stock(problem, 0);
   const double start_kinetic = kinetic_, start_energy = energy_;
   if (scheme == Scheme::mid_point)
     advance_mid_point(problem, h, 0, 1, 0, report);
@@ -261,7 +309,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, Scheme scheme) {
     std::copy(start_velocity_.begin(), start_velocity_.end(), problem.velocity.begin());
     report.dissipated += energy_ - start_energy;  // taken out of the book again
     report.converged = false;
-    take_stock(problem);
+    take_stock(problem, 0);
     coast(problem, h, report);
   }
   return report;
@@ -277,8 +325,13 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     report.converged = false;
     holds_offsets_ = true;
     problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
-      for (std::size_t i = 0; i < pool.items.size(); ++i)
-        pool.items[i].value(problem.position.data(), 0, pool.offsets.data() + i * C::rows);
+      for (std::size_t i = 0; i < pool.items.size(); ++i) {
+        double* const offset = pool.offsets.data() + i * C::rows;
+        pool.items[i].value(problem.position.data(), 0, offset);
+        if (pool.has_laws())
+          for (int r = 0; r < C::rows; ++r)
+            if (pool.law(i)[r].violation(offset[r]) == 0) offset[r] = 0;
+      }
     });
   }
   project_velocities(problem);
@@ -320,7 +373,10 @@ bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
       for (std::size_t i = 0; i < pool.items.size(); ++i) {
         double* const offset = pool.offsets.data() + i * C::rows;
         pool.items[i].value(problem.position.data(), 0, offset);
-        for (int r = 0; r < C::rows; ++r) offset[r] *= (remaining - part) / remaining;
+        for (int r = 0; r < C::rows; ++r) {
+          offset[r] *= (remaining - part) / remaining;
+          if (pool.has_laws() && pool.law(i)[r].violation(offset[r]) == 0) offset[r] = 0;
+        }
       }
     });
     solved = attempt(1e-12, 10);

@@ -17,6 +17,7 @@ struct [[nodiscard]] AdvanceReport {
   int iterations_max = 0;
   int substeps = 0;
   int fallbacks = 0;  ///< mid-point sub-steps that had to be taken by the end-point scheme
+  int impacts = 0;    ///< sub-steps in which bounded rows met or let go: taken by the end-point scheme, inelastic
   bool converged = true;
   double external_work = 0;   ///< of explicit forces, grips and moving targets, J
   double dissipated = 0;      ///< J
@@ -45,7 +46,9 @@ class Integrator {
   void make_guess(const Problem&, const Stage&);
   bool try_step(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);
-  void take_stock(const Problem&);
+  void take_stock(const Problem&, double fraction);
+  void absorb_impact(Problem&, double to, AdvanceReport&);
+  double work_of_drives(const Problem&, const Stage&) const;
   void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   void advance_end_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   bool will_turn_too_far(const Problem&, double h) const;
@@ -64,9 +67,11 @@ class Integrator {
   std::vector<Vec3> guess_, pull_, velocity_, start_position_, start_velocity_;
   std::vector<double> lumped_mass_;
   std::vector<double> multipliers_saved_;
+  double step_length_ = 0;           ///< of the whole step, s
   double kinetic_ = 0, energy_ = 0;  ///< of the problem's state as it is now, J
   bool conservative_ = true;         ///< nothing outside does work during this step
   bool holds_offsets_ = false;
+  int switched_ = 0;  ///< bounded rows that changed sides in the latest solve
 };
 
 }  // namespace iota::solver

@@ -17,18 +17,22 @@ struct Stage {
   double inertia = 1;
   bool midpoint = false;
   double fraction = 1;        ///< of the step, for targets that move during it
+  double fraction_start = 0;  ///< where this (sub-)step begins
   double compliance = 1e-12;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
 
   double tolerance = 1e-9;  ///< of the scaled residual; gaps end at about this fraction of a link
   int max_iterations = 60;
 
   bool is_projection() const { return h == 0; }
-  static Stage end_point(double h, double fraction) { return {.h = h, .inertia = 1 / (h * h), .fraction = fraction}; }
-  static Stage mid_point(double h, double fraction) {
+  static Stage end_point(double h, double from, double to) {
+    return {.h = h, .inertia = 1 / (h * h), .fraction = to, .fraction_start = from};
+  }
+  static Stage mid_point(double h, double from, double to) {
     return {.h = h,
             .inertia = 2 / (h * h),
             .midpoint = true,
-            .fraction = fraction,
+            .fraction = to,
+            .fraction_start = from,
             .tolerance = 1e-10,
             .max_iterations = 30};
   }
@@ -38,6 +42,7 @@ struct Stage {
 struct [[nodiscard]] NewtonReport {
   bool converged = false;
   int iterations = 0;
+  int switched = 0;     ///< bounded rows that went from one side to another: impacts, slip, slack
   double residual = 0;  ///< scaled, dimensionless
   double violation =
       0;  ///< of the constraints alone, as a fraction of their reference lengths: compliance lets conflicting
@@ -47,6 +52,11 @@ struct [[nodiscard]] NewtonReport {
 /// Newton's method with exact geometric stiffness, globalised: a step is taken when the scaled residual or an l1 merit
 /// falls; the Hessian is clamped to positive semi-definite once full steps stop halving the residual or a pivot has the
 /// wrong sign. `docs/solver.md` gives the measurements behind each rule.
+///
+/// Rows with bounds (RowLaw): primal-dual active set (Hintermueller, Ito, Kunisch 2002). At each iteration a row is at the
+/// bound beyond which lambda + g / (natural compliance) lies, or free; at a bound it keeps its place in the matrix, as
+/// an identity. All rows change at once while that lessens how many are wrong, else one at a time, lowest first, which
+/// cannot cycle (Judice and Pires 1994).
 class Newton {
  public:
   /// Analyses the structure of the problem; call again whenever nodes, constraints or forces were added or removed.
@@ -59,8 +69,9 @@ class Newton {
 
   /// The velocity nearest to `velocity` in the mass norm with G(position) v = rate, in place; rate is that of targets and
   /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what
-  /// nails take.
-  void project_velocities(Problem& problem, double h);
+  /// nails take. Of bounded rows those count that are met and would take an impulse; `as_solved`: those that the latest
+  /// solve left free.
+  void project_velocities(Problem& problem, double h, bool as_solved = false);
 
   double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
 
@@ -70,9 +81,25 @@ class Newton {
   NewtonReport solve_as(Problem&, const Stage&);
   template <bool Midpoint>
   double residual(const Problem&, const Stage&, const Vec3* x);
+  template <bool Midpoint, bool Laws, class C>
+  void add_rows(const Problem&, const Stage&, const ConstraintPool<C>&, const Vec3* x);
+  template <bool Midpoint, bool Laws, class C>
+  void assemble_rows(const Problem&, const Stage&, const ConstraintPool<C>&, Hessian);
+  void begin_sides(Problem&, const Stage&);
+  bool choose_sides(Problem&, const Stage&);
+  int count_switched(const Problem&) const;
+  void begin_impulse_sides(Problem&, bool as_solved);
+  bool release_impulses(Problem&);
+  void add_to_node(std::uint32_t node, double value);
+  template <bool Midpoint>
+  void add_to_pair(const BlockPattern::PairSlot&, double value);
+  template <bool Midpoint, class C>
+  void add_curvature(const C&, const typename ConstraintPool<C>::Slots&, const Stage&, const double* lambda,
+                     bool clamp);
   template <bool Midpoint>
   int assemble_and_factor(const Problem&, const Stage&, Hessian);
   double merit(const Problem&, const Stage&, const Vec3* x) const;
+  bool project_onto_sides(Problem&, double h, bool as_solved);
   void project_once(Problem&, double h);
   void solve_linear();
   /// x + t dx and lambda + t d_lambda, from the saved iterate.
@@ -83,10 +110,12 @@ class Newton {
   std::vector<std::uint32_t> node_unknown_, node_diagonal_;
   std::vector<std::uint8_t> node_stride_;
   std::vector<Vec3> x_, x_saved_, u_, momentum_;
-  std::vector<double> residual_, step_, multipliers_saved_, merit_weights_;
+  std::vector<double> residual_, step_, impulses_, multipliers_saved_, merit_weights_;
   std::vector<double> inverse_scale_;  // of the force residual of each node
   double reference_length_ = 1;
-  double violation_ = 0;  // found by the latest residual()
+  double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // found by the latest residual()
+  bool has_laws_ = false;
+  int fewest_wrong_ = 0, stalled_ = 0;  // see choose_sides
 };
 
 }  // namespace iota::solver

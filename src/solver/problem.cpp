@@ -17,12 +17,30 @@ double Problem::potential_energy(const Vec3* x, bool with_external) const {
   return energy;
 }
 
+double Problem::row_energy(const Vec3* x, double fraction) const {
+  double energy = 0;
+  for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    if (!pool.has_laws()) return;
+    for (std::size_t i = 0; i < pool.items.size(); ++i) {
+      const RowLaw* const law = pool.law(i);
+      if (std::none_of(law, law + C::rows, [](const RowLaw& l) { return l.is_compliant(); })) continue;
+      double g[C::rows];
+      pool.items[i].value(x, fraction, g);
+      for (int r = 0; r < C::rows; ++r) energy += law[r].energy(g[r]);
+    }
+  });
+  return energy;
+}
+
 double Problem::worst_gap(const Vec3* x, double fraction, bool relative) const {
   double worst = 0;
-  for_each_constraint_pool([&](const auto& pool) {
-    for (const auto& c : pool.items) {
+  for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t i = 0; i < pool.items.size(); ++i) {
+      const C& c = pool.items[i];
       double g[3] = {};
       c.value(x, fraction, g);
+      if (pool.has_laws())
+        for (int r = 0; r < C::rows; ++r) g[r] = pool.law(i)[r].violation(g[r]);
       double size2 = 0;
       for (const double v : g) size2 += v * v;
       const double size = std::sqrt(size2) / (relative ? c.reference_length() : 1);

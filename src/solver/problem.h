@@ -9,9 +9,47 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace iota::solver {
+
+/// What the multiplier of a row may be. By default any: an equation, g = 0. With bounds
+///   lambda = upper => g >= 0,   lambda = lower => g <= 0,   in between g = 0
+/// so that a rope, g = length - L <= 0, has lower = 0; a stop g >= 0 has upper = 0; both 0: switched off. A `hold` row
+/// (dry friction, speed motors) measures g from where it was at the start of each (sub-)step, and moves on by `rate`:
+/// bounds are then the friction or the motor's strength. A compliant row is a spring, within its bounds:
+///   lambda = g / compliance + damping dg/dt
+struct RowLaw {
+  static constexpr double unbounded = std::numeric_limits<double>::infinity();
+  double lower = -unbounded, upper = unbounded;  ///< N (N m where g is an angle)
+  double compliance = 0;                         ///< m/N; infinite for a pure dashpot
+  double damping = 0;                            ///< N s/m, of compliant rows
+  double rate = 0;                               ///< of a hold row, m/s
+  bool hold = false;
+
+  bool is_off() const { return lower == upper; }  ///< both 0
+  bool is_compliant() const { return compliance > 0; }
+  /// What is left of the bounds where only positions or impulses count: finite forces do nothing there.
+  double lower_impulse() const { return lower == -unbounded && !is_compliant() && !hold ? -unbounded : 0; }
+  double upper_impulse() const { return upper == unbounded && !is_compliant() && !hold ? unbounded : 0; }
+  /// How far g is on a forbidden side.
+  double violation(double g) const { return g > 0 ? (upper_impulse() > 0 ? g : 0) : (lower_impulse() < 0 ? -g : 0); }
+  /// Energy that a spring row stores, J.
+  double energy(double g) const {
+    if (!is_compliant() || hold) return 0;
+    const double force = std::clamp(g / compliance, lower, upper);
+    return force * (g - 0.5 * compliance * force);
+  }
+};
+
+/// Where a row with a law stands; kept by the solver.
+struct RowState {
+  std::int8_t side = 0;         ///< -1, 1: its multiplier is at the lower, upper bound; 0: free, the equation holds
+  std::int8_t side_before = 0;  ///< at the start of the (sub-)step
+  double start = 0;             ///< g there
+};
 
 /// Constraints of one type with their multipliers (warm start in, solution out) and their places in the matrix.
 template <class C>
@@ -25,15 +63,24 @@ struct ConstraintPool {
   std::vector<C> items;
   std::vector<double> multipliers;  ///< C::rows each, N
   std::vector<double> offsets;      ///< C::rows each: what cannot be closed and is held as it is, usually zero
+  std::vector<RowLaw> laws;         ///< C::rows each; or empty: all are equations, which costs nothing
+  std::vector<RowState> states;     ///< beside laws
   std::vector<Slots> slots;
 
+  double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }
   const double* multiplier(std::size_t i) const { return multipliers.data() + i * C::rows; }
+  /// The laws of item i; the first call gives all rows of the pool laws.
+  RowLaw* law(std::size_t i) {
+    laws.resize(items.size() * C::rows);
+    return laws.data() + i * C::rows;
+  }
+  const RowLaw* law(std::size_t i) const { return laws.data() + i * C::rows; }
+  bool has_laws() const { return !laws.empty(); }
   /// What the solver brings to zero: the constraint less its offset.
   void value(std::size_t i, const Vec3* x, double fraction, double* g) const {
     items[i].value(x, fraction, g);
     for (int r = 0; r < C::rows; ++r) g[r] -= offsets[i * C::rows + r];
   }
-  double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }
 };
 
 template <class F>
@@ -98,6 +145,8 @@ struct Problem {
   double kinetic_energy() const { return 0.5 * mass_norm2(velocity.data()); }
   /// Gravity and implicit forces; external ones (hands) are no part of the world's energy, only of Newton's merit.
   double potential_energy(const Vec3* x, bool with_external = false) const;
+  /// Stored in spring rows, with targets as at `fraction` of the step.
+  double row_energy(const Vec3* x, double fraction) const;
   /// Largest violation at x, m, with targets as at `fraction` of the step; with `relative`, as a fraction of each constraint's reference length.
   double worst_gap(const Vec3* x, double fraction = 1, bool relative = false) const;
 };

@@ -10,13 +10,13 @@
 namespace iota::solver {
 
 /// A weighted sum of points stays at a target: a nail (one point, weight 1), or a point of a rigid body that is tied to
-/// the body's basis (weights 1, -w_1 ... -w_4, target 0).
+/// the body's basis (weights 1, -w_1 ... -w_4, target 0), or two such points of different bodies that coincide.
 ///   constraint  g(x) = sum_i w_i x_i - t(fraction)   (3 rows, m)
 ///   gradient    dg/dx_i = w_i I;   Hessian zero
 /// t moves linearly from target_start to target during the step. The multiplier is minus the force on the sum, N.
 struct AffineConstraint {
   static constexpr int rows = 3;
-  static constexpr int max_nodes = 5;
+  static constexpr int max_nodes = 8;
   static constexpr bool has_curvature = false;
 
   std::array<std::uint32_t, max_nodes> nodes{};
@@ -36,6 +36,7 @@ struct AffineConstraint {
   }
   double curvature(const double*, int, int) const { return 0; }
   double reference_length() const { return reference; }
+  bool is_moving() const { return target != target_start; }
   bool is_internal() const {
     double sum = 0;
     for (std::uint32_t i = 0; i < count; ++i) sum += weights[i];

@@ -2,7 +2,12 @@
 #pragma once
 
 #include "solver/constraints/affine.h"
+#include "solver/constraints/angle.h"
+#include "solver/constraints/bilinear.h"
+#include "solver/constraints/curve.h"
 #include "solver/constraints/distance.h"
+#include "solver/constraints/surface.h"
+#include "solver/constraints/surface_pair.h"
 
 #include <concepts>
 #include <tuple>
@@ -12,22 +17,65 @@ namespace iota::solver {
 
 /// What the solver asks of a constraint: pure mathematics on an array of points.
 template <class C>
-concept Constraint = requires(const C& c, const Vec3* x, double* g, Vec3* rows, const double* multiplier) {
+concept Constraint = requires(const C& c, const Vec3* x, double* g) {
   { C::rows } -> std::convertible_to<int>;
   { C::max_nodes } -> std::convertible_to<int>;
   { C::has_curvature } -> std::convertible_to<bool>;
   { c.node_count() } -> std::convertible_to<int>;
   c.value(x, 1.0, g);
+  { c.reference_length() } -> std::convertible_to<double>;
+  { c.is_internal() } -> std::convertible_to<bool>;  ///< moving all points alike leaves g as it is
+  { c.is_moving() } -> std::convertible_to<bool>;    ///< g changes during the step by itself
+};
+
+/// Gradients come node by node and Hessian blocks are multiples of the identity: the few rows of which bodies are made.
+template <class C>
+concept SimpleConstraint = Constraint<C> && requires(const C& c, const Vec3* x, Vec3* rows, const double* multiplier) {
   c.gradient(x, 0, rows);
   { c.curvature(multiplier, 0, 0) } -> std::convertible_to<double>;
-  { c.reference_length() } -> std::convertible_to<double>;
-  { c.is_internal() } -> std::convertible_to<bool>;
+};
+
+/// Gradients come all at once and Hessian blocks are full matrices: see ArmConstraint.
+template <class C>
+concept GeneralConstraint = Constraint<C> && requires(const C& c, const Vec3* x, Vec3* rows) {
+  c.gradients(x, 1.0, rows);
+  { c.first_side } -> std::convertible_to<std::uint32_t>;
+};
+
+/// Remembers where it is, to stay on the same branch: `track` after each (sub-)step.
+template <class C>
+concept TrackingConstraint = requires(C& c, const Vec3* x) { c.track(x, 1.0); };
+
+/// Gradients of a constraint at x, node by node.
+template <class C>
+class Gradients {
+ public:
+  Gradients(const C& c, const Vec3* x, double fraction) : constraint_(c), x_(x) {
+    if constexpr (GeneralConstraint<C>) c.gradients(x, fraction, rows_.data());
+  }
+  void of_node(int i, Vec3* out) const {
+    if constexpr (GeneralConstraint<C>)
+      for (int r = 0; r < C::rows; ++r) out[r] = rows_[i * C::rows + r];
+    else
+      constraint_.gradient(x_, i, out);
+  }
+
+ private:
+  const C& constraint_;
+  const Vec3* x_;
+  std::array<Vec3, GeneralConstraint<C> ? C::max_nodes * C::rows : 0> rows_;
 };
 
 /// The one list of constraint types; pools, sparsity, assembly and reports are folds over it.
 template <template <class> class Pool>
-using ConstraintPools = std::tuple<Pool<DistanceConstraint>, Pool<AffineConstraint>>;
+using ConstraintPools =
+    std::tuple<Pool<DistanceConstraint>, Pool<AffineConstraint>, Pool<BilinearConstraint>, Pool<AngleConstraint>,
+               Pool<CurveConstraint>, Pool<StationConstraint>, Pool<SurfaceConstraint>, Pool<SurfacePairConstraint>>;
 
-static_assert(Constraint<DistanceConstraint> && Constraint<AffineConstraint>);
+template <class C>
+struct CheckConstraint {
+  static_assert(SimpleConstraint<C> || GeneralConstraint<C>);
+};
+static_assert(sizeof(ConstraintPools<CheckConstraint>) > 0);
 
 }  // namespace iota::solver

@@ -37,6 +37,7 @@ struct DistanceConstraint {
   double reference_length() const { return scale; }
   /// Whether moving all points alike leaves g as it is: then its forces keep momentum.
   static constexpr bool is_internal() { return true; }
+  static constexpr bool is_moving() { return false; }
 };
 
 }  // namespace iota::solver

@@ -33,6 +33,7 @@ template <class Function>
 auto with_pivot(int pivot, Function f) {
   switch (pivot) {
     case 1: return f.template operator()<1>();
+    case 2: return f.template operator()<2>();
     case 3: return f.template operator()<3>();
     case 4: return f.template operator()<4>();
     case 5: return f.template operator()<5>();

@@ -22,27 +22,44 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
   // 2. Give each constraint a home: its first-eliminated node while there is room, widest constraints first.
   struct Home {
     bool own = false;
-    std::uint32_t node = 0;  // own: the last of its nodes
+    std::uint32_t node = 0;  // own: the one that it follows
     std::uint8_t row = 3;
   };
   std::vector<Home> homes(graph.constraints.size());
   std::vector<std::uint8_t> rows_at(n, 0);
   std::vector<std::vector<std::uint32_t>> own_after(n);
-  for (const std::uint8_t rows : {std::uint8_t{3}, std::uint8_t{1}}) {
+  const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank[a] < rank[b]; };
+  const auto put_after = [&](std::uint32_t c, std::uint32_t node) {
+    homes[c] = {true, node, 0};
+    own_after[node].push_back(c);
+  };
+  for (const std::uint8_t rows : {std::uint8_t{3}, std::uint8_t{2}, std::uint8_t{1}}) {
     for (std::uint32_t c = 0; c < graph.constraints.size(); ++c) {
       const auto& constraint = graph.constraints[c];
-      if (constraint.rows != rows) continue;
-      const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank[a] < rank[b]; };
+      if (constraint.rows != rows || constraint.apart) continue;
       const auto begin = constraint.nodes.begin(), end = begin + constraint.node_count;
       const std::uint32_t first = *std::min_element(begin, end, by_rank);
       if (rows_at[first] + rows <= max_rows_a_node) {
         homes[c] = {false, first, static_cast<std::uint8_t>(3 + rows_at[first])};
         rows_at[first] = static_cast<std::uint8_t>(rows_at[first] + rows);
       } else {
-        homes[c] = {true, *std::max_element(begin, end, by_rank), 0};
-        own_after[homes[c].node].push_back(c);
+        put_after(c, *std::max_element(begin, end, by_rank));
       }
     }
+  }
+  for (std::uint32_t c = 0; c < graph.constraints.size(); ++c) {
+    const auto& constraint = graph.constraints[c];
+    if (!constraint.apart) continue;
+    const auto begin = constraint.nodes.begin(), middle = begin + constraint.first_side,
+               end = begin + constraint.node_count;
+    std::uint32_t node = *std::max_element(begin, end, by_rank);
+    // A side that its own rows hold fast (nails) would leave no pivot.
+    const auto try_side = [&](auto from, auto to) {
+      if (std::all_of(from, to, [&](std::uint32_t i) { return rows_at[i] == max_rows_a_node; })) return;
+      node = std::min(node, *std::max_element(from, to, by_rank), by_rank);
+    };
+    if (middle != begin) try_side(begin, middle), try_side(middle, end);
+    put_after(c, node);
   }
 
   // 3. Vertices in order of elimination.

@@ -8,14 +8,18 @@
 
 namespace iota::solver {
 
-/// What couples with what, before any order is known. A node has three unknowns (its position); a constraint has 1 or 3
+/// What couples with what, before any order is known. A node has three unknowns (its position); a constraint has 1 to 3
 /// rows and touches a few nodes; couplings are pairs of nodes with a 3 x 3 block between them.
 struct CouplingGraph {
-  static constexpr int max_constraint_nodes = 5;
+  static constexpr int max_constraint_nodes = 8;
   struct Constraint {
     std::uint8_t rows = 1;
     std::uint8_t node_count = 0;
     std::array<std::uint32_t, max_constraint_nodes> nodes{};
+    /// The gradient of a single node may vanish, so the rows need a pivot of their own, behind the nodes [0, first_side)
+    /// or behind the others, whichever are eliminated first (0: behind all).
+    bool apart = false;
+    std::uint8_t first_side = 0;
   };
   std::uint32_t node_count = 0;
   std::vector<std::array<std::uint32_t, 2>> couplings;
@@ -27,7 +31,7 @@ struct CouplingGraph {
 ///   [ G -C  ]
 /// The rows of a constraint are eliminated together with the first-eliminated of its nodes (at most three rows a node),
 /// so a node's pivot block is [A G'; G -C] of size 3 + rows and no pivot is ever structurally zero. Rows that find no
-/// room become a vertex of their own right after the last of their nodes. Minimum degree on the node graph: no fill on
+/// room, or must stand apart, become a vertex of their own right after the last of their nodes (of one side's). Minimum degree on the node graph: no fill on
 /// trees, so everything is O(n) there.
 class BlockPattern {
  public:

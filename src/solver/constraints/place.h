@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solver/constraints/arms.h"
+
+namespace iota::solver {
+
+/// Constraints on where a point is in a frame, which is fixed in a body or in the world: functions of
+///   xi_k = a_k . e;  arms 0: e = point - origin of the frame, 1 ... 3: its axes a_k (orthonormal; the basis of the body)
+/// `Derived` has, as functions of xi,
+///   void calc_place_value(const Vec3& xi, double fraction, double* g) const
+///   void calc_place_gradient(const Vec3& xi, Vec3* d) const
+///   Mat3 calc_place_hessian(const Vec3& xi, const double* lambda) const         sum_r lambda_r Hess(g_r), symmetric
+/// Clamped, no curvature is left: which part of it is positive is not worth eigenvalues.
+template <class Derived, int Rows>
+struct PlaceConstraint : ArmConstraint<Derived, Rows, 4> {
+  /// The frame is the world's, with this origin. (Otherwise `add` the weights of origin and axes.)
+  void set_world_frame(const Vec3& origin) {
+    this->set_constant(0, -1.0 * origin);
+    this->set_constant(1, {1, 0, 0}), this->set_constant(2, {0, 1, 0}), this->set_constant(3, {0, 0, 1});
+  }
+  Vec3 place(const Vec3* x, double fraction) const {
+    const Vec3 e = this->arm(0, x, fraction);
+    return {dot(this->arm(1, x, fraction), e), dot(this->arm(2, x, fraction), e), dot(this->arm(3, x, fraction), e)};
+  }
+
+  void calc_value(const Vec3* e, double fraction, double* g) const {
+    derived().calc_place_value(place_of(e), fraction, g);
+  }
+  void calc_gradient(const Vec3* e, Vec3 (*d)[4]) const {
+    Vec3 phi[Rows];
+    derived().calc_place_gradient(place_of(e), phi);
+    for (int r = 0; r < Rows; ++r) {
+      d[r][0] = phi[r].x * e[1] + phi[r].y * e[2] + phi[r].z * e[3];
+      d[r][1] = phi[r].x * e[0], d[r][2] = phi[r].y * e[0], d[r][3] = phi[r].z * e[0];
+    }
+  }
+  void calc_hessian(const Vec3* e, const double* lambda, bool clamp, Mat3 (*h)[4]) const {
+    for (int a = 0; a < 4; ++a)
+      for (int b = a; b < 4; ++b) h[a][b] = {};
+    if (clamp) return;
+    const Vec3 xi = place_of(e);
+    Vec3 phi[Rows], sum;
+    derived().calc_place_gradient(xi, phi);
+    for (int r = 0; r < Rows; ++r) sum += lambda[r] * phi[r];
+    const double first[3] = {sum.x, sum.y, sum.z};
+    const Mat3 second = derived().calc_place_hessian(xi, lambda);
+    for (int k = 0; k < 3; ++k) {
+      Vec3 column;  // sum_l second_lk a_l
+      for (int l = 0; l < 3; ++l) column += second.m[l][k] * e[1 + l];
+      h[0][0] += Mat3::outer(column, e[1 + k]);
+      h[0][1 + k] = Mat3::diagonal(first[k]) + Mat3::outer(column, e[0]);
+      for (int l = k; l < 3; ++l) h[1 + k][1 + l] = second.m[k][l] * Mat3::outer(e[0], e[0]);
+    }
+  }
+
+ private:
+  const Derived& derived() const { return static_cast<const Derived&>(*this); }
+  static Vec3 place_of(const Vec3* e) { return {dot(e[1], e[0]), dot(e[2], e[0]), dot(e[3], e[0])}; }
+};
+
+}  // namespace iota::solver

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/constraints/surface_pair.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace iota::solver {
+
+namespace {
+
+/// x of A x = b by elimination with row pivoting; zero where A is singular.
+void solve4(double (&a)[4][5], double* x) {
+  for (int k = 0; k < 4; ++k) {
+    int p = k;
+    for (int i = k + 1; i < 4; ++i)
+      if (std::abs(a[i][k]) > std::abs(a[p][k])) p = i;
+    if (p != k) std::swap(a[p], a[k]);
+    if (!(std::abs(a[k][k]) > 1e-300)) {
+      std::fill(x, x + 4, 0.0);
+      return;
+    }
+    for (int i = k + 1; i < 4; ++i) {
+      const double l = a[i][k] / a[k][k];
+      for (int j = k; j < 5; ++j) a[i][j] -= l * a[k][j];
+    }
+  }
+  for (int k = 3; k >= 0; --k) {
+    x[k] = a[k][4];
+    for (int j = k + 1; j < 4; ++j) x[k] -= a[k][j] * x[j];
+    x[k] /= a[k][k];
+  }
+}
+
+/// A's frame seen from B's and back.
+struct Relative {
+  Vec3 t;     // origin of B in A
+  Mat3 turn;  // columns: axes of B in A
+  explicit Relative(const Vec3* e) {
+    const Vec3 *a = e + 1, *b = e + 4;
+    t = {dot(a[0], e[0]), dot(a[1], e[0]), dot(a[2], e[0])};
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) turn.m[j][k] = dot(a[j], b[k]);
+  }
+  Vec3 into_b(const Vec3& p) const { return turn.transposed() * (p - t); }
+};
+
+Mat3 product(const Mat3& a, const Mat3& b) {
+  Mat3 c;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k) c.m[i][j] += a.m[i][k] * b.m[k][j];
+  return c;
+}
+
+/// Derivative of the unit vector along v, where v changes by `change` of its argument.
+Mat3 unit_derivative(const Vec3& unit, double size, const Mat3& change) {
+  return product(Mat3::diagonal(1 / size) + (-1 / size) * Mat3::outer(unit, unit), change);
+}
+
+}  // namespace
+
+// Unknowns p and gap g; with n = grad A / |grad A| at p, q = p + g n, m = grad B / |grad B| at q (all in A's frame):
+//   A(p) = 0,  B(q) = 0,  two tangents . (n + m) = 0.
+// Flat faces leave the tangential place open; a little damping keeps it near where it was.
+SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const Vec3& near) const {
+  const Relative relative(e);
+  const double size = std::min(surface_a->size(), surface_b->size());
+  Vec3 p = near;
+  double gap = 0;
+  bool first = true;
+  Contact contact{};
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    const geometry::SurfacePoint a = surface_a->at(p);
+    const double a_size = norm(a.gradient) + 1e-300;
+    const Vec3 n = (1 / a_size) * a.gradient;
+    if (first) {  // the gap that B's value at p suggests
+      const geometry::SurfacePoint b = surface_b->at(relative.into_b(p));
+      gap = std::max(b.value / (norm(b.gradient) + 1e-300), -size);
+      first = false;
+    }
+    const Vec3 q = p + gap * n, place = relative.into_b(q);
+    const geometry::SurfacePoint b = surface_b->at(place);
+    const Vec3 b_gradient = relative.turn * b.gradient;
+    const double b_size = norm(b_gradient) + 1e-300;
+    const Vec3 m = (1 / b_size) * b_gradient;
+    contact = {p, q, n, gap, place, b.gradient};
+
+    const Mat3 dn = unit_derivative(n, a_size, a.hessian);
+    const Mat3 dm = unit_derivative(m, b_size, product(relative.turn, product(b.hessian, relative.turn.transposed())));
+    const Mat3 dq = Mat3::diagonal(1) + gap * dn;
+    const Mat3 dmp = product(dm, dq);
+    const Vec3 tangents[2] = {any_perpendicular(n), cross(n, any_perpendicular(n))};
+    double system[4][5] = {{a.gradient.x, a.gradient.y, a.gradient.z, 0, -a.value}};
+    const Vec3 bp = dq.transposed() * b_gradient;
+    const double row1[5] = {bp.x, bp.y, bp.z, dot(b_gradient, n), -b.value};
+    std::copy(row1, row1 + 5, system[1]);
+    for (int i = 0; i < 2; ++i) {
+      const Vec3& s = tangents[i];
+      const Vec3 row = dn.transposed() * s + dmp.transposed() * s + (1e-7 / size) * s;
+      const double values[5] = {row.x, row.y, row.z, dot(s, dm * n), -dot(s, n + m)};
+      std::copy(values, values + 5, system[2 + i]);
+    }
+    double step[4];
+    solve4(system, step);
+    Vec3 dp{step[0], step[1], step[2]};
+    const double length = norm(dp), limit = 0.5 * size;
+    const double factor = length > limit ? limit / length : 1;
+    p += factor * dp, gap += factor * step[3];
+    if (!(length > 1e-15 * (size + norm(p))) && !(std::abs(step[3]) > 1e-15 * size)) break;
+  }
+  return contact;
+}
+
+void SurfacePairConstraint::start(const Vec3* x, double fraction) {
+  Vec3 e[7];
+  for (int a = 0; a < 7; ++a) e[a] = arm(a, x, fraction);
+  // Walk on A's surface towards B's origin: what faces B.
+  const Relative relative(e);
+  Vec3 p = relative.t;
+  for (int i = 0; i < 30; ++i) {
+    const geometry::SurfacePoint a = surface_a->at(p);
+    const double slope2 = dot(a.gradient, a.gradient);
+    if (slope2 > 0) p -= (a.value / slope2) * a.gradient;
+  }
+  contact = find(e, p).p;
+}
+
+void SurfacePairConstraint::track(const Vec3* x, double fraction) {
+  Vec3 e[7];
+  for (int a = 0; a < 7; ++a) e[a] = arm(a, x, fraction);
+  contact = find(e, contact).p;
+}
+
+void SurfacePairConstraint::calc_value(const Vec3* e, double /*fraction*/, double* g) const {
+  g[0] = find(e, contact).gap;
+}
+
+// With t_j = a_j.d and R_jk = a_j.b_k the gap's derivatives are n_j and grad B_k (q - t)_j / |R grad B|.
+void SurfacePairConstraint::calc_gradient(const Vec3* e, Vec3 (*d)[7]) const {
+  const Contact c = find(e, contact);
+  const Relative relative(e);
+  const Vec3 u = c.q - relative.t;
+  const double size = norm(relative.turn * c.gradient);
+  const double n[3] = {c.normal.x, c.normal.y, c.normal.z}, us[3] = {u.x, u.y, u.z};
+  const double gradient[3] = {c.gradient.x / size, c.gradient.y / size, c.gradient.z / size};
+  for (int k = 0; k < 7; ++k) d[0][k] = {};
+  for (int j = 0; j < 3; ++j) {
+    d[0][0] += n[j] * e[1 + j];
+    d[0][1 + j] += n[j] * e[0];
+    for (int k = 0; k < 3; ++k) {
+      d[0][1 + j] += gradient[k] * us[j] * e[4 + k];
+      d[0][4 + k] += gradient[k] * us[j] * e[1 + j];
+    }
+  }
+}
+
+}  // namespace iota::solver

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "geometry/surface.h"
+#include "solver/constraints/arms.h"
+
+namespace iota::solver {
+
+/// Two surfaces, each fixed in a body or in the world, touch, or, with a one-sided multiplier, stay apart or overlap.
+///   constraint  g = signed distance along the common normal n   (m): positive apart, negative overlapping
+///   gradient    +-n at the two contact points, taken as points of the bodies (envelope theorem: how the contact points
+///               wander does not count); no Hessian: Newton gets on without what is second order in the step
+/// The contact points p on A and q = p + g n on B solve phi_A(p) = 0, phi_B(q) = 0, grad phi_A || -grad phi_B, by Newton's
+/// method from those of the last `track`: unlike the least distance, this stays regular while the surfaces touch.
+/// Arms: 0: d = origin of B - origin of A; 1 ... 3: axes of A; 4 ... 6: axes of B (orthonormal). The multiplier is the
+/// normal force, N, positive where it pulls the bodies together: one-sided contact has upper = 0.
+struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
+  static constexpr bool has_curvature = false;
+
+  const geometry::Surface *surface_a = nullptr, *surface_b = nullptr;
+  Vec3 contact;  ///< p at the last `track`, in A's frame
+  double reference = 1;
+
+  double reference_length() const { return reference; }
+  /// Searches the contact from scratch.
+  void start(const Vec3* x, double fraction);
+  void track(const Vec3* x, double fraction);
+
+  void calc_value(const Vec3* e, double fraction, double* g) const;
+  void calc_gradient(const Vec3* e, Vec3 (*d)[7]) const;
+
+ private:
+  struct Contact {
+    Vec3 p, q, normal;  // of A, in A's frame
+    double gap;
+    Vec3 place, gradient;  // of q and of phi_B, in B's frame
+  };
+  Contact find(const Vec3* e, const Vec3& near) const;
+};
+
+}  // namespace iota::solver
