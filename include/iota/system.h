@@ -4,6 +4,7 @@
 #include <iota/ids.h>
 #include <iota/pose_snapshot.h>
 #include <iota/reports.h>
+#include <iota/shapes.h>
 #include <iota/vec3.h>
 
 #include <functional>
@@ -47,6 +48,26 @@ struct SystemOptions {
 struct BodyOptions {
   BodyKind kind = BodyKind::dynamic;
   double damping = 0;  ///< 1/s, adds to the system's
+};
+
+/// For bodies given as homogeneous solids.
+struct SolidOptions {
+  double density = 1000;                                   ///< kg/m^3
+  double mass = std::numeric_limits<double>::quiet_NaN();  ///< kg; NaN: density times volume
+  Vec3 position;                                           ///< of the shape's origin, m
+  Quaternion orientation;                                  ///< of the shape's frame
+  Vec3 velocity;                                           ///< of the centre of mass, m/s
+  Vec3 spin;                                               ///< angular velocity, world axes, rad/s
+  std::vector<Vec3> attachments;                           ///< particles to hinge, nail or bond at; shape's frame, m
+  BodyKind kind = BodyKind::dynamic;
+  double damping = 0;  ///< 1/s
+};
+
+/// One of the solids that a body was given as: combining bodies makes it one of several.
+struct SolidView {
+  Shape shape;             ///< a Mesh made in another system, and restored here, comes back empty
+  Vec3 position;           ///< of the shape's origin, world, m
+  Quaternion orientation;  ///< of the shape's frame
 };
 
 /// f = -(stiffness (r - length) + damping r') along the line p-q. Solved implicitly: any stiffness is stable.
@@ -112,6 +133,13 @@ class System {
   /// Gives a body of exactly two particles the mass and inertia of a solid cylinder between them (no spin about its
   /// axis: exact for hinges on the axis). Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
   void set_rod(BodyId body, double mass, double radius);
+  /// A body of four equal point masses that have exactly the mass, centre and inertia of a solid, and one particle for
+  /// each attachment. particles(): the four, then the attachments.
+  BodyId create_body(const Shape& shape, const SolidOptions& options = {});
+  /// A further particle of a body made of solids, anywhere (world, m); the body's mass, centre, inertia and motion stay
+  /// exactly what they are. Throws std::invalid_argument for bodies without a solid, and where something is hinged to
+  /// the solid's own four points, which have to give.
+  ParticleId create_attachment(BodyId body, const Vec3& position);
   CosmeticBondId create_cosmetic_bond(ParticleId p, ParticleId q);
   BondId create_bond(ParticleId p, ParticleId q, BondLaw law);
   void destroy(BodyId body);          ///< with its particles and their bonds
@@ -185,12 +213,24 @@ class System {
   void set_damping(BodyId, double per_second);
   double mass(BodyId) const;
   Vec3 centre_of_mass(BodyId) const;
-  Quaternion orientation(BodyId) const;  ///< of the drawn frame
+  Quaternion orientation(BodyId) const;  ///< of the drawn frame: that of its first solid, or of its basis
+  /// Moves the body, and rigidly with it all that hangs on it, nails included. A scripted body arrives at the end of the
+  /// next step. position: of the centre of mass.
+  void set_pose(BodyId, const Vec3& position, const Quaternion& orientation);
+  Matrix3 inertia(BodyId) const;  ///< about the centre of mass, world axes, kg m^2 (thesis, Eq. 2.28)
+  Vec3 velocity(BodyId) const;    ///< of the centre of mass, m/s
+  void set_velocity(BodyId, const Vec3&);
+  /// rad/s, world axes; no part of it along what has no inertia (one point, or the line that all points are on).
+  Vec3 angular_velocity(BodyId) const;
+  void set_angular_velocity(BodyId, const Vec3&);
+  Vec3 angular_momentum(BodyId) const;                ///< about its centre of mass, kg m^2/s
+  std::vector<SolidView> solids(BodyId) const;        ///< empty for bodies of particles alone
+  std::vector<ParticleId> attachments(BodyId) const;  ///< its particles that are no solid's own points
 
   BodyId body(ParticleId) const;
   std::vector<ParticleId> ring(ParticleId) const;  ///< every particle hinged with it, itself included
   Vec3 position(ParticleId) const;
-  void set_position(ParticleId, const Vec3&);  ///< moves the whole ring; rigid distances of its bodies are taken anew
+  void set_position(ParticleId, const Vec3&);  ///< moves the whole ring; its bodies take their rigid distances anew
   Vec3 velocity(ParticleId) const;
   void set_velocity(ParticleId, const Vec3&);
   double mass(ParticleId) const;  ///< its own share

@@ -6,8 +6,8 @@
 
 namespace iota {
 
-Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance) {
-  // Eigenvalues by Jacobi rotations: for 3 x 3 simple, exact to round-off, and the rank decision is clean.
+SymmetricEigen symmetric_eigen(const Mat3& a) {
+  // Jacobi rotations: for 3 x 3 simple, exact to round-off, and rank decisions are clean.
   double s[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) s[i][j] = a.m[i][j];
@@ -29,13 +29,17 @@ Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance) {
           v[k][p] = c * vp - sine * vq, v[k][q] = sine * vp + c * vq;
         }
       }
-  const double largest = std::max({s[0][0], s[1][1], s[2][2]});
+  // Turns from the identity: right-handed.
+  return {{s[0][0], s[1][1], s[2][2]},
+          {{v[0][0], v[1][0], v[2][0]}, {v[0][1], v[1][1], v[2][1]}, {v[0][2], v[1][2], v[2][2]}}};
+}
+
+Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance) {
+  const SymmetricEigen e = symmetric_eigen(a);
+  const double largest = std::max({e.values[0], e.values[1], e.values[2]});
   Vec3 x;
-  for (int k = 0; k < 3; ++k) {
-    if (!(s[k][k] > tolerance * largest)) continue;
-    const Vec3 axis{v[0][k], v[1][k], v[2][k]};
-    x += (dot(axis, b) / s[k][k]) * axis;
-  }
+  for (int k = 0; k < 3; ++k)
+    if (e.values[k] > tolerance * largest) x += (dot(e.axes[k], b) / e.values[k]) * e.axes[k];
   return x;
 }
 

@@ -43,6 +43,13 @@ inline Mat3 point_inertia(double mass, const Vec3& r) {
   return mass * (Mat3::diagonal(dot(r, r)) + -1.0 * Mat3::outer(r, r));
 }
 
+/// Eigenvalues of a symmetric matrix and its unit eigenvectors, a right-handed set.
+struct SymmetricEigen {
+  double values[3];
+  Vec3 axes[3];
+};
+SymmetricEigen symmetric_eigen(const Mat3& a);
+
 /// Least-squares solution of A x = b for symmetric positive semi-definite A: directions in which A is (nearly) zero,
 /// below `tolerance` times its largest pivot, get no part. Diagonal pivoting.
 Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance = 1e-10);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/model.h"
 
+#include <algorithm>
 #include <type_traits>
 
 namespace iota::model {
@@ -60,6 +61,7 @@ void Model::add_to_body(std::uint32_t particle, std::uint32_t body) {
 
 void Model::take_from_body(std::uint32_t particle) {
   remove_inertia_of(particles[particle].body, particle);
+  remove_solids_of(particles[particle].body, particle);
   unlink(particles, bodies[particles[particle].body], particle, &Particle::next_in_body, &Particle::previous_in_body);
   particles[particle].body = none;
 }
@@ -91,6 +93,7 @@ void Model::take_from_articulate(std::uint32_t body) {
 
 void Model::remove_body(std::uint32_t body) {
   remove_inertia_of(body, none);
+  remove_solids_of(body, none);
   take_from_articulate(body);
   bodies.destroy(body);
 }
@@ -105,6 +108,20 @@ void Model::remove_inertia_of(std::uint32_t body, std::uint32_t particle) {
       inertia_pairs.destroy(pair);
     } else {
       link = &i.next;
+    }
+  }
+}
+
+void Model::remove_solids_of(std::uint32_t body, std::uint32_t particle) {
+  std::uint32_t* link = &bodies[body].first_solid;
+  while (*link != none) {
+    const std::uint32_t solid = *link;
+    const auto& points = solids[solid].points;
+    if (particle == none || std::find(points.begin(), points.end(), particle) != points.end()) {
+      *link = solids[solid].next;
+      solids.destroy(solid);
+    } else {
+      link = &solids[solid].next;
     }
   }
 }

@@ -53,8 +53,9 @@ struct Body {
   std::uint32_t articulate = none;
   std::uint32_t next_in_articulate = none, previous_in_articulate = none;
   std::uint32_t first_inertia = none;  ///< list of inertia pairs
-  std::uint32_t padding2 = 0;
-  double damping = 0;  ///< 1/s
+  std::uint32_t first_solid = none;    ///< list of the solids it was given as
+  std::uint32_t basis_needs = 0;       ///< particles that were unknowns anyway when the basis was chosen
+  double damping = 0;                  ///< 1/s
   std::array<std::uint32_t, 4> basis{none, none, none, none};
   std::array<double, 6> lengths{};      ///< of the basis pairs (0,1) (0,2) (1,2) (0,3) (1,3) (2,3), m
   std::array<double, 6> multipliers{};  ///< N; warm start
@@ -71,6 +72,24 @@ struct InertiaPair {
   std::uint32_t body = none, next = none;
   std::uint32_t p = none, q = none;
   double inertia = 0;  ///< kg, may be negative
+};
+
+enum class SolidKind : std::uint32_t { sphere, box, cylinder, capsule, torus, mesh };
+
+/// A homogeneous solid that a body, or a part of it, was given as. Four ordinary, equal point masses stand for it, at
+///   x_k = centre + R diag(half) t_k,   t_k the corners of a cube with an even number of minus signs,
+/// whose mass, centre and second moments are those of the solid: half_i^2 = second moment i / mass. So a solid is nothing
+/// new to the physics; the rest of the record is for drawing and for the body's frame.
+struct Solid {
+  std::array<std::uint32_t, 4> points{none, none, none, none};
+  std::uint32_t body = none, next = none;
+  SolidKind kind = SolidKind::box;
+  std::uint32_t padding = 0;
+  std::array<double, 3> sizes{};  ///< of a primitive, as in iota/shapes.h, m
+  std::uint64_t mesh = 0;         ///< key of the triangles, which live outside the tables
+  Vec3 half;                      ///< m
+  Vec3 centre;                    ///< of the four, in the shape's frame, m
+  Quaternion principal;           ///< turns vectors of the frame of `half` into the shape's frame
 };
 
 /// The bodies that hang together through hinges: one independent problem.
@@ -125,6 +144,7 @@ class Model {
   SlotTable<Ring, Id<Ring>> rings;
   SlotTable<Body, BodyId> bodies;
   SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
+  SlotTable<Solid, Id<Solid>> solids;
   SlotTable<Articulate, Id<Articulate>> articulates;
   SlotTable<Bond, BondId> bonds;
   SlotTable<CosmeticBond, CosmeticBondId> cosmetic_bonds;
@@ -152,6 +172,7 @@ class Model {
   void take_from_articulate(std::uint32_t body);                       ///< an empty articulate is destroyed
   void remove_body(std::uint32_t body);                                ///< must have no particles left
   void remove_inertia_of(std::uint32_t body, std::uint32_t particle);  ///< pairs that name the particle (none: all)
+  void remove_solids_of(std::uint32_t body, std::uint32_t particle);   ///< solids that it stands for (none: all)
   ///@}
 
   /// @name Articulates (Algorithms 1 and 2 of the thesis, without the recursion)
@@ -184,11 +205,16 @@ class Model {
 
   /// Chooses a body's basis from where its particles are now, and takes its rigid distances.
   void rebuild_basis(std::uint32_t body);
+  /// A body made of solids has more points than a basis needs: makes those its basis that are unknowns anyway (hinged,
+  /// nailed, bonded), where there are new ones and they span it well. Saves unknowns and ties.
+  void prefer_unknowns(std::uint32_t body);
 
   /// Whether a particle is an unknown of its own in the solver (basis points always are).
-  bool is_unknown(const Particle& p) const {
+  bool is_unknown(const Particle& p) const { return p.basis_index >= 0 || is_needed(p); }
+  /// Whether something holds on to it: another body, a nail, a bond.
+  bool is_needed(const Particle& p) const {
     const Ring& r = rings[p.ring];
-    return p.basis_index >= 0 || r.count > 1 || r.nailed || p.uses > 0;
+    return r.count > 1 || r.nailed || p.uses > 0;
   }
 
   /// Held in place by a nail or by a static or scripted body in its ring.
@@ -234,6 +260,11 @@ class Model {
   template <class Visit>
   void for_each_inertia_of(std::uint32_t body, Visit visit) const {
     for (std::uint32_t i = bodies[body].first_inertia; i != none; i = inertia_pairs[i].next) visit(i);
+  }
+
+  template <class Visit>
+  void for_each_solid_of(std::uint32_t body, Visit visit) const {
+    for (std::uint32_t s = bodies[body].first_solid; s != none; s = solids[s].next) visit(s);
   }
 
   /// Remembers what a retired id became.
@@ -320,7 +351,8 @@ void Model::Survivors<IdType>::archive(Archive& ar) {
 
 template <class Archive>
 void Model::archive(Archive& ar) {
-  particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), articulates.archive(ar);
+  particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), solids.archive(ar);
+  articulates.archive(ar);
   bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(time), ar.value(step), ar.value(structure_version);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);

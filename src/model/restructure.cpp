@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace iota::model {
 
@@ -77,6 +78,10 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
     model.bodies[a].first_inertia = pairs;
     break;
   }
+  std::uint32_t* last_solid = &model.bodies[a].first_solid;  // a's first one goes on giving the frame
+  while (*last_solid != none) last_solid = &model.solids[*last_solid].next;
+  *last_solid = std::exchange(model.bodies[b].first_solid, none);
+  model.for_each_solid_of(a, [&](std::uint32_t s) { model.solids[s].body = a; });
   const auto twin_in = [&](std::uint32_t body, std::uint32_t particle) {
     std::uint32_t twin = none;
     model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t other) {
@@ -94,6 +99,9 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
       InertiaPair& pair = model.inertia_pairs[i];
       if (pair.p == moved) pair.p = twin;
       if (pair.q == moved) pair.q = twin;
+    });
+    model.for_each_solid_of(a, [&](std::uint32_t s) {
+      std::replace(model.solids[s].points.begin(), model.solids[s].points.end(), moved, twin);
     });
     absorb_particle(model, twin, moved, report);
   }

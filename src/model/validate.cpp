@@ -58,6 +58,7 @@ std::vector<std::string> Model::validate() const {
     complaints.require(is_finite(r.position) && is_finite(r.velocity), "ring ", slot, " is not finite");
   });
 
+  std::uint32_t listed_solids = 0;
   bodies.for_each([&](std::uint32_t slot, const Body& b) {
     std::uint32_t walked = 0;
     for_each_particle_of(slot, [&](std::uint32_t p) {
@@ -74,6 +75,12 @@ std::vector<std::string> Model::validate() const {
       complaints.require(particles.is_alive(b.basis[i]) && particles[b.basis[i]].body == slot &&
                              particles[b.basis[i]].basis_index == i,
                          "body ", slot, " has a wrong basis point ", i);
+    for_each_solid_of(slot, [&](std::uint32_t s) {
+      ++listed_solids;
+      complaints.require(solids.is_alive(s) && solids[s].body == slot, "solid ", s, " is not of body ", slot);
+      for (const std::uint32_t p : solids[s].points)
+        complaints.require(particles.is_alive(p) && particles[p].body == slot, "solid ", s, " stands on stranger ", p);
+    });
     for_each_inertia_of(slot, [&](std::uint32_t i) {
       const InertiaPair& pair = inertia_pairs[i];
       complaints.require(inertia_pairs.is_alive(i) && pair.body == slot && particles[pair.p].body == slot &&
@@ -81,6 +88,8 @@ std::vector<std::string> Model::validate() const {
                          "inertia pair ", i, " is not of body ", slot);
     });
   });
+
+  complaints.require(listed_solids == solids.size(), "bodies list ", listed_solids, " solids of ", solids.size());
 
   // Articulates are exactly the components of the hinge graph (closings count as hinges).
   std::vector<std::uint32_t> parent(bodies.slot_count());

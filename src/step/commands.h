@@ -30,6 +30,34 @@ struct SetRod {
   BodyId body;
   double mass, radius;
 };
+struct CreateSolid {
+  BodyKind kind;
+  std::uint32_t shape;  ///< index in iota::Shape
+  double damping, mass;
+  std::array<double, 3> sizes;
+  std::uint64_t mesh;
+  Vec3 centre;
+  Matrix3 mean_squares;
+  Vec3 position, velocity, spin;
+  Quaternion orientation;
+};
+struct CreateAttachment {
+  BodyId body;
+  Vec3 position;
+};
+struct SetPose {
+  BodyId body;
+  Vec3 position;
+  Quaternion orientation;
+};
+struct SetBodyVelocity {
+  BodyId body;
+  Vec3 value;
+};
+struct SetAngularVelocity {
+  BodyId body;
+  Vec3 value;
+};
 struct CreateCosmeticBond {
   ParticleId p, q;
 };
@@ -108,8 +136,9 @@ struct Release {
 using Command =
     std::variant<SetGravity, SetMode, SetSystemDamping, CreateBody, CreateParticle, SetRod, CreateCosmeticBond,
                  CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping, SetPosition, SetVelocity, SetMass,
-                 ApplyForce, SetActive, Step, Destroy<BodyId>, Destroy<ParticleId>, Destroy<BondId>,
-                 Destroy<CosmeticBondId>, Destroy<GripId>, CombineParticles, CombineBodies, Separate, Nail, Release>;
+                 ApplyForce, SetActive, CreateSolid, CreateAttachment, SetPose, SetBodyVelocity, SetAngularVelocity,
+                 Step, Destroy<BodyId>, Destroy<ParticleId>, Destroy<BondId>, Destroy<CosmeticBondId>, Destroy<GripId>,
+                 CombineParticles, CombineBodies, Separate, Nail, Release>;
 
 template <class C>
 inline constexpr bool is_queueable = false;

@@ -208,6 +208,7 @@ void System::Implementation::apply(const step::SetPosition& c) {
   model.edit_energy += ring_potential(ring) - before;
   if (r.nailed) r.nail = r.nail_before = c.value;
   model.for_each_in_ring(ring, [&](std::uint32_t p) {
+    model.remove_solids_of(model.particles[p].body, p);  // no longer that shape
     model.rebuild_basis(model.particles[p].body);
     model.touch(model.bodies[model.particles[p].body].articulate);
   });

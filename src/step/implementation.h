@@ -22,6 +22,7 @@ struct System::Implementation {
   std::map<std::uint64_t, ScriptedLaw> scripts;  // functions of scripted bonds; not part of the saved state
   std::uint64_t next_script = 1;
   std::uint64_t scripts_saved_below = 0;  // keys that the latest snapshot may name
+  std::map<std::uint64_t, Mesh> meshes;   // for drawing, by content; not part of the saved state either
   bool stepping = false;
   std::vector<step::Command> queue;  // edits asked for during a step
   std::optional<Recording> recording;
@@ -39,6 +40,11 @@ struct System::Implementation {
   BodyId apply(const step::CreateBody&);
   ParticleId apply(const step::CreateParticle&);
   void apply(const step::SetRod&);
+  BodyId apply(const step::CreateSolid&);
+  ParticleId apply(const step::CreateAttachment&);
+  void apply(const step::SetPose&);
+  void apply(const step::SetBodyVelocity&);
+  void apply(const step::SetAngularVelocity&);
   CosmeticBondId apply(const step::CreateCosmeticBond&);
   BondId apply(const step::CreateBond&);
   GripId apply(const step::CreateGrip&);
@@ -92,6 +98,9 @@ struct System::Implementation {
   /// Energies that change with a ring's position or velocity, up to a constant: assigning costs what it touches.
   double ring_potential(std::uint32_t ring) const;
   double ring_kinetic(std::uint32_t ring) const;
+  /// Adds motion(position) to the velocities of a body's particles, and books the energy.
+  template <class Motion>
+  void add_motion(std::uint32_t body, Motion motion);
   /// Ends a closing before its particles have met.
   RestructureReport call_off(std::uint32_t closing);
   void run_scripts(StepReport&);

@@ -81,6 +81,8 @@ void Islands::update(Model& model, const Parallel& parallel) {
   parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
     std::vector<std::uint32_t> members;
     for (std::uint32_t a = fresh_[i]; a != none; a = next_member_[a]) members.push_back(a);
+    for (const std::uint32_t a : members)
+      model.for_each_body_of(a, [&](std::uint32_t body) { model.prefer_unknowns(body); });
     Island& island = *island_of_leader_[fresh_[i]];
     island.assemble(model, members, node_of_ring_);
     island.carry_along(model);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames for drawing. They are made when somebody looks, and nothing in the dynamics depends on them.
 #include "math/mat3.h"
+#include "model/solid.h"
 #include "step/implementation.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace iota {
+
+using model::none;
 
 namespace {
 
@@ -23,6 +26,10 @@ void System::Implementation::refresh_orientations() {
   oriented_step = now;
 
   model.bodies.for_each([&](std::uint32_t, model::Body& b) {
+    if (b.first_solid != none) {
+      b.orientation = solid_pose(model, b.first_solid).orientation;
+      return;
+    }
     if (b.rank < 2) return;
     const Vec3 x0 = model.position(b.basis[0]);
     const Vec3 old_x = rotate(b.orientation, {1, 0, 0});

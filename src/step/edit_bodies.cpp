@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies as wholes: given by shape, moved, spun.
+#include "model/solid.h"
+#include "step/checks.h"
+#include "step/execute.h"
+
+#include <algorithm>
+
+namespace iota {
+
+using namespace step;
+using model::none;
+
+namespace {
+
+Mat3 to_mat3(const Matrix3& rows) {
+  Mat3 m;
+  for (int i = 0; i < 3; ++i) m.m[i][0] = rows[i].x, m.m[i][1] = rows[i].y, m.m[i][2] = rows[i].z;
+  return m;
+}
+
+Matrix3 to_rows(const Mat3& m) {
+  Matrix3 rows;
+  for (int i = 0; i < 3; ++i) rows[i] = {m.m[i][0], m.m[i][1], m.m[i][2]};
+  return rows;
+}
+
+/// Its sizes as three numbers, and back.
+std::array<double, 3> sizes_of(const Shape& shape) {
+  struct Visitor {
+    std::array<double, 3> operator()(const Sphere& s) const { return {s.radius}; }
+    std::array<double, 3> operator()(const Box& b) const { return {b.size.x, b.size.y, b.size.z}; }
+    std::array<double, 3> operator()(const Cylinder& c) const { return {c.radius, c.length}; }
+    std::array<double, 3> operator()(const Capsule& c) const { return {c.radius, c.length}; }
+    std::array<double, 3> operator()(const Torus& t) const { return {t.radius, t.tube}; }
+    std::array<double, 3> operator()(const Mesh&) const { return {}; }
+  };
+  return std::visit(Visitor{}, shape);
+}
+
+Shape primitive(model::SolidKind kind, const std::array<double, 3>& s) {
+  switch (kind) {
+    case model::SolidKind::sphere: return Sphere{s[0]};
+    case model::SolidKind::box: return Box{{s[0], s[1], s[2]}};
+    case model::SolidKind::cylinder: return Cylinder{s[0], s[1]};
+    case model::SolidKind::capsule: return Capsule{s[0], s[1]};
+    case model::SolidKind::torus: return Torus{s[0], s[1]};
+    case model::SolidKind::mesh: break;
+  }
+  return Mesh{};
+}
+
+std::uint64_t mesh_key(const Mesh& mesh) {
+  Hasher hasher;
+  hasher.bytes(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3));
+  hasher.bytes(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
+  return hasher.result();
+}
+
+Quaternion unit(std::string_view name, const Quaternion& q) {
+  const double length2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+  if (!(length2 > 1e-12) || !std::isfinite(length2))
+    throw std::invalid_argument(text(name, " must be a quaternion x y z w that is finite and not zero, got (", q.x,
+                                     ", ", q.y, ", ", q.z, ", ", q.w, ")"));
+  return normalised(q);
+}
+
+}  // namespace
+
+BodyId System::create_body(const Shape& shape, const SolidOptions& o) {
+  const MassProperties p = mass_properties(shape);
+  CreateSolid command{};
+  command.kind = o.kind, command.damping = o.damping;
+  command.shape = static_cast<std::uint32_t>(shape.index());
+  command.sizes = sizes_of(shape);
+  if (std::isnan(o.mass)) require_positive("density", o.density);
+  command.mass = std::isnan(o.mass) ? o.density * p.volume : o.mass;
+  command.centre = p.centre, command.mean_squares = p.mean_squares;
+  command.position = o.position, command.velocity = o.velocity, command.spin = o.spin;
+  command.orientation = unit("orientation", o.orientation);
+  for (const Vec3& a : o.attachments) require_finite("each attachment", a);
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) command.mesh = mesh_key(*mesh);
+  const BodyId body = implementation_->execute(command);
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) implementation_->meshes.try_emplace(command.mesh, *mesh);
+  for (const Vec3& a : o.attachments) create_attachment(body, o.position + rotate(command.orientation, a));
+  return body;
+}
+ParticleId System::create_attachment(BodyId body, const Vec3& position) {
+  return implementation_->execute(CreateAttachment{body, position});
+}
+void System::set_pose(BodyId body, const Vec3& position, const Quaternion& orientation) {
+  implementation_->execute(SetPose{body, position, orientation});
+}
+void System::set_velocity(BodyId body, const Vec3& value) { implementation_->execute(SetBodyVelocity{body, value}); }
+void System::set_angular_velocity(BodyId body, const Vec3& value) {
+  implementation_->execute(SetAngularVelocity{body, value});
+}
+
+Matrix3 System::inertia(BodyId id) const {
+  return to_rows(body_inertia(implementation_->model, implementation_->require(id)));
+}
+Vec3 System::velocity(BodyId id) const { return body_velocity(implementation_->model, implementation_->require(id)); }
+Vec3 System::angular_velocity(BodyId id) const {
+  return body_angular_velocity(implementation_->model, implementation_->require(id));
+}
+Vec3 System::angular_momentum(BodyId id) const {
+  return body_angular_momentum(implementation_->model, implementation_->require(id));
+}
+
+std::vector<SolidView> System::solids(BodyId id) const {
+  const model::Model& m = implementation_->model;
+  std::vector<SolidView> views;
+  m.for_each_solid_of(implementation_->require(id), [&](std::uint32_t slot) {
+    const model::Solid& solid = m.solids[slot];
+    const model::SolidPose pose = solid_pose(m, slot);
+    views.push_back({primitive(solid.kind, solid.sizes), pose.position, pose.orientation});
+    const auto mesh = implementation_->meshes.find(solid.mesh);
+    if (solid.kind == model::SolidKind::mesh && mesh != implementation_->meshes.end())
+      views.back().shape = mesh->second;
+  });
+  return views;
+}
+
+std::vector<ParticleId> System::attachments(BodyId id) const {
+  const model::Model& m = implementation_->model;
+  const std::uint32_t body = implementation_->require(id);
+  std::vector<ParticleId> ids;
+  m.for_each_particle_of(body, [&](std::uint32_t p) {
+    bool own = false;
+    m.for_each_solid_of(body, [&](std::uint32_t s) {
+      own = own || std::find(m.solids[s].points.begin(), m.solids[s].points.end(), p) != m.solids[s].points.end();
+    });
+    if (!own) ids.push_back(m.particles.id(p));
+  });
+  return ids;
+}
+
+BodyId System::Implementation::apply(const CreateSolid& c) {
+  require_not_negative("damping", c.damping);
+  require_mass("mass", c.mass);
+  require_finite("position", c.position);
+  require_finite("velocity", c.velocity);
+  require_finite("spin", c.spin);
+  const std::uint32_t body = model.make_body(c.kind, c.damping);
+  model::Solid solid;
+  solid.kind = static_cast<model::SolidKind>(c.shape), solid.sizes = c.sizes, solid.mesh = c.mesh;
+  const model::SolidPose pose{c.position, c.orientation};
+  add_solid(model, body, solid, c.mass, c.centre, to_mat3(c.mean_squares), pose);
+  const Vec3 centre = model.centre_of_mass(body);
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model::Ring& ring = model.rings[model.particles[p].ring];
+    ring.velocity = c.velocity + cross(c.spin, ring.position - centre);
+  });
+  structure_changed();
+  return model.bodies.id(body);
+}
+
+ParticleId System::Implementation::apply(const CreateAttachment& c) {
+  const std::uint32_t body = require(c.body);
+  require_finite("position", c.position);
+  if (model.bodies[body].first_solid == none)
+    throw std::invalid_argument(text("create_attachment is for bodies given by shape, but body ", body,
+                                     " is made of particles alone: use create_particle"));
+  std::uint32_t solid = none;
+  double nearest = 0;
+  model.for_each_solid_of(body, [&](std::uint32_t s) {
+    const double distance = norm(solid_pose(model, s).position - c.position);
+    if (is_untouched(model, s) && (solid == none || distance < nearest)) solid = s, nearest = distance;
+  });
+  if (solid == none)
+    throw std::invalid_argument(
+        text("create_attachment: something is hinged, nailed or bonded to the own four points of "
+             "body ",
+             body, ", which therefore cannot give; use attachments for that"));
+  const std::uint32_t particle = attach(model, solid, c.position);
+  structure_changed();
+  return model.particles.id(particle);
+}
+
+// The whole articulate moves as if it were rigid, so that no joint notices.
+void System::Implementation::apply(const SetPose& c) {
+  const std::uint32_t body = require(c.body);
+  require_finite("position", c.position);
+  const Quaternion wanted = unit("orientation", c.orientation);
+  refresh_orientations();
+  const Quaternion& q = model.bodies[body].orientation;
+  const Quaternion turn = multiply(wanted, {-q.x, -q.y, -q.z, q.w});
+  const Vec3 centre = model.centre_of_mass(body);
+  const auto moved = [&](const Vec3& x) { return c.position + rotate(turn, x - centre); };
+  const std::uint32_t articulate = model.bodies[body].articulate;
+  if (model.bodies[body].kind == BodyKind::scripted) {
+    model.for_each_particle_of(
+        body, [&](std::uint32_t p) { apply(Nail{model.particles.id(p), false, moved(model.position(p))}); });
+    return;
+  }
+  const double before = model.potential_energy();
+  std::vector<std::uint32_t> rings;
+  model.for_each_body_of(articulate, [&](std::uint32_t b) {
+    model.for_each_particle_of(b, [&](std::uint32_t p) { rings.push_back(model.particles[p].ring); });
+  });
+  std::sort(rings.begin(), rings.end());
+  rings.erase(std::unique(rings.begin(), rings.end()), rings.end());
+  for (const std::uint32_t slot : rings) {
+    model::Ring& ring = model.rings[slot];
+    ring.position = moved(ring.position);
+    if (ring.nailed) ring.nail = ring.nail_before = moved(ring.nail);
+  }
+  model.bodies[body].orientation = wanted;
+  oriented_step = ~0ull;
+  model.edit_energy += model.potential_energy() - before;
+}
+
+template <class Motion>
+void System::Implementation::add_motion(std::uint32_t body, Motion motion) {
+  std::vector<std::uint32_t> touched;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model.for_each_in_ring(model.particles[p].ring,
+                           [&](std::uint32_t q) { touched.push_back(model.particles[q].body); });
+  });
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  const double before = conserved(touched).kinetic;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model::Ring& ring = model.rings[model.particles[p].ring];
+    ring.velocity += motion(ring.position);
+  });
+  model.edit_energy += conserved(touched).kinetic - before;
+  model.articulates[model.bodies[body].articulate].jolted = 1;
+}
+
+void System::Implementation::apply(const SetBodyVelocity& c) {
+  const std::uint32_t body = require(c.body);
+  require_finite("velocity", c.value);
+  const Vec3 change = c.value - body_velocity(model, body);
+  add_motion(body, [&](const Vec3&) { return change; });
+}
+
+void System::Implementation::apply(const SetAngularVelocity& c) {
+  const std::uint32_t body = require(c.body);
+  require_finite("angular velocity", c.value);
+  const Vec3 change = c.value - body_angular_velocity(model, body), centre = model.centre_of_mass(body);
+  add_motion(body, [&](const Vec3& x) { return cross(change, x - centre); });
+}
+
+}  // namespace iota
