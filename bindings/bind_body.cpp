@@ -1,18 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
 #include "names.h"
+#include "shape_argument.h"
 
 namespace iota::bindings {
 
 namespace {
 
 constexpr const char* doc =
-    "A rigid set of particles in a system. Make its particles with `Particle(body, ...)`.\n\n"
+    "A rigid set of particles in a system. Make its particles with `Particle(body, ...)`, or give the body as a solid:\n\n"
+    "shape: Sphere, Box, Cylinder, Capsule, Torus or Mesh, of density (kg/m^3) or mass (kg), with its origin at position\n"
+    "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses then stand for it, with exactly\n"
+    "its mass, centre and inertia. velocity: of the centre of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
+    "shape's frame (m) for particles to hinge, nail or bond, see `attachments` and `attach`.\n\n"
     "kind: 'dynamic', 'static' (never moves), 'scripted' (moved by the script, infinite mass) or 'inactive' (kept, neither\n"
     "stepped nor drawn). damping: 1/s, adds to the system's.\n\n"
     "Two handles of the same body are equal. A handle whose body was destroyed or absorbed raises StaleIdError.\n\n"
     "    rod = iota.Body(system)\n"
-    "    top, end = iota.Particle(rod, (0, 2, 0)), iota.Particle(rod, (0, 1, 0))";
+    "    top, end = iota.Particle(rod, (0, 2, 0)), iota.Particle(rod, (0, 1, 0))\n"
+    "    door = iota.Body(system, shape=iota.Box((0.9, 2, 0.04)), density=600, attachments=[(-0.45, 0.8, 0), (-0.45, -0.8, 0)])\n"
+    "    for hinge in door.attachments:\n"
+    "        hinge.nail()";
+
+nb::object to_array(const Matrix3& rows) {
+  std::vector<double> numbers;
+  for (const Vec3& row : rows) numbers.insert(numbers.end(), {row.x, row.y, row.z});
+  return nb::cast(make_vector3_array(std::move(numbers)));
+}
 
 nb::tuple to_tuple(const Quaternion& q) { return nb::make_tuple(q.x, q.y, q.z, q.w); }
 
@@ -21,6 +35,18 @@ std::string repr(const BodyHandle& self) {
   const System& engine = self.system->engine;
   return "<Body " + std::to_string(self.id.slot) + ": " + to_word(kind_words, engine.kind(self.id)) + ", " +
          std::to_string(engine.particles(self.id).size()) + " particles>";
+}
+
+/// Without a shape a body has no mass and is nowhere yet: its particles say where and how fast.
+void refuse_without_shape(const std::optional<double>& mass, VectorArgument position, nb::handle orientation,
+                          VectorArgument velocity, VectorArgument spin, nb::handle attachments) {
+  const Quaternion q = to_quaternion(orientation, "orientation");
+  if (!mass && to_vec3(position, "position") == Vec3{} && q == Quaternion{} &&
+      to_vec3(velocity, "velocity") == Vec3{} && to_vec3(spin, "spin") == Vec3{} && nb::len_hint(attachments) == 0)
+    return;
+  throw nb::type_error(
+      "mass, position, orientation, velocity, spin and attachments are of bodies with a shape: give shape=..., or make "
+      "particles with Particle(body, position, mass, velocity)");
 }
 
 System& between_steps(const BodyHandle& self, const char* what) {
@@ -32,19 +58,45 @@ System& between_steps(const BodyHandle& self, const char* what) {
 }  // namespace
 
 void bind_body(nb::module_& module) {
+  const nb::tuple zero = nb::make_tuple(0.0, 0.0, 0.0);
   nb::class_<BodyHandle> type(module, "Body", doc, nb::type_slots(handle_slots<BodyHandle>),
                               nb::is_weak_referenceable());
   type.def(
       "__init__",
-      [](BodyHandle* self, nb::handle_t<SystemObject> system, const KindWord& kind, double damping) {
-        BodyOptions options;
-        options.kind = to_kind(kind);
-        options.damping = finite_not_negative(damping, "damping", "1/s");
+      [](BodyHandle* self, nb::handle_t<SystemObject> system, const KindWord& kind, double damping, nb::object shape,
+         double density, std::optional<double> mass, VectorArgument position, nb::object orientation,
+         VectorArgument velocity, VectorArgument spin, nb::iterable attachments) {
         SystemObject* object = nb::inst_ptr<SystemObject>(system);
-        const BodyId id = object->use_between_steps("Body(...)").create_body(options);
-        new (self) BodyHandle{nb::borrow(system), object, id};
+        System& engine = object->use_between_steps("Body(...)");
+        finite_not_negative(damping, "damping", "1/s");
+        if (shape.is_none()) {
+          refuse_without_shape(mass, position, orientation, velocity, spin, attachments);
+          new (self) BodyHandle{nb::borrow(system), object, engine.create_body({to_kind(kind), damping})};
+          return;
+        }
+        SolidOptions options;
+        options.kind = to_kind(kind), options.damping = damping;
+        options.density = finite_positive(density, "density", "kg/m^3");
+        if (mass) options.mass = finite_positive(*mass, "mass", "kg");
+        options.position = to_vec3(position, "position"),
+        options.orientation = to_quaternion(orientation, "orientation");
+        options.velocity = to_vec3(velocity, "velocity"), options.spin = to_vec3(spin, "spin");
+        for (nb::handle place : attachments) options.attachments.push_back(to_vec3({place}, "each attachment"));
+        new (self) BodyHandle{nb::borrow(system), object, engine.create_body(to_shape(shape), options)};
       },
-      "system"_a, "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0);
+      "system"_a, "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(),
+      "density"_a = 1000.0, "mass"_a = nb::none(), "position"_a = zero,
+      "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), "velocity"_a = zero, "spin"_a = zero,
+      "attachments"_a = nb::tuple(),
+      nb::sig(
+          "def __init__(self, system: System, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive'] = 'dynamic', "
+          "damping: float = 0.0, *, shape: Sphere | Box | Cylinder | Capsule | Torus | Mesh | None = None, "
+          "density: float = 1000.0, mass: float | None = None, "
+          "position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
+          "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), "
+          "velocity: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
+          "spin: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
+          "attachments: collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] = ()) -> None"));
   def_identity(type);
   def_survival(type, "def survivor(self) -> Body | None");
   type.def_prop_ro(
@@ -72,7 +124,60 @@ void bind_body(nb::module_& module) {
       .def_prop_ro(
           "orientation", [](const BodyHandle& self) { return to_tuple(self.use().orientation(self.id)); },
           nb::sig("def orientation(self) -> tuple[float, float, float, float]"),
-          "Of the drawn frame: unit quaternion x y z w that turns body-frame vectors into the world frame.")
+          "Of the drawn frame: unit quaternion x y z w that turns body-frame vectors into the world frame. For a body\n"
+          "given by shape it is the shape's frame.")
+      .def(
+          "set_pose",
+          [](const BodyHandle& self, VectorArgument position, nb::object orientation) {
+            System& engine = between_steps(self, "set_pose");
+            const Quaternion turn =
+                orientation.is_none() ? engine.orientation(self.id) : to_quaternion(orientation, "orientation");
+            engine.set_pose(self.id, to_vec3(position, "position"), turn);
+          },
+          "position"_a, "orientation"_a = nb::none(),
+          nb::sig("def set_pose(self, position: Vec3 | collections.abc.Sequence[float], orientation: "
+                  "collections.abc.Sequence[float] | None = None) -> None"),
+          "Moves it, and rigidly with it all that hangs on it, nails included. A scripted body arrives at the end of the\n"
+          "next step. position: of the centre of mass, m. orientation: quaternion x y z w, None for the present one.")
+      .def_prop_ro(
+          "inertia", [](const BodyHandle& self) { return to_array(self.use().inertia(self.id)); },
+          nb::sig("def inertia(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "(3, 3), about the centre of mass, world axes, kg m^2.")
+      .def_prop_rw(
+          "velocity", [](const BodyHandle& self) { return self.use().velocity(self.id); },
+          [](const BodyHandle& self, VectorArgument v) {
+            between_steps(self, "velocity = ...").set_velocity(self.id, to_vec3(v, "velocity"));
+          },
+          "Of the centre of mass, m/s.")
+      .def_prop_rw(
+          "angular_velocity", [](const BodyHandle& self) { return self.use().angular_velocity(self.id); },
+          [](const BodyHandle& self, VectorArgument v) {
+            between_steps(self, "angular_velocity = ...").set_angular_velocity(self.id, to_vec3(v, "angular_velocity"));
+          },
+          "rad/s, world axes. It has no part along what has no inertia: one point, or the line that all points are on.\n"
+          "Assigning keeps the velocity of the centre; what joints do not allow of it is projected out by the next step.")
+      .def_prop_ro(
+          "angular_momentum", [](const BodyHandle& self) { return self.use().angular_momentum(self.id); },
+          "About its centre of mass, kg m^2/s.")
+      .def_prop_ro(
+          "solids", [](const BodyHandle& self) { return self.use().solids(self.id); },
+          "What it was given as; several once bodies were combined, none for a body of particles alone.")
+      .def_prop_ro(
+          "attachments",
+          [](const BodyHandle& self) {
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().attachments(self.id));
+          },
+          nb::sig("def attachments(self) -> list[Particle]"),
+          "Its particles that are no solid's own four points, in the order in which they were made.")
+      .def(
+          "attach",
+          [](const BodyHandle& self, VectorArgument position) {
+            return sibling(self,
+                           between_steps(self, "attach").create_attachment(self.id, to_vec3(position, "position")));
+          },
+          "position"_a, nb::sig("def attach(self, position: Vec3 | collections.abc.Sequence[float]) -> Particle"),
+          "A further particle of a body given by shape, anywhere (world, m). Mass, centre, inertia and motion of the body\n"
+          "stay exactly what they are. Raises ValueError for bodies without a shape.")
       .def_prop_ro(
           "articulate", [](const BodyHandle& self) { return self.use().articulate(self.id); },
           "A number that is equal for bodies that hang together.")

@@ -53,8 +53,7 @@ nb::object read_rows(System& engine, Read read) {
   return nb::cast(make_vector3_array(std::move(numbers)));
 }
 
-template <class Assign>
-void assign_rows(System& engine, nb::handle values, const char* name, Assign assign) {
+void assign_rows(System& engine, nb::handle values, const char* name, void (System::*assign)(ParticleId, const Vec3&)) {
   const std::vector<ParticleId> particles = engine.particles();
   const std::vector<double> numbers = rows(values, particles.size(), name);
   for (std::size_t i = 0; i < particles.size(); ++i)

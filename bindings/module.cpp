@@ -8,6 +8,7 @@ NB_MODULE(_core, module) {
   module.attr("version") = IOTA_VERSION;
   register_errors();
   bind_vector(module);
+  bind_shapes(module);
   bind_reports(module);
   bind_recording(module);
   bind_system(module);

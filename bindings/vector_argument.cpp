@@ -62,6 +62,22 @@ Vec3 to_vec3(VectorArgument argument, const char* name) {
   return vector;
 }
 
+Quaternion to_quaternion(nb::handle value, const char* name) {
+  double v[4] = {};
+  nb::object items = nb::steal(PySequence_Fast(value.ptr(), ""));
+  bool good = items.is_valid() && PySequence_Fast_GET_SIZE(items.ptr()) == 4;
+  if (!items.is_valid()) PyErr_Clear();
+  for (Py_ssize_t i = 0; good && i < 4; ++i) good = try_number(PySequence_Fast_GET_ITEM(items.ptr(), i), v[i]);
+  if (!good) {
+    const std::string text = std::string(name) + " must be 4 numbers x y z w, not " + describe(value);
+    throw nb::type_error(text.c_str());
+  }
+  const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
+  if (!(length > 1e-6) || !std::isfinite(length))
+    raise_value(std::string(name) + " must be finite and not zero, not " + describe(value));
+  return {v[0] / length, v[1] / length, v[2] / length, v[3] / length};
+}
+
 std::string describe(nb::handle value) {
   std::string text = nb::repr(value).c_str();
   if (text.size() > 80) text = text.substr(0, 77) + "...";

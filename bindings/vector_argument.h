@@ -22,6 +22,9 @@ bool try_vec3(nb::handle value, Vec3& out);
 /// As `try_vec3`; TypeError where it is no vector, ValueError where it is not finite. `name` goes into the text.
 Vec3 to_vec3(VectorArgument argument, const char* name);
 
+/// A unit quaternion from any 4 numbers x y z w; TypeError or ValueError where they are none, or zero.
+Quaternion to_quaternion(nb::handle value, const char* name);
+
 /// `value` in short, for error texts.
 std::string describe(nb::handle value);
 std::string describe(const Vec3& value);

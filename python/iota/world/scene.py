@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from iota._core import Body, Particle, System, Vec3
-from iota.looks import Looks, Shape, capsule, sphere
+from iota._core import Body, Box, Capsule, Cylinder, Mesh, Particle, Solid, Sphere, System, Torus, Vec3
+from iota.looks import Looks, Shape, box, capsule, cylinder, sphere, torus
 
 Quaternion = Sequence[float]
 
@@ -53,6 +53,54 @@ def turn_from_x(direction: Vec3) -> tuple[float, float, float, float]:
     return (axis.x, axis.y, axis.z, w)
 
 
+def relative_turn(frame: Quaternion, turned: Quaternion) -> Quaternion:
+    """The rotation from a frame to another one, as a quaternion x y z w with w at least 0."""
+    ax, ay, az, aw = -frame[0], -frame[1], -frame[2], frame[3]
+    bx, by, bz, bw = turned
+    w = aw * bw - ax * bx - ay * by - az * bz
+    q = (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        w,
+    )
+    return q if w >= 0 else (-q[0], -q[1], -q[2], -w)
+
+
+def solid_shapes(solid: object, material: str, **more: Any) -> list[Shape]:
+    """What the page draws for a solid: a primitive, or for a mesh its edges (at most 400 of them)."""
+    if isinstance(solid, Sphere):
+        return [sphere(solid.radius, material, **more)]
+    if isinstance(solid, Box):
+        return [box(solid.size, material, **more)]
+    if isinstance(solid, Cylinder):
+        return [cylinder(solid.radius, material, length=solid.length, **more)]
+    if isinstance(solid, Capsule):
+        return [capsule(solid.radius, material, length=solid.length, **more)]
+    if isinstance(solid, Torus):
+        return [torus(solid.radius, solid.tube, material, **more)]
+    assert isinstance(solid, Mesh)
+    corners, edges = (
+        solid.vertices,
+        {tuple(sorted((int(t[i]), int(t[i - 1])))) for t in solid.triangles for i in range(3)},
+    )
+    origin, turn = Vec3(*more.pop("offset")), more.pop("rotation")
+    thickness = 0.01 * float(np.linalg.norm(np.ptp(corners, axis=0))) if len(corners) else 0.0
+    shapes: list[Shape] = []
+    for a, b in sorted(edges)[:400]:
+        start, end = (origin + turned(turn, Vec3(*corners[i])) for i in (a, b))
+        length = abs(end - start)
+        place, along = (start + end) * 0.5, turn_from_x((end - start).unit())
+        shapes.append(capsule(thickness, material, length=length, offset=list(place), rotation=along, **more))
+    return shapes
+
+
+def turned(q: Quaternion, v: Vec3) -> Vec3:
+    axis = Vec3(q[0], q[1], q[2])
+    twice = axis.cross(v) * 2.0
+    return v + twice * q[3] + axis.cross(twice)
+
+
 class Scene:
     """Classes of bodies and their looks. `describe` gives the page's "bodies" and "classes"."""
 
@@ -61,6 +109,7 @@ class Scene:
         self._class_of: dict[Body, tuple[str, int]] = {}
         self.classes: dict[str, Looks] = {}
         self._thickness: float | None = None
+        self._solid_names: dict[str, str] = {}
 
     def assign(self, bodies: Iterable[Body], name: str) -> None:
         for index, body in enumerate(bodies):
@@ -78,7 +127,10 @@ class Scene:
         entry: dict[str, Any] = {"body": body.slot, "odd": odd, "kind": body.kind}
         if len(particles) == 2:
             entry["length"] = abs(particles[1].position - particles[0].position)
-        if name is None or (len(particles) > 2 and name in classes):
+        solids = body.solids
+        if solids and (name is None or len(solids) > 1):
+            name = self._solid_class(body, solids, classes, name)
+        elif name is None or (len(particles) > 2 and name in classes and not solids):
             name = self._own_class(body, particles, classes, name)
         entry["class"] = name
         return entry
@@ -94,6 +146,33 @@ class Scene:
         name = f"(body {body.slot})"
         classes[name] = {look: self._compound(body, particles, style) for look, style in styles.items()}
         return name
+
+    def _solid_class(self, body: Body, solids: list[Solid], classes: dict[str, Any], base: str | None) -> str:
+        """A class for a body given by shape: its shapes where they are, in the materials of the class it had."""
+        styles = classes.get(base or "", {"*": {"material": "paint"}})
+        centre, orientation = body.centre_of_mass, body.orientation
+        shapes = {look: self._solids(centre, orientation, solids, style) for look, style in styles.items()}
+        # Bodies of one shape share a class, so that the page draws them together.
+        text = json.dumps(shapes)
+        name = next((n for n, known in self._solid_names.items() if known == text), None)
+        if name is None:
+            name = f"(solid {len(self._solid_names) + 1})"
+            self._solid_names[name] = text
+        classes[name] = shapes
+        return name
+
+    def _solids(
+        self, centre: Vec3, orientation: Quaternion, solids: list[Solid], style: Shape | list[Shape]
+    ) -> list[Shape]:
+        like = style[0] if isinstance(style, list) else style
+        more = {"color": like["color"]} if "color" in like else {}
+        shapes: list[Shape] = []
+        for solid in solids:
+            offset = into_frame(solid.position, centre, orientation)
+            turn = relative_turn(orientation, solid.orientation)
+            place = {"offset": [round(v, 6) + 0.0 for v in offset], "rotation": [round(v, 6) + 0.0 for v in turn]}
+            shapes += solid_shapes(solid.shape, like["material"], **place, **more)
+        return shapes
 
     @staticmethod
     def _shared(name: str, shape: Shape, classes: dict[str, Any]) -> str:

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bodies given by shape."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import iota
+from iota.world.scene import Scene
+
+
+def cube(size: float = 1.0) -> iota.Mesh:
+    corners = [(x, y, z) for z in (0, size) for y in (0, size) for x in (0, size)]
+    triangles = [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4)]
+    triangles += [(2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5)]
+    return iota.Mesh(corners, triangles)
+
+
+@pytest.mark.parametrize(
+    ("shape", "volume"),
+    [
+        (iota.Sphere(0.5), math.pi / 6),
+        (iota.Box((1, 2, 3)), 6),
+        (iota.Cylinder(0.5, 2), math.pi / 2),
+        (iota.Capsule(0.5, 2), math.pi / 2 + math.pi / 6),
+        (iota.Torus(1, 0.1), 2 * math.pi**2 * 0.01),
+        (cube(2), 8),
+    ],
+)
+def test_a_body_of_any_shape_has_its_mass_and_centre(system: iota.System, shape: object, volume: float) -> None:
+    body = iota.Body(system, shape=shape, density=700, position=(1, 2, 3), orientation=(0, 0, 1, 1))
+    assert body.mass == pytest.approx(700 * volume)
+    assert shape.mass_properties.volume == pytest.approx(volume)
+    assert len(body.particles) == 4 and body.attachments == []
+    (solid,) = body.solids
+    assert type(solid.shape) is type(shape)
+    assert solid.position == pytest.approx((1, 2, 3))
+    assert solid.orientation == pytest.approx((0, 0, math.sqrt(0.5), math.sqrt(0.5)))
+    assert body.orientation == pytest.approx(solid.orientation)
+
+
+def test_inertia_velocity_and_spin_are_read_and_assigned(system: iota.System) -> None:
+    body = iota.Body(system, shape=iota.Box((1, 2, 3)), mass=12, velocity=(1, 0, 0), spin=(0, 0, 2))
+    np.testing.assert_allclose(body.inertia, np.diag([13, 10, 5]), atol=1e-12)
+    assert body.velocity == pytest.approx((1, 0, 0)) and body.angular_velocity == pytest.approx((0, 0, 2))
+    body.velocity, body.angular_velocity = (0, 1, 0), (3, 0, 0)
+    assert body.velocity == pytest.approx((0, 1, 0)) and body.angular_velocity == pytest.approx((3, 0, 0))
+    assert body.angular_momentum == pytest.approx((39, 0, 0))
+
+
+def test_attachments_are_ordinary_particles(system: iota.System) -> None:
+    door = iota.Body(
+        system, shape=iota.Box((0.9, 2, 0.04)), density=600, attachments=[(-0.45, 0.8, 0), (-0.45, -0.8, 0)]
+    )
+    inertia = door.inertia
+    for hinge in door.attachments:
+        hinge.nail()
+    door.angular_velocity = (0, 1, 0)
+    for _ in range(60):
+        report = system.step(1 / 120)
+    assert report.worst_gap < 1e-9
+    own = (0.9**2 + 0.04**2) / 12  # about its middle; the nails take what is no turn about its edge
+    assert door.angular_velocity.y == pytest.approx(own / (own + 0.45**2), rel=1e-6)
+    extra = iota.Body(system, shape=iota.Sphere(0.1)).attach((5, 5, 5))
+    assert extra.position == pytest.approx((5, 5, 5)) and 0 < extra.mass < 1e-3
+    assert door.inertia.trace() == pytest.approx(inertia.trace())
+
+
+def test_what_makes_no_shape_is_refused(system: iota.System) -> None:
+    with pytest.raises(ValueError, match="radius must be finite and above 0"):
+        iota.Sphere(-1)
+    with pytest.raises(ValueError, match="not closed: triangle"):
+        iota.Mesh(cube().vertices, cube().triangles[:-1])
+    with pytest.raises(ValueError, match="inside out"):
+        iota.Mesh(cube().vertices, cube().triangles[:, ::-1])
+    with pytest.raises(ValueError, match="names vertex"):
+        iota.Mesh(cube().vertices[:-1], cube().triangles)
+    with pytest.raises(ValueError, match=r"must have the shape \(n, 3\)"):
+        iota.Mesh([1, 2, 3], [[0, 1, 2]])
+    with pytest.raises(TypeError, match="shape must be a Sphere"):
+        iota.Body(system, shape="box")
+    with pytest.raises(TypeError, match="are of bodies with a shape"):
+        iota.Body(system, position=(1, 2, 3))
+    with pytest.raises(ValueError, match="orientation must be finite and not zero"):
+        iota.Body(system, shape=iota.Sphere(1), orientation=(0, 0, 0, 0))
+    with pytest.raises(ValueError, match="mass"):
+        iota.Body(system, shape=iota.Sphere(1), mass=0)
+    with pytest.raises(ValueError, match="use create_particle"):
+        iota.Body(system).attach((0, 0, 0))
+    assert system.bodies and system.validate() == []
+
+
+def test_the_page_draws_the_shapes(system: iota.System) -> None:
+    a = iota.Body(system, shape=iota.Box((1, 1, 1)))
+    b = iota.Body(system, shape=iota.Box((1, 1, 1)), position=(3, 0, 0), orientation=(0, 1, 0, 1))
+    c = iota.Body(system, shape=cube(), position=(0, 5, 0))
+    scene = Scene(system)
+    classes, bodies = (json.loads(text) for text in scene.describe())
+    names = [body["class"] for body in bodies]
+    assert names[0] == names[1] != names[2]  # one shape, one class
+    (shape,) = classes[names[0]]["*"]
+    assert shape["type"] == "box" and shape["size"] == [1, 1, 1] and shape["offset"] == [0, 0, 0]
+    edges = classes[names[2]]["*"]
+    assert len(edges) == 18 and np.allclose(np.mean([e["offset"] for e in edges], axis=0), 0, atol=1e-6)
+    iota.combine(a, b)
+    classes, bodies = (json.loads(text) for text in scene.describe())
+    shapes = classes[bodies[0]["class"]]["*"]
+    assert [s["offset"][0] for s in shapes] == pytest.approx([-1.5, 1.5])
+    assert shapes[1]["rotation"] == pytest.approx([0, math.sqrt(0.5), 0, math.sqrt(0.5)], abs=1e-5)
+    assert c.alive
+
+
+def test_a_pose_is_assigned(system: iota.System) -> None:
+    body = iota.Body(system, shape=iota.Cylinder(0.1, 1), attachments=[(0.5, 0, 0)])
+    body.set_pose((1, 2, 3), (0, 0, 1, 1))
+    assert body.centre_of_mass == pytest.approx((1, 2, 3))
+    assert body.attachments[0].position == pytest.approx((1, 2.5, 3))
