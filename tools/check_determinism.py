@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Builds the engine with gcc and clang at -O1 and -O3 and checks that all end in the same bits.
+
+    tools/check_determinism.py [--compilers g++ clang++] [--levels 1 3]
+
+Runs tests/determinism/state_hashes.cpp of each build; exit code 1 names the first scene and tenth that differ. A
+compiler that is not installed is left out, and said so.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = "iota_state_hashes"
+
+
+def build(compiler: str, level: str) -> Path:
+    """The program of one compiler and level."""
+    folder = ROOT / "build" / "determinism" / f"{compiler}-O{level}"
+    configure = [
+        "cmake", "-S", str(ROOT), "-B", str(folder), "-G", "Ninja", f"-DCMAKE_CXX_COMPILER={compiler}",
+        f"-DCMAKE_CXX_FLAGS=-O{level} -w", "-DCMAKE_BUILD_TYPE=None", "-DIOTA_BUILD_NET=OFF", "-DIOTA_BUILD_PYTHON=OFF",
+        "-DIOTA_BUILD_BENCH=OFF",
+    ]  # fmt: skip
+    jobs = str(len(os.sched_getaffinity(0)))
+    for command in (configure, ["cmake", "--build", str(folder), "--parallel", jobs, "--target", PROGRAM]):
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if done.returncode:
+            sys.exit(f"{' '.join(command)} failed:\n{done.stdout[-4000:]}")
+    return folder / PROGRAM
+
+
+def run(program: Path) -> dict[str, list[str]]:
+    """Scene -> hashes."""
+    done = subprocess.run([program], capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"{program} ended with exit code {done.returncode}:\n{done.stderr}")
+    return {name: hashes for name, *hashes in (line.split() for line in done.stdout.splitlines())}
+
+
+def differences(first: dict[str, list[str]], other: dict[str, list[str]]) -> list[str]:
+    """One sentence per scene that differs."""
+    if first.keys() != other.keys():
+        return ["not the same scenes"]
+    found = []
+    for scene, hashes in first.items():
+        at = next((i for i, (a, b) in enumerate(zip(hashes, other[scene], strict=True)) if a != b), None)
+        if at is not None:
+            found.append(f"{scene} differs from tenth {at + 1} on")
+    return found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Same bits from every compiler and optimisation level.")
+    parser.add_argument("--compilers", nargs="+", default=["g++", "clang++"])
+    parser.add_argument("--levels", nargs="+", default=["1", "3"])
+    options = parser.parse_args()
+    first: dict[str, list[str]] | None = None
+    same = True
+    for compiler in options.compilers:
+        if not shutil.which(compiler):
+            print(f"{compiler}: not installed, left out")
+            continue
+        for level in options.levels:
+            hashes = run(build(compiler, level))
+            first = first or hashes
+            wrong = differences(first, hashes)
+            same = same and not wrong
+            print(f"{compiler} -O{level}: {'; '.join(wrong) if wrong else f'{len(hashes)} scenes, the same bits'}")
+    return 0 if same else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
