@@ -24,6 +24,13 @@ void bind_energy(nb::module_& module) {
   nb::class_<Energy>(module, "Energy",
                      "Energy book-keeping in J: kinetic + potential + dissipated - external_work - edits is constant "
                      "up to round-off.")
+      .def(
+          "__init__",
+          [](Energy* self, double kinetic, double potential, double dissipated, double external_work, double edits) {
+            new (self) Energy{kinetic, potential, dissipated, external_work, edits};
+          },
+          nb::kw_only(), "kinetic"_a = 0.0, "potential"_a = 0.0, "dissipated"_a = 0.0, "external_work"_a = 0.0,
+          "edits"_a = 0.0)
       .def_ro("kinetic", &Energy::kinetic)
       .def_ro("potential", &Energy::potential, "Of gravity and springs.")
       .def_ro("dissipated", &Energy::dissipated,
@@ -41,6 +48,17 @@ void bind_energy(nb::module_& module) {
 
 void bind_step_report(nb::module_& module) {
   nb::class_<StepReport>(module, "StepReport", "What one `System.step` did. Not converged is a result, no exception.")
+      .def(
+          "__init__",
+          [](StepReport* self, std::uint64_t step, double time, double dt, const Energy& energy, double worst_gap,
+             std::vector<std::string> warnings) {
+            StepReport report;
+            report.step = step, report.time = time, report.dt = dt, report.energy = energy;
+            report.worst_gap = worst_gap, report.warnings = std::move(warnings);
+            new (self) StepReport(std::move(report));
+          },
+          nb::kw_only(), "step"_a, "time"_a, "dt"_a, "energy"_a = Energy{}, "worst_gap"_a = 0.0,
+          "warnings"_a = std::vector<std::string>{}, "For simulators of the script, see iota.Simulator.")
       .def_ro("step", &StepReport::step, "Number of the step just finished, from 1.")
       .def_ro("time", &StepReport::time, "Simulated time at its end, s.")
       .def_ro("dt", &StepReport::dt, "Its length, s.")

@@ -4,6 +4,8 @@
 #include "net/server.h"
 #include "net/token.h"
 
+#include <nanobind/stl/tuple.h>
+
 #include <system_error>
 
 namespace iota::bindings {
@@ -76,6 +78,39 @@ void publish(Server& self, SystemObject& system, bool paused, double speed, doub
   self.publish(snapshot);
 }
 
+/// What a simulator of the script shows: see iota.Simulator.
+void publish_poses(
+    Server& self, nb::handle slots, nb::handle places,
+    const std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, Vec3, Vec3, double>>& holds,
+    std::uint64_t step, double time, std::uint32_t structure_version, const Energy& energy, double gap, bool paused,
+    double speed, double step_ms) {
+  const nb::object as_array = nb::module_::import_("numpy").attr("ascontiguousarray");
+  const auto bodies =
+      nb::cast<nb::ndarray<const std::uint32_t, nb::c_contig, nb::device::cpu>>(as_array(slots, "uint32"));
+  const auto numbers = nb::cast<nb::ndarray<const float, nb::c_contig, nb::device::cpu>>(as_array(places, "float32"));
+  const std::size_t count = bodies.size();
+  if (bodies.ndim() != 1 || numbers.ndim() != 2 || numbers.shape(0) != count || numbers.shape(1) != 7)
+    throw nb::value_error("poses() must give slots of shape (n,) and places of shape (n, 7)");
+  PoseSnapshot snapshot;
+  snapshot.step = step, snapshot.time = time, snapshot.structure_version = structure_version, snapshot.paused = paused;
+  snapshot.speed = static_cast<float>(speed), snapshot.step_ms = static_cast<float>(step_ms);
+  snapshot.kinetic = static_cast<float>(energy.kinetic), snapshot.potential = static_cast<float>(energy.potential);
+  snapshot.gap = static_cast<float>(gap);
+  snapshot.bodies.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    snapshot.bodies[i].body = bodies.data()[i];
+    std::copy_n(numbers.data() + 7 * i, 3, snapshot.bodies[i].position);
+    std::copy_n(numbers.data() + 7 * i + 3, 4, snapshot.bodies[i].orientation);
+  }
+  for (const auto& [client, hold, body, point, target, force] : holds) {
+    HoldPose& pose = snapshot.holds.emplace_back();
+    pose.client = client, pose.hold = hold, pose.body = body, pose.force = static_cast<float>(force);
+    std::copy_n(narrow(point).data(), 3, pose.point);
+    std::copy_n(narrow(target).data(), 3, pose.target);
+  }
+  self.publish(snapshot);
+}
+
 void bind_input(nb::module_& module) {
   nb::class_<InputEvent>(module, "InputEvent", "What a user did, or that one came or went.")
       .def_prop_ro(
@@ -126,6 +161,20 @@ void bind_server(nb::module_& module) {
       .def_prop_ro("port", &Server::port)
       .def_prop_ro("url", &Server::url)
       .def("publish", &publish, "system"_a, "paused"_a, "speed"_a, "step_ms"_a, "The newest poses of a system.")
+      .def(
+          "publish_poses", &publish_poses, "slots"_a, "places"_a, "holds"_a, nb::kw_only(), "step"_a, "time"_a,
+          "structure_version"_a, "energy"_a, "gap"_a, "paused"_a, "speed"_a, "step_ms"_a,
+          "The newest poses of a simulator of the script, see iota.Simulator. Raises ValueError for shapes other than\n"
+          "(n,) and (n, 7).")
+      .def(
+          "publish_structure",
+          [](Server& self, std::uint32_t structure_version,
+             const std::vector<std::pair<std::uint32_t, std::uint32_t>>& body_articulates) {
+            std::vector<BodyArticulate> list;
+            for (const auto& [body, articulate] : body_articulates) list.push_back({body, articulate});
+            self.publish_structure(structure_version, list);
+          },
+          "structure_version"_a, "body_articulates"_a, "The same of a simulator of the script.")
       .def(
           "publish_structure",
           [](Server& self, SystemObject& system) {

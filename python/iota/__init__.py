@@ -40,6 +40,7 @@ from iota._core import (
 )
 from iota._core import version as __version__
 from iota.errors import BondError, PageMissingError, StaleIdError, WrongThreadError
+from iota.simulator import SimulatedBody, SimulatedGrip, SimulatedParticle, Simulator
 from iota.solvers import Problem, Solution, solve, solver, solver_names
 from iota.world import Camera, Client, Event, RunSummary, World
 
@@ -67,6 +68,10 @@ __all__ = [
     "Recording",
     "RestructureReport",
     "RunSummary",
+    "SimulatedBody",
+    "SimulatedGrip",
+    "SimulatedParticle",
+    "Simulator",
     "Solid",
     "Solution",
     "Sphere",

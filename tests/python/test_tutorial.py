@@ -6,6 +6,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -27,3 +29,9 @@ def test_the_script_in_the_readme_is_the_example_and_at_most_twenty_lines_long()
     example = (ROOT / "examples" / "python" / "pendulum.py").read_text()
     assert example.removeprefix("# SPDX-License-Identifier: Apache-2.0\n") == script
     assert len(script.splitlines()) <= 20
+
+
+def test_the_blocks_of_the_page_on_replaceable_parts_run(capsys: pytest.CaptureFixture[str]) -> None:
+    for block in blocks(ROOT / "docs" / "replaceable.md"):
+        exec(compile(block, "docs/replaceable.md", "exec"), {})
+    assert "1.41421356" in capsys.readouterr().out

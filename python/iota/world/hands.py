@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from iota._core import Body, Grip, InputEvent, System
+from iota.simulator import SimulatedBody, SimulatedGrip
 
 
 @dataclass
@@ -13,7 +15,7 @@ class Hold:
     """One hand of a client on a body."""
 
     body: Body
-    grip: Grip
+    grip: Grip | SimulatedGrip
 
 
 @dataclass
@@ -82,11 +84,15 @@ class Hands:
             client.holds.clear()
 
     def _grab(self, client: Client, event: InputEvent) -> None:
-        body = None if event.body is None else self._system.body_at(event.body)
+        body: Any = None if event.body is None else self._system.body_at(event.body)
         if body is None or body.kind == "inactive":
             return
         self._release(client, event.hold)
-        grip = Grip(body, event.local_point, event.target, client=client.id, hold=event.hold)
+        grip: Grip | SimulatedGrip
+        if isinstance(body, SimulatedBody):
+            grip = body.system.grip(body, event.local_point, event.target, client.id, event.hold)
+        else:
+            grip = Grip(body, event.local_point, event.target, client=client.id, hold=event.hold)
         client.holds[event.hold] = Hold(body, grip)
 
     @staticmethod

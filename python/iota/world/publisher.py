@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from iota._core import Particle, Server, System, Vec3
+from iota.simulator import Simulator
 from iota.world import page
 from iota.world.callbacks import Hook
 from iota.world.scene import fitting_camera
@@ -73,28 +74,50 @@ class Publisher:
 
     def scene(self) -> None:
         """Everything but the poses, where it changed."""
-        world, system = self.world, self.world.system
+        world = self.world
+        system: System | Simulator = world.system
         classes, bodies = world._scene.describe()
         self._set("world", self._describe_world())
         self._set("classes", classes)
         self._set("statics", json.dumps(world.statics))
         self._set("actions", json.dumps([action.describe() for action in world._actions.values()]))
         self._set("bodies", bodies)
-        self.server.publish_structure(system)
+        if isinstance(system, System):
+            self.server.publish_structure(system)
+        else:
+            self.server.publish_structure(system.structure_version, list(system.body_articulates()))
         self.structure_version = system.structure_version
 
     def frame(self, dirty: bool) -> None:
         """One frame: poses, and before them what changed in the structure."""
-        world, system = self.world, self.world.system
+        world = self.world
+        system: System | Simulator = world.system
         if dirty or system.structure_version != self.structure_version:
             self.scene()
         self._send_effects(system)
-        self.server.publish(system, paused=world.paused, speed=world.speed, step_ms=world.step_ms)
+        if isinstance(system, System):
+            self.server.publish(system, paused=world.paused, speed=world.speed, step_ms=world.step_ms)
+        else:
+            slots, places = system.poses()
+            holds = [(c, h, b, Vec3(*point), Vec3(*target), f) for c, h, b, point, target, f in system.holds()]
+            self.server.publish_poses(
+                slots,
+                places,
+                holds,
+                step=system.step_count,
+                time=system.time,
+                structure_version=system.structure_version,
+                energy=system.energy,
+                gap=system.worst_gap,
+                paused=world.paused,
+                speed=world.speed,
+                step_ms=world.step_ms,
+            )
 
     def notice(self, level: str, title: str, text: str, hint: str, client: int) -> None:
         self.server.notice(client, LEVELS[level], title, text, hint)
 
-    def _send_effects(self, system: System) -> None:
+    def _send_effects(self, system: System | Simulator) -> None:
         now = system.time
         for kind, place, delay, particle in system.take_edits():
             self.effects.append(Effect(now + delay, kind, place, particle))

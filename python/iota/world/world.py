@@ -11,11 +11,12 @@ import threading
 import time
 import webbrowser
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from iota._core import Body, StepReport, System, Vec3
 from iota.errors import BondError
 from iota.looks import Looks, Shape
+from iota.simulator import Simulator
 from iota.world import options as run_options
 from iota.world.callbacks import GO_ON, Guard, Hook
 from iota.world.event import Event
@@ -37,7 +38,7 @@ SWITCHED_OFF = "It is switched off until reset. Correct the script and run it ag
 class World:
     """Runs a system in real time and serves a page that shows it.
 
-    title: on the page. dt: length of a step, s. look: the look that pages start with. ground: height of the drawn
+    system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. look: the look that pages start with. ground: height of the drawn
     ground, m, None for none.
 
         world = iota.World(system, title="pendulum")
@@ -54,7 +55,7 @@ class World:
 
     def __init__(
         self,
-        system: System,
+        system: System | Simulator,
         title: str = "iota",
         dt: float = 1 / 120,
         look: str | None = None,
@@ -63,18 +64,19 @@ class World:
     ) -> None:
         if not (math.isfinite(dt) and 0 < dt <= 1):
             raise ValueError(f"dt must be above 0 and at most 1 s, not {dt}")
-        self.system, self.title, self.dt = system, title, float(dt)
+        self.system = cast(System, system)  # scripts see the built-in one; nothing here asks for more than a Simulator
+        self.title, self.dt = title, float(dt)
         self.default_look, self.ground, self.camera = look, ground, camera
         self.paused = False
         self.step_ms = 0.0
         self.statics: list[dict[str, Any]] = []
-        self._scene = Scene(system)
+        self._scene = Scene(self.system)
         self._actions: dict[str, Action] = {}
         self._schedule = Schedule()
         self._on_step: list[Hook] = []
         self._on_reset: list[Hook] = []
         self._off: set[Hook] = set()  # raised since the last reset
-        self._hands = Hands(system)
+        self._hands = Hands(self.system)
         self._pacer = Pacer(self.dt)
         self._guard = Guard(self._tell("error"), self._tell("warning"))
         self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
@@ -311,7 +313,11 @@ class World:
             self._publisher = Publisher.open(self, host, port if options.port is None else options.port)
             self._begin()
             self._guard.watch()
-            self._publisher.frame(dirty=True)
+            try:
+                self._publisher.frame(dirty=True)
+            except BaseException:
+                self.close()
+                raise
             self._dirty = False
         return self._publisher.server.url
 
