@@ -83,7 +83,7 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
   make_guess(problem, stage);
   const NewtonReport newton = newton_.solve(problem, stage, guess_);
   ++report.solves;
-  switched_ = newton.switched;
+  met_ = newton.met;
   report.iterations += newton.iterations;
   report.iterations_max = std::max(report.iterations_max, newton.iterations);
   return newton.converged;
@@ -157,8 +157,10 @@ void Integrator::take_stock(const Problem& problem, double fraction) {
 void Integrator::smooth_multipliers(Problem& problem) const {
   auto before = multipliers_saved_.begin();
   problem.for_each_constraint_pool([&](auto& pool) {
-    for (double& m : pool.multipliers) {
+    for (std::size_t row = 0; row < pool.multipliers.size(); ++row) {
+      double& m = pool.multipliers[row];
       const double last = *before++;
+      if (pool.has_laws() && (pool.states[row].side != 0 || pool.states[row].side_before != 0)) continue;
       if (last != 0) m = 0.5 * (m + last);  // zero: there was no last time
     }
   });
@@ -191,7 +193,24 @@ bool Integrator::gains_energy(const Problem& problem, const Stage& stage) {
   const double kinetic = 0.5 * problem.mass_norm2(velocity_.data());
   const double gain =
       kinetic + problem.potential_energy(x1.data()) + problem.row_energy(x1.data(), stage.fraction) - energy_;
-  return !(gain <= 1e-9 * (kinetic_ + kinetic) + 1e-12);
+  const double slack = 1e-9 * (kinetic_ + kinetic) + 1e-12;
+  return !(gain <= slack) && !(gain <= slack + work_of_gaps(problem, stage));
+}
+
+// What the constraint forces do where gaps, within the tolerance, open and close.
+double Integrator::work_of_gaps(const Problem& problem, const Stage& stage) const {
+  double work = 0;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      double before[C::rows], after[C::rows];
+      pool.items[k].value(problem.position.data(), stage.fraction_start, before);
+      pool.items[k].value(newton_.solution().data(), stage.fraction, after);
+      const double limit = 10 * stage.tolerance * pool.items[k].reference_length();
+      for (int r = 0; r < C::rows; ++r)
+        work += std::abs(pool.multiplier(k)[r]) * std::min(std::abs(after[r] - before[r]), limit);
+    }
+  });
+  return work;
 }
 
 void Integrator::advance_mid_point(Problem& problem, double h, double from, double to, int depth,
@@ -205,15 +224,11 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
   save_multipliers(problem);
   const Stage stage = Stage::mid_point(h, from, to);
   const bool solved = try_step(problem, stage, report);
-  if (solved && switched_ > 0) {
-    restore_multipliers(problem);
-    ++report.impacts;
-    advance_end_point(problem, h, from, to, depth, report);
-    return absorb_impact(problem, to, report);
-  }
   if (solved && !turns_too_far(problem)) {
+    const bool met = met_ > 0;
     commit(problem, stage, report);
     smooth_multipliers(problem);
+    if (met) absorb_impact(problem, to, report);
     return;
   }
   restore_multipliers(problem);
@@ -224,12 +239,14 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
   halve();
 }
 
-// Rows that have just met leave velocities that they no longer allow; the mid-point rule would throw them back.
+// Rows that have just met leave velocities that they no longer allow, and that the mid-point rule would throw back:
+// impacts are inelastic. The sub-step itself does no harm: a row that ends met and began apart has taken energy.
 void Integrator::absorb_impact(Problem& problem, double to, AdvanceReport& report) {
   const double before = energy_;
   newton_.project_velocities(problem, conservative_ ? 0 : step_length_, true);
   take_stock(problem, to);
   report.dissipated += before - energy_;
+  report.impacts += before - energy_ > 1e-9 * kinetic_;
 }
 
 void Integrator::advance_end_point(Problem& problem, double h, double from, double to, int depth,

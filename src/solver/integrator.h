@@ -17,7 +17,7 @@ struct [[nodiscard]] AdvanceReport {
   int iterations_max = 0;
   int substeps = 0;
   int fallbacks = 0;  ///< mid-point sub-steps that had to be taken by the end-point scheme
-  int impacts = 0;    ///< sub-steps in which bounded rows met or let go: taken by the end-point scheme, inelastic
+  int impacts = 0;    ///< mid-point sub-steps in which bounded rows met: inelastic, their energy is dissipated
   bool converged = true;
   double external_work = 0;   ///< of explicit forces, grips and moving targets, J
   double dissipated = 0;      ///< J
@@ -49,6 +49,7 @@ class Integrator {
   void take_stock(const Problem&, double fraction);
   void absorb_impact(Problem&, double to, AdvanceReport&);
   double work_of_drives(const Problem&, const Stage&) const;
+  double work_of_gaps(const Problem&, const Stage&) const;
   void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   void advance_end_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   bool will_turn_too_far(const Problem&, double h) const;
@@ -71,7 +72,7 @@ class Integrator {
   double kinetic_ = 0, energy_ = 0;  ///< of the problem's state as it is now, J
   bool conservative_ = true;         ///< nothing outside does work during this step
   bool holds_offsets_ = false;
-  int switched_ = 0;  ///< bounded rows that changed sides in the latest solve
+  int met_ = 0;  ///< bounded rows that met in the latest solve
 };
 
 }  // namespace iota::solver

@@ -526,7 +526,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     report.residual = after;
   }
   report.violation = violation_;
-  if (has_laws_) report.switched = count_switched(problem);
+  if (has_laws_) report.met = count_met(problem);
   const bool exact = stage.compliance <= 1e-12;
   report.converged = settled && report.residual <= std::max(stage.tolerance, stuck ? round_off_floor : 0) &&
                      (!exact || violation_ <= largest_violation);
@@ -563,10 +563,10 @@ void Newton::begin_sides(Problem& problem, const Stage& stage) {
   });
 }
 
-int Newton::count_switched(const Problem& problem) const {
+int Newton::count_met(const Problem& problem) const {
   int count = 0;
   problem.for_each_constraint_pool([&](const auto& pool) {
-    for (const RowState& state : pool.states) count += state.side != state.side_before;
+    for (const RowState& state : pool.states) count += state.side == 0 && state.side_before != 0;
   });
   return count;
 }

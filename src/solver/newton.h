@@ -42,7 +42,7 @@ struct Stage {
 struct [[nodiscard]] NewtonReport {
   bool converged = false;
   int iterations = 0;
-  int switched = 0;     ///< bounded rows that went from one side to another: impacts, slip, slack
+  int met = 0;  ///< bounded rows that came from a bound to their equation: impacts, friction that begins to stick
   double residual = 0;  ///< scaled, dimensionless
   double violation =
       0;  ///< of the constraints alone, as a fraction of their reference lengths: compliance lets conflicting
@@ -87,7 +87,7 @@ class Newton {
   void assemble_rows(const Problem&, const Stage&, const ConstraintPool<C>&, Hessian);
   void begin_sides(Problem&, const Stage&);
   bool choose_sides(Problem&, const Stage&);
-  int count_switched(const Problem&) const;
+  int count_met(const Problem&) const;
   void begin_impulse_sides(Problem&, bool as_solved);
   bool release_impulses(Problem&);
   void add_to_node(std::uint32_t node, double value);

@@ -2,11 +2,14 @@
 #include "solver/constraints/surface_pair.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace iota::solver {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// x of A x = b by elimination with row pivoting; zero where A is singular.
 void solve4(double (&a)[4][5], double* x) {
@@ -65,11 +68,11 @@ Mat3 unit_derivative(const Vec3& unit, double size, const Mat3& change) {
 SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const Vec3& near) const {
   const Relative relative(e);
   const double size = std::min(surface_a->size(), surface_b->size());
-  Vec3 p = near;
-  double gap = 0;
+  Vec3 p = near, start = near, dp;
+  double gap = 0, start_gap = 0, dgap = 0, best = infinity, part = 1;
   bool first = true;
   Contact contact{};
-  for (int iteration = 0; iteration < 50; ++iteration) {
+  for (int iteration = 0; iteration < 60; ++iteration) {
     const geometry::SurfacePoint a = surface_a->at(p);
     const double a_size = norm(a.gradient) + 1e-300;
     const Vec3 n = (1 / a_size) * a.gradient;
@@ -83,6 +86,13 @@ SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const 
     const Vec3 b_gradient = relative.turn * b.gradient;
     const double b_size = norm(b_gradient) + 1e-300;
     const Vec3 m = (1 / b_size) * b_gradient;
+    const double residual = std::abs(a.value) / size + std::abs(b.value) / size + norm(n + m);
+    if (!(residual < best) && part > 0.01 && best > 1e-12) {  // kinks, as between face and edge: go less far
+      part /= 2;
+      p = start + part * dp, gap = start_gap + part * dgap;
+      continue;
+    }
+    best = residual, part = 1;
     contact = {p, q, n, gap, place, b.gradient};
 
     const Mat3 dn = unit_derivative(n, a_size, a.hessian);
@@ -102,10 +112,11 @@ SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const 
     }
     double step[4];
     solve4(system, step);
-    Vec3 dp{step[0], step[1], step[2]};
+    start = p, start_gap = gap;
+    dp = {step[0], step[1], step[2]}, dgap = step[3];
     const double length = norm(dp), limit = 0.5 * size;
-    const double factor = length > limit ? limit / length : 1;
-    p += factor * dp, gap += factor * step[3];
+    if (length > limit) dp *= limit / length, dgap *= limit / length;
+    p += dp, gap += dgap;
     if (!(length > 1e-15 * (size + norm(p))) && !(std::abs(step[3]) > 1e-15 * size)) break;
   }
   return contact;

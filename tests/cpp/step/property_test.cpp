@@ -1,26 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random edits against brute force, bits against bits, and what a warm step may not do.
 #include "scenes/chain.h"
+#include "tests/cpp/allocations.h"
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <cstring>
-#include <new>
 #include <random>
-
-namespace {
-std::atomic<long> allocations{0};
-}
-// Counting is all these do; the default ones are not callable once replaced.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace iota {
 namespace {

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/cpp/allocations.h"
+
+#include <cstdlib>
+#include <new>
+
+namespace iota {
+std::atomic<long> allocations{0};
+}
+
+// Counting is all these do; the default ones are not callable once replaced.
+void* operator new(std::size_t size) {
+  ++iota::allocations;
+  if (void* p = std::malloc(size ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
