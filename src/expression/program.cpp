@@ -6,15 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-// One build for every x86-64 processor, with the loops compiled for wider registers too and chosen at load time. Widths do
-// not change results: every lane does the same operations. (Sanitizers start too late for the choosing.)
-#if defined(__x86_64__) && defined(__linux__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__) && !defined(__clang__)
-#define IOTA_WIDER __attribute__((target_clones("avx2", "default")))
-#else
-#define IOTA_WIDER
-#endif
-
 namespace iota::expression {
 
 namespace {

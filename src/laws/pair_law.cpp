@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "laws/pair_law.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace iota::laws {
+
+namespace {
+
+using expression::Definition;
+using expression::Formula;
+using expression::Node;
+using expression::Op;
+using expression::Program;
+
+enum Variable : std::uint32_t { var_r, var_v, var_t, var_m_p, var_m_q, variable_count };
+
+/// One of each thread: islands are solved in parallel.
+Program::Workspace& workspace() {
+  static thread_local Program::Workspace space;
+  return space;
+}
+
+template <class Visit, std::size_t... I>
+void visit_list(std::uint32_t number, Visit visit, std::index_sequence<I...>) {
+  ((number == I ? visit.template operator()<std::tuple_element_t<I, PairLaws>>() : void()), ...);
+}
+template <class Visit>
+void visit_list(std::uint32_t number, Visit visit) {
+  visit_list(number, visit, std::make_index_sequence<pair_law_count>{});
+}
+
+std::array<double, variable_count + max_parameters> inputs_of(const PairState& s, const double* parameters,
+                                                              std::size_t count) {
+  std::array<double, variable_count + max_parameters> inputs{s.r, s.v, s.t, s.m_p, s.m_q};
+  std::copy_n(parameters, count, inputs.begin() + variable_count);
+  return inputs;
+}
+
+template <class Law>
+constexpr std::size_t parameter_count = std::size(Law::parameters);
+
+}  // namespace
+
+template <class Visit>
+void PairLaw::with_list(Visit visit) const {
+  visit_list(number_, visit);
+}
+
+PairLaw::PairLaw(std::uint32_t number) : number_(number) {
+  with_list([&]<class Law>() {
+    has_energy_ = Law::has_energy, has_damping_ = Law::has_dashpot, has_drag_ = Law::has_drag;
+    parameter_count_ = parameter_count<Law>;
+  });
+}
+
+PairLaw::PairLaw(std::string_view text, std::vector<std::string> parameters) : parameter_count_(parameters.size()) {
+  std::vector<std::string> inputs(std::begin(variables), std::end(variables));
+  inputs.insert(inputs.end(), parameters.begin(), parameters.end());
+  Formula formula(std::move(inputs));
+  std::vector<Definition> definitions;
+  try {
+    definitions = expression::parse(text, formula);
+  } catch (const expression::ExpressionError& error) {
+    if (text.find('=') != std::string_view::npos) throw;
+    throw expression::ExpressionError("write 'energy = ...' (J) or 'force = ...' (N, positive pushes apart)", text, 0);
+  }
+
+  const Node zero = formula.constant(0);
+  Node energy = zero, force = zero, drag = zero;
+  bool any = false;
+  for (const Definition& d : definitions) {
+    if (d.name == "energy") {
+      energy = d.node, any = true;
+      if (formula.depends_on(energy, var_v))
+        throw expression::ExpressionError("an energy cannot depend on v; put damping into 'force = ...'", text,
+                                          d.position);
+    } else if (d.name == "force") {
+      force = d.node, any = true;
+    } else if (d.name == "drag") {
+      drag = d.node, any = true;
+      if (formula.depends_on(drag, var_v))
+        throw expression::ExpressionError("a drag cannot depend on v; it is multiplied by the velocity", text,
+                                          d.position);
+    }
+  }
+  if (!any)
+    throw expression::ExpressionError("a law between two particles defines 'energy', 'force' or 'drag'", text,
+                                      definitions.back().position);
+
+  const Node push = formula.substitute(force, var_v, zero);
+  const Node damping = formula.make(Op::subtract, force, push);
+  has_energy_ = energy != zero, has_push_ = push != zero, has_drag_ = drag != zero;
+  has_damping_ = formula.depends_on(damping, var_v);
+  for (const Node part : {energy, force, drag}) depends_on_time_ = depends_on_time_ || formula.depends_on(part, var_t);
+
+  std::vector<bool> each(formula.inputs().size(), false), shared = each;
+  each[var_t] = shared[var_t] = true;
+  for (std::size_t i = variable_count; i < shared.size(); ++i) shared[i] = true;
+  const Node slope = formula.derivative(energy, var_r), curvature = formula.derivative(slope, var_r);
+  const Node push_slope = formula.derivative(push, var_r), damping_slope = formula.derivative(damping, var_v);
+  elastic_ = Program(formula, std::array{energy, slope, curvature}, each);
+  push_ = Program(formula, std::array{push, push_slope}, each);
+  damping_ = Program(formula, std::array{damping, damping_slope}, each);
+  drag_ = Program(formula, std::array{drag}, each);
+  const std::array total{formula.make(Op::subtract, force, slope), drag};
+  const auto wanted = std::span(total).first(has_drag_ ? 2 : 1);
+  bonds_ = Program(formula, wanted, each);
+  pairs_ = Program(formula, wanted, shared);
+}
+
+Elastic PairLaw::elastic(const PairState& state, const double* parameters) const {
+  Elastic result;
+  if (!has_energy_) return result;
+  if (number_ < pair_law_count) {
+    with_list([&]<class Law>() { result = Law::elastic(state, parameters); });
+    return result;
+  }
+  double out[3];
+  elastic_.run_one(inputs_of(state, parameters, parameter_count_).data(), out, workspace());
+  return {out[0], out[1], out[2]};
+}
+
+PairLaw::Slope PairLaw::push(const PairState& state, const double* parameters) const {
+  if (!has_push_) return {};
+  double out[2];
+  push_.run_one(inputs_of(state, parameters, parameter_count_).data(), out, workspace());
+  return {out[0], out[1]};
+}
+
+PairLaw::Slope PairLaw::damping(const PairState& state, const double* parameters) const {
+  if (!has_damping_) return {};
+  if (number_ < pair_law_count) {
+    double c = 0;
+    with_list([&]<class Law>() { c = Law::dashpot(parameters); });
+    return {-c * state.v, -c};
+  }
+  double out[2];
+  damping_.run_one(inputs_of(state, parameters, parameter_count_).data(), out, workspace());
+  return {out[0], out[1]};
+}
+
+double PairLaw::drag(const PairState& state, const double* parameters) const {
+  double result = 0;
+  if (!has_drag_) return result;
+  if (number_ < pair_law_count)
+    with_list([&]<class Law>() { result = Law::drag(parameters); });
+  else
+    drag_.run_one(inputs_of(state, parameters, parameter_count_).data(), &result, workspace());
+  return result;
+}
+
+namespace {
+
+template <class Law>
+IOTA_ALWAYS_INLINE void fill(const PairBatch& b, const auto& parameters_of) {
+  for (std::size_t i = 0; i < b.count; ++i) {
+    const auto p = parameters_of(i);
+    const PairState s{b.r[i], b.v[i], b.t, b.m_p[i], b.m_q[i]};
+    double f = 0;
+    if constexpr (Law::has_energy) f -= Law::elastic(s, p.data()).slope;
+    if constexpr (Law::has_dashpot) f -= Law::dashpot(p.data()) * s.v;
+    b.force[i] = f;
+    if constexpr (Law::has_drag) b.drag[i] = Law::drag(p.data());
+  }
+}
+
+template <class Law>
+IOTA_WIDER void evaluate_list(const PairBatch& b) {
+  constexpr std::size_t n = parameter_count<Law>;
+  std::array<double, n> same;
+  std::array<const double*, n> each;
+  for (std::size_t k = 0; k < n; ++k) same[k] = *b.parameters[k], each[k] = b.parameters[k];
+  if (b.same_parameters) {
+    fill<Law>(b, [&](std::size_t) { return same; });
+  } else {
+    fill<Law>(b, [&](std::size_t i) {
+      std::array<double, n> p;
+      for (std::size_t k = 0; k < n; ++k) p[k] = each[k][i];
+      return p;
+    });
+  }
+}
+
+}  // namespace
+
+void PairLaw::evaluate(const PairBatch& b) const {
+  if (b.count == 0) return;
+  if (number_ < pair_law_count) {
+    with_list([&]<class Law>() { evaluate_list<Law>(b); });
+    return;
+  }
+  std::array<const double*, variable_count + max_parameters> lanes{b.r, b.v, nullptr, b.m_p, b.m_q};
+  std::array<double, variable_count + max_parameters> uniforms{};
+  uniforms[var_t] = b.t;
+  for (std::size_t k = 0; k < parameter_count_; ++k) {
+    lanes[variable_count + k] = b.parameters[k];
+    uniforms[variable_count + k] = *b.parameters[k];
+  }
+  double* const outputs[] = {b.force, b.drag};
+  (b.same_parameters ? pairs_ : bonds_).run(b.count, lanes.data(), uniforms.data(), outputs, workspace());
+}
+
+std::uint32_t find_pair_law(std::string_view name) {
+  for (std::uint32_t i = 0; i < pair_law_count; ++i)
+    if (name == pair_law_name(i)) return i;
+  return pair_law_count;
+}
+const char* pair_law_name(std::uint32_t number) {
+  const char* name = "";
+  visit_list(number, [&]<class Law>() { name = Law::name; });
+  return name;
+}
+const char* pair_law_text(std::uint32_t number) {
+  const char* text = "";
+  visit_list(number, [&]<class Law>() { text = Law::text; });
+  return text;
+}
+std::span<const Parameter> pair_law_parameters(std::uint32_t number) {
+  std::span<const Parameter> list;
+  visit_list(number, [&]<class Law>() { list = Law::parameters; });
+  return list;
+}
+
+}  // namespace iota::laws

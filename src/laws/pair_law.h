@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "expression/program.h"
+#include "laws/pair_laws.h"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace iota::laws {
+
+/// Many pairs at once, as arrays of `count` numbers.
+struct PairBatch {
+  std::size_t count = 0;
+  const double *r = nullptr, *v = nullptr, *m_p = nullptr, *m_q = nullptr;
+  double t = 0;
+  const double* const* parameters = nullptr;  ///< one array a parameter, or one number each
+  bool same_parameters = false;               ///< one number each
+  double* force = nullptr;                    ///< out: along the line, positive pushes apart, N
+  double* drag = nullptr;                     ///< out: of the velocity difference, N s/m; only where `has_drag()`
+};
+
+/// A law between two points: one of the list, or an expression. Its force on the second point is f n - c (v_q - v_p), with n
+/// from the first to the second and f = -U'(r, t) + push(r, t) + damping(r, v, t), where U is what the law stores as energy and
+/// damping vanishes with v. The parts are told apart because the solver treats them differently.
+///
+/// An expression law defines `energy` (J), `force` (N along the line, positive pushes apart) or `drag` (N s/m), or several,
+/// of r, v = dr/dt, t, m_p, m_q and its parameters: "energy = 0.5*k*(r - r0)^2; force = -c*v".
+class PairLaw {
+ public:
+  /// A law of the list.
+  explicit PairLaw(std::uint32_t number);
+  /// Throws expression::ExpressionError, or std::invalid_argument for a text that defines no force.
+  PairLaw(std::string_view text, std::vector<std::string> parameters);
+
+  bool has_energy() const { return has_energy_; }
+  bool has_push() const { return has_push_; }        ///< forces at rest that no energy stands behind
+  bool has_damping() const { return has_damping_; }  ///< forces of v
+  bool has_drag() const { return has_drag_; }
+  bool depends_on_time() const { return depends_on_time_; }
+
+  /// @name One pair, with derivatives, for the solver
+  ///@{
+  Elastic elastic(const PairState&, const double* parameters) const;
+  struct Slope {
+    double value = 0, slope = 0;
+  };
+  Slope push(const PairState&, const double* parameters) const;     ///< at v = 0, and its slope over r
+  Slope damping(const PairState&, const double* parameters) const;  ///< force(v) - force(0), and its slope over v
+  double drag(const PairState&, const double* parameters) const;
+  ///@}
+
+  /// Many pairs, force and drag only.
+  void evaluate(const PairBatch&) const;
+
+  /// Variables of an expression law before its parameters.
+  static constexpr const char* variables[] = {"r", "v", "t", "m_p", "m_q"};
+
+ private:
+  template <class Visit>
+  void with_list(Visit visit) const;
+
+  std::uint32_t number_ = pair_law_count;  // of the list; else an expression
+  bool has_energy_ = false, has_push_ = false, has_damping_ = false, has_drag_ = false, depends_on_time_ = false;
+  std::size_t parameter_count_ = 0;
+  expression::Program elastic_, push_, damping_, drag_;
+  expression::Program bonds_, pairs_;  // force and drag of batches: parameters of each, or the same for all
+};
+
+/// Number in the list, `pair_law_count` for an unknown name.
+std::uint32_t find_pair_law(std::string_view name);
+const char* pair_law_name(std::uint32_t number);
+const char* pair_law_text(std::uint32_t number);  ///< the same law as an expression
+std::span<const Parameter> pair_law_parameters(std::uint32_t number);
+
+}  // namespace iota::laws
