@@ -35,6 +35,7 @@ struct [[nodiscard]] StepReport {
   Energy energy;
   std::uint32_t articulates = 0;
   std::uint32_t structure_version = 0;
+  std::vector<BondId> switched_off;   ///< bonds whose force was not finite, or whose function threw
   std::vector<std::string> warnings;  ///< plain sentences: a quarantined bond, a conflict ...
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iota/forces.h>
 #include <iota/ids.h>
 #include <iota/pose_snapshot.h>
 #include <iota/reports.h>
@@ -14,6 +15,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -70,35 +72,6 @@ struct SolidView {
   Quaternion orientation;  ///< of the shape's frame
 };
 
-/// f = -(stiffness (r - length) + damping r') along the line p-q. Solved implicitly: any stiffness is stable.
-struct SpringLaw {
-  double stiffness = 100;                                    ///< N/m
-  double damping = 0;                                        ///< N s/m, along the line
-  double length = std::numeric_limits<double>::quiet_NaN();  ///< rest length, m; NaN: the distance at creation
-};
-
-/// f = -damping (v_p - v_q): viscous drag between two particles, implicit.
-struct DragLaw {
-  double damping = 1;  ///< N s/m
-};
-
-/// What a scripted bond is shown, at the start of each step.
-struct BondState {
-  BondId bond;
-  Vec3 position_p, position_q;  ///< m
-  Vec3 velocity_p, velocity_q;  ///< m/s
-  double time;                  ///< s
-};
-
-/// Any function of the script: returns the force on p in N (q gets the opposite), evaluated once a step and held.
-/// A throw or a non-finite force switches the bond off and is reported by the step.
-struct ScriptedLaw {
-  std::function<Vec3(const BondState&)> force;
-  std::string name;  ///< for reports
-};
-
-using BondLaw = std::variant<SpringLaw, DragLaw, ScriptedLaw>;
-
 struct GripOptions {
   std::uint32_t client = 0, hold = 0;  ///< whose hand; carried to the viewers
   double frequency = 2.5;              ///< Hz of the critically damped spring
@@ -142,6 +115,12 @@ class System {
   ParticleId create_attachment(BodyId body, const Vec3& position);
   CosmeticBondId create_cosmetic_bond(ParticleId p, ParticleId q);
   BondId create_bond(ParticleId p, ParticleId q, BondLaw law);
+  /// A law for any number of bonds, or the pairs of a `create_pairs`. Throws std::invalid_argument, for an expression with the
+  /// place of the error. Give it as a SharedLaw.
+  LawId create_law(LawBody body, const LawOptions& options = {});
+  /// A predefined law: spring, drag, dashpot, tether, soft_repulsion, gravity, coulomb, lennard_jones, morse, attract_repel.
+  LawId find_law(std::string_view name) const;
+  void destroy(LawId law);            ///< throws std::invalid_argument while bonds use it
   void destroy(BodyId body);          ///< with its particles and their bonds
   void destroy(ParticleId particle);  ///< with its bonds; its body too if it was the last one
   void destroy(BondId bond);
@@ -194,6 +173,7 @@ class System {
   bool contains(ParticleId) const;
   bool contains(BondId) const;
   bool contains(CosmeticBondId) const;
+  bool contains(LawId) const;
   /// What a retired id became (itself if alive), if it was absorbed within the last 65 536 retirements.
   std::optional<ParticleId> survivor_of(ParticleId) const;
   std::optional<BodyId> survivor_of(BodyId) const;
@@ -243,6 +223,12 @@ class System {
   std::pair<ParticleId, ParticleId> ends(CosmeticBondId) const;
   bool is_active(BondId) const;
   void set_active(BondId, bool);
+  LawId law(BondId) const;
+  std::string name(LawId) const;                       ///< of a law
+  std::vector<LawParameter> parameters(LawId) const;   ///< with its own values
+  std::vector<LawParameter> parameters(BondId) const;  ///< with the bond's
+  void set_parameter(BondId, std::string_view name, double value);
+  bool is_implicit(BondId) const;
 
   /// (n, 3) in the order of particles(); out.size() == 3 n.
   void read_positions(std::span<double> out) const;

@@ -40,6 +40,8 @@ class PairLaw {
   bool has_damping() const { return has_damping_; }  ///< forces of v
   bool has_drag() const { return has_drag_; }
   bool depends_on_time() const { return depends_on_time_; }
+  /// Whether it may add energy to the world: a user's forces that no energy stands behind may do anything.
+  bool may_do_work() const { return has_push_ || (number_ == pair_law_count && (has_damping_ || has_drag_)); }
 
   /// @name One pair, with derivatives, for the solver
   ///@{

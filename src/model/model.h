@@ -3,6 +3,7 @@
 
 #include "base/archive.h"
 #include "base/slot_table.h"
+#include "laws/pair_law.h"
 
 #include <iota/system.h>
 
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -106,16 +108,40 @@ struct Ends {
   std::array<std::uint32_t, 2> next{none, none}, previous{none, none};
 };
 
-enum class BondKind : std::uint32_t { spring, drag, scripted };
+enum class LawKind : std::uint32_t {
+  listed,      ///< of laws::PairLaws
+  expression,  ///< its text
+  scripted,    ///< each bond has a function of its own
+  radial,      ///< compiled code for one bond
+  batch,       ///< a function for all bonds at once
+};
+
+/// A law of force that bonds share. The first ones, in fixed slots, are the predefined ones and `scripted`.
+struct Law {
+  LawKind kind = LawKind::listed;
+  std::uint32_t number = 0;  ///< of a listed law
+  std::uint32_t parameter_count = 0;
+  std::uint32_t uses = 0;      ///< bonds that have it
+  std::uint64_t function = 0;  ///< key of the compiled code, which lives outside the tables
+  std::array<double, laws::max_parameters> standard{};
+  std::array<std::array<char, 24>, laws::max_parameters> parameters{};  ///< names
+  std::array<char, 32> name{};
+  std::array<char, 1000> text{};
+
+  bool has_derivative() const { return kind == LawKind::listed || kind == LawKind::expression; }
+};
+inline constexpr std::uint32_t spring_law = 0, drag_law = 1, scripted_law = laws::pair_law_count;
 
 struct Bond : Ends {
-  BondKind kind = BondKind::spring;
-  std::uint32_t active = 1;
-  double stiffness = 0, damping = 0, length = 0;
-  std::uint64_t script = 0;  ///< key of the function, which lives outside the tables
+  std::uint32_t law = spring_law;
+  std::uint8_t active = 1;
+  std::uint8_t implicit = 1;
+  std::array<std::uint8_t, 2> padding{};
+  std::array<double, laws::max_parameters> parameters{};
+  std::uint64_t script = 0;  ///< key of its own function, which lives outside the tables
 
   /// Whether it is solved implicitly, so that its two ends belong to one problem.
-  bool ties() const { return active && kind != BondKind::scripted; }
+  bool ties() const { return active && implicit; }
 };
 
 struct CosmeticBond : Ends {};
@@ -140,12 +166,15 @@ struct Closing : Ends {
 /// All of a system that is saved: plain tables under stable ids. It knows structure and book-keeping, not time stepping.
 class Model {
  public:
+  Model();
+
   SlotTable<Particle, ParticleId> particles;
   SlotTable<Ring, Id<Ring>> rings;
   SlotTable<Body, BodyId> bodies;
   SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
   SlotTable<Solid, Id<Solid>> solids;
   SlotTable<Articulate, Id<Articulate>> articulates;
+  SlotTable<Law, LawId> laws;
   SlotTable<Bond, BondId> bonds;
   SlotTable<CosmeticBond, CosmeticBondId> cosmetic_bonds;
   SlotTable<Grip, GripId> grips;
@@ -199,8 +228,16 @@ class Model {
   void remove_bond(std::uint32_t bond);
   void remove_closing(std::uint32_t closing);
   void remove_cosmetic_bond(std::uint32_t bond);
+  std::uint64_t bonds_revision = 0;  ///< rises when a bond is added, removed, moved or switched; not saved
   /// Bonds and closings of q become p's; those that would join p to itself are removed.
   void redirect_uses(std::uint32_t q, std::uint32_t p);
+  ///@}
+
+  /// @name Laws
+  ///@{
+  std::uint32_t make_law(const Law&);  ///< throws expression::ExpressionError for a text that is no law
+  /// Ready for use; only laws with a derivative have one.
+  const laws::PairLaw& compiled(std::uint32_t law) const { return *compiled_laws_[law]; }
   ///@}
 
   /// Chooses a body's basis from where its particles are now, and takes its rigid distances.
@@ -277,10 +314,12 @@ class Model {
   ///@{
   double kinetic_energy() const;                 ///< J
   double potential_energy() const;               ///< gravity and springs, J
-  double bond_energy(std::uint32_t bond) const;  ///< J
-  Vec3 momentum() const;                         ///< kg m/s
-  Vec3 angular_momentum() const;                 ///< about the origin, kg m^2/s
-  double worst_gap() const;                      ///< over rigid distances, tied points and nails, m
+  double bond_energy(std::uint32_t bond) const;  ///< J; of implicit bonds, at `time`
+  /// The two ends of a bond for its law: distance and its rate (positions `ahead` seconds on), time, masses.
+  laws::PairState bond_state(const Bond& bond, double ahead = 0) const;
+  Vec3 momentum() const;          ///< kg m/s
+  Vec3 angular_momentum() const;  ///< about the origin, kg m^2/s
+  double worst_gap() const;       ///< over rigid distances, tied points and nails, m
   ///@}
 
   std::vector<std::string> validate() const;
@@ -290,6 +329,10 @@ class Model {
   void archive(Archive& ar);
 
  private:
+  void compile_law(std::uint32_t law);
+  void compile_laws();
+  std::vector<std::shared_ptr<const laws::PairLaw>> compiled_laws_;  // by slot; not saved, made from the table
+
   template <class Table, class Visit>
   static void visit_uses(const Table& items, std::uint32_t link, Visit visit) {
     for (std::uint32_t next; link != none; link = next) next = items[link / 2].next[link % 2], visit(link / 2);
@@ -353,10 +396,11 @@ template <class Archive>
 void Model::archive(Archive& ar) {
   particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), solids.archive(ar);
   articulates.archive(ar);
-  bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
+  laws.archive(ar), bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(time), ar.value(step), ar.value(structure_version);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
+  if constexpr (std::is_same_v<Archive, Reader>) compile_laws();
 }
 
 }  // namespace iota::model

@@ -57,9 +57,15 @@ double Model::potential_energy() const {
 
 double Model::bond_energy(std::uint32_t slot) const {
   const Bond& b = bonds[slot];
-  if (b.kind != BondKind::spring || !b.active) return 0;
-  const double stretch = norm(position(b.q) - position(b.p)) - b.length;
-  return 0.5 * b.stiffness * stretch * stretch;
+  if (!b.ties()) return 0;
+  return compiled(b.law).elastic(bond_state(b), b.parameters.data()).energy;
+}
+
+laws::PairState Model::bond_state(const Bond& b, double ahead) const {
+  const Ring &p = rings[particles[b.p].ring], &q = rings[particles[b.q].ring];
+  const Vec3 u = q.velocity - p.velocity, d = q.position - p.position + ahead * u;
+  const double r = norm(d);
+  return {r, dot(d, u) / (r + 1e-300), time, particles[b.p].mass, particles[b.q].mass};
 }
 
 Vec3 Model::momentum() const {

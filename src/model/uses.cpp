@@ -29,6 +29,7 @@ std::uint32_t particle_at(const Ends& item, std::uint32_t end) { return end == 0
 
 std::uint32_t Model::add_bond(const Bond& bond) {
   const std::uint32_t slot = bonds.create(bond).slot;
+  ++laws[bond.law].uses, ++bonds_revision;
   for (const std::uint32_t end : {0u, 1u}) {
     const std::uint32_t particle = particle_at(bond, end);
     link(bonds, particles[particle].first_bond, slot, end);
@@ -57,6 +58,7 @@ std::uint32_t Model::add_cosmetic_bond(const CosmeticBond& bond) {
 }
 
 void Model::remove_bond(std::uint32_t slot) {
+  --laws[bonds[slot].law].uses, ++bonds_revision;
   for (const std::uint32_t end : {0u, 1u}) {
     const std::uint32_t particle = particle_at(bonds[slot], end);
     unlink(bonds, particles[particle].first_bond, slot, end);
@@ -96,6 +98,7 @@ void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
     }
   };
   const std::uint32_t uses = particles[q].uses;
+  ++bonds_revision;
   redirect(bonds, &Particle::first_bond, [&](std::uint32_t slot) { remove_bond(slot); });
   redirect(closings, &Particle::first_closing, [&](std::uint32_t slot) { remove_closing(slot); });
   redirect(cosmetic_bonds, &Particle::first_cosmetic_bond, [&](std::uint32_t slot) { remove_cosmetic_bond(slot); });

@@ -99,6 +99,8 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
     const Vec3 e0 = f.arm.value(x0), e1 = f.arm.value(x1);
     work += dot(f.force(e0, e1, force_stage), e1 - e0);
   }
+  for (const auto& f : std::get<ForcePool<RadialForce>>(problem.forces).items)
+    work += f.push_work(f.arm.value(x0), f.arm.value(x1), force_stage);
   const auto& affines = std::get<ConstraintPool<AffineConstraint>>(problem.constraints);
   for (std::size_t k = 0; k < affines.items.size(); ++k) {
     const AffineConstraint& c = affines.items[k];
@@ -304,6 +306,8 @@ bool Integrator::least_violation(Problem& problem, Stage stage, AdvanceReport& r
 AdvanceReport Integrator::advance(Problem& problem, double h, Scheme scheme) {
   AdvanceReport report;
   conservative_ = std::get<ForcePool<GripForce>>(problem.forces).items.empty();
+  for (const auto& f : std::get<ForcePool<RadialForce>>(problem.forces).items)
+    conservative_ = conservative_ && !f.law->may_do_work();
   for (const Vec3& f : problem.force) conservative_ = conservative_ && f == Vec3{};
   problem.for_each_constraint_pool([&](const auto& pool) {
     for (const auto& c : pool.items) conservative_ = conservative_ && !c.is_moving();

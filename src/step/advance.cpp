@@ -7,15 +7,6 @@
 
 namespace iota {
 
-namespace {
-
-/// "bond 3 (wind)".
-std::string bond_name(std::uint32_t slot, const ScriptedLaw& law) {
-  return "bond " + std::to_string(slot) + (law.name.empty() ? "" : " (" + law.name + ")");
-}
-
-}  // namespace
-
 StepReport System::Implementation::apply(const step::Step& command) {
   const double h = command.dt;
   if (!(h > 0 && h <= 1))
@@ -25,6 +16,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
   stepping = true;
 
   // 1. Forces of the script, at the state at the start of the step.
+  run_laws(report);
   run_scripts(report);
 
   // 2. Islands whose structure changed are analysed anew; velocities that were assigned are made consistent.
@@ -74,39 +66,6 @@ StepReport System::Implementation::apply(const step::Step& command) {
   report.structure_version = model.structure_version;
   if (recording) recording->hashes.push_back(model.hash());
   return report;
-}
-
-void System::Implementation::run_scripts(StepReport& report) {
-  if (scripts.empty()) return;
-  for (std::uint32_t slot = 0; slot < model.bonds.slot_count(); ++slot) {
-    if (!model.bonds.is_alive(slot)) continue;
-    const model::Bond bond = model.bonds[slot];
-    if (bond.kind != model::BondKind::scripted || !bond.active) continue;
-    const auto script = scripts.find(bond.script);
-    const auto quarantine = [&](const std::string& why) {
-      model.bonds[slot].active = 0;
-      report.warnings.push_back(why + "; the bond is switched off");
-    };
-    if (script == scripts.end()) {
-      quarantine("bond " + std::to_string(slot) + " has no function in this system");
-      continue;
-    }
-    const std::string name = bond_name(slot, script->second);
-    try {
-      const Vec3 force = script->second.force({model.bonds.id(slot), model.position(bond.p), model.position(bond.q),
-                                               model.velocity(bond.p), model.velocity(bond.q), model.time});
-      if (!is_finite(force)) {
-        quarantine(name + " returned a force that is not finite");
-        continue;
-      }
-      model.rings[model.particles[bond.p].ring].applied_force += force;
-      model.rings[model.particles[bond.q].ring].applied_force -= force;
-    } catch (const std::exception& error) {
-      quarantine(name + " raised: " + error.what());
-    } catch (...) {
-      quarantine(name + " raised");
-    }
-  }
 }
 
 void System::Implementation::finish_closings(StepReport& report) {

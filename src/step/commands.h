@@ -3,6 +3,8 @@
 
 #include <iota/system.h>
 
+#include <array>
+#include <cstddef>
 #include <variant>
 
 /// Everything that changes a system, as plain data: what is queued during a step, recorded and replayed. A new command is
@@ -61,12 +63,22 @@ struct SetAngularVelocity {
 struct CreateCosmeticBond {
   ParticleId p, q;
 };
-enum class BondType : std::uint32_t { spring, drag, scripted };
+/// A piece of a law's record, which is too long for one command; `CreateLaw` makes the law of all pieces since the last.
+struct SpellLaw {
+  std::array<std::byte, 64> piece;
+};
+struct CreateLaw {};
 struct CreateBond {
   ParticleId p, q;
-  BondType type;
-  double stiffness, damping, length;
+  LawId law;
+  bool implicit;
   std::uint64_t script;
+  std::array<double, max_law_parameters> parameters;  ///< NaN: the distance of the ends now
+};
+struct SetParameter {
+  BondId bond;
+  std::uint32_t index;
+  double value;
 };
 struct CreateGrip {
   BodyId body;
@@ -133,12 +145,12 @@ struct Release {
   ParticleId particle;
 };
 
-using Command =
-    std::variant<SetGravity, SetMode, SetSystemDamping, CreateBody, CreateParticle, SetRod, CreateCosmeticBond,
-                 CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping, SetPosition, SetVelocity, SetMass,
-                 ApplyForce, SetActive, CreateSolid, CreateAttachment, SetPose, SetBodyVelocity, SetAngularVelocity,
-                 Step, Destroy<BodyId>, Destroy<ParticleId>, Destroy<BondId>, Destroy<CosmeticBondId>, Destroy<GripId>,
-                 CombineParticles, CombineBodies, Separate, Nail, Release>;
+using Command = std::variant<SetGravity, SetMode, SetSystemDamping, CreateBody, CreateParticle, SetRod, SpellLaw,
+                             CreateLaw, CreateCosmeticBond, CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping,
+                             SetPosition, SetVelocity, SetMass, ApplyForce, SetActive, SetParameter, CreateSolid,
+                             CreateAttachment, SetPose, SetBodyVelocity, SetAngularVelocity, Step, Destroy<BodyId>,
+                             Destroy<ParticleId>, Destroy<BondId>, Destroy<LawId>, Destroy<CosmeticBondId>,
+                             Destroy<GripId>, CombineParticles, CombineBodies, Separate, Nail, Release>;
 
 template <class C>
 inline constexpr bool is_queueable = false;

@@ -106,27 +106,6 @@ CosmeticBondId System::Implementation::apply(const step::CreateCosmeticBond& c) 
   return model.cosmetic_bonds.id(model.add_cosmetic_bond({{p, q}}));
 }
 
-BondId System::Implementation::apply(const step::CreateBond& c) {
-  const std::uint32_t p = require(c.p), q = require(c.q);
-  if (p == q) throw std::invalid_argument(text("a bond needs two particles, got particle ", p, " twice"));
-  model::Bond bond;
-  bond.p = p, bond.q = q;
-  bond.kind = static_cast<model::BondKind>(c.type);
-  bond.script = c.script;
-  if (c.type != step::BondType::scripted) {
-    require_not_negative("damping", c.damping);
-    bond.damping = c.damping;
-  }
-  if (c.type == step::BondType::spring) {
-    require_not_negative("stiffness", c.stiffness);
-    bond.stiffness = c.stiffness;
-    bond.length = std::isnan(c.length) ? norm(model.position(q) - model.position(p)) : c.length;
-    require_not_negative("length", bond.length);
-  }
-  structure_changed();
-  return model.bonds.id(model.add_bond(bond));
-}
-
 GripId System::Implementation::apply(const step::CreateGrip& c) {
   const std::uint32_t body = require(c.body);
   require_finite("local_point", c.local_point);
@@ -156,6 +135,7 @@ void System::Implementation::apply(const step::SetKind& c) {
   const std::uint32_t body = require(c.body);
   if (model.bodies[body].kind == c.kind) return;
   model.bodies[body].kind = c.kind;
+  ++model.bonds_revision;
   if (c.kind != BodyKind::dynamic)
     model.for_each_particle_of(body, [&](std::uint32_t p) { model.rings[model.particles[p].ring].velocity = {}; });
   model.touch(model.bodies[body].articulate);
@@ -236,13 +216,6 @@ void System::Implementation::apply(const step::ApplyForce& c) {
   const std::uint32_t particle = require(c.particle);
   require_finite("force", c.value);
   model.rings[model.particles[particle].ring].applied_force += c.value;
-}
-
-void System::Implementation::apply(const step::SetActive& c) {
-  model::Bond& bond = model.bonds[require(c.bond)];
-  if (bond.active == static_cast<std::uint32_t>(c.active)) return;
-  bond.active = c.active;
-  for (const std::uint32_t end : {bond.p, bond.q}) model.touch(model.bodies[model.particles[end].body].articulate);
 }
 
 // --- structural edits -------------------------------------------------------------------------------------------------
@@ -492,14 +465,6 @@ void System::Implementation::apply(const step::Destroy<ParticleId>& c) {
   const double before = conserved(affected).energy();
   destroy_particle(model, particle);
   model.edit_energy += conserved(affected).energy() - before;
-  structure_changed();
-}
-void System::Implementation::apply(const step::Destroy<BondId>& c) {
-  const std::uint32_t bond = require(c.id);
-  model.edit_energy -= model.bond_energy(bond);
-  // A restore or a replay may bring the bond back, if it was made before the latest snapshot.
-  if (!recording && model.bonds[bond].script >= scripts_saved_below) scripts.erase(model.bonds[bond].script);
-  model.remove_bond(bond);
   structure_changed();
 }
 void System::Implementation::apply(const step::Destroy<CosmeticBondId>& c) {

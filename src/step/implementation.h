@@ -5,6 +5,7 @@
 #include "model/model.h"
 #include "model/restructure.h"
 #include "step/commands.h"
+#include "step/held_forces.h"
 #include "step/islands.h"
 
 #include <iota/system.h>
@@ -17,9 +18,16 @@ namespace iota {
 struct System::Implementation {
   model::Model model;
   step::Islands islands;
+  step::HeldForces held_forces;
   Parallel parallel;
-  std::vector<solver::AdvanceReport> advanced;  // of each island, in the step at hand
+  std::vector<solver::AdvanceReport> advanced;   // of each island, in the step at hand
   std::map<std::uint64_t, ScriptedLaw> scripts;  // functions of scripted bonds; not part of the saved state
+  struct LawFunction {
+    RadialFunction radial = nullptr;
+    BatchFunction batch;
+  };
+  std::map<std::uint64_t, LawFunction> law_functions;  // of laws that are code; not part of the saved state
+  std::vector<std::byte> spelled_law;
   std::uint64_t next_script = 1;
   std::uint64_t scripts_saved_below = 0;  // keys that the latest snapshot may name
   std::map<std::uint64_t, Mesh> meshes;   // for drawing, by content; not part of the saved state either
@@ -46,7 +54,11 @@ struct System::Implementation {
   void apply(const step::SetBodyVelocity&);
   void apply(const step::SetAngularVelocity&);
   CosmeticBondId apply(const step::CreateCosmeticBond&);
+  void apply(const step::SpellLaw&);
+  LawId apply(const step::CreateLaw&);
   BondId apply(const step::CreateBond&);
+  void apply(const step::SetParameter&);
+  void apply(const step::Destroy<LawId>&);
   GripId apply(const step::CreateGrip&);
   void apply(const step::MoveGrip&);
   void apply(const step::SetKind&);
@@ -71,6 +83,7 @@ struct System::Implementation {
   std::uint32_t require(BodyId) const;
   std::uint32_t require(ParticleId) const;
   std::uint32_t require(BondId) const;
+  std::uint32_t require(LawId) const;
   std::uint32_t require(GripId) const;
 
   /// Runs a structural edit and settles its physics: positions, velocities, momenta, energy; fills the report.
@@ -103,7 +116,19 @@ struct System::Implementation {
   void add_motion(std::uint32_t body, Motion motion);
   /// Ends a closing before its particles have met.
   RestructureReport call_off(std::uint32_t closing);
+  /// @name Forces that are taken once a step and held (held_forces.cpp)
+  ///@{
+  double held_ahead(double h) const;  ///< how far ahead of the start of a step of h they are taken, s
+  void run_laws(StepReport&);
+  void run_held_law(step::LawBatch&, double ahead, StepReport&);
+  void run_batch_function(step::LawBatch&, double ahead, StepReport&);
   void run_scripts(StepReport&);
+  void watch_implicit_law(step::LawBatch&, StepReport&);
+  void evaluate(step::LawBatch&, double time);
+  bool has_function(const step::LawBatch&, StepReport&);
+  void add_force(const model::Bond&, const Vec3& on_p);
+  void switch_off(std::uint32_t bond, const std::string& why, StepReport&);
+  ///@}
   void finish_closings(StepReport&);
   void apply_queue(StepReport&);
   void structure_changed() { ++model.structure_version; }

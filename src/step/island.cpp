@@ -131,14 +131,33 @@ void Island::add_bonds(const Model& model, const std::vector<std::uint32_t>& nod
     const model::Bond& b = model.bonds[slot];
     const solver::ForceArm arm = arm_between(b.p, b.q);
     if (arm.nodes[0] == none || arm.nodes[1] == none || arm.nodes[0] == arm.nodes[1]) continue;
-    if (b.kind == model::BondKind::spring) {
-      std::get<solver::ForcePool<solver::SpringForce>>(problem_.forces)
-          .items.push_back({arm, b.stiffness, b.damping, b.length});
+    if (b.law == model::spring_law) {
+      std::get<solver::ForcePool<solver::SpringForce>>(problem_.forces).items.push_back({arm});
       springs_.push_back(slot);
-    } else {
-      std::get<solver::ForcePool<solver::DragForce>>(problem_.forces).items.push_back({arm, b.damping});
+    } else if (b.law == model::drag_law) {
+      std::get<solver::ForcePool<solver::DragForce>>(problem_.forces).items.push_back({arm});
       drags_.push_back(slot);
+    } else {
+      solver::RadialForce force{arm, &model.compiled(b.law)};
+      force.m_p = model.particles[b.p].mass, force.m_q = model.particles[b.q].mass;
+      std::get<solver::ForcePool<solver::RadialForce>>(problem_.forces).items.push_back(force);
+      radials_.push_back(slot);
     }
+  }
+}
+
+void Island::load_bonds(const Model& model, double h) {
+  auto& springs = std::get<solver::ForcePool<solver::SpringForce>>(problem_.forces).items;
+  for (std::size_t i = 0; i < springs_.size(); ++i) {
+    const auto& p = model.bonds[springs_[i]].parameters;
+    springs[i].stiffness = p[0], springs[i].damping = p[1], springs[i].length = p[2];
+  }
+  auto& drags = std::get<solver::ForcePool<solver::DragForce>>(problem_.forces).items;
+  for (std::size_t i = 0; i < drags_.size(); ++i) drags[i].damping = model.bonds[drags_[i]].parameters[0];
+  auto& radials = std::get<solver::ForcePool<solver::RadialForce>>(problem_.forces).items;
+  for (std::size_t i = 0; i < radials_.size(); ++i) {
+    radials[i].parameters = model.bonds[radials_[i]].parameters;
+    radials[i].time = model.time + h;  // a law that changes with time is taken at the end of the step
   }
 }
 
@@ -255,6 +274,7 @@ void Island::load(const Model& model, double h) {
       problem_.force[static_cast<std::size_t>(node)] += model.particles[p].weights[i] * f;
     }
   }
+  load_bonds(model, h);
   auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints);
   for (std::size_t i = 0; i < rigid_rows_.size(); ++i)
     distances.multipliers[i] = model.bodies[rigid_rows_[i].body].multipliers[rigid_rows_[i].row];

@@ -44,6 +44,7 @@ class Island {
   void add_mass_outer(const Weighted& a, double mass);
   void add_constraints(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
   void add_bonds(const model::Model&, const std::vector<std::uint32_t>& node_of_ring);
+  void load_bonds(const model::Model&, double h);
 
   solver::Problem problem_;
   solver::Integrator integrator_;
@@ -61,7 +62,7 @@ class Island {
   std::vector<std::uint32_t> tied_;      // particles of the first affine constraints
   std::vector<std::uint32_t> nails_;     // nodes of the affine constraints after them
   std::vector<std::uint32_t> slaves_;    // particles carried by their basis
-  std::vector<std::uint32_t> springs_, drags_, grips_;
+  std::vector<std::uint32_t> springs_, drags_, radials_, grips_;
   std::vector<double> grip_masses_;  // kg, what a hand can feel
   std::vector<std::uint32_t> bodies_;
 };

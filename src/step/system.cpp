@@ -63,22 +63,6 @@ void System::set_rod(BodyId body, double mass, double radius) {
 CosmeticBondId System::create_cosmetic_bond(ParticleId p, ParticleId q) {
   return implementation_->execute(step::CreateCosmeticBond{p, q});
 }
-BondId System::create_bond(ParticleId p, ParticleId q, BondLaw law) {
-  step::CreateBond command{p, q, step::BondType::spring, 0, 0, 0, 0};
-  if (const auto* spring = std::get_if<SpringLaw>(&law)) {
-    command.stiffness = spring->stiffness, command.damping = spring->damping, command.length = spring->length;
-  } else if (const auto* drag = std::get_if<DragLaw>(&law)) {
-    command.type = step::BondType::drag, command.damping = drag->damping;
-  } else {
-    auto& scripted = std::get<ScriptedLaw>(law);
-    if (!scripted.force) throw std::invalid_argument("a scripted bond needs a function");
-    command.type = step::BondType::scripted, command.script = implementation_->next_script;
-    const BondId id = implementation_->execute(command);
-    implementation_->scripts[implementation_->next_script++] = std::move(scripted);
-    return id;
-  }
-  return implementation_->execute(command);
-}
 void System::destroy(BodyId id) { implementation_->execute(step::Destroy<BodyId>{id}); }
 void System::destroy(ParticleId id) { implementation_->execute(step::Destroy<ParticleId>{id}); }
 void System::destroy(BondId id) { implementation_->execute(step::Destroy<BondId>{id}); }
@@ -318,6 +302,7 @@ void System::Implementation::restore(const Snapshot& snapshot) {
     throw std::invalid_argument("restore: the snapshot is of another build of Iota");
   model = std::move(restored);
   islands.forget();
+  held_forces.forget();
   oriented_step = ~0ull;
 }
 

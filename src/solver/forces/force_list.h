@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "math/mat3.h"
+#include "solver/forces/force_arm.h"
+#include "solver/forces/radial.h"
 
 #include <array>
 #include <cmath>
@@ -10,29 +11,6 @@
 #include <tuple>
 
 namespace iota::solver {
-
-/// What every implicit force acts on: the vector e = sum_i w_i x_i - origin of a few points. A force F(e) acts on point i
-/// as w_i F, so that momentum is kept wherever the weights sum to zero.
-struct ForceArm {
-  static constexpr int max_nodes = 4;
-  std::array<std::uint32_t, max_nodes> nodes{};
-  std::array<double, max_nodes> weights{};
-  std::uint32_t count = 0;
-  Vec3 origin;
-
-  Vec3 value(const Vec3* x) const {
-    Vec3 e = -1.0 * origin;
-    for (std::uint32_t i = 0; i < count; ++i) e += weights[i] * x[nodes[i]];
-    return e;
-  }
-};
-
-/// Where in a step a force is taken: backward Euler at its end, the mid-point rule by a discrete gradient.
-struct ForceStage {
-  double h = 0;  ///< s
-  bool midpoint = false;
-  bool clamp = false;  ///< make stiffness blocks positive semi-definite
-};
 
 /// F = -k (|e| - L) e/|e| - c n n.(e1 - e0)/h, n along e0. Mid-point: the discrete gradient of k/2 (|e|-L)^2, which is
 /// -k (1 - 2L/(|e0|+|e1|)) (e0+e1)/2, so that F.(e1-e0) is exactly minus the change of energy.
@@ -111,8 +89,9 @@ concept ImplicitForce = requires(const F& f, const Vec3& e, const ForceStage& st
 
 /// The one list of implicit forces.
 template <template <class> class Pool>
-using ForcePools = std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>>;
+using ForcePools = std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>, Pool<RadialForce>>;
 
-static_assert(ImplicitForce<SpringForce> && ImplicitForce<DragForce> && ImplicitForce<GripForce>);
+static_assert(ImplicitForce<SpringForce> && ImplicitForce<DragForce> && ImplicitForce<GripForce> &&
+              ImplicitForce<RadialForce>);
 
 }  // namespace iota::solver

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/ids.h>
+#include <iota/vec3.h>
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// Laws of force and what uses them. `docs/forces.md` says what each way of writing a law costs and promises.
+namespace iota {
+
+using LawId = Id<struct LawTag>;
+
+inline constexpr int max_law_parameters = 8;
+
+/// A NaN value stands for the distance of the two ends when a bond is made.
+struct LawParameter {
+  std::string name;
+  double value = 0;
+};
+
+/// Compiled code for one bond: the force along the line in N, positive pushes apart, of the distance r (m), its rate v (m/s), the
+/// time t (s) and the bond's parameters. Called with no lock held; must neither throw nor touch the system.
+using RadialFunction = double (*)(double r, double v, double t, const double* parameters);
+
+/// All bonds of one law at once, arrays of `count` rows in C order.
+struct BondBatch {
+  std::size_t count;
+  double time;                            ///< at the start of the step, s
+  const double *position_p, *position_q;  ///< (count, 3), m
+  const double *velocity_p, *velocity_q;  ///< (count, 3), m/s
+  const double* parameters;               ///< (count, number of parameters)
+  const BondId* bonds;                    ///< (count)
+  double* force;                          ///< out: (count, 3), on p in N; q gets the opposite
+};
+/// May throw: the bonds of the law are then switched off, and the step says so.
+using BatchFunction = std::function<void(const BondBatch&)>;
+
+/// How a law is written: an expression of r, v = dr/dt, t, m_p, m_q and the parameters that defines `energy` (J), `force` (N
+/// along the line, positive pushes apart) or `drag` (N s/m, times the velocity difference), or compiled code.
+using LawBody = std::variant<std::string, RadialFunction, BatchFunction>;
+
+struct LawOptions {
+  std::string name;                      ///< for reports; at most 31 bytes
+  std::vector<LawParameter> parameters;  ///< with the values that bonds have unless they say otherwise
+};
+
+/// f = -(stiffness (r - length) + damping r') along the line p-q. Solved implicitly: any stiffness is stable.
+struct SpringLaw {
+  double stiffness = 100;                                    ///< N/m
+  double damping = 0;                                        ///< N s/m, along the line
+  double length = std::numeric_limits<double>::quiet_NaN();  ///< rest length, m; NaN: the distance at creation
+};
+
+/// f = -damping (v_p - v_q): viscous drag between two particles, implicit.
+struct DragLaw {
+  double damping = 1;  ///< N s/m
+};
+
+/// What a scripted bond is shown. Forces that are held over the step are taken where they act: in the energy-keeping mode at
+/// the middle of the step (positions half a step ahead, as velocities go: the leapfrog scheme), in the robust mode at its start.
+struct BondState {
+  BondId bond;
+  Vec3 position_p, position_q;  ///< m
+  Vec3 velocity_p, velocity_q;  ///< m/s, at the start of the step
+  double time;                  ///< s, at the start of the step
+};
+
+/// Any function of the script: returns the force on p in N (q gets the opposite), evaluated once a step and held.
+/// A throw or a non-finite force switches the bond off and is reported by the step.
+struct ScriptedLaw {
+  std::function<Vec3(const BondState&)> force;
+  std::string name;  ///< for reports
+};
+
+/// A law of `System::create_law` or `System::find_law`, with parameters that differ from the law's own.
+struct SharedLaw {
+  LawId law;
+  std::vector<LawParameter> parameters;
+  /// Solved together with the joints, or taken once a step and held. Unset: implicit where the law has a derivative.
+  std::optional<bool> implicit;
+};
+
+using BondLaw = std::variant<SpringLaw, DragLaw, ScriptedLaw, SharedLaw>;
+
+}  // namespace iota

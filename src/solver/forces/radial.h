@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "laws/pair_law.h"
+#include "solver/forces/force_arm.h"
+
+#include <algorithm>
+#include <array>
+
+namespace iota::solver {
+
+/// Any law between two points. With r = |e|, n = e/r, T = U'(r) - push(r) the pull, D the damping and c the drag:
+///   end point: F = -T(r1) n1 + D(r0, n0.(e1-e0)/h) n0 - c (e1-e0)/h
+///   mid-point: T(r1) n1 becomes T* (e0+e1)/(r0+r1), with T* = (U(r1)-U(r0))/(r1-r0) - push((r0+r1)/2), so that the work
+///   of the elastic part is exactly minus the change of energy (Gonzalez 1996).
+/// Where r1 is near r0 the quotient would be round-off: U' at the two Gauss points has the same value to (r1-r0)^4.
+struct RadialForce {
+  static constexpr bool is_external = false;
+  ForceArm arm;
+  const laws::PairLaw* law = nullptr;
+  std::array<double, laws::max_parameters> parameters{};
+  double time = 0, m_p = 1, m_q = 1;
+
+  double energy(const Vec3& e) const { return law->elastic(at(norm(e)), parameters.data()).energy; }
+
+  Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    const double r0 = norm(e0), r1 = norm(e1);
+    Vec3 f;
+    if (s.midpoint)
+      f = (-pull_between(r0, r1).value / (r0 + r1 + tiny)) * (e0 + e1);
+    else
+      f = (-pull(r1).value / (r1 + tiny)) * e1;
+    if (law->has_damping()) {
+      const Vec3 n0 = (1 / (r0 + tiny)) * e0;
+      f += law->damping(at(r0, dot(n0, e1 - e0) / s.h), parameters.data()).value * n0;
+    }
+    if (law->has_drag()) f -= (law->drag(at(r0), parameters.data()) / s.h) * (e1 - e0);
+    return f;
+  }
+
+  Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    const double r0 = norm(e0), r1 = norm(e1);
+    const Vec3 n1 = (1 / (r1 + tiny)) * e1;
+    const Slope p = s.midpoint ? pull_between(r0, r1) : pull(r1);
+    const double length = s.midpoint ? r0 + r1 + tiny : r1 + tiny;
+    double along = p.slope, across = p.value / length;
+    if (s.clamp) along = std::max(along, 0.0), across = std::max(across, 0.0);
+    Mat3 k = Mat3::diagonal(across);
+    k += (along - across) * Mat3::outer(s.midpoint ? (1 / length) * (e0 + e1) : n1, n1);
+    if (law->has_damping()) {
+      const Vec3 n0 = (1 / (r0 + tiny)) * e0;
+      double rate = -law->damping(at(r0, dot(n0, e1 - e0) / s.h), parameters.data()).slope / s.h;
+      if (s.clamp) rate = std::max(rate, 0.0);
+      k += rate * Mat3::outer(n0, n0);
+    }
+    if (law->has_drag()) k += Mat3::diagonal(law->drag(at(r0), parameters.data()) / s.h);
+    return k;
+  }
+
+  /// Work on the rest by the part of the force that no energy stands behind, J.
+  double push_work(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    if (!law->has_push()) return 0;
+    const double r0 = norm(e0), r1 = norm(e1);
+    if (s.midpoint) return law->push(at((r0 + r1) / 2), parameters.data()).value * (r1 - r0);
+    return law->push(at(r1), parameters.data()).value / (r1 + tiny) * dot(e1, e1 - e0);
+  }
+
+ private:
+  static constexpr double tiny = 1e-300;
+  using Slope = laws::PairLaw::Slope;
+
+  laws::PairState at(double r, double v = 0) const { return {r, v, time, m_p, m_q}; }
+
+  Slope pull(double r) const {
+    const laws::Elastic u = law->elastic(at(r), parameters.data());
+    const Slope push = law->push(at(r), parameters.data());
+    return {u.slope - push.value, u.curvature - push.slope};
+  }
+
+  /// T* and its derivative by r1.
+  Slope pull_between(double r0, double r1) const {
+    Slope t;
+    const double change = r1 - r0;
+    if (!law->has_energy()) {
+    } else if (std::abs(change) > 3e-4 * (r0 + r1)) {
+      const laws::Elastic a = law->elastic(at(r0), parameters.data()), b = law->elastic(at(r1), parameters.data());
+      t.value = (b.energy - a.energy) / change;
+      t.slope = (b.slope - t.value) / change;
+    } else {
+      constexpr double low = 0.21132486540518713, high = 1 - low;
+      const laws::Elastic a = law->elastic(at(r0 + low * change), parameters.data());
+      const laws::Elastic b = law->elastic(at(r0 + high * change), parameters.data());
+      t.value = 0.5 * (a.slope + b.slope);
+      t.slope = 0.5 * (low * a.curvature + high * b.curvature);
+    }
+    const Slope push = law->push(at((r0 + r1) / 2), parameters.data());
+    return {t.value - push.value, t.slope - 0.5 * push.slope};
+  }
+};
+
+}  // namespace iota::solver
