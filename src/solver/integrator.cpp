@@ -114,7 +114,7 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const Vec3 moved = x1[i] - problem.position[i];
     work += dot(problem.force[i], moved);
-    problem.velocity[i] = stage.midpoint ? (2 / stage.h) * moved - problem.velocity[i] : (1 / stage.h) * moved;
+    problem.velocity[i] += ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[i];
     problem.position[i] = x1[i];
   }
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {

@@ -66,6 +66,9 @@ class Newton {
   /// pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.
   NewtonReport solve(Problem& problem, const Stage& stage, std::span<const Vec3> guess);
   std::span<const Vec3> solution() const { return x_; }
+  /// Of the solution: x - x0 - h v0, m. The unknown itself, to its own relative precision: velocities taken from it keep
+  /// momentum to round-off, whereas differences of positions lose 1e-16 |x| / h a step.
+  std::span<const Vec3> displacement() const { return u_; }
 
   /// The velocity nearest to `velocity` in the mass norm with G(position) v = rate, in place; rate is that of targets and
   /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what
@@ -101,19 +104,24 @@ class Newton {
   double merit(const Problem&, const Stage&, const Vec3* x) const;
   bool project_onto_sides(Problem&, double h, bool as_solved);
   void project_once(Problem&, double h);
+  /// Takes a residual that is within tolerance to round-off; returns what it is then.
+  template <bool Midpoint>
+  double polish(Problem&, const Stage&, NewtonReport&);
   void solve_linear();
-  /// x + t dx and lambda + t d_lambda, from the saved iterate.
-  void move(Problem&, double t);
+  void save(const Problem&);
+  /// u + t du and lambda + t d_lambda, from the saved iterate.
+  void move(Problem&, const Stage&, double t);
 
   BlockPattern pattern_;
   BlockFactor factor_;
   std::vector<std::uint32_t> node_unknown_, node_diagonal_;
   std::vector<std::uint8_t> node_stride_;
-  std::vector<Vec3> x_, x_saved_, u_, momentum_;
+  std::vector<Vec3> x_, x_saved_, u_, u_saved_, momentum_;
   std::vector<double> residual_, step_, impulses_, multipliers_saved_, merit_weights_;
   std::vector<double> inverse_scale_;  // of the force residual of each node
   double reference_length_ = 1;
-  double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // found by the latest residual()
+  // Found by the latest residual(); imbalance_: of the scaled forces, and noise_: what of it is round-off.
+  double worst_ = 0, violation_ = 0, imbalance_ = 0, noise_ = 0, largest_multiplier_ = 0;
   bool has_laws_ = false;
   int fewest_wrong_ = 0, stalled_ = 0;  // see choose_sides
 };

@@ -140,6 +140,25 @@ TEST(Spring, oscillates_with_its_own_period) {
   EXPECT_NEAR(system.position(mass).x, 0.9, 1e-4);
 }
 
+TEST(Spring, with_critical_damping_creeps_home_however_short_the_step) {
+  // A stopping test in metres let slow motion stop short of home, the farther the shorter the step.
+  const double mass = 2, omega = std::sqrt(20);
+  for (const double dt : {1.0 / 240, 1.0 / 3840}) {
+    System system{SystemOptions{.gravity = {}}};
+    const ParticleId anchor = system.create_particle(system.create_body(), {0, 0, 0});
+    const ParticleId end = system.create_particle(system.create_body(), {1.1, 0, 0}, mass);
+    system.nail(anchor);
+    system.create_bond(anchor, end,
+                       SpringLaw{.stiffness = mass * omega * omega, .damping = 2 * mass * omega, .length = 1});
+    const int steps = static_cast<int>(std::lround(3 / dt));
+    for (int i = 1; i <= steps; ++i) {
+      (void)system.step(dt);
+      const double t = i * dt;
+      ASSERT_NEAR(system.position(end).x, 1 + 0.1 * std::exp(-omega * t) * (1 + omega * t), 0.16 * dt * dt) << t;
+    }
+  }
+}
+
 TEST(Spring, of_any_stiffness_is_stable_between_two_chains) {
   for (const double stiffness : {1.0, 1e3, 1e6, 1e9}) {
     System system;
