@@ -10,14 +10,15 @@ SECONDS :=
 endif
 # Which suites `make test` runs; all when empty. `make test SUITES="cpp python"`
 SUITES ?=
-# Arguments of bench/run_bench.py.
+# Arguments of bench/run_bench.py and of `iota verify`.
 BENCH ?=
+VERIFY ?=
 
 iota = .venv/bin/iota
 cpp_presets = debug asan ubsan tsan coverage strict
 
 .DEFAULT_GOAL := help
-.PHONY: help build demo test bench check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
+.PHONY: help build demo test bench verify check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
 
 help: ## what there is to make (this list)
 	@awk 'BEGIN { FS = ":.*## " } /^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -37,6 +38,10 @@ test: ## build, then run every test of every language (SUITES="cpp python" for s
 bench: ## build, then measure engine and packaged peers in one run (BENCH="--quick")
 	@$(PYTHON) tools/build.py bench
 	@.venv/bin/python bench/run_bench.py $(BENCH)
+
+verify: ## build, compare with what is known, renew docs/verification.md (VERIFY="--quick")
+	@$(PYTHON) tools/build.py verify
+	@$(iota) verify $(VERIFY)
 
 check-determinism: ## the same bits from gcc and clang at -O1 and -O3
 	@$(PYTHON) tools/check_determinism.py

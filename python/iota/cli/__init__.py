@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command line: `iota list`, `iota run`, `iota bench`."""
+"""The command line: `iota list`, `iota run`, `iota bench`, `iota verify`."""
 
 from iota.cli.main import main
 

@@ -12,7 +12,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, run
+from iota.cli import bench, run, verify
 from iota.cli.failure import Failure
 
 
@@ -69,6 +69,13 @@ def make_parser() -> Parser:
     benching.add_argument("--links", type=count, nargs="+", default=list(bench.LINKS), help="chain lengths")
     benching.add_argument("--json", action="store_true", help="print one JSON object instead of a table")
     benching.set_defaults(function=bench.run)
+
+    verifying = commands.add_parser("verify", help="compares what the engine computes with what is known")
+    verifying.add_argument("--list", action="store_true", help="print the names of the verifications")
+    verifying.add_argument("--figure", metavar="NAME", nargs="+", help="only these")
+    verifying.add_argument("--quick", action="store_true", help="smaller sizes; writes nothing unless --out is given")
+    verifying.add_argument("--out", metavar="FOLDER", help="where the page and its figures go (default: docs)")
+    verifying.set_defaults(function=verify.run)
     return parser
 
 

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All verifications, in the order of the report. A new one is a function that takes a Run, and a line here."""
+
+from iota.verify.cases import chains, classical, conservation, linkages, newton, tops
+from iota.verify.run import Case
+
+CASES = [
+    Case(check.__name__.replace("_", "-"), check)
+    for check in (
+        chains.lissajous,
+        chains.falling_chain,
+        chains.divergence,
+        newton.newton_fractal,
+        newton.failure_rate,
+        classical.pendulum,
+        classical.double_pendulum,
+        tops.asymmetric_top,
+        tops.heavy_top,
+        classical.catenary,
+        linkages.four_bar,
+        linkages.jansen,
+        classical.spring_chain,
+        classical.orbit,
+        classical.oscillator,
+        conservation.momenta,
+        conservation.energy,
+        conservation.heavy_end,
+    )
+]
