@@ -7,7 +7,9 @@ namespace {
 
 constexpr const char* doc =
     "A point with mass, in one body. Particles of different bodies that were combined share one place: a hinge.\n\n"
-    "position: m. mass: kg, above 0, its own share. velocity: m/s. Vectors are any 2 or 3 numbers; z is then 0.\n\n"
+    "position: m. mass: kg, its own share. velocity: m/s. Vectors are any 2 or 3 numbers; z is then 0.\n"
+    "mass=0 makes a marker: a massless place that the massive particles of the body carry, so it must lie where these\n"
+    "reach. It can be hinged, nailed, bonded and constrained as any other particle.\n\n"
     "    p = iota.Particle(body, position=(0, 1, 0), mass=0.2)\n"
     "    p.velocity = (1, 0, 0)";
 
@@ -61,7 +63,7 @@ void bind_particle(nb::module_& module) {
       "__init__",
       [](ParticleHandle* self, const BodyHandle& body, VectorArgument position, double mass, VectorArgument velocity) {
         const Vec3 place = to_vec3(position, "position"), speed = to_vec3(velocity, "velocity");
-        finite_positive(mass, "mass", "kg");
+        if (mass != 0) finite_positive(mass, "mass", "kg");
         body.use();
         const ParticleId id =
             body.system->use_between_steps("Particle(...)").create_particle(body.id, place, mass, speed);
@@ -98,7 +100,7 @@ void bind_particle(nb::module_& module) {
           [](const ParticleHandle& self, double value) {
             between_steps(self, "mass = ...").set_mass(self.id, finite_positive(value, "mass", "kg"));
           },
-          "Its own share, kg, above 0. A ring weighs the sum of its particles.")
+          "Its own share, kg; 0 only for markers, made so. A ring weighs the sum of its particles.")
       .def(
           "apply_force",
           [](const ParticleHandle& self, VectorArgument force) {

@@ -16,6 +16,7 @@ NB_MODULE(_core, module) {
   bind_particle(module);
   bind_bonds(module);
   bind_grip(module);
+  bind_constraints(module);
   bind_restructuring(module);
   bind_server(module);
   bind_solvers(module);

@@ -25,6 +25,16 @@ inline constexpr Words<BodyKind, 4> kind_words{{{"dynamic", BodyKind::dynamic},
                                                 {"scripted", BodyKind::scripted},
                                                 {"inactive", BodyKind::inactive}}};
 
+inline constexpr Words<ConstraintKind, 9> constraint_words{{{"ball", ConstraintKind::ball},
+                                                            {"universal", ConstraintKind::universal},
+                                                            {"revolute", ConstraintKind::revolute},
+                                                            {"cylindrical", ConstraintKind::cylindrical},
+                                                            {"prismatic", ConstraintKind::prismatic},
+                                                            {"orientation", ConstraintKind::orientation},
+                                                            {"weld", ConstraintKind::weld},
+                                                            {"rod", ConstraintKind::rod},
+                                                            {"rope", ConstraintKind::rope}}};
+
 /// The value of a word; ValueError that lists the words for any other.
 template <class Value, std::size_t count>
 Value from_word(const Words<Value, count>& words, std::string_view word, const char* what) {

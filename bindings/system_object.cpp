@@ -71,6 +71,11 @@ void raise_stale(const GripHandle& handle) {
   raise_stale_as(name_of(handle.id) + " was let go, or its body is gone", nb::none());
 }
 
+void raise_stale(const ConstraintHandle& handle) {
+  raise_stale_as(name_of(handle.id) + " is gone: it, or a body or particle that it held, was destroyed or made rigid",
+                 nb::none());
+}
+
 void raise_runtime(const std::string& text) {
   PyErr_SetString(PyExc_RuntimeError, text.c_str());
   throw nb::python_error();

@@ -97,6 +97,7 @@ using BodyHandle = Handle<BodyId>;
 using ParticleHandle = Handle<ParticleId>;
 using BondHandle = Handle<BondId>;
 using GripHandle = Handle<GripId>;
+using ConstraintHandle = Handle<ConstraintId>;
 struct CosmeticBondHandle : Handle<CosmeticBondId> {
   ParticleId p, q;
 };
@@ -106,6 +107,7 @@ constexpr const char* kind_name(ParticleId) { return "particle"; }
 constexpr const char* kind_name(BondId) { return "bond"; }
 constexpr const char* kind_name(GripId) { return "grip"; }
 constexpr const char* kind_name(CosmeticBondId) { return "cosmetic bond"; }
+constexpr const char* kind_name(ConstraintId) { return "constraint"; }
 
 template <class IdType>
 std::string name_of(IdType id) {
@@ -129,6 +131,7 @@ Handle<IdType> sibling(const Other& handle, IdType id) {
 [[noreturn]] void raise_stale(const BondHandle&);
 [[noreturn]] void raise_stale(const GripHandle&);
 [[noreturn]] void raise_stale(const Handle<CosmeticBondId>&);
+[[noreturn]] void raise_stale(const ConstraintHandle&);
 
 template <class IdType>
 bool Handle<IdType>::is_alive() const {

@@ -23,5 +23,6 @@ using ParticleId = Id<struct ParticleKindTag>;  ///< one body's point of a (poss
 using BondId = Id<struct BondKindTag>;
 using CosmeticBondId = Id<struct CosmeticBondKindTag>;
 using GripId = Id<struct GripKindTag>;
+using ConstraintId = Id<struct ConstraintKindTag>;
 
 }  // namespace iota

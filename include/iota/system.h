@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iota/constraints.h>
 #include <iota/forces.h>
 #include <iota/ids.h>
 #include <iota/pose_snapshot.h>
@@ -101,7 +102,9 @@ class System {
   /// Inside a scripted bond's function only destroy/combine/separate/nail/release are allowed, and are queued.
   ///@{
   BodyId create_body(const BodyOptions& options = {});
-  /// A new particle of `body`. mass > 0, kg. A body is the rigid set of its particles.
+  /// A new particle of `body`. mass, kg. A body is the rigid set of its particles. A massless one (a marker) must lie
+  /// where the massive ones carry it: anywhere on a body with four of them off one plane, in the plane of a flat one, on
+  /// the line of a thin one. Its velocity is then the body's.
   ParticleId create_particle(BodyId body, const Vec3& position, double mass = 1, const Vec3& velocity = {});
   /// Gives a body of exactly two particles the mass and inertia of a solid cylinder between them (no spin about its
   /// axis: exact for hinges on the axis). Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
@@ -142,6 +145,24 @@ class System {
   void release(ParticleId particle);
   /// Particles still on their way to each other after `combine(p, q, over)`.
   std::uint32_t closing_count() const;
+  ///@}
+
+  /// @name Constraints. Velocities and gaps are brought in line with a new one at the start of the next step.
+  ///@{
+  ConstraintId create_constraint(const JointSpec&);
+  ConstraintId create_constraint(const DistanceSpec&);
+  void destroy(ConstraintId);
+  void set_active(ConstraintId,
+                  bool);  ///< true repairs a broken one; bodies keep the relative place they were joined in
+  const CoordinateOptions& coordinate(ConstraintId, JointCoordinate) const;
+  void set_coordinate(ConstraintId, JointCoordinate, const CoordinateOptions&);
+  void set_length(ConstraintId, double);  ///< of a rod or rope, m: reached during the next step
+  BreakLimits break_limits(ConstraintId) const;
+  void set_break_limits(ConstraintId, const BreakLimits&);
+  ConstraintState state(ConstraintId) const;
+  std::vector<ParticleId> particles(ConstraintId) const;  ///< those that it refers to, markers included
+  std::vector<ConstraintId> constraints() const;          ///< in order of slots
+  bool contains(ConstraintId) const;
   ///@}
 
   /// @name Hands

@@ -77,7 +77,17 @@ bool Model::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   return true;
 }
 
-std::vector<std::uint32_t> Model::tied_bodies(std::span<const std::uint32_t> start) const {
+bool Model::is_tied_to_world(std::uint32_t body) const {
+  bool tied = false;
+  for_each_particle_of(body, [&](std::uint32_t p) {
+    for_each_constraint_of(p, [&](std::uint32_t c, int) {
+      tied = tied || (constraints[c].active && body_of_side(*this, constraints[c], 1) == none);
+    });
+  });
+  return tied;
+}
+
+std::vector<std::uint32_t> Model::tied_bodies(std::span<const std::uint32_t> start, Ties ties) const {
   std::vector<std::uint32_t> reached, articulates_reached;
   std::vector<std::uint8_t> is_reached(articulates.slot_count(), 0);
   const auto reach = [&](std::uint32_t body) {
@@ -90,8 +100,9 @@ std::vector<std::uint32_t> Model::tied_bodies(std::span<const std::uint32_t> sta
   for (std::size_t next = 0; next < reached.size(); ++next)
     for_each_particle_of(reached[next], [&](std::uint32_t p) {
       for_each_bond_of(p, [&](std::uint32_t b) {
-        if (bonds[b].ties()) reach(particles[bonds[b].p == p ? bonds[b].q : bonds[b].p].body);
+        if (ties == Ties::all && bonds[b].ties()) reach(particles[bonds[b].p == p ? bonds[b].q : bonds[b].p].body);
       });
+      for_each_body_tied_to(p, reach);
     });
   return reached;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace iota::model {
 
@@ -15,11 +16,35 @@ double distance_from_span(Vec3 r, const std::array<Vec3, 3>& axes, int count) {
   return norm(r);
 }
 
+/// Affine coordinates in a body's basis points, by the Gram matrix of the vectors from the first to the others.
+class BasisWeights {
+ public:
+  BasisWeights(const Model& model, std::uint32_t body_slot) {
+    const Body& body = model.bodies[body_slot];
+    origin_ = model.position(body.basis[0]);
+    for (int i = 1; i < body.rank; ++i) vectors_[i - 1] = model.position(body.basis[i]) - origin_;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) gram_.m[i][j] = dot(vectors_[i], vectors_[j]);
+  }
+  /// Of the point nearest to `place` that the basis spans.
+  std::array<double, 4> of(const Vec3& place) const {
+    const Vec3 r = place - origin_;
+    const Vec3 c = solve_semidefinite(gram_, {dot(vectors_[0], r), dot(vectors_[1], r), dot(vectors_[2], r)}, 1e-15);
+    return {1 - c.x - c.y - c.z, c.x, c.y, c.z};
+  }
+
+ private:
+  Vec3 origin_;
+  std::array<Vec3, 3> vectors_;
+  Mat3 gram_;
+};
+
 }  // namespace
 
-// The first particle, then thrice the particle farthest from the span so far: well-conditioned, and for a rod simply its
+// The first massive particle, then thrice the massive particle farthest from the span so far: well-conditioned, and for a rod simply its
 // two ends. Everything else is an affine combination of these. A body made of solids prefers points that are unknowns
 // anyway, as long as they reach a fifth as far. Ties go to the earlier one, whatever round-off says.
+// Markers have no mass to be a basis with.
 void Model::rebuild_basis(std::uint32_t body_slot) {
   constexpr double flat = 1e-7;  // of the extent: thinner counts as a point, line or plane
   constexpr double tie = 1 + 1e-6, far_enough = 0.2;
@@ -29,12 +54,14 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
   body.basis.fill(none);
   if (body.count == 0) return;
 
-  std::uint32_t first = body.first;
-  const auto is_preferred = [&](std::uint32_t p) { return body.first_solid != none && is_needed(particles[p]); };
-  if (body.first_solid != none)
-    for_each_particle_of(body_slot, [&](std::uint32_t p) {
-      if (is_needed(particles[p]) && body.basis_needs++ == 0) first = p;
-    });
+  const auto is_preferred = [&](std::uint32_t p) {
+    return body.first_solid != none && is_needed(particles[p]) && !particles[p].is_marker();
+  };
+  std::uint32_t first = none;
+  for_each_particle_of(body_slot, [&](std::uint32_t p) {
+    if (is_preferred(p) ? body.basis_needs++ == 0 : first == none && !particles[p].is_marker()) first = p;
+  });
+  if (first == none) return;
   body.basis[body.rank++] = first;
   const Vec3 origin = position(first);
   std::array<Vec3, 3> axes;
@@ -43,6 +70,7 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
     std::uint32_t farthest = none, preferred = none;
     double distance = 0, preferred_distance = 0;
     for_each_particle_of(body_slot, [&](std::uint32_t p) {
+      if (particles[p].is_marker()) return;
       const double d = distance_from_span(position(p) - origin, axes, dimension);
       if (d > tie * distance) distance = d, farthest = p;
       if (d > tie * preferred_distance && is_preferred(p)) preferred_distance = d, preferred = p;
@@ -63,12 +91,7 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
   }
   if (old_basis != body.basis) body.multipliers.fill(0);  // a warm start of other rows would mislead
 
-  // Weights: coordinates in the basis vectors, by the Gram matrix of those vectors.
-  std::array<Vec3, 3> vectors;
-  for (int i = 1; i < body.rank; ++i) vectors[i - 1] = position(body.basis[i]) - origin;
-  Mat3 gram;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors[i], vectors[j]);
+  const BasisWeights weights(*this, body_slot);
   const int rank = body.rank;
   for_each_particle_of(body_slot, [&](std::uint32_t p) {
     Particle& particle = particles[p];
@@ -81,9 +104,7 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
       particle.weights[particle.basis_index] = 1;
       return;
     }
-    const Vec3 r = position(p) - origin;
-    const Vec3 c = solve_semidefinite(gram, {dot(vectors[0], r), dot(vectors[1], r), dot(vectors[2], r)}, 1e-15);
-    particle.weights = {1 - c.x - c.y - c.z, c.x, c.y, c.z};
+    particle.weights = weights.of(position(p));
   });
 }
 
@@ -93,7 +114,7 @@ void Model::prefer_unknowns(std::uint32_t body_slot) {
   std::uint32_t needs = 0;
   bool outside = false, in_shape = true;
   for_each_particle_of(body_slot, [&](std::uint32_t p) {
-    if (!is_needed(particles[p])) return;
+    if (!is_needed(particles[p]) || particles[p].is_marker()) return;
     ++needs;
     outside = outside || particles[p].basis_index < 0;
     in_shape = in_shape && follows_basis(p);
@@ -116,6 +137,27 @@ void Model::prefer_unknowns(std::uint32_t body_slot) {
     anchor_grip(*this, g, point);
   });
   rebuild_basis(body_slot);
+}
+
+std::uint32_t Model::make_marker(std::uint32_t body, const Vec3& position) {
+  const std::uint32_t marker = make_particle(body, position, 0, {});
+  particles[marker].weights = BasisWeights(*this, body).of(position);
+  Ring& ring = rings[particles[marker].ring];
+  std::tie(ring.position, ring.velocity) = carried(marker);
+  touch_body(body);
+  return marker;
+}
+
+bool Model::spans(std::uint32_t body_slot, const Vec3& place) const {
+  constexpr double off = 1e-6;  // of the extent: what is farther from the body's point, line or plane is not on it
+  const Body& body = bodies[body_slot];
+  if (body.rank == 0) return false;
+  double extent = 0;
+  for (int row = 0; row < body.row_count; ++row) extent = std::max(extent, body.lengths[row]);
+  const std::array<double, 4> weights = BasisWeights(*this, body_slot).of(place);
+  Vec3 nearest;
+  for (int i = 0; i < body.rank; ++i) nearest += weights[i] * position(body.basis[i]);
+  return norm(nearest - place) <= off * (extent > 0 ? std::max(extent, norm(place - position(body.basis[0]))) : 1e-3);
 }
 
 }  // namespace iota::model

@@ -132,6 +132,12 @@ double Model::body_mass(std::uint32_t body) const {
   return mass;
 }
 
+double Model::ring_mass(std::uint32_t ring) const {
+  double mass = 0;
+  for_each_in_ring(ring, [&](std::uint32_t p) { mass += particles[p].mass; });
+  return mass;
+}
+
 Vec3 Model::centre_of_mass(std::uint32_t body) const {
   double mass = 0;
   Vec3 sum;

@@ -4,6 +4,7 @@
 #include "base/archive.h"
 #include "base/slot_table.h"
 #include "laws/pair_law.h"
+#include "model/constraint.h"
 
 #include <iota/system.h>
 
@@ -26,11 +27,16 @@ struct Particle {
   std::uint32_t next_in_ring = none, previous_in_ring = none;
   std::uint32_t uses = 0;  ///< bonds and closings that need it as an unknown of its own
   std::uint32_t first_bond = none, first_closing = none, first_cosmetic_bond = none;  ///< see `Ends`
-  double mass = 1;                                                                    ///< kg
+  std::uint32_t first_constraint = none;                                              ///< see `Constraint`
+  std::uint32_t padding = 0;
+  double mass = 1;  ///< kg
   /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
   std::int32_t basis_index = -1;
   std::array<double, 4> weights{};
   std::array<double, 3> multiplier{};  ///< of the rows that tie it to the basis, N; warm start
+
+  /// A massless place on a body that its massive particles carry.
+  bool is_marker() const { return mass == 0; }
 };
 
 /// What the particles of a ring share: one position, one unknown of the solver. (The thesis: a particle is a ring of
@@ -179,6 +185,7 @@ class Model {
   SlotTable<CosmeticBond, CosmeticBondId> cosmetic_bonds;
   SlotTable<Grip, GripId> grips;
   SlotTable<Closing, Id<Closing>> closings;
+  SlotTable<Constraint, ConstraintId> constraints;
 
   Vec3 gravity{0, -9.81, 0};
   IntegrationMode mode = IntegrationMode::energy_keeping;
@@ -187,6 +194,7 @@ class Model {
   std::uint64_t step = 0;
   std::uint32_t structure_version = 1;
   double dissipated = 0, external_work = 0, edit_energy = 0;
+  std::vector<std::string> notes;  ///< of edits that have no report, for the next step's; not saved
 
   /// @name Membership: cheap links only, no physics
   ///@{
@@ -215,9 +223,11 @@ class Model {
   void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
   /// The slots of all articulates touched since the last call, destroyed ones too, each once.
   void take_touched(std::vector<std::uint32_t>& slots);
-  /// The bodies of the articulates of `bodies` and of all that implicit bonds tie to those: what one problem solves.
-  /// In order of discovery.
-  std::vector<std::uint32_t> tied_bodies(std::span<const std::uint32_t> bodies) const;
+  enum class Ties { all, constraints };
+  /// The bodies of the articulates of `bodies` and of all that constraints and implicit bonds tie to those: what one
+  /// problem solves. In order of discovery.
+  std::vector<std::uint32_t> tied_bodies(std::span<const std::uint32_t> bodies, Ties ties = Ties::all) const;
+  bool is_tied_to_world(std::uint32_t body) const;  ///< by an active constraint
   ///@}
 
   /// @name What joins two particles. Adding and removing keeps the particles' lists and touches the articulates.
@@ -229,7 +239,9 @@ class Model {
   void remove_closing(std::uint32_t closing);
   void remove_cosmetic_bond(std::uint32_t bond);
   std::uint64_t bonds_revision = 0;  ///< rises when a bond is added, removed, moved or switched; not saved
-  /// Bonds and closings of q become p's; those that would join p to itself are removed.
+  std::uint32_t add_constraint(const Constraint&);
+  void remove_constraint(std::uint32_t constraint);  ///< its markers stay
+  /// Bonds, closings and constraints of q become p's; those that would join p to itself are removed.
   void redirect_uses(std::uint32_t q, std::uint32_t p);
   ///@}
 
@@ -245,6 +257,10 @@ class Model {
   /// A body made of solids has more points than a basis needs: makes those its basis that are unknowns anyway (hinged,
   /// nailed, bonded), where there are new ones and they span it well. Saves unknowns and ties.
   void prefer_unknowns(std::uint32_t body);
+  /// A new massless particle; the body's basis stays as it is.
+  std::uint32_t make_marker(std::uint32_t body, const Vec3& position);
+  /// Whether the body's massive particles span a place: only there can they carry a marker.
+  bool spans(std::uint32_t body, const Vec3& place) const;
 
   /// Whether a particle is an unknown of its own in the solver (basis points always are).
   bool is_unknown(const Particle& p) const { return p.basis_index >= 0 || is_needed(p); }
@@ -266,6 +282,7 @@ class Model {
   Vec3 position(std::uint32_t particle) const { return rings[particles[particle].ring].position; }
   Vec3 velocity(std::uint32_t particle) const { return rings[particles[particle].ring].velocity; }
   double body_mass(std::uint32_t body) const;
+  double ring_mass(std::uint32_t ring) const;
   Vec3 centre_of_mass(std::uint32_t body) const;
 
   template <class Visit>
@@ -294,6 +311,23 @@ class Model {
   void for_each_cosmetic_bond_of(std::uint32_t particle, Visit visit) const {
     visit_uses(cosmetic_bonds, particles[particle].first_cosmetic_bond, visit);
   }
+  /// visit(slot of the constraint, place): once for each place that the particle is at.
+  template <class Visit>
+  void for_each_constraint_of(std::uint32_t particle, Visit visit) const {
+    for (std::uint32_t link = particles[particle].first_constraint, next; link != none; link = next) {
+      next = constraints[link / place_count].next[link % place_count];
+      visit(link / place_count, static_cast<int>(link % place_count));
+    }
+  }
+  /// visit(body): the bodies that active constraints tie to a particle's.
+  template <class Visit>
+  void for_each_body_tied_to(std::uint32_t particle, Visit visit) const {
+    for_each_constraint_of(particle, [&](std::uint32_t c, int place) {
+      if (!constraints[c].active || (place != a_origin && place != b_origin)) return;
+      const std::uint32_t other = body_of_side(*this, constraints[c], place == a_origin ? 1 : 0);
+      if (other != none) visit(other);
+    });
+  }
   template <class Visit>
   void for_each_inertia_of(std::uint32_t body, Visit visit) const {
     for (std::uint32_t i = bodies[body].first_inertia; i != none; i = inertia_pairs[i].next) visit(i);
@@ -315,11 +349,13 @@ class Model {
   double kinetic_energy() const;                 ///< J
   double potential_energy() const;               ///< gravity and springs, J
   double bond_energy(std::uint32_t bond) const;  ///< J; of implicit bonds, at `time`
+  /// Of its springs at the coordinates it was last seen at, J.
+  double constraint_energy(std::uint32_t constraint) const;
   /// The two ends of a bond for its law: distance and its rate (positions `ahead` seconds on), time, masses.
   laws::PairState bond_state(const Bond& bond, double ahead = 0) const;
   Vec3 momentum() const;          ///< kg m/s
   Vec3 angular_momentum() const;  ///< about the origin, kg m^2/s
-  double worst_gap() const;       ///< over rigid distances, tied points and nails, m
+  double worst_gap() const;       ///< over rigid distances, tied points, nails and constraints, m
   ///@}
 
   std::vector<std::string> validate() const;
@@ -357,6 +393,8 @@ class Model {
     template <class Archive>
     void archive(Archive& ar);
   };
+  void link_place(std::uint32_t constraint, std::uint32_t place);
+  void unlink_place(std::uint32_t constraint, std::uint32_t place);
   Survivors<ParticleId> particle_survivors_;
   Survivors<BodyId> body_survivors_;
 };
@@ -397,6 +435,7 @@ void Model::archive(Archive& ar) {
   particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), solids.archive(ar);
   articulates.archive(ar);
   laws.archive(ar), bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
+  constraints.archive(ar);
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(time), ar.value(step), ar.value(structure_version);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);

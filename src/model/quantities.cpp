@@ -52,6 +52,7 @@ double Model::potential_energy() const {
   particles.for_each(
       [&](std::uint32_t, const Particle& p) { energy -= p.mass * dot(gravity, rings[p.ring].position); });
   bonds.for_each([&](std::uint32_t slot, const Bond&) { energy += bond_energy(slot); });
+  constraints.for_each([&](std::uint32_t slot, const Constraint&) { energy += constraint_energy(slot); });
   return energy;
 }
 
@@ -66,6 +67,16 @@ laws::PairState Model::bond_state(const Bond& b, double ahead) const {
   const Vec3 u = q.velocity - p.velocity, d = q.position - p.position + ahead * u;
   const double r = norm(d);
   return {r, dot(d, u) / (r + 1e-300), time, particles[b.p].mass, particles[b.q].mass};
+}
+
+double Model::constraint_energy(std::uint32_t slot) const {
+  const Constraint& c = constraints[slot];
+  double energy = 0;
+  for (std::size_t i = 0; i < c.options.size() && c.active; ++i) {
+    const double stretch = c.coordinate[i] - c.options[i].rest;
+    energy += 0.5 * c.options[i].stiffness * stretch * stretch;
+  }
+  return energy;
 }
 
 Vec3 Model::momentum() const {
@@ -103,6 +114,9 @@ double Model::worst_gap() const {
   });
   rings.for_each([&](std::uint32_t, const Ring& r) {
     if (r.nailed) add(norm(r.position - r.nail_before));
+  });
+  constraints.for_each([&](std::uint32_t, const Constraint& c) {
+    if (c.active) add(c.gap);
   });
   return worst;
 }

@@ -12,12 +12,6 @@ namespace iota::model {
 
 namespace {
 
-double ring_mass(const Model& model, std::uint32_t ring) {
-  double mass = 0;
-  model.for_each_in_ring(ring, [&](std::uint32_t p) { mass += model.particles[p].mass; });
-  return mass;
-}
-
 /// Merging two rings would put two particles of one body in one place, which no rigid body can.
 void require_no_shared_body(const Model& model, std::uint32_t ring_a, std::uint32_t ring_b, std::uint32_t except_body) {
   model.for_each_in_ring(ring_a, [&](std::uint32_t a) {
@@ -36,7 +30,8 @@ void require_no_shared_body(const Model& model, std::uint32_t ring_a, std::uint3
 Edit merge_rings(Model& model, std::uint32_t into, std::uint32_t from) {
   Ring& r = model.rings[into];
   const Ring s = model.rings[from];
-  const double m_r = ring_mass(model, into), m_s = ring_mass(model, from), share = m_s / (m_r + m_s);
+  const double m_r = model.ring_mass(into), m_s = model.ring_mass(from),
+               share = m_r + m_s > 0 ? m_s / (m_r + m_s) : 0.5;
   Edit edit{r.position != s.position, r.velocity != s.velocity || r.nailed || s.nailed};
   if (r.nailed) {
     // the first one's nail wins
@@ -117,6 +112,37 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
   model.touch(model.bodies[a].articulate);
 }
 
+std::uint32_t massive_count(const Model& model, std::uint32_t body) {
+  std::uint32_t count = 0;
+  model.for_each_particle_of(body, [&](std::uint32_t p) { count += !model.particles[p].is_marker(); });
+  return count;
+}
+
+/// q can leave the body of p only with mass of its own, and must leave some behind.
+void require_mass_on_its_own(const Model& model, std::uint32_t p, std::uint32_t q) {
+  if (model.particles[q].is_marker())
+    throw std::invalid_argument("separate: particle " + std::to_string(q) +
+                                " is massless and cannot leave the body that carries it; give it a mass first");
+  if (massive_count(model, model.particles[p].body) == 1)
+    throw std::invalid_argument("separate: particle " + std::to_string(q) +
+                                " is the only one with mass in its body; give another one a mass first");
+}
+
+/// Markers that a body's massive particles no longer reach go, with what refers to them.
+void destroy_stray_markers(Model& model, std::uint32_t body, std::vector<std::string>& notes) {
+  std::vector<std::uint32_t> strays;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (model.particles[p].is_marker() && !model.spans(body, model.position(p))) strays.push_back(p);
+  });
+  std::vector<ParticleId> ids;
+  for (const std::uint32_t p : strays) ids.push_back(model.particles.id(p));
+  for (const ParticleId id : ids)
+    if (model.particles.contains(id)) destroy_particle(model, id.slot);
+  if (!strays.empty())
+    notes.push_back("body " + std::to_string(body) + " is too flat now to carry " + std::to_string(strays.size()) +
+                    " massless particles: they are gone with what was joined to them");
+}
+
 /// The bodies at the other members of a particle's ring.
 std::vector<std::uint32_t> ring_neighbours(const Model& model, std::uint32_t particle) {
   std::vector<std::uint32_t> bodies;
@@ -134,6 +160,11 @@ void destroy_uses(Model& model, std::uint32_t particle, std::vector<std::uint32_
     if (held_bodies) held_bodies->push_back(model.particles[closing.p == particle ? closing.q : closing.p].body);
     model.remove_closing(c);
   });
+  while (model.particles[particle].first_constraint != none) {
+    const std::uint32_t link = model.particles[particle].first_constraint;
+    model.constraints[link / place_count].owned &= static_cast<std::uint8_t>(~(1u << link % place_count));
+    destroy_constraint(model, link / place_count);
+  }
   model.for_each_cosmetic_bond_of(particle, [&](std::uint32_t b) { model.remove_cosmetic_bond(b); });
 }
 
@@ -168,7 +199,7 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
     const Vec3 momentum = model.particles[p].mass * model.velocity(p) + model.particles[q].mass * model.velocity(q);
     const double mass = model.particles[p].mass + model.particles[q].mass;
     Edit edit{false, true};
-    const Vec3 velocity = (1 / mass) * momentum;
+    const Vec3 velocity = mass > 0 ? (1 / mass) * momentum : model.velocity(p);
     const Ring left_behind = model.rings[ring_q];
     if (model.rings[ring_p].count == 1) model.rings[ring_p].velocity = velocity;
     if (!q_was_hinged && left_behind.nailed && !model.rings[ring_p].nailed) {
@@ -178,6 +209,7 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
     }
     absorb_particle(model, p, q, report);
     model.rebuild_basis(body_p);
+    destroy_stray_markers(model, body_p, report.notes);
     if (q_was_hinged && ring_p != ring_q) edit = merge_rings(model, ring_p, ring_q);
     model.touch(model.bodies[body_p].articulate);
     return edit;
@@ -216,6 +248,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
   }
 
   if (body == model.particles[q].body) {  // one body: q leaves it and is hinged to p
+    require_mass_on_its_own(model, p, q);
     report.changed = true;
     report.closed_distance = norm(model.position(q) - model.position(p));
     std::vector<std::uint32_t> neighbours = ring_neighbours(model, q);
@@ -224,6 +257,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     model.take_from_ring(q);
     model.take_from_body(q);
     model.rebuild_basis(body);
+    destroy_stray_markers(model, body, report.notes);
     const std::uint32_t own = model.make_body(model.bodies[body].kind, model.bodies[body].damping);
     Ring ring;
     ring.position = position, ring.velocity = velocity;
@@ -280,19 +314,17 @@ void split_where_apart(Model& model, std::span<const std::uint32_t> bodies) {
 
 void destroy_particle(Model& model, std::uint32_t particle) {
   const std::uint32_t body = model.particles[particle].body;
+  const bool massive = !model.particles[particle].is_marker();
+  if (massive && massive_count(model, body) == 1) return destroy_body(model, body);
   std::vector<std::uint32_t> apart = ring_neighbours(model, particle);
   destroy_uses(model, particle, &apart);
   model.remove_particle(particle);
   model.touch(model.bodies[body].articulate);
-  if (model.bodies[body].count == 0) {
-    model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
-      if (g.body == body) model.grips.destroy(slot);
-    });
-    model.remove_body(body);
-  } else {
+  if (massive) {
     model.rebuild_basis(body);
-    apart.push_back(body);
+    destroy_stray_markers(model, body, model.notes);
   }
+  apart.push_back(body);
   split_where_apart(model, apart);
 }
 

@@ -17,6 +17,7 @@ Edit combine_particles(Model&, std::uint32_t p, std::uint32_t q, RestructureRepo
 Edit combine_bodies(Model&, std::uint32_t a, std::uint32_t b, RestructureReport&);
 Edit separate_particles(Model&, std::uint32_t p, std::uint32_t q, RestructureReport&);
 
+/// With what refers to it; its body too if no massive particle is left there.
 void destroy_particle(Model&, std::uint32_t particle);
 void destroy_body(Model&, std::uint32_t body);
 

@@ -2,6 +2,8 @@
 // Lists of what joins two particles: each item is linked at both its ends.
 #include "model/model.h"
 
+#include <algorithm>
+
 namespace iota::model {
 
 namespace {
@@ -84,6 +86,37 @@ void Model::remove_cosmetic_bond(std::uint32_t slot) {
   cosmetic_bonds.destroy(slot);
 }
 
+std::uint32_t Model::add_constraint(const Constraint& constraint) {
+  const std::uint32_t slot = constraints.create(constraint).slot;
+  for (std::uint32_t place = 0; place < place_count; ++place)
+    if (constraint.particles[place] != none) link_place(slot, place);
+  return slot;
+}
+
+void Model::remove_constraint(std::uint32_t slot) {
+  for (std::uint32_t place = 0; place < place_count; ++place)
+    if (constraints[slot].particles[place] != none) unlink_place(slot, place);
+  constraints.destroy(slot);
+}
+
+void Model::link_place(std::uint32_t slot, std::uint32_t place) {
+  Constraint& c = constraints[slot];
+  std::uint32_t& first = particles[c.particles[place]].first_constraint;
+  c.next[place] = first, c.previous[place] = none;
+  if (first != none) constraints[first / place_count].previous[first % place_count] = place_count * slot + place;
+  first = place_count * slot + place;
+  touch_particle(c.particles[place]);
+}
+
+void Model::unlink_place(std::uint32_t slot, std::uint32_t place) {
+  const Constraint& c = constraints[slot];
+  const std::uint32_t before = c.previous[place], after = c.next[place];
+  (before == none ? particles[c.particles[place]].first_constraint
+                  : constraints[before / place_count].next[before % place_count]) = after;
+  if (after != none) constraints[after / place_count].previous[after % place_count] = before;
+  touch_particle(c.particles[place]);
+}
+
 void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
   const auto redirect = [&](auto& items, std::uint32_t Particle::* first, auto remove) {
     while (particles[q].*first != none) {
@@ -97,6 +130,20 @@ void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
       link(items, particles[p].*first, slot, end);
     }
   };
+  while (particles[q].first_constraint != none) {
+    const std::uint32_t slot = particles[q].first_constraint / place_count;
+    const std::uint32_t place = particles[q].first_constraint % place_count;
+    Constraint& c = constraints[slot];
+    if (std::find(c.particles.begin(), c.particles.end(), p) != c.particles.end()) {  // two of its places in one
+      c.owned &= static_cast<std::uint8_t>(~(1u << place));
+      destroy_constraint(*this, slot);
+      continue;
+    }
+    unlink_place(slot, place);
+    c.particles[place] = p;
+    c.owned &= static_cast<std::uint8_t>(~(1u << place));
+    link_place(slot, place);
+  }
   const std::uint32_t uses = particles[q].uses;
   ++bonds_revision;
   redirect(bonds, &Particle::first_bond, [&](std::uint32_t slot) { remove_bond(slot); });

@@ -33,8 +33,10 @@ std::vector<std::string> Model::validate() const {
   particles.for_each([&](std::uint32_t slot, const Particle& p) {
     const bool linked = bodies.is_alive(p.body) && rings.is_alive(p.ring);
     complaints.require(linked, "particle ", slot, " is in no living body or ring");
-    complaints.require(p.mass > 0 && std::isfinite(p.mass), "particle ", slot, " has mass ", p.mass);
+    complaints.require(p.mass >= 0 && std::isfinite(p.mass), "particle ", slot, " has mass ", p.mass);
     if (!linked) return;
+    complaints.require(!p.is_marker() || (p.basis_index < 0 && bodies[p.body].rank > 0), "marker ", slot,
+                       " is in its body's basis, or alone in it");
     ++in_body[p.body], ++in_ring[p.ring];
     double weight_sum = 0;
     for (const double w : p.weights) weight_sum += w;
@@ -154,9 +156,31 @@ std::vector<std::string> Model::validate() const {
   require_listed("bond", bonds, &Particle::first_bond);
   require_listed("closing", closings, &Particle::first_closing);
   require_listed("cosmetic bond", cosmetic_bonds, &Particle::first_cosmetic_bond);
+  std::uint32_t constraint_ends = 0;
+  constraints.for_each([&](std::uint32_t slot, const Constraint& c) {
+    for (int place = 0; place < place_count; ++place) {
+      const std::uint32_t p = c.particles[place];
+      if (p == none) continue;
+      complaints.require(particles.is_alive(p) && particles[p].body == body_of_side(*this, c, place >= b_origin),
+                         info(c.kind).name, " ", slot, " holds a stranger at place ", place);
+      ++constraint_ends;
+    }
+    complaints.require(body_of_side(*this, c, 0) != body_of_side(*this, c, 1), info(c.kind).name, " ", slot,
+                       " joins a body to itself");
+  });
+  std::uint32_t constraint_ends_listed = 0;
   particles.for_each([&](std::uint32_t slot, const Particle& p) {
+    for (std::uint32_t link = p.first_constraint; link != none;
+         link = constraints[link / place_count].next[link % place_count]) {
+      const bool good = constraints.is_alive(link / place_count) &&
+                        constraints[link / place_count].particles[link % place_count] == slot;
+      complaints.require(good, "particle ", slot, " lists constraint ", link / place_count, ", which is not there");
+      if (!good || ++constraint_ends_listed > constraint_ends) break;
+    }
     complaints.require(p.uses == uses[slot], "particle ", slot, " counts ", p.uses, " uses, has ", uses[slot]);
   });
+  complaints.require(constraint_ends_listed == constraint_ends, "the particles list ", constraint_ends_listed, " of ",
+                     constraint_ends, " places of constraints");
   grips.for_each([&](std::uint32_t slot, const Grip& g) {
     complaints.require(bodies.is_alive(g.body), "grip ", slot, " holds no living body");
     for (std::uint32_t i = 0; i < g.count; ++i)

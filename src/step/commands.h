@@ -117,6 +117,29 @@ struct SetActive {
   BondId bond;
   bool active;
 };
+struct CreateJoint {
+  JointSpec spec;
+};
+struct CreateDistance {
+  DistanceSpec spec;
+};
+struct SetConstraintActive {
+  ConstraintId constraint;
+  bool active;
+};
+struct SetCoordinate {
+  ConstraintId constraint;
+  JointCoordinate coordinate;
+  CoordinateOptions options;
+};
+struct SetLength {
+  ConstraintId constraint;
+  double value;
+};
+struct SetBreakLimits {
+  ConstraintId constraint;
+  BreakLimits limits;
+};
 struct Step {
   double dt;
 };
@@ -145,12 +168,14 @@ struct Release {
   ParticleId particle;
 };
 
-using Command = std::variant<SetGravity, SetMode, SetSystemDamping, CreateBody, CreateParticle, SetRod, SpellLaw,
-                             CreateLaw, CreateCosmeticBond, CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping,
-                             SetPosition, SetVelocity, SetMass, ApplyForce, SetActive, SetParameter, CreateSolid,
-                             CreateAttachment, SetPose, SetBodyVelocity, SetAngularVelocity, Step, Destroy<BodyId>,
-                             Destroy<ParticleId>, Destroy<BondId>, Destroy<LawId>, Destroy<CosmeticBondId>,
-                             Destroy<GripId>, CombineParticles, CombineBodies, Separate, Nail, Release>;
+using Command =
+    std::variant<SetGravity, SetMode, SetSystemDamping, CreateBody, CreateParticle, SetRod, SpellLaw, CreateLaw,
+                 CreateCosmeticBond, CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping, SetPosition,
+                 SetVelocity, SetMass, ApplyForce, SetActive, SetParameter, CreateSolid, CreateAttachment, SetPose,
+                 SetBodyVelocity, SetAngularVelocity, Step, Destroy<BodyId>, Destroy<ParticleId>, Destroy<BondId>,
+                 Destroy<LawId>, Destroy<CosmeticBondId>, Destroy<GripId>, CombineParticles, CombineBodies, Separate,
+                 Nail, Release, CreateJoint, CreateDistance, SetConstraintActive, SetCoordinate, SetLength,
+                 SetBreakLimits, Destroy<ConstraintId>>;
 
 template <class C>
 inline constexpr bool is_queueable = false;

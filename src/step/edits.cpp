@@ -2,6 +2,7 @@
 // What each command does, and the physics that a structural edit owes.
 #include "math/mat3.h"
 #include "step/checks.h"
+#include "step/constraint_rows.h"
 #include "step/implementation.h"
 
 #include <algorithm>
@@ -67,6 +68,7 @@ ParticleId System::Implementation::apply(const step::CreateParticle& c) {
   const std::uint32_t body = require(c.body);
   require_finite("position", c.position);
   require_finite("velocity", c.velocity);
+  if (c.mass == 0) return make_marker(body, c.position);
   require_mass("mass", c.mass);
   const std::uint32_t particle = model.make_particle(body, c.position, c.mass, c.velocity);
   model.rebuild_basis(body);
@@ -76,14 +78,28 @@ ParticleId System::Implementation::apply(const step::CreateParticle& c) {
   return model.particles.id(particle);
 }
 
+ParticleId System::Implementation::make_marker(std::uint32_t body, const Vec3& position) {
+  if (!model.spans(body, position))
+    throw std::invalid_argument(text("a massless particle is carried by the massive ones of its body; those of body ",
+                                     body, model.bodies[body].rank == 0 ? " are yet to be made" : " do not reach ",
+                                     model.bodies[body].rank == 0 ? "" : text_of(position)));
+  const std::uint32_t marker = model.make_marker(body, position);
+  structure_changed();
+  return model.particles.id(marker);
+}
+
 void System::Implementation::apply(const step::SetRod& c) {
   const std::uint32_t body = require(c.body);
   require_mass("mass", c.mass);
   require_positive("radius", c.radius);
-  if (model.bodies[body].count != 2)
+  std::vector<std::uint32_t> massive;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (!model.particles[p].is_marker()) massive.push_back(p);
+  });
+  if (massive.size() != 2)
     throw std::invalid_argument(
-        text("set_rod needs a body of exactly two particles, body ", body, " has ", model.bodies[body].count));
-  const std::uint32_t p = model.bodies[body].first, q = model.bodies[body].last;
+        text("set_rod needs a body of exactly two massive particles, body ", body, " has ", massive.size()));
+  const std::uint32_t p = massive[0], q = massive[1];
   const double length = norm(model.position(q) - model.position(p));
   require_positive("the distance of the rod's two particles", length);
   // Mass [A B; B A] as two point masses A+B = m/2 and a pair -B |v_p - v_q|^2 / 2, where A-B = 2 It/L^2.
@@ -163,6 +179,26 @@ double System::Implementation::ring_potential(std::uint32_t ring) const {
   return energy;
 }
 
+double System::Implementation::joint_springs_of(std::uint32_t ring) const {
+  double energy = 0;
+  if (model.constraints.size() == 0) return energy;
+  model.for_each_in_ring(ring, [&](std::uint32_t in_ring) {
+    model.for_each_particle_of(model.particles[in_ring].body, [&](std::uint32_t p) {
+      model.for_each_constraint_of(p, [&](std::uint32_t c, int place) {
+        if (place == model::a_origin || place == model::b_origin) energy += model.constraint_energy(c);
+      });
+    });
+  });
+  return energy;
+}
+
+void System::Implementation::refresh_coordinates(std::uint32_t body) {
+  if (model.constraints.size() == 0) return;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model.for_each_constraint_of(p, [&](std::uint32_t c, int) { step::refresh_coordinates(model, c); });
+  });
+}
+
 double System::Implementation::ring_kinetic(std::uint32_t ring) const {
   double twice = 0;
   const auto add = [&](double mass, const Vec3& v) { twice += mass * dot(v, v); };
@@ -182,16 +218,27 @@ void System::Implementation::apply(const step::SetPosition& c) {
   if (model.bodies[model.particles[particle].body].kind == BodyKind::scripted)
     return apply(step::Nail{c.particle, false, c.value});  // carried there during the next step
   const std::uint32_t ring = model.particles[particle].ring;
-  model::Ring& r = model.rings[ring];
-  const double before = ring_potential(ring);
-  r.position = c.value;
-  model.edit_energy += ring_potential(ring) - before;
-  if (r.nailed) r.nail = r.nail_before = c.value;
   model.for_each_in_ring(ring, [&](std::uint32_t p) {
-    model.remove_solids_of(model.particles[p].body, p);  // no longer that shape
-    model.rebuild_basis(model.particles[p].body);
-    model.touch(model.bodies[model.particles[p].body].articulate);
+    if (model.particles[p].is_marker() && !model.spans(model.particles[p].body, c.value))
+      throw std::invalid_argument(text("particle ", p, " is massless, and the massive ones of its body do not reach ",
+                                       text_of(c.value), "; move those"));
   });
+  model::Ring& r = model.rings[ring];
+  const double before = ring_potential(ring) + joint_springs_of(ring);
+  r.position = c.value;
+  if (r.nailed) r.nail = r.nail_before = c.value;
+  model.for_each_in_ring(ring, [&](std::uint32_t moved) {
+    const std::uint32_t body = model.particles[moved].body;
+    model.for_each_particle_of(body, [&](std::uint32_t p) {  // markers go where the basis takes them
+      if (!model.particles[p].is_marker() || p == moved || model.is_unknown(model.particles[p])) return;
+      model.rings[model.particles[p].ring].position = model.carried(p).first;
+    });
+    if (!model.particles[moved].is_marker()) model.remove_solids_of(body, moved);  // no longer that shape
+    model.rebuild_basis(body);
+    model.touch_body(body);
+  });
+  model.for_each_in_ring(ring, [&](std::uint32_t p) { refresh_coordinates(model.particles[p].body); });
+  model.edit_energy += ring_potential(ring) + joint_springs_of(ring) - before;
   jolt(particle);
 }
 
@@ -234,6 +281,7 @@ RestructureReport System::Implementation::restructure(std::span<const std::uint3
   const model::Edit owed = edit(report);
   if (report.changed) {
     if (model.closings.size() > 0) end_settled_closings(model, report.notes);
+    if (model.constraints.size() > 0) end_settled_constraints(model, edited, report.notes);
     hold_again(held);
     structure_changed();
   }
@@ -277,6 +325,9 @@ System::Implementation::Conserved System::Implementation::conserved(std::span<co
       sum.angular_momentum += mass * cross(x, v);
       model.for_each_bond_of(p, [&](std::uint32_t b) {
         if (model.bonds[b].p == p) sum.potential += model.bond_energy(b);
+      });
+      model.for_each_constraint_of(p, [&](std::uint32_t c, int place) {
+        if (place == model::a_origin) sum.potential += model.constraint_energy(c);
       });
     });
     model.for_each_inertia_of(body, [&](std::uint32_t i) {
@@ -323,14 +374,11 @@ void System::Implementation::settle(std::span<const std::uint32_t> bodies, bool 
 
 bool System::Implementation::give_back_momenta(std::span<const std::uint32_t> bodies,
                                                std::span<const std::uint32_t> affected, const Conserved& before) {
-  std::vector<std::uint32_t> articulates, members, rings;
-  for (const std::uint32_t body : bodies) articulates.push_back(model.bodies[body].articulate);
-  sort_unique(articulates);
-  for (const std::uint32_t a : articulates) model.for_each_body_of(a, [&](std::uint32_t b) { members.push_back(b); });
-
+  const std::vector<std::uint32_t> members = model.tied_bodies(bodies, model::Model::Ties::constraints);
+  std::vector<std::uint32_t> rings;
   double mass = 0;
   Vec3 first_moment;
-  bool pinned = false;
+  bool pinned = std::any_of(members.begin(), members.end(), [&](std::uint32_t b) { return model.is_tied_to_world(b); });
   for (const std::uint32_t b : members)
     model.for_each_particle_of(b, [&](std::uint32_t p) {
       rings.push_back(model.particles[p].ring);

@@ -68,6 +68,13 @@ struct System::Implementation {
   void apply(const step::SetMass&);
   void apply(const step::ApplyForce&);
   void apply(const step::SetActive&);
+  ConstraintId apply(const step::CreateJoint&);
+  ConstraintId apply(const step::CreateDistance&);
+  void apply(const step::SetConstraintActive&);
+  void apply(const step::SetCoordinate&);
+  void apply(const step::SetLength&);
+  void apply(const step::SetBreakLimits&);
+  void apply(const step::Destroy<ConstraintId>&);
   StepReport apply(const step::Step&);
   void apply(const step::Destroy<BodyId>&);
   void apply(const step::Destroy<ParticleId>&);
@@ -85,6 +92,7 @@ struct System::Implementation {
   std::uint32_t require(BondId) const;
   std::uint32_t require(LawId) const;
   std::uint32_t require(GripId) const;
+  std::uint32_t require(ConstraintId) const;
 
   /// Runs a structural edit and settles its physics: positions, velocities, momenta, energy; fills the report.
   /// `gentle` edits move nothing and no mass, so there is nothing to measure and their cost does not grow with the system.
@@ -114,6 +122,12 @@ struct System::Implementation {
   /// Adds motion(position) to the velocities of a body's particles, and books the energy.
   template <class Motion>
   void add_motion(std::uint32_t body, Motion motion);
+  double joint_springs_of(std::uint32_t ring) const;  ///< of joints of its bodies, at the coordinates last seen
+  void refresh_coordinates(std::uint32_t body);       ///< of its joints
+  /// What comes after making or changing a constraint: its island is made anew, its velocities are projected before the
+  /// next step, and what is apart closes there.
+  void constraint_changed(std::uint32_t constraint);
+  ParticleId make_marker(std::uint32_t body, const Vec3& position);
   /// Ends a closing before its particles have met.
   RestructureReport call_off(std::uint32_t closing);
   /// @name Forces that are taken once a step and held (held_forces.cpp)

@@ -48,10 +48,33 @@ void Island::add_mass_outer(const Weighted& a, double mass) {
   }
 }
 
+/// A marker that is an unknown of its own would leave an empty pivot: mass that only acts against leaving its place in
+/// the body, of which the rows that tie it there leave nothing.
+void Island::add_virtual_mass(const Model& model, std::uint32_t marker,
+                              const std::vector<std::uint32_t>& node_of_ring) {
+  const Particle& p = model.particles[marker];
+  const Body& body = model.bodies[p.body];
+  std::array<std::pair<std::uint32_t, double>, 5> difference{{{node_of_ring[p.ring], 1.0}}};
+  int used = 1;
+  for (int i = 0; i < body.rank; ++i)
+    if (p.weights[i] != 0) difference[used++] = {node_of_ring[model.particles[body.basis[i]].ring], -p.weights[i]};
+  const double mass = 0.1 * model.body_mass(p.body);
+  for (int a = 0; a < used; ++a) {
+    problem_.mass[difference[a].first] += mass * difference[a].second * difference[a].second;
+    for (int b = a + 1; b < used; ++b)
+      problem_.mass_couplings.push_back(
+          {difference[a].first, difference[b].first, mass * difference[a].second * difference[b].second});
+  }
+}
+
 void Island::add_masses(const Model& model, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring) {
   model.for_each_particle_of(body, [&](std::uint32_t p) {
-    add_mass_outer(nodes_of(model, p, node_of_ring), model.particles[p].mass);
-    if (!model.is_unknown(model.particles[p])) slaves_.push_back(p);
+    const Particle& particle = model.particles[p];
+    if (!particle.is_marker())
+      add_mass_outer(nodes_of(model, p, node_of_ring), particle.mass);
+    else if (model.is_unknown(particle) && model.ring_mass(particle.ring) == 0)
+      add_virtual_mass(model, p, node_of_ring);
+    if (!model.is_unknown(particle)) slaves_.push_back(p);
   });
   model.for_each_inertia_of(body, [&](std::uint32_t i) {
     const model::InertiaPair& pair = model.inertia_pairs[i];
@@ -161,6 +184,40 @@ void Island::load_bonds(const Model& model, double h) {
   }
 }
 
+void Island::add_joints(const Model& model, const std::vector<std::uint32_t>& node_of_ring) {
+  std::vector<std::uint32_t> constraints;  // each once, in order of slots
+  for (const std::uint32_t body : bodies_)
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      model.for_each_constraint_of(p, [&](std::uint32_t c, int place) {
+        if (place == model::a_origin && model.constraints[c].active) constraints.push_back(c);
+      });
+    });
+  std::sort(constraints.begin(), constraints.end());
+  for (const std::uint32_t slot : constraints) {
+    const model::Constraint& c = model.constraints[slot];
+    PlaceArms places{};
+    bool complete = true;  // not so where one side is inactive
+    for (int place = 0; place < model::place_count; ++place) {
+      if (!c.has(place)) continue;
+      if (c.particles[place] == none) {
+        places[place].constant = c.fixed[place - model::b_origin];
+        continue;
+      }
+      // Through the basis, also where the particle is an unknown of its own: a row then couples two bodies and no more.
+      const Particle& p = model.particles[c.particles[place]];
+      const Body& body = model.bodies[p.body];
+      int used = 0;
+      for (int i = 0; i < body.rank; ++i) {
+        if (p.weights[i] == 0) continue;
+        const std::uint32_t node = node_of_ring[model.particles[body.basis[i]].ring];
+        complete = complete && node != none;
+        places[place].nodes[used++] = {node, p.weights[i]};
+      }
+    }
+    if (complete) constraint_rows_.add(model, slot, places, pinned_, problem_);
+  }
+}
+
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
                       std::vector<std::uint32_t>& node_of_ring) {
   *this = Island{};
@@ -221,6 +278,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
     affines.push_back(nail);
     nails_.push_back(node);
   }
+  if (model.constraints.size() > 0) add_joints(model, node_of_ring);
   if (model.bonds.size() > 0) add_bonds(model, node_of_ring);
   model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
     if (model.bodies[g.body].kind != BodyKind::dynamic) return;
@@ -295,6 +353,7 @@ void Island::load(const Model& model, double h) {
     double* const l = affines.multiplier(tied_.size() + i);
     l[0] = r.nail_multiplier.x, l[1] = r.nail_multiplier.y, l[2] = r.nail_multiplier.z;
   }
+  constraint_rows_.load(model, problem_);
   auto& grips = std::get<solver::ForcePool<solver::GripForce>>(problem_.forces).items;
   for (std::size_t i = 0; i < grips_.size(); ++i) {
     const model::Grip& g = model.grips[grips_[i]];
@@ -319,7 +378,7 @@ void Island::store(Model& model, bool stepped) {
     std::tie(r.position, r.velocity) = model.carried(p);
     if (stepped) r.applied_force = {};
   }
-  if (!stepped) return;
+  if (!stepped) return constraint_rows_.refresh_coordinates(model);
   const auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints);
   for (std::size_t i = 0; i < rigid_rows_.size(); ++i)
     model.bodies[rigid_rows_[i].body].multipliers[rigid_rows_[i].row] = distances.multipliers[i];
@@ -334,6 +393,7 @@ void Island::store(Model& model, bool stepped) {
     r.nail_multiplier = {l[0], l[1], l[2]};
     r.nail_before = r.nail;
   }
+  constraint_rows_.store(model, problem_);
   const auto& grips = std::get<solver::ForcePool<solver::GripForce>>(problem_.forces).items;
   for (std::size_t i = 0; i < grips_.size(); ++i)
     model.grips[grips_[i]].force = grips[i].stiffness * norm(grips[i].arm.value(problem_.position.data()));

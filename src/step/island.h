@@ -3,6 +3,7 @@
 
 #include "model/model.h"
 #include "solver/integrator.h"
+#include "step/constraint_rows.h"
 
 #include <memory>
 #include <span>
@@ -10,7 +11,7 @@
 
 namespace iota::step {
 
-/// Articulates that bonds tie together, as one problem for the solver: the only translation between model and solver.
+/// Articulates that bonds and constraints tie together, as one problem for the solver: the only translation between model and solver.
 class Island {
  public:
   /// Builds the problem's structure; `node_of_ring` is scratch for all rings, `none` everywhere before and after. Islands
@@ -41,10 +42,12 @@ class Island {
   using Weighted = std::array<std::pair<std::uint32_t, double>, 4>;  // nodes and weights; weight 0 ends the list
   Weighted nodes_of(const model::Model&, std::uint32_t particle, const std::vector<std::uint32_t>& node_of_ring) const;
   void add_masses(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
+  void add_virtual_mass(const model::Model&, std::uint32_t marker, const std::vector<std::uint32_t>& node_of_ring);
   void add_mass_outer(const Weighted& a, double mass);
   void add_constraints(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
   void add_bonds(const model::Model&, const std::vector<std::uint32_t>& node_of_ring);
   void load_bonds(const model::Model&, double h);
+  void add_joints(const model::Model&, const std::vector<std::uint32_t>& node_of_ring);
 
   solver::Problem problem_;
   solver::Integrator integrator_;
@@ -63,6 +66,7 @@ class Island {
   std::vector<std::uint32_t> nails_;     // nodes of the affine constraints after them
   std::vector<std::uint32_t> slaves_;    // particles carried by their basis
   std::vector<std::uint32_t> springs_, drags_, radials_, grips_;
+  ConstraintRows constraint_rows_;
   std::vector<double> grip_masses_;  // kg, what a hand can feel
   std::vector<std::uint32_t> bodies_;
 };

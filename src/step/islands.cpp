@@ -44,7 +44,7 @@ void Islands::update(Model& model, const Parallel& parallel) {
       is_waiting_[a] = 1, waiting_.push_back(a);
   }
 
-  // 2. Articulates that implicit bonds tie together are solved together: flood from each that waits.
+  // 2. Articulates that implicit bonds and constraints tie together are solved together: flood from each that waits.
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
     if (!is_waiting_[waiting_[i]]) continue;  // an earlier flood came by
     if (!model.articulates.is_alive(waiting_[i])) {
@@ -56,14 +56,16 @@ void Islands::update(Model& model, const Parallel& parallel) {
     for (std::size_t next = 0; next < members_.size(); ++next)
       model.for_each_body_of(members_[next], [&](std::uint32_t body) {
         model.for_each_particle_of(body, [&](std::uint32_t p) {
-          model.for_each_bond_of(p, [&](std::uint32_t b) {
-            const model::Bond& bond = model.bonds[b];
-            if (!bond.ties()) return;
-            const std::uint32_t far = model.particles[bond.p == p ? bond.q : bond.p].body;
+          const auto reach = [&](std::uint32_t far) {
             const std::uint32_t a = model.bodies[far].articulate;
             if (leader_of_[a] != none) drop(leader_of_[a]);
             if (is_waiting_[a]) is_waiting_[a] = 0, members_.push_back(a);
+          };
+          model.for_each_bond_of(p, [&](std::uint32_t b) {
+            const model::Bond& bond = model.bonds[b];
+            if (bond.ties()) reach(model.particles[bond.p == p ? bond.q : bond.p].body);
           });
+          model.for_each_body_tied_to(p, reach);
         });
       });
     std::sort(members_.begin(), members_.end());  // whoever found whom first

@@ -420,7 +420,8 @@ TEST(BadInput, is_refused_with_the_condition_and_the_value_and_changes_nothing) 
   refused([&] { system.create_particle(body, {nan, 0, 0}); }, "position must be finite");
   refused([&] { system.create_particle(body, {0, infinite, 0}); }, "position must be finite");
   refused([&] { system.create_particle(body, {0, 1e300, 0}); }, "1e9");
-  refused([&] { system.create_particle(body, {}, 0); }, "mass must be positive and finite, got 0");
+  refused([&] { system.create_particle(system.create_body(), {}, 0); }, "yet to be made");
+  refused([&] { system.create_particle(body, {0.5, 0.1, 0}, 0); }, "do not reach");
   refused([&] { system.create_particle(body, {}, -2); }, "got -2");
   refused([&] { system.create_particle(body, {}, nan); }, "mass");
   refused([&] { system.create_particle(body, {}, 1e300); }, "1e15");

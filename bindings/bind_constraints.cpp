@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "binders.h"
+#include "names.h"
+
+#include <nanobind/stl/tuple.h>
+
+#include <cmath>
+#include <limits>
+
+namespace iota::bindings {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+constexpr const char* doc =
+    "What holds two bodies, or a body and the world, together; made by System.revolute, ball, rope ...\n\n"
+    "It goes on holding through `combine` and `separate`, and ends when its two bodies become one rigid body or what it\n"
+    "holds is destroyed. Forces and coordinates are those of body a against b.";
+
+constexpr const char* coordinate_doc =
+    "The angle about a joint's axis (rad) or the slide along it (m) of a against b, 0 where the joint was made, and what\n"
+    "acts on it. Torques in N m for an angle, forces in N for a slide.";
+
+using Pair = std::pair<double, double>;
+
+/// What a joint's coordinate was given by keywords.
+struct CoordinateArguments {
+  std::optional<Pair> limits, motor;
+  double friction = 0;
+  nb::object spring = nb::none();
+};
+
+/// (stiffness, damping=0, rest=0), or a number: the stiffness.
+void read_spring(nb::handle spring, CoordinateOptions& options) {
+  if (spring.is_none()) {
+    options.stiffness = options.damping = options.rest = 0;
+    return;
+  }
+  std::vector<double> numbers;
+  if (double stiffness = 0; nb::try_cast(spring, stiffness)) numbers = {stiffness};
+  if ((numbers.empty() && !nb::try_cast(spring, numbers)) || numbers.empty() || numbers.size() > 3)
+    throw nb::type_error(("spring must be a stiffness or (stiffness, damping, rest), not " + describe(spring)).c_str());
+  numbers.resize(3, 0.0);
+  options.stiffness = finite_not_negative(numbers[0], "spring stiffness", "N/m or N m/rad");
+  options.damping = finite_not_negative(numbers[1], "spring damping", "N s/m or N m s/rad");
+  options.rest = finite(numbers[2], "spring rest");
+}
+
+void read_limits(const std::optional<Pair>& limits, CoordinateOptions& options) {
+  std::tie(options.lower, options.upper) = limits.value_or(Pair{-infinity, infinity});
+}
+
+void read_motor(const std::optional<Pair>& motor, CoordinateOptions& options) {
+  std::tie(options.motor_speed, options.motor_max) = motor.value_or(Pair{0, 0});
+}
+
+CoordinateOptions to_options(const CoordinateArguments& arguments) {
+  CoordinateOptions options;
+  read_limits(arguments.limits, options);
+  read_motor(arguments.motor, options);
+  options.friction = finite_not_negative(arguments.friction, "friction", "N or N m");
+  read_spring(arguments.spring, options);
+  return options;
+}
+
+CoordinateArguments to_arguments(nb::handle dictionary, const char* name) {
+  CoordinateArguments arguments;
+  if (dictionary.is_none()) return arguments;
+  if (!nb::isinstance<nb::dict>(dictionary))
+    throw nb::type_error(
+        (std::string(name) + " must be a dict of limits, motor, friction, spring, not " + describe(dictionary))
+            .c_str());
+  for (const auto& [key, value] : nb::borrow<nb::dict>(dictionary)) {
+    const std::string word = nb::cast<std::string>(nb::str(key));
+    bool good = true;
+    if (word == "limits")
+      good = nb::try_cast(value, arguments.limits);
+    else if (word == "motor")
+      good = nb::try_cast(value, arguments.motor);
+    else if (word == "friction")
+      good = nb::try_cast(value, arguments.friction);
+    else if (word == "spring")
+      arguments.spring = nb::borrow(value);
+    else
+      throw nb::type_error(
+          (std::string(name) + " has no '" + word + "'; it has limits, motor, friction, spring").c_str());
+    if (!good) throw nb::type_error((std::string(name) + ": " + word + " cannot be " + describe(value)).c_str());
+  }
+  return arguments;
+}
+
+BreakLimits to_limits(double force, double torque) { return {force, torque}; }
+
+ConstraintHandle make_joint(SystemObject& self, JointSpec spec, const BodyHandle& a, const BodyHandle* b,
+                            VectorArgument at) {
+  a.use();
+  if (a.system != &self) throw nb::value_error("body a belongs to another system");
+  if (b) check_one_system(a, *b, "a joint"), b->use();
+  spec.a = a.id;
+  if (b) spec.b = b->id;
+  if (at.value) spec.at = to_vec3(at, "at");
+  return {a.system_object, a.system, self.use_between_steps("making a joint").create_constraint(spec)};
+}
+
+ConstraintHandle make_distance(SystemObject& self, ConstraintKind kind, const ParticleHandle& p,
+                               const ParticleHandle& q, std::optional<double> length, double break_force) {
+  check_one_system(p, q, "a rod or rope");
+  p.use(), q.use();
+  if (p.system != &self) throw nb::value_error("the particles belong to another system");
+  DistanceSpec spec;
+  spec.kind = kind, spec.p = p.id, spec.q = q.id;
+  if (length) spec.length = *length;
+  spec.breaks = to_limits(break_force, infinity);
+  return {p.system_object, p.system, self.use_between_steps("making a rod or rope").create_constraint(spec)};
+}
+
+// --- coordinates ------------------------------------------------------------------------------------------------------
+
+struct CoordinateView {
+  ConstraintHandle joint;
+  JointCoordinate which;
+
+  std::size_t index() const { return static_cast<std::size_t>(which); }
+  CoordinateOptions options() const { return joint.use().coordinate(joint.id, which); }
+  void set(const CoordinateOptions& options) const {
+    joint.use();
+    joint.system->use_between_steps("changing a joint").set_coordinate(joint.id, which, options);
+  }
+};
+
+void bind_coordinate(nb::module_& module) {
+  nb::class_<CoordinateView>(module, "JointCoordinate", coordinate_doc)
+      .def_prop_ro(
+          "value",
+          [](const CoordinateView& self) { return self.joint.use().state(self.joint.id).coordinate[self.index()]; },
+          "rad, counted on through full turns, or m.")
+      .def("__float__",
+           [](const CoordinateView& self) { return self.joint.use().state(self.joint.id).coordinate[self.index()]; })
+      .def_prop_ro(
+          "speed", [](const CoordinateView& self) { return self.joint.use().state(self.joint.id).speed[self.index()]; },
+          "rad/s or m/s")
+      .def_prop_ro(
+          "effort",
+          [](const CoordinateView& self) { return self.joint.use().state(self.joint.id).effort[self.index()]; },
+          "By stops, motor, friction and spring along it on a in the last step, N m or N.")
+      .def_prop_rw(
+          "limits",
+          [](const CoordinateView& self) {
+            const CoordinateOptions o = self.options();
+            return std::isfinite(o.lower) || std::isfinite(o.upper) ? std::optional<Pair>({o.lower, o.upper})
+                                                                    : std::nullopt;
+          },
+          [](const CoordinateView& self, std::optional<Pair> limits) {
+            CoordinateOptions options = self.options();
+            read_limits(limits, options);
+            self.set(options);
+          },
+          nb::for_setter(nb::arg("limits").none()), "(lower, upper), rad or m: inelastic stops; None for none.")
+      .def_prop_rw(
+          "motor",
+          [](const CoordinateView& self) {
+            const CoordinateOptions o = self.options();
+            return o.motor_max > 0 ? std::optional<Pair>({o.motor_speed, o.motor_max}) : std::nullopt;
+          },
+          [](const CoordinateView& self, std::optional<Pair> motor) {
+            CoordinateOptions options = self.options();
+            read_motor(motor, options);
+            self.set(options);
+          },
+          nb::for_setter(nb::arg("motor").none()),
+          "(speed, largest torque or force); None for none. Speed 0 is a brake.")
+      .def_prop_rw(
+          "friction", [](const CoordinateView& self) { return self.options().friction; },
+          [](const CoordinateView& self, double friction) {
+            CoordinateOptions options = self.options();
+            options.friction = finite_not_negative(friction, "friction", "N or N m");
+            self.set(options);
+          },
+          "Dry: up to this torque or force against any motion.")
+      .def_prop_rw(
+          "spring",
+          [](const CoordinateView& self) -> std::optional<std::tuple<double, double, double>> {
+            const CoordinateOptions o = self.options();
+            if (o.stiffness == 0 && o.damping == 0) return std::nullopt;
+            return std::tuple{o.stiffness, o.damping, o.rest};
+          },
+          [](const CoordinateView& self, nb::object spring) {
+            CoordinateOptions options = self.options();
+            read_spring(spring, options);
+            self.set(options);
+          },
+          nb::for_setter(nb::arg("spring").none()), "(stiffness, damping, rest) or a stiffness; None for none.")
+      .def("__repr__", [](const CoordinateView& self) {
+        const ConstraintState state = self.joint.use().state(self.joint.id);
+        const bool is_angle = self.which == JointCoordinate::angle;
+        return std::string(is_angle ? "<angle " : "<slide ") + std::to_string(state.coordinate[self.index()]) +
+               (is_angle ? " rad>" : " m>");
+      });
+}
+
+CoordinateView coordinate_of(const ConstraintHandle& self, JointCoordinate which) {
+  (void)self.use();
+  const ConstraintKind kind = self.system->engine.state(self.id).kind;
+  if (!has_coordinate(kind, which)) {
+    const std::string text =
+        "a " + to_word(constraint_words, kind) + " has no " + (which == JointCoordinate::angle ? "angle" : "slide");
+    PyErr_SetString(PyExc_AttributeError, text.c_str());
+    throw nb::python_error();
+  }
+  return {self, which};
+}
+
+// --- the handle -------------------------------------------------------------------------------------------------------
+
+template <class Member>
+auto read(Member ConstraintState::* member) {
+  return [member](const ConstraintHandle& self) { return self.use().state(self.id).*member; };
+}
+
+nb::object body_or_none(const ConstraintHandle& self, BodyId id) {
+  return id ? nb::cast(sibling(self, id)) : nb::none();
+}
+
+System& between_steps(const ConstraintHandle& self, const char* what) {
+  self.use();
+  return self.system->use_between_steps(what);
+}
+
+std::string repr(const ConstraintHandle& self) {
+  if (!self.is_alive()) return stale_repr("Constraint", self);
+  const ConstraintState state = self.system->engine.state(self.id);
+  return "<Constraint " + std::to_string(self.id.slot) + ": " + to_word(constraint_words, state.kind) + " of body " +
+         std::to_string(state.a.slot) + " and " + (state.b ? "body " + std::to_string(state.b.slot) : "the world") +
+         (state.broken   ? ", broken>"
+          : state.active ? ">"
+                         : ", switched off>");
+}
+
+void bind_handle(nb::module_& module) {
+  nb::class_<ConstraintHandle> type(module, "Constraint", doc, nb::type_slots(handle_slots<ConstraintHandle>),
+                                    nb::is_weak_referenceable());
+  def_identity(type);
+  type.def_prop_ro(
+          "alive", [](const ConstraintHandle& self) { return self.is_alive(); },
+          "False once it was destroyed or had nothing left to hold.")
+      .def_prop_ro(
+          "kind",
+          [](const ConstraintHandle& self) { return to_word(constraint_words, self.use().state(self.id).kind); },
+          "'revolute', 'rope' ...")
+      .def_prop_ro(
+          "a", [](const ConstraintHandle& self) { return body_or_none(self, self.use().state(self.id).a); },
+          nb::sig("def a(self) -> Body"))
+      .def_prop_ro(
+          "b", [](const ConstraintHandle& self) { return body_or_none(self, self.use().state(self.id).b); },
+          nb::sig("def b(self) -> Body | None"), "None: the world.")
+      .def_prop_ro(
+          "particles",
+          [](const ConstraintHandle& self) {
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().particles(self.id));
+          },
+          nb::sig("def particles(self) -> list[Particle]"), "Those that it refers to, its own markers included.")
+      .def_prop_rw(
+          "active", read(&ConstraintState::active),
+          [](const ConstraintHandle& self, bool active) {
+            between_steps(self, "active = ...").set_active(self.id, active);
+          },
+          "False while it is switched off or broken; True repairs it, and bodies go back to how they were joined.")
+      .def_prop_ro("broken", read(&ConstraintState::broken), "By a load beyond break_force or break_torque.")
+      .def_prop_ro("position", read(&ConstraintState::position), "Where it acts on a, m.")
+      .def_prop_ro("axis", read(&ConstraintState::axis), "Unit vector, world frame; zero for kinds without one.")
+      .def_prop_ro("force", read(&ConstraintState::force), "On a in the last step, N; b has the opposite.")
+      .def_prop_ro("torque", read(&ConstraintState::torque), "On a about `position` in the last step, N m.")
+      .def_prop_ro("gap", read(&ConstraintState::gap), "Largest violation after the last step, m.")
+      .def_prop_rw(
+          "length", read(&ConstraintState::length),
+          [](const ConstraintHandle& self, double length) {
+            between_steps(self, "length = ...").set_length(self.id, finite_positive(length, "length", "m"));
+          },
+          "Of a rod or rope, m.")
+      .def_prop_ro("angle", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::angle); })
+      .def_prop_ro("slide", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::slide); })
+      .def_prop_rw(
+          "break_force", [](const ConstraintHandle& self) { return self.use().break_limits(self.id).force; },
+          [](const ConstraintHandle& self, double force) {
+            between_steps(self, "break_force = ...")
+                .set_break_limits(self.id, {force, self.system->engine.break_limits(self.id).torque});
+          },
+          "N; inf: never.")
+      .def_prop_rw(
+          "break_torque", [](const ConstraintHandle& self) { return self.use().break_limits(self.id).torque; },
+          [](const ConstraintHandle& self, double torque) {
+            between_steps(self, "break_torque = ...")
+                .set_break_limits(self.id, {self.system->engine.break_limits(self.id).force, torque});
+          },
+          "N m; inf: never.")
+      .def(
+          "destroy", [](const ConstraintHandle& self) { self.use().destroy(self.id); },
+          "Removes it. In a bond's function: right after the step.")
+      .def("__repr__", &repr);
+}
+
+// --- making -----------------------------------------------------------------------------------------------------------
+
+void bind_makers(nb::class_<SystemObject>& type) {
+  const auto simple = [&](const char* name, ConstraintKind kind, const char* text) {
+    type.def(
+        name,
+        [kind](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, double break_force,
+               double break_torque) {
+          JointSpec spec;
+          spec.kind = kind, spec.breaks = to_limits(break_force, break_torque);
+          return make_joint(self, spec, a, b, at);
+        },
+        "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "break_force"_a = infinity,
+        "break_torque"_a = infinity, text);
+  };
+  simple("ball", ConstraintKind::ball, "A point of a stays at a point of b (None: of the world). at: where, m.");
+  simple(
+      "weld", ConstraintKind::weld,
+      "b (None: the world) holds a as it is now. at: where its force and torque are told, m. Unlike `combine` it keeps\n"
+      "two bodies, tells what it carries, and can break.");
+
+  const auto with_coordinate = [&](const char* name, ConstraintKind kind, const char* text) {
+    type.def(
+        name,
+        [kind](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
+               std::optional<Pair> limits, std::optional<Pair> motor, double friction, nb::object spring,
+               double break_force, double break_torque) {
+          JointSpec spec;
+          spec.kind = kind, spec.breaks = to_limits(break_force, break_torque);
+          spec.axis = to_vec3(axis, "axis");
+          (kind == ConstraintKind::prismatic ? spec.slide : spec.angle) = to_options({limits, motor, friction, spring});
+          return make_joint(self, spec, a, b, at);
+        },
+        "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "axis"_a, "limits"_a.none() = nb::none(),
+        "motor"_a.none() = nb::none(), "friction"_a = 0.0, "spring"_a.none() = nb::none(), "break_force"_a = infinity,
+        "break_torque"_a = infinity, text);
+  };
+  with_coordinate(
+      "revolute", ConstraintKind::revolute,
+      "a turns against b (None: the world) about an axis through `at` (m). limits: (lower, upper) in rad. motor:\n"
+      "(speed in rad/s, largest torque in N m). friction: N m, dry. spring: (N m/rad, N m s/rad, rest in rad).");
+  with_coordinate(
+      "prismatic", ConstraintKind::prismatic,
+      "a slides against b (None: the world) along an axis, without turning. limits: (lower, upper) in m. motor:\n"
+      "(speed in m/s, largest force in N). friction: N, dry. spring: (N/m, N s/m, rest in m).");
+
+  type.def(
+      "cylindrical",
+      [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
+         nb::object angle, nb::object slide, double break_force, double break_torque) {
+        JointSpec spec;
+        spec.kind = ConstraintKind::cylindrical, spec.breaks = to_limits(break_force, break_torque);
+        spec.axis = to_vec3(axis, "axis");
+        spec.angle = to_options(to_arguments(angle, "angle"));
+        spec.slide = to_options(to_arguments(slide, "slide"));
+        return make_joint(self, spec, a, b, at);
+      },
+      "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "axis"_a, "angle"_a.none() = nb::none(),
+      "slide"_a.none() = nb::none(), "break_force"_a = infinity, "break_torque"_a = infinity,
+      "a turns about and slides along an axis of b (None: the world). angle, slide: dicts of limits, motor, friction,\n"
+      "spring.");
+  type.def(
+      "universal",
+      [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
+         std::optional<VectorArgument> second_axis, std::optional<Pair> limits, std::optional<Pair> motor,
+         double friction, nb::object spring, double break_force, double break_torque) {
+        JointSpec spec;
+        spec.kind = ConstraintKind::universal, spec.breaks = to_limits(break_force, break_torque);
+        spec.axis = to_vec3(axis, "axis");
+        if (second_axis) spec.second_axis = to_vec3(*second_axis, "second_axis");
+        spec.angle = to_options({limits, motor, friction, spring});
+        return make_joint(self, spec, a, b, at);
+      },
+      "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "axis"_a, "second_axis"_a.none() = nb::none(),
+      "limits"_a.none() = nb::none(), "motor"_a.none() = nb::none(), "friction"_a = 0.0, "spring"_a.none() = nb::none(),
+      "break_force"_a = infinity, "break_torque"_a = infinity,
+      "A ball joint where `axis` of a stays at right angles to `second_axis` of b (None: the world): a shaft's cross. The\n"
+      "angle is about a's axis.");
+  type.def(
+      "orientation",
+      [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, double break_torque) {
+        JointSpec spec;
+        spec.kind = ConstraintKind::orientation, spec.breaks = to_limits(infinity, break_torque);
+        return make_joint(self, spec, a, b, {});
+      },
+      "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "break_torque"_a = infinity,
+      "a keeps its orientation against b (None: the world) but moves freely.");
+  const auto between = [&](const char* name, ConstraintKind kind, const char* text) {
+    type.def(
+        name,
+        [kind](SystemObject& self, const ParticleHandle& p, const ParticleHandle& q, std::optional<double> length,
+               double break_force) { return make_distance(self, kind, p, q, length, break_force); },
+        "p"_a, "q"_a, "length"_a.none() = nb::none(), nb::kw_only(), "break_force"_a = infinity, text);
+  };
+  between("rod", ConstraintKind::rod,
+          "Two particles of different bodies keep their distance: length in m, None for that of now.");
+  between("rope", ConstraintKind::rope,
+          "Two particles of different bodies come no further apart than length (m, None: as far as now).");
+  type.def_prop_ro(
+      "constraints",
+      [](nb::handle_t<SystemObject> self) {
+        SystemObject* object = nb::inst_ptr<SystemObject>(self);
+        return wrap_all<ConstraintHandle>(nb::borrow(self), object, object->use().constraints());
+      },
+      nb::sig("def constraints(self) -> list[Constraint]"), "In order of slots.");
+}
+
+}  // namespace
+
+void bind_constraints(nb::module_& module) {
+  bind_coordinate(module);
+  bind_handle(module);
+  nb::object system = module.attr("System");
+  auto type = nb::borrow<nb::class_<SystemObject>>(system);
+  bind_makers(type);
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/ids.h>
+#include <iota/vec3.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+namespace iota {
+
+/// What a constraint keeps. Nails and hinges are no entries here: a nail is a particle's own, a hinge is a shared
+/// particle (`combine`).
+enum class ConstraintKind : std::uint8_t {
+  ball,         ///< a point of a stays at a point of b
+  universal,    ///< ball, and an axis of a stays at right angles to an axis of b
+  revolute,     ///< ball, and a common axis: one angle
+  cylindrical,  ///< a common axis along which b also slides: an angle and a slide
+  prismatic,    ///< b slides along an axis of a without turning
+  orientation,  ///< b does not turn against a, but moves freely
+  weld,         ///< b neither turns nor moves against a
+  rod,          ///< two particles keep their distance
+  rope,         ///< two particles come no further apart than a length
+};
+
+/// The two coordinates that joints have: the angle about the axis (revolute, cylindrical, and the first axis of a
+/// universal joint) and the slide along it (prismatic, cylindrical). Both are zero where the joint is made; b moves in
+/// the positive sense of the axis against a.
+enum class JointCoordinate : std::uint8_t { angle, slide };
+
+bool has_coordinate(ConstraintKind, JointCoordinate);
+
+/// What acts on a coordinate. Angles: rad, rad/s, N m, N m/rad, N m s/rad; slides: m, m/s, N, N/m, N s/m.
+struct CoordinateOptions {
+  double lower = -std::numeric_limits<double>::infinity();  ///< stops, inelastic
+  double upper = std::numeric_limits<double>::infinity();
+  double motor_speed = 0;
+  double motor_max = 0;  ///< largest torque or force of the motor; 0: none. With speed 0 it is a brake
+  double friction = 0;   ///< dry: up to this torque or force against any motion
+  double stiffness = 0;  ///< of a spring towards `rest`
+  double damping = 0;
+  double rest = 0;
+};
+
+/// Loads beyond which a constraint breaks: it is then inactive, and the step's report names it.
+struct BreakLimits {
+  double force = std::numeric_limits<double>::infinity();   ///< N
+  double torque = std::numeric_limits<double>::infinity();  ///< N m, about the constraint's place
+};
+
+/// A joint between bodies a and b, or between a and the world where b is null. Relative position and orientation are
+/// taken from where the bodies are now.
+struct JointSpec {
+  ConstraintKind kind = ConstraintKind::revolute;
+  BodyId a, b;
+  Vec3 at;             ///< world frame, m
+  Vec3 axis{0, 0, 1};  ///< world frame, any length; of a in a universal joint
+  Vec3 second_axis;    ///< of b in a universal joint, at right angles to `axis`; zero: any
+  CoordinateOptions angle, slide;
+  BreakLimits breaks;
+};
+
+/// A rod or rope between two particles.
+struct DistanceSpec {
+  ConstraintKind kind = ConstraintKind::rod;
+  ParticleId p, q;
+  double length = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: the distance now
+  BreakLimits breaks;
+};
+
+/// What can be read of a constraint.
+struct ConstraintState {
+  ConstraintKind kind = ConstraintKind::ball;
+  BodyId a, b;  ///< b null: the world
+  bool active = true;
+  bool broken = false;  ///< by a load beyond its limits; setting it active again repairs it
+  Vec3 position;        ///< where it acts on a, m
+  Vec3 axis;            ///< unit vector, world frame; zero for kinds without one
+  Vec3 force, torque;   ///< by the constraint on a in the last step, N and N m (about `position`); b has the opposite
+  double gap = 0;       ///< largest violation after the last step, m
+  double length = 0;    ///< rod, rope: m
+  std::array<double, 2> coordinate{};  ///< angle (rad, counted through full turns) and slide (m)
+  std::array<double, 2> speed{};       ///< rad/s, m/s
+  std::array<double, 2> effort{};      ///< by limits, motor, friction and spring along the coordinate on b, N m, N
+};
+
+}  // namespace iota

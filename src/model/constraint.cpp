@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/constraint.h"
+
+#include "math/mat3.h"
+#include "model/model.h"
+#include "model/restructure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace iota::model {
+
+namespace {
+
+constexpr double straight = 1e-6;  // sine of an angle that counts as none
+
+Vec3 unit(const Vec3& v) { return (1 / norm(v)) * v; }
+
+/// What one side of a joint can hold: any direction where it is the world or has four points off a plane, those in its
+/// plane or along its line where it is flat or thin, none where it is a point.
+struct Side {
+  std::uint32_t body = none;
+  int dimensions = 3;
+  std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  double extent = 0;  // m
+
+  Side() = default;
+  Side(const Model& model, std::uint32_t slot) : body(slot) {
+    const Body& b = model.bodies[slot];
+    dimensions = std::max(b.rank - 1, 0);
+    for (int i = 0; i < dimensions; ++i) {
+      Vec3 axis = model.position(b.basis[i + 1]) - model.position(b.basis[0]);
+      extent = std::max(extent, norm(axis));
+      for (int j = 0; j < i; ++j) axis -= dot(axis, axes[j]) * axes[j];
+      axes[i] = unit(axis);
+    }
+  }
+  bool is_world() const { return body == none; }
+  bool holds(Vec3 direction) const {
+    for (int i = 0; i < dimensions; ++i) direction -= dot(direction, axes[i]) * axes[i];
+    return dimensions == 3 || norm(direction) < straight;
+  }
+  std::string what() const {
+    constexpr const char* shapes[] = {"a point", "on one line", "flat", "solid"};
+    return "body " + std::to_string(body) + " is " + shapes[dimensions];
+  }
+};
+
+/// The directions that a joint needs of its two sides, before anything is made.
+struct Frames {
+  std::array<Vec3, place_count> direction{};
+  std::uint8_t needed = 0;
+  std::array<double, 2> cosines{};
+  Constraint::Alignment alignment = Constraint::Alignment::none;
+  Constraint::Lock lock = Constraint::Lock::none;
+  std::uint8_t aligned = 0;
+  std::uint8_t line_side = 0;
+
+  void need(int place, const Vec3& d) { direction[place] = d, needed |= static_cast<std::uint8_t>(1u << place); }
+  bool has(int place) const { return needed >> place & 1; }
+};
+
+/// A direction at right angles to z that the side with the least freedom holds, if any of them is that thin.
+Vec3 common_side(const Side& a, const Side& b, const Vec3& z) {
+  const Side& thin = b.dimensions < a.dimensions ? b : a;
+  Vec3 x;
+  if (thin.dimensions == 2) x = cross(cross(thin.axes[0], thin.axes[1]), z);
+  if (norm(x) < straight && (thin.dimensions == 1 || thin.dimensions == 2)) x = thin.axes[0] - dot(thin.axes[0], z) * z;
+  return norm(x) < straight ? any_perpendicular(z) : unit(x);
+}
+
+/// A common axis, by what the sides can hold: an axis on one and two directions at right angles to it on the other; or
+/// the angles of the axis with a thin other's own directions; or the axis on both. False where none of these will do.
+bool plan_alignment(Frames& frames, const Side& a, const Side& b, const Vec3& z, const Vec3& x, const Vec3& y) {
+  using Alignment = Constraint::Alignment;
+  const auto by_axis_of = [&](const Side& p, const Side& q, int axis, int side) {
+    if (!p.holds(z) || !q.holds(x) || !q.holds(y)) return false;
+    frames.alignment = axis == a_axis ? Alignment::axis_of_a : Alignment::axis_of_b;
+    frames.aligned = 2;
+    frames.need(axis, z), frames.need(side, x), frames.need(side + 1, y);
+    return true;
+  };
+  if (by_axis_of(a, b, a_axis, b_side) || by_axis_of(b, a, b_axis, a_side)) return true;
+  if (a.holds(z) && b.holds(z)) {
+    frames.alignment = Alignment::axes;
+    frames.need(a_axis, z), frames.need(b_axis, z);
+    return true;
+  }
+  const auto by_angles = [&](const Side& p, const Side& q, int axis, int side) {
+    if (!p.holds(z) || q.dimensions == 0 || q.dimensions == 3) return false;
+    frames.alignment = axis == a_axis ? Alignment::axis_of_a : Alignment::axis_of_b;
+    frames.need(axis, z);
+    frames.aligned = static_cast<std::uint8_t>(q.dimensions);
+    if (q.dimensions == 1) {
+      frames.need(side, q.axes[0]);
+      frames.cosines = {dot(z, q.axes[0]), 0};
+    } else {
+      const Vec3 other = unit(cross(cross(q.axes[0], q.axes[1]), x));
+      frames.need(side, x), frames.need(side + 1, other);
+      frames.cosines = {0, dot(z, other)};
+    }
+    return true;
+  };
+  return by_angles(a, b, a_axis, b_side) || by_angles(b, a, b_axis, a_side);
+}
+
+[[noreturn]] void cannot(const char* kind, const std::string& why) {
+  throw std::invalid_argument(std::string(kind) + ": " + why);
+}
+
+Frames plan(const ConstraintKindInfo& kind, const JointSpec& spec, const Side& a, const Side& b) {
+  Frames frames;
+  frames.need(a_origin, {}), frames.need(b_origin, {});
+  if (!kind.align && !kind.cross) return frames;
+  const Vec3 z = unit(spec.axis);
+  const Side& thin = b.dimensions < a.dimensions ? b : a;
+
+  if (kind.cross) {
+    const bool any = spec.second_axis == Vec3{};
+    const Vec3 second = any ? common_side(a, b, z) : unit(spec.second_axis);
+    if (std::abs(dot(z, second)) > straight) cannot(kind.name, "its two axes must be at right angles");
+    if (!a.holds(z) || !b.holds(second))
+      cannot(kind.name, (a.holds(z) ? b : a).what() +
+                            " and does not hold the axis that it should; give it a particle off its line or plane");
+    frames.need(a_axis, z), frames.need(b_axis, second);
+    if (a.holds(second)) frames.need(a_side, second);
+    return frames;
+  }
+
+  const bool point = thin.dimensions == 0;
+  if (point && !kind.line) cannot(kind.name, thin.what() + ", which has no directions; use a ball joint or a nail");
+  const Vec3 x = common_side(a, b, z), y = cross(z, x);
+  if (!point && !plan_alignment(frames, a, b, z, x, y))
+    cannot(kind.name, "neither side holds the axis (" + a.what() + (b.is_world() ? "" : ", " + b.what()) +
+                          "); give one of them a massive particle off its line or plane, or join them at two points");
+  const bool along_thin = thin.dimensions == 1 && thin.holds(z);  // it can turn about the axis unseen
+  if (!point && !along_thin && (kind.lock || kind.angle)) {
+    // References of the angle, or of the last direction that is locked.
+    const auto refer = [&](const Side& s, int side) {
+      if (!frames.has(side) && s.holds(x)) frames.need(side, x);
+    };
+    refer(a, a_side), refer(b, b_side);
+    if (kind.lock) {
+      // y of the side that already holds it, if any.
+      const bool y_of_b = frames.has(a_side) && b.holds(y), y_of_a = frames.has(b_side) && a.holds(y);
+      if (!y_of_a && !y_of_b)
+        cannot(kind.name,
+               a.what() + ", " + b.what() +
+                   ": they hold no direction across the axis in common; combine() makes one rigid body of them");
+      if (y_of_b && (frames.has(b_third) || !y_of_a))
+        frames.lock = Constraint::Lock::side_of_a, frames.need(b_third, y);
+      else
+        frames.lock = Constraint::Lock::third_of_a, frames.need(a_third, y);
+    }
+  }
+  if (kind.line) {
+    const bool by_b = b.holds(x) && b.holds(y);
+    if (!by_b && !(a.holds(x) && a.holds(y)))
+      cannot(kind.name,
+             "neither side holds the directions across the axis; give one of them a particle off its line or plane");
+    frames.line_side = by_b;
+    frames.need(by_b ? b_side : a_side, x), frames.need(by_b ? b_third : a_third, y);
+    if (!frames.has(a_axis) && !frames.has(b_axis)) frames.need(by_b ? b_axis : a_axis, z);
+  }
+  return frames;
+}
+
+void require_span(const Model& model, const char* kind, const Side& side, const Vec3& at) {
+  if (side.is_world() || model.spans(side.body, at)) return;
+  cannot(kind, side.what() + " and does not reach (" + std::to_string(at.x) + ", " + std::to_string(at.y) + ", " +
+                   std::to_string(at.z) + "); give it a massive particle off its point, line or plane");
+}
+
+}  // namespace
+
+std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
+  const ConstraintKindInfo& kind = info(spec.kind);
+  const Side a(model, spec.a.slot);
+  const Side b = spec.b ? Side(model, spec.b.slot) : Side();
+  const Frames frames = plan(kind, spec, a, b);
+  const auto origin_of = [&](const Side& s) {
+    return kind.meet || kind.line || s.is_world() ? spec.at : model.centre_of_mass(s.body);
+  };
+  require_span(model, kind.name, a, origin_of(a));
+  require_span(model, kind.name, b, origin_of(b));
+
+  Constraint c;
+  c.kind = spec.kind;
+  c.options = {spec.angle, spec.slide};
+  c.breaks = spec.breaks;
+  c.cosines = frames.cosines;
+  c.alignment = frames.alignment, c.aligned = frames.aligned, c.lock = frames.lock, c.line_side = frames.line_side;
+  const double extent = std::max(a.extent, b.extent);
+  for (int side = 0; side < 2; ++side) {
+    const double own = side == 0 ? a.extent : b.extent;
+    c.scale[side] = own > 0 ? own : extent > 0 ? extent : 1;
+  }
+  c.particles.fill(none);
+  for (int place = 0; place < place_count; ++place) {
+    if (!frames.has(place)) continue;
+    const Side& side = place < b_origin ? a : b;
+    const Vec3 at = origin_of(side) + c.scale[place >= b_origin] * frames.direction[place];
+    if (side.is_world()) {
+      c.fixed[place - b_origin] = at;
+      c.in_world |= static_cast<std::uint8_t>(1u << place);
+      continue;
+    }
+    const std::uint32_t marker = model.make_marker(side.body, at);
+    c.particles[place] = marker;
+    c.owned |= static_cast<std::uint8_t>(1u << place);
+  }
+  return model.add_constraint(c);
+}
+
+std::uint32_t make_constraint(Model& model, const DistanceSpec& spec) {
+  const char* const name = info(spec.kind).name;
+  const std::uint32_t p = spec.p.slot, q = spec.q.slot;
+  if (model.particles[p].body == model.particles[q].body)
+    cannot(name, "particles " + std::to_string(p) + " and " + std::to_string(q) +
+                     " are of one rigid body, whose distances never change");
+  const double distance = norm(model.position(q) - model.position(p));
+  Constraint c;
+  c.kind = spec.kind;
+  c.length = std::isnan(spec.length) ? distance : spec.length;
+  if (!(c.length > 1e-9) || !std::isfinite(c.length))
+    cannot(name, "length must be positive and finite, got " + std::to_string(c.length) + " m");
+  if (spec.kind == ConstraintKind::rod && model.particles[p].ring == model.particles[q].ring)
+    cannot(name, "particles " + std::to_string(p) + " and " + std::to_string(q) + " are hinged to each other");
+  c.breaks = spec.breaks;
+  c.scale = {c.length, c.length};
+  c.particles.fill(none);
+  c.particles[a_origin] = p, c.particles[b_origin] = q;
+  return model.add_constraint(c);
+}
+
+void destroy_constraint(Model& model, std::uint32_t slot) {
+  const Constraint c = model.constraints[slot];
+  model.remove_constraint(slot);
+  for (int place = 0; place < place_count; ++place)
+    if (c.owned >> place & 1) destroy_particle(model, c.particles[place]);
+}
+
+std::uint32_t body_of_side(const Model& model, const Constraint& c, int side) {
+  const std::uint32_t origin = c.particles[side == 0 ? a_origin : b_origin];
+  return origin == none ? none : model.particles[origin].body;
+}
+
+Vec3 position_of(const Model& model, const Constraint& c, int place) {
+  return c.particles[place] == none ? c.fixed[place - b_origin] : model.position(c.particles[place]);
+}
+
+void end_settled_constraints(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
+  std::vector<std::uint32_t> candidates;
+  for (const std::uint32_t body : bodies)
+    if (model.bodies.is_alive(body))
+      model.for_each_particle_of(body, [&](std::uint32_t p) {
+        model.for_each_constraint_of(p, [&](std::uint32_t c, int) { candidates.push_back(c); });
+      });
+  std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
+  for (const std::uint32_t slot : candidates) {
+    if (!model.constraints.is_alive(slot)) continue;
+    const Constraint& c = model.constraints[slot];
+    const std::uint32_t a = body_of_side(model, c, 0), b = body_of_side(model, c, 1);
+    bool torn = false;
+    for (int place = 0; place < place_count; ++place)
+      if (c.particles[place] != none)
+        torn = torn || model.particles[c.particles[place]].body != (place < b_origin ? a : b);
+    if (a != b && !torn) continue;
+    const std::string name = std::string(info(c.kind).name) + " " + std::to_string(slot);
+    notes.push_back(torn ? name + " ended: one of its bodies came apart there"
+                         : name + " ended: its two bodies are one rigid body now");
+    destroy_constraint(model, slot);
+  }
+}
+
+}  // namespace iota::model
+
+namespace iota {
+
+bool has_coordinate(ConstraintKind kind, JointCoordinate coordinate) {
+  return coordinate == JointCoordinate::angle ? model::info(kind).angle : model::info(kind).slide;
+}
+
+}  // namespace iota

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/constraints.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace iota::model {
+
+class Model;
+
+/// The places of a constraint. A joint needs a frame on each of its sides: an origin and the ends of directions that
+/// start there (axis z, side x, third y). A rod or rope joins the two origins.
+enum Place : std::uint8_t { a_origin, a_axis, a_side, a_third, b_origin, b_axis, b_side, b_third };
+inline constexpr int place_count = 8;
+
+/// What a kind is made of; `constraint_kinds` is the one list. Its rows are in step/constraint_rows.cpp.
+struct ConstraintKindInfo {
+  const char* name;
+  bool is_joint = true;  ///< between bodies, with frames; else between two particles
+  bool meet = false;     ///< 3 rows: the origins coincide
+  bool line = false;     ///< 2 rows: the origins lie on one line along the axis
+  bool align = false;    ///< 2 rows: the axis is common
+  bool lock = false;     ///< 3 rows: no relative turning
+  bool cross = false;    ///< 1 row: a's axis at right angles to b's
+  bool angle = false;    ///< has the coordinate
+  bool slide = false;
+};
+
+inline constexpr std::array<ConstraintKindInfo, 9> constraint_kinds{{
+    {.name = "ball", .meet = true},
+    {.name = "universal", .meet = true, .cross = true, .angle = true},
+    {.name = "revolute", .meet = true, .align = true, .angle = true},
+    {.name = "cylindrical", .line = true, .align = true, .angle = true, .slide = true},
+    {.name = "prismatic", .line = true, .align = true, .lock = true, .slide = true},
+    {.name = "orientation", .align = true, .lock = true},
+    {.name = "weld", .meet = true, .align = true, .lock = true},
+    {.name = "rod", .is_joint = false},
+    {.name = "rope", .is_joint = false},
+}};
+inline const ConstraintKindInfo& info(ConstraintKind kind) { return constraint_kinds[static_cast<std::size_t>(kind)]; }
+
+/// Refers to particles only, so that restructuring carries it along. Joints make massless particles (markers) of their
+/// own; the world's places are fixed ones.
+struct Constraint {
+  ConstraintKind kind = ConstraintKind::ball;
+  std::uint8_t active = 1, broken = 0;
+  std::uint8_t owned = 0;     ///< bit i: the particle at place i was made for this constraint and goes with it
+  std::uint8_t in_world = 0;  ///< bit i: b's place i is one of `fixed`
+  /// How the common axis is held: by a's axis and b's other directions, the other way round, or by both axes.
+  enum class Alignment : std::uint8_t { none, axis_of_a, axis_of_b, axes } alignment = Alignment::none;
+  /// Which two directions at right angles hold the turn about the axis: a's side and b's third, or a's third and b's side.
+  enum class Lock : std::uint8_t { none, side_of_a, third_of_a } lock = Lock::none;
+  std::uint8_t aligned = 0;                            ///< how many directions the axis keeps its angle with
+  std::uint8_t line_side = 0;                          ///< whose side and third direction hold the line: 0 a's, 1 b's
+  std::array<std::uint32_t, place_count> particles{};  ///< `none` where a place is not needed, or in the world
+  /// Each particle lists the places that it is at, as links place_count * slot + place.
+  std::array<std::uint32_t, place_count> next{}, previous{};
+  std::array<Vec3, 4> fixed{};        ///< the world's places as b's, m
+  std::array<double, 2> scale{1, 1};  ///< length of the directions of a and b, m
+  std::array<double, 2> cosines{};    ///< of the axis and the other's side and third direction
+  double length = 0;                  ///< of a rod or rope, m
+  std::array<CoordinateOptions, 2> options{};
+  std::array<double, 2> coordinate{};  ///< after the last step, rad (counted on through full turns) and m
+  BreakLimits breaks;
+  std::array<double, 8> multipliers{};             ///< of the rows that hold it, N; warm start and reaction
+  std::array<std::array<double, 4>, 2> efforts{};  ///< multipliers of limit, motor, friction and spring
+  double gap = 0;                                  ///< after the last step, m
+
+  bool has(int place) const { return particles[place] != 0xffffffff || (in_world >> place & 1); }
+};
+
+/// Makes a joint with its markers, or a rod or rope. Throws std::invalid_argument, before anything changes, where a body
+/// cannot hold a place or direction that the kind needs.
+std::uint32_t make_constraint(Model&, const JointSpec&);
+std::uint32_t make_constraint(Model&, const DistanceSpec&);
+/// With the markers that were made for it.
+void destroy_constraint(Model&, std::uint32_t constraint);
+/// Ends constraints of these bodies that an edit has left without sense: both sides in one rigid body, or one torn apart.
+void end_settled_constraints(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
+
+/// The body of a side (0: a, 1: b), `none` for the world.
+std::uint32_t body_of_side(const Model&, const Constraint&, int side);
+Vec3 position_of(const Model&, const Constraint&, int place);
+
+}  // namespace iota::model

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each command about constraints does; checks of what the user passes in.
+#include "step/checks.h"
+#include "step/constraint_rows.h"
+#include "step/execute.h"
+
+#include <cmath>
+
+namespace iota {
+
+using model::none;
+using namespace step;
+
+namespace {
+
+void require_number(std::string_view name, double v) {
+  if (!std::isfinite(v)) throw std::invalid_argument(text(name, " must be finite, got ", v));
+}
+
+void require_options(std::string_view name, const CoordinateOptions& o) {
+  if (!(o.lower <= o.upper))
+    throw std::invalid_argument(text(name, " limits: lower must not be above upper, got ", o.lower, " and ", o.upper));
+  if (o.lower == std::numeric_limits<double>::infinity() || o.upper == -std::numeric_limits<double>::infinity())
+    throw std::invalid_argument(text(name, " limits leave no place, got ", o.lower, " and ", o.upper));
+  require_number("motor_speed", o.motor_speed);
+  if (!(o.motor_max >= 0)) throw std::invalid_argument(text("motor_max must be zero or more, got ", o.motor_max));
+  require_not_negative("friction", o.friction);
+  require_not_negative("stiffness", o.stiffness);
+  require_not_negative("damping", o.damping);
+  require_number("rest", o.rest);
+}
+
+void require_limits(const BreakLimits& limits) {
+  for (const auto& [name, value] : {std::pair{"break_force", limits.force}, std::pair{"break_torque", limits.torque}})
+    if (!(value > 0)) throw std::invalid_argument(text(name, " must be above zero, got ", value));
+}
+
+}  // namespace
+
+std::uint32_t System::Implementation::require(ConstraintId id) const {
+  if (!model.constraints.contains(id)) throw_stale("constraint", id, std::optional<ConstraintId>{});
+  return id.slot;
+}
+
+void System::Implementation::constraint_changed(std::uint32_t constraint) {
+  const model::Constraint& c = model.constraints[constraint];
+  for (const int place : {model::a_origin, model::b_origin})
+    if (c.particles[place] != none) model.touch_particle(c.particles[place]), jolt(c.particles[place]);
+  structure_changed();
+}
+
+ConstraintId System::Implementation::apply(const step::CreateJoint& c) {
+  const model::ConstraintKindInfo& kind = model::info(c.spec.kind);
+  if (!kind.is_joint) throw std::invalid_argument(text("a ", kind.name, " joins two particles, not bodies"));
+  (void)require(c.spec.a);
+  if (c.spec.b) (void)require(c.spec.b);
+  if (c.spec.a == c.spec.b)
+    throw std::invalid_argument(text(kind.name, ": needs two bodies, got body ", c.spec.a.slot, " twice"));
+  for (const BodyId body : {c.spec.a, c.spec.b})
+    if (body && model.bodies[body.slot].count == 0)
+      throw std::invalid_argument(text(kind.name, ": body ", body.slot, " has no particles"));
+  require_finite("at", c.spec.at);
+  for (const Vec3& axis : {c.spec.axis, c.spec.second_axis}) require_finite("axis", axis);
+  if (!(norm(c.spec.axis) > 0)) throw std::invalid_argument("axis must have a direction, got zero length");
+  require_options("angle", c.spec.angle);
+  require_options("slide", c.spec.slide);
+  if ((!kind.angle && rows_of(c.spec.angle) != RowsOf{}) || (!kind.slide && rows_of(c.spec.slide) != RowsOf{}))
+    throw std::invalid_argument(text("a ", kind.name, " joint has no ",
+                                     kind.angle || rows_of(c.spec.angle) == RowsOf{} ? "slide" : "angle",
+                                     " for limits, motors, friction or springs to act on"));
+  require_limits(c.spec.breaks);
+  const std::uint32_t slot = make_constraint(model, c.spec);
+  model.edit_energy += model.constraint_energy(slot);
+  constraint_changed(slot);
+  return model.constraints.id(slot);
+}
+
+ConstraintId System::Implementation::apply(const step::CreateDistance& c) {
+  if (model::info(c.spec.kind).is_joint)
+    throw std::invalid_argument(text("a ", model::info(c.spec.kind).name, " joins bodies, not particles"));
+  (void)require(c.spec.p), (void)require(c.spec.q);
+  require_limits(c.spec.breaks);
+  const std::uint32_t slot = make_constraint(model, c.spec);
+  model.edit_energy += model.constraint_energy(slot);
+  constraint_changed(slot);
+  return model.constraints.id(slot);
+}
+
+void System::Implementation::apply(const step::SetConstraintActive& c) {
+  const std::uint32_t slot = require(c.constraint);
+  model::Constraint& constraint = model.constraints[slot];
+  constraint.broken = 0;
+  if (constraint.active == static_cast<std::uint8_t>(c.active)) return;
+  model.edit_energy -= model.constraint_energy(slot);
+  constraint.active = c.active;
+  step::refresh_coordinates(model, slot);
+  model.edit_energy += model.constraint_energy(slot);
+  constraint.multipliers.fill(0), constraint.efforts = {}, constraint.gap = 0;
+  constraint_changed(slot);
+}
+
+void System::Implementation::apply(const step::SetCoordinate& c) {
+  const std::uint32_t slot = require(c.constraint);
+  model::Constraint& constraint = model.constraints[slot];
+  const model::ConstraintKindInfo& kind = model::info(constraint.kind);
+  const bool angle = c.coordinate == JointCoordinate::angle;
+  if (!has_coordinate(constraint.kind, c.coordinate))
+    throw std::invalid_argument(text("a ", kind.name, " has no ", angle ? "angle" : "slide"));
+  require_options(angle ? "angle" : "slide", c.options);
+  CoordinateOptions& options = constraint.options[static_cast<std::size_t>(c.coordinate)];
+  const bool same_rows = rows_of(options) == rows_of(c.options);
+  model.edit_energy -= model.constraint_energy(slot);
+  options = c.options;
+  model.edit_energy += model.constraint_energy(slot);
+  if (same_rows) return;
+  const RowsOf rows = rows_of(options);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!rows[i]) constraint.efforts[static_cast<std::size_t>(c.coordinate)][i] = 0;
+  constraint_changed(slot);
+}
+
+void System::Implementation::apply(const step::SetLength& c) {
+  const std::uint32_t slot = require(c.constraint);
+  if (model::info(model.constraints[slot].kind).is_joint)
+    throw std::invalid_argument("only rods and ropes have a length");
+  require_positive("length", c.value);
+  model.constraints[slot].length = c.value;
+}
+
+void System::Implementation::apply(const step::SetBreakLimits& c) {
+  const std::uint32_t slot = require(c.constraint);
+  require_limits(c.limits);
+  model.constraints[slot].breaks = c.limits;
+}
+
+void System::Implementation::apply(const step::Destroy<ConstraintId>& c) {
+  const std::uint32_t slot = require(c.id);
+  model.edit_energy -= model.constraint_energy(slot);
+  destroy_constraint(model, slot);
+  structure_changed();
+}
+
+// --- the public edge --------------------------------------------------------------------------------------------------
+
+ConstraintId System::create_constraint(const JointSpec& spec) { return implementation_->execute(CreateJoint{spec}); }
+ConstraintId System::create_constraint(const DistanceSpec& spec) {
+  return implementation_->execute(CreateDistance{spec});
+}
+void System::destroy(ConstraintId id) { implementation_->execute(step::Destroy<ConstraintId>{id}); }
+void System::set_active(ConstraintId id, bool active) { implementation_->execute(SetConstraintActive{id, active}); }
+void System::set_coordinate(ConstraintId id, JointCoordinate coordinate, const CoordinateOptions& options) {
+  implementation_->execute(SetCoordinate{id, coordinate, options});
+}
+void System::set_length(ConstraintId id, double value) { implementation_->execute(SetLength{id, value}); }
+void System::set_break_limits(ConstraintId id, const BreakLimits& limits) {
+  implementation_->execute(SetBreakLimits{id, limits});
+}
+
+const CoordinateOptions& System::coordinate(ConstraintId id, JointCoordinate coordinate) const {
+  const model::Constraint& c = implementation_->model.constraints[implementation_->require(id)];
+  return c.options[static_cast<std::size_t>(coordinate)];
+}
+ConstraintState System::state(ConstraintId id) const {
+  const model::Model& m = implementation_->model;
+  const std::uint32_t slot = implementation_->require(id);
+  const model::Constraint& c = m.constraints[slot];
+  ConstraintState state;
+  state.kind = c.kind;
+  const auto body_id = [&](int side) {
+    const std::uint32_t body = body_of_side(m, c, side);
+    return body == none ? BodyId{} : m.bodies.id(body);
+  };
+  state.a = body_id(0), state.b = body_id(1);
+  state.active = c.active, state.broken = c.broken;
+  const Reaction reaction = calc_reaction(m, slot);
+  state.position = reaction.position, state.force = reaction.force, state.torque = reaction.torque;
+  for (const int axis : {model::a_axis, model::b_axis}) {
+    if (!c.has(axis)) continue;
+    const Vec3 d =
+        position_of(m, c, axis) - position_of(m, c, axis < model::b_origin ? model::a_origin : model::b_origin);
+    state.axis = (1 / norm(d)) * d;
+    break;
+  }
+  state.gap = c.gap, state.length = c.length;
+  for (const JointCoordinate which : {JointCoordinate::angle, JointCoordinate::slide}) {
+    const auto i = static_cast<std::size_t>(which);
+    if (!has_coordinate(c.kind, which)) continue;
+    std::tie(state.coordinate[i], state.speed[i]) = calc_coordinate(m, slot, which);
+    for (const double multiplier : c.efforts[i]) state.effort[i] -= multiplier;
+  }
+  return state;
+}
+BreakLimits System::break_limits(ConstraintId id) const {
+  return implementation_->model.constraints[implementation_->require(id)].breaks;
+}
+std::vector<ParticleId> System::particles(ConstraintId id) const {
+  const model::Model& m = implementation_->model;
+  std::vector<ParticleId> ids;
+  for (const std::uint32_t p : m.constraints[implementation_->require(id)].particles)
+    if (p != none) ids.push_back(m.particles.id(p));
+  return ids;
+}
+std::vector<ConstraintId> System::constraints() const {
+  const model::Model& m = implementation_->model;
+  std::vector<ConstraintId> ids;
+  m.constraints.for_each([&](std::uint32_t slot, const model::Constraint&) { ids.push_back(m.constraints.id(slot)); });
+  return ids;
+}
+bool System::contains(ConstraintId id) const { return implementation_->model.constraints.contains(id); }
+
+}  // namespace iota

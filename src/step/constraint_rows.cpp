@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "step/constraint_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace iota::step {
+
+using namespace model;
+using Role = RowUse::Role;
+
+namespace {
+
+constexpr int angle = static_cast<int>(JointCoordinate::angle), slide = static_cast<int>(JointCoordinate::slide);
+
+/// Builds the rows of a constraint and hands each to sink(row, use). One function for the problem, where places are
+/// combinations of nodes, and for reactions, where each place is a node of its own.
+template <class Sink>
+class Expansion {
+ public:
+  Expansion(const Constraint& c, const PlaceArms& places, Sink& sink) : c_(c), places_(places), sink_(sink) {}
+
+  void run() {
+    const ConstraintKindInfo& kind = info(c_.kind);
+    if (!kind.is_joint) return distance();
+    if (kind.meet) meet();
+    if (kind.line) line();
+    if (kind.align) align();
+    if (c_.lock == Constraint::Lock::side_of_a) product(a_side, b_third, 0);
+    if (c_.lock == Constraint::Lock::third_of_a) product(a_third, b_side, 0);
+    if (kind.cross) product(a_axis, b_axis, 0);
+    if (kind.angle && has_angle(c_)) coordinate(angle, angle_row());
+    if (kind.slide) coordinate(slide, slide_row());
+  }
+
+  static bool has_angle(const Constraint& c) {
+    return c.has(a_side) && (info(c.kind).cross || (c.has(b_side) && (c.has(a_axis) || c.has(b_axis))));
+  }
+
+  /// From b's reference to a's, about the axis.
+  solver::AngleConstraint angle_row() const {
+    solver::AngleConstraint row;
+    const bool cross = info(c_.kind).cross;
+    sides(row, {a_origin, a_axis, a_side}, {b_origin, b_axis, b_side});
+    direction(row, 0, c_.has(a_axis) ? a_axis : b_axis);
+    direction(row, 1, cross ? b_axis : b_side);
+    direction(row, 2, a_side);
+    return row;
+  }
+
+  /// Of a's origin against b's, along the axis; product / scale is the target in m.
+  solver::BilinearConstraint slide_row() const {
+    solver::BilinearConstraint row;
+    const int axis = c_.has(b_axis) ? b_axis : a_axis;
+    sides(row, {a_origin, a_axis}, {b_origin, b_axis});
+    add(row, 0, a_origin, 1), add(row, 0, b_origin, -1);
+    direction(row, 1, axis);
+    row.scale = c_.scale[axis >= b_origin];
+    row.reference = std::max(c_.scale[0], c_.scale[1]);
+    return row;
+  }
+
+ private:
+  template <class Row>
+  void hold(const Row& row) {
+    sink_(row, RowUse{Role::hold, 0, next_});
+    next_ += Row::rows;
+  }
+
+  template <class Row>
+  void coordinate(int which, const Row& row) {
+    const RowsOf wanted = rows_of(c_.options[which]);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i]) sink_(row, RowUse{static_cast<Role>(i + 1), static_cast<std::uint8_t>(which), 0});
+  }
+
+  template <class Row>
+  void add(Row& row, int arm, int place, double sign) const {
+    for (const auto& [node, weight] : places_[place].nodes) {
+      if (weight == 0) break;
+      (void)row.add(arm, node, sign * weight);
+    }
+    const Vec3 constant = row.constant[arm] + sign * places_[place].constant;
+    row.set_constant(arm, constant);
+  }
+  template <class Row>
+  void direction(Row& row, int arm, int place) const {
+    add(row, arm, place, 1);
+    add(row, arm, place < b_origin ? a_origin : b_origin, -1);
+  }
+  /// Lists the nodes of a's places first, so that the elimination can keep the two bodies apart.
+  template <class Row>
+  void sides(Row& row, std::initializer_list<int> of_a, std::initializer_list<int> of_b) const {
+    const auto list = [&](std::initializer_list<int> places) {
+      for (const int place : places)
+        for (const auto& [node, weight] : places_[place].nodes)
+          if (weight != 0 && c_.has(place)) (void)row.add(0, node, 0);
+    };
+    list(of_a);
+    row.first_side = row.count;
+    list(of_b);
+    if (row.first_side == row.count) row.first_side = 0;
+  }
+
+  solver::AffineConstraint sum_of(std::initializer_list<std::pair<int, double>> terms) const {
+    solver::AffineConstraint row;
+    for (const auto& [place, sign] : terms) {
+      for (const auto& [node, weight] : places_[place].nodes) {
+        if (weight == 0) break;
+        const auto end = row.nodes.begin() + row.count;
+        const auto at = std::find(row.nodes.begin(), end, node) - row.nodes.begin();
+        if (at == row.count) row.nodes[row.count++] = node;
+        row.weights[static_cast<std::size_t>(at)] += sign * weight;
+      }
+      row.target -= sign * places_[place].constant;
+    }
+    row.target_start = row.target;
+    row.reference = std::max(c_.scale[0], c_.scale[1]);
+    return row;
+  }
+
+  void meet() { hold(sum_of({{a_origin, 1}, {b_origin, -1}})); }
+
+  void line() {
+    for (const int across : {a_side, a_third}) {
+      solver::BilinearConstraint row;
+      const int place = c_.line_side ? across + b_origin : across;
+      sides(row, {a_origin, a_side, a_third}, {b_origin, b_side, b_third});
+      add(row, 0, a_origin, 1), add(row, 0, b_origin, -1);
+      direction(row, 1, place);
+      row.scale = c_.scale[c_.line_side];
+      row.reference = std::max(c_.scale[0], c_.scale[1]);
+      hold(row);
+    }
+  }
+
+  void align() {
+    using Alignment = Constraint::Alignment;
+    if (c_.alignment == Alignment::axes) {
+      // Equal directions: three rows, one too many, which the solver minds less than a special case.
+      hold(sum_of({{a_axis, 1 / c_.scale[0]},
+                   {a_origin, -1 / c_.scale[0]},
+                   {b_axis, -1 / c_.scale[1]},
+                   {b_origin, 1 / c_.scale[1]}}));
+    } else if (c_.alignment != Alignment::none) {
+      const bool of_a = c_.alignment == Alignment::axis_of_a;
+      const int axis = of_a ? a_axis : b_axis, side = of_a ? b_side : a_side;
+      product(axis, side, c_.cosines[0]);
+      if (c_.aligned == 2) product(axis, side + 1, c_.cosines[1]);
+    }
+  }
+
+  /// Two directions, one of each side, keep their angle.
+  void product(int p, int q, double cosine) {
+    solver::BilinearConstraint row;
+    sides(row, {a_origin, a_axis, a_side, a_third}, {b_origin, b_axis, b_side, b_third});
+    direction(row, 0, p), direction(row, 1, q);
+    row.product = cosine * c_.scale[0] * c_.scale[1];
+    row.scale = std::max(c_.scale[0], c_.scale[1]);
+    row.reference = std::min(c_.scale[0], c_.scale[1]);
+    hold(row);
+  }
+
+  /// (|d|^2 - L^2) / 2L: the multiplier is the tension.
+  void distance() {
+    const auto single = [&](int place) {
+      return places_[place].nodes[0].second == 1 && places_[place].constant == Vec3{};
+    };
+    if (c_.kind == ConstraintKind::rod && single(a_origin) && single(b_origin)) {
+      hold(solver::DistanceConstraint{
+          {places_[a_origin].nodes[0].first, places_[b_origin].nodes[0].first}, c_.length, c_.length});
+      return;
+    }
+    solver::BilinearConstraint row;
+    sides(row, {a_origin}, {b_origin});
+    for (const int arm : {0, 1}) add(row, arm, a_origin, 1), add(row, arm, b_origin, -1);
+    row.product = c_.length * c_.length;
+    row.scale = 2 * c_.length;
+    row.reference = c_.length;
+    hold(row);
+  }
+
+  const Constraint& c_;
+  const PlaceArms& places_;
+  Sink& sink_;
+  std::uint8_t next_ = 0;
+};
+
+/// Every particle a node of its own, numbered as the places are.
+struct Places {
+  PlaceArms arms{};
+  std::array<Vec3, place_count> position{}, velocity{};
+
+  Places(const Model& model, const Constraint& c) {
+    for (int place = 0; place < place_count; ++place) {
+      if (!c.has(place)) continue;
+      position[place] = position_of(model, c, place);
+      if (c.particles[place] == none) {
+        arms[place].constant = position[place];
+      } else {
+        arms[place].nodes[0] = {static_cast<std::uint32_t>(place), 1.0};
+        velocity[place] = model.velocity(c.particles[place]);
+      }
+    }
+  }
+};
+
+void set_target(solver::AngleConstraint& row, const Constraint& c, double target) {
+  row.target_start = row.target = target;
+  row.near = c.coordinate[angle];
+}
+void set_target(solver::BilinearConstraint& row, const Constraint&, double target) { row.product = target * row.scale; }
+template <class Row>
+void set_target(Row&, const Constraint&, double) {}
+
+void set_length(solver::DistanceConstraint& row, double length) { row.length = length; }
+void set_length(solver::BilinearConstraint& row, double length) { row.product = length * length; }
+template <class Row>
+void set_length(Row&, double) {}
+
+/// The nearer of the two limits, as a one-sided row.
+template <class Row>
+void load_limit(Row& row, const Constraint& c, const CoordinateOptions& o, double now, solver::RowLaw& law) {
+  if (o.lower == o.upper) return set_target(row, c, o.lower);
+  const bool at_lower = now - o.lower < o.upper - now;
+  set_target(row, c, at_lower ? o.lower : o.upper);
+  (at_lower ? law.upper : law.lower) = 0;
+}
+
+}  // namespace
+
+RowsOf rows_of(const CoordinateOptions& o) {
+  return {std::isfinite(o.lower) || std::isfinite(o.upper), o.motor_max > 0, o.friction > 0,
+          o.stiffness > 0 || o.damping > 0};
+}
+
+void ConstraintRows::add(const Model& model, std::uint32_t slot, const PlaceArms& places,
+                         const std::vector<std::uint8_t>& pinned, solver::Problem& problem) {
+  constraints_.push_back(slot);
+  auto sink = [&]<class Row>(const Row& row, RowUse use) {
+    const auto end = row.nodes.begin() + row.node_count();
+    if (std::all_of(row.nodes.begin(), end, [&](std::uint32_t node) { return pinned[node]; })) return;
+    auto& pool = std::get<solver::ConstraintPool<Row>>(problem.constraints);
+    const auto item = static_cast<std::uint32_t>(pool.items.size());
+    std::get<Uses<Row>>(uses_).list.push_back({slot, item, use});
+    pool.items.push_back(row);
+    if (use.role != Role::hold || model.constraints[slot].kind == ConstraintKind::rope) (void)pool.law(item);
+  };
+  Expansion<decltype(sink)>(model.constraints[slot], places, sink).run();
+}
+
+void ConstraintRows::load(const Model& model, solver::Problem& problem) const {
+  problem.for_each_constraint_pool([&]<class C>(solver::ConstraintPool<C>& pool) {
+    for (const auto& [slot, item, use] : std::get<Uses<C>>(uses_).list) {
+      const Constraint& c = model.constraints[slot];
+      C& row = pool.items[item];
+      if (use.role == Role::hold) {
+        std::copy_n(c.multipliers.begin() + use.first, C::rows, pool.multiplier(item));
+        if (!info(c.kind).is_joint) set_length(row, c.length);
+        if (c.kind == ConstraintKind::rope) *pool.law(item) = {.lower = 0};
+        continue;
+      }
+      const CoordinateOptions& o = c.options[use.coordinate];
+      *pool.multiplier(item) = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
+      solver::RowLaw& law = *pool.law(item) = {};
+      set_target(row, c, 0);
+      switch (use.role) {
+        case Role::limit: load_limit(row, c, o, c.coordinate[use.coordinate], law); break;
+        case Role::motor:
+          law = {.lower = -o.motor_max, .upper = o.motor_max, .rate = o.motor_speed, .hold = true};
+          break;
+        case Role::friction: law = {.lower = -o.friction, .upper = o.friction, .hold = true}; break;
+        default:
+          law.compliance = 1 / o.stiffness;  // infinite for a pure dashpot
+          law.damping = o.damping;
+          set_target(row, c, o.rest);
+      }
+    }
+  });
+}
+
+void ConstraintRows::store(Model& model, const solver::Problem& problem) const {
+  for (const std::uint32_t slot : constraints_) {
+    model.constraints[slot].gap = 0;
+    step::refresh_coordinates(model, slot);
+  }
+  problem.for_each_constraint_pool([&]<class C>(const solver::ConstraintPool<C>& pool) {
+    for (const auto& [slot, item, use] : std::get<Uses<C>>(uses_).list) {
+      Constraint& c = model.constraints[slot];
+      if (use.role != Role::hold) {
+        c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1] = *pool.multiplier(item);
+        continue;
+      }
+      std::copy_n(pool.multiplier(item), C::rows, c.multipliers.begin() + use.first);
+      double g[C::rows];
+      pool.items[item].value(problem.position.data(), 1, g);
+      for (int r = 0; r < C::rows; ++r) {
+        const double off = pool.has_laws() ? pool.law(item)[r].violation(g[r]) : std::abs(g[r]);
+        if (!(off <= c.gap)) c.gap = off;
+      }
+    }
+  });
+}
+
+void ConstraintRows::refresh_coordinates(Model& model) const {
+  for (const std::uint32_t slot : constraints_) step::refresh_coordinates(model, slot);
+}
+
+void refresh_coordinates(Model& model, std::uint32_t slot) {
+  Constraint& c = model.constraints[slot];
+  for (const JointCoordinate which : {JointCoordinate::angle, JointCoordinate::slide})
+    if (has_coordinate(c.kind, which))
+      c.coordinate[static_cast<std::size_t>(which)] = calc_coordinate(model, slot, which).first;
+}
+
+Reaction calc_reaction(const Model& model, std::uint32_t slot) {
+  const Constraint& c = model.constraints[slot];
+  const Places places(model, c);
+  Reaction reaction;
+  reaction.position = places.position[a_origin];
+  auto sink = [&]<class Row>(const Row& row, RowUse use) {
+    const double* const multipliers = use.role == Role::hold
+                                          ? c.multipliers.data() + use.first
+                                          : &c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
+    const solver::Gradients<Row> gradients(row, places.position.data(), 1);
+    for (int i = 0; i < row.node_count(); ++i) {
+      if (row.nodes[i] >= b_origin) continue;
+      Vec3 direction[Row::rows], force;
+      gradients.of_node(i, direction);
+      for (int r = 0; r < Row::rows; ++r) force -= multipliers[r] * direction[r];
+      reaction.force += force;
+      reaction.torque += cross(places.position[row.nodes[i]] - reaction.position, force);
+    }
+  };
+  Expansion<decltype(sink)>(c, places.arms, sink).run();
+  return reaction;
+}
+
+std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot, JointCoordinate which) {
+  const Constraint& c = model.constraints[slot];
+  const Places places(model, c);
+  auto ignore = [](const auto&, RowUse) {};
+  const Expansion<decltype(ignore)> expansion(c, places.arms, ignore);
+  const auto read = [&](const auto& row) {
+    using Row = std::remove_cvref_t<decltype(row)>;
+    double value = 0, speed = 0;
+    row.value(places.position.data(), 1, &value);
+    const solver::Gradients<Row> gradients(row, places.position.data(), 1);
+    for (int i = 0; i < row.node_count(); ++i) {
+      Vec3 direction;
+      gradients.of_node(i, &direction);
+      speed += dot(direction, places.velocity[row.nodes[i]]);
+    }
+    return std::pair{value, speed};
+  };
+  if (which == JointCoordinate::slide) return read(expansion.slide_row());
+  if (!Expansion<decltype(ignore)>::has_angle(c)) return {0, 0};
+  solver::AngleConstraint row = expansion.angle_row();
+  set_target(row, c, 0);
+  return read(row);
+}
+
+}  // namespace iota::step

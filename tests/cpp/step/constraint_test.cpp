@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every kind of constraint against what a textbook says of it.
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace iota {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double g = 9.81;
+
+/// A solid block as eight equal corner masses: inertia m (b^2 + c^2) / 4 about each axis through its centre.
+BodyId make_block(System& system, const Vec3& centre, const Vec3& size, double mass, const Vec3& velocity = {}) {
+  const BodyId body = system.create_body();
+  for (const double x : {-0.5, 0.5})
+    for (const double y : {-0.5, 0.5})
+      for (const double z : {-0.5, 0.5})
+        system.create_particle(body, centre + Vec3{x * size.x, y * size.y, z * size.z}, mass / 8, velocity);
+  return body;
+}
+
+/// Runs for `seconds` and checks at each step that the structure stays whole and the energy book adds up.
+template <class EachStep>
+void run(System& system, double seconds, double dt, EachStep each) {
+  const auto book = [](const Energy& e) { return e.total() + e.dissipated - e.external_work - e.edits; };
+  double start = 0, largest = 1e-3;
+  const long steps = std::lround(seconds / dt);
+  for (long i = 0; i < steps; ++i) {
+    const StepReport report = system.step(dt);
+    ASSERT_TRUE(std::isfinite(report.energy.total())) << "step " << i;
+    EXPECT_EQ(report.unconverged, 0) << "step " << i;
+    if (i == 0) start = book(report.energy);
+    largest = std::max({largest, report.energy.kinetic, std::abs(report.energy.potential)});
+    ASSERT_NEAR(book(report.energy), start, 1e-7 * largest) << "step " << i;
+    each(report);
+  }
+  EXPECT_EQ(system.validate(), std::vector<std::string>{});
+}
+void run(System& system, double seconds, double dt) {
+  run(system, seconds, dt, [](const StepReport&) {});
+}
+
+TEST(Revolute, a_block_on_an_axle_swings_as_a_physical_pendulum) {
+  System system;
+  const double d = 0.5, angle = 0.1;  // centre below the axle by d
+  const Vec3 centre{d * std::sin(angle), -d * std::cos(angle), 0};
+  const BodyId block = make_block(system, centre, {0.2, 0.4, 0.3}, 2);
+  const ConstraintId joint =
+      system.create_constraint(JointSpec{.kind = ConstraintKind::revolute, .a = block, .at = {}, .axis = {0, 0, 1}});
+  const double inertia = 2 * ((0.2 * 0.2 + 0.4 * 0.4) / 4 + d * d);
+  const double period = 2 * pi * std::sqrt(inertia / (2 * g * d)) * (1 + angle * angle / 16);
+  double last = system.state(joint).coordinate[0] + angle, crossings = 0, first = 0, latest = 0;
+  run(system, 6, 1e-3, [&](const StepReport& report) {
+    const ConstraintState state = system.state(joint);
+    const double now = state.coordinate[0] + angle;
+    if (last < 0 && now >= 0) {
+      latest = report.time - 1e-3 * now / (now - last);
+      if (++crossings == 1) first = latest;
+    }
+    last = now;
+    EXPECT_NEAR(system.centre_of_mass(block).z, 0, 1e-9);
+    EXPECT_LT(state.gap, 1e-9);
+  });
+  ASSERT_GT(crossings, 2);
+  EXPECT_NEAR((latest - first) / (crossings - 1), period, 1e-4 * period);
+}
+
+TEST(Revolute, its_reaction_at_rest_is_the_weight_and_its_moment) {
+  System system;
+  const BodyId block = make_block(system, {0.3, 0, 0}, {0.2, 0.2, 0.2}, 2);
+  const ConstraintId joint =
+      system.create_constraint(JointSpec{.kind = ConstraintKind::revolute, .a = block, .at = {}, .axis = {1, 0, 0}});
+  run(system, 0.5, 1.0 / 120);
+  const ConstraintState state = system.state(joint);
+  EXPECT_NEAR(norm(state.force - Vec3{0, 2 * g, 0}), 0, 1e-5);
+  EXPECT_NEAR(norm(state.torque - Vec3{0, 0, 0.3 * 2 * g}), 0, 1e-5);
+}
+
+TEST(Weld, a_cantilever_carries_m_g_l) {
+  System system;
+  const BodyId root = make_block(system, {0, 0, 0}, {0.2, 0.2, 0.2}, 1);
+  const BodyId beam = make_block(system, {0.6, 0, 0}, {1, 0.1, 0.1}, 3);
+  const ConstraintId wall = system.create_constraint(JointSpec{.kind = ConstraintKind::weld, .a = root, .at = {}});
+  const ConstraintId weld =
+      system.create_constraint(JointSpec{.kind = ConstraintKind::weld, .a = beam, .b = root, .at = {0.1, 0, 0}});
+  run(system, 0.5, 1.0 / 120);
+  EXPECT_NEAR(norm(system.state(weld).force - Vec3{0, 3 * g, 0}), 0, 1e-5);
+  EXPECT_NEAR(norm(system.state(weld).torque - Vec3{0, 0, 3 * g * 0.5}), 0, 1e-5);
+  EXPECT_NEAR(norm(system.state(wall).force - Vec3{0, 4 * g, 0}), 0, 1e-5);
+  EXPECT_NEAR(norm(system.state(wall).torque - Vec3{0, 0, 3 * g * 0.6}), 0, 1e-5);
+  EXPECT_NEAR(norm(system.centre_of_mass(beam) - Vec3{0.6, 0, 0}), 0, 1e-9);
+}
+
+TEST(Ball, two_blocks_keep_a_common_point_and_their_momenta) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId a = make_block(system, {-0.5, 0, 0}, {0.8, 0.2, 0.3}, 1, {0, 1, 0});
+  const BodyId b = make_block(system, {0.5, 0, 0}, {0.8, 0.3, 0.2}, 2, {0, 0, 1});
+  const Vec3 momentum = system.momentum(), spin = system.angular_momentum();
+  const ConstraintId ball = system.create_constraint(JointSpec{.kind = ConstraintKind::ball, .a = a, .b = b, .at = {}});
+  run(system, 2, 1.0 / 120, [&](const StepReport&) { EXPECT_LT(system.state(ball).gap, 1e-9); });
+  EXPECT_NEAR(norm(system.momentum() - momentum), 0, 1e-11);
+  EXPECT_NEAR(norm(system.angular_momentum() - spin), 0, 1e-10);
+}
+
+TEST(Prismatic, a_block_on_an_incline_accelerates_by_g_sin) {
+  System system;
+  const double slope = 0.5;
+  const Vec3 down{std::cos(slope), -std::sin(slope), 0};
+  const BodyId block = make_block(system, {0.1, 0.2, 0.3}, {0.2, 0.1, 0.3}, 2);
+  const ConstraintId joint = system.create_constraint(
+      JointSpec{.kind = ConstraintKind::prismatic, .a = block, .at = {0, 0.2, 0}, .axis = down});
+  run(system, 1, 1.0 / 120);
+  const ConstraintState state = system.state(joint);
+  EXPECT_NEAR(state.speed[1], g * std::sin(slope), 1e-6);
+  EXPECT_NEAR(state.coordinate[1], g * std::sin(slope) / 2, 0.05);
+  EXPECT_NEAR(norm(system.centre_of_mass(block) - Vec3{0.1, 0.2, 0.3} - state.coordinate[1] * down), 0, 1e-8);
+}
+
+TEST(Prismatic, a_bead_of_one_particle_slides_on_a_straight_wire) {
+  System system;
+  const BodyId bead = system.create_body();
+  const ParticleId p = system.create_particle(bead, {1, 2, 3}, 0.5);
+  const ConstraintId wire = system.create_constraint(
+      JointSpec{.kind = ConstraintKind::prismatic, .a = bead, .at = {1, 2, 3}, .axis = {1, -1, 0}});
+  run(system, 1, 1.0 / 120);
+  EXPECT_NEAR(system.position(p).z, 3, 1e-9);
+  EXPECT_NEAR(system.position(p).x - 1, 2 - system.position(p).y, 1e-9);
+  EXPECT_NEAR(system.state(wire).speed[1], g * std::sqrt(0.5), 1e-6);
+}
+
+TEST(Cylindrical, slides_and_turns_independently) {
+  System system;
+  const BodyId block = make_block(system, {0, 0, 0}, {0.2, 0.3, 0.4}, 2);
+  const ConstraintId joint =
+      system.create_constraint(JointSpec{.kind = ConstraintKind::cylindrical, .a = block, .at = {}, .axis = {0, 1, 0}});
+  const auto particles = system.particles(block);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Vec3 x = system.position(particles[i]);
+    system.set_velocity(particles[i], cross(Vec3{0, 3, 0}, x));
+  }
+  run(system, 1, 1.0 / 240);
+  const ConstraintState state = system.state(joint);
+  EXPECT_NEAR(state.speed[0], 3, 1e-8);
+  EXPECT_NEAR(state.coordinate[0], 3, 1e-2);
+  EXPECT_NEAR(state.speed[1], -g, 1e-6);
+}
+
+TEST(Universal, keeps_its_axes_perpendicular_and_transmits_the_known_ratio) {
+  // Input shaft along x, output shaft bent by beta in the x-z plane: tan(out) = tan(in) cos(beta),
+  // counted from where the input's axis is at right angles to both shafts.
+  System system{SystemOptions{.gravity = {}}};
+  const double beta = 0.5;
+  const Vec3 out_axis{std::cos(beta), 0, std::sin(beta)};
+  const BodyId in = make_block(system, {-0.5, 0, 0}, {0.6, 0.1, 0.1}, 1);
+  const BodyId out = make_block(system, 0.5 * out_axis, {0.6, 0.1, 0.1}, 1);
+  const ConstraintId in_bearing = system.create_constraint(JointSpec{.kind = ConstraintKind::revolute,
+                                                                     .a = in,
+                                                                     .at = {-0.5, 0, 0},
+                                                                     .axis = {1, 0, 0},
+                                                                     .angle = {.motor_speed = 2, .motor_max = 1e3}});
+  const ConstraintId out_bearing = system.create_constraint(
+      JointSpec{.kind = ConstraintKind::revolute, .a = out, .at = 0.5 * out_axis, .axis = out_axis});
+  const ConstraintId cross_joint =
+      system.create_constraint(JointSpec{.kind = ConstraintKind::universal,
+                                         .a = in,
+                                         .b = out,
+                                         .at = {},
+                                         .axis = {0, 1, 0},
+                                         .second_axis = {-std::sin(beta), 0, std::cos(beta)}});
+  run(system, 4, 1.0 / 240, [&](const StepReport&) {
+    EXPECT_LT(system.state(cross_joint).gap, 1e-8);
+    const double input = system.state(in_bearing).coordinate[0], output = system.state(out_bearing).coordinate[0];
+    EXPECT_NEAR(std::sin(output) * std::cos(input), std::sin(input) * std::cos(output) * std::cos(beta), 1e-6);
+  });
+  EXPECT_NEAR(system.state(in_bearing).coordinate[0], 8, 0.05);
+}
+
+TEST(Orientation, a_block_falls_freely_without_turning) {
+  System system;
+  const BodyId block = make_block(system, {0, 0, 0}, {0.2, 0.3, 0.4}, 2);
+  system.create_constraint(JointSpec{.kind = ConstraintKind::orientation, .a = block});
+  const auto particles = system.particles(block);
+  const Vec3 arm = system.position(particles[7]) - system.position(particles[0]);
+  for (int i = 0; i < 120; ++i) {
+    system.apply_force(particles[7], {1, 0, 0});
+    (void)system.step(1.0 / 120);
+  }
+  EXPECT_NEAR(norm(system.position(particles[7]) - system.position(particles[0]) - arm), 0, 1e-9);
+  EXPECT_NEAR(system.momentum().x, 1, 1e-9);
+}
+
+TEST(Rod, two_points_keep_their_distance_and_it_tells_the_centripetal_force) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId a = system.create_body(), b = system.create_body();
+  const ParticleId p = system.create_particle(a, {1, 0, 0}, 2, {0, 3, 0}),
+                   q = system.create_particle(b, {-1, 0, 0}, 2, {0, -3, 0});
+  const ConstraintId rod = system.create_constraint(DistanceSpec{.kind = ConstraintKind::rod, .p = p, .q = q});
+  run(system, 1, 1e-3, [&](const StepReport&) { EXPECT_NEAR(norm(system.position(p) - system.position(q)), 2, 1e-9); });
+  EXPECT_NEAR(norm(system.state(rod).force), 2 * 9.0, 1e-3);
+}
+
+TEST(Rope, is_slack_in_flight_and_then_taut) {
+  System system;
+  const BodyId anchor = system.create_body({.kind = BodyKind::static_}), ball = system.create_body();
+  const ParticleId p = system.create_particle(anchor, {0, 0, 0}),
+                   q = system.create_particle(ball, {0, 0, 0}, 1, {1, 0, 0});
+  const ConstraintId rope =
+      system.create_constraint(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = 1});
+  bool was_slack = false, was_taut = false;
+  run(system, 3, 1.0 / 240, [&](const StepReport& report) {
+    const Vec3 x = system.position(q);
+    EXPECT_LT(norm(x), 1 + 1e-8);
+    if (report.time < 0.3) {
+      was_slack = true;
+      EXPECT_NEAR(x.x, report.time, 1e-9);
+      EXPECT_NEAR(norm(system.state(rope).force), 0, 1e-9);
+    }
+    if (norm(x) > 1 - 1e-7) was_taut = was_taut || norm(system.state(rope).force) > 1;
+  });
+  EXPECT_TRUE(was_slack && was_taut);
+}
+
+TEST(Rope, can_be_hauled_in) {
+  System system;
+  const BodyId anchor = system.create_body({.kind = BodyKind::static_}), ball = system.create_body();
+  const ParticleId p = system.create_particle(anchor, {0, 0, 0}), q = system.create_particle(ball, {0, -1, 0});
+  const ConstraintId rope =
+      system.create_constraint(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = 1});
+  for (int i = 0; i < 100; ++i) {
+    system.set_length(rope, 1 - 0.005 * i);
+    (void)system.step(0.01);
+  }
+  EXPECT_NEAR(system.position(q).y, -0.505, 1e-3);
+}
+
+TEST(Motor, reaches_its_speed_and_a_weak_one_stalls) {
+  for (const double strength : {100.0, 0.5}) {
+    System system;
+    const BodyId block = make_block(system, {0.5, 0, 0}, {0.2, 0.2, 0.2}, 1);
+    const ConstraintId joint = system.create_constraint(
+        JointSpec{.kind = ConstraintKind::revolute,
+                  .a = block,
+                  .axis = {0, 0, 1},
+                  .angle = {.motor_speed = 2, .motor_max = strength, .friction = strength < 1 ? 5.0 : 0}});
+    run(system, 2, 1.0 / 240);
+    const ConstraintState state = system.state(joint);
+    if (strength > 1) {
+      EXPECT_NEAR(state.speed[0], 2, 1e-4);
+      EXPECT_NEAR(state.coordinate[0], 4, 0.02);
+    } else {  // 0.5 + 5 N m of friction hold 0.5 * g = 4.9 N m: it does not move
+      EXPECT_NEAR(state.coordinate[0], 0, 1e-6);
+      EXPECT_NEAR(state.effort[0], 0.5 * g, 1e-3);
+    }
+  }
+}
+
+TEST(Limit, stops_a_swinging_block) {
+  System system;
+  const BodyId block = make_block(system, {0.5, 0, 0}, {0.2, 0.2, 0.2}, 1);
+  const ConstraintId joint = system.create_constraint(JointSpec{
+      .kind = ConstraintKind::revolute, .a = block, .axis = {0, 0, 1}, .angle = {.lower = -0.7, .upper = 0.3}});
+  run(system, 2, 1.0 / 240, [&](const StepReport&) {
+    EXPECT_GT(system.state(joint).coordinate[0], -0.7 - 1e-7);
+    EXPECT_LT(system.state(joint).coordinate[0], 0.3 + 1e-7);
+  });
+  EXPECT_NEAR(system.state(joint).coordinate[0], -0.7, 1e-6);
+  EXPECT_NEAR(system.state(joint).effort[0], 0.5 * g * std::cos(0.7), 1e-3);
+}
+
+TEST(Friction, a_block_on_an_incline_sticks_below_the_threshold_and_slides_above) {
+  for (const double friction : {12.0, 6.0}) {
+    System system;
+    const double slope = 0.5;  // m g sin = 9.4 N
+    const BodyId block = make_block(system, {0, 0, 0}, {0.2, 0.1, 0.3}, 2);
+    const ConstraintId joint = system.create_constraint(JointSpec{.kind = ConstraintKind::prismatic,
+                                                                  .a = block,
+                                                                  .at = {},
+                                                                  .axis = {std::cos(slope), -std::sin(slope), 0},
+                                                                  .slide = {.friction = friction}});
+    run(system, 1, 1.0 / 240);
+    const double pull = 2 * g * std::sin(slope);
+    EXPECT_NEAR(system.state(joint).speed[1], friction > pull ? 0 : (pull - friction) / 2, 1e-5);
+  }
+}
+
+TEST(Spring, a_torsion_spring_has_its_period) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId block = make_block(system, {0, 0, 0}, {0.2, 0.4, 0.3}, 2);
+  const double inertia = 2 * (0.2 * 0.2 + 0.4 * 0.4) / 4, stiffness = 5;
+  const ConstraintId joint = system.create_constraint(JointSpec{
+      .kind = ConstraintKind::revolute, .a = block, .axis = {0, 0, 1}, .angle = {.stiffness = stiffness, .rest = 0.3}});
+  const double omega = std::sqrt(stiffness / inertia);
+  run(system, 2, 1e-3, [&](const StepReport& report) {
+    EXPECT_NEAR(system.state(joint).coordinate[0], 0.3 - 0.3 * std::cos(omega * report.time), 1e-3);
+  });
+}
+
+}  // namespace
+}  // namespace iota

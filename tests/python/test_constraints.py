@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Joints, rods and ropes as a script makes, reads, changes and ends them."""
+
+import math
+import re
+
+import pytest
+
+import iota
+
+
+def hanging_box() -> tuple[iota.System, iota.Body]:
+    system = iota.System()
+    return system, iota.Body(system, shape=iota.Box((0.2, 0.4, 0.3)), mass=2, position=(0, -0.5, 0))
+
+
+def run(system: iota.System, seconds: float, dt: float = 1 / 120) -> iota.StepReport:
+    for _ in range(round(seconds / dt)):
+        report = system.step(dt)
+    assert system.validate() == []
+    return report
+
+
+def test_a_joint_tells_its_bodies_place_axis_and_reaction() -> None:
+    system, box = hanging_box()
+    joint = system.revolute(box, at=(0, 0, 0), axis=(0, 0, 2))
+    run(system, 0.2)
+    assert (joint.kind, joint.a, joint.b, joint.active, joint.broken) == ("revolute", box, None, True, False)
+    assert joint.axis == pytest.approx((0, 0, 1))
+    assert joint.position == pytest.approx((0, 0, 0), abs=1e-9)
+    assert joint.force == pytest.approx((0, 2 * 9.81, 0), abs=1e-6)
+    assert joint.torque == pytest.approx((0, 0, 0), abs=1e-6)
+    assert joint.gap < 1e-9
+    assert joint in system.constraints
+    assert repr(joint) == "<Constraint 0: revolute of body 0 and the world>"
+
+
+def test_limits_motor_friction_and_spring_can_change_while_it_runs() -> None:
+    system, box = hanging_box()
+    joint = system.revolute(box, at=(0, 0, 0), axis=(0, 0, 1), motor=(3, 100), limits=(-1, 1))
+    assert joint.angle.limits == (-1, 1)
+    assert joint.angle.motor == (3, 100)
+    run(system, 0.5)
+    assert joint.angle.value == pytest.approx(1, abs=1e-6)
+    joint.angle.limits = None
+    run(system, 0.5)
+    assert joint.angle.speed == pytest.approx(3, rel=1e-3)
+    joint.angle.motor = None
+    joint.angle.friction = 50
+    run(system, 1)
+    assert joint.angle.speed == pytest.approx(0, abs=1e-4)
+    joint.angle.friction = 0
+    joint.angle.spring = (40, 10, 0.5)
+    assert joint.angle.spring == (40, 10, 0.5)
+    run(system, 10)
+    angle = float(joint.angle)
+    assert 40 * (0.5 - angle) == pytest.approx(2 * 9.81 * 0.5 * math.sin(angle), abs=1e-3)
+    assert joint.angle.effort == pytest.approx(40 * (0.5 - angle), abs=1e-3)
+
+
+def test_two_coordinates_of_a_cylindrical_joint() -> None:
+    system, box = hanging_box()
+    joint = system.cylindrical(
+        box, at=(0, -0.5, 0), axis=(0, 1, 0), angle={"motor": (2, 10)}, slide={"limits": (-1, 0.5), "friction": 1}
+    )
+    assert joint.slide.friction == 1
+    run(system, 2)
+    assert joint.slide.value == pytest.approx(-1, abs=1e-6)
+    assert joint.angle.value == pytest.approx(4, rel=1e-2)
+    with pytest.raises(AttributeError, match="a weld has no angle"):
+        _ = system.weld(iota.Body(system, shape=iota.Sphere(0.1), position=(0, -0.5, 3)), box, at=(0, -0.5, 1)).angle
+
+
+def test_switched_off_a_joint_lets_go_and_switched_on_it_brings_back() -> None:
+    system, box = hanging_box()
+    joint = system.ball(box, at=(0, -0.3, 0))
+    joint.active = False
+    run(system, 0.2)
+    assert box.centre_of_mass.y < -0.6
+    joint.active = True
+    run(system, 0.1)
+    assert joint.gap < 1e-9
+    assert joint.position == pytest.approx((0, -0.3, 0), abs=1e-9)
+    joint.destroy()
+    assert not joint.alive
+    assert len(box.particles) == 4, "its markers are gone with it"
+    with pytest.raises(iota.StaleIdError, match="constraint 0 is gone"):
+        _ = joint.force
+
+
+def test_a_joint_ends_with_its_body_and_when_its_bodies_become_one() -> None:
+    system, box = hanging_box()
+    other = iota.Body(system, shape=iota.Sphere(0.1), position=(0, -1, 0))
+    joint = system.weld(other, box, at=(0, -0.8, 0))
+    report = iota.combine(box, other)
+    assert not joint.alive
+    assert any("weld 0 ended" in note for note in report.notes)
+    hinge = system.revolute(box, at=(0, 0, 0), axis=(1, 0, 0))
+    box.destroy()
+    assert not hinge.alive
+    assert system.validate() == []
+
+
+def test_rod_and_rope_join_particles() -> None:
+    system = iota.System()
+    hook = iota.Particle(iota.Body(system, kind="static"), (0, 0, 0))
+    ball = iota.Particle(iota.Body(system), (0, -1, 0), mass=3)
+    rope = system.rope(hook, ball, 1.5)
+    run(system, 2)
+    assert rope.length == 1.5
+    assert ball.position.y == pytest.approx(-1.5, abs=1e-6)
+    assert rope.force.y == pytest.approx(-3 * 9.81, abs=1e-3), "it pulls the hook down"
+    rope.length = 1
+    run(system, 0.1)
+    assert ball.position.y >= -1.0 - 1e-6
+    rod = system.rod(hook, ball)
+    assert rod.length == pytest.approx(-ball.position.y)
+
+
+def test_joints_are_saved_and_replayed() -> None:
+    system, box = hanging_box()
+    joint = system.revolute(box, at=(0.1, 0, 0), axis=(0, 0, 1), friction=0.2, limits=(-0.5, 0.5))
+    snapshot = system.snapshot()
+    run(system, 0.5)
+    there = system.state_hash()
+    system.restore(snapshot)
+    run(system, 0.5)
+    assert system.state_hash() == there
+    system.start_recording()
+    joint.angle.limits = None
+    system.ball(iota.Body(system, shape=iota.Sphere(0.1), position=(0.3, -0.5, 0)), box, at=(0.2, -0.5, 0))
+    run(system, 0.5)
+    joint.destroy()
+    run(system, 0.2)
+    recording = system.stop_recording()
+    assert system.replay(recording) is None
+
+
+def test_markers_are_carried_and_can_be_hinged_nailed_and_bonded() -> None:
+    system, box = hanging_box()
+    corner = iota.Particle(box, (0.1, -0.3, 0.15), mass=0)
+    below = iota.Particle(box, (0, -0.9, 0), mass=0)
+    assert box.mass == pytest.approx(2)
+    corner.nail()
+    bob = iota.Particle(iota.Body(system), (0, -0.9, 0), mass=0.5)
+    iota.combine(below, bob)
+    spring = iota.Bond(iota.Particle(box, (0, -0.5, 0), mass=0), bob, "spring", stiffness=10)
+    report = run(system, 2)
+    assert report.worst_gap < 1e-8
+    assert spring.alive
+    report = run(system, 20)
+    with pytest.raises(ValueError, match="massless and cannot leave"):
+        iota.separate(box.particles[0], corner)
+    with pytest.raises(ValueError, match=r"massless.*do not reach"):
+        iota.Particle(bob.body, (1, 1, 1), mass=0)
+
+
+REFUSED = {
+    "zero axis": (lambda s, a, b: s.revolute(a, b, at=(0, 0, 0), axis=(0, 0, 0)), "axis must have a direction"),
+    "nan place": (lambda s, a, b: s.ball(a, b, at=(math.nan, 0, 0)), "at must be finite"),
+    "one body twice": (lambda s, a, b: s.weld(a, a, at=(0, 0, 0)), "body 0 twice"),
+    "limits the wrong way": (
+        lambda s, a, b: s.revolute(a, at=(0, 0, 0), axis=(1, 0, 0), limits=(1, -1)),
+        "lower must not be above upper, got 1 and -1",
+    ),
+    "weak motor": (lambda s, a, b: s.revolute(a, at=(0, 0, 0), axis=(1, 0, 0), motor=(1, -1)), "motor_max.*got -1"),
+    "friction": (lambda s, a, b: s.prismatic(a, at=(0, 0, 0), axis=(1, 0, 0), friction=-1), "friction.*not -1"),
+    "spring": (lambda s, a, b: s.prismatic(a, at=(0, 0, 0), axis=(1, 0, 0), spring=(-5,)), "stiffness.*not -5"),
+    "skew universal": (
+        lambda s, a, b: s.universal(a, b, at=(0, 0, 0), axis=(1, 0, 0), second_axis=(1, 1, 0)),
+        "right angles",
+    ),
+    "a point has no axis": (
+        lambda s, a, b: s.revolute(b, at=(0, 2, 0), axis=(1, 0, 0)),
+        "body 1 is a point, which has no directions; use a ball joint",
+    ),
+    "a point reaches nothing": (lambda s, a, b: s.ball(b, at=(0, 0, 0)), r"does not reach \(0.*0.*0.*\)"),
+    "rod within a body": (lambda s, a, b: s.rod(*a.particles[:2]), "one rigid body"),
+    "rod of no length": (lambda s, a, b: s.rod(a.particles[0], b.particles[0], 0), "length must be positive"),
+    "break force": (lambda s, a, b: s.ball(a, at=(0, 0, 0), break_force=0), "break_force must be above zero, got 0"),
+    "another system": (lambda s, a, b: s.ball(iota.Body(iota.System()), at=(0, 0, 0)), "another system"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_bad_input_is_refused_in_a_sentence_and_changes_nothing(name: str) -> None:
+    system, box = hanging_box()
+    point = iota.Body(system)
+    iota.Particle(point, (0, 2, 0))
+    before = system.state_hash(), len(system.particles), len(system.constraints)
+    make, text = REFUSED[name]
+    with pytest.raises(ValueError, match=text) as error:
+        make(system, box, point)
+    assert not re.search(r"\bnan\b", str(error.value)) or name == "nan place"
+    assert before == (system.state_hash(), len(system.particles), len(system.constraints))
+    assert system.validate() == []
