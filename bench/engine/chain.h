@@ -11,7 +11,7 @@ namespace iota::bench {
 /// nailed at the origin, at rest. The peers' chain (bench/peers/chain.py) is the same.
 struct Chain {
   Chain(int links, bool rods, IntegrationMode mode)
-      : system({.mode = mode}), parts(scenes::make_chain(system, {.links = links, .rods = rods})) {}
+      : system({.mode = mode, .threads = 1}), parts(scenes::make_chain(system, {.links = links, .rods = rods})) {}
 
   System system;
   scenes::Chain parts;

@@ -11,21 +11,25 @@ namespace {
 /// target (rows x columns, row stride `stride`) -= a (rows x Pivot) * b (columns x Pivot)'.
 template <int Pivot>
 void subtract_product(double* target, int stride, const double* a, int rows, const double* b, int columns) {
-  if (rows == 3 && columns == 3) {  // two nodes: nearly always
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) {
-        double sum = a[r * Pivot] * b[c * Pivot];
-        for (int k = 1; k < Pivot; ++k) sum += a[r * Pivot + k] * b[c * Pivot + k];
-        target[r * stride + c] -= sum;
-      }
-    return;
-  }
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
       double sum = 0;
       for (int k = 0; k < Pivot; ++k) sum += a[r * Pivot + k] * b[c * Pivot + k];
       target[r * stride + c] -= sum;
     }
+}
+/// The same for two nodes, which is nearly always: all in registers, since target, a and b may alias for all that the
+/// compiler knows. `Lower`: only the lower triangle, the rest of a symmetric diagonal block is never read.
+template <int Pivot, bool Lower>
+void subtract_product_3x3(double* target, int stride, const double* a, const double* b) {
+  double sum[3][3];
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < (Lower ? r + 1 : 3); ++c) {
+      sum[r][c] = a[r * Pivot] * b[c * Pivot];
+      for (int k = 1; k < Pivot; ++k) sum[r][c] += a[r * Pivot + k] * b[c * Pivot + k];
+    }
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < (Lower ? r + 1 : 3); ++c) target[r * stride + c] -= sum[r][c];
 }
 
 /// Calls f.template operator()<Pivot>() for the run-time size of a pivot block.
@@ -59,31 +63,33 @@ void BlockFactor::clear(bool symmetric) {
 
 template <int Pivot, bool Symmetric>
 int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
-  double* const d = lower_.data() + v.diagonal;
+  double* const diagonal = lower_.data() + v.diagonal;
   int wrong = 0;
 
   // The pivot block: unit lower L11 below the diagonal, reciprocal pivots on it, and for LU the rest of U11 above it.
+  double d[Pivot][Pivot];
+  for (int i = 0; i < Pivot; ++i)
+    for (int j = 0; j < (Symmetric ? i + 1 : Pivot); ++j) d[i][j] = diagonal[i * Pivot + j];
   for (int k = 0; k < Pivot; ++k) {
-    const double pivot = d[k * Pivot + k];
-    wrong += k < v.positives ? !(pivot > 0) : !(pivot < 0);
-    const double inverse = 1 / pivot;
-    d[k * Pivot + k] = inverse;
+    wrong += k < v.positives ? !(d[k][k] > 0) : !(d[k][k] < 0);
+    const double inverse = 1 / d[k][k];
+    d[k][k] = inverse;
     if constexpr (Symmetric) {
       double column[Pivot];
       for (int i = k + 1; i < Pivot; ++i) {
-        column[i] = d[i * Pivot + k];
-        const double l = column[i] * inverse;
-        for (int j = k + 1; j <= i; ++j) d[i * Pivot + j] -= l * column[j];
-        d[i * Pivot + k] = l;
+        column[i] = d[i][k];
+        d[i][k] = column[i] * inverse;
+        for (int j = k + 1; j <= i; ++j) d[i][j] -= d[i][k] * column[j];
       }
     } else {
       for (int i = k + 1; i < Pivot; ++i) {
-        const double l = d[i * Pivot + k] * inverse;
-        for (int j = k + 1; j < Pivot; ++j) d[i * Pivot + j] -= l * d[k * Pivot + j];
-        d[i * Pivot + k] = l;
+        d[i][k] *= inverse;
+        for (int j = k + 1; j < Pivot; ++j) d[i][j] -= d[i][k] * d[k][j];
       }
     }
   }
+  for (int i = 0; i < Pivot; ++i)
+    for (int j = 0; j < (Symmetric ? i + 1 : Pivot); ++j) diagonal[i * Pivot + j] = d[i][j];
   if (v.entry_count == 0) return wrong;
 
   // The blocks below: L21 = A21 U11^-1, and the transposed U12 (symmetric: L21 D) beside it.
@@ -93,26 +99,25 @@ int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
   double* const l21 = lower_.data() + entries.front().offset;  // the blocks of a front are contiguous
   double* const u12 = Symmetric ? unscaled_.data() : upper_.data() + entries.front().offset;
   for (int r = 0; r < rows; ++r) {
-    double* const l = l21 + r * Pivot;
-    double* const u = u12 + r * Pivot;
-    if constexpr (Symmetric) {
-      for (int k = 0; k < Pivot; ++k) {
-        double value = l[k];
-        for (int j = 0; j < k; ++j) value -= u[j] * d[k * Pivot + j];
-        u[k] = value;
-      }
-      for (int k = 0; k < Pivot; ++k) l[k] = u[k] * d[k * Pivot + k];
-    } else {
-      for (int k = 0; k < Pivot; ++k) {
-        double lower_value = l[k], upper_value = u[k];
+    double l[Pivot], u[Pivot];
+    for (int k = 0; k < Pivot; ++k) {
+      l[k] = l21[r * Pivot + k];
+      if constexpr (!Symmetric) u[k] = u12[r * Pivot + k];
+    }
+    for (int k = 0; k < Pivot; ++k) {
+      if constexpr (Symmetric) {
+        u[k] = l[k];
+        for (int j = 0; j < k; ++j) u[k] -= u[j] * d[k][j];
+        l[k] = u[k] * d[k][k];
+      } else {
         for (int j = 0; j < k; ++j) {
-          lower_value -= l[j] * d[j * Pivot + k];
-          upper_value -= u[j] * d[k * Pivot + j];
+          l[k] -= l[j] * d[j][k];
+          u[k] -= u[j] * d[k][j];
         }
-        l[k] = lower_value * d[k * Pivot + k];
-        u[k] = upper_value;
+        l[k] *= d[k][k];
       }
     }
+    for (int k = 0; k < Pivot; ++k) l21[r * Pivot + k] = l[k], u12[r * Pivot + k] = u[k];
   }
 
   // What is left for the later vertices.
@@ -123,13 +128,22 @@ int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
   for (std::size_t a = 0; a < entries.size(); ++a) {
     const int stride = vertices[entries[a].vertex].pivot;
     const int width_a = entries[a].width;
-    subtract_product<Pivot>(lower_.data() + *target++, stride, la, width_a, ua, width_a);
+    double* const own = lower_.data() + *target++;
+    if (width_a == 3)
+      subtract_product_3x3<Pivot, Symmetric>(own, stride, la, ua);
+    else
+      subtract_product<Pivot>(own, stride, la, width_a, ua, width_a);
     const double* lb = la + width_a * Pivot;
     const double* ub = ua + width_a * Pivot;
     for (std::size_t b = a + 1; b < entries.size(); ++b, ++target) {
       const int width_b = entries[b].width;
-      subtract_product<Pivot>(lower_.data() + *target, stride, lb, width_b, ua, width_a);
-      if constexpr (!Symmetric) subtract_product<Pivot>(upper_.data() + *target, stride, ub, width_b, la, width_a);
+      if (width_a == 3 && width_b == 3) {
+        subtract_product_3x3<Pivot, false>(lower_.data() + *target, stride, lb, ua);
+        if constexpr (!Symmetric) subtract_product_3x3<Pivot, false>(upper_.data() + *target, stride, ub, la);
+      } else {
+        subtract_product<Pivot>(lower_.data() + *target, stride, lb, width_b, ua, width_a);
+        if constexpr (!Symmetric) subtract_product<Pivot>(upper_.data() + *target, stride, ub, width_b, la, width_a);
+      }
       lb += width_b * Pivot;
       ub += width_b * Pivot;
     }

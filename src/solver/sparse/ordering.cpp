@@ -33,17 +33,23 @@ struct Adjacency {
 
 }  // namespace
 
-// An elimination graph with explicit fill. Lists are cleaned of eliminated neighbours only when they are read, so that
+// An elimination graph with explicit fill. First come, first served among equals: the ends of a chain take turns, so that
+// successive eliminations do not wait for each other's divisions (measured: a factorisation takes FACTOR as long).
+// Lists are cleaned of eliminated neighbours only when they are read, so that
 // a hub with a thousand leaves costs O(1) a leaf; the degree itself is counted exactly.
 std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::span<const std::array<std::uint32_t, 2>> edges) {
   const Adjacency graph(n, edges);
   std::vector<std::uint32_t> degree(n);
   std::vector<std::vector<std::uint32_t>> filled(n);  // lists that fill has changed; empty: still the graph's own
   std::vector<std::uint8_t> eliminated(n, 0);
-  std::vector<std::vector<std::uint32_t>> buckets;
+  struct Queue {
+    std::vector<std::uint32_t> nodes;
+    std::size_t next = 0;
+  };
+  std::vector<Queue> buckets;  // by degree
   const auto push = [&](std::uint32_t node) {
     if (degree[node] >= buckets.size()) buckets.resize(degree[node] + 1);
-    buckets[degree[node]].push_back(node);
+    buckets[degree[node]].nodes.push_back(node);
   };
   for (std::uint32_t i = 0; i < n; ++i) degree[i] = graph.first[i + 1] - graph.first[i];
   for (std::uint32_t i = n; i-- > 0;) push(i);
@@ -52,9 +58,10 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::span<const
   order.reserve(n);
   std::size_t lowest = 0;
   while (order.size() < n) {
-    while (buckets[lowest].empty()) ++lowest;
-    const std::uint32_t node = buckets[lowest].back();
-    buckets[lowest].pop_back();
+    while (buckets[lowest].next == buckets[lowest].nodes.size()) ++lowest;
+    Queue& queue = buckets[lowest];
+    const std::uint32_t node = lowest <= 1 ? queue.nodes[queue.next++] : queue.nodes.back();
+    if (lowest > 1) queue.nodes.pop_back();
     if (eliminated[node] || degree[node] != lowest) continue;  // an outdated place in the queue
     eliminated[node] = 1;
     order.push_back(node);
