@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace iota::solver {
 
@@ -19,7 +20,7 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
   std::vector<std::uint32_t> rank(n);
   for (std::uint32_t i = 0; i < n; ++i) rank[order[i]] = i;
 
-  // 2. Give each constraint a home: its first-eliminated node while there is room, widest constraints first.
+  // 2. Give each constraint a home: the first-eliminated of its nodes that has room, widest constraints first.
   struct Home {
     bool own = false;
     std::uint32_t node = 0;  // own: the one that it follows
@@ -37,14 +38,17 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
     for (std::uint32_t c = 0; c < graph.constraints.size(); ++c) {
       const auto& constraint = graph.constraints[c];
       if (constraint.rows != rows || constraint.apart) continue;
-      const auto begin = constraint.nodes.begin(), end = begin + constraint.node_count;
-      const std::uint32_t first = *std::min_element(begin, end, by_rank);
-      if (rows_at[first] + rows <= max_rows_a_node) {
-        homes[c] = {false, first, static_cast<std::uint8_t>(3 + rows_at[first])};
-        rows_at[first] = static_cast<std::uint8_t>(rows_at[first] + rows);
-      } else {
-        put_after(c, *std::max_element(begin, end, by_rank));
+      auto nodes = constraint.nodes;
+      const auto begin = nodes.begin(), end = begin + constraint.node_count;
+      std::sort(begin, end, by_rank);
+      const auto home =
+          std::find_if(begin, end, [&](std::uint32_t node) { return rows_at[node] + rows <= max_rows_a_node; });
+      if (home == end) {
+        put_after(c, end[-1]);
+        continue;
       }
+      homes[c] = {false, *home, static_cast<std::uint8_t>(3 + rows_at[*home])};
+      rows_at[*home] = static_cast<std::uint8_t>(rows_at[*home] + rows);
     }
   }
   for (std::uint32_t c = 0; c < graph.constraints.size(); ++c) {
@@ -77,39 +81,72 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
     for (const std::uint32_t c : own_after[node]) own_vertex[c] = add_vertex(graph.constraints[c].rows, 0);
   }
 
-  // 4. Structure of each front: own couplings and what the children leave behind.
+  // 4. Structure of each front: own couplings and what the children leave behind. A later vertex takes part with its
+  // node's three unknowns, or with as many of its rows too as reach here.
   const std::uint32_t vertex_count = static_cast<std::uint32_t>(vertices_.size());
-  std::vector<std::vector<std::uint32_t>> later(vertex_count);
-  const auto couple = [&](std::uint32_t a, std::uint32_t b) {
-    if (a != b) later[std::min(a, b)].push_back(std::max(a, b));
+  struct Coupling {
+    std::uint32_t first, later;
+    std::uint8_t width;
   };
-  for (auto [a, b] : edges) couple(node_vertex_[a], node_vertex_[b]);
-  for (std::uint32_t c = 0; c < graph.constraints.size(); ++c)
-    if (homes[c].own)
-      for (int i = 0; i < graph.constraints[c].node_count; ++i)
-        couple(own_vertex[c], node_vertex_[graph.constraints[c].nodes[i]]);
+  std::vector<Coupling> couplings;
+  couplings.reserve(edges.size());
+  const auto couple = [&](std::uint32_t a, std::uint32_t b, std::uint8_t width) {
+    if (a != b) couplings.push_back({std::min(a, b), std::max(a, b), width});
+  };
+  for (auto [a, b] : edges) couple(node_vertex_[a], node_vertex_[b], 3);
+  for (std::uint32_t c = 0; c < graph.constraints.size(); ++c) {
+    const auto& constraint = graph.constraints[c];
+    const std::uint32_t home = homes[c].own ? own_vertex[c] : node_vertex_[homes[c].node];
+    for (int i = 0; i < constraint.node_count; ++i) {
+      const std::uint32_t node = node_vertex_[constraint.nodes[i]];
+      if (node < home)
+        couple(node, home, static_cast<std::uint8_t>(homes[c].row + constraint.rows));
+      else if (homes[c].own)
+        couple(home, node, 3);
+    }
+  }
+  std::vector<std::uint32_t> first_coupling(vertex_count + 1, 0), sorted(couplings.size());
+  for (const Coupling& c : couplings) ++first_coupling[c.first + 1];
+  for (std::uint32_t v = 0; v < vertex_count; ++v) first_coupling[v + 1] += first_coupling[v];
+  {
+    std::vector<std::uint32_t> cursor(first_coupling.begin(), first_coupling.end() - 1);
+    for (std::uint32_t i = 0; i < couplings.size(); ++i) sorted[cursor[couplings[i].first]++] = i;
+  }
+  constexpr std::uint32_t no_vertex = 0xffffffff;
+  std::vector<std::uint32_t> first_child(vertex_count, no_vertex), next_child(vertex_count, no_vertex);
+  std::vector<std::uint8_t> width_of(vertex_count, 0);
+  std::vector<std::uint32_t> list;
   entries_.clear();
   pair_targets_.clear();
   for (std::uint32_t v = 0; v < vertex_count; ++v) {
-    auto& list = later[v];
+    list.clear();
+    const auto add = [&](std::uint32_t later, std::uint8_t width) {
+      if (width_of[later] == 0) list.push_back(later);
+      width_of[later] = std::max(width_of[later], width);
+    };
+    for (std::uint32_t i = first_coupling[v]; i < first_coupling[v + 1]; ++i)
+      add(couplings[sorted[i]].later, couplings[sorted[i]].width);
+    for (std::uint32_t child = first_child[v]; child != no_vertex; child = next_child[child]) {
+      const Vertex& c = vertices_[child];
+      for (std::uint32_t e = c.first_entry + 1; e < c.first_entry + c.entry_count; ++e)
+        add(entries_[e].vertex, entries_[e].width);
+    }
     std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
     Vertex& vertex = vertices_[v];
     vertex.first_entry = static_cast<std::uint32_t>(entries_.size());
     vertex.entry_count = static_cast<std::uint32_t>(list.size());
     vertex.diagonal = value_count_;
     value_count_ += vertex.pivot * vertex.pivot;
-    std::uint32_t width = 0;
+    std::uint32_t front = 0;
     for (const std::uint32_t w : list) {
-      const std::uint8_t columns = vertices_[w].positives ? 3 : vertices_[w].pivot;
-      entries_.push_back({w, value_count_, vertices_[w].unknown, columns});
-      value_count_ += columns * vertex.pivot;
-      width += columns;
+      const std::uint8_t width = width_of[w];
+      width_of[w] = 0;
+      entries_.push_back({w, value_count_, vertices_[w].unknown, width});
+      value_count_ += width * vertex.pivot;
+      front += width;
     }
-    widest_front_ = std::max(widest_front_, width);
-    if (list.size() > 1)  // the first of the later ones inherits the rest
-      later[list[0]].insert(later[list[0]].end(), list.begin() + 1, list.end());
-    list.shrink_to_fit();
+    widest_front_ = std::max(widest_front_, front);
+    if (!list.empty()) next_child[v] = std::exchange(first_child[list[0]], v);
   }
 
   // 5. Where each pair of entries of a front adds its product.
@@ -143,7 +180,7 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
         g = {entries_[find_entry(home, node)].offset + row, 1, pivot, false, false, 0, pivot};
       } else {
         const std::uint8_t node_pivot = vertices_[node].pivot;
-        g = {entries_[find_entry(node, home)].offset, node_pivot, 1, false, true, 0, node_pivot};
+        g = {entries_[find_entry(node, home)].offset + row * node_pivot, node_pivot, 1, false, true, 0, node_pivot};
       }
     }
   }

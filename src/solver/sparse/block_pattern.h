@@ -29,10 +29,10 @@ struct CouplingGraph {
 /// Elimination order and storage of a block-sparse matrix with the structure of
 ///   [ A  G' ]   A: node blocks, G: constraint rows, C: small compliance.
 ///   [ G -C  ]
-/// The rows of a constraint are eliminated together with the first-eliminated of its nodes (at most three rows a node),
-/// so a node's pivot block is [A G'; G -C] of size 3 + rows and no pivot is ever structurally zero. Rows that find no
-/// room, or must stand apart, become a vertex of their own right after the last of their nodes (of one side's). Minimum degree on the node graph: no fill on
-/// trees, so everything is O(n) there.
+/// The rows of a constraint are eliminated together with the first-eliminated of its nodes that has room (at most three
+/// rows a node), so a node's pivot block is [A G'; G -C] of size 3 + rows and no pivot is ever structurally zero. Rows
+/// that find no room, or must stand apart, become a vertex of their own right after the last of their nodes (of one
+/// side's). Minimum degree on the node graph: no fill on trees, so everything is O(n) there.
 class BlockPattern {
  public:
   static constexpr int max_pivot = 6;
@@ -45,7 +45,7 @@ class BlockPattern {
     std::uint32_t unknown = 0;     ///< offset in right-hand side and solution
     std::uint32_t first_pair = 0;  ///< see pair_targets
   };
-  /// An off-diagonal block: `width` rows of a later vertex by the pivot columns of this one, row-major.
+  /// An off-diagonal block: the first `width` unknowns of a later vertex by the pivot columns of this one, row-major.
   struct Entry {
     std::uint32_t vertex = 0;
     std::uint32_t offset = 0;
