@@ -33,10 +33,11 @@ struct Adjacency {
 
 }  // namespace
 
-// An elimination graph with explicit fill. First come, first served among equals: the ends of a chain take turns, so that
-// successive eliminations do not wait for each other's divisions (512 rods: a step takes 0.23 instead of 0.27 us a link).
-// Lists are cleaned of eliminated neighbours only when they are read, so that
-// a hub with a thousand leaves costs O(1) a leaf; the degree itself is counted exactly.
+// An elimination graph with explicit fill. Leaves are taken first come, first served: the ends of a chain take turns, so
+// that successive eliminations do not wait for each other's divisions (512 rods: a step takes 0.23 instead of 0.27 us a
+// link). Others are taken last come, first served: a sixth less work in a net of 100 x 100 than the other way. Lists are
+// cleaned of eliminated neighbours only when they are read, so that a hub with a thousand leaves costs O(1) a leaf; the
+// degree itself is counted exactly.
 std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::span<const std::array<std::uint32_t, 2>> edges) {
   const Adjacency graph(n, edges);
   std::vector<std::uint32_t> degree(n);
@@ -52,7 +53,10 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::span<const
     buckets[degree[node]].nodes.push_back(node);
   };
   for (std::uint32_t i = 0; i < n; ++i) degree[i] = graph.first[i + 1] - graph.first[i];
-  for (std::uint32_t i = n; i-- > 0;) push(i);
+  for (std::uint32_t i = n; i-- > 0;)
+    if (degree[i] > 1) push(i);  // taken from the back
+  for (std::uint32_t i = 0; i < n; ++i)
+    if (degree[i] <= 1) push(i);
 
   std::vector<std::uint32_t> order, front, merged;
   order.reserve(n);
