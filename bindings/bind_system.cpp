@@ -74,6 +74,12 @@ void bind_settings(nb::class_<SystemObject>& type) {
           },
           "'energy_keeping' or 'robust'")
       .def_prop_rw(
+          "solver", [](SystemObject& self) { return self.use().solver(); },
+          [](SystemObject& self, const std::string& name) { self.use_between_steps("solver = ...").set_solver(name); },
+          "Who solves the equations of each step: 'direct' (the built-in sparse Newton), 'newton', 'kinsol' or a solver\n"
+          "of the script, see iota.solver. Others than 'direct' get them dense: far slower. What they find no root of is\n"
+          "solved directly, with a warning in the report.")
+      .def_prop_rw(
           "damping", [](SystemObject& self) { return self.use().damping(); },
           [](SystemObject& self, double value) {
             self.use_between_steps("damping = ...").set_damping(finite_not_negative(value, "damping", "1/s"));

@@ -180,6 +180,10 @@ class System {
   void set_gravity(const Vec3&);
   IntegrationMode mode() const;
   void set_mode(IntegrationMode);
+  /// Who solves the equations of each step: "direct" (the built-in sparse Newton), or a solver by name (iota/solver.h),
+  /// which is given them dense and is far slower. What it finds no root of is solved directly after all, with a warning.
+  std::string solver() const;
+  void set_solver(std::string_view name);
   double damping() const;
   void set_damping(double per_second);
   double time() const;

@@ -190,6 +190,8 @@ class Model {
   Vec3 gravity{0, -9.81, 0};
   IntegrationMode mode = IntegrationMode::energy_keeping;
   double damping = 0;
+  std::array<char, 32>
+      solver{};  ///< name of who solves the equations of steps, ended by zeros; empty: the built-in one
   double time = 0;
   std::uint64_t step = 0;
   std::uint32_t structure_version = 1;
@@ -436,7 +438,8 @@ void Model::archive(Archive& ar) {
   articulates.archive(ar);
   laws.archive(ar), bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
   constraints.archive(ar);
-  ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(time), ar.value(step), ar.value(structure_version);
+  ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(time), ar.value(step),
+      ar.value(structure_version);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
   if constexpr (std::is_same_v<Archive, Reader>) compile_laws();

@@ -84,6 +84,7 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
   const NewtonReport newton = newton_.solve(problem, stage, guess_);
   ++report.solves;
   met_ = newton.met;
+  report.handed_back += newton.handed_back;
   report.iterations += newton.iterations;
   report.iterations_max = std::max(report.iterations_max, newton.iterations);
   return newton.converged;

@@ -16,8 +16,9 @@ struct [[nodiscard]] AdvanceReport {
   int iterations = 0;
   int iterations_max = 0;
   int substeps = 0;
-  int fallbacks = 0;  ///< mid-point sub-steps that had to be taken by the end-point scheme
-  int impacts = 0;    ///< mid-point sub-steps in which bounded rows met: inelastic, their energy is dissipated
+  int handed_back = 0;  ///< solves in which the solver that was asked found no root
+  int fallbacks = 0;    ///< mid-point sub-steps that had to be taken by the end-point scheme
+  int impacts = 0;      ///< mid-point sub-steps in which bounded rows met: inelastic, their energy is dissipated
   bool converged = true;
   double external_work = 0;   ///< of explicit forces, grips and moving targets, J
   double dissipated = 0;      ///< J
@@ -39,6 +40,9 @@ class Integrator {
   /// Moves positions by the least mass-weighted displacement that meets all constraints; velocities stay.
   /// Returns false where no solution was found: the violation is then shared, and smaller after each call.
   bool project_positions(Problem& problem);
+
+  /// Who solves the equations of steps; null: the built-in Newton.
+  void set_external(Solver* solver) { newton_.set_external(solver); }
 
   void project_velocities(Problem& problem, double h = 0) { newton_.project_velocities(problem, h); }
 

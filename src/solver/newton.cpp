@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/newton.h"
 
+#include "solver/step_equations.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -295,7 +297,7 @@ void Newton::add_curvature(const C& c, const typename ConstraintPool<C>::Slots& 
 }
 
 template <bool Midpoint>
-int Newton::assemble_and_factor(const Problem& problem, const Stage& stage, Hessian hessian) {
+void Newton::assemble(const Problem& problem, const Stage& stage, Hessian hessian) {
   const Vec3* const x0 = problem.position.data();
   const Vec3* const x = x_.data();
   const bool clamp = hessian == Hessian::clamped;
@@ -336,7 +338,6 @@ int Newton::assemble_and_factor(const Problem& problem, const Stage& stage, Hess
       }
     });
   }
-  return factor_.factorise();
 }
 
 template <bool Midpoint, bool Laws, class C>
@@ -581,7 +582,52 @@ NewtonReport Newton::solve(Problem& problem, const Stage& stage, std::span<const
     u_[i] = guess[i] - problem.position[i] - stage.h * problem.velocity[i];
     inverse_scale_[i] = 1 / (stage.inertia * problem.mass[i] * reference_length_);
   }
+  if (external_ && !stage.is_projection()) {
+    u_saved_ = u_;
+    NewtonReport report = solve_externally(problem, stage);
+    if (report.converged) return report;
+    std::copy(guess.begin(), guess.end(), x_.begin());
+    u_ = u_saved_;
+    report = stage.midpoint ? solve_as<true>(problem, stage) : solve_as<false>(problem, stage);
+    report.handed_back = true;
+    return report;
+  }
   return stage.midpoint ? solve_as<true>(problem, stage) : solve_as<false>(problem, stage);
+}
+
+// Another solver finds the root for rows as they stand, and rows change sides between its calls.
+NewtonReport Newton::solve_externally(Problem& problem, const Stage& stage) {
+  constexpr int most_rounds = 30;
+  NewtonReport report;
+  std::size_t index = 0;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    for (const double m : pool.multipliers) multipliers_saved_[index++] = m;
+  });
+  if (has_laws_) begin_sides(problem, stage), choose_sides(problem, stage);
+  bool settled = false;
+  for (int round = 0; round < most_rounds && !settled; ++round) {
+    StepEquations equations(*this, problem, stage);
+    std::vector<double> unknowns = equations.unknowns();
+    try {
+      const SolverReport solved =
+          external_->solve(equations, unknowns, {.tolerance = stage.tolerance, .max_iterations = stage.max_iterations});
+      report.iterations += solved.iterations;
+    } catch (const std::exception&) {  // nothing throws inside a step
+      break;
+    }
+    report.residual = equations.assign(unknowns);
+    settled = !has_laws_ || !choose_sides(problem, stage);
+  }
+  report.violation = violation_;
+  if (has_laws_) report.met = count_met(problem);
+  report.converged = settled && report.residual <= round_off_floor && violation_ <= largest_violation;
+  if (!report.converged) {
+    index = 0;
+    problem.for_each_constraint_pool([&](auto& pool) {
+      for (double& m : pool.multipliers) m = multipliers_saved_[index++];
+    });
+  }
+  return report;
 }
 
 // Sides as the multipliers from the last step tell: nothing else needs to be remembered between steps.
@@ -794,5 +840,10 @@ void Newton::project_once(Problem& problem, double h) {
     problem.velocity[i] += Vec3{d[0], d[1], d[2]};
   }
 }
+
+template double Newton::residual<false>(const Problem&, const Stage&, const Vec3*);
+template double Newton::residual<true>(const Problem&, const Stage&, const Vec3*);
+template void Newton::assemble<false>(const Problem&, const Stage&, Hessian);
+template void Newton::assemble<true>(const Problem&, const Stage&, Hessian);
 
 }  // namespace iota::solver

@@ -7,6 +7,10 @@
 #include <span>
 #include <vector>
 
+namespace iota {
+class Solver;
+}
+
 namespace iota::solver {
 
 /// Which equations a Newton solve closes. With u = x - x0 - h v0:
@@ -42,6 +46,7 @@ struct Stage {
 struct [[nodiscard]] NewtonReport {
   bool converged = false;
   int iterations = 0;
+  bool handed_back = false;  ///< another solver was asked and found no root
   int met = 0;  ///< bounded rows that came from a bound to their equation: impacts, friction that begins to stick
   double residual = 0;  ///< scaled, dimensionless
   double violation =
@@ -70,6 +75,10 @@ class Newton {
   /// momentum to round-off, whereas differences of positions lose 1e-16 |x| / h a step.
   std::span<const Vec3> displacement() const { return u_; }
 
+  /// Hands the equations of steps, not of projections, to another solver; null: solves them itself. What the other one
+  /// finds no root of is solved here after all.
+  void set_external(Solver* solver) { external_ = solver; }
+
   /// The velocity nearest to `velocity` in the mass norm with G(position) v = rate, in place; rate is that of targets and
   /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what
   /// nails take. Of bounded rows those count that are met and would take an impulse; `as_solved`: those that the latest
@@ -79,9 +88,11 @@ class Newton {
   double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
 
  private:
+  friend class StepEquations;
   enum class Hessian { exact, clamped, none };
   template <bool Midpoint>
   NewtonReport solve_as(Problem&, const Stage&);
+  NewtonReport solve_externally(Problem&, const Stage&);
   template <bool Midpoint>
   double residual(const Problem&, const Stage&, const Vec3* x);
   template <bool Midpoint, bool Laws, class C>
@@ -100,7 +111,12 @@ class Newton {
   void add_curvature(const C&, const typename ConstraintPool<C>::Slots&, const Stage&, const double* lambda,
                      bool clamp);
   template <bool Midpoint>
-  int assemble_and_factor(const Problem&, const Stage&, Hessian);
+  void assemble(const Problem&, const Stage&, Hessian);
+  template <bool Midpoint>
+  int assemble_and_factor(const Problem& problem, const Stage& stage, Hessian hessian) {
+    assemble<Midpoint>(problem, stage, hessian);
+    return factor_.factorise();
+  }
   double merit(const Problem&, const Stage&, const Vec3* x) const;
   bool project_onto_sides(Problem&, double h, bool as_solved);
   void project_once(Problem&, double h);
@@ -123,6 +139,7 @@ class Newton {
   // Found by the latest residual(); imbalance_: of the scaled forces, and noise_: what of it is round-off.
   double worst_ = 0, violation_ = 0, imbalance_ = 0, noise_ = 0, largest_multiplier_ = 0;
   bool has_laws_ = false;
+  Solver* external_ = nullptr;
   int fewest_wrong_ = 0, stalled_ = 0;  // see choose_sides
 };
 

@@ -37,9 +37,9 @@ StepReport System::Implementation::apply(const step::Step& command) {
   advanced.resize(all.size());
   parallel.for_each(all.size(), islands.grain(parallel),
                     [&](std::size_t i) { advanced[i] = all[i]->advance(model, h, model.mode); });
-  int solves = 0, iterations = 0;
+  int solves = 0, iterations = 0, handed_back = 0;
   for (const solver::AdvanceReport& r : advanced) {
-    solves += r.solves, iterations += r.iterations;
+    solves += r.solves, iterations += r.iterations, handed_back += r.handed_back;
     report.iterations_max = std::max(report.iterations_max, r.iterations_max);
     report.substeps_max = std::max(report.substeps_max, r.substeps);
     report.fallbacks += r.fallbacks;
@@ -48,6 +48,10 @@ StepReport System::Implementation::apply(const step::Step& command) {
     model.external_work += r.external_work;
     model.edit_energy += r.closing_energy;
   }
+  if (handed_back > 0)
+    report.warnings.push_back("the solver " + std::string(model.solver.data()) + " found no root in " +
+                              std::to_string(handed_back) + " of " + std::to_string(solves) +
+                              " solves; the built-in one took over");
   report.iterations_mean = solves ? static_cast<double>(iterations) / solves : 0;
   model.time += h;
   ++model.step;

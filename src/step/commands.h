@@ -17,6 +17,9 @@ struct SetGravity {
 struct SetMode {
   IntegrationMode mode;
 };
+struct SetSolver {
+  std::array<char, 32> name;  ///< ended by zeros; empty: the built-in one
+};
 struct SetSystemDamping {
   double per_second;
 };
@@ -169,8 +172,8 @@ struct Release {
 };
 
 using Command =
-    std::variant<SetGravity, SetMode, SetSystemDamping, CreateBody, CreateParticle, SetRod, SpellLaw, CreateLaw,
-                 CreateCosmeticBond, CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping, SetPosition,
+    std::variant<SetGravity, SetMode, SetSolver, SetSystemDamping, CreateBody, CreateParticle, SetRod, SpellLaw,
+                 CreateLaw, CreateCosmeticBond, CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping, SetPosition,
                  SetVelocity, SetMass, ApplyForce, SetActive, SetParameter, CreateSolid, CreateAttachment, SetPose,
                  SetBodyVelocity, SetAngularVelocity, Step, Destroy<BodyId>, Destroy<ParticleId>, Destroy<BondId>,
                  Destroy<LawId>, Destroy<CosmeticBondId>, Destroy<GripId>, CombineParticles, CombineBodies, Separate,

@@ -5,6 +5,8 @@
 #include "step/constraint_rows.h"
 #include "step/implementation.h"
 
+#include <iota/solver.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,6 +52,11 @@ void System::Implementation::apply(const step::SetGravity& c) {
   model.gravity = c.value;
 }
 void System::Implementation::apply(const step::SetMode& c) { model.mode = c.mode; }
+void System::Implementation::apply(const step::SetSolver& c) {
+  if (c.name.back() != 0) throw std::invalid_argument("set_solver: the name does not end");
+  if (c.name[0] != 0) (void)make_solver(c.name.data());  // refuses unknown names
+  model.solver = c.name;
+}
 void System::Implementation::apply(const step::SetSystemDamping& c) {
   require_not_negative("damping", c.per_second);
   model.damping = c.per_second;

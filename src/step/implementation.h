@@ -44,6 +44,7 @@ struct System::Implementation {
   // One apply per command; all checking of input is here.
   void apply(const step::SetGravity&);
   void apply(const step::SetMode&);
+  void apply(const step::SetSolver&);
   void apply(const step::SetSystemDamping&);
   BodyId apply(const step::CreateBody&);
   ParticleId apply(const step::CreateParticle&);

@@ -406,6 +406,23 @@ bool Island::nails_move(const Model& model) const {
   });
 }
 
+void Island::use_solver(const std::array<char, 32>& name) {
+  struct Missing final : Solver {
+    Ending search(NonlinearProblem&, std::span<double>, const SolverOptions&) override { return {}; }
+  };
+  if (name == solver_name_) return;
+  solver_name_ = name;
+  solver_.reset();
+  if (name[0] != 0) {
+    try {
+      solver_ = make_solver(name.data());
+    } catch (const std::exception&) {  // a snapshot of another process: reported as one that finds nothing
+      solver_ = std::make_unique<Missing>();
+    }
+  }
+  integrator_.set_external(solver_.get());
+}
+
 solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mode) {
   if (idle_ && !nails_move(model)) return {};
   load(model, h);
@@ -424,6 +441,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     store(model, true);
     return {};
   }
+  use_solver(model.solver);
   double given = 0;  // by a nail at once, J
   if (jolt > 1e-9) {
     integrator_.project_velocities(problem_, h);

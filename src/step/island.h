@@ -5,6 +5,8 @@
 #include "solver/integrator.h"
 #include "step/constraint_rows.h"
 
+#include <iota/solver.h>
+
 #include <memory>
 #include <span>
 #include <vector>
@@ -39,6 +41,7 @@ class Island {
 
  private:
   bool nails_move(const model::Model&) const;
+  void use_solver(const std::array<char, 32>& name);
   using Weighted = std::array<std::pair<std::uint32_t, double>, 4>;  // nodes and weights; weight 0 ends the list
   Weighted nodes_of(const model::Model&, std::uint32_t particle, const std::vector<std::uint32_t>& node_of_ring) const;
   void add_masses(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
@@ -51,6 +54,8 @@ class Island {
 
   solver::Problem problem_;
   solver::Integrator integrator_;
+  std::array<char, 32> solver_name_{};
+  std::unique_ptr<Solver> solver_;  // who is asked instead of the integrator's own
   bool idle_ = false;
   bool damped_ = false;
   std::vector<std::uint32_t> rings_;  // of each node

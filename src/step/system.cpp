@@ -2,6 +2,8 @@
 #include "math/mat3.h"
 #include "step/execute.h"
 
+#include <iota/solver.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -89,6 +91,14 @@ void System::move_grip(GripId grip, const Vec3& target) { implementation_->execu
 
 void System::set_gravity(const Vec3& value) { implementation_->execute(step::SetGravity{value}); }
 void System::set_mode(IntegrationMode mode) { implementation_->execute(step::SetMode{mode}); }
+void System::set_solver(std::string_view name) {
+  step::SetSolver command{};
+  if (name.empty() || name.size() > max_solver_name)
+    throw std::invalid_argument("set_solver: a name has 1 to " + std::to_string(max_solver_name) +
+                                " characters, not \"" + std::string(name) + "\"");
+  if (name != "direct") std::copy(name.begin(), name.end(), command.name.begin());
+  implementation_->execute(command);
+}
 void System::set_damping(double per_second) { implementation_->execute(step::SetSystemDamping{per_second}); }
 void System::set_kind(BodyId body, BodyKind kind) { implementation_->execute(step::SetKind{body, kind}); }
 void System::set_damping(BodyId body, double per_second) {
@@ -109,6 +119,10 @@ StepReport System::step(double dt) { return implementation_->execute(step::Step{
 // --- reading ----------------------------------------------------------------------------------------------------------
 
 Vec3 System::gravity() const { return implementation_->model.gravity; }
+std::string System::solver() const {
+  const char* const name = implementation_->model.solver.data();
+  return *name ? name : "direct";
+}
 IntegrationMode System::mode() const { return implementation_->model.mode; }
 double System::damping() const { return implementation_->model.damping; }
 double System::time() const { return implementation_->model.time; }

@@ -167,3 +167,61 @@ def test_a_solver_of_the_script_may_raise_or_return_nonsense() -> None:
     for name in ("", "direct", "x" * 40):
         with pytest.raises(ValueError, match=r"name|direct"):
             iota.solver(name)(lazy)
+
+
+# --- the equations of a step --------------------------------------------------------------------------------------------
+
+
+def swing(solver: str, steps: int = 40) -> tuple[Any, list[str]]:
+    system = iota.System()
+    iota.builder.chain(system, links=5, length=0.5, top=(0, 1, 0), direction=(1, 0.2, 0))
+    system.solver = solver
+    assert system.solver == solver
+    warnings = [warning for _ in range(steps) for warning in system.step(1 / 120).warnings]
+    return system.positions, warnings
+
+
+@pytest.mark.parametrize("solver", METHODS)
+def test_a_chain_swings_alike_whoever_solves_its_steps(solver: str) -> None:
+    direct, _ = swing("direct")
+    other, warnings = swing(solver)
+    assert warnings == []
+    assert np.abs(other - direct).max() < 1e-7
+
+
+def test_a_solver_of_the_script_solves_steps() -> None:
+    asked = []
+
+    @iota.solver("plain newton")
+    def plain_newton(equations: Any, x: Any, tolerance: float, max_iterations: int) -> Any:
+        asked.append(equations.size)
+        for _ in range(max_iterations):
+            f = equations.evaluate(x)
+            if np.abs(f).max() <= tolerance:
+                break
+            x = x - np.linalg.solve(equations.jacobian(x), f)
+        return x
+
+    direct, _ = swing("direct")
+    other, warnings = swing("plain newton")
+    assert warnings == []
+    assert len(asked) >= 40 and set(asked) == {6 * 3 + 5 + 3}, "six points, five lengths, one nail"
+    assert np.abs(other - direct).max() < 1e-7
+
+
+def test_a_solver_of_the_script_that_raises_in_a_step_is_replaced_and_named() -> None:
+    @iota.solver("moody")
+    def moody(equations: Any, x: Any, tolerance: float, max_iterations: int) -> Any:
+        raise KeyError("not now")
+
+    direct, _ = swing("direct", 5)
+    other, warnings = swing("moody", 5)
+    assert len(warnings) == 5 and "the solver moody found no root" in warnings[0]
+    assert (other == direct).all()
+
+
+def test_an_unknown_solver_of_a_system_is_refused(system: iota.System) -> None:
+    for name in ("", "nwton", "x" * 50):
+        with pytest.raises(ValueError, match=r"solver"):
+            system.solver = name
+    assert system.solver == "direct"

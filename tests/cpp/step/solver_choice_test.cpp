@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// The equations of the step in the hands of other solvers.
+#include "scenes/chain.h"
+
+#include <iota/solver.h>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+namespace iota {
+namespace {
+
+constexpr double dt = 1.0 / 120;
+
+/// Passes on to "newton" and looks over its shoulder.
+struct Watched final : Solver {
+  static inline std::atomic<int> asked = 0;
+  static inline std::atomic<double> worst_derivative = 0;
+  Ending search(NonlinearProblem& problem, std::span<double> x, const SolverOptions& options) override {
+    ++asked;
+    const std::size_t n = problem.size();
+    std::vector<double> exact(n * n), low(n), high(n), moved(x.begin(), x.end());
+    EXPECT_TRUE(problem.jacobian(x, exact));
+    double worst = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double step = 1e-6;
+      moved[j] = x[j] + step, problem.evaluate(moved, high);
+      moved[j] = x[j] - step, problem.evaluate(moved, low);
+      moved[j] = x[j];
+      for (std::size_t i = 0; i < n; ++i)
+        worst = std::max(worst, std::abs(exact[i * n + j] - (high[i] - low[i]) / (2 * step)));
+    }
+    worst_derivative = std::max(worst_derivative.load(), worst);
+    const SolverReport report = make_solver("newton")->solve(problem, x, options);
+    return {report.iterations, report.reason};
+  }
+};
+
+void make_chain(System& system) { scenes::make_chain(system, {.links = 6, .direction = {0.8, -0.6, 0}}); }
+
+/// A four-bar linkage in a plane: one redundant row for each of its out-of-plane motions is left to the solver.
+void make_loop(System& system) {
+  const Vec3 corners[] = {{0, 0, 0}, {0, 0.4, 0}, {0.7, 0.6, 0}, {0.8, 0, 0}};
+  ParticleId last;
+  for (int i = 0; i < 3; ++i) {
+    const BodyId bar = system.create_body();
+    const ParticleId a = system.create_particle(bar, corners[i]), b = system.create_particle(bar, corners[i + 1]);
+    if (i > 0) (void)system.combine(last, a);
+    if (i == 0) system.nail(a);
+    last = b;
+  }
+  system.nail(last);
+}
+
+void make_springs(System& system) {
+  Vec3 place{0, 0, 0};
+  ParticleId last;
+  for (int i = 0; i < 5; ++i) {
+    const BodyId body = system.create_body();
+    const ParticleId p = system.create_particle(body, place, 0.1 + i),
+                     q = system.create_particle(body, place + Vec3{0, 0.1, 0});
+    system.create_particle(body, place + Vec3{0.1, 0, 0.02 * i});
+    if (i > 0) system.create_bond(last, p, SpringLaw{.stiffness = 1e4, .damping = 1});
+    if (i == 0) system.nail(q);
+    last = q;
+    place = place + Vec3{0.2, 0.02 * i, 0.1};
+  }
+}
+
+struct Scene {
+  const char* name;
+  void (*make)(System&);
+};
+const Scene scenes_to_solve[] = {{"chain", make_chain}, {"loop", make_loop}, {"springs", make_springs}};
+
+std::vector<std::string> built_in_solvers() {
+  std::vector<std::string> names{"newton"};
+  for (const std::string& name : solver_names())
+    if (name == "kinsol") names.push_back(name);
+  return names;
+}
+
+class SolverOfTheStep : public testing::TestWithParam<std::tuple<std::string, Scene, IntegrationMode>> {};
+INSTANTIATE_TEST_SUITE_P(ByName, SolverOfTheStep,
+                         testing::Combine(testing::ValuesIn(built_in_solvers()), testing::ValuesIn(scenes_to_solve),
+                                          testing::Values(IntegrationMode::robust, IntegrationMode::energy_keeping)),
+                         [](const auto& info) {
+                           return std::get<0>(info.param) + "_" + std::get<1>(info.param).name +
+                                  (std::get<2>(info.param) == IntegrationMode::robust ? "_robust" : "_energy_keeping");
+                         });
+
+TEST_P(SolverOfTheStep, MovesTheWorldAsTheBuiltInOneDoes) {
+  const auto& [solver, scene, mode] = GetParam();
+  System direct({.mode = mode}), other({.mode = mode});
+  scene.make(direct), scene.make(other);
+  other.set_solver(solver);
+  EXPECT_EQ(other.solver(), solver);
+  double moved = 0;
+  for (int i = 0; i < 60; ++i) {
+    (void)direct.step(dt);
+    const StepReport report = other.step(dt);
+    EXPECT_EQ(report.warnings, std::vector<std::string>{});
+    EXPECT_EQ(report.unconverged, 0);
+    const auto particles = direct.particles();
+    for (const ParticleId p : particles) {
+      EXPECT_LT(norm(direct.position(p) - other.position(p)), 2e-7) << "step " << i;
+      moved = std::max(moved, norm(direct.velocity(p)));
+    }
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(moved, 0.1);
+}
+
+TEST(SolverOfTheStep, IsShownEquationsWhoseJacobianIsTheirDerivative) {
+  register_solver("watched", [] { return std::make_unique<Watched>(); });
+  for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping})
+    for (const Scene& scene : scenes_to_solve) {
+      System system({.mode = mode});
+      scene.make(system);
+      system.set_solver("watched");
+      Watched::asked = 0, Watched::worst_derivative = 0;
+      for (int i = 0; i < 5; ++i) (void)system.step(dt);
+      EXPECT_GE(Watched::asked, 5) << scene.name;
+      EXPECT_LT(Watched::worst_derivative, 1e-7) << scene.name;
+    }
+}
+
+struct Hopeless final : Solver {
+  Ending search(NonlinearProblem&, std::span<double> x, const SolverOptions&) override {
+    if (x.size() > 10) throw std::runtime_error("not today");
+    for (double& v : x) v = std::numeric_limits<double>::quiet_NaN();
+    return {1, "converged"};
+  }
+};
+
+TEST(SolverOfTheStep, ThatFailsOrThrowsIsReplacedAndNamed) {
+  register_solver("hopeless", [] { return std::make_unique<Hopeless>(); });
+  for (const int links : {1, 8}) {
+    System direct, other;
+    scenes::make_chain(direct, {.links = links}), scenes::make_chain(other, {.links = links});
+    other.set_solver("hopeless");
+    (void)direct.step(dt);
+    const StepReport report = other.step(dt);
+    ASSERT_EQ(report.warnings.size(), 1u);
+    EXPECT_EQ(report.warnings[0], "the solver hopeless found no root in 1 of 1 solves; the built-in one took over");
+    for (const ParticleId p : direct.particles()) EXPECT_EQ(direct.position(p), other.position(p));
+  }
+}
+
+TEST(SolverOfTheStep, IsRecordedSavedAndRefusedWhenUnknown) {
+  System system;
+  scenes::make_chain(system, {.links = 3});
+  system.start_recording();
+  system.set_solver("newton");
+  for (int i = 0; i < 10; ++i) (void)system.step(dt);
+  const Recording recording = system.stop_recording();
+  EXPECT_EQ(system.solver(), "newton");
+  const Snapshot snapshot = system.snapshot();
+  EXPECT_THROW(system.set_solver("no such solver"), std::invalid_argument);
+  EXPECT_THROW(system.set_solver(""), std::invalid_argument);
+  EXPECT_THROW(system.set_solver(std::string(32, 'x')), std::invalid_argument);
+  EXPECT_EQ(system.solver(), "newton");
+  system.set_solver("direct");
+  EXPECT_EQ(system.solver(), "direct");
+  system.restore(snapshot);
+  EXPECT_EQ(system.solver(), "newton");
+  EXPECT_EQ(system.replay(recording), std::nullopt);
+}
+
+}  // namespace
+}  // namespace iota
