@@ -115,6 +115,88 @@ ConstraintHandle make_distance(SystemObject& self, ConstraintKind kind, const Pa
   return {p.system_object, p.system, self.use_between_steps("making a rod or rope").create_constraint(spec)};
 }
 
+// --- curves and surfaces ----------------------------------------------------------------------------------------------
+
+/// Points of a path: a sequence of vectors, or samples of a function of one number.
+std::vector<Vec3> to_points(nb::handle path, Pair interval, int samples, bool closed) {
+  std::vector<Vec3> points;
+  if (PyCallable_Check(path.ptr())) {
+    if (samples < 2 || samples > 100000) throw nb::value_error("samples must be from 2 to 100000");
+    if (!(interval.first < interval.second)) throw nb::value_error("interval must be two numbers, the lower one first");
+    const int last = closed ? samples : samples - 1;  // a closed path does not repeat its first point
+    for (int i = 0; i < samples; ++i) {
+      const double u = interval.first + (interval.second - interval.first) * i / last;
+      nb::object point = nb::borrow(path)(u);
+      points.push_back(to_vec3({point}, "each point of the path"));
+    }
+    return points;
+  }
+  nb::object list;
+  try {
+    list = nb::steal(PySequence_List(path.ptr()));
+  } catch (nb::python_error&) {
+  }
+  if (!list.is_valid()) {
+    PyErr_Clear();
+    throw nb::type_error(("path must be a sequence of points or a function, not " + describe(path)).c_str());
+  }
+  for (nb::handle point : list) points.push_back(to_vec3({point}, "each point of the path"));
+  return points;
+}
+
+SurfaceShape to_surface_shape(SystemObject& self, nb::handle value, double size) {
+  SurfaceShape shape;
+  const auto is = [&]<class S>(S*) {
+    if (!nb::isinstance<S>(value)) return false;
+    shape = nb::cast<S>(value);
+    return true;
+  };
+  if (is(static_cast<Plane*>(nullptr)) || is(static_cast<Sphere*>(nullptr)) || is(static_cast<Ellipsoid*>(nullptr)) ||
+      is(static_cast<Box*>(nullptr)) || is(static_cast<Cylinder*>(nullptr)) || is(static_cast<Capsule*>(nullptr)) ||
+      is(static_cast<Torus*>(nullptr)))
+    return shape;
+  if (!PyCallable_Check(value.ptr()))
+    throw nb::type_error(
+        ("surface must be a Plane, Sphere, Ellipsoid, Box, Cylinder, Capsule, Torus or a function, not " +
+         describe(value))
+            .c_str());
+  auto function = std::make_shared<BondFunction>(BondFunction{nb::borrow(value), {}, {}, {}});
+  self.keep(function);
+  return SurfaceFunction{[function](const Vec3& r) -> double {
+                           nb::gil_scoped_acquire lock;
+                           try {
+                             return nb::cast<double>(function->function(r.x, r.y, r.z));
+                           } catch (nb::python_error& error) {
+                             error.discard_as_unraisable("the function of a surface");
+                           } catch (const std::exception&) {
+                           }
+                           return std::nan("");
+                         },
+                         finite_positive(size, "size", "m")};
+}
+
+Quaternion to_quaternion(nb::handle value) {
+  std::vector<double> q;
+  if (!nb::try_cast(value, q) || q.size() != 4)
+    throw nb::type_error(("orientation must be four numbers x y z w, not " + describe(value)).c_str());
+  return {q[0], q[1], q[2], q[3]};
+}
+
+/// Frame of a surface: as given, else that of the body, else the world's.
+Surface to_surface(SystemObject& self, nb::handle shape, nb::handle at, nb::handle orientation, const BodyHandle* body,
+                   double size) {
+  Surface surface{to_surface_shape(self, shape, size), {}, {}};
+  if (!at.is_none())
+    surface.position = to_vec3({at}, "at");
+  else if (body)
+    surface.position = body->use().centre_of_mass(body->id);
+  if (!orientation.is_none())
+    surface.orientation = to_quaternion(orientation);
+  else if (body)
+    surface.orientation = body->use().orientation(body->id);
+  return surface;
+}
+
 // --- coordinates ------------------------------------------------------------------------------------------------------
 
 struct CoordinateView {
@@ -300,6 +382,43 @@ void bind_handle(nb::module_& module) {
       .def("__repr__", &repr);
 }
 
+// --- breaking ---------------------------------------------------------------------------------------------------------
+
+struct BrokenView {
+  nb::object system_object;
+  SystemObject* system;
+  Broken broken;
+};
+
+void bind_broken(nb::module_& module) {
+  nb::class_<BrokenView>(module, "Broken", "A constraint, hinge or nail that a load beyond its limit broke.")
+      .def_prop_ro(
+          "constraint",
+          [](const BrokenView& self) {
+            return self.broken.constraint ? nb::cast(sibling(self, self.broken.constraint)) : nb::none();
+          },
+          nb::sig("def constraint(self) -> Constraint | None"), "Now inactive; None where a hinge or nail broke.")
+      .def_prop_ro(
+          "particle",
+          [](const BrokenView& self) {
+            return self.broken.particle ? nb::cast(sibling(self, self.broken.particle)) : nb::none();
+          },
+          nb::sig("def particle(self) -> Particle | None"),
+          "That left its hinge or lost its nail; None where a constraint broke.")
+      .def_prop_ro(
+          "position", [](const BrokenView& self) { return self.broken.position; }, "m")
+      .def_prop_ro(
+          "force", [](const BrokenView& self) { return self.broken.force; }, "N")
+      .def_prop_ro(
+          "torque", [](const BrokenView& self) { return self.broken.torque; }, "N m")
+      .def("__repr__", [](const BrokenView& self) {
+        const std::string what =
+            self.broken.constraint ? name_of(self.broken.constraint) : name_of(self.broken.particle);
+        return "<Broken: " + what + " at " + std::to_string(self.broken.force) + " N, " +
+               std::to_string(self.broken.torque) + " N m>";
+      });
+}
+
 // --- making -----------------------------------------------------------------------------------------------------------
 
 void bind_makers(nb::class_<SystemObject>& type) {
@@ -398,6 +517,83 @@ void bind_makers(nb::class_<SystemObject>& type) {
           "Two particles of different bodies keep their distance: length in m, None for that of now.");
   between("rope", ConstraintKind::rope,
           "Two particles of different bodies come no further apart than length (m, None: as far as now).");
+  type.def(
+      "on_path",
+      [](SystemObject& self, const ParticleHandle& p, nb::object path, const BodyHandle* body, bool closed, bool smooth,
+         std::optional<double> rounding, Pair interval, int samples, std::optional<Pair> limits,
+         std::optional<Pair> motor, double friction, nb::object spring, double break_force) {
+        p.use();
+        if (p.system != &self || (body && body->system != &self))
+          throw nb::value_error("the particle or body belongs to another system");
+        PathSpec spec;
+        spec.particle = p.id;
+        if (body) body->use(), spec.body = body->id;
+        spec.points = to_points(path, interval, samples, closed);
+        spec.curve = smooth ? CurveKind::spline : CurveKind::polyline;
+        spec.closed = closed;
+        if (rounding) spec.rounding = finite_not_negative(*rounding, "rounding", "m");
+        spec.slide = to_options({limits, motor, friction, spring});
+        spec.breaks = to_limits(break_force, infinity);
+        return ConstraintHandle{p.system_object, p.system, self.use_between_steps("on_path").create_constraint(spec)};
+      },
+      "p"_a, "path"_a, "body"_a.none() = nb::none(), nb::kw_only(), "closed"_a = false, "smooth"_a = true,
+      "rounding"_a.none() = nb::none(), "interval"_a = Pair{0, 1}, "samples"_a = 256, "limits"_a.none() = nb::none(),
+      "motor"_a.none() = nb::none(), "friction"_a = 0.0, "spring"_a.none() = nb::none(), "break_force"_a = infinity,
+      "A particle stays on a curve of body (None: the world). path: points (world, m), or a function of a number of\n"
+      "`interval` that gives them. smooth: a cubic spline through them, else straight pieces with corners of radius\n"
+      "`rounding` (m; None: a tenth of the shorter piece). Its slide is the length along the path (m); an open path ends at\n"
+      "its ends unless `limits` say otherwise.");
+  const auto on_surface = [&](const char* name, ConstraintKind kind, const char* text) {
+    type.def(
+        name,
+        [kind](SystemObject& self, const ParticleHandle& p, nb::object surface, const BodyHandle* body, nb::object at,
+               nb::object orientation, double size, double break_force) {
+          p.use();
+          if (p.system != &self || (body && body->system != &self))
+            throw nb::value_error("the particle or body belongs to another system");
+          SurfaceSpec spec;
+          spec.kind = kind, spec.particle = p.id;
+          System& engine = self.use_between_steps("a surface");
+          spec.surface = to_surface(self, surface, at, orientation, body, size);
+          if (body) spec.body = body->id;
+          spec.breaks = to_limits(break_force, infinity);
+          return ConstraintHandle{p.system_object, p.system, engine.create_constraint(spec)};
+        },
+        "p"_a, "surface"_a, "body"_a.none() = nb::none(), nb::kw_only(), "at"_a.none() = nb::none(),
+        "orientation"_a.none() = nb::none(), "size"_a = 1.0, "break_force"_a = infinity, text);
+  };
+  on_surface(
+      "on_surface", ConstraintKind::surface,
+      "A particle stays on a surface of body (None: the world). surface: Plane, Sphere, Ellipsoid, Box, Cylinder\n"
+      "(endless), Capsule, Torus, or a function of x, y, z that is 0 on it, negative inside and about the distance (m)\n"
+      "near it; `size`, m, is then that of what it describes. at, orientation: of the surface's frame, None: the body's.");
+  on_surface("inside", ConstraintKind::inside,
+             "A particle stays on the inner side of a surface: as `on_surface`, one-sided.");
+  on_surface("outside", ConstraintKind::outside,
+             "A particle stays on the outer side of a surface: as `on_surface`, one-sided.");
+  type.def(
+      "surface_to_surface",
+      [](SystemObject& self, const BodyHandle& a, nb::object surface_a, const BodyHandle* b, nb::object surface_b,
+         bool one_sided, nb::object at_a, nb::object orientation_a, nb::object at_b, nb::object orientation_b,
+         double break_force) {
+        a.use();
+        if (a.system != &self) throw nb::value_error("body a belongs to another system");
+        if (b) check_one_system(a, *b, "surface_to_surface"), b->use();
+        System& engine = self.use_between_steps("surface_to_surface");
+        SurfacePairSpec spec;
+        spec.kind = one_sided ? ConstraintKind::apart : ConstraintKind::touching;
+        spec.a = a.id;
+        if (b) spec.b = b->id;
+        spec.surface_a = to_surface(self, surface_a, at_a, orientation_a, &a, 1);
+        spec.surface_b = to_surface(self, surface_b, at_b, orientation_b, b, 1);
+        spec.breaks = to_limits(break_force, infinity);
+        return ConstraintHandle{a.system_object, a.system, engine.create_constraint(spec)};
+      },
+      "a"_a, "surface_a"_a, "b"_a.none(), "surface_b"_a, nb::kw_only(), "one_sided"_a = true,
+      "at_a"_a.none() = nb::none(), "orientation_a"_a.none() = nb::none(), "at_b"_a.none() = nb::none(),
+      "orientation_b"_a.none() = nb::none(), "break_force"_a = infinity,
+      "Two convex surfaces, one of body a and one of b (None: the world), do not overlap, or, with one_sided=False, stay in\n"
+      "touch; without friction. Frames as in `on_surface`.");
   type.def_prop_ro(
       "constraints",
       [](nb::handle_t<SystemObject> self) {
@@ -405,13 +601,44 @@ void bind_makers(nb::class_<SystemObject>& type) {
         return wrap_all<ConstraintHandle>(nb::borrow(self), object, object->use().constraints());
       },
       nb::sig("def constraints(self) -> list[Constraint]"), "In order of slots.");
+  type.def_prop_ro(
+      "broken",
+      [](nb::handle_t<SystemObject> self) {
+        SystemObject* object = nb::inst_ptr<SystemObject>(self);
+        object->use();
+        std::vector<BrokenView> out;
+        for (const Broken& broken : object->broken) out.push_back({nb::borrow(self), object, broken});
+        return out;
+      },
+      nb::sig("def broken(self) -> list[Broken]"), "What the last step broke.");
 }
 
 }  // namespace
 
 void bind_constraints(nb::module_& module) {
+  nb::class_<Plane>(module, "Plane", "All points at right angles to `normal` from the origin of its frame.")
+      .def(
+          "__init__",
+          [](Plane* self, VectorArgument normal) {
+            const Vec3 n = to_vec3(normal, "normal");
+            if (!(norm(n) > 0)) throw nb::value_error("normal must have a direction, not zero length");
+            new (self) Plane{n};
+          },
+          "normal"_a = nb::make_tuple(0.0, 1.0, 0.0))
+      .def_ro("normal", &Plane::normal);
+  nb::class_<Ellipsoid>(module, "Ellipsoid", "half_axes: along x, y, z, m.")
+      .def(
+          "__init__",
+          [](Ellipsoid* self, VectorArgument half_axes) {
+            const Vec3 a = to_vec3(half_axes, "half_axes");
+            for (const double v : {a.x, a.y, a.z}) finite_positive(v, "each half axis", "m");
+            new (self) Ellipsoid{a};
+          },
+          "half_axes"_a)
+      .def_ro("half_axes", &Ellipsoid::half_axes);
   bind_coordinate(module);
   bind_handle(module);
+  bind_broken(module);
   nb::object system = module.attr("System");
   auto type = nb::borrow<nb::class_<SystemObject>>(system);
   bind_makers(type);

@@ -25,15 +25,21 @@ inline constexpr Words<BodyKind, 4> kind_words{{{"dynamic", BodyKind::dynamic},
                                                 {"scripted", BodyKind::scripted},
                                                 {"inactive", BodyKind::inactive}}};
 
-inline constexpr Words<ConstraintKind, 9> constraint_words{{{"ball", ConstraintKind::ball},
-                                                            {"universal", ConstraintKind::universal},
-                                                            {"revolute", ConstraintKind::revolute},
-                                                            {"cylindrical", ConstraintKind::cylindrical},
-                                                            {"prismatic", ConstraintKind::prismatic},
-                                                            {"orientation", ConstraintKind::orientation},
-                                                            {"weld", ConstraintKind::weld},
-                                                            {"rod", ConstraintKind::rod},
-                                                            {"rope", ConstraintKind::rope}}};
+inline constexpr Words<ConstraintKind, 15> constraint_words{{{"ball", ConstraintKind::ball},
+                                                             {"universal", ConstraintKind::universal},
+                                                             {"revolute", ConstraintKind::revolute},
+                                                             {"cylindrical", ConstraintKind::cylindrical},
+                                                             {"prismatic", ConstraintKind::prismatic},
+                                                             {"orientation", ConstraintKind::orientation},
+                                                             {"weld", ConstraintKind::weld},
+                                                             {"rod", ConstraintKind::rod},
+                                                             {"rope", ConstraintKind::rope},
+                                                             {"path", ConstraintKind::path},
+                                                             {"surface", ConstraintKind::surface},
+                                                             {"inside", ConstraintKind::inside},
+                                                             {"outside", ConstraintKind::outside},
+                                                             {"touching", ConstraintKind::touching},
+                                                             {"apart", ConstraintKind::apart}}};
 
 /// The value of a word; ValueError that lists the words for any other.
 template <class Value, std::size_t count>

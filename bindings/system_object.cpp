@@ -143,6 +143,8 @@ StepReport SystemObject::step(double dt) {
     nb::gil_scoped_release unlocked;
     report = system.step(dt);
   }
+  broken = report.broken;
+  for (const Broken& b : broken) note_edit("break", b.position);
   // Functions that the engine has dropped: ours is the only reference left.
   std::erase_if(functions, [](const auto& function) { return function.use_count() == 1; });
   if (!failures.empty()) raise_failures(report);

@@ -74,6 +74,7 @@ class SystemObject {
   std::vector<CosmeticBond> cosmetic_bonds;
   bool watch_edits = false;
   std::vector<VisibleEdit> edits;
+  std::vector<Broken> broken;  ///< in the last step
 
  private:
   [[noreturn]] static void raise_foreign_thread();

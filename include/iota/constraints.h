@@ -2,11 +2,16 @@
 #pragma once
 
 #include <iota/ids.h>
+#include <iota/shapes.h>
 #include <iota/vec3.h>
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <optional>
+#include <variant>
+#include <vector>
 
 namespace iota {
 
@@ -22,10 +27,16 @@ enum class ConstraintKind : std::uint8_t {
   weld,         ///< b neither turns nor moves against a
   rod,          ///< two particles keep their distance
   rope,         ///< two particles come no further apart than a length
+  path,         ///< a particle stays on a curve: one slide, the length along it
+  surface,      ///< a particle stays on a surface
+  inside,       ///< a particle stays on the inner side of a surface
+  outside,      ///< a particle stays on the outer side of a surface
+  touching,     ///< two surfaces stay in touch
+  apart,        ///< two surfaces do not overlap
 };
 
 /// The two coordinates that joints have: the angle about the axis (revolute, cylindrical, and the first axis of a
-/// universal joint) and the slide along it (prismatic, cylindrical). Both are zero where the joint is made; b moves in
+/// universal joint) and the slide along it (prismatic, cylindrical) or along a path. Both are zero where the joint is made; b moves in
 /// the positive sense of the axis against a.
 enum class JointCoordinate : std::uint8_t { angle, slide };
 
@@ -66,6 +77,64 @@ struct DistanceSpec {
   ConstraintKind kind = ConstraintKind::rod;
   ParticleId p, q;
   double length = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: the distance now
+  BreakLimits breaks;
+};
+
+enum class CurveKind : std::uint8_t {
+  spline,    ///< cubic, through the points
+  polyline,  ///< straight pieces with rounded corners
+};
+
+/// A particle on a curve that is fixed in a body or, where that is null, in the world.
+struct PathSpec {
+  ParticleId particle;
+  BodyId body;
+  CurveKind curve = CurveKind::spline;
+  std::vector<Vec3> points;  ///< world frame, as the body is now, m; two at least, three where closed
+  bool closed = false;
+  double rounding = -1;  ///< of a polyline's corners, m; negative: a tenth of the shorter piece
+  /// Along the path from its first point, m. An open path ends at its ends unless limits say otherwise.
+  CoordinateOptions slide;
+  BreakLimits breaks;
+};
+
+/// All points r with normal . r = 0.
+struct Plane {
+  Vec3 normal{0, 1, 0};
+};
+struct Ellipsoid {
+  Vec3 half_axes{0.5, 0.5, 0.5};  ///< m
+};
+/// phi(r) = 0, with phi negative inside and, near the surface, about the distance in m. Called while the system steps,
+/// from any thread; it must not touch the system. Not part of snapshots.
+struct SurfaceFunction {
+  std::function<double(const Vec3&)> phi;
+  double size = 1;  ///< of what it describes, m
+};
+/// Of the shapes a Cylinder is endless here, and edges of a Box are rounded by a tenth of its least half size.
+using SurfaceShape = std::variant<Plane, Sphere, Ellipsoid, Box, Cylinder, Capsule, Torus, SurfaceFunction>;
+
+/// A surface with its frame; fixed in a body or in the world.
+struct Surface {
+  SurfaceShape shape;
+  Vec3 position;           ///< of the shape's origin, world frame, m
+  Quaternion orientation;  ///< turns vectors of the shape's frame into the world frame
+};
+
+/// A particle on (surface), inside or outside a surface of a body or, where that is null, of the world.
+struct SurfaceSpec {
+  ConstraintKind kind = ConstraintKind::surface;
+  ParticleId particle;
+  BodyId body;
+  Surface surface;
+  BreakLimits breaks;
+};
+
+/// Two surfaces that stay in touch (touching) or do not overlap (apart); b null: the world's.
+struct SurfacePairSpec {
+  ConstraintKind kind = ConstraintKind::apart;
+  BodyId a, b;
+  Surface surface_a, surface_b;
   BreakLimits breaks;
 };
 

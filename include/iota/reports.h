@@ -21,6 +21,15 @@ struct Energy {
   double total() const { return kinetic + potential; }
 };
 
+/// A constraint, hinge or nail that a load beyond its limit broke at the end of a step.
+struct Broken {
+  ConstraintId constraint;  ///< now inactive; null where a particle's hinge or nail broke
+  ParticleId particle;      ///< that left its ring or lost its nail; null where a constraint broke
+  Vec3 position;            ///< m
+  double force = 0;         ///< N
+  double torque = 0;        ///< N m
+};
+
 /// What one `step` did. Not converged is a result, never an exception.
 struct [[nodiscard]] StepReport {
   std::uint64_t step = 0;      ///< number of the step just finished, from 1
@@ -35,7 +44,8 @@ struct [[nodiscard]] StepReport {
   Energy energy;
   std::uint32_t articulates = 0;
   std::uint32_t structure_version = 0;
-  std::vector<BondId> switched_off;   ///< bonds whose force was not finite, or whose function threw
+  std::vector<BondId> switched_off;  ///< bonds whose force was not finite, or whose function threw
+  std::vector<Broken> broken;
   std::vector<std::string> warnings;  ///< plain sentences: a quarantined bond, a conflict ...
 };
 

@@ -151,6 +151,9 @@ class System {
   ///@{
   ConstraintId create_constraint(const JointSpec&);
   ConstraintId create_constraint(const DistanceSpec&);
+  ConstraintId create_constraint(const PathSpec&);
+  ConstraintId create_constraint(const SurfaceSpec&);
+  ConstraintId create_constraint(const SurfacePairSpec&);
   void destroy(ConstraintId);
   void set_active(ConstraintId,
                   bool);  ///< true repairs a broken one; bodies keep the relative place they were joined in

@@ -172,6 +172,18 @@ void require_span(const Model& model, const char* kind, const Side& side, const 
                    std::to_string(at.z) + "); give it a massive particle off its point, line or plane");
 }
 
+/// A place of a constraint: a marker of its own on a body, or a fixed one in the world.
+void add_place(Model& model, Constraint& c, int place, std::uint32_t body, const Vec3& at) {
+  const auto bit = static_cast<std::uint8_t>(1u << place);
+  if (body == none) {
+    c.fixed[place - b_origin] = at;
+    c.in_world |= bit;
+  } else {
+    c.particles[place] = model.make_marker(body, at);
+    c.owned |= bit;
+  }
+}
+
 }  // namespace
 
 std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
@@ -200,15 +212,7 @@ std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
   for (int place = 0; place < place_count; ++place) {
     if (!frames.has(place)) continue;
     const Side& side = place < b_origin ? a : b;
-    const Vec3 at = origin_of(side) + c.scale[place >= b_origin] * frames.direction[place];
-    if (side.is_world()) {
-      c.fixed[place - b_origin] = at;
-      c.in_world |= static_cast<std::uint8_t>(1u << place);
-      continue;
-    }
-    const std::uint32_t marker = model.make_marker(side.body, at);
-    c.particles[place] = marker;
-    c.owned |= static_cast<std::uint8_t>(1u << place);
+    add_place(model, c, place, side.body, origin_of(side) + c.scale[place >= b_origin] * frames.direction[place]);
   }
   return model.add_constraint(c);
 }
@@ -231,6 +235,123 @@ std::uint32_t make_constraint(Model& model, const DistanceSpec& spec) {
   c.scale = {c.length, c.length};
   c.particles.fill(none);
   c.particles[a_origin] = p, c.particles[b_origin] = q;
+  return model.add_constraint(c);
+}
+
+namespace {
+
+/// The frame of what a curve or surface is fixed in, as side a or b.
+void make_frame(Model& model, Constraint& c, const Side& side, int origin, const Vec3& at, const Quaternion& q) {
+  const int which = origin == b_origin;
+  c.scale[which] = side.extent > 0 ? side.extent : 1;
+  const std::array<Vec3, 4> directions{Vec3{}, rotate(q, {0, 0, 1}), rotate(q, {1, 0, 0}), rotate(q, {0, 1, 0})};
+  for (int i = 0; i < 4; ++i) add_place(model, c, origin + i, side.body, at + c.scale[which] * directions[i]);
+}
+
+void require_frame(const char* kind, const Side& side) {
+  if (side.dimensions < 3)
+    cannot(kind, side.what() + " and holds no frame for a curve or surface; give it a massive particle off its plane");
+}
+
+/// From the frame of a shape to that of its geometry, which has capsules along y and rings about y.
+Quaternion geometry_frame(const SurfaceData& data, const Quaternion& q) {
+  const auto is = [&]<class S>(S*) { return data.type == SurfaceShape(S{}).index(); };
+  if (is(static_cast<Cylinder*>(nullptr)) || is(static_cast<Capsule*>(nullptr)))
+    return multiply(q, from_axes({0, 1, 0}, {1, 0, 0}, {0, 0, -1}));
+  if (is(static_cast<Torus*>(nullptr))) return multiply(q, from_axes({1, 0, 0}, {0, 0, 1}, {0, -1, 0}));
+  return q;
+}
+
+std::shared_ptr<const geometry::Surface> make_surface(const Model& model, const SurfaceData& data) {
+  const Vec3& s = data.size;
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  switch (data.type) {
+    case 0: return std::make_shared<geometry::Plane>(s);
+    case 1: return std::make_shared<geometry::Ellipsoid>(s.x);
+    case 2: return std::make_shared<geometry::Ellipsoid>(s);
+    case 3: return std::make_shared<geometry::Box>(0.5 * s);
+    case 4: return std::make_shared<geometry::Capsule>(s.x, endless);
+    case 5: return std::make_shared<geometry::Capsule>(s.x, s.y / 2);
+    case 6: return std::make_shared<geometry::Torus>(s.x, s.y);
+    default: break;
+  }
+  const auto found = model.surface_functions.find(data.function);
+  if (found == model.surface_functions.end())
+    return std::make_shared<geometry::FunctionSurface>([](const Vec3&) { return std::nan(""); }, 1.0);
+  return std::make_shared<geometry::FunctionSurface>(found->second.phi, found->second.size);
+}
+
+std::shared_ptr<const geometry::Curve> make_curve(const CurveData& curve, std::span<const Vec3> points) {
+  if (curve.kind == CurveKind::polyline)
+    return std::make_shared<geometry::Polyline>(points, curve.closed != 0, curve.rounding);
+  return std::make_shared<geometry::Spline>(points, curve.closed != 0);
+}
+
+}  // namespace
+
+ConstraintGeometry make_geometry(const Model& model, const Constraint& c) {
+  using Form = ConstraintKindInfo::Form;
+  const Form form = info(c.kind).form;
+  ConstraintGeometry made;
+  if (form == Form::path) made.curve = make_curve(c.curve, {model.curve_points.data() + c.curve.first, c.curve.count});
+  if (form == Form::surface || form == Form::surface_pair) made.surfaces[1] = make_surface(model, c.surfaces[1]);
+  if (form == Form::surface_pair) made.surfaces[0] = make_surface(model, c.surfaces[0]);
+  return made;
+}
+
+std::uint32_t make_constraint(Model& model, const PathData& spec, std::span<const Vec3> points) {
+  const Side b = spec.body ? Side(model, spec.body.slot) : Side();
+  require_frame(info(ConstraintKind::path).name, b);
+  Constraint c;
+  c.kind = ConstraintKind::path;
+  c.breaks = spec.breaks;
+  c.particles.fill(none);
+  c.particles[a_origin] = spec.particle.slot;
+  c.curve.kind = spec.kind, c.curve.closed = spec.closed, c.curve.rounding = spec.rounding;
+  const Vec3 origin = b.is_world() ? Vec3{} : model.centre_of_mass(b.body);
+  std::vector<Vec3> local(points.begin(), points.end());
+  for (Vec3& p : local) p -= origin;
+  const auto curve = make_curve(c.curve, local);  // refuses bad points before anything changes
+  make_frame(model, c, b, b_origin, origin, {});
+  c.curve.first = static_cast<std::uint32_t>(model.curve_points.size());
+  c.curve.count = static_cast<std::uint32_t>(local.size());
+  model.curve_points.insert(model.curve_points.end(), local.begin(), local.end());
+  c.options[1] = spec.slide;
+  if (!spec.closed && std::isinf(spec.slide.lower) && std::isinf(spec.slide.upper))
+    c.options[1].lower = 0, c.options[1].upper = curve->length();
+  c.length = curve->length();
+  c.coordinate[1] = curve->nearest(model.position(spec.particle.slot) - origin);
+  return model.add_constraint(c);
+}
+
+std::uint32_t make_constraint(Model& model, const SurfaceConstraintData& spec) {
+  const Side b = spec.body ? Side(model, spec.body.slot) : Side();
+  require_frame(info(spec.kind).name, b);
+  Constraint c;
+  c.kind = spec.kind;
+  c.breaks = spec.breaks;
+  c.particles.fill(none);
+  c.particles[a_origin] = spec.particle.slot;
+  c.surfaces[1] = spec.surface.data;
+  (void)make_surface(model, c.surfaces[1]);
+  make_frame(model, c, b, b_origin, spec.surface.position, geometry_frame(c.surfaces[1], spec.surface.orientation));
+  return model.add_constraint(c);
+}
+
+std::uint32_t make_constraint(Model& model, const SurfacePairData& spec) {
+  const std::array<Side, 2> sides{Side(model, spec.a.slot), spec.b ? Side(model, spec.b.slot) : Side()};
+  Constraint c;
+  c.kind = spec.kind;
+  c.breaks = spec.breaks;
+  c.particles.fill(none);
+  for (std::size_t i = 0; i < 2; ++i) {
+    require_frame(info(spec.kind).name, sides[i]);
+    c.surfaces[i] = spec.surfaces[i].data;
+    (void)make_surface(model, c.surfaces[i]);
+  }
+  for (std::size_t i = 0; i < 2; ++i)
+    make_frame(model, c, sides[i], i == 0 ? a_origin : b_origin, spec.surfaces[i].position,
+               geometry_frame(c.surfaces[i], spec.surfaces[i].orientation));
   return model.add_constraint(c);
 }
 

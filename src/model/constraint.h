@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "geometry/curve.h"
+#include "geometry/surface.h"
+
 #include <iota/constraints.h>
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,24 +18,28 @@ namespace iota::model {
 class Model;
 
 /// The places of a constraint. A joint needs a frame on each of its sides: an origin and the ends of directions that
-/// start there (axis z, side x, third y). A rod or rope joins the two origins.
+/// start there (axis z, side x, third y). A rod or rope joins the two origins. Curves and surfaces need the whole frame
+/// of what they are fixed in.
 enum Place : std::uint8_t { a_origin, a_axis, a_side, a_third, b_origin, b_axis, b_side, b_third };
 inline constexpr int place_count = 8;
 
 /// What a kind is made of; `constraint_kinds` is the one list. Its rows are in step/constraint_rows.cpp.
 struct ConstraintKindInfo {
   const char* name;
-  bool is_joint = true;  ///< between bodies, with frames; else between two particles
-  bool meet = false;     ///< 3 rows: the origins coincide
-  bool line = false;     ///< 2 rows: the origins lie on one line along the axis
-  bool align = false;    ///< 2 rows: the axis is common
-  bool lock = false;     ///< 3 rows: no relative turning
-  bool cross = false;    ///< 1 row: a's axis at right angles to b's
-  bool angle = false;    ///< has the coordinate
+  /// Between bodies, with frames; between two particles; a particle on a curve or surface; two surfaces.
+  enum class Form : std::uint8_t { joint, distance, path, surface, surface_pair } form = Form::joint;
+  bool meet = false;   ///< 3 rows: the origins coincide
+  bool line = false;   ///< 2 rows: the origins lie on one line along the axis
+  bool align = false;  ///< 2 rows: the axis is common
+  bool lock = false;   ///< 3 rows: no relative turning
+  bool cross = false;  ///< 1 row: a's axis at right angles to b's
+  bool angle = false;  ///< has the coordinate
   bool slide = false;
+  /// One-sided: the multiplier of its row is never negative (1, pulls), never positive (-1, pushes).
+  int sign = 0;
 };
 
-inline constexpr std::array<ConstraintKindInfo, 9> constraint_kinds{{
+inline constexpr std::array<ConstraintKindInfo, 15> constraint_kinds{{
     {.name = "ball", .meet = true},
     {.name = "universal", .meet = true, .cross = true, .angle = true},
     {.name = "revolute", .meet = true, .align = true, .angle = true},
@@ -39,10 +47,32 @@ inline constexpr std::array<ConstraintKindInfo, 9> constraint_kinds{{
     {.name = "prismatic", .line = true, .align = true, .lock = true, .slide = true},
     {.name = "orientation", .align = true, .lock = true},
     {.name = "weld", .meet = true, .align = true, .lock = true},
-    {.name = "rod", .is_joint = false},
-    {.name = "rope", .is_joint = false},
+    {.name = "rod", .form = ConstraintKindInfo::Form::distance},
+    {.name = "rope", .form = ConstraintKindInfo::Form::distance, .sign = 1},
+    {.name = "path", .form = ConstraintKindInfo::Form::path, .slide = true},
+    {.name = "surface", .form = ConstraintKindInfo::Form::surface},
+    {.name = "inside", .form = ConstraintKindInfo::Form::surface, .sign = 1},
+    {.name = "outside", .form = ConstraintKindInfo::Form::surface, .sign = -1},
+    {.name = "touching", .form = ConstraintKindInfo::Form::surface_pair},
+    {.name = "apart", .form = ConstraintKindInfo::Form::surface_pair, .sign = -1},
 }};
 inline const ConstraintKindInfo& info(ConstraintKind kind) { return constraint_kinds[static_cast<std::size_t>(kind)]; }
+
+/// A surface's shape as plain data: the index of its type in SurfaceShape, its sizes, the key of a function.
+struct SurfaceData {
+  std::uint32_t type = 0, padding = 0;
+  Vec3 size;
+  std::uint64_t function = 0;
+};
+
+/// The curve's points are in `Model::curve_points`, in the frame of b.
+struct CurveData {
+  CurveKind kind = CurveKind::spline;
+  std::uint8_t closed = 0;
+  std::array<std::uint8_t, 2> padding{};
+  std::uint32_t first = 0, count = 0, padding2 = 0;
+  double rounding = -1;
+};
 
 /// Refers to particles only, so that restructuring carries it along. Joints make massless particles (markers) of their
 /// own; the world's places are fixed ones.
@@ -60,10 +90,13 @@ struct Constraint {
   std::array<std::uint32_t, place_count> particles{};  ///< `none` where a place is not needed, or in the world
   /// Each particle lists the places that it is at, as links place_count * slot + place.
   std::array<std::uint32_t, place_count> next{}, previous{};
-  std::array<Vec3, 4> fixed{};        ///< the world's places as b's, m
-  std::array<double, 2> scale{1, 1};  ///< length of the directions of a and b, m
-  std::array<double, 2> cosines{};    ///< of the axis and the other's side and third direction
-  double length = 0;                  ///< of a rod or rope, m
+  std::array<Vec3, 4> fixed{};            ///< the world's places as b's, m
+  std::array<double, 2> scale{1, 1};      ///< length of the directions of a and b, m
+  std::array<double, 2> cosines{};        ///< of the axis and the other's side and third direction
+  double length = 0;                      ///< of a rod, rope or path, m
+  CurveData curve;                        ///< of b
+  std::array<SurfaceData, 2> surfaces{};  ///< of a and b
+  Vec3 contact;                           ///< of two surfaces, in a's frame, m
   std::array<CoordinateOptions, 2> options{};
   std::array<double, 2> coordinate{};  ///< after the last step, rad (counted on through full turns) and m
   BreakLimits breaks;
@@ -74,10 +107,50 @@ struct Constraint {
   bool has(int place) const { return particles[place] != 0xffffffff || (in_world >> place & 1); }
 };
 
+/// What a curve or surface is, made from the data: not saved.
+struct ConstraintGeometry {
+  std::shared_ptr<const geometry::Curve> curve;
+  std::array<std::shared_ptr<const geometry::Surface>, 2> surfaces;
+};
+
+/// Specifications of the public header as plain data.
+struct PlacedSurface {
+  SurfaceData data;
+  Vec3 position;
+  Quaternion orientation;
+};
+struct PathData {
+  ParticleId particle;
+  BodyId body;
+  CurveKind kind;
+  bool closed;
+  double rounding;
+  CoordinateOptions slide;
+  BreakLimits breaks;
+};
+struct SurfaceConstraintData {
+  ConstraintKind kind;
+  ParticleId particle;
+  BodyId body;
+  PlacedSurface surface;
+  BreakLimits breaks;
+};
+struct SurfacePairData {
+  ConstraintKind kind;
+  BodyId a, b;
+  std::array<PlacedSurface, 2> surfaces;
+  BreakLimits breaks;
+};
+
 /// Makes a joint with its markers, or a rod or rope. Throws std::invalid_argument, before anything changes, where a body
 /// cannot hold a place or direction that the kind needs.
 std::uint32_t make_constraint(Model&, const JointSpec&);
 std::uint32_t make_constraint(Model&, const DistanceSpec&);
+std::uint32_t make_constraint(Model&, const PathData&, std::span<const Vec3> points);
+std::uint32_t make_constraint(Model&, const SurfaceConstraintData&);
+std::uint32_t make_constraint(Model&, const SurfacePairData&);
+/// The geometry of a constraint from its data; throws std::invalid_argument for sizes and points that make none.
+ConstraintGeometry make_geometry(const Model&, const Constraint&);
 /// With the markers that were made for it.
 void destroy_constraint(Model&, std::uint32_t constraint);
 /// Ends constraints of these bodies that an edit has left without sense: both sides in one rigid body, or one torn apart.

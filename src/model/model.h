@@ -186,6 +186,9 @@ class Model {
   SlotTable<Grip, GripId> grips;
   SlotTable<Closing, Id<Closing>> closings;
   SlotTable<Constraint, ConstraintId> constraints;
+  std::vector<Vec3> curve_points;  ///< of paths, m
+  /// Of function surfaces, by key; not saved.
+  std::map<std::uint64_t, SurfaceFunction> surface_functions;
 
   Vec3 gravity{0, -9.81, 0};
   IntegrationMode mode = IntegrationMode::energy_keeping;
@@ -243,6 +246,8 @@ class Model {
   std::uint64_t bonds_revision = 0;  ///< rises when a bond is added, removed, moved or switched; not saved
   std::uint32_t add_constraint(const Constraint&);
   void remove_constraint(std::uint32_t constraint);  ///< its markers stay
+  const ConstraintGeometry& geometry(std::uint32_t constraint) const { return geometries_[constraint]; }
+  void make_geometries();  ///< anew, after a restore
   /// Bonds, closings and constraints of q become p's; those that would join p to itself are removed.
   void redirect_uses(std::uint32_t q, std::uint32_t p);
   ///@}
@@ -395,6 +400,7 @@ class Model {
     template <class Archive>
     void archive(Archive& ar);
   };
+  std::vector<ConstraintGeometry> geometries_;  // by slot of the constraint; not saved
   void link_place(std::uint32_t constraint, std::uint32_t place);
   void unlink_place(std::uint32_t constraint, std::uint32_t place);
   Survivors<ParticleId> particle_survivors_;
@@ -437,7 +443,7 @@ void Model::archive(Archive& ar) {
   particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), solids.archive(ar);
   articulates.archive(ar);
   laws.archive(ar), bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
-  constraints.archive(ar);
+  constraints.archive(ar), ar.vector(curve_points);
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(time), ar.value(step),
       ar.value(structure_version);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);

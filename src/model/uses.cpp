@@ -90,13 +90,28 @@ std::uint32_t Model::add_constraint(const Constraint& constraint) {
   const std::uint32_t slot = constraints.create(constraint).slot;
   for (std::uint32_t place = 0; place < place_count; ++place)
     if (constraint.particles[place] != none) link_place(slot, place);
+  if (geometries_.size() <= slot) geometries_.resize(slot + 1);
+  geometries_[slot] = make_geometry(*this, constraint);
   return slot;
+}
+
+void Model::make_geometries() {
+  geometries_.assign(constraints.slot_count(), {});
+  constraints.for_each([&](std::uint32_t slot, const Constraint& c) { geometries_[slot] = make_geometry(*this, c); });
 }
 
 void Model::remove_constraint(std::uint32_t slot) {
   for (std::uint32_t place = 0; place < place_count; ++place)
     if (constraints[slot].particles[place] != none) unlink_place(slot, place);
+  const CurveData curve = constraints[slot].curve;
+  geometries_[slot] = {};
   constraints.destroy(slot);
+  if (curve.count == 0) return;
+  const auto first = curve_points.begin() + curve.first;
+  curve_points.erase(first, first + curve.count);
+  constraints.for_each([&](std::uint32_t, Constraint& c) {
+    if (c.curve.first > curve.first) c.curve.first -= curve.count;
+  });
 }
 
 void Model::link_place(std::uint32_t slot, std::uint32_t place) {

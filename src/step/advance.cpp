@@ -57,10 +57,13 @@ StepReport System::Implementation::apply(const step::Step& command) {
   ++model.step;
   stepping = false;
 
-  // 4. Edits: particles that have met, then what was asked for during the step, in order.
+  // 4. Edits: what broke, particles that have met, then what was asked for during the step, in order.
+  break_overloaded(report);
   finish_closings(report);
   apply_queue(report);
 
+  report.warnings.insert(report.warnings.end(), model.notes.begin(), model.notes.end());
+  model.notes.clear();
   report.step = model.step;
   report.time = model.time;
   report.worst_gap = model.worst_gap();

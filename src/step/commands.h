@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "model/constraint.h"
+
 #include <iota/system.h>
 
 #include <array>
@@ -126,6 +128,21 @@ struct CreateJoint {
 struct CreateDistance {
   DistanceSpec spec;
 };
+/// The points of a path travel ahead of it, a few at a time; the first lot starts a new list.
+struct AddCurvePoints {
+  std::array<Vec3, 16> points;
+  std::uint32_t count;
+  bool first;
+};
+struct CreatePath {
+  model::PathData spec;
+};
+struct CreateSurface {
+  model::SurfaceConstraintData spec;
+};
+struct CreateSurfacePair {
+  model::SurfacePairData spec;
+};
 struct SetConstraintActive {
   ConstraintId constraint;
   bool active;
@@ -177,8 +194,9 @@ using Command =
                  SetVelocity, SetMass, ApplyForce, SetActive, SetParameter, CreateSolid, CreateAttachment, SetPose,
                  SetBodyVelocity, SetAngularVelocity, Step, Destroy<BodyId>, Destroy<ParticleId>, Destroy<BondId>,
                  Destroy<LawId>, Destroy<CosmeticBondId>, Destroy<GripId>, CombineParticles, CombineBodies, Separate,
-                 Nail, Release, CreateJoint, CreateDistance, SetConstraintActive, SetCoordinate, SetLength,
-                 SetBreakLimits, Destroy<ConstraintId>>;
+                 Nail, Release, CreateJoint, CreateDistance, AddCurvePoints, CreatePath, CreateSurface,
+                 CreateSurfacePair, SetConstraintActive, SetCoordinate, SetLength, SetBreakLimits,
+                 Destroy<ConstraintId>>;
 
 template <class C>
 inline constexpr bool is_queueable = false;

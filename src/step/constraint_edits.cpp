@@ -35,6 +35,37 @@ void require_limits(const BreakLimits& limits) {
     if (!(value > 0)) throw std::invalid_argument(text(name, " must be above zero, got ", value));
 }
 
+void require_surface(const model::PlacedSurface& surface) {
+  require_finite("position of the surface", surface.position);
+  const Quaternion& q = surface.orientation;
+  const double size = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!(std::abs(size - 1) < 1e-6))
+    throw std::invalid_argument(
+        text("orientation of the surface must be a unit quaternion x y z w, got length ", size));
+}
+
+model::SurfaceData to_data(model::Model& model, std::uint64_t& next_key, const SurfaceShape& shape) {
+  model::SurfaceData data;
+  data.type = static_cast<std::uint32_t>(shape.index());
+  std::visit(
+      [&]<class S>(const S& s) {
+        if constexpr (std::is_same_v<S, Plane>) data.size = s.normal;
+        if constexpr (std::is_same_v<S, Sphere>) data.size = {s.radius, 0, 0};
+        if constexpr (std::is_same_v<S, Ellipsoid>) data.size = s.half_axes;
+        if constexpr (std::is_same_v<S, Box>) data.size = s.size;
+        if constexpr (std::is_same_v<S, Cylinder>) data.size = {s.radius, 0, 0};
+        if constexpr (std::is_same_v<S, Capsule>) data.size = {s.radius, s.length, 0};
+        if constexpr (std::is_same_v<S, Torus>) data.size = {s.radius, s.tube, 0};
+        if constexpr (std::is_same_v<S, SurfaceFunction>) {
+          if (!s.phi) throw std::invalid_argument("a function surface needs a function");
+          data.function = next_key++;
+          model.surface_functions[data.function] = s;
+        }
+      },
+      shape);
+  return data;
+}
+
 }  // namespace
 
 std::uint32_t System::Implementation::require(ConstraintId id) const {
@@ -51,7 +82,8 @@ void System::Implementation::constraint_changed(std::uint32_t constraint) {
 
 ConstraintId System::Implementation::apply(const step::CreateJoint& c) {
   const model::ConstraintKindInfo& kind = model::info(c.spec.kind);
-  if (!kind.is_joint) throw std::invalid_argument(text("a ", kind.name, " joins two particles, not bodies"));
+  if (kind.form != model::ConstraintKindInfo::Form::joint)
+    throw std::invalid_argument(text("a ", kind.name, " joins two particles, not bodies"));
   (void)require(c.spec.a);
   if (c.spec.b) (void)require(c.spec.b);
   if (c.spec.a == c.spec.b)
@@ -69,21 +101,63 @@ ConstraintId System::Implementation::apply(const step::CreateJoint& c) {
                                      kind.angle || rows_of(c.spec.angle) == RowsOf{} ? "slide" : "angle",
                                      " for limits, motors, friction or springs to act on"));
   require_limits(c.spec.breaks);
-  const std::uint32_t slot = make_constraint(model, c.spec);
+  return made(make_constraint(model, c.spec));
+}
+
+ConstraintId System::Implementation::apply(const step::CreateDistance& c) {
+  if (model::info(c.spec.kind).form != model::ConstraintKindInfo::Form::distance)
+    throw std::invalid_argument(text("a ", model::info(c.spec.kind).name, " is no rod or rope"));
+  (void)require(c.spec.p), (void)require(c.spec.q);
+  require_limits(c.spec.breaks);
+  return made(make_constraint(model, c.spec));
+}
+
+void System::Implementation::apply(const step::AddCurvePoints& c) {
+  if (c.first) path_points.clear();
+  path_points.insert(path_points.end(), c.points.begin(),
+                     c.points.begin() + std::min<std::size_t>(c.count, c.points.size()));
+}
+
+ConstraintId System::Implementation::made(std::uint32_t slot) {
+  step::start_contact(model, slot);
   model.edit_energy += model.constraint_energy(slot);
   constraint_changed(slot);
   return model.constraints.id(slot);
 }
 
-ConstraintId System::Implementation::apply(const step::CreateDistance& c) {
-  if (model::info(c.spec.kind).is_joint)
-    throw std::invalid_argument(text("a ", model::info(c.spec.kind).name, " joins bodies, not particles"));
-  (void)require(c.spec.p), (void)require(c.spec.q);
+ConstraintId System::Implementation::apply(const step::CreatePath& c) {
+  const std::uint32_t particle = require(c.spec.particle);
+  if (c.spec.body && require(c.spec.body) == model.particles[particle].body)
+    throw std::invalid_argument(text("path: particle ", particle, " is of the body that holds the path"));
+  for (const Vec3& point : path_points) require_finite("each point of the path", point);
+  require_options("slide", c.spec.slide);
   require_limits(c.spec.breaks);
-  const std::uint32_t slot = make_constraint(model, c.spec);
-  model.edit_energy += model.constraint_energy(slot);
-  constraint_changed(slot);
-  return model.constraints.id(slot);
+  return made(make_constraint(model, c.spec, path_points));
+}
+
+ConstraintId System::Implementation::apply(const step::CreateSurface& c) {
+  const char* const name = model::info(c.spec.kind).name;
+  if (model::info(c.spec.kind).form != model::ConstraintKindInfo::Form::surface)
+    throw std::invalid_argument(text("a ", name, " is not between a particle and a surface"));
+  const std::uint32_t particle = require(c.spec.particle);
+  if (c.spec.body && require(c.spec.body) == model.particles[particle].body)
+    throw std::invalid_argument(text(name, ": particle ", particle, " is of the body that holds the surface"));
+  require_surface(c.spec.surface);
+  require_limits(c.spec.breaks);
+  return made(make_constraint(model, c.spec));
+}
+
+ConstraintId System::Implementation::apply(const step::CreateSurfacePair& c) {
+  const char* const name = model::info(c.spec.kind).name;
+  if (model::info(c.spec.kind).form != model::ConstraintKindInfo::Form::surface_pair)
+    throw std::invalid_argument(text("a ", name, " is not between two surfaces"));
+  (void)require(c.spec.a);
+  if (c.spec.b) (void)require(c.spec.b);
+  if (c.spec.a == c.spec.b)
+    throw std::invalid_argument(text(name, ": needs two bodies, got body ", c.spec.a.slot, " twice"));
+  for (const model::PlacedSurface& surface : c.spec.surfaces) require_surface(surface);
+  require_limits(c.spec.breaks);
+  return made(make_constraint(model, c.spec));
 }
 
 void System::Implementation::apply(const step::SetConstraintActive& c) {
@@ -121,7 +195,7 @@ void System::Implementation::apply(const step::SetCoordinate& c) {
 
 void System::Implementation::apply(const step::SetLength& c) {
   const std::uint32_t slot = require(c.constraint);
-  if (model::info(model.constraints[slot].kind).is_joint)
+  if (model::info(model.constraints[slot].kind).form != model::ConstraintKindInfo::Form::distance)
     throw std::invalid_argument("only rods and ropes have a length");
   require_positive("length", c.value);
   model.constraints[slot].length = c.value;
@@ -140,11 +214,48 @@ void System::Implementation::apply(const step::Destroy<ConstraintId>& c) {
   structure_changed();
 }
 
+void System::Implementation::break_overloaded(StepReport& report) {
+  for (std::uint32_t slot = 0; slot < model.constraints.slot_count(); ++slot) {
+    if (!model.constraints.is_alive(slot)) continue;
+    const model::Constraint& c = model.constraints[slot];
+    if (!c.active || (std::isinf(c.breaks.force) && std::isinf(c.breaks.torque))) continue;
+    const Reaction reaction = calc_reaction(model, slot);
+    const double force = norm(reaction.force), torque = norm(reaction.torque);
+    if (!(force > c.breaks.force || torque > c.breaks.torque)) continue;
+    report.broken.push_back({model.constraints.id(slot), {}, reaction.position, force, torque});
+    apply(SetConstraintActive{model.constraints.id(slot), false});
+    model.constraints[slot].broken = 1;
+  }
+}
+
 // --- the public edge --------------------------------------------------------------------------------------------------
 
 ConstraintId System::create_constraint(const JointSpec& spec) { return implementation_->execute(CreateJoint{spec}); }
 ConstraintId System::create_constraint(const DistanceSpec& spec) {
   return implementation_->execute(CreateDistance{spec});
+}
+ConstraintId System::create_constraint(const PathSpec& spec) {
+  for (std::size_t first = 0; first == 0 || first < spec.points.size(); first += 16) {
+    AddCurvePoints lot{.points = {}, .count = 0, .first = first == 0};
+    while (lot.count < 16 && first + lot.count < spec.points.size())
+      lot.points[lot.count] = spec.points[first + lot.count], ++lot.count;
+    implementation_->execute(lot);
+  }
+  return implementation_->execute(
+      CreatePath{{spec.particle, spec.body, spec.curve, spec.closed, spec.rounding, spec.slide, spec.breaks}});
+}
+ConstraintId System::create_constraint(const SurfaceSpec& spec) {
+  const auto data = to_data(implementation_->model, implementation_->next_script, spec.surface.shape);
+  return implementation_->execute(CreateSurface{
+      {spec.kind, spec.particle, spec.body, {data, spec.surface.position, spec.surface.orientation}, spec.breaks}});
+}
+ConstraintId System::create_constraint(const SurfacePairSpec& spec) {
+  CreateSurfacePair command{{spec.kind, spec.a, spec.b, {}, spec.breaks}};
+  const std::array<const Surface*, 2> surfaces{&spec.surface_a, &spec.surface_b};
+  for (std::size_t i = 0; i < 2; ++i)
+    command.spec.surfaces[i] = {to_data(implementation_->model, implementation_->next_script, surfaces[i]->shape),
+                                surfaces[i]->position, surfaces[i]->orientation};
+  return implementation_->execute(command);
 }
 void System::destroy(ConstraintId id) { implementation_->execute(step::Destroy<ConstraintId>{id}); }
 void System::set_active(ConstraintId id, bool active) { implementation_->execute(SetConstraintActive{id, active}); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace iota::step {
 
@@ -19,11 +20,22 @@ constexpr int angle = static_cast<int>(JointCoordinate::angle), slide = static_c
 template <class Sink>
 class Expansion {
  public:
-  Expansion(const Constraint& c, const PlaceArms& places, Sink& sink) : c_(c), places_(places), sink_(sink) {}
+  Expansion(const Constraint& c, const ConstraintGeometry& geometry, const PlaceArms& places, Sink& sink)
+      : c_(c), geometry_(geometry), places_(places), sink_(sink) {}
 
   void run() {
+    using Form = ConstraintKindInfo::Form;
     const ConstraintKindInfo& kind = info(c_.kind);
-    if (!kind.is_joint) return distance();
+    switch (kind.form) {
+      case Form::joint: return joint(kind);
+      case Form::distance: return distance();
+      case Form::path: hold(curve_row()); return coordinate(slide, station_row());
+      case Form::surface: return hold(surface_row());
+      case Form::surface_pair: return hold(contact_row());
+    }
+  }
+
+  void joint(const ConstraintKindInfo& kind) {
     if (kind.meet) meet();
     if (kind.line) line();
     if (kind.align) align();
@@ -61,7 +73,57 @@ class Expansion {
     return row;
   }
 
+  solver::StationConstraint station_row() const {
+    solver::StationConstraint row;
+    place_in_frame(row);
+    row.curve = geometry_.curve.get();
+    row.parameter = c_.coordinate[slide];
+    row.reference = 0.1 * c_.length;
+    return row;
+  }
+
+  solver::SurfacePairConstraint contact_row() const {
+    solver::SurfacePairConstraint row;
+    sides(row, {a_origin, a_axis, a_side, a_third}, {b_origin, b_axis, b_side, b_third});
+    add(row, 0, b_origin, 1), add(row, 0, a_origin, -1);
+    frame(row, 1, a_origin), frame(row, 4, b_origin);
+    row.surface_a = geometry_.surfaces[0].get(), row.surface_b = geometry_.surfaces[1].get();
+    row.reference = std::min(row.surface_a->size(), row.surface_b->size());
+    row.contact = c_.contact;
+    return row;
+  }
+
  private:
+  solver::CurveConstraint curve_row() const {
+    solver::CurveConstraint row;
+    place_in_frame(row);
+    row.curve = geometry_.curve.get();
+    row.reference = 0.1 * c_.length;
+    return row;
+  }
+  solver::SurfaceConstraint surface_row() const {
+    solver::SurfaceConstraint row;
+    place_in_frame(row);
+    row.surface = geometry_.surfaces[1].get();
+    return row;
+  }
+  /// a's place against b's frame.
+  template <class Row>
+  void place_in_frame(Row& row) const {
+    sides(row, {a_origin}, {b_origin, b_axis, b_side, b_third});
+    add(row, 0, a_origin, 1), add(row, 0, b_origin, -1);
+    frame(row, 1, b_origin);
+  }
+  /// The unit axes x, y, z of a frame as three arms.
+  template <class Row>
+  void frame(Row& row, int arm, int origin) const {
+    const double scale = 1 / c_.scale[origin == b_origin];
+    for (const int place : {origin + 2, origin + 3, origin + 1}) {
+      add(row, arm, place, scale), add(row, arm, origin, -scale);
+      ++arm;
+    }
+  }
+
   template <class Row>
   void hold(const Row& row) {
     sink_(row, RowUse{Role::hold, 0, next_});
@@ -182,6 +244,7 @@ class Expansion {
   }
 
   const Constraint& c_;
+  const ConstraintGeometry& geometry_;
   const PlaceArms& places_;
   Sink& sink_;
   std::uint8_t next_ = 0;
@@ -214,6 +277,30 @@ void set_target(solver::BilinearConstraint& row, const Constraint&, double targe
 template <class Row>
 void set_target(Row&, const Constraint&, double) {}
 
+void set_target(solver::StationConstraint& row, const Constraint& c, double target) {
+  row.target_start = row.target = target;
+  row.parameter = c.coordinate[slide];
+}
+
+/// What a constraint keeps of the rows that hold it: multipliers, and where it is on a curve or between surfaces. Those on
+/// a curve are kept as a force, whatever normals the row has.
+template <class Row>
+void load_held(Row& row, const Constraint& c, RowUse use, double* multipliers) {
+  std::copy_n(c.multipliers.begin() + use.first, Row::rows, multipliers);
+  if constexpr (std::is_same_v<Row, solver::SurfacePairConstraint>) row.contact = c.contact;
+  if constexpr (std::is_same_v<Row, solver::CurveConstraint>)
+    row.start(c.coordinate[slide], {c.multipliers[0], c.multipliers[1], c.multipliers[2]}, multipliers);
+}
+template <class Row>
+void save_held(const Row& row, Constraint& c, RowUse use, const double* multipliers) {
+  std::copy_n(multipliers, Row::rows, c.multipliers.begin() + use.first);
+  if constexpr (std::is_same_v<Row, solver::SurfacePairConstraint>) c.contact = row.contact;
+  if constexpr (std::is_same_v<Row, solver::CurveConstraint>) {
+    const Vec3 force = row.force(multipliers);
+    c.multipliers[0] = force.x, c.multipliers[1] = force.y, c.multipliers[2] = force.z;
+  }
+}
+
 void set_length(solver::DistanceConstraint& row, double length) { row.length = length; }
 void set_length(solver::BilinearConstraint& row, double length) { row.product = length * length; }
 template <class Row>
@@ -245,9 +332,9 @@ void ConstraintRows::add(const Model& model, std::uint32_t slot, const PlaceArms
     const auto item = static_cast<std::uint32_t>(pool.items.size());
     std::get<Uses<Row>>(uses_).list.push_back({slot, item, use});
     pool.items.push_back(row);
-    if (use.role != Role::hold || model.constraints[slot].kind == ConstraintKind::rope) (void)pool.law(item);
+    if (use.role != Role::hold || info(model.constraints[slot].kind).sign != 0) (void)pool.law(item);
   };
-  Expansion<decltype(sink)>(model.constraints[slot], places, sink).run();
+  Expansion<decltype(sink)>(model.constraints[slot], model.geometry(slot), places, sink).run();
 }
 
 void ConstraintRows::load(const Model& model, solver::Problem& problem) const {
@@ -256,9 +343,11 @@ void ConstraintRows::load(const Model& model, solver::Problem& problem) const {
       const Constraint& c = model.constraints[slot];
       C& row = pool.items[item];
       if (use.role == Role::hold) {
-        std::copy_n(c.multipliers.begin() + use.first, C::rows, pool.multiplier(item));
-        if (!info(c.kind).is_joint) set_length(row, c.length);
-        if (c.kind == ConstraintKind::rope) *pool.law(item) = {.lower = 0};
+        load_held(row, c, use, pool.multiplier(item));
+        const ConstraintKindInfo& kind = info(c.kind);
+        if (kind.form == ConstraintKindInfo::Form::distance) set_length(row, c.length);
+        if (kind.sign > 0) *pool.law(item) = {.lower = 0};
+        if (kind.sign < 0) *pool.law(item) = {.upper = 0};
         continue;
       }
       const CoordinateOptions& o = c.options[use.coordinate];
@@ -292,7 +381,7 @@ void ConstraintRows::store(Model& model, const solver::Problem& problem) const {
         c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1] = *pool.multiplier(item);
         continue;
       }
-      std::copy_n(pool.multiplier(item), C::rows, c.multipliers.begin() + use.first);
+      save_held(pool.items[item], c, use, pool.multiplier(item));
       double g[C::rows];
       pool.items[item].value(problem.position.data(), 1, g);
       for (int r = 0; r < C::rows; ++r) {
@@ -320,10 +409,13 @@ Reaction calc_reaction(const Model& model, std::uint32_t slot) {
   Reaction reaction;
   reaction.position = places.position[a_origin];
   auto sink = [&]<class Row>(const Row& row, RowUse use) {
-    const double* const multipliers = use.role == Role::hold
-                                          ? c.multipliers.data() + use.first
-                                          : &c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
-    const solver::Gradients<Row> gradients(row, places.position.data(), 1);
+    Row loaded = row;
+    double multipliers[Row::rows];
+    if (use.role == Role::hold)
+      load_held(loaded, c, use, multipliers);
+    else
+      multipliers[0] = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
+    const solver::Gradients<Row> gradients(loaded, places.position.data(), 1);
     for (int i = 0; i < row.node_count(); ++i) {
       if (row.nodes[i] >= b_origin) continue;
       Vec3 direction[Row::rows], force;
@@ -333,7 +425,7 @@ Reaction calc_reaction(const Model& model, std::uint32_t slot) {
       reaction.torque += cross(places.position[row.nodes[i]] - reaction.position, force);
     }
   };
-  Expansion<decltype(sink)>(c, places.arms, sink).run();
+  Expansion<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
   return reaction;
 }
 
@@ -341,7 +433,7 @@ std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot
   const Constraint& c = model.constraints[slot];
   const Places places(model, c);
   auto ignore = [](const auto&, RowUse) {};
-  const Expansion<decltype(ignore)> expansion(c, places.arms, ignore);
+  const Expansion<decltype(ignore)> expansion(c, model.geometry(slot), places.arms, ignore);
   const auto read = [&](const auto& row) {
     using Row = std::remove_cvref_t<decltype(row)>;
     double value = 0, speed = 0;
@@ -354,11 +446,24 @@ std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot
     }
     return std::pair{value, speed};
   };
-  if (which == JointCoordinate::slide) return read(expansion.slide_row());
+  if (which == JointCoordinate::slide)
+    return info(c.kind).form == ConstraintKindInfo::Form::path ? read(expansion.station_row())
+                                                               : read(expansion.slide_row());
   if (!Expansion<decltype(ignore)>::has_angle(c)) return {0, 0};
   solver::AngleConstraint row = expansion.angle_row();
   set_target(row, c, 0);
   return read(row);
+}
+
+void start_contact(Model& model, std::uint32_t slot) {
+  Constraint& c = model.constraints[slot];
+  if (info(c.kind).form != ConstraintKindInfo::Form::surface_pair) return;
+  const Places places(model, c);
+  auto ignore = [](const auto&, RowUse) {};
+  solver::SurfacePairConstraint row =
+      Expansion<decltype(ignore)>(c, model.geometry(slot), places.arms, ignore).contact_row();
+  row.start(places.position.data(), 1);
+  c.contact = row.contact;
 }
 
 }  // namespace iota::step

@@ -56,6 +56,9 @@ RowsOf rows_of(const CoordinateOptions&);
 /// Makes the model's coordinates of a constraint those of the present places.
 void refresh_coordinates(model::Model&, std::uint32_t constraint);
 
+/// Finds where two surfaces are nearest, for those that a constraint joins.
+void start_contact(model::Model&, std::uint32_t constraint);
+
 /// Force and torque of a constraint on its side a, about `position`, from the last step's multipliers at the present
 /// places.
 struct Reaction {

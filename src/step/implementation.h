@@ -31,6 +31,7 @@ struct System::Implementation {
   std::uint64_t next_script = 1;
   std::uint64_t scripts_saved_below = 0;  // keys that the latest snapshot may name
   std::map<std::uint64_t, Mesh> meshes;   // for drawing, by content; not part of the saved state either
+  std::vector<Vec3> path_points;          // of a path that is about to be made
   bool stepping = false;
   std::vector<step::Command> queue;  // edits asked for during a step
   std::optional<Recording> recording;
@@ -71,6 +72,10 @@ struct System::Implementation {
   void apply(const step::SetActive&);
   ConstraintId apply(const step::CreateJoint&);
   ConstraintId apply(const step::CreateDistance&);
+  void apply(const step::AddCurvePoints&);
+  ConstraintId apply(const step::CreatePath&);
+  ConstraintId apply(const step::CreateSurface&);
+  ConstraintId apply(const step::CreateSurfacePair&);
   void apply(const step::SetConstraintActive&);
   void apply(const step::SetCoordinate&);
   void apply(const step::SetLength&);
@@ -128,6 +133,7 @@ struct System::Implementation {
   /// What comes after making or changing a constraint: its island is made anew, its velocities are projected before the
   /// next step, and what is apart closes there.
   void constraint_changed(std::uint32_t constraint);
+  ConstraintId made(std::uint32_t constraint);
   ParticleId make_marker(std::uint32_t body, const Vec3& position);
   /// Ends a closing before its particles have met.
   RestructureReport call_off(std::uint32_t closing);
@@ -145,6 +151,8 @@ struct System::Implementation {
   void switch_off(std::uint32_t bond, const std::string& why, StepReport&);
   ///@}
   void finish_closings(StepReport&);
+  /// Switches off what the step has loaded beyond its limits.
+  void break_overloaded(StepReport&);
   void apply_queue(StepReport&);
   void structure_changed() { ++model.structure_version; }
   void jolt(std::uint32_t particle);

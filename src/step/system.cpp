@@ -314,7 +314,9 @@ void System::Implementation::restore(const Snapshot& snapshot) {
   restored.archive(content_reader);
   if (!content_reader.ok() || !content_reader.at_end())
     throw std::invalid_argument("restore: the snapshot is of another build of Iota");
+  restored.surface_functions = std::move(model.surface_functions);
   model = std::move(restored);
+  model.make_geometries();
   islands.forget();
   held_forces.forget();
   oriented_step = ~0ull;

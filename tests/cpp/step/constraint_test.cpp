@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace iota {
 namespace {
@@ -297,6 +298,220 @@ TEST(Spring, a_torsion_spring_has_its_period) {
   run(system, 2, 1e-3, [&](const StepReport& report) {
     EXPECT_NEAR(system.state(joint).coordinate[0], 0.3 - 0.3 * std::cos(omega * report.time), 1e-3);
   });
+}
+
+std::vector<Vec3> circle(double radius, int count) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < count; ++i)
+    points.push_back({radius * std::sin(2 * pi * i / count), -radius * std::cos(2 * pi * i / count), 0});
+  return points;
+}
+
+TEST(Path, a_bead_on_a_vertical_circle_is_a_pendulum) {
+  System system;
+  const BodyId bead = system.create_body();
+  const double amplitude = 0.2;
+  const ParticleId p = system.create_particle(bead, {std::sin(amplitude), -std::cos(amplitude), 0}, 0.5);
+  const ConstraintId path = system.create_constraint(PathSpec{.particle = p, .points = circle(1, 64), .closed = true});
+  const double period = 2 * pi / std::sqrt(g) * (1 + amplitude * amplitude / 16);
+  double last = amplitude, crossings = 0, first = 0, latest = 0;
+  run(system, 8, 1e-3, [&](const StepReport& report) {
+    const Vec3 x = system.position(p);
+    EXPECT_NEAR(norm(x), 1, 1e-6) << "as round as the spline through 64 points";
+    if (last < 0 && x.x >= 0) {
+      latest = report.time - 1e-3 * x.x / (x.x - last);
+      if (++crossings == 1) first = latest;
+    }
+    last = x.x;
+  });
+  ASSERT_GT(crossings, 2);
+  EXPECT_NEAR((latest - first) / (crossings - 1), period, 2e-4 * period);
+  const ConstraintState state = system.state(path);
+  const Vec3 x = system.position(p), v = system.velocity(p);
+  EXPECT_NEAR(norm(state.force), 0.5 * (g * -x.y + dot(v, v)), 0.02) << "normal force";
+  EXPECT_NEAR(std::abs(state.speed[1]), norm(v), 1e-5);
+}
+
+TEST(Path, a_bead_on_a_parabola_keeps_its_energy_and_stops_at_its_end) {
+  System system;
+  std::vector<Vec3> points;
+  for (int i = -10; i <= 10; ++i) points.push_back({0.1 * i, 0.01 * i * i, 0.2});
+  const BodyId bead = system.create_body();
+  const ParticleId p = system.create_particle(bead, {-0.5, 0.25, 0.2}, 2);
+  const ConstraintId path = system.create_constraint(PathSpec{.particle = p, .points = points});
+  run(system, 2, 1.0 / 240, [&](const StepReport& report) {
+    const Vec3 x = system.position(p);
+    EXPECT_NEAR(x.y, x.x * x.x, 2e-3);
+    EXPECT_NEAR(report.energy.total(), 2 * g * 0.25, 5e-3);
+  });
+  EXPECT_GT(system.state(path).coordinate[1], 0);
+  system.set_velocity(p, {20, 0, 0});
+  run(system, 1, 1.0 / 240, [&](const StepReport&) { EXPECT_LT(system.position(p).x, 1 + 1e-6); });
+}
+
+TEST(Path, a_corner_of_a_polyline_is_no_hiccup) {
+  System system{SystemOptions{.gravity = {}}};
+  const ParticleId p = system.create_particle(system.create_body(), {0.5, 0, 0}, 1, {2, 0, 0});
+  system.create_constraint(PathSpec{.particle = p,
+                                    .curve = CurveKind::polyline,
+                                    .points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                                    .closed = true});
+  run(system, 5, 1.0 / 120, [&](const StepReport& report) {
+    EXPECT_EQ(report.fallbacks, 0);
+    EXPECT_NEAR(norm(system.velocity(p)), 2, 0.02);
+  });
+}
+
+TEST(Path, moves_with_its_body_and_pushes_it) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId rail = make_block(system, {0, 0, 0}, {2, 0.1, 0.1}, 3);
+  const ParticleId p = system.create_particle(system.create_body(), {-1, 0, 0}, 1, {1, 0.5, 0.2});
+  const ConstraintId path = system.create_constraint(PathSpec{.particle = p,
+                                                              .body = rail,
+                                                              .points = {{-1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}},
+                                                              .slide = {.motor_speed = 1, .motor_max = 0.1}});
+  const Vec3 momentum = system.momentum(), spin = system.angular_momentum();
+  run(system, 1, 1.0 / 120, [&](const StepReport&) { EXPECT_LT(system.state(path).gap, 1e-8); });
+  EXPECT_NEAR(norm(system.momentum() - momentum), 0, 1e-10);
+  EXPECT_NEAR(norm(system.angular_momentum() - spin), 0, 1e-3) << "a path's normals are no quadratic: second order";
+}
+
+TEST(Surface, a_point_on_a_sphere_is_a_spherical_pendulum) {
+  System system;
+  const double polar = 0.8, speed = std::sqrt(g * std::sin(polar) * std::tan(polar));  // a conical one
+  const ParticleId p =
+      system.create_particle(system.create_body(), {std::sin(polar), -std::cos(polar), 0}, 1, {0, 0, speed});
+  system.create_constraint(SurfaceSpec{.particle = p, .surface = {Sphere{1}, {}, {}}});
+  run(system, 4, 1.0 / 240, [&](const StepReport&) {
+    EXPECT_NEAR(norm(system.position(p)), 1, 1e-8);
+    EXPECT_NEAR(system.position(p).y, -std::cos(polar), 2e-4);
+  });
+}
+
+TEST(Surface, every_shape_holds_a_point_where_it_says) {
+  const struct {
+    SurfaceShape shape;
+    Vec3 on;  // in the shape's frame
+  } cases[] = {
+      {Plane{{0, 0, 1}}, {3, 2, 0}},     {Sphere{0.5}, {0, 0.5, 0}},
+      {Ellipsoid{{1, 2, 3}}, {0, 0, 3}}, {Box{{2, 4, 6}}, {0.1, 0.2, 3}},
+      {Cylinder{0.5, 1}, {7, 0, 0.5}},   {Capsule{0.5, 1}, {1, 0, 0}},
+      {Torus{1, 0.25}, {0, 1.25, 0}},    {SurfaceFunction{[](const Vec3& r) { return r.y - r.x * r.x; }}, {1, 1, 0}}};
+  const Quaternion turn{0, 0, std::sin(0.3), std::cos(0.3)};  // by 0.6 about z
+  for (const auto& [shape, on] : cases) {
+    System system{SystemOptions{.gravity = {}}};
+    const Vec3 at{1, 2, 3};
+    const Vec3 x{std::cos(0.6) * on.x - std::sin(0.6) * on.y, std::sin(0.6) * on.x + std::cos(0.6) * on.y, on.z};
+    const ParticleId p = system.create_particle(system.create_body(), at + x);
+    const ConstraintId c = system.create_constraint(SurfaceSpec{.particle = p, .surface = {shape, at, turn}});
+    run(system, 0.1, 1.0 / 60);
+    EXPECT_LT(system.state(c).gap, 1e-9) << shape.index();
+    EXPECT_NEAR(norm(system.position(p) - at - x), 0, 1e-6) << shape.index() << ": it was there already";
+  }
+}
+
+TEST(Inside, a_ball_in_a_bowl_falls_meets_it_without_bouncing_and_slides_to_rest_at_the_bottom) {
+  System system{SystemOptions{.damping = 0.5}};
+  const ParticleId p = system.create_particle(system.create_body(), {0.5, 0, 0});
+  const ConstraintId bowl = system.create_constraint(
+      SurfaceSpec{.kind = ConstraintKind::inside, .particle = p, .surface = {Sphere{1}, {}, {}}});
+  const double fall = std::sqrt(2 * std::sqrt(0.75) / g);
+  run(system, 20, 1.0 / 120, [&](const StepReport& report) {
+    EXPECT_LT(norm(system.position(p)), 1 + 1e-7);
+    if (report.time < 0.9 * fall) {
+      EXPECT_NEAR(system.position(p).x, 0.5, 1e-9);
+    }
+    if (report.time > 1.1 * fall && report.time < 3 * fall) {
+      const Vec3 x = system.position(p);
+      EXPECT_GT(norm(x), 0.99) << "no bounce";
+    }
+  });
+  EXPECT_NEAR(system.position(p).y, -1, 1e-3);
+  EXPECT_NEAR(system.state(bowl).force.y, g, 1e-2);
+}
+
+TEST(Outside, a_point_rolls_off_a_ball_where_it_should) {
+  // It leaves a smooth sphere at a third of the radius down.
+  System system;
+  const ParticleId p = system.create_particle(system.create_body(), {0.02, std::sqrt(1 - 4e-4), 0});
+  const ConstraintId ball = system.create_constraint(
+      SurfaceSpec{.kind = ConstraintKind::outside, .particle = p, .surface = {Sphere{1}, {}, {}}});
+  double left_at = 0;
+  run(system, 2, 1e-3, [&](const StepReport&) {
+    EXPECT_GT(norm(system.position(p)), 1 - 1e-8);
+    if (left_at == 0 && norm(system.state(ball).force) == 0 && system.velocity(p).y < -0.1)
+      left_at = system.position(p).y;
+  });
+  EXPECT_NEAR(left_at, 2.0 / 3, 0.01);
+}
+
+TEST(SurfacePair, a_ball_rests_on_a_plane_and_another_on_it) {
+  System system{SystemOptions{.damping = 1}};
+  const auto ball = [&](double y) { return make_block(system, {0, y, 0}, {0.3, 0.3, 0.3}, 1); };
+  const BodyId lower = ball(0.6), upper = ball(1.7);
+  const ConstraintId floor = system.create_constraint(SurfacePairSpec{
+      .a = lower, .b = {}, .surface_a = {Sphere{0.5}, {0, 0.6, 0}, {}}, .surface_b = {Plane{}, {}, {}}});
+  const ConstraintId contact = system.create_constraint(SurfacePairSpec{.a = upper,
+                                                                        .b = lower,
+                                                                        .surface_a = {Sphere{0.5}, {0, 1.7, 0}, {}},
+                                                                        .surface_b = {Sphere{0.5}, {0, 0.6, 0}, {}}});
+  run(system, 4, 1.0 / 120);
+  EXPECT_NEAR(system.centre_of_mass(lower).y, 0.5, 1e-6);
+  EXPECT_NEAR(system.centre_of_mass(upper).y, 1.5, 1e-6);
+  EXPECT_NEAR(system.state(floor).force.y, 2 * g, 1e-4);
+  EXPECT_NEAR(system.state(contact).force.y, g, 1e-4);
+}
+
+TEST(SurfacePair, a_ball_held_to_a_slope_slides_down_it) {
+  System system;
+  const BodyId ball = make_block(system, {0, 0.5, 0}, {0.3, 0.3, 0.3}, 1);
+  const double slope = 0.4;
+  const ConstraintId contact = system.create_constraint(
+      SurfacePairSpec{.kind = ConstraintKind::touching,
+                      .a = ball,
+                      .b = {},
+                      .surface_a = {Sphere{0.5}, {0, 0.5, 0}, {}},
+                      .surface_b = {Plane{{std::sin(slope), std::cos(slope), 0}}, {0, 0, 0}, {}}});
+  run(system, 1, 1.0 / 240, [&](const StepReport&) { EXPECT_LT(system.state(contact).gap, 1e-8); });
+  EXPECT_NEAR(norm(system.momentum()), g * std::sin(slope), 0.01);
+  EXPECT_NEAR(norm(system.state(contact).force), g * std::cos(slope), 1e-3);
+}
+
+TEST(Break, a_rope_snaps_when_its_load_is_too_much_and_the_report_names_it) {
+  System system;
+  const BodyId anchor = system.create_body({.kind = BodyKind::static_}), ball = system.create_body();
+  const ParticleId p = system.create_particle(anchor, {}), q = system.create_particle(ball, {0, -1, 0}, 2);
+  const ConstraintId rope = system.create_constraint(
+      DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .breaks = {.force = 2.1 * g}});
+  run(system, 0.5, 1.0 / 120, [&](const StepReport& report) { EXPECT_TRUE(report.broken.empty()); });
+  system.apply_force(q, {0, -1, 0});
+  EXPECT_TRUE(system.step(1.0 / 120).broken.empty());
+  system.apply_force(q, {0, -4, 0});
+  const StepReport report = system.step(1.0 / 120);
+  ASSERT_EQ(report.broken.size(), 1u);
+  EXPECT_EQ(report.broken[0].constraint, rope);
+  EXPECT_NEAR(report.broken[0].force, 2 * g + 4, 2) << "a mean of this step's and the last one's";
+  EXPECT_TRUE(system.state(rope).broken);
+  run(system, 0.5, 1.0 / 120);
+  EXPECT_LT(system.position(q).y, -2);
+  system.set_length(rope, 3), system.set_active(rope, true);
+  run(system, 2, 1.0 / 120);
+  EXPECT_FALSE(system.state(rope).broken && norm(system.position(q)) < 3.1) << "it holds again, or snaps again";
+}
+
+TEST(Break, a_weld_gives_way_to_a_moment) {
+  System system;
+  const BodyId beam = make_block(system, {0.5, 0, 0}, {1, 0.1, 0.1}, 1);
+  const ConstraintId weld = system.create_constraint(
+      JointSpec{.kind = ConstraintKind::weld, .a = beam, .at = {}, .breaks = {.torque = 0.6 * g}});
+  EXPECT_TRUE(system.step(1.0 / 120).broken.empty());
+  for (int i = 0; i < 10; ++i) (void)system.step(1.0 / 120);
+  ASSERT_FALSE(system.state(weld).broken);
+  system.set_mass(system.particles(beam)[7], 1);  // 0.625 kg m more
+  int broken = 0;
+  for (int i = 0; i < 10; ++i) broken += static_cast<int>(system.step(1.0 / 120).broken.size());
+  EXPECT_EQ(broken, 1);
+  EXPECT_FALSE(system.state(weld).active);
 }
 
 }  // namespace
