@@ -118,6 +118,7 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
   std::vector<std::uint32_t> list;
   entries_.clear();
   pair_targets_.clear();
+  given_up_ = 0;
   for (std::uint32_t v = 0; v < vertex_count; ++v) {
     list.clear();
     const auto add = [&](std::uint32_t later, std::uint8_t width) {
@@ -152,38 +153,51 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
   // 5. Where each pair of entries of a front adds its product.
   for (Vertex& vertex : vertices_) {
     vertex.first_pair = static_cast<std::uint32_t>(pair_targets_.size());
-    for (std::uint32_t a = 0; a < vertex.entry_count; ++a) {
-      const std::uint32_t va = entries_[vertex.first_entry + a].vertex;
-      pair_targets_.push_back(vertices_[va].diagonal);
-      for (std::uint32_t b = a + 1; b < vertex.entry_count; ++b)
-        pair_targets_.push_back(entries_[find_entry(va, entries_[vertex.first_entry + b].vertex)].offset);
-    }
+    set_targets(vertex);
   }
 
   // 6. Where each constraint writes its gradients.
-  constraint_slots_.assign(graph.constraints.size(), {});
+  constraint_slots_.clear();
   for (std::uint32_t c = 0; c < graph.constraints.size(); ++c) {
     const auto& constraint = graph.constraints[c];
     const std::uint32_t home = homes[c].own ? own_vertex[c] : node_vertex_[homes[c].node];
-    const Vertex& vertex = vertices_[home];
-    const std::uint8_t row = homes[c].row, pivot = vertex.pivot;
-    ConstraintSlot& slot = constraint_slots_[c];
-    slot.unknown = vertex.unknown + row;
-    slot.diagonal = vertex.diagonal + row * pivot + row;
-    slot.stride = pivot;
-    for (int i = 0; i < constraint.node_count; ++i) {
-      const std::uint32_t node = node_vertex_[constraint.nodes[i]];
-      GradientSlot& g = slot.gradients[i];
-      if (node == home) {
-        g = {vertex.diagonal + row * pivot, pivot, 1, true, true, vertex.diagonal + row, pivot};
-      } else if (node > home) {
-        g = {entries_[find_entry(home, node)].offset + row, 1, pivot, false, false, 0, pivot};
-      } else {
-        const std::uint8_t node_pivot = vertices_[node].pivot;
-        g = {entries_[find_entry(node, home)].offset + row * node_pivot, node_pivot, 1, false, true, 0, node_pivot};
-      }
+    constraint_slots_.push_back(calc_slot({constraint.nodes.data(), constraint.node_count}, home, homes[c].row));
+  }
+}
+
+void BlockPattern::set_targets(const Vertex& vertex) {
+  std::size_t at = vertex.first_pair;
+  pair_targets_.resize(
+      std::max<std::size_t>(pair_targets_.size(), at + std::size_t{vertex.entry_count} * (vertex.entry_count + 1) / 2));
+  for (std::uint32_t a = 0; a < vertex.entry_count; ++a) {
+    const std::uint32_t va = entries_[vertex.first_entry + a].vertex;
+    pair_targets_[at++] = vertices_[va].diagonal;
+    for (std::uint32_t b = a + 1; b < vertex.entry_count; ++b)
+      pair_targets_[at++] = entries_[find_entry(va, entries_[vertex.first_entry + b].vertex)].offset;
+  }
+}
+
+BlockPattern::ConstraintSlot BlockPattern::calc_slot(std::span<const std::uint32_t> nodes, std::uint32_t home,
+                                                     std::uint8_t row) const {
+  const Vertex& vertex = vertices_[home];
+  const std::uint8_t pivot = vertex.pivot;
+  ConstraintSlot slot;
+  slot.unknown = vertex.unknown + row;
+  slot.diagonal = vertex.diagonal + row * pivot + row;
+  slot.stride = pivot;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::uint32_t node = node_vertex_[nodes[i]];
+    GradientSlot& g = slot.gradients[i];
+    if (node == home) {
+      g = {vertex.diagonal + row * pivot, pivot, 1, true, true, vertex.diagonal + row, pivot};
+    } else if (node > home) {
+      g = {entries_[find_entry(home, node)].offset + row, 1, pivot, false, false, 0, pivot};
+    } else {
+      const std::uint8_t node_pivot = vertices_[node].pivot;
+      g = {entries_[find_entry(node, home)].offset + row * node_pivot, node_pivot, 1, false, true, 0, node_pivot};
     }
   }
+  return slot;
 }
 
 std::uint32_t BlockPattern::find_entry(std::uint32_t vertex, std::uint32_t later_vertex) const {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -20,8 +21,20 @@ struct Twin {
   std::vector<double> right_side;
 
   Twin(const CouplingGraph& graph, bool symmetric, std::mt19937& random) {
-    std::uniform_real_distribution<double> number(-1, 1);
     pattern.analyse(graph);
+    std::vector<BlockPattern::ConstraintSlot> slots;
+    for (std::size_t k = 0; k < graph.constraints.size(); ++k) slots.push_back(pattern.constraint_slot(k));
+    fill(graph, slots, symmetric, random);
+  }
+  Twin(const BlockPattern& given, const CouplingGraph& graph, const std::vector<BlockPattern::ConstraintSlot>& slots,
+       bool symmetric, std::mt19937& random)
+      : pattern(given) {
+    fill(graph, slots, symmetric, random);
+  }
+
+  void fill(const CouplingGraph& graph, const std::vector<BlockPattern::ConstraintSlot>& slots, bool symmetric,
+            std::mt19937& random) {
+    std::uniform_real_distribution<double> number(-1, 1);
     factor.reset(pattern);
     factor.clear(symmetric);
     const std::size_t n = pattern.unknown_count();
@@ -46,7 +59,7 @@ struct Twin {
     for (auto [a, b] : graph.couplings) add_block(a, b);
     for (std::size_t k = 0; k < graph.constraints.size(); ++k) {
       const auto& constraint = graph.constraints[k];
-      const auto& slot = pattern.constraint_slot(k);
+      const auto& slot = slots[k];
       for (int r = 0; r < constraint.rows; ++r) {
         factor.lower()[slot.diagonal + r * (slot.stride + 1)] = -0.01;
         dense[slot.unknown + r][slot.unknown + r] = -0.01;
@@ -66,6 +79,8 @@ struct Twin {
     }
     right_side.resize(n);
     for (double& v : right_side) v = number(random);
+    for (std::size_t i = 0; i < n; ++i)  // unknowns that an adapted pattern has given up
+      if (dense[i][i] == 0) dense[i][i] = 1, right_side[i] = 0;
   }
 
   std::vector<double> solve_densely() const {
@@ -166,6 +181,120 @@ TEST(Ordering, is_a_permutation_of_any_graph) {
     std::sort(order.begin(), order.end());
     for (std::uint32_t i = 0; i < graph.node_count; ++i) ASSERT_EQ(order[i], i);
   }
+}
+
+/// A tree of nodes with a row on each edge, and what a cut or a merger of nodes changes in it.
+struct ChangingTree {
+  CouplingGraph graph;
+  BlockPattern pattern;
+  std::vector<BlockPattern::ConstraintSlot> slots;
+  int adapted = 0;
+
+  ChangingTree(std::mt19937& random, std::uint32_t nodes) {
+    graph.node_count = nodes;
+    for (std::uint32_t n = 1; n < nodes; ++n) {
+      const std::uint32_t reach = std::min<std::uint32_t>(n, 3);
+      const std::uint32_t to = n - 1 - static_cast<std::uint32_t>(random() % reach);
+      graph.constraints.push_back({1, 2, {to, n}});
+      graph.couplings.push_back({to, n});
+    }
+    analyse();
+  }
+  void analyse() {
+    pattern.analyse(graph);
+    slots.clear();
+    for (std::size_t k = 0; k < graph.constraints.size(); ++k) slots.push_back(pattern.constraint_slot(k));
+  }
+  bool are_joined(std::uint32_t a, std::uint32_t b) const {
+    return std::any_of(graph.couplings.begin(), graph.couplings.end(),
+                       [&](const Edge& e) { return (e[0] == a && e[1] == b) || (e[0] == b && e[1] == a); });
+  }
+  /// Edge k now ends at `to` instead of `from`.
+  void move(std::size_t k, std::uint32_t from, std::uint32_t to) {
+    for (int i = 0; i < 2; ++i)
+      if (graph.couplings[k][i] == from) graph.couplings[k][i] = graph.constraints[k].nodes[i] = to;
+  }
+  void finish(GraphChange& change) {
+    std::vector<std::uint32_t> around(change.touched);
+    const auto is_in = [](const std::vector<std::uint32_t>& list, std::uint32_t n) {
+      return std::find(list.begin(), list.end(), n) != list.end();
+    };
+    for (const Edge& e : graph.couplings)
+      if (is_in(change.touched, e[0]) || is_in(change.touched, e[1])) around.push_back(e[0]), around.push_back(e[1]);
+    std::vector<std::size_t> numbers;
+    for (std::size_t k = 0; k < graph.couplings.size(); ++k) {
+      const auto [a, b] = graph.couplings[k];
+      if (!is_in(around, a) && !is_in(around, b)) continue;
+      change.constraints.push_back({{a, b}, slots[k].unknown});
+      numbers.push_back(k);
+    }
+    change.neighbours = [&](std::uint32_t node, std::vector<std::uint32_t>& with) {
+      for (const auto [a, b] : graph.couplings)
+        if (a == node || b == node) with.push_back(a == node ? b : a);
+    };
+    const bool followed = pattern.adapt(change);
+    adapted += followed;
+    if (followed) {
+      for (std::size_t i = 0; i < numbers.size(); ++i) slots[numbers[i]] = pattern.adapted_slot(i);
+      for (std::size_t k = 0; k < slots.size(); ++k) {
+        const auto [a, b] = graph.couplings[k];
+        const bool has_new_slot = std::find(numbers.begin(), numbers.end(), k) != numbers.end();
+        if (!has_new_slot && (pattern.moved()[a] || pattern.moved()[b]))
+          slots[k] = pattern.find_slot(std::array{a, b}, slots[k].unknown);
+      }
+      pattern.renumber(change.removed);
+    }
+    for (const std::uint32_t gone : change.removed) {  // one at most
+      const std::uint32_t last = --graph.node_count;
+      for (std::size_t k = 0; k < graph.couplings.size(); ++k) move(k, last, gone);
+    }
+    if (!followed) analyse();
+  }
+  void cut(std::mt19937& random) {
+    const auto node = static_cast<std::uint32_t>(random() % graph.node_count);
+    GraphChange change;
+    const std::uint32_t fresh = graph.node_count++;
+    change.added = {{fresh, node}};
+    change.touched = {node, fresh};
+    for (std::size_t k = 0; k < graph.couplings.size(); ++k)
+      if (random() % 2) move(k, node, fresh);
+    for (const auto [a, b] : graph.couplings) {
+      for (const std::uint32_t end : {a, b})
+        if (end == node || end == fresh) change.touched.push_back(a + b - end);
+    }
+    finish(change);
+  }
+  void merge(std::mt19937& random) {
+    const auto into = static_cast<std::uint32_t>(random() % graph.node_count);
+    const auto gone = static_cast<std::uint32_t>(random() % graph.node_count);
+    if (into == gone || are_joined(into, gone)) return;
+    for (std::uint32_t n = 0; n < graph.node_count; ++n)
+      if (are_joined(n, into) && are_joined(n, gone)) return;
+    GraphChange change;
+    change.removed = {gone};
+    change.touched = {into, gone};
+    for (std::size_t k = 0; k < graph.couplings.size(); ++k) {
+      const auto [a, b] = graph.couplings[k];
+      if (a == gone || b == gone) change.touched.push_back(a + b - gone);
+      move(k, gone, into);
+    }
+    finish(change);
+  }
+};
+
+TEST(BlockPattern, adapted_to_cuts_and_mergers_factors_like_a_dense_matrix) {
+  std::mt19937 random(11);
+  int adapted = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    ChangingTree tree(random, 30);
+    for (int edit = 0; edit < 25; ++edit) {
+      random() % 2 ? tree.cut(random) : tree.merge(random);
+      Twin(tree.pattern, tree.graph, tree.slots, true, random).expect_equal_solutions();
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    adapted += tree.adapted;
+  }
+  EXPECT_GT(adapted, 200) << "most changes are followed without a new analysis";
 }
 
 }  // namespace
