@@ -5,6 +5,11 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <ctime>
+#include <random>
+#include <vector>
+
 namespace iota::bench {
 namespace {
 
@@ -44,6 +49,41 @@ void step_after_edit(benchmark::State& state, bool edit) {
 }
 BENCHMARK_CAPTURE(step_after_edit, edited, true)->Name("restructure/step_edited")->Arg(64)->Arg(512)->Arg(4096);
 BENCHMARK_CAPTURE(step_after_edit, plain, false)->Name("restructure/step_plain")->Arg(64)->Arg(512)->Arg(4096);
+
+/// A cut, a step, the rejoining of what has not moved apart yet, a step: what the slowest of a hundred edits costs beyond
+/// the two steps, edits and the following of the solver's structure together.
+void cut_and_rejoin(benchmark::State& state) {
+  const int links = static_cast<int>(state.range(0));
+  Chain chain(links, true, IntegrationMode::robust);
+  constexpr double h = 1e-6;  // the halves stay together, so that every step costs the same
+  const auto now_ms = [] { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+  std::mt19937 random(1);
+  std::vector<double> cut_ms, rejoin_ms, step_ms;
+  for (auto _ : state) {
+    const auto at = 1 + random() % static_cast<std::size_t>(links - 1);
+    const ParticleId upper = chain.parts.lower[at - 1], lower = chain.parts.upper[at];
+    const double start = now_ms();
+    (void)chain.system.step(h);
+    const double plain = now_ms();
+    (void)chain.system.separate(upper, lower);
+    (void)chain.system.step(h);
+    const double cut = now_ms();
+    (void)chain.system.combine(upper, lower);
+    (void)chain.system.step(h);
+    const double rejoined = now_ms();
+    step_ms.push_back(plain - start), cut_ms.push_back(cut - plain), rejoin_ms.push_back(rejoined - cut);
+  }
+  std::sort(step_ms.begin(), step_ms.end());
+  const double step = step_ms[step_ms.size() / 2];
+  const auto beyond = [&](std::vector<double>& list, double part) {
+    std::sort(list.begin(), list.end());
+    return list[static_cast<std::size_t>(part * static_cast<double>(list.size() - 1))] - step;
+  };
+  state.counters["step_ms"] = step;
+  state.counters["cut_ms_p50"] = beyond(cut_ms, 0.5), state.counters["cut_ms_p99"] = beyond(cut_ms, 0.99);
+  state.counters["rejoin_ms_p50"] = beyond(rejoin_ms, 0.5), state.counters["rejoin_ms_p99"] = beyond(rejoin_ms, 0.99);
+}
+BENCHMARK(cut_and_rejoin)->Name("restructure/cut_and_rejoin")->Arg(10000)->Iterations(100);
 
 /// Building the whole chain: bodies, particles, hinges, nail.
 void build(benchmark::State& state) {

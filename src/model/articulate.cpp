@@ -5,25 +5,38 @@
 
 namespace iota::model {
 
-void Model::touch(std::uint32_t articulate) {
+void Model::touch(std::uint32_t articulate, Touch what) {
   ++articulates[articulate].version;
-  if (is_touched_.size() <= articulate) is_touched_.resize(articulates.slot_count(), 0);
-  if (is_touched_[articulate]) return;
-  is_touched_[articulate] = 1;
-  touched_.push_back(articulate);
+  if (touch_of_.size() <= articulate) touch_of_.resize(articulates.slot_count(), untouched);
+  if (touch_of_[articulate] == untouched) touched_.push_back(articulate);
+  touch_of_[articulate] = std::max(touch_of_[articulate], what);
 }
 
-void Model::take_touched(std::vector<std::uint32_t>& slots) {
-  slots.swap(touched_);
-  touched_.clear();
-  for (const std::uint32_t slot : slots) is_touched_[slot] = 0;
+void Model::relink(std::uint32_t ring) {
+  constexpr std::size_t most = 64;  // beyond it nobody follows one by one
+  for_each_in_ring(ring, [&](std::uint32_t p) {
+    const bool few = relinked_.size() < most;
+    if (few) relinked_.push_back(particles[p].body);
+    touch(bodies[particles[p].body].articulate, few ? hinges_only : anything);
+  });
+}
+
+void Model::take_touched(Touched& taken) {
+  taken.articulates.swap(touched_);
+  taken.relinked.swap(relinked_);
+  touched_.clear(), relinked_.clear(), taken.only_relinked.clear();
+  for (const std::uint32_t slot : taken.articulates) {
+    taken.only_relinked.push_back(touch_of_[slot] == hinges_only);
+    touch_of_[slot] = untouched;
+  }
 }
 
 // The smaller list is hung behind the larger as it is; only its bodies have to learn where they are now.
 void Model::join_articulates(std::uint32_t a, std::uint32_t b) {
   if (a == b) return;
   if (articulates[a].count < articulates[b].count) std::swap(a, b);
-  touch(a), touch(b);
+  touch(a, hinges_only), touch(b, hinges_only);
+  touch_of_[a] = std::max(touch_of_[a], touch_of_[b]);
   Articulate &into = articulates[a], &from = articulates[b];
   for_each_body_of(b, [&](std::uint32_t body) { bodies[body].articulate = a; });
   bodies[from.first].previous_in_articulate = into.last;
@@ -69,10 +82,13 @@ bool Model::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   if (met) return false;
 
   const std::uint32_t own = articulates.create({}).slot;
-  articulates[own].jolted = articulates[bodies[body_a].articulate].jolted;
+  const std::uint32_t whole = bodies[body_a].articulate;
+  articulates[own].jolted = articulates[whole].jolted;
+  touch(whole, hinges_only), touch(own, hinges_only);
+  touch_of_[own] = std::max(touch_of_[own], touch_of_[whole]);
   for (const std::uint32_t body : floods_[which]) {
-    take_from_articulate(body);
-    add_to_articulate(body, own);
+    leave_articulate(body);
+    enter_articulate(body, own);
   }
   return true;
 }

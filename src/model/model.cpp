@@ -78,17 +78,25 @@ void Model::take_from_ring(std::uint32_t particle) {
   if (rings[ring].count == 0) rings.destroy(ring);
 }
 
-void Model::add_to_articulate(std::uint32_t body, std::uint32_t articulate) {
+void Model::enter_articulate(std::uint32_t body, std::uint32_t articulate) {
   bodies[body].articulate = articulate;
   append(bodies, articulates[articulate], body, &Body::next_in_articulate, &Body::previous_in_articulate);
+}
+
+void Model::leave_articulate(std::uint32_t body) {
+  const std::uint32_t articulate = bodies[body].articulate;
+  unlink(bodies, articulates[articulate], body, &Body::next_in_articulate, &Body::previous_in_articulate);
+  if (articulates[articulate].count == 0) articulates.destroy(articulate);
+}
+
+void Model::add_to_articulate(std::uint32_t body, std::uint32_t articulate) {
+  enter_articulate(body, articulate);
   touch(articulate);
 }
 
 void Model::take_from_articulate(std::uint32_t body) {
-  const std::uint32_t articulate = bodies[body].articulate;
-  unlink(bodies, articulates[articulate], body, &Body::next_in_articulate, &Body::previous_in_articulate);
-  touch(articulate);
-  if (articulates[articulate].count == 0) articulates.destroy(articulate);
+  touch(bodies[body].articulate);
+  leave_articulate(body);
 }
 
 void Model::remove_body(std::uint32_t body) {

@@ -223,11 +223,19 @@ class Model {
   /// After a cut between two bodies of one articulate: searches from both at once and, when the smaller side is
   /// exhausted without meeting the other, gives it an articulate of its own. O(smaller side). True if split.
   bool split_articulate(std::uint32_t body_a, std::uint32_t body_b);
-  void touch(std::uint32_t articulate);
+  void touch(std::uint32_t articulate) { touch(articulate, anything); }
   void touch_body(std::uint32_t body) { touch(bodies[body].articulate); }
   void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
-  /// The slots of all articulates touched since the last call, destroyed ones too, each once.
-  void take_touched(std::vector<std::uint32_t>& slots);
+  /// Notes that the bodies of a ring are about to be hinged otherwise, or have been, and nothing else: a problem that
+  /// holds them can follow.
+  void relink(std::uint32_t ring);
+  /// What has changed since the last call.
+  struct Touched {
+    std::vector<std::uint32_t> articulates;   ///< slots, destroyed ones too, each once
+    std::vector<std::uint8_t> only_relinked;  ///< of each of those: no more than hinges and membership changed
+    std::vector<std::uint32_t> relinked;      ///< bodies, some more than once, some gone
+  };
+  void take_touched(Touched&);
   enum class Ties { all, constraints };
   /// The bodies of the articulates of `bodies` and of all that constraints and implicit bonds tie to those: what one
   /// problem solves. In order of discovery.
@@ -387,8 +395,12 @@ class Model {
   };
   Marks body_marks_;
   std::array<std::vector<std::uint32_t>, 2> floods_;  ///< of split_articulate
-  std::vector<std::uint32_t> touched_;
-  std::vector<std::uint8_t> is_touched_;
+  enum Touch : std::uint8_t { untouched, hinges_only, anything };
+  void touch(std::uint32_t articulate, Touch);
+  void leave_articulate(std::uint32_t body);
+  void enter_articulate(std::uint32_t body, std::uint32_t articulate);
+  std::vector<std::uint32_t> touched_, relinked_;
+  std::vector<Touch> touch_of_;  ///< of each articulate
 
   /// The last 65 536 retirements, oldest forgotten first.
   template <class IdType>

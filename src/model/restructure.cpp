@@ -224,7 +224,7 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
   if (const std::uint32_t closing = closing_between(model, p, q); closing != none) model.remove_closing(closing);
   const Edit edit = merge_rings(model, ring_p, ring_q);
   model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
-  model.touch(model.bodies[body_p].articulate);
+  model.relink(ring_p);
   return edit;
 }
 
@@ -277,9 +277,9 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     report.changed = true;
     Ring own;
     own.position = model.rings[ring].position, own.velocity = model.rings[ring].velocity;
+    model.relink(ring);
     model.take_from_ring(q);
     model.add_to_ring(q, model.rings.create(own).slot);
-    model.touch(model.bodies[body].articulate);
     split_where_apart(model, std::array{body, model.particles[q].body});
     return {};
   }

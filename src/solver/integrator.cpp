@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/integrator.h"
 
+#include "base/slack.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,9 +20,20 @@ constexpr int patience = 400;          // iterations after which sub-steps are n
 
 void Integrator::compile(Problem& problem) {
   newton_.compile(problem);
-  guess_.resize(problem.size()), pull_.resize(problem.size()), velocity_.resize(problem.size());
-  start_position_.resize(problem.size()), start_velocity_.resize(problem.size());
-  lumped_mass_ = problem.mass;
+  make_room(problem);
+}
+
+void Integrator::relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
+                        std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched) {
+  newton_.relink(problem, added, removed, touched);
+  make_room(problem);
+}
+
+void Integrator::make_room(const Problem& problem) {
+  for (auto* list : {&guess_, &pull_, &velocity_, &start_position_, &start_velocity_})
+    resize_with_slack(*list, problem.size());
+  resize_with_slack(lumped_mass_, problem.size());
+  std::copy(problem.mass.begin(), problem.mass.end(), lumped_mass_.begin());
   for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
   std::size_t count = 0;
   problem.for_each_constraint_pool([&](const auto& pool) { count += pool.multipliers.size(); });

@@ -30,6 +30,9 @@ struct [[nodiscard]] AdvanceReport {
 class Integrator {
  public:
   void compile(Problem& problem);
+  /// After a local change of structure: see Newton::relink.
+  void relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
+              std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched);
 
   /// Positions, velocities and multipliers of `problem` become those after h seconds.
   /// mid_point halves the step (to a 64th) when a link turns more than 1.1 rad in it or Newton fails, and then
@@ -47,6 +50,7 @@ class Integrator {
   void project_velocities(Problem& problem, double h = 0) { newton_.project_velocities(problem, h); }
 
  private:
+  void make_room(const Problem&);
   void make_guess(const Problem&, const Stage&);
   bool try_step(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);

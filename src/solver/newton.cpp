@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/newton.h"
 
+#include "solver/newton_slots.h"
+
 #include "solver/step_equations.h"
 
 #include <algorithm>
@@ -107,12 +109,6 @@ void Newton::compile(Problem& problem) {
   pattern_.analyse(graph);
   factor_.reset(pattern_);
 
-  node_unknown_.resize(n), node_diagonal_.resize(n), node_stride_.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    node_unknown_[i] = pattern_.node_unknown(i);
-    node_diagonal_[i] = pattern_.node_diagonal(i);
-    node_stride_[i] = pattern_.node_stride(i);
-  }
   for (auto& c : problem.mass_couplings) c.slot = pattern_.pair_slot(c.a, c.b);
   std::size_t index = 0, multiplier_count = 0;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
@@ -122,33 +118,17 @@ void Newton::compile(Problem& problem) {
     if (pool.has_laws()) pool.laws.resize(pool.multipliers.size());
     pool.states.assign(pool.laws.size(), {});
     pool.slots.assign(pool.items.size(), {});
-    for (std::size_t i = 0; i < pool.items.size(); ++i, ++index) {
-      const auto& where = pattern_.constraint_slot(index);
-      auto& slots = pool.slots[i];
-      slots.unknown = where.unknown, slots.diagonal = where.diagonal, slots.stride = where.stride;
-      std::copy_n(where.gradients.begin(), C::max_nodes, slots.gradients.begin());
-      if constexpr (C::has_curvature)
-        for (int a = 0, pair = 0; a < pool.items[i].node_count(); ++a)
-          for (int b = a + 1; b < pool.items[i].node_count(); ++b, ++pair)
-            slots.pairs[pair] = pattern_.pair_slot(pool.items[i].nodes[a], pool.items[i].nodes[b]);
-    }
+    for (std::size_t i = 0; i < pool.items.size(); ++i) set_slots(pool, i, pattern_.constraint_slot(index++));
   });
   problem.for_each_force_pool([&](auto& pool) {
     pool.slots.assign(pool.items.size(), {});
-    for (std::size_t i = 0; i < pool.items.size(); ++i) {
-      const ForceArm& arm = pool.items[i].arm;
-      for (std::uint32_t a = 0, pair = 0; a < arm.count; ++a)
-        for (std::uint32_t b = a + 1; b < arm.count; ++b, ++pair)
-          pool.slots[i].pairs[pair] = pattern_.pair_slot(arm.nodes[a], arm.nodes[b]);
-    }
+    for (std::size_t i = 0; i < pool.items.size(); ++i) set_slots(pool, i);
   });
+  multipliers_saved_.resize(multiplier_count), merit_weights_.resize(multiplier_count);
+  set_node_places(problem);
 
   has_laws_ = false;
   problem.for_each_constraint_pool([&](const auto& pool) { has_laws_ = has_laws_ || pool.has_laws(); });
-  x_.resize(n), x_saved_.resize(n), u_.resize(n), u_saved_.resize(n), momentum_.resize(n), inverse_scale_.resize(n);
-  residual_.resize(pattern_.unknown_count()), step_.resize(pattern_.unknown_count());
-  impulses_.resize(pattern_.unknown_count());
-  multipliers_saved_.resize(multiplier_count), merit_weights_.resize(multiplier_count);
 }
 
 template <bool Midpoint>

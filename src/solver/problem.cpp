@@ -1,10 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/problem.h"
 
+#include "base/slack.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace iota::solver {
+
+void Problem::add_nodes(std::size_t count) {
+  const std::size_t n = size() + count;
+  for (auto* list : {&position, &velocity, &force}) resize_with_slack(*list, n);
+  resize_with_slack(mass, n);
+}
+
+void Problem::remove_nodes(std::span<const std::uint32_t> removed) {
+  std::vector<std::uint32_t> highest_first(removed.begin(), removed.end());
+  std::sort(highest_first.begin(), highest_first.end(), std::greater<>());
+  for (const std::uint32_t node : highest_first) {
+    const auto last = static_cast<std::uint32_t>(size() - 1);
+    if (node != last)
+      for_each_reference([&](std::uint32_t& named) {
+        if (named == last) named = node;
+      });
+    const auto take_last = [&](auto& list) { list[node] = list.back(), list.pop_back(); };
+    take_last(position), take_last(velocity), take_last(force), take_last(mass);
+  }
+}
 
 double Problem::potential_energy(const Vec3* x, bool with_external) const {
   double energy = 0;

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace iota::solver {
@@ -110,6 +111,24 @@ struct Problem {
   Vec3 gravity;
 
   std::size_t size() const { return position.size(); }
+
+  /// Room for `count` more nodes, without mass.
+  void add_nodes(std::size_t count);
+  /// Takes out nodes that nothing refers to; the last ones get their numbers, the highest first.
+  void remove_nodes(std::span<const std::uint32_t> removed);
+  /// Calls visit(node) for every place that names a node.
+  template <class Visit>
+  void for_each_reference(Visit visit) {
+    for (auto& c : mass_couplings) visit(c.a), visit(c.b);
+    for_each_constraint_pool([&](auto& pool) {
+      for (auto& c : pool.items)
+        for (int i = 0; i < c.node_count(); ++i) visit(c.nodes[i]);
+    });
+    for_each_force_pool([&](auto& pool) {
+      for (auto& f : pool.items)
+        for (std::uint32_t i = 0; i < f.arm.count; ++i) visit(f.arm.nodes[i]);
+    });
+  }
 
   template <class Visit>
   void for_each_constraint_pool(Visit visit) {

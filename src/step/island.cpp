@@ -239,8 +239,8 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
                        [&](std::uint32_t b) { return model.bodies[b].kind == BodyKind::dynamic; });
 
   const std::size_t n = rings_.size();
-  problem_.position.resize(n), problem_.velocity.resize(n), problem_.force.resize(n);
-  problem_.mass.assign(n, 0), node_damping_.assign(n, 0);
+  problem_.add_nodes(n);
+  node_damping_.assign(n, 0);
   for (const std::uint32_t body : bodies_) {
     add_masses(model, body, node_of_ring);
     add_constraints(model, body, node_of_ring);

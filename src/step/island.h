@@ -21,6 +21,11 @@ class Island {
   void assemble(const model::Model&, std::span<const std::uint32_t> articulates,
                 std::vector<std::uint32_t>& node_of_ring);
 
+  /// Follows when some of its bodies have been hinged to each other otherwise, or no longer, and nothing else changed.
+  /// False where that is more than moving a few rows: then it must be assembled anew.
+  bool relink(const model::Model&, std::span<const std::uint32_t> bodies);
+  std::span<const std::uint32_t> bodies() const { return bodies_; }
+
   /// Points to solve for: a measure of the work.
   std::size_t size() const { return rings_.size(); }
 

@@ -10,39 +10,117 @@ using model::none;
 
 void Islands::forget() {
   island_of_leader_.clear(), leader_of_.clear(), next_member_.clear(), is_waiting_.clear();
+  followed_.clear();
   knows_all_ = false, order_is_old_ = true;
 }
 
 // Its articulates wait for a new one.
 void Islands::drop(std::uint32_t leader) {
   island_of_leader_[leader].reset();
+  std::erase_if(followed_, [&](const Followed& f) { return f.leader == leader; });
   for (std::uint32_t a = leader; a != none; a = next_member_[a]) {
     leader_of_[a] = none;
     if (!is_waiting_[a]) is_waiting_[a] = 1, waiting_.push_back(a);
   }
 }
 
+// `members_` become one island.
+void Islands::set_members(std::uint32_t leader) {
+  for (std::size_t m = 0; m < members_.size(); ++m) {
+    leader_of_[members_[m]] = leader;
+    next_member_[members_[m]] = m + 1 < members_.size() ? members_[m + 1] : none;
+  }
+}
+
+// Only hinges changed: the island may follow, and then also holds what has been cut off, until it is built anew.
+bool Islands::relink(const Model& model, std::uint32_t old_leader) {
+  constexpr std::size_t smallest = 256;  // points: smaller ones are built anew in less than 0.1 ms
+  Island& island = *island_of_leader_[old_leader];
+  if (island.size() < smallest) return false;
+  // The bodies must be all of those of some articulates.
+  members_.clear();
+  std::size_t expected = 0;
+  for (const std::uint32_t body : island.bodies()) {
+    if (!model.bodies.is_alive(body)) return false;
+    const std::uint32_t a = model.bodies[body].articulate;
+    if (!members_.empty() && members_.back() == a) continue;
+    if (std::find(members_.begin(), members_.end(), a) != members_.end()) continue;
+    if (members_.size() == 16) return false;
+    members_.push_back(a);
+    expected += model.articulates[a].count;
+  }
+  if (expected != island.bodies().size()) return false;
+  bodies_.clear();
+  for (std::size_t i = 0; i < touched_.articulates.size(); ++i)
+    if (!touched_.only_relinked[i] &&
+        std::find(members_.begin(), members_.end(), touched_.articulates[i]) != members_.end())
+      return false;
+  for (const std::uint32_t body : touched_.relinked)
+    if (std::find(members_.begin(), members_.end(), model.bodies[body].articulate) != members_.end() &&
+        std::find(bodies_.begin(), bodies_.end(), body) == bodies_.end())
+      bodies_.push_back(body);
+  if (!island.relink(model, bodies_)) return false;
+
+  auto holder = std::move(island_of_leader_[old_leader]);
+  for (std::uint32_t a = old_leader; a != none; a = next_member_[a]) leader_of_[a] = none;
+  std::sort(members_.begin(), members_.end());
+  const std::uint32_t leader = members_.front();
+  set_members(leader);
+  island_of_leader_[leader] = std::move(holder);
+  const auto followed =
+      std::find_if(followed_.begin(), followed_.end(), [&](const Followed& f) { return f.leader == old_leader; });
+  if (followed == followed_.end())
+    followed_.push_back({leader, model.step});
+  else
+    *followed = {leader, model.step};
+  return true;
+}
+
 void Islands::update(Model& model, const Parallel& parallel) {
   model.take_touched(touched_);
   if (!knows_all_) {
-    touched_.clear();
-    model.articulates.for_each([&](std::uint32_t a, const model::Articulate&) { touched_.push_back(a); });
+    touched_.articulates.clear();
+    model.articulates.for_each([&](std::uint32_t a, const model::Articulate&) { touched_.articulates.push_back(a); });
+    touched_.only_relinked.assign(touched_.articulates.size(), 0);
     knows_all_ = true;
   }
-  if (touched_.empty()) return;
+  // What has been cut off gets an island of its own when things have calmed down.
+  constexpr std::uint64_t calm = 120;  // steps
+  const auto is_due = [&](const Followed& f) {
+    return renew_ || (f.step + calm <= model.step && next_member_[f.leader] != none);
+  };
+  const bool renews = std::any_of(followed_.begin(), followed_.end(), is_due);
+  if (touched_.articulates.empty() && !renews) return;
   order_is_old_ = true;
   const std::size_t slots = model.articulates.slot_count();
   island_of_leader_.resize(slots), leader_of_.resize(slots, none), next_member_.resize(slots, none);
   is_waiting_.resize(slots, 0);
 
-  // 1. What was touched, and all that shared an island with it, is without one.
-  waiting_.clear(), fresh_.clear();
-  for (const std::uint32_t a : touched_) {
+  // 1. What was touched, and all that shared an island with it, is without one, unless it can follow.
+  waiting_.clear(), fresh_.clear(), relinked_.clear();
+  const auto wait = [&](std::uint32_t a) {
     if (leader_of_[a] != none)
       drop(leader_of_[a]);
     else if (!is_waiting_[a])
       is_waiting_[a] = 1, waiting_.push_back(a);
+  };
+  if (renews)
+    for (const Followed& f : std::vector<Followed>(followed_))
+      if (is_due(f)) wait(f.leader);
+  renew_ = false;
+  for (std::size_t i = 0; i < touched_.articulates.size(); ++i)
+    if (!touched_.only_relinked[i]) wait(touched_.articulates[i]);
+  for (std::size_t i = 0; i < touched_.articulates.size(); ++i) {
+    const std::uint32_t a = touched_.articulates[i];
+    if (!touched_.only_relinked[i] || leader_of_[a] == none) continue;
+    if (std::find(relinked_.begin(), relinked_.end(), leader_of_[a]) != relinked_.end()) continue;
+    if (relink(model, leader_of_[a]))
+      relinked_.push_back(leader_of_[a]);
+    else
+      wait(a);
   }
+  for (const std::uint32_t a : touched_.articulates)  // made by a cut, and not followed
+    if (leader_of_[a] == none) wait(a);
 
   // 2. Articulates that implicit bonds and constraints tie together are solved together: flood from each that waits.
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
@@ -69,12 +147,8 @@ void Islands::update(Model& model, const Parallel& parallel) {
         });
       });
     std::sort(members_.begin(), members_.end());  // whoever found whom first
-    const std::uint32_t leader = members_.front();
-    for (std::size_t m = 0; m < members_.size(); ++m) {
-      leader_of_[members_[m]] = leader;
-      next_member_[members_[m]] = m + 1 < members_.size() ? members_[m + 1] : none;
-    }
-    fresh_.push_back(leader);
+    set_members(members_.front());
+    fresh_.push_back(members_.front());
   }
 
   // 3. Build them; each by itself, so at once where there are many.

@@ -11,6 +11,8 @@ class Islands {
  public:
   void update(model::Model&, const Parallel&);
   void forget();
+  /// From the next update on every island is as if it had just been built from the model.
+  void renew() { renew_ = true; }
   /// In the order of the lowest slot among their articulates, so that a restored model has the same.
   std::span<Island* const> all();
   /// How many islands a thread should take in one go: all where threads would not pay.
@@ -19,13 +21,22 @@ class Islands {
 
  private:
   void drop(std::uint32_t leader);
+  void set_members(std::uint32_t leader);
+  bool relink(const model::Model&, std::uint32_t leader);
 
   // All by articulate slot. The leader of an island is the lowest of its articulates.
   std::vector<std::unique_ptr<Island>> island_of_leader_;
   std::vector<std::uint32_t> leader_of_;
   std::vector<std::uint32_t> next_member_;  // list of the articulates of one island, from its leader on
   std::vector<std::uint8_t> is_waiting_;    // to be put into an island
-  std::vector<std::uint32_t> touched_, waiting_, members_, fresh_;
+  model::Model::Touched touched_;
+  std::vector<std::uint32_t> waiting_, members_, fresh_, bodies_, relinked_;
+  struct Followed {
+    std::uint32_t leader;
+    std::uint64_t step;  // of the last time
+  };
+  std::vector<Followed> followed_;  // islands that have been relinked
+  bool renew_ = false;
   std::vector<Island*> in_order_;
   std::size_t total_size_ = 0, largest_size_ = 0;  // of those in order, points
   std::vector<std::uint32_t> node_of_ring_;

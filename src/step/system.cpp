@@ -290,6 +290,8 @@ Snapshot System::snapshot() const {
   std::vector<std::byte> content;
   Writer content_writer(content);
   implementation_->model.archive(content_writer);
+  // A restored system builds its islands from what is saved; so does this one, or replays would differ in the last bits.
+  implementation_->islands.renew();
   implementation_->scripts_saved_below = implementation_->next_script;
   Snapshot snapshot;
   Writer writer(snapshot.bytes);

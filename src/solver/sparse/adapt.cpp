@@ -53,7 +53,7 @@ bool BlockPattern::adapt(const GraphChange& change) {
   }
   node_vertex_.resize(nodes, none);
   std::vector<Vertex> order;
-  order.reserve(old_count + insertions.size());
+  order.reserve(old_count + insertions.size() + 64);
   auto next_insertion = insertions.begin();
   for (std::uint32_t v = 0; v < old_count; ++v) {
     if (now_at[v] != none) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/sparse/block_factor.h"
 
+#include "base/slack.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -49,10 +51,15 @@ auto with_pivot(int pivot, Function f) {
 
 void BlockFactor::reset(const BlockPattern& pattern) {
   pattern_ = &pattern;
-  lower_.assign(pattern.value_count(), 0);
-  upper_.clear();
-  upper_.reserve(pattern.value_count());
+  lower_.clear(), upper_.clear();
+  resize_with_slack(lower_, pattern.value_count());
+  upper_.reserve(lower_.capacity());
   unscaled_.assign(static_cast<std::size_t>(pattern.widest_front()) * BlockPattern::max_pivot, 0);
+}
+
+void BlockFactor::grow() {
+  resize_with_slack(lower_, pattern_->value_count());
+  unscaled_.resize(static_cast<std::size_t>(pattern_->widest_front()) * BlockPattern::max_pivot, 0);
 }
 
 void BlockFactor::clear(bool symmetric) {

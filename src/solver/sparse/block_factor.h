@@ -14,6 +14,8 @@ class BlockFactor {
  public:
   /// Sizes the storage. The pattern must outlive the factor.
   void reset(const BlockPattern& pattern);
+  /// Follows a pattern that has grown by `adapt`.
+  void grow();
 
   /// Sets all values to zero; `symmetric` tells which triangles are going to be filled.
   void clear(bool symmetric);
