@@ -131,9 +131,30 @@ void bind_restructure_report(nb::module_& module) {
       });
 }
 
+void bind_diagnosis(nb::module_& module) {
+  nb::class_<Diagnosis>(
+      module, "Diagnosis",
+      "Whether the constraints of bodies that are solved together contradict or repeat each other: a\n"
+      "singular value decomposition of their Jacobian, scaled so that figures do not depend on units.")
+      .def_ro("unknowns", &Diagnosis::unknowns, "Coordinates of points.")
+      .def_ro("rows", &Diagnosis::rows, "Of constraints that hold now: open stops and slack ropes do not.")
+      .def_ro("rank", &Diagnosis::rank, "Singular values above 1e-8 of the largest.")
+      .def_ro("redundancy", &Diagnosis::redundancy, "rows - rank")
+      .def_ro("degrees_of_freedom", &Diagnosis::degrees_of_freedom, "unknowns - rank")
+      .def_ro("singular_values", &Diagnosis::singular_values, "Falling.")
+      .def_ro("condition", &Diagnosis::condition, "Largest singular value over the smallest that counts.")
+      .def_ro("kkt_condition", &Diagnosis::kkt_condition, "Of the matrix that a step solves, stiffness left out.")
+      .def_ro("findings", &Diagnosis::findings, "Plain sentences that name bodies, particles and constraints.")
+      .def("__repr__", [](const Diagnosis& d) {
+        return text_of("<Diagnosis: %u degrees of freedom, rank %u of %u rows, condition %.3g>", d.degrees_of_freedom,
+                       d.rank, d.rows, d.condition);
+      });
+}
+
 }  // namespace
 
 void bind_reports(nb::module_& module) {
+  bind_diagnosis(module);
   bind_energy(module);
   bind_step_report(module);
   bind_restructure_report(module);

@@ -196,6 +196,16 @@ void bind_time(nb::class_<SystemObject>& type) {
           "Restores the recording's start and repeats it. Returns the number of the first step whose hash differs, None\n"
           "when all are equal.")
       .def(
+          "diagnose",
+          [](SystemObject& self, const BodyHandle& body) {
+            if (body.system != &self) throw nb::value_error("diagnose: the body belongs to another system");
+            body.use();
+            return self.use_between_steps("diagnose").diagnose(body.id);
+          },
+          "body"_a,
+          "Singular values, rank, redundancy and degrees of freedom of the constraints of a body and of all that is\n"
+          "solved together with it, now. Changes nothing; takes seconds for hundreds of rows, ValueError above 600.")
+      .def(
           "validate", [](SystemObject& self) { return self.use_between_steps("validate").validate(); },
           "Walks the whole structure; one sentence per inconsistency, empty when whole.")
       .def("adopt", &SystemObject::adopt,

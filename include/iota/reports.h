@@ -73,4 +73,19 @@ struct RestructureReport {
   std::vector<std::string> notes;                               ///< plain sentences
 };
 
+/// Whether the constraints of bodies that are solved together contradict or repeat each other, by singular value
+/// decomposition of their Jacobian at the present positions (the thesis, C.3). Rows are scaled to length 1, unknowns by
+/// masses, so that figures do not depend on units. Bonds and the stiffness of stretched links are left out.
+struct Diagnosis {
+  std::uint32_t unknowns = 0;            ///< coordinates of points
+  std::uint32_t rows = 0;                ///< of constraints that hold now: open stops and slack ropes do not
+  std::uint32_t rank = 0;                ///< singular values above 1e-8 of the largest
+  std::uint32_t redundancy = 0;          ///< rows - rank
+  std::uint32_t degrees_of_freedom = 0;  ///< unknowns - rank
+  std::vector<double> singular_values;   ///< falling
+  double condition = 1;                  ///< largest singular value over the smallest that counts
+  double kkt_condition = 1;              ///< of the matrix that a step solves
+  std::vector<std::string> findings;     ///< plain sentences that name bodies, particles and constraints
+};
+
 }  // namespace iota

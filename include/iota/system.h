@@ -289,6 +289,9 @@ class System {
   std::optional<std::uint64_t> replay(const Recording&);
   ///@}
 
+  /// Looks at the constraints of a body and of all that is solved together with it. Takes seconds for hundreds of rows.
+  /// Throws std::invalid_argument above 600 rows.
+  Diagnosis diagnose(BodyId) const;
   /// Walks the whole structure; one sentence per inconsistency, empty when whole.
   std::vector<std::string> validate() const;
 

@@ -392,6 +392,22 @@ void ConstraintRows::store(Model& model, const solver::Problem& problem) const {
   });
 }
 
+std::uint32_t ConstraintRows::constraint_of(std::size_t pool, std::size_t item) const {
+  std::uint32_t found = none;
+  std::size_t index = 0;
+  std::apply(
+      [&](const auto&... uses) {
+        const auto look = [&](const auto& list) {
+          if (index++ != pool) return;
+          for (const auto& row : list)
+            if (row.item == item) found = row.constraint;
+        };
+        (look(uses.list), ...);
+      },
+      uses_);
+  return found;
+}
+
 void ConstraintRows::refresh_coordinates(Model& model) const {
   for (const std::uint32_t slot : constraints_) step::refresh_coordinates(model, slot);
 }

@@ -35,6 +35,9 @@ class ConstraintRows {
   /// Multipliers, gaps and coordinates; particles must be where they are at the end of the step.
   void store(model::Model&, const solver::Problem&) const;
   void refresh_coordinates(model::Model&) const;
+  /// The constraint that a row of the problem is of: `pool` is the place of its type in the list of types. `none` if it is
+  /// of no constraint.
+  std::uint32_t constraint_of(std::size_t pool, std::size_t item) const;
 
  private:
   template <class C>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/model.h"
+#include "solver/diagnosis.h"
 #include "solver/integrator.h"
 #include "step/constraint_rows.h"
 
@@ -41,10 +42,15 @@ class Island {
 
   solver::AdvanceReport advance(model::Model&, double h, IntegrationMode);
 
+  /// See System::diagnose; after `load(model, 0)`.
+  Diagnosis diagnose(const model::Model&) const;
+
   /// Projections after an edit; false where no position meets all constraints.
   bool settle(model::Model&, bool positions);
 
  private:
+  std::string name_of_row(const model::Model&, const solver::RowName&) const;
+  std::string name_of_node(const model::Model&, std::size_t node) const;
   bool nails_move(const model::Model&) const;
   void use_solver(const std::array<char, 32>& name);
   using Weighted = std::array<std::pair<std::uint32_t, double>, 4>;  // nodes and weights; weight 0 ends the list

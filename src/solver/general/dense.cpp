@@ -65,31 +65,47 @@ std::vector<double> Svd::solve(std::span<const double> b, double tolerance) cons
 
 namespace {
 
-/// Rows are the vectors that are rotated until all are orthogonal: `work` holds A' (or A), `turns` what was done to it.
+/// Four sums at once: additions need not wait for each other.
+double dot(const double* a, const double* b, std::size_t n) {
+  double sums[4] = {};
+  std::size_t i = 0;
+  for (; i + 4 <= n; i += 4)
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += a[i + k] * b[i + k];
+  for (; i < n; ++i) sums[0] += a[i] * b[i];
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+/// (x, y) becomes (c x - s y, s x + c y).
+void rotate(double* x, double* y, std::size_t n, double c, double s) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double old = x[i];
+    x[i] = c * old - s * y[i], y[i] = s * old + c * y[i];
+  }
+}
+
+/// Rotates pairs of rows of `work` until all are orthogonal; `turns` goes along.
 void orthogonalise(Dense& work, Dense& turns) {
   constexpr int max_sweeps = 40;
   constexpr double round_off = 1e-15;
   const std::size_t n = work.rows, m = work.columns;
+  std::vector<double> square(n);  // of each row's length
+  double nothing = 0;             // what is round-off beside the whole
+  for (std::size_t i = 0; i < n; ++i) nothing += 1e-34 * dot(work.row(i), work.row(i), m);
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     bool rotated = false;
+    for (std::size_t i = 0; i < n; ++i) square[i] = dot(work.row(i), work.row(i), m);
     for (std::size_t p = 0; p + 1 < n; ++p)
       for (std::size_t q = p + 1; q < n; ++q) {
-        double *const a = work.row(p), *const b = work.row(q);
-        double alpha = 0, beta = 0, gamma = 0;
-        for (std::size_t i = 0; i < m; ++i) alpha += a[i] * a[i], beta += b[i] * b[i], gamma += a[i] * b[i];
-        if (!(std::abs(gamma) > round_off * std::sqrt(alpha) * std::sqrt(beta))) continue;
+        if (std::min(square[p], square[q]) <= nothing) continue;
+        const double gamma = dot(work.row(p), work.row(q), m);
+        if (!(std::abs(gamma) > round_off * std::sqrt(square[p]) * std::sqrt(square[q]))) continue;
         rotated = true;
-        const double zeta = (beta - alpha) / (2 * gamma);
+        const double zeta = (square[q] - square[p]) / (2 * gamma);
         const double t = (zeta >= 0 ? 1 : -1) / (std::abs(zeta) + std::sqrt(1 + zeta * zeta));
         const double c = 1 / std::sqrt(1 + t * t), s = c * t;
-        const auto rotate = [&](double* x, double* y, std::size_t size) {
-          for (std::size_t i = 0; i < size; ++i) {
-            const double old = x[i];
-            x[i] = c * old - s * y[i], y[i] = s * old + c * y[i];
-          }
-        };
-        rotate(a, b, m);
-        rotate(turns.row(p), turns.row(q), turns.columns);
+        rotate(work.row(p), work.row(q), m, c, s);
+        rotate(turns.row(p), turns.row(q), n, c, s);
+        square[p] -= t * gamma, square[q] += t * gamma;
       }
     if (!rotated) return;
   }
