@@ -123,6 +123,9 @@ void require_mass_on_its_own(const Model& model, std::uint32_t p, std::uint32_t 
   if (model.particles[q].is_marker())
     throw std::invalid_argument("separate: particle " + std::to_string(q) +
                                 " is massless and cannot leave the body that carries it; give it a mass first");
+  if (model.particles[p].is_marker())
+    throw std::invalid_argument("separate: particle " + std::to_string(p) +
+                                " is massless, and what leaves a body is hinged to one of its massive particles");
   if (massive_count(model, model.particles[p].body) == 1)
     throw std::invalid_argument("separate: particle " + std::to_string(q) +
                                 " is the only one with mass in its body; give another one a mass first");

@@ -150,7 +150,8 @@ void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
     const std::uint32_t place = particles[q].first_constraint % place_count;
     Constraint& c = constraints[slot];
     if (std::find(c.particles.begin(), c.particles.end(), p) != c.particles.end()) {  // two of its places in one
-      c.owned &= static_cast<std::uint8_t>(~(1u << place));
+      for (std::uint32_t i = 0; i < place_count; ++i)  // both stay
+        if (c.particles[i] == p || c.particles[i] == q) c.owned &= static_cast<std::uint8_t>(~(1u << i));
       destroy_constraint(*this, slot);
       continue;
     }

@@ -2,6 +2,8 @@
 """Joints, rods and ropes as a script makes, reads, changes and ends them."""
 
 import math
+import re
+from pathlib import Path
 
 import pytest
 
@@ -212,6 +214,15 @@ def test_what_breaks_is_named_and_can_be_repaired() -> None:
     joint.active = True
     run(system, 0.1)
     assert joint.gap < 1e-8
+
+
+def test_the_page_of_constraints_runs_and_shows_every_picture() -> None:
+    docs = Path(__file__).parents[2] / "docs"
+    page = (docs / "constraints.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"^```python\n(.*?)^```", page, re.M | re.S)
+    exec(compile(block, "docs/constraints.md", "exec"), {})
+    shown = re.findall(r"\]\((pictures/constraints/\w+\.svg)\)", page)
+    assert sorted(shown) == sorted(str(p.relative_to(docs)) for p in (docs / "pictures" / "constraints").glob("*.svg"))
 
 
 REFUSED = {

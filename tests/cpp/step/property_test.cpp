@@ -199,6 +199,14 @@ TEST(WarmStep, allocates_nothing) {
     system.create_particle(triangle, {1.3, 1.3, 0});
     system.create_bond(corner, chain.lower.back(), SpringLaw{10, 0.1});
     (void)system.create_grip(chain.links[20], {}, {0, 1, 0});
+    const BodyId block = system.create_body(Box{{0.2, 0.3, 0.4}}, {.position = {3, 0, 0}});
+    system.create_constraint(
+        JointSpec{.a = block, .at = {3, 0.5, 0}, .angle = {-2, 2, 1, 5, 0.5, 3, 0.1, 0.2}, .breaks = {1e9, 1e9}});
+    const ParticleId bead = system.create_particle(system.create_body(), {2, 2, 2});
+    system.create_constraint(PathSpec{.particle = bead, .points = {{2, 2, 2}, {3, 2, 2}, {4, 3, 2}}});
+    system.create_constraint(DistanceSpec{.kind = ConstraintKind::rope, .p = bead, .q = corner, .length = 9});
+    system.create_constraint(
+        SurfaceSpec{.kind = ConstraintKind::inside, .particle = bead, .surface = {Sphere{9}, {}, {}}});
     for (int i = 0; i < 50; ++i) (void)system.step(1.0 / 120);
     const long before = allocations;
     for (int i = 0; i < 100; ++i) (void)system.step(1.0 / 120);

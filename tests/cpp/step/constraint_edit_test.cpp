@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random constraints of every kind among random bodies, through random edits: whole, finite, the same again.
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace iota {
+namespace {
+
+struct JointedWorld {
+  std::mt19937_64 random;
+  System system;
+  int made = 0, refused = 0;
+
+  double uniform(double low, double high) {  // the standard distributions differ between libraries
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  }
+  std::size_t index(std::size_t n) { return random() % n; }
+  Vec3 point() { return {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}; }
+
+  JointedWorld(std::uint64_t seed, IntegrationMode mode) : random(seed), system({.mode = mode, .damping = 0.1}) {
+    for (int i = 0; i < 10; ++i) add_body();
+  }
+  void add_body() {
+    const BodyId body = system.create_body({.kind = index(8) == 0 ? BodyKind::static_ : BodyKind::dynamic});
+    const std::size_t count = 1 + index(5);
+    for (std::size_t i = 0; i < count; ++i)
+      system.create_particle(body, point(), std::pow(10, uniform(-1, 1)), point());
+  }
+  BodyId any_body() {
+    const auto all = system.bodies();
+    return all[index(all.size())];
+  }
+  ParticleId any_particle() {
+    const auto all = system.particles();
+    return all[index(all.size())];
+  }
+  CoordinateOptions any_options() {
+    CoordinateOptions o;
+    if (index(3) == 0) o.lower = uniform(-2, 0), o.upper = uniform(0, 2);
+    if (index(3) == 0) o.motor_speed = uniform(-3, 3), o.motor_max = uniform(0, 20);
+    if (index(3) == 0) o.friction = uniform(0, 5);
+    if (index(3) == 0) o.stiffness = uniform(0, 100), o.damping = uniform(0, 5), o.rest = uniform(-1, 1);
+    return o;
+  }
+  Surface any_surface() {
+    const SurfaceShape shapes[] = {Plane{point()}, Sphere{uniform(0.1, 2)}, Ellipsoid{{1, 0.5, 0.7}},
+                                   Box{{1, 2, 1}}, Cylinder{0.5, 1},        Capsule{0.3, 1},
+                                   Torus{1, 0.2}};
+    return {shapes[index(std::size(shapes))], point(), {}};
+  }
+
+  Surface any_convex() {
+    const SurfaceShape shapes[] = {Plane{point()}, Sphere{uniform(0.1, 0.5)}, Ellipsoid{{0.3, 0.2, 0.1}}};
+    return {shapes[index(std::size(shapes))], point(), {}};
+  }
+
+  void make_constraint() {
+    const auto kind = static_cast<ConstraintKind>(index(15));
+    const BodyId world_or_body = index(3) == 0 ? BodyId{} : any_body();
+    BreakLimits breaks;
+    if (index(4) == 0) breaks = {uniform(1, 1000), uniform(1, 1000)};
+    switch (kind) {
+      case ConstraintKind::rod:
+      case ConstraintKind::rope:
+        system.create_constraint(
+            DistanceSpec{.kind = kind, .p = any_particle(), .q = any_particle(), .breaks = breaks});
+        break;
+      case ConstraintKind::path:
+        system.create_constraint(PathSpec{.particle = any_particle(),
+                                          .body = world_or_body,
+                                          .curve = index(2) ? CurveKind::spline : CurveKind::polyline,
+                                          .points = {point(), point(), point(), point()},
+                                          .closed = index(2) == 0,
+                                          .slide = any_options(),
+                                          .breaks = breaks});
+        break;
+      case ConstraintKind::surface:
+      case ConstraintKind::inside:
+      case ConstraintKind::outside:
+        system.create_constraint(SurfaceSpec{kind, any_particle(), world_or_body, any_surface(), breaks});
+        break;
+      case ConstraintKind::touching:
+      case ConstraintKind::apart:
+        system.create_constraint(SurfacePairSpec{kind, any_body(), world_or_body, any_convex(), any_convex(), breaks});
+        break;
+      default: {
+        const BodyId a = any_body();
+        JointSpec spec{.kind = kind, .a = a, .b = world_or_body, .axis = point(), .breaks = breaks};
+        spec.at = index(2) ? system.position(system.particles(a)[0]) : point();
+        if (has_coordinate(kind, JointCoordinate::angle)) spec.angle = any_options();
+        if (has_coordinate(kind, JointCoordinate::slide)) spec.slide = any_options();
+        system.create_constraint(spec);
+      }
+    }
+    ++made;
+  }
+
+  void edit() {
+    const auto constraints = system.constraints();
+    const ParticleId p = any_particle(), q = any_particle();
+    try {
+      switch (index(14)) {
+        case 0:
+        case 1:
+        case 2:
+        case 3:
+        case 4: make_constraint(); break;
+        case 5: (void)system.combine(p, q); break;
+        case 6: (void)system.separate(p, q); break;
+        case 7: (void)system.combine(system.body(p), system.body(q)); break;
+        case 8: system.is_nailed(p) ? system.release(p) : index(4) == 0 ? system.nail(p) : void(); break;
+        case 9:
+          if (!constraints.empty()) system.destroy(constraints[index(constraints.size())]);
+          break;
+        case 10:
+          if (!constraints.empty()) system.set_active(constraints[index(constraints.size())], index(2) == 0);
+          break;
+        case 11:
+          if (!constraints.empty()) {
+            const auto which = static_cast<JointCoordinate>(index(2));
+            system.set_coordinate(constraints[index(constraints.size())], which, any_options());
+          }
+          break;
+        case 12: (void)system.create_particle(system.body(p), system.position(q), 0); break;
+        default:
+          if (system.bodies().size() > 8) index(2) ? system.destroy(p) : system.destroy(system.body(q));
+      }
+    } catch (const std::invalid_argument&) {
+      ++refused;
+    }
+    while (system.bodies().size() < 6) add_body();
+  }
+};
+
+TEST(RandomConstraints, keep_the_structure_whole_and_finite_through_random_edits) {
+  int made = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    JointedWorld world(seed, seed % 2 ? IntegrationMode::energy_keeping : IntegrationMode::robust);
+    for (int i = 0; i < 80; ++i) {
+      world.edit();
+      ASSERT_EQ(world.system.validate(), std::vector<std::string>{}) << "seed " << seed << " edit " << i;
+      if (i % 4) continue;
+      const Energy before = world.system.energy();
+      const StepReport report = world.system.step(1.0 / 60);
+      ASSERT_TRUE(std::isfinite(report.energy.total())) << "seed " << seed << " edit " << i;
+      for (const ParticleId p : world.system.particles())
+        ASSERT_TRUE(is_finite(world.system.position(p)) && is_finite(world.system.velocity(p)))
+            << "seed " << seed << " edit " << i;
+      ASSERT_LT(report.energy.kinetic, 1e4 + 100 * before.kinetic) << "seed " << seed << " edit " << i;
+      for (const ConstraintId c : world.system.constraints())
+        ASSERT_TRUE(is_finite(world.system.state(c).force)) << "seed " << seed << " edit " << i;
+    }
+    made += world.made;
+  }
+  EXPECT_GT(made, 200) << "most of what was asked for was possible";
+}
+
+TEST(RandomConstraints, replay_to_the_same_bits) {
+  JointedWorld world(7, IntegrationMode::energy_keeping);
+  world.system.start_recording();
+  for (int i = 0; i < 60; ++i) {
+    world.edit();
+    (void)world.system.step(1.0 / 60);
+  }
+  const Recording recording = world.system.stop_recording();
+  System other;
+  EXPECT_EQ(other.replay(recording), std::nullopt);
+  EXPECT_EQ(other.state_hash(), world.system.state_hash());
+}
+
+}  // namespace
+}  // namespace iota
