@@ -13,8 +13,8 @@ constexpr const char* doc =
     "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses then stand for it, with exactly\n"
     "its mass, centre and inertia. velocity: of the centre of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
     "shape's frame (m) for particles to hinge, nail or bond, see `attachments` and `attach`.\n\n"
-    "kind: 'dynamic', 'static' (never moves), 'scripted' (moved by the script, infinite mass) or 'inactive' (kept, neither\n"
-    "stepped nor drawn). damping: 1/s, adds to the system's.\n\n"
+    "kind: 'dynamic', 'static' (never moves), 'scripted' (moved by the script, infinite mass), 'inactive' (kept, neither\n"
+    "stepped nor drawn) or 'resting' (dynamic but asleep, see System.rest_after). damping: 1/s, adds to the system's.\n\n"
     "Two handles of the same body are equal. A handle whose body was destroyed or absorbed raises StaleIdError.\n\n"
     "    rod = iota.Body(system)\n"
     "    top, end = iota.Particle(rod, (0, 2, 0)), iota.Particle(rod, (0, 1, 0))\n"
@@ -89,7 +89,7 @@ void bind_body(nb::module_& module) {
       "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), "velocity"_a = zero, "spin"_a = zero,
       "attachments"_a = nb::tuple(),
       nb::sig(
-          "def __init__(self, system: System, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive'] = 'dynamic', "
+          "def __init__(self, system: System, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting'] = 'dynamic', "
           "damping: float = 0.0, *, shape: Sphere | Box | Cylinder | Capsule | Torus | Mesh | None = None, "
           "density: float = 1000.0, mass: float | None = None, "
           "position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
@@ -110,7 +110,17 @@ void bind_body(nb::module_& module) {
           [](const BodyHandle& self, const KindWord& kind) {
             between_steps(self, "kind = ...").set_kind(self.id, to_kind(kind));
           },
-          "'dynamic', 'static', 'scripted' or 'inactive'")
+          "'dynamic', 'static', 'scripted', 'inactive' or 'resting'. A resting body sleeps with all that hangs together with\n"
+          "it, and wakes when something touches it.")
+      .def_prop_rw(
+          "active", [](const BodyHandle& self) { return self.use().is_active(self.id); },
+          [](const BodyHandle& self, bool active) { self.use().set_active(self.id, active); },
+          "False: kind 'inactive'; its bonds do not act. Active again, it is what it was before, at rest where it was left,\n"
+          "and its hinges close.")
+      .def(
+          "set_articulate_active",
+          [](const BodyHandle& self, bool active) { self.use().set_articulate_active(self.id, active); }, "active"_a,
+          "Switches the body and all that hangs on it off or on.")
       .def_prop_rw(
           "damping", [](const BodyHandle& self) { return self.use().damping(self.id); },
           [](const BodyHandle& self, double value) {

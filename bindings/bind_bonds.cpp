@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
 #include "bond_view.h"
+#include "restructure_result.h"
 
 #include <limits>
 
@@ -152,9 +153,10 @@ void bind_bond_state(nb::module_& module) {
 }
 
 void bind_cosmetic_bond(nb::module_& module) {
-  nb::class_<CosmeticBondHandle> type(module, "CBond",
-                                      "A line to be drawn between two particles of one body; it has no force.",
-                                      nb::type_slots(handle_slots<CosmeticBondHandle>), nb::is_weak_referenceable());
+  nb::class_<CosmeticBondHandle> type(
+      module, "CBond",
+      "A line to be drawn between two particles of one body; it has no force. A body whose lines are cut in two falls in two.",
+      nb::type_slots(handle_slots<CosmeticBondHandle>), nb::is_weak_referenceable());
   type.def(
       "__init__",
       [](CosmeticBondHandle* self, const ParticleHandle& p, const ParticleHandle& q) {
@@ -174,10 +176,16 @@ void bind_cosmetic_bond(nb::module_& module) {
       .def(
           "destroy",
           [](const CosmeticBondHandle& self) {
-            self.system->use().destroy(self.id);
+            System& engine = self.system->use();
+            const std::optional<ParticleId> end = engine.survivor_of(self.p);
+            RestructureResult result{self.system_object, self.system, engine.destroy(self.id)};
             std::erase_if(self.system->cosmetic_bonds, [&](const auto& bond) { return bond.id == self.id; });
+            if (end && !result.report.created_bodies.empty()) self.system->note_edit("break", engine.position(*end));
+            return result;
           },
-          "Removes it.")
+          "Removes it. Where that disconnects its body's cosmetic bonds the rigid body falls into two pieces: one with the\n"
+          "bond's first end, which stays this body, and one with the second. Particles that hang on neither end go with the\n"
+          "nearer piece; a solid and its attachments are one piece. Velocities stay.")
       .def("__repr__", [](const CosmeticBondHandle& self) {
         return "<CBond " + std::to_string(self.id.slot) + " between particles " + std::to_string(self.p.slot) +
                " and " + std::to_string(self.q.slot) + ">";

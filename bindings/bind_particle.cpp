@@ -101,6 +101,11 @@ void bind_particle(nb::module_& module) {
             between_steps(self, "mass = ...").set_mass(self.id, finite_positive(value, "mass", "kg"));
           },
           "Its own share, kg; 0 only for markers, made so. A ring weighs the sum of its particles.")
+      .def_prop_rw(
+          "active", [](const ParticleHandle& self) { return self.use().is_active(self.id); },
+          [](const ParticleHandle& self, bool active) { self.use().set_active(self.id, active); },
+          "False: its bonds do not act, and of its mass only a millionth, so that its body keeps its shape; its hinges and\n"
+          "nails hold on.")
       .def(
           "apply_force",
           [](const ParticleHandle& self, VectorArgument force) {

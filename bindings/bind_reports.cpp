@@ -71,6 +71,7 @@ void bind_step_report(nb::module_& module) {
       .def_ro("worst_gap", &StepReport::worst_gap, "Largest hinge separation or rigidity error, m.")
       .def_ro("energy", &StepReport::energy)
       .def_ro("articulates", &StepReport::articulates)
+      .def_ro("resting", &StepReport::resting, "Bodies asleep.")
       .def_ro("structure_version", &StepReport::structure_version)
       .def_ro("warnings", &StepReport::warnings, "Plain sentences.")
       .def("__repr__", [](const StepReport& r) {

@@ -86,6 +86,23 @@ void bind_settings(nb::class_<SystemObject>& type) {
           },
           "1/s: all velocities fall by exp(-damping t).")
       .def_prop_rw(
+          "rest_after", [](SystemObject& self) { return self.use().rest().after; },
+          [](SystemObject& self, double value) {
+            System& engine = self.use_between_steps("rest_after = ...");
+            engine.set_rest({finite_not_negative(value, "rest_after", "s"), engine.rest().speed});
+          },
+          "s, 0 for never: bodies that hang together, by hinges or bonds, fall asleep as one when none of their particles\n"
+          "has been faster than `rest_speed` for that long. They are then 'resting', stand still, and cost nothing. An edit,\n"
+          "an assigned velocity, a grip, an applied force (that of a function too), a moving nail or another gravity wakes\n"
+          "them.")
+      .def_prop_rw(
+          "rest_speed", [](SystemObject& self) { return self.use().rest().speed; },
+          [](SystemObject& self, double value) {
+            System& engine = self.use_between_steps("rest_speed = ...");
+            engine.set_rest({engine.rest().after, finite_not_negative(value, "rest_speed", "m/s")});
+          },
+          "m/s, see `rest_after`.")
+      .def_prop_rw(
           "threads", [](SystemObject& self) { return self.use().threads(); },
           [](SystemObject& self, int value) { self.use_between_steps("threads = ...").set_threads(value); },
           "How many threads share a step; assign 0 for one a core. No part of the state: results are the same bits.");

@@ -18,6 +18,7 @@ NB_MODULE(_core, module) {
   bind_grip(module);
   bind_constraints(module);
   bind_restructuring(module);
+  bind_parts(module);
   bind_server(module);
   bind_solvers(module);
 }

@@ -20,10 +20,11 @@ using Words = std::array<std::pair<std::string_view, Value>, count>;
 
 inline constexpr Words<IntegrationMode, 2> mode_words{
     {{"energy_keeping", IntegrationMode::energy_keeping}, {"robust", IntegrationMode::robust}}};
-inline constexpr Words<BodyKind, 4> kind_words{{{"dynamic", BodyKind::dynamic},
+inline constexpr Words<BodyKind, 5> kind_words{{{"dynamic", BodyKind::dynamic},
                                                 {"static", BodyKind::static_},
                                                 {"scripted", BodyKind::scripted},
-                                                {"inactive", BodyKind::inactive}}};
+                                                {"inactive", BodyKind::inactive},
+                                                {"resting", BodyKind::resting}}};
 
 inline constexpr Words<ConstraintKind, 15> constraint_words{{{"ball", ConstraintKind::ball},
                                                              {"universal", ConstraintKind::universal},
@@ -111,7 +112,7 @@ struct type_caster<iota::bindings::ModeWord> : word_caster<iota::bindings::ModeW
 template <>
 struct type_caster<iota::bindings::KindWord> : word_caster<iota::bindings::KindWord> {
   using Value = iota::bindings::KindWord;
-  static constexpr auto Name = const_name("typing.Literal['dynamic', 'static', 'scripted', 'inactive']");
+  static constexpr auto Name = const_name("typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting']");
 };
 
 }  // namespace nanobind::detail

@@ -43,6 +43,7 @@ struct [[nodiscard]] StepReport {
   double worst_gap = 0;  ///< largest hinge separation or rigidity error, m
   Energy energy;
   std::uint32_t articulates = 0;
+  std::uint32_t resting = 0;  ///< bodies asleep
   std::uint32_t structure_version = 0;
   std::vector<BondId> switched_off;  ///< bonds whose force was not finite, or whose function threw
   std::vector<Broken> broken;

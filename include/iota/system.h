@@ -39,6 +39,15 @@ enum class BodyKind : std::uint8_t {
   static_,   ///< never moves
   scripted,  ///< moved by the script (set_position), infinite mass
   inactive,  ///< kept, neither stepped nor drawn
+  resting,   ///< dynamic, asleep with all that hangs together with it; wakes when touched, see RestOptions
+};
+
+/// Bodies that hang together, by hinges or bonds, fall asleep as one when none of their particles has been faster than
+/// `speed` for `after` seconds: they are then `resting`, stand still, and cost nothing. An edit, an assigned velocity, a
+/// grip, an applied force (that of a scripted bond too), a moving nail or another gravity wakes them.
+struct RestOptions {
+  double after = 0;     ///< s; 0: never
+  double speed = 0.01;  ///< m/s
 };
 
 struct SystemOptions {
@@ -46,6 +55,7 @@ struct SystemOptions {
   IntegrationMode mode = IntegrationMode::energy_keeping;
   double damping = 0;  ///< 1/s, all bodies: velocities fall by exp(-damping t)
   int threads = 0;     ///< that share a step, 0: one a core. Results are the same bits for any number
+  RestOptions rest;
 };
 
 struct BodyOptions {
@@ -127,7 +137,10 @@ class System {
   void destroy(BodyId body);          ///< with its particles and their bonds
   void destroy(ParticleId particle);  ///< with its bonds; its body too if it was the last one
   void destroy(BondId bond);
-  void destroy(CosmeticBondId bond);
+  /// Where that disconnects its body's cosmetic bonds the rigid body falls into two pieces (thesis, 5.1.1): one with the
+  /// bond's first end, which stays this body, and one with the second. Particles that hang on neither end go with the
+  /// nearer piece; a solid and its attachments are one piece. Velocities, and so momenta, stay.
+  RestructureReport destroy(CosmeticBondId bond);
   ///@}
 
   /// @name Restructuring (thesis Tables 4.1-4.3)
@@ -140,6 +153,8 @@ class System {
   /// Same particle: a second one at the same place, half the mass each. Same body: q becomes a one-particle body
   /// hinged to p. Hinged: q leaves the ring. Unrelated: nothing.
   RestructureReport separate(ParticleId p, ParticleId q);
+  /// Makes one of a body's parts, see parts(), a body of its own again. Hinges that combining had made rigid are back.
+  RestructureReport separate(BodyId body, BodyId part);
   void nail(ParticleId particle);                        ///< where it is
   void nail(ParticleId particle, const Vec3& position);  ///< there; calling it again moves the nail
   void release(ParticleId particle);
@@ -189,6 +204,8 @@ class System {
   void set_solver(std::string_view name);
   double damping() const;
   void set_damping(double per_second);
+  RestOptions rest() const;
+  void set_rest(const RestOptions&);
   double time() const;
   std::uint64_t step_count() const;
   std::uint32_t structure_version() const;
@@ -217,6 +234,11 @@ class System {
   std::uint32_t articulate(BodyId) const;  ///< equal for bodies that hang together
   BodyKind kind(BodyId) const;
   void set_kind(BodyId, BodyKind);
+  /// An inactive body is kept, but neither stepped nor drawn; its bonds do not act. Active again, it is what it was
+  /// before, at rest where it was left, and its hinges close.
+  bool is_active(BodyId) const;
+  void set_active(BodyId, bool);
+  void set_articulate_active(BodyId, bool);  ///< the body and all that hangs on it
   double damping(BodyId) const;
   void set_damping(BodyId, double per_second);
   double mass(BodyId) const;
@@ -231,7 +253,16 @@ class System {
   /// rad/s, world axes; no part of it along what has no inertia (one point, or the line that all points are on).
   Vec3 angular_velocity(BodyId) const;
   void set_angular_velocity(BodyId, const Vec3&);
-  Vec3 angular_momentum(BodyId) const;                ///< about its centre of mass, kg m^2/s
+  Vec3 angular_momentum(BodyId) const;  ///< about its centre of mass, kg m^2/s
+  /// What a body was combined from: ids of bodies, itself and those it absorbed.
+  std::vector<BodyId> parts(BodyId) const;
+  std::vector<ParticleId> particles(BodyId body, BodyId part) const;
+  /// Sum of all forces from outside in the last step, and of their moments about the centre of mass, N and N m: mass times
+  /// acceleration. Of a part of a combined body: those that hold it to the rest included.
+  Vec3 net_force(BodyId) const;
+  Vec3 net_torque(BodyId) const;
+  Vec3 net_force(BodyId body, BodyId part) const;
+  Vec3 net_torque(BodyId body, BodyId part) const;
   std::vector<SolidView> solids(BodyId) const;        ///< empty for bodies of particles alone
   std::vector<ParticleId> attachments(BodyId) const;  ///< its particles that are no solid's own points
 
@@ -242,7 +273,12 @@ class System {
   Vec3 velocity(ParticleId) const;
   void set_velocity(ParticleId, const Vec3&);
   double mass(ParticleId) const;  ///< its own share
+  /// Bonds of an inactive particle do not act, and of its mass only a millionth (2^-20, so that its body keeps its shape);
+  /// its hinges and nails hold on.
+  bool is_active(ParticleId) const;
+  void set_active(ParticleId, bool);
   void set_mass(ParticleId, double);
+  Vec3 net_force(ParticleId) const;  ///< all that acted on its share of mass in the last step, N
   bool is_nailed(ParticleId) const;
   Vec3 nail_force(ParticleId) const;          ///< by the nail on the particle in the last step, N
   void apply_force(ParticleId, const Vec3&);  ///< added during the next step only, N

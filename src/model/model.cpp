@@ -31,7 +31,7 @@ void unlink(Table& items, Owner& owner, std::uint32_t item, auto next, auto prev
 
 std::uint32_t Model::make_particle(std::uint32_t body, const Vec3& position, double mass, const Vec3& velocity) {
   Particle p;
-  p.mass = mass;
+  p.mass = mass, p.part = bodies.id(body);
   const std::uint32_t particle = particles.create(p).slot;
   Ring r;
   r.position = position, r.velocity = velocity;
@@ -49,6 +49,9 @@ std::uint32_t Model::make_body(BodyKind kind, double body_damping) {
 }
 
 void Model::remove_particle(std::uint32_t particle) {
+  if (twins.size() > 0)
+    for (std::uint32_t t = 0; t < twins.slot_count(); ++t)
+      if (twins.is_alive(t) && twins[t].particle == particle) twins.destroy(t);
   take_from_body(particle);
   take_from_ring(particle);
   particles.destroy(particle);

@@ -19,6 +19,9 @@
 namespace iota::model {
 
 inline constexpr std::uint32_t none = 0xffffffff;
+inline constexpr double inactive_share = 0x1p-20;  ///< of its mass that an inactive particle keeps
+
+inline bool is_free(BodyKind kind) { return kind == BodyKind::dynamic || kind == BodyKind::resting; }
 
 /// One body's point. Points of different bodies in one ring share position and velocity; each holds its share of mass.
 struct Particle {
@@ -28,8 +31,9 @@ struct Particle {
   std::uint32_t uses = 0;  ///< bonds and closings that need it as an unknown of its own
   std::uint32_t first_bond = none, first_closing = none, first_cosmetic_bond = none;  ///< see `Ends`
   std::uint32_t first_constraint = none;                                              ///< see `Constraint`
-  std::uint32_t padding = 0;
-  double mass = 1;  ///< kg
+  std::uint32_t inactive = 0;  ///< its mass is then inactive_share of what it was given
+  BodyId part;                 ///< the body it was first in: what a body was combined from can still be told apart
+  double mass = 1;             ///< kg
   /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
   std::int32_t basis_index = -1;
   std::array<double, 4> weights{};
@@ -44,6 +48,7 @@ struct Particle {
 struct Ring {
   std::uint32_t first = none, last = none, count = 0;
   Vec3 position, velocity;
+  Vec3 acceleration;   ///< change of velocity in the last step by its length, m/s^2
   Vec3 applied_force;  ///< for the next step only, N
   std::uint8_t nailed = 0;
   std::array<std::uint8_t, 7> padding{};
@@ -56,7 +61,7 @@ struct Body {
   BodyKind kind = BodyKind::dynamic;
   std::uint8_t rank = 0;  ///< basis points: 1 point, 2 on a line, 3 in a plane, 4 general
   std::uint8_t row_count = 0;
-  std::uint8_t padding = 0;
+  BodyKind kind_before = BodyKind::dynamic;  ///< of an inactive one
   std::uint32_t first = none, last = none, count = 0;
   std::uint32_t articulate = none;
   std::uint32_t next_in_articulate = none, previous_in_articulate = none;
@@ -100,11 +105,21 @@ struct Solid {
   Quaternion principal;           ///< turns vectors of the frame of `half` into the shape's frame
 };
 
+/// A particle that was absorbed when a hinge became rigid: comes back, hinged, when its part leaves the body again.
+struct Twin {
+  std::uint32_t particle = none;  ///< that absorbed it
+  std::uint32_t padding = 0;
+  BodyId part;
+  double mass = 0;  ///< its share, kg
+};
+
 /// The bodies that hang together through hinges: one independent problem.
 struct Articulate {
   std::uint32_t first = none, last = none, count = 0;
-  std::uint32_t version = 0;  ///< of its structure
-  std::uint32_t jolted = 0;   ///< velocities were assigned and may violate constraints: project before the next step
+  std::uint32_t version = 0;    ///< of its structure
+  std::uint32_t jolted = 0;     ///< velocities were assigned and may violate constraints: project before the next step
+  std::uint32_t disturbed = 0;  ///< since the last step: wakes it
+  double slow_time = 0;         ///< s; of an island, at the articulate of its first body
 };
 
 /// What joins two particles is in a list of each of them, so that looking after one particle's uses costs what it has.
@@ -142,12 +157,14 @@ struct Bond : Ends {
   std::uint32_t law = spring_law;
   std::uint8_t active = 1;
   std::uint8_t implicit = 1;
-  std::array<std::uint8_t, 2> padding{};
+  std::uint8_t muted = 0;  ///< one of its ends does not act
+  std::uint8_t padding = 0;
   std::array<double, laws::max_parameters> parameters{};
   std::uint64_t script = 0;  ///< key of its own function, which lives outside the tables
 
   /// Whether it is solved implicitly, so that its two ends belong to one problem.
-  bool ties() const { return active && implicit; }
+  bool ties() const { return acts() && implicit; }
+  bool acts() const { return active && !muted; }
 };
 
 struct CosmeticBond : Ends {};
@@ -179,6 +196,7 @@ class Model {
   SlotTable<Body, BodyId> bodies;
   SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
   SlotTable<Solid, Id<Solid>> solids;
+  SlotTable<Twin, Id<Twin>> twins;
   SlotTable<Articulate, Id<Articulate>> articulates;
   SlotTable<Law, LawId> laws;
   SlotTable<Bond, BondId> bonds;
@@ -193,9 +211,10 @@ class Model {
   Vec3 gravity{0, -9.81, 0};
   IntegrationMode mode = IntegrationMode::energy_keeping;
   double damping = 0;
-  std::array<char, 32>
-      solver{};  ///< name of who solves the equations of steps, ended by zeros; empty: the built-in one
-  double time = 0;
+  /// Name of who solves the equations of steps, ended by zeros; empty: the built-in one.
+  std::array<char, 32> solver{};
+  double rest_after = 0, rest_speed = 0;  ///< s, m/s; see RestOptions
+  double time = 0, last_dt = 0;
   std::uint64_t step = 0;
   std::uint32_t structure_version = 1;
   double dissipated = 0, external_work = 0, edit_energy = 0;
@@ -284,6 +303,13 @@ class Model {
     const Ring& r = rings[p.ring];
     return r.count > 1 || r.nailed || p.uses > 0;
   }
+
+  /// Whether a particle takes part: not where it, or its body, was switched off.
+  bool acts(std::uint32_t particle) const {
+    const Particle& p = particles[particle];
+    return !p.inactive && bodies[p.body].kind != BodyKind::inactive;
+  }
+  void mute_bonds_of(std::uint32_t particle);  ///< after it has changed whether it acts
 
   /// Held in place by a nail or by a static or scripted body in its ring.
   bool is_pinned(std::uint32_t ring) const;
@@ -452,12 +478,13 @@ void Model::Survivors<IdType>::archive(Archive& ar) {
 
 template <class Archive>
 void Model::archive(Archive& ar) {
-  particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), solids.archive(ar);
+  particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), solids.archive(ar),
+      twins.archive(ar);
   articulates.archive(ar);
   laws.archive(ar), bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
   constraints.archive(ar), ar.vector(curve_points);
-  ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(time), ar.value(step),
-      ar.value(structure_version);
+  ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
+  ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
   if constexpr (std::is_same_v<Archive, Reader>) compile_laws();

@@ -34,13 +34,17 @@ bool Model::follows_basis(std::uint32_t particle) const {
   return norm(x - position(particle)) < 1e-9 && norm(v - velocity(particle)) < 1e-9;
 }
 
+// Energies and momenta are those of what is stepped: an inactive body has none, even where it is hinged to one that moves.
+
 double Model::kinetic_energy() const {
   double twice = 0;
   particles.for_each([&](std::uint32_t, const Particle& p) {
+    if (bodies[p.body].kind == BodyKind::inactive) return;
     const Vec3& v = rings[p.ring].velocity;
     twice += p.mass * dot(v, v);
   });
   inertia_pairs.for_each([&](std::uint32_t, const InertiaPair& i) {
+    if (bodies[i.body].kind == BodyKind::inactive) return;
     const Vec3 v = velocity(i.p) - velocity(i.q);
     twice += i.inertia * dot(v, v);
   });
@@ -49,8 +53,9 @@ double Model::kinetic_energy() const {
 
 double Model::potential_energy() const {
   double energy = 0;
-  particles.for_each(
-      [&](std::uint32_t, const Particle& p) { energy -= p.mass * dot(gravity, rings[p.ring].position); });
+  particles.for_each([&](std::uint32_t, const Particle& p) {
+    if (bodies[p.body].kind != BodyKind::inactive) energy -= p.mass * dot(gravity, rings[p.ring].position);
+  });
   bonds.for_each([&](std::uint32_t slot, const Bond&) { energy += bond_energy(slot); });
   constraints.for_each([&](std::uint32_t slot, const Constraint&) { energy += constraint_energy(slot); });
   return energy;
@@ -81,15 +86,20 @@ double Model::constraint_energy(std::uint32_t slot) const {
 
 Vec3 Model::momentum() const {
   Vec3 sum;
-  particles.for_each([&](std::uint32_t, const Particle& p) { sum += p.mass * rings[p.ring].velocity; });
+  particles.for_each([&](std::uint32_t, const Particle& p) {
+    if (bodies[p.body].kind != BodyKind::inactive) sum += p.mass * rings[p.ring].velocity;
+  });
   return sum;
 }
 
 Vec3 Model::angular_momentum() const {
   Vec3 sum;
-  particles.for_each(
-      [&](std::uint32_t, const Particle& p) { sum += p.mass * cross(rings[p.ring].position, rings[p.ring].velocity); });
+  particles.for_each([&](std::uint32_t, const Particle& p) {
+    if (bodies[p.body].kind == BodyKind::inactive) return;
+    sum += p.mass * cross(rings[p.ring].position, rings[p.ring].velocity);
+  });
   inertia_pairs.for_each([&](std::uint32_t, const InertiaPair& i) {
+    if (bodies[i.body].kind == BodyKind::inactive) return;
     sum += i.inertia * cross(position(i.p) - position(i.q), velocity(i.p) - velocity(i.q));
   });
   return sum;

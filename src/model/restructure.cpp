@@ -53,8 +53,13 @@ Edit merge_rings(Model& model, std::uint32_t into, std::uint32_t from) {
 
 /// q, of the same body as p, becomes p: mass, bonds and inertia pairs. Both must be in one ring already or q alone in its.
 void absorb_particle(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
+  if (model.particles[q].inactive != model.particles[p].inactive)
+    model.particles[q].mass *= model.particles[p].inactive ? inactive_share : 1 / inactive_share;
   model.particles[p].mass += model.particles[q].mass;
   model.redirect_uses(q, p);
+  model.twins.for_each([&](std::uint32_t, Twin& t) {
+    if (t.particle == q) t.particle = p;
+  });
   const ParticleId retired = model.particles.id(q), survivor = model.particles.id(p);
   model.record_survivor(retired, survivor);
   report.absorbed_particles.push_back({retired, survivor});
@@ -89,6 +94,7 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
     const std::uint32_t twin = twin_in(a, moved);
     model.take_from_body(moved);
     model.add_to_body(moved, a);
+    model.mute_bonds_of(moved);
     if (twin == none) continue;
     model.for_each_inertia_of(a, [&](std::uint32_t i) {
       InertiaPair& pair = model.inertia_pairs[i];
@@ -98,7 +104,9 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
     model.for_each_solid_of(a, [&](std::uint32_t s) {
       std::replace(model.solids[s].points.begin(), model.solids[s].points.end(), moved, twin);
     });
+    const Twin absorbed{twin, 0, model.particles[moved].part, model.particles[moved].mass};
     absorb_particle(model, twin, moved, report);
+    model.twins.create(absorbed);
   }
   model.grips.for_each([&](std::uint32_t, Grip& g) {
     if (g.body == b) g.body = a;
@@ -131,21 +139,6 @@ void require_mass_on_its_own(const Model& model, std::uint32_t p, std::uint32_t 
                                 " is the only one with mass in its body; give another one a mass first");
 }
 
-/// Markers that a body's massive particles no longer reach go, with what refers to them.
-void destroy_stray_markers(Model& model, std::uint32_t body, std::vector<std::string>& notes) {
-  std::vector<std::uint32_t> strays;
-  model.for_each_particle_of(body, [&](std::uint32_t p) {
-    if (model.particles[p].is_marker() && !model.spans(body, model.position(p))) strays.push_back(p);
-  });
-  std::vector<ParticleId> ids;
-  for (const std::uint32_t p : strays) ids.push_back(model.particles.id(p));
-  for (const ParticleId id : ids)
-    if (model.particles.contains(id)) destroy_particle(model, id.slot);
-  if (!strays.empty())
-    notes.push_back("body " + std::to_string(body) + " is too flat now to carry " + std::to_string(strays.size()) +
-                    " massless particles: they are gone with what was joined to them");
-}
-
 /// The bodies at the other members of a particle's ring.
 std::vector<std::uint32_t> ring_neighbours(const Model& model, std::uint32_t particle) {
   std::vector<std::uint32_t> bodies;
@@ -172,6 +165,20 @@ void destroy_uses(Model& model, std::uint32_t particle, std::vector<std::uint32_
 }
 
 }  // namespace
+
+void destroy_stray_markers(Model& model, std::uint32_t body, std::vector<std::string>& notes) {
+  std::vector<std::uint32_t> strays;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (model.particles[p].is_marker() && !model.spans(body, model.position(p))) strays.push_back(p);
+  });
+  std::vector<ParticleId> ids;
+  for (const std::uint32_t p : strays) ids.push_back(model.particles.id(p));
+  for (const ParticleId id : ids)
+    if (model.particles.contains(id)) destroy_particle(model, id.slot);
+  if (!strays.empty())
+    notes.push_back("body " + std::to_string(body) + " is too flat now to carry " + std::to_string(strays.size()) +
+                    " massless particles: they are gone with what was joined to them");
+}
 
 std::uint32_t closing_between(const Model& model, std::uint32_t p, std::uint32_t q) {
   std::uint32_t found = none;
@@ -243,6 +250,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
   if (p == q) {  // one particle: a second one at the same place
     model.particles[p].mass /= 2;
     const std::uint32_t twin = model.make_particle(body, model.position(p), model.particles[p].mass, model.velocity(p));
+    model.particles[twin].inactive = model.particles[p].inactive;
     model.rebuild_basis(body);
     model.touch(model.bodies[body].articulate);
     report.changed = true;
@@ -262,6 +270,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     model.rebuild_basis(body);
     destroy_stray_markers(model, body, report.notes);
     const std::uint32_t own = model.make_body(model.bodies[body].kind, model.bodies[body].damping);
+    model.particles[q].part = model.bodies.id(own);
     Ring ring;
     ring.position = position, ring.velocity = velocity;
     model.add_to_ring(q, model.rings.create(ring).slot);

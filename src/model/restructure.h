@@ -17,9 +17,21 @@ Edit combine_particles(Model&, std::uint32_t p, std::uint32_t q, RestructureRepo
 Edit combine_bodies(Model&, std::uint32_t a, std::uint32_t b, RestructureReport&);
 Edit separate_particles(Model&, std::uint32_t p, std::uint32_t q, RestructureReport&);
 
+/// What a body was combined from, in order of its particles: ids of bodies, the retired ones too.
+std::vector<BodyId> parts_of(const Model&, std::uint32_t body);
+/// Makes one part of a body a body of its own again; hinges that combining had made rigid are back.
+Edit separate_part(Model&, std::uint32_t body, BodyId part, RestructureReport&);
+/// Removes a cosmetic bond. Where that disconnects its body's cosmetic bonds the body falls into two: one with the bond's
+/// first end, which stays the body, and one with the second. What hangs on neither goes with the nearer one; a solid is
+/// one piece.
+Edit break_cosmetic_bond(Model&, std::uint32_t bond, RestructureReport&);
+
 /// With what refers to it; its body too if no massive particle is left there.
 void destroy_particle(Model&, std::uint32_t particle);
 void destroy_body(Model&, std::uint32_t body);
+
+/// Markers that a body's massive particles no longer reach go, with what refers to them; says so in the notes.
+void destroy_stray_markers(Model&, std::uint32_t body, std::vector<std::string>& notes);
 
 /// The closing of two particles, in either order; `none` without one.
 std::uint32_t closing_between(const Model&, std::uint32_t p, std::uint32_t q);

@@ -38,6 +38,7 @@ std::uint32_t Model::add_bond(const Bond& bond) {
     ++particles[particle].uses;
     touch_particle(particle);
   }
+  bonds[slot].muted = !acts(bond.p) || !acts(bond.q);
   return slot;
 }
 
@@ -132,6 +133,13 @@ void Model::unlink_place(std::uint32_t slot, std::uint32_t place) {
   touch_particle(c.particles[place]);
 }
 
+void Model::mute_bonds_of(std::uint32_t particle) {
+  for_each_bond_of(particle, [&](std::uint32_t b) {
+    bonds[b].muted = !acts(bonds[b].p) || !acts(bonds[b].q);
+    ++bonds_revision;
+  });
+}
+
 void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
   const auto redirect = [&](auto& items, std::uint32_t Particle::* first, auto remove) {
     while (particles[q].*first != none) {
@@ -165,6 +173,7 @@ void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
   redirect(bonds, &Particle::first_bond, [&](std::uint32_t slot) { remove_bond(slot); });
   redirect(closings, &Particle::first_closing, [&](std::uint32_t slot) { remove_closing(slot); });
   redirect(cosmetic_bonds, &Particle::first_cosmetic_bond, [&](std::uint32_t slot) { remove_cosmetic_bond(slot); });
+  mute_bonds_of(p);
   const std::uint32_t moved = particles[q].uses;  // the others were removed, and counted off
   particles[p].uses += moved, particles[q].uses = 0;
   if (uses > 0) touch_particle(p);

@@ -134,6 +134,9 @@ std::vector<std::string> Model::validate() const {
     complaints.require(particles.is_alive(p) && particles.is_alive(q) && p != q, what, " ", slot, " joins ", p, " and ",
                        q);
   };
+  twins.for_each([&](std::uint32_t slot, const Twin& t) {
+    complaints.require(particles.is_alive(t.particle) && t.mass >= 0, "twin ", slot, " is of no living particle");
+  });
   bonds.for_each([&](std::uint32_t slot, const Bond& b) {
     require_ends("bond", slot, b.p, b.q);
     ++uses[b.p], ++uses[b.q];

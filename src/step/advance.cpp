@@ -24,7 +24,8 @@ StepReport System::Implementation::apply(const step::Step& command) {
   std::vector<std::uint32_t> jolted;
   model.articulates.for_each([&](std::uint32_t slot, model::Articulate& a) {
     if (a.jolted) jolted.push_back(slot);
-    a.jolted = 0;
+    if (a.disturbed) islands.of_articulate(slot)->disturb();
+    a.jolted = a.disturbed = 0;
   });
   if (!jolted.empty()) {
     const double before = model.kinetic_energy();
@@ -38,6 +39,8 @@ StepReport System::Implementation::apply(const step::Step& command) {
   parallel.for_each(all.size(), islands.grain(parallel),
                     [&](std::size_t i) { advanced[i] = all[i]->advance(model, h, model.mode); });
   int solves = 0, iterations = 0, handed_back = 0;
+  for (const auto* island : all)
+    if (island->rests(model)) report.resting += static_cast<std::uint32_t>(island->body_count());
   for (const solver::AdvanceReport& r : advanced) {
     solves += r.solves, iterations += r.iterations, handed_back += r.handed_back;
     report.iterations_max = std::max(report.iterations_max, r.iterations_max);
@@ -53,7 +56,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
                               std::to_string(handed_back) + " of " + std::to_string(solves) +
                               " solves; the built-in one took over");
   report.iterations_mean = solves ? static_cast<double>(iterations) / solves : 0;
-  model.time += h;
+  model.time += h, model.last_dt = h;
   ++model.step;
   stepping = false;
 

@@ -118,6 +118,13 @@ struct ApplyForce {
   ParticleId particle;
   Vec3 value;
 };
+struct SetParticleActive {
+  ParticleId particle;
+  bool active;
+};
+struct SetRest {
+  RestOptions options;
+};
 struct SetActive {
   BondId bond;
   bool active;
@@ -179,6 +186,9 @@ struct CombineBodies {
 struct Separate {
   ParticleId p, q;
 };
+struct SeparatePart {
+  BodyId body, part;
+};
 struct Nail {
   ParticleId particle;
   bool in_place;
@@ -188,26 +198,81 @@ struct Release {
   ParticleId particle;
 };
 
-using Command =
-    std::variant<SetGravity, SetMode, SetSolver, SetSystemDamping, CreateBody, CreateParticle, SetRod, SpellLaw,
-                 CreateLaw, CreateCosmeticBond, CreateBond, CreateGrip, MoveGrip, SetKind, SetBodyDamping, SetPosition,
-                 SetVelocity, SetMass, ApplyForce, SetActive, SetParameter, CreateSolid, CreateAttachment, SetPose,
-                 SetBodyVelocity, SetAngularVelocity, Step, Destroy<BodyId>, Destroy<ParticleId>, Destroy<BondId>,
-                 Destroy<LawId>, Destroy<CosmeticBondId>, Destroy<GripId>, CombineParticles, CombineBodies, Separate,
-                 Nail, Release, CreateJoint, CreateDistance, AddCurvePoints, CreatePath, CreateSurface,
-                 CreateSurfacePair, SetConstraintActive, SetCoordinate, SetLength, SetBreakLimits,
-                 Destroy<ConstraintId>>;
+// A line each, so that two who add one do not meet.
+// clang-format off
+using Command = std::variant<
+    SetGravity,
+    SetMode,
+    SetSolver,
+    SetSystemDamping,
+    CreateBody,
+    CreateParticle,
+    SetRod,
+    SpellLaw,
+    CreateLaw,
+    CreateCosmeticBond,
+    CreateBond,
+    CreateGrip,
+    MoveGrip,
+    SetKind,
+    SetBodyDamping,
+    SetPosition,
+    SetVelocity,
+    SetMass,
+    ApplyForce,
+    SetActive,
+    SetParticleActive,
+    SetRest,
+    SetParameter,
+    CreateSolid,
+    CreateAttachment,
+    SetPose,
+    SetBodyVelocity,
+    SetAngularVelocity,
+    Step,
+    Destroy<BodyId>,
+    Destroy<ParticleId>,
+    Destroy<BondId>,
+    Destroy<LawId>,
+    Destroy<CosmeticBondId>,
+    Destroy<GripId>,
+    CombineParticles,
+    CombineBodies,
+    Separate,
+    SeparatePart,
+    Nail,
+    Release,
+    CreateJoint,
+    CreateDistance,
+    AddCurvePoints,
+    CreatePath,
+    CreateSurface,
+    CreateSurfacePair,
+    SetConstraintActive,
+    SetCoordinate,
+    SetLength,
+    SetBreakLimits,
+    Destroy<ConstraintId>>;
+// clang-format on
 
 template <class C>
 inline constexpr bool is_queueable = false;
 template <class IdType>
 inline constexpr bool is_queueable<Destroy<IdType>> = true;
 template <>
+inline constexpr bool is_queueable<SetKind> = true;
+template <>
+inline constexpr bool is_queueable<SetParticleActive> = true;
+template <>
+inline constexpr bool is_queueable<SetActive> = true;
+template <>
 inline constexpr bool is_queueable<CombineParticles> = true;
 template <>
 inline constexpr bool is_queueable<CombineBodies> = true;
 template <>
 inline constexpr bool is_queueable<Separate> = true;
+template <>
+inline constexpr bool is_queueable<SeparatePart> = true;
 template <>
 inline constexpr bool is_queueable<Nail> = true;
 template <>

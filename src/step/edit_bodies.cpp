@@ -96,6 +96,25 @@ void System::set_angular_velocity(BodyId body, const Vec3& value) {
   implementation_->execute(SetAngularVelocity{body, value});
 }
 
+bool System::is_active(BodyId id) const { return kind(id) != BodyKind::inactive; }
+void System::set_active(BodyId id, bool active) {
+  if (active == is_active(id)) return;
+  set_kind(id, active ? implementation_->model.bodies[id.slot].kind_before : BodyKind::inactive);
+}
+void System::set_articulate_active(BodyId id, bool active) {
+  const model::Model& m = implementation_->model;
+  std::vector<BodyId> members;
+  m.for_each_body_of(m.bodies[implementation_->require(id)].articulate,
+                     [&](std::uint32_t b) { members.push_back(m.bodies.id(b)); });
+  for (const BodyId body : members) set_active(body, active);
+}
+bool System::is_active(ParticleId id) const {
+  return !implementation_->model.particles[implementation_->require(id)].inactive;
+}
+void System::set_active(ParticleId id, bool active) { implementation_->execute(SetParticleActive{id, active}); }
+RestOptions System::rest() const { return {implementation_->model.rest_after, implementation_->model.rest_speed}; }
+void System::set_rest(const RestOptions& options) { implementation_->execute(SetRest{options}); }
+
 Matrix3 System::inertia(BodyId id) const {
   return to_rows(body_inertia(implementation_->model, implementation_->require(id)));
 }
@@ -105,6 +124,68 @@ Vec3 System::angular_velocity(BodyId id) const {
 }
 Vec3 System::angular_momentum(BodyId id) const {
   return body_angular_momentum(implementation_->model, implementation_->require(id));
+}
+
+RestructureReport System::separate(BodyId body, BodyId part) {
+  return implementation_->execute(SeparatePart{body, part});
+}
+std::vector<BodyId> System::parts(BodyId id) const {
+  return parts_of(implementation_->model, implementation_->require(id));
+}
+std::vector<ParticleId> System::particles(BodyId id, BodyId part) const {
+  const model::Model& m = implementation_->model;
+  std::vector<ParticleId> ids;
+  m.for_each_particle_of(implementation_->require(id), [&](std::uint32_t p) {
+    if (m.particles[p].part == part) ids.push_back(m.particles.id(p));
+  });
+  return ids;
+}
+
+Vec3 System::net_force(ParticleId id) const {
+  const model::Particle& p = implementation_->model.particles[implementation_->require(id)];
+  return p.mass * implementation_->model.rings[p.ring].acceleration;
+}
+Vec3 System::net_force(BodyId id) const { return implementation_->rates(implementation_->require(id), {}).force; }
+Vec3 System::net_torque(BodyId id) const { return implementation_->rates(implementation_->require(id), {}).torque; }
+Vec3 System::net_force(BodyId id, BodyId part) const {
+  return implementation_->rates(implementation_->require(id), part).force;
+}
+Vec3 System::net_torque(BodyId id, BodyId part) const {
+  return implementation_->rates(implementation_->require(id), part).torque;
+}
+
+// Forces act where the scheme takes them: at the end of the step, or half way, where x = x1 - h (v0 + v1) / 4. There the
+// moments of all forces within a body cancel, so that the sum of m x cross a is the torque from outside.
+System::Implementation::Rates System::Implementation::rates(std::uint32_t body, BodyId part) const {
+  std::vector<std::uint32_t> members;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (!part || model.particles[p].part == part) members.push_back(p);
+  });
+  double mass = 0;
+  Vec3 position, velocity, force;
+  for (const std::uint32_t p : members) {
+    const double m = model.particles[p].mass;
+    mass += m, position += m * model.position(p), velocity += m * model.velocity(p);
+    force += m * model.rings[model.particles[p].ring].acceleration;
+  }
+  if (!(mass > 0)) return {};
+  const Vec3 x = (1 / mass) * position, v = (1 / mass) * velocity, a = (1 / mass) * force;
+  const double back = model.mode == IntegrationMode::robust ? 0 : model.last_dt / 2;
+  Vec3 torque;
+  const auto add = [&](double m, const Vec3& r, const Vec3& v1, const Vec3& a1) {
+    torque += m * cross(r - back * v1, a1);
+  };
+  for (const std::uint32_t p : members)
+    add(model.particles[p].mass, model.position(p) - x, model.velocity(p) - v,
+        model.rings[model.particles[p].ring].acceleration - a);
+  model.for_each_inertia_of(body, [&](std::uint32_t i) {
+    const model::InertiaPair& pair = model.inertia_pairs[i];
+    if (part && (model.particles[pair.p].part != part || model.particles[pair.q].part != part)) return;
+    add(pair.inertia, model.position(pair.p) - model.position(pair.q), model.velocity(pair.p) - model.velocity(pair.q),
+        model.rings[model.particles[pair.p].ring].acceleration -
+            model.rings[model.particles[pair.q].ring].acceleration);
+  });
+  return {force, torque};
 }
 
 std::vector<SolidView> System::solids(BodyId id) const {
@@ -210,6 +291,41 @@ void System::Implementation::apply(const SetPose& c) {
   model.edit_energy += model.potential_energy() - before;
 }
 
+void System::Implementation::put_to_rest(std::uint32_t body) {
+  islands.update(model, parallel);
+  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
+  const double energy = conserved(affected).energy();
+  islands.of_articulate(model.bodies[body].articulate)->put_to_rest(model);
+  model.edit_energy += conserved(affected).energy() - energy;
+  for (const std::uint32_t b : affected) {
+    model::Articulate& a = model.articulates[model.bodies[b].articulate];
+    a.disturbed = a.jolted = 0;
+  }
+}
+
+void System::Implementation::apply(const SetParticleActive& c) {
+  const std::uint32_t slot = require(c.particle);
+  model::Particle& p = model.particles[slot];
+  if (p.inactive != static_cast<std::uint32_t>(c.active)) return;
+  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{p.body});
+  const double energy = conserved(affected).energy();
+  p.inactive = !c.active;
+  p.mass *= c.active ? 1 / model::inactive_share : model::inactive_share;
+  model.mute_bonds_of(slot);
+  model.for_each_bond_of(slot, [&](std::uint32_t b) {
+    for (const std::uint32_t end : {model.bonds[b].p, model.bonds[b].q}) model.touch_particle(end);
+  });
+  model.touch_particle(slot);
+  model.edit_energy += conserved(affected).energy() - energy;
+  structure_changed();
+}
+
+void System::Implementation::apply(const SetRest& c) {
+  require_not_negative("rest.after", c.options.after);
+  require_not_negative("rest.speed", c.options.speed);
+  model.rest_after = c.options.after, model.rest_speed = c.options.speed;
+}
+
 template <class Motion>
 void System::Implementation::add_motion(std::uint32_t body, Motion motion) {
   std::vector<std::uint32_t> touched;
@@ -225,7 +341,7 @@ void System::Implementation::add_motion(std::uint32_t body, Motion motion) {
     ring.velocity += motion(ring.position);
   });
   model.edit_energy += conserved(touched).kinetic - before;
-  model.articulates[model.bodies[body].articulate].jolted = 1;
+  jolt(model.bodies[body].first);
 }
 
 void System::Implementation::apply(const SetBodyVelocity& c) {

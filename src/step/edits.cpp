@@ -42,7 +42,8 @@ std::uint32_t System::Implementation::require(GripId id) const {
 }
 
 void System::Implementation::jolt(std::uint32_t particle) {
-  model.articulates[model.bodies[model.particles[particle].body].articulate].jolted = 1;
+  model::Articulate& a = model.articulates[model.bodies[model.particles[particle].body].articulate];
+  a.jolted = a.disturbed = 1;
 }
 
 // --- settings ---------------------------------------------------------------------------------------------------------
@@ -50,6 +51,7 @@ void System::Implementation::jolt(std::uint32_t particle) {
 void System::Implementation::apply(const step::SetGravity& c) {
   require_finite("gravity", c.value);
   model.gravity = c.value;
+  model.articulates.for_each([](std::uint32_t, model::Articulate& a) { a.disturbed = 1; });
 }
 void System::Implementation::apply(const step::SetMode& c) { model.mode = c.mode; }
 void System::Implementation::apply(const step::SetSolver& c) {
@@ -154,17 +156,6 @@ void System::Implementation::apply(const step::MoveGrip& c) {
 
 // --- assigning --------------------------------------------------------------------------------------------------------
 
-void System::Implementation::apply(const step::SetKind& c) {
-  const std::uint32_t body = require(c.body);
-  if (model.bodies[body].kind == c.kind) return;
-  model.bodies[body].kind = c.kind;
-  ++model.bonds_revision;
-  if (c.kind != BodyKind::dynamic)
-    model.for_each_particle_of(body, [&](std::uint32_t p) { model.rings[model.particles[p].ring].velocity = {}; });
-  model.touch(model.bodies[body].articulate);
-  structure_changed();
-}
-
 void System::Implementation::apply(const step::SetBodyDamping& c) {
   require_not_negative("damping", c.per_second);
   const std::uint32_t body = require(c.body);
@@ -262,7 +253,7 @@ void System::Implementation::apply(const step::SetVelocity& c) {
 void System::Implementation::apply(const step::SetMass& c) {
   const std::uint32_t particle = require(c.particle);
   require_mass("mass", c.value);
-  model.particles[particle].mass = c.value;
+  model.particles[particle].mass = model.particles[particle].inactive ? c.value * model::inactive_share : c.value;
   model.touch(model.bodies[model.particles[particle].body].articulate);
 }
 
@@ -322,7 +313,7 @@ RestructureReport System::Implementation::restructure(std::span<const std::uint3
 System::Implementation::Conserved System::Implementation::conserved(std::span<const std::uint32_t> bodies) const {
   Conserved sum;
   for (const std::uint32_t body : bodies) {
-    if (!model.bodies.is_alive(body)) continue;
+    if (!model.bodies.is_alive(body) || model.bodies[body].kind == BodyKind::inactive) continue;
     model.for_each_particle_of(body, [&](std::uint32_t p) {
       const double mass = model.particles[p].mass;
       const Vec3 x = model.position(p), v = model.velocity(p);
@@ -381,8 +372,8 @@ void System::Implementation::settle(std::span<const std::uint32_t> bodies, bool 
 
 bool System::Implementation::give_back_momenta(std::span<const std::uint32_t> bodies,
                                                std::span<const std::uint32_t> affected, const Conserved& before) {
-  const std::vector<std::uint32_t> members = model.tied_bodies(bodies, model::Model::Ties::constraints);
-  std::vector<std::uint32_t> rings;
+  std::vector<std::uint32_t> members = model.tied_bodies(bodies, model::Model::Ties::constraints), rings;
+  std::erase_if(members, [&](std::uint32_t b) { return model.bodies[b].kind == BodyKind::inactive; });
   double mass = 0;
   Vec3 first_moment;
   bool pinned = std::any_of(members.begin(), members.end(), [&](std::uint32_t b) { return model.is_tied_to_world(b); });
@@ -419,6 +410,50 @@ bool System::Implementation::give_back_momenta(std::span<const std::uint32_t> bo
       model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - centre);
   }
   return true;
+}
+
+void System::Implementation::apply(const SetKind& c) {
+  const std::uint32_t slot = require(c.body);
+  const BodyKind before = model.bodies[slot].kind;
+  if (before == c.kind) return;
+  if (c.kind == BodyKind::resting) {
+    if (before != BodyKind::dynamic)
+      throw std::invalid_argument(text("only dynamic bodies can rest; body ", slot, " is none: make it dynamic first"));
+    return put_to_rest(slot);
+  }
+  if (before == BodyKind::resting) {
+    for (const std::uint32_t b : model.tied_bodies(std::array{slot})) {
+      if (model.bodies[b].kind == BodyKind::resting) model.bodies[b].kind = BodyKind::dynamic;
+      model.articulates[model.bodies[b].articulate].disturbed = 1;
+    }
+    if (c.kind == BodyKind::dynamic) return;
+  }
+  const auto change = [&] {
+    model::Body& body = model.bodies[slot];
+    if (c.kind == BodyKind::inactive) body.kind_before = body.kind;
+    body.kind = c.kind;
+    model.for_each_particle_of(slot, [&](std::uint32_t p) {
+      model.mute_bonds_of(p);
+      model::Ring& ring = model.rings[model.particles[p].ring];
+      if (c.kind != BodyKind::dynamic && (c.kind != BodyKind::inactive || ring.count == 1))
+        ring.velocity = ring.acceleration = {};
+    });
+    model.touch_body(slot);
+    model.articulates[body.articulate].jolted = 1;
+  };
+  if (before == BodyKind::inactive) {  // what it is hinged to may have gone elsewhere meanwhile
+    (void)restructure(std::array{slot}, false, [&](RestructureReport& report) {
+      change();
+      report.changed = true;
+      return model::Edit{true, true};
+    });
+    return;
+  }
+  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{slot});
+  const double energy = conserved(affected).energy();
+  change();
+  model.edit_energy += conserved(affected).energy() - energy;
+  structure_changed();
 }
 
 RestructureReport System::Implementation::apply(const step::CombineParticles& c) {
@@ -522,10 +557,16 @@ void System::Implementation::apply(const step::Destroy<ParticleId>& c) {
   model.edit_energy += conserved(affected).energy() - before;
   structure_changed();
 }
-void System::Implementation::apply(const step::Destroy<CosmeticBondId>& c) {
+RestructureReport System::Implementation::apply(const step::Destroy<CosmeticBondId>& c) {
   if (!model.cosmetic_bonds.contains(c.id)) throw_stale("cosmetic bond", c.id, std::optional<CosmeticBondId>{});
-  model.remove_cosmetic_bond(c.id.slot);
-  structure_changed();
+  const std::uint32_t body = model.particles[model.cosmetic_bonds[c.id.slot].p].body;
+  return restructure({{body}}, false,
+                     [&](RestructureReport& report) { return break_cosmetic_bond(model, c.id.slot, report); });
+}
+RestructureReport System::Implementation::apply(const step::SeparatePart& c) {
+  const std::uint32_t body = require(c.body);
+  return restructure({{body}}, false,
+                     [&](RestructureReport& report) { return separate_part(model, body, c.part, report); });
 }
 void System::Implementation::apply(const step::Destroy<GripId>& c) {
   const std::uint32_t grip = require(c.id);

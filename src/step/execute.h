@@ -33,7 +33,7 @@ auto System::Implementation::execute(const C& command) {
       }
     } else {
       throw std::logic_error(
-          "only structural edits (combine, separate, nail, release, destroy) may be asked for while "
+          "only structural edits (combine, separate, nail, release, destroy, activate) may be asked for while "
           "the system steps; they are applied right after the step");
     }
   }

@@ -23,12 +23,6 @@ bool is_tame(const model::Law& law) {
           law.number == laws::find_pair_law("soft_repulsion"));
 }
 
-/// A bond rests where it or one of its bodies is switched off.
-bool is_at_work(const model::Model& model, const model::Bond& bond) {
-  const auto is_off = [&](std::uint32_t p) { return model.bodies[model.particles[p].body].kind == BodyKind::inactive; };
-  return bond.active && !is_off(bond.p) && !is_off(bond.q);
-}
-
 void put(double* out, std::size_t row, const Vec3& v) {
   out[3 * row] = v.x, out[3 * row + 1] = v.y, out[3 * row + 2] = v.z;
 }
@@ -49,7 +43,7 @@ void HeldForces::update(const model::Model& model) {
     batches[place].ids.push_back(model.bonds.id(slot));
   };
   model.bonds.for_each([&](std::uint32_t slot, const model::Bond& bond) {
-    if (bond.law == model::scripted_law || !is_at_work(model, bond)) return;
+    if (bond.law == model::scripted_law || !bond.acts()) return;
     if (!bond.implicit)
       put(held, place_held[bond.law], slot, bond.law);
     else if (!is_tame(model.laws[bond.law]))
@@ -233,7 +227,7 @@ void System::Implementation::run_scripts(StepReport& report) {
   for (std::uint32_t slot = 0; slot < model.bonds.slot_count(); ++slot) {
     if (!model.bonds.is_alive(slot)) continue;
     const model::Bond bond = model.bonds[slot];
-    if (bond.law != model::scripted_law || !step::is_at_work(model, bond)) continue;
+    if (bond.law != model::scripted_law || !bond.acts()) continue;
     const auto script = scripts.find(bond.script);
     if (script == scripts.end()) {
       switch_off(slot, " has no function in this system", report);

@@ -81,15 +81,18 @@ struct System::Implementation {
   void apply(const step::SetLength&);
   void apply(const step::SetBreakLimits&);
   void apply(const step::Destroy<ConstraintId>&);
+  void apply(const step::SetParticleActive&);
+  void apply(const step::SetRest&);
   StepReport apply(const step::Step&);
   void apply(const step::Destroy<BodyId>&);
   void apply(const step::Destroy<ParticleId>&);
   void apply(const step::Destroy<BondId>&);
-  void apply(const step::Destroy<CosmeticBondId>&);
+  RestructureReport apply(const step::Destroy<CosmeticBondId>&);
   void apply(const step::Destroy<GripId>&);
   RestructureReport apply(const step::CombineParticles&);
   RestructureReport apply(const step::CombineBodies&);
   RestructureReport apply(const step::Separate&);
+  RestructureReport apply(const step::SeparatePart&);
   void apply(const step::Nail&);
   void apply(const step::Release&);
 
@@ -125,6 +128,12 @@ struct System::Implementation {
   /// Energies that change with a ring's position or velocity, up to a constant: assigning costs what it touches.
   double ring_potential(std::uint32_t ring) const;
   double ring_kinetic(std::uint32_t ring) const;
+  void put_to_rest(std::uint32_t body);  ///< with all that hangs together with it
+  struct Rates {
+    Vec3 force, torque;
+  };
+  /// Net force and torque (about the centre of mass) of a body or, where it is not null, of one part.
+  Rates rates(std::uint32_t body, BodyId part) const;
   /// Adds motion(position) to the velocities of a body's particles, and books the energy.
   template <class Motion>
   void add_motion(std::uint32_t body, Motion motion);

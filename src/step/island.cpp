@@ -9,6 +9,7 @@
 namespace iota::step {
 
 using model::Body;
+using model::is_free;
 using model::Model;
 using model::none;
 using model::Particle;
@@ -226,7 +227,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
     model.for_each_body_of(articulate, [&](std::uint32_t body) {
       if (model.bodies[body].kind == BodyKind::inactive || model.bodies[body].count == 0) return;
       bodies_.push_back(body);
-      if (model.bodies[body].kind == BodyKind::dynamic) total_mass += model.body_mass(body);
+      if (is_free(model.bodies[body].kind)) total_mass += model.body_mass(body);
       model.for_each_particle_of(body, [&](std::uint32_t p) {
         const Particle& particle = model.particles[p];
         if (!model.is_unknown(particle) || node_of_ring[particle.ring] != none) return;
@@ -235,8 +236,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
         pinned_.push_back(model.is_pinned(particle.ring));
       });
     });
-  idle_ = std::none_of(bodies_.begin(), bodies_.end(),
-                       [&](std::uint32_t b) { return model.bodies[b].kind == BodyKind::dynamic; });
+  idle_ = std::none_of(bodies_.begin(), bodies_.end(), [&](std::uint32_t b) { return is_free(model.bodies[b].kind); });
 
   const std::size_t n = rings_.size();
   problem_.add_nodes(n);
@@ -281,7 +281,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   if (model.constraints.size() > 0) add_joints(model, node_of_ring);
   if (model.bonds.size() > 0) add_bonds(model, node_of_ring);
   model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
-    if (model.bodies[g.body].kind != BodyKind::dynamic) return;
+    if (!is_free(model.bodies[g.body].kind)) return;
     solver::GripForce force;
     for (std::uint32_t i = 0; i < g.count; ++i) {
       const std::uint32_t node = node_of_ring[model.particles[g.points[i]].ring];
@@ -366,17 +366,17 @@ void Island::load(const Model& model, double h) {
   }
 }
 
-void Island::store(Model& model, bool stepped) {
-  for (std::size_t i = 0; i < rings_.size(); ++i) {
-    Ring& r = model.rings[rings_[i]];
-    r.position = problem_.position[i];
-    r.velocity = problem_.velocity[i];
-    if (stepped) r.applied_force = {};
-  }
+void Island::store(Model& model, double h) {
+  const bool stepped = h > 0;
+  const auto put = [&](Ring& r, const Vec3& position, const Vec3& velocity) {
+    if (stepped) r.acceleration = (1 / h) * (velocity - r.velocity), r.applied_force = {};
+    r.position = position, r.velocity = velocity;
+  };
+  for (std::size_t i = 0; i < rings_.size(); ++i)
+    put(model.rings[rings_[i]], problem_.position[i], problem_.velocity[i]);
   for (const std::uint32_t p : slaves_) {
-    Ring& r = model.rings[model.particles[p].ring];
-    std::tie(r.position, r.velocity) = model.carried(p);
-    if (stepped) r.applied_force = {};
+    const auto [position, velocity] = model.carried(p);
+    put(model.rings[model.particles[p].ring], position, velocity);
   }
   if (!stepped) return constraint_rows_.refresh_coordinates(model);
   const auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints);
@@ -424,7 +424,7 @@ void Island::use_solver(const std::array<char, 32>& name) {
 }
 
 solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mode) {
-  if (idle_ && !nails_move(model)) return {};
+  if ((idle_ && !nails_move(model)) || stays_at_rest(model)) return {};
   load(model, h);
   // The mid-point rule would carry a jump of a nail's velocity along for ever, as a ringing of the reactions.
   auto& nails = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints).items;
@@ -438,7 +438,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
   for (std::size_t i = 0; i < nails_.size(); ++i) problem_.velocity[nails_[i]] = nail_velocity(i);
   if (idle_) {  // carried by the script: there is nothing to solve
     for (std::size_t i = 0; i < nails_.size(); ++i) problem_.position[nails_[i]] = nails[tied_.size() + i].target;
-    store(model, true);
+    store(model, h);
     return {};
   }
   use_solver(model.solver);
@@ -457,7 +457,8 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
       problem_.velocity[i] *= std::exp(-(model.damping + node_damping_[i]) * h);
     report.dissipated += before - problem_.kinetic_energy();
   }
-  store(model, true);
+  store(model, h);
+  tire(model, h, report);
   return report;
 }
 
@@ -470,7 +471,7 @@ bool Island::settle(Model& model, bool positions) {
     met = !positions || integrator_.project_positions(problem_);
     integrator_.project_velocities(problem_);
   }
-  store(model, false);
+  store(model, 0);
   return met;
 }
 

@@ -36,14 +36,21 @@ class Island {
 
   /// State of the model into the problem, for a step of h seconds (h = 0: for projections).
   void load(const model::Model&, double h);
-  /// The problem's state back, particles that are no unknowns of their own included. `stepped`: nails have arrived and
-  /// applied forces are spent.
-  void store(model::Model&, bool stepped);
+  /// The problem's state back, particles that are no unknowns of their own included. After a step of h
+  /// seconds (0: a projection) nails have arrived and applied forces are spent.
+  void store(model::Model&, double h);
 
   solver::AdvanceReport advance(model::Model&, double h, IntegrationMode);
 
   /// See System::diagnose; after `load(model, 0)`.
   Diagnosis diagnose(const model::Model&) const;
+
+  /// Whether it sleeps and nothing has disturbed it; one that was disturbed is awake afterwards.
+  bool stays_at_rest(model::Model&);
+  void disturb() { disturbed_ = true; }
+  bool rests(const model::Model&) const;
+  void put_to_rest(model::Model&) const;
+  std::size_t body_count() const { return bodies_.size(); }
 
   /// Projections after an edit; false where no position meets all constraints.
   bool settle(model::Model&, bool positions);
@@ -53,6 +60,10 @@ class Island {
   std::string name_of_node(const model::Model&, std::size_t node) const;
   bool nails_move(const model::Model&) const;
   void use_solver(const std::array<char, 32>& name);
+  double& slow_time(model::Model&) const;
+  bool is_pushed(const model::Model&) const;  ///< by forces applied for the step
+  /// Falls asleep once it has been slow for long enough, if the model asks for that.
+  void tire(model::Model&, double h, solver::AdvanceReport&) const;
   using Weighted = std::array<std::pair<std::uint32_t, double>, 4>;  // nodes and weights; weight 0 ends the list
   Weighted nodes_of(const model::Model&, std::uint32_t particle, const std::vector<std::uint32_t>& node_of_ring) const;
   void add_masses(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
@@ -67,7 +78,7 @@ class Island {
   solver::Integrator integrator_;
   std::array<char, 32> solver_name_{};
   std::unique_ptr<Solver> solver_;  // who is asked instead of the integrator's own
-  bool idle_ = false;
+  bool idle_ = false, disturbed_ = false;
   bool damped_ = false;
   std::vector<std::uint32_t> rings_;  // of each node
   std::vector<std::uint8_t> pinned_;  // of each node

@@ -47,6 +47,7 @@ System::System(const SystemOptions& options) : implementation_(std::make_unique<
   set_threads(options.threads);
   set_gravity(options.gravity);
   set_damping(options.damping);
+  set_rest(options.rest);
   set_mode(options.mode);
 }
 System::~System() = default;
@@ -68,7 +69,9 @@ CosmeticBondId System::create_cosmetic_bond(ParticleId p, ParticleId q) {
 void System::destroy(BodyId id) { implementation_->execute(step::Destroy<BodyId>{id}); }
 void System::destroy(ParticleId id) { implementation_->execute(step::Destroy<ParticleId>{id}); }
 void System::destroy(BondId id) { implementation_->execute(step::Destroy<BondId>{id}); }
-void System::destroy(CosmeticBondId id) { implementation_->execute(step::Destroy<CosmeticBondId>{id}); }
+RestructureReport System::destroy(CosmeticBondId id) {
+  return implementation_->execute(step::Destroy<CosmeticBondId>{id});
+}
 void System::destroy(GripId id) { implementation_->execute(step::Destroy<GripId>{id}); }
 
 RestructureReport System::combine(ParticleId p, ParticleId q, double over) {
@@ -201,7 +204,10 @@ std::vector<ParticleId> System::ring(ParticleId id) const {
 }
 Vec3 System::position(ParticleId id) const { return implementation_->model.position(implementation_->require(id)); }
 Vec3 System::velocity(ParticleId id) const { return implementation_->model.velocity(implementation_->require(id)); }
-double System::mass(ParticleId id) const { return implementation_->model.particles[implementation_->require(id)].mass; }
+double System::mass(ParticleId id) const {
+  const model::Particle& p = implementation_->model.particles[implementation_->require(id)];
+  return p.inactive ? p.mass / model::inactive_share : p.mass;
+}
 bool System::is_nailed(ParticleId id) const {
   const model::Model& m = implementation_->model;
   return m.rings[m.particles[implementation_->require(id)].ring].nailed;

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -119,3 +120,36 @@ def test_a_pose_is_assigned(system: iota.System) -> None:
     body.set_pose((1, 2, 3), (0, 0, 1, 1))
     assert body.centre_of_mass == pytest.approx((1, 2, 3))
     assert body.attachments[0].position == pytest.approx((1, 2.5, 3))
+
+
+def test_a_rigid_molecule_breaks_where_its_bond_graph_does(system: iota.System) -> None:
+    body = iota.Body(system)
+    atoms = [iota.Particle(body, (i, i % 2, 0), velocity=(0, i, 0)) for i in range(4)]
+    bonds = [iota.CBond(p, q) for p, q in pairwise(atoms)]
+    system.step(0.01)
+    momentum = system.momentum
+    report = bonds[1].destroy()
+    (piece,) = report.created_bodies
+    assert piece.particles == atoms[2:] and body.particles == atoms[:2]
+    assert system.momentum == pytest.approx(momentum)
+    assert not bonds[0].destroy().queued and len(system.bodies) == 3
+    assert system.validate() == []
+
+
+def test_parts_of_a_locked_pair_are_told_apart_and_unlocked(system: iota.System) -> None:
+    a = iota.Body(system, shape=iota.Box((1, 1, 0.1)), attachments=[(0.5, 0.5, 0)])
+    b = iota.Body(system, shape=iota.Box((1, 1, 0.1)), position=(1, 0, 0), attachments=[(-0.5, 0.5, 0)])
+    p, q = a.attachments[0], b.attachments[0]
+    iota.combine(p, q)
+    iota.combine(p, q)
+    system.step(0.01)
+    assert [part.origin for part in a.parts] == [a, b]
+    part = a.parts[1]
+    assert part.mass == pytest.approx(100, rel=1e-3) and len(part.particles) == 4
+    assert part.net_force == pytest.approx((0, -981, 0), rel=1e-3, abs=1e-6)
+    assert a.net_force == pytest.approx((0, -1962, 0), abs=1e-6)
+    assert a.net_torque == pytest.approx((0, 0, 0), abs=1e-6)
+    assert a.particles[0].net_force.y == pytest.approx(-9.81 * a.particles[0].mass)
+    (unlocked,) = part.separate().created_bodies
+    assert unlocked.articulate == a.articulate and len(p.ring) == 2
+    assert system.validate() == []

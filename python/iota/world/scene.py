@@ -124,7 +124,8 @@ class Scene:
     def _describe_body(self, body: Body, classes: dict[str, Any]) -> dict[str, Any]:
         particles = body.particles
         name, odd = self._class_of.get(body, (None, 0))
-        entry: dict[str, Any] = {"body": body.slot, "odd": odd, "kind": body.kind}
+        kind = "dynamic" if body.kind == "resting" else body.kind  # drawn alike, and sent once
+        entry: dict[str, Any] = {"body": body.slot, "odd": odd, "kind": kind}
         if len(particles) == 2:
             entry["length"] = abs(particles[1].position - particles[0].position)
         solids = body.solids

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "binders.h"
+#include "restructure_result.h"
+
+namespace iota::bindings {
+
+namespace {
+
+/// One of the bodies that a body was combined from.
+struct PartView {
+  BodyHandle body;
+  BodyId part;
+
+  System& use() const { return body.use(); }
+  std::vector<ParticleHandle> particles() const {
+    return wrap_all<ParticleHandle>(body.system_object, body.system, use().particles(body.id, part));
+  }
+};
+
+}  // namespace
+
+void bind_parts(nb::module_& module) {
+  nb::class_<PartView> type(module, "Part", "One of the bodies that a body was combined from.");
+  type.def_prop_ro(
+          "origin", [](const PartView& self) { return sibling(self.body, self.part); },
+          nb::sig("def origin(self) -> Body"),
+          "The body that it was: equal to its handle from then, which is stale unless it is the one that absorbed others.")
+      .def_prop_ro(
+          "body", [](const PartView& self) { return self.body; }, nb::sig("def body(self) -> Body"),
+          "The body that it is a part of.")
+      .def_prop_ro("particles", &PartView::particles, nb::sig("def particles(self) -> list[Particle]"))
+      .def_prop_ro(
+          "mass",
+          [](const PartView& self) {
+            double mass = 0;
+            for (const ParticleId p : self.use().particles(self.body.id, self.part)) mass += self.use().mass(p);
+            return mass;
+          },
+          "kg")
+      .def_prop_ro(
+          "net_force", [](const PartView& self) { return self.use().net_force(self.body.id, self.part); },
+          "In the last step, what holds it to the rest of the body included, N.")
+      .def_prop_ro(
+          "net_torque", [](const PartView& self) { return self.use().net_torque(self.body.id, self.part); },
+          "About its own centre of mass, N m.")
+      .def(
+          "separate",
+          [](const PartView& self) {
+            System& engine = self.use();
+            const auto particles = engine.particles(self.body.id, self.part);
+            RestructureResult result{self.body.system_object, self.body.system,
+                                     engine.separate(self.body.id, self.part)};
+            if ((result.report.changed || result.report.queued) && !particles.empty())
+              self.body.system->note_edit("break", engine.position(particles.front()));
+            return result;
+          },
+          "Makes it a body of its own again, with the hinges that combining had made rigid: it is the first of the\n"
+          "report's created_bodies.")
+      .def(
+          "__eq__",
+          [](const PartView& a, nb::handle other) {
+            const PartView* b = nullptr;
+            return nb::try_cast<const PartView*>(other, b) && b && a.body.same_as(b->body) && a.part == b->part;
+          },
+          nb::is_operator(), nb::sig("def __eq__(self, other: object, /) -> bool"))
+      .def("__repr__", [](const PartView& self) {
+        return "<Part " + std::to_string(self.part.slot) + " of body " + std::to_string(self.body.id.slot) + ">";
+      });
+
+  auto body = nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"));
+  body.def_prop_ro(
+          "parts",
+          [](const BodyHandle& self) {
+            std::vector<PartView> parts;
+            for (const BodyId part : self.use().parts(self.id)) parts.push_back({self, part});
+            return parts;
+          },
+          nb::sig("def parts(self) -> list[Part]"),
+          "What it was combined from, itself and what it absorbed: each can be asked for its forces, or be separated again.")
+      .def_prop_ro(
+          "net_force", [](const BodyHandle& self) { return self.use().net_force(self.id); },
+          "Sum of all forces from outside in the last step, N: mass times acceleration.")
+      .def_prop_ro(
+          "net_torque", [](const BodyHandle& self) { return self.use().net_torque(self.id); },
+          "Sum of their moments about the centre of mass, N m.");
+  auto particle = nb::borrow<nb::class_<ParticleHandle>>(module.attr("Particle"));
+  particle.def_prop_ro(
+      "net_force", [](const ParticleHandle& self) { return self.use().net_force(self.id); },
+      "All that acted on its share of mass in the last step, N.");
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rigid bodies that fall into pieces. Nothing moves: positions and velocities are of rings, so momenta are kept.
+#include "model/restructure.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace iota::model {
+
+namespace {
+
+bool contains(const std::vector<std::uint32_t>& sorted, std::uint32_t item) {
+  return std::binary_search(sorted.begin(), sorted.end(), item);
+}
+
+/// Takes the items of a list whose particles all leave over to another list, and counts those that are torn.
+template <class Table, class Leaves>
+int hand_over(Table& items, std::uint32_t& from, std::uint32_t& to, std::uint32_t new_body, Leaves how_many_leave) {
+  int torn = 0;
+  std::uint32_t *link = &from, *end = &to;
+  while (*link != none) {
+    const std::uint32_t slot = *link;
+    const auto [leaving, all] = how_many_leave(items[slot]);
+    if (leaving == all) {
+      *link = items[slot].next;
+      items[slot].body = new_body;
+      items[slot].next = none;
+      *end = slot, end = &items[slot].next;
+    } else {
+      torn += leaving > 0;
+      link = &items[slot].next;
+    }
+  }
+  return torn;
+}
+
+/// Makes a body of its own of some particles; they stay in their rings. Solids and inertia pairs that lie across go.
+/// Returns the new body.
+std::uint32_t split_off(Model& model, std::uint32_t body, std::vector<std::uint32_t> leaving, RestructureReport& report,
+                        bool& torn) {
+  std::sort(leaving.begin(), leaving.end());
+  const std::uint32_t own = model.make_body(model.bodies[body].kind, model.bodies[body].damping);
+  Body &from = model.bodies[body], &to = model.bodies[own];
+  hand_over(model.solids, from.first_solid, to.first_solid, own, [&](const Solid& s) {
+    return std::pair{
+        std::count_if(s.points.begin(), s.points.end(), [&](std::uint32_t p) { return contains(leaving, p); }),
+        std::ptrdiff_t{4}};
+  });
+  torn = hand_over(model.inertia_pairs, from.first_inertia, to.first_inertia, own, [&](const InertiaPair& i) {
+           return std::pair{contains(leaving, i.p) + contains(leaving, i.q), 2};
+         }) > 0;
+  model.grips.for_each([&](std::uint32_t, Grip& g) {  // a hand goes on holding the piece that it is at
+    if (g.body != body) return;
+    const Vec3 point = grip_point(model, g);
+    std::uint32_t nearest = none;
+    double distance = 0;
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      const double d = norm(model.position(p) - point);
+      if (nearest == none || d < distance) nearest = p, distance = d;
+    });
+    if (contains(leaving, nearest)) g.body = own;
+  });
+  for (const std::uint32_t p : leaving) {
+    model.take_from_body(p);
+    model.add_to_body(p, own);
+  }
+  model.join_articulates(model.bodies[body].articulate, model.bodies[own].articulate);
+  report.changed = true;
+  report.created_bodies.push_back(model.bodies.id(own));
+  return own;
+}
+
+/// What is left to do once the particles are where they belong.
+void finish_split(Model& model, std::uint32_t body, std::uint32_t own, std::vector<std::string>& notes) {
+  for (const std::uint32_t b : {body, own}) {
+    model.rebuild_basis(b);
+    model.touch_body(b);
+    destroy_stray_markers(model, b, notes);
+  }
+  split_where_apart(model, std::vector{body, own});
+}
+
+/// Particles of a body in sets that are merged.
+class Pieces {
+ public:
+  Pieces(const Model& model, std::uint32_t body) {
+    model.for_each_particle_of(body, [&](std::uint32_t p) { particles.push_back(p); });
+    std::sort(particles.begin(), particles.end());
+    parent_.resize(particles.size());
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+  void join(std::uint32_t p, std::uint32_t q) { parent_[piece(p)] = piece(q); }
+  /// A number that is equal for particles of one piece.
+  std::size_t piece(std::uint32_t p) const {
+    auto i = static_cast<std::size_t>(std::lower_bound(particles.begin(), particles.end(), p) - particles.begin());
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  std::vector<std::uint32_t> particles;
+
+ private:
+  mutable std::vector<std::size_t> parent_;
+};
+
+}  // namespace
+
+std::vector<BodyId> parts_of(const Model& model, std::uint32_t body) {
+  std::vector<BodyId> parts;
+  const auto add = [&](BodyId part) {
+    if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
+  };
+  model.for_each_particle_of(body, [&](std::uint32_t p) { add(model.particles[p].part); });
+  model.twins.for_each([&](std::uint32_t, const Twin& t) {
+    if (model.particles[t.particle].body == body) add(t.part);
+  });
+  return parts;
+}
+
+Edit separate_part(Model& model, std::uint32_t body, BodyId part, RestructureReport& report) {
+  const std::vector<BodyId> parts = parts_of(model, body);
+  if (parts.size() < 2 || std::find(parts.begin(), parts.end(), part) == parts.end()) return {};
+  std::vector<std::uint32_t> leaving;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (model.particles[p].part == part) leaving.push_back(p);
+  });
+  bool torn = false;
+  const std::uint32_t own = split_off(model, body, leaving, report, torn);
+  for (const std::uint32_t p : leaving) model.particles[p].part = model.bodies.id(own);
+
+  // A particle that had absorbed one of the other side gives it back: the hinge is one again.
+  bool shared = false;
+  for (std::uint32_t t = 0; t < model.twins.slot_count(); ++t) {
+    if (!model.twins.is_alive(t)) continue;
+    const Twin twin = model.twins[t];
+    const std::uint32_t survivor_body = model.particles[twin.particle].body;
+    if (survivor_body != body && survivor_body != own) continue;
+    const std::uint32_t home = twin.part == part ? own : body;
+    if (home == survivor_body) continue;
+    Particle& survivor = model.particles[twin.particle];
+    const double share = twin.mass < survivor.mass ? twin.mass : 0.5 * survivor.mass;
+    survivor.mass -= share;
+    Particle back;
+    back.mass = share, back.part = home == own ? model.bodies.id(own) : twin.part;
+    const std::uint32_t ring = survivor.ring;
+    const std::uint32_t slot = model.particles.create(back).slot;
+    model.add_to_ring(slot, ring);
+    model.add_to_body(slot, home);
+    model.twins.destroy(t);
+    report.created_particles.push_back(model.particles.id(slot));
+    shared = true;
+  }
+  finish_split(model, body, own, report.notes);
+  return {false, torn || shared};
+}
+
+Edit break_cosmetic_bond(Model& model, std::uint32_t bond, RestructureReport& report) {
+  const std::uint32_t p = model.cosmetic_bonds[bond].p, q = model.cosmetic_bonds[bond].q;
+  const std::uint32_t body = model.particles[p].body;
+  model.remove_cosmetic_bond(bond);
+  report.changed = true;
+
+  Pieces pieces(model, body);
+  for (const std::uint32_t particle : pieces.particles)
+    model.for_each_cosmetic_bond_of(
+        particle, [&](std::uint32_t b) { pieces.join(model.cosmetic_bonds[b].p, model.cosmetic_bonds[b].q); });
+  model.for_each_solid_of(body, [&](std::uint32_t s) {
+    const Solid& solid = model.solids[s];
+    for (const std::uint32_t point : solid.points) pieces.join(point, solid.points[0]);
+    const BodyId part = model.particles[solid.points[0]].part;
+    for (const std::uint32_t particle : pieces.particles)  // its attachments
+      if (model.particles[particle].part == part) pieces.join(particle, solid.points[0]);
+  });
+  for (const std::uint32_t particle : pieces.particles)  // a joint's markers stay together
+    model.for_each_constraint_of(particle, [&](std::uint32_t c, int place) {
+      const std::uint32_t origin = model.constraints[c].particles[place < b_origin ? a_origin : b_origin];
+      if (origin != none && model.particles[origin].body == body) pieces.join(particle, origin);
+    });
+  const std::size_t stays = pieces.piece(p), leaves = pieces.piece(q);
+  if (stays == leaves) return {};
+
+  // What hangs on neither end goes, piece by piece, with the nearer one.
+  struct Nearest {
+    double to_stays = -1, to_leaves = -1;
+  };
+  std::vector<Nearest> nearest(pieces.particles.size());
+  for (const std::uint32_t loose : pieces.particles) {
+    const std::size_t piece = pieces.piece(loose);
+    if (piece == stays || piece == leaves) continue;
+    for (const std::uint32_t other : pieces.particles) {
+      const std::size_t side = pieces.piece(other);
+      if (side != stays && side != leaves) continue;
+      const double d = norm(model.position(loose) - model.position(other));
+      double& best = side == stays ? nearest[piece].to_stays : nearest[piece].to_leaves;
+      if (best < 0 || d < best) best = d;
+    }
+  }
+  std::vector<std::uint32_t> leaving;
+  int followed = 0;
+  double left = 0, gone = 0;
+  for (const std::uint32_t particle : pieces.particles) {
+    const std::size_t piece = pieces.piece(particle);
+    const bool goes = piece == leaves || (piece != stays && nearest[piece].to_leaves < nearest[piece].to_stays);
+    if (goes) leaving.push_back(particle);
+    (goes ? gone : left) += model.particles[particle].mass;
+    followed += goes && piece != leaves;
+  }
+  if (!(left > 0) || !(gone > 0)) {
+    report.notes.push_back("body " + std::to_string(body) + " stays whole: one of its two pieces would have no mass");
+    return {};
+  }
+  bool torn = false;
+  const std::uint32_t own = split_off(model, body, leaving, report, torn);
+  if (parts_of(model, own).size() == 1)
+    for (const std::uint32_t particle : leaving) model.particles[particle].part = model.bodies.id(own);
+  finish_split(model, body, own, report.notes);
+  if (followed > 0)
+    report.notes.push_back(std::to_string(followed) + " particles without a cosmetic bond went with the nearer piece");
+  return {false, torn};
+}
+
+}  // namespace iota::model

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies that rest and wake; bodies, particles and articulates that are switched off and on.
+#include "scenes/chain.h"
+
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace iota {
+namespace {
+
+double book(const System& system) {
+  const Energy e = system.energy();
+  return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits;
+}
+
+/// A damped chain that hangs still soon.
+struct Sleeper {
+  System system{{.damping = 4, .rest = {.after = 0.5, .speed = 0.01}}};
+  scenes::Chain chain = scenes::make_chain(system, {.links = 4, .direction = {0.6, -0.8, 0}});
+  void wait() {
+    for (int i = 0; i < 2000 && system.kind(chain.links[0]) != BodyKind::resting; ++i) (void)system.step(0.01);
+    ASSERT_EQ(system.kind(chain.links[0]), BodyKind::resting);
+  }
+  /// Whether the next steps move it.
+  bool wakes() {
+    (void)system.step(0.01);
+    return system.kind(chain.links[3]) == BodyKind::dynamic;
+  }
+};
+
+TEST(Resting, WhatIsSlowForAWhileFallsAsleepAsAWhole) {
+  Sleeper s;
+  const double start = book(s.system);
+  s.wait();
+  StepReport report = s.system.step(0.01);
+  EXPECT_EQ(report.resting, 4u);
+  EXPECT_EQ(report.energy.kinetic, 0);
+  const Vec3 end = s.system.position(s.chain.lower[3]);
+  for (int i = 0; i < 100; ++i) report = s.system.step(0.01);
+  EXPECT_EQ(s.system.position(s.chain.lower[3]), end);
+  EXPECT_EQ(report.iterations_max, 0);  // nothing was solved
+  EXPECT_NEAR(book(s.system), start, 1e-9);
+}
+
+TEST(Resting, SleepIsForThoseWhoAskForIt) {
+  System system({.damping = 4});
+  const auto chain = scenes::make_chain(system, {.links = 2, .direction = {0, -1, 0}});
+  for (int i = 0; i < 300; ++i) (void)system.step(0.01);
+  EXPECT_EQ(system.kind(chain.links[0]), BodyKind::dynamic);
+}
+
+TEST(Resting, APendulumDoesNotFallAsleepWhereItTurnsBack) {
+  System system({.rest = {.after = 0.1, .speed = 0.05}});
+  const auto chain = scenes::make_chain(system, {.links = 1, .link_length = 1});
+  for (int i = 0; i < 1000; ++i) {
+    (void)system.step(0.01);
+    ASSERT_EQ(system.kind(chain.links[0]), BodyKind::dynamic);
+  }
+}
+
+TEST(Resting, WhateverTouchesItWakesIt) {
+  const auto wakes = [](auto touch) {
+    Sleeper s;
+    s.wait();
+    EXPECT_FALSE(s.wakes());
+    touch(s);
+    return s.wakes();
+  };
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.apply_force(s.chain.lower[2], {0.1, 0, 0}); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.set_velocity(s.chain.lower[2], {0.1, 0, 0}); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.nail(s.chain.upper[0], {0.1, 0, 0}); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.set_gravity({1, -9, 0}); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { (void)s.system.create_grip(s.chain.links[1], {}, {1, 1, 1}); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { (void)s.system.separate(s.chain.lower[0], s.chain.upper[1]); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.set_mass(s.chain.lower[3], 5); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.set_kind(s.chain.links[0], BodyKind::dynamic); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) {
+    const BodyId ball = s.system.create_body(Sphere{0.1}, {.position = {2, 0, 0}, .attachments = {{0, 0, 0}}});
+    (void)s.system.create_bond(s.system.attachments(ball)[0], s.chain.lower[1], SpringLaw{});
+  }));
+}
+
+TEST(Resting, BodiesArePutToRestByHandWithAllThatHangsOnThem) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 3});
+  (void)system.step(0.01);
+  const double start = book(system);
+  system.set_kind(chain.links[1], BodyKind::resting);
+  (void)system.step(0.01);
+  for (const BodyId link : chain.links) EXPECT_EQ(system.kind(link), BodyKind::resting);
+  EXPECT_NEAR(book(system), start, 1e-12);
+  system.set_kind(chain.links[2], BodyKind::dynamic);
+  (void)system.step(0.01);
+  for (const BodyId link : chain.links) EXPECT_EQ(system.kind(link), BodyKind::dynamic);
+  EXPECT_LT(system.velocity(chain.lower[2]).y, -0.05);
+  const BodyId fixed = system.create_body({.kind = BodyKind::static_});
+  EXPECT_THROW(system.set_kind(fixed, BodyKind::resting), std::invalid_argument);
+}
+
+TEST(Resting, ASleeperStaysAsleepThroughSnapshotAndReplay) {
+  Sleeper s;
+  s.wait();
+  s.system.start_recording();
+  for (int i = 0; i < 10; ++i) (void)s.system.step(0.01);
+  s.system.apply_force(s.chain.lower[2], {0.1, 0, 0});
+  for (int i = 0; i < 200; ++i) (void)s.system.step(0.01);
+  EXPECT_EQ(s.system.replay(s.system.stop_recording()), std::nullopt);
+  EXPECT_EQ(s.system.kind(s.chain.links[0]), BodyKind::resting);
+}
+
+TEST(Active, AnInactiveBodyIsOutOfTheWorldUntilItIsBack) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 4});
+  for (int i = 0; i < 20; ++i) (void)system.step(0.01);
+  const double start = book(system);
+  const Vec3 left = system.position(chain.lower[3]);
+  system.set_active(chain.links[3], false);
+  EXPECT_FALSE(system.is_active(chain.links[3]));
+  for (int i = 0; i < 50; ++i) {
+    const StepReport report = system.step(0.01);
+    EXPECT_EQ(report.unconverged, 0);
+    EXPECT_LT(report.worst_gap, 1e-8);
+  }
+  EXPECT_EQ(system.position(chain.lower[3]), left);
+  EXPECT_NEAR(book(system), start, 1e-6);
+  system.set_active(chain.links[3], true);
+  EXPECT_EQ(system.kind(chain.links[3]), BodyKind::dynamic);
+  EXPECT_LT(system.worst_gap(), 1e-8);  // its hinge is closed again
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
+  EXPECT_NEAR(book(system), start, 1e-6);
+  EXPECT_TRUE(system.validate().empty());
+}
+
+TEST(Active, ABodyComesBackAsWhatItWas) {
+  System system;
+  const BodyId fixed = system.create_body({.kind = BodyKind::static_});
+  (void)system.create_particle(fixed, {});
+  system.set_active(fixed, false);
+  system.set_active(fixed, true);
+  EXPECT_EQ(system.kind(fixed), BodyKind::static_);
+}
+
+TEST(Active, AnArticulateGoesAndComesAsOne) {
+  System system;
+  const auto a = scenes::make_chain(system, {.links = 3}),
+             b = scenes::make_chain(system, {.links = 3, .top = {0, 0, 1}});
+  system.set_articulate_active(a.links[1], false);
+  for (int i = 0; i < 10; ++i) (void)system.step(0.01);
+  for (const BodyId link : a.links) EXPECT_FALSE(system.is_active(link));
+  EXPECT_EQ(system.position(a.lower[2]).y, 0);
+  EXPECT_LT(system.position(b.lower[2]).y, -0.01);
+  EXPECT_EQ(system.poses().bodies.size(), 3u);
+  system.set_articulate_active(a.links[0], true);
+  (void)system.step(0.01);
+  EXPECT_LT(system.position(a.lower[2]).y, 0);
+}
+
+TEST(Active, BondsOfWhatIsInactiveDoNotAct) {
+  System system({.gravity = {}});
+  const BodyId a = system.create_body(), b = system.create_body();
+  const ParticleId p = system.create_particle(a, {0, 0, 0}), q = system.create_particle(b, {1, 0, 0});
+  (void)system.create_bond(p, q, SpringLaw{.stiffness = 10, .length = 0.5});
+  const double energy = 0.5 * 10 * 0.25;
+  EXPECT_NEAR(system.energy().potential, energy, 1e-15);
+  for (const bool whole_body : {false, true}) {
+    whole_body ? system.set_active(b, false) : system.set_active(q, false);
+    EXPECT_EQ(system.energy().potential, 0);
+    (void)system.step(0.01);
+    EXPECT_EQ(system.velocity(p), Vec3{});
+    whole_body ? system.set_active(b, true) : system.set_active(q, true);
+    EXPECT_NEAR(system.energy().potential, energy, 1e-15);
+  }
+  (void)system.step(0.01);
+  EXPECT_GT(system.velocity(p).x, 0.01);
+}
+
+TEST(Active, AnInactiveParticleWeighsNextToNothing) {
+  System system;
+  const BodyId rod = system.create_body();
+  const ParticleId hinge = system.create_particle(rod, {0, 0, 0}, 1),
+                   middle = system.create_particle(rod, {0.5, 0, 0}, 2),
+                   end = system.create_particle(rod, {1, 0, 0}, 3);
+  system.nail(hinge);
+  system.set_active(end, false);
+  EXPECT_EQ(system.mass(end), 3);
+  EXPECT_NEAR(system.mass(rod), 3, 1e-5);
+  const double start = book(system);
+  // A pendulum of length 0.5 from the horizontal: at the bottom v^2 = 2 g l.
+  double fastest = 0;
+  for (int i = 0; i < 200; ++i) {
+    (void)system.step(0.005);
+    fastest = std::max(fastest, norm(system.velocity(middle)));
+  }
+  EXPECT_NEAR(fastest, std::sqrt(2 * 9.81 * 0.5), 1e-3);
+  EXPECT_NEAR(norm(system.position(end) - system.position(hinge)), 1, 1e-9);
+  system.set_active(end, true);
+  EXPECT_EQ(system.mass(rod), 6);
+  for (int i = 0; i < 20; ++i) (void)system.step(0.005);
+  EXPECT_NEAR(book(system), start, 1e-6);
+  EXPECT_TRUE(system.validate().empty());
+}
+
+}  // namespace
+}  // namespace iota

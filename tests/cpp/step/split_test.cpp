@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies that fall into pieces, the parts they were combined from, and the forces on all of these.
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace iota {
+namespace {
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
+  EXPECT_NEAR(a.x, b.x, tolerance);
+  EXPECT_NEAR(a.y, b.y, tolerance);
+  EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+/// A rigid chain of particles with cosmetic bonds, spinning as it flies.
+struct Molecule {
+  System system{{.gravity = {}}};
+  BodyId body = system.create_body();
+  std::vector<ParticleId> atoms;
+  std::vector<CosmeticBondId> bonds;
+
+  explicit Molecule(const std::vector<Vec3>& places) {
+    for (const Vec3& x : places) {
+      atoms.push_back(system.create_particle(body, x, 1 + 0.1 * atoms.size(), Vec3{1, 0, 0} + cross({0.3, -1, 2}, x)));
+      if (atoms.size() > 1) bonds.push_back(system.create_cosmetic_bond(atoms[atoms.size() - 2], atoms.back()));
+    }
+  }
+};
+
+const std::vector<Vec3> zigzag{{0, 0, 0}, {1, 0.5, 0}, {2, 0, 0.5}, {3, 1, 0}, {4, 0, 0}, {5, 0.5, 1}};
+
+TEST(Split, BreakingTheOnlyBondBetweenTwoPiecesSplitsTheBodyAndKeepsMomenta) {
+  Molecule m(zigzag);
+  System& system = m.system;
+  (void)system.step(0.01);
+  const Vec3 momentum = system.momentum(), angular = system.angular_momentum();
+  const double energy = system.energy().kinetic;
+  const RestructureReport report = system.destroy(m.bonds[2]);  // between atoms 2 and 3
+  ASSERT_EQ(report.created_bodies.size(), 1u);
+  const BodyId piece = report.created_bodies[0];
+  EXPECT_EQ(system.particles(m.body).size(), 3u);
+  EXPECT_EQ(system.particles(piece).size(), 3u);
+  EXPECT_EQ(system.body(m.atoms[2]), m.body);
+  EXPECT_EQ(system.body(m.atoms[3]), piece);
+  EXPECT_NEAR(system.mass(m.body), 1 + 1.1 + 1.2, 1e-14);
+  EXPECT_NEAR(system.mass(piece), 1.3 + 1.4 + 1.5, 1e-14);
+  EXPECT_NE(system.articulate(m.body), system.articulate(piece));
+  expect_near(system.momentum(), momentum, 1e-13);
+  expect_near(system.angular_momentum(), angular, 1e-12);
+  EXPECT_NEAR(system.energy().kinetic, energy, 1e-12);
+  EXPECT_EQ(report.articulates_after, 2u);
+  for (int i = 0; i < 100; ++i) (void)system.step(0.01);
+  expect_near(system.momentum(), momentum, 1e-11);
+  expect_near(system.angular_momentum(), angular, 1e-10);
+  EXPECT_TRUE(system.validate().empty());
+}
+
+TEST(Split, ABondOnARingOfBondsBreaksWithoutASplit) {
+  Molecule m(zigzag);
+  const CosmeticBondId closing = m.system.create_cosmetic_bond(m.atoms.back(), m.atoms.front());
+  EXPECT_TRUE(m.system.destroy(m.bonds[1]).created_bodies.empty());
+  EXPECT_EQ(m.system.bodies().size(), 1u);
+  EXPECT_EQ(m.system.destroy(closing).created_bodies.size(), 1u);
+}
+
+TEST(Split, WhatHasNoBondGoesWithTheNearerPiece) {
+  Molecule m({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {6, 0, 0}});
+  System& system = m.system;
+  const ParticleId near_left = system.create_particle(m.body, {0, 1, 0}),
+                   near_right = system.create_particle(m.body, {6, 1, 0});
+  const RestructureReport report = system.destroy(m.bonds[1]);
+  ASSERT_EQ(report.created_bodies.size(), 1u);
+  EXPECT_EQ(system.body(near_left), m.body);
+  EXPECT_EQ(system.body(near_right), report.created_bodies[0]);
+  EXPECT_EQ(report.notes.size(), 1u);
+}
+
+// Thesis, Fig. 5.2: a rigid molecule on a nail loses a part, which falls; the rest swings on.
+TEST(Split, APieceOffANailedBodyFallsFreely) {
+  Molecule m(zigzag);
+  System& system = m.system;
+  system.set_gravity({0, -9.81, 0});
+  system.set_velocity(m.body, {});
+  system.set_angular_velocity(m.body, {});
+  system.nail(m.atoms[0]);
+  const BodyId piece = system.destroy(m.bonds[3]).created_bodies.at(0);
+  const Vec3 start = system.centre_of_mass(piece), v = system.velocity(piece);
+  double t = 0;
+  for (int i = 0; i < 50; ++i) (void)system.step(0.01), t += 0.01;
+  EXPECT_NEAR(system.centre_of_mass(piece).y, start.y + v.y * t - 9.81 * t * t / 2, 1e-9);
+  expect_near(system.position(m.atoms[0]), {0, 0, 0}, 1e-9);
+  EXPECT_TRUE(system.validate().empty());
+}
+
+TEST(Split, HingesAndBondsOfThePiecesStay) {
+  Molecule m(zigzag);
+  System& system = m.system;
+  const BodyId other = system.create_body();
+  const ParticleId end = system.create_particle(other, {5, 0.5, 1}), far = system.create_particle(other, {6, 0, 1});
+  (void)system.combine(m.atoms[5], end);
+  const BondId bond = system.create_bond(m.atoms[0], m.atoms[5], SpringLaw{});
+  (void)system.step(0.01);
+  const BodyId piece = system.destroy(m.bonds[2]).created_bodies.at(0);
+  EXPECT_EQ(system.articulate(piece), system.articulate(other));
+  EXPECT_NE(system.articulate(piece), system.articulate(m.body));
+  EXPECT_EQ(system.ring(m.atoms[5]).size(), 2u);
+  EXPECT_TRUE(system.contains(bond));
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
+  EXPECT_TRUE(system.contains(far));
+  EXPECT_TRUE(system.validate().empty());
+}
+
+TEST(Split, SolidsAreNeverTornButTheirCompoundsAre) {
+  System system({.gravity = {}});
+  const BodyId a = system.create_body(Box{}, {.attachments = {{0.5, 0, 0}, {-0.5, 0, 0}}});
+  const BodyId b =
+      system.create_body(Sphere{0.5}, {.position = {1, 0, 0}, .spin = {0, 0, 3}, .attachments = {{0, 0.5, 0}}});
+  const auto ends = system.attachments(a);
+  const CosmeticBondId own = system.create_cosmetic_bond(ends[0], ends[1]);
+  EXPECT_TRUE(system.destroy(own).created_bodies.empty());
+  const ParticleId top = system.attachments(b)[0];
+  (void)system.combine(a, b);
+  const Vec3 angular = system.angular_momentum();
+  const CosmeticBondId joint = system.create_cosmetic_bond(ends[0], top);
+  const RestructureReport report = system.destroy(joint);
+  ASSERT_EQ(report.created_bodies.size(), 1u);
+  const BodyId ball = report.created_bodies[0];
+  EXPECT_EQ(system.solids(a).size(), 1u);
+  ASSERT_EQ(system.solids(ball).size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<Sphere>(system.solids(ball)[0].shape));
+  EXPECT_NEAR(system.inertia(ball)[0].x, 0.4 * system.mass(ball) * 0.25, 1e-12 * system.mass(ball));
+  expect_near(system.angular_momentum(), angular, 1e-9);
+  EXPECT_TRUE(system.validate().empty());
+}
+
+TEST(Split, PartsAreRememberedAndCanLeaveAgain) {
+  System system({.gravity = {}});
+  const BodyId a = system.create_body(Box{}), b = system.create_body(Box{}, {.position = {2, 0, 0}}),
+               c = system.create_body(Sphere{}, {.position = {4, 0, 0}, .velocity = {0, 1, 0}});
+  EXPECT_EQ(system.parts(a), std::vector<BodyId>{a});
+  (void)system.combine(b, c);
+  (void)system.combine(a, b);
+  EXPECT_EQ(system.parts(a), (std::vector<BodyId>{a, b, c}));
+  EXPECT_EQ(system.particles(a, c).size(), 4u);
+  const Vec3 momentum = system.momentum(), angular = system.angular_momentum();
+  const RestructureReport report = system.separate(a, b);
+  ASSERT_EQ(report.created_bodies.size(), 1u);
+  EXPECT_EQ(system.parts(a), (std::vector<BodyId>{a, c}));
+  EXPECT_EQ(system.parts(report.created_bodies[0]), report.created_bodies);
+  expect_near(system.momentum(), momentum, 1e-10);
+  expect_near(system.angular_momentum(), angular, 1e-9);
+  EXPECT_FALSE(system.separate(a, b).changed);
+  EXPECT_TRUE(system.validate().empty());
+}
+
+// What Jacob's ladder does all the time: a hinge is locked by combining its two particles again, and unlocked.
+TEST(Split, UnlockingAHingeBringsTheHingeBack) {
+  System system({.gravity = {}});
+  const BodyId a = system.create_body(Box{{1, 1, 1}}, {.mass = 2, .attachments = {{0.5, 0.5, 0}}});
+  const BodyId b =
+      system.create_body(Box{{1, 1, 1}}, {.mass = 3, .position = {1, 0, 0}, .attachments = {{-0.5, 0.5, 0}}});
+  const ParticleId p = system.attachments(a)[0], q = system.attachments(b)[0];
+  (void)system.combine(p, q);
+  const Matrix3 before = system.inertia(b);
+  (void)system.combine(p, q);  // locked
+  EXPECT_FALSE(system.contains(b));
+  EXPECT_EQ(system.parts(a), (std::vector<BodyId>{a, b}));
+  const RestructureReport report = system.separate(a, b);
+  ASSERT_EQ(report.created_bodies.size(), 1u);
+  ASSERT_EQ(report.created_particles.size(), 1u);
+  const BodyId unlocked = report.created_bodies[0];
+  EXPECT_EQ(system.ring(p), (std::vector<ParticleId>{p, report.created_particles[0]}));
+  EXPECT_EQ(system.body(report.created_particles[0]), unlocked);
+  EXPECT_EQ(system.articulate(a), system.articulate(unlocked));
+  EXPECT_NEAR(system.mass(a), 2, 1e-13);
+  EXPECT_NEAR(system.mass(unlocked), 3, 1e-13);
+  for (int i = 0; i < 3; ++i) expect_near(system.inertia(unlocked)[i], before[i], 1e-12);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
+  EXPECT_TRUE(system.validate().empty());
+}
+
+TEST(Split, NetForceAndTorqueAreWhatActsFromOutside) {
+  for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
+    System system({.mode = mode});
+    const double h = 0.001;
+    const BodyId plate =
+        system.create_body(Box{{1, 2, 0.3}}, {.mass = 4, .spin = {1, 2, 3}, .attachments = {{0.5, 1, 0}}});
+    const ParticleId corner = system.attachments(plate)[0];
+    (void)system.step(h);
+    expect_near(system.net_force(plate), {0, -4 * 9.81, 0}, 1e-6);
+    EXPECT_LT(norm(system.net_torque(plate)), 1e-6);
+    const Vec3 force{0, 3, 7}, before = system.angular_momentum(plate);
+    system.apply_force(corner, force);
+    (void)system.step(h);
+    expect_near(system.net_force(plate), Vec3{0, -4 * 9.81, 0} + force, 1e-6);
+    const Vec3 arm = system.position(corner) - system.centre_of_mass(plate);
+    expect_near(system.net_torque(plate), cross(arm, force), mode == IntegrationMode::robust ? 1e-6 : 0.02);
+    if (mode == IntegrationMode::energy_keeping)  // the change of angular momentum, to the last digit
+      expect_near(system.net_torque(plate), (1 / h) * (system.angular_momentum(plate) - before), 1e-6);
+  }
+}
+
+TEST(Split, NetForcesOfPartsAddUpToTheBodys) {
+  System system;
+  const BodyId a = system.create_body(Box{}, {.mass = 1}),
+               b = system.create_body(Box{}, {.mass = 2, .position = {2, 0, 0}});
+  (void)system.combine(a, b);
+  system.set_angular_velocity(a, {0, 0, 4});
+  (void)system.step(0.001);
+  expect_near(system.net_force(a, a) + system.net_force(a, b), system.net_force(a), 1e-9);
+  // Turning at omega about the common centre, each part is pulled towards it: m r omega^2.
+  EXPECT_NEAR(system.net_force(a, b).x, -2 * (2.0 / 3) * 16, 0.01);
+  EXPECT_NEAR(system.net_force(a, a).x, 1 * (4.0 / 3) * 16, 0.01);
+  Vec3 sum;
+  for (const ParticleId p : system.particles(a)) sum += system.net_force(p);
+  expect_near(sum, system.net_force(a), 1e-9);
+}
+
+TEST(Split, SplitsAreRecordedAndReplayed) {
+  Molecule m(zigzag);
+  System& system = m.system;
+  system.start_recording();
+  (void)system.step(0.01);
+  (void)system.destroy(m.bonds[2]);
+  (void)system.step(0.01);
+  const BodyId other = system.create_body(Sphere{0.1});
+  (void)system.combine(m.body, other);
+  (void)system.step(0.01);
+  (void)system.separate(m.body, other);
+  (void)system.step(0.01);
+  EXPECT_EQ(system.replay(system.stop_recording()), std::nullopt);
+}
+
+}  // namespace
+}  // namespace iota
