@@ -30,8 +30,7 @@ void Integrator::relink(Problem& problem, std::span<const std::array<std::uint32
 }
 
 void Integrator::make_room(const Problem& problem) {
-  for (auto* list : {&guess_, &pull_, &velocity_, &start_position_, &start_velocity_})
-    resize_with_slack(*list, problem.size());
+  for (auto* list : {&guess_, &start_position_, &start_velocity_}) resize_with_slack(*list, problem.size());
   resize_with_slack(lumped_mass_, problem.size());
   std::copy(problem.mass.begin(), problem.mass.end(), lumped_mass_.begin());
   for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
@@ -59,10 +58,14 @@ void Integrator::restore_multipliers(Problem& problem) const {
 // Mid-point: plain x0 + h v0, since its multipliers ring from step to step (measured: twice the iterations otherwise).
 void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   const std::size_t n = problem.size();
-  for (std::size_t i = 0; i < n; ++i) guess_[i] = problem.position[i] + stage.h * problem.velocity[i];
+  std::fill(guess_.begin(), guess_.end(), Vec3{});
   if (stage.midpoint || stage.is_projection()) return;
 
-  for (std::size_t i = 0; i < n; ++i) pull_[i] = problem.force[i] + lumped_mass_[i] * problem.gravity;
+  const std::span<Vec3> flight = newton_.room();
+  for (std::size_t i = 0; i < n; ++i) {
+    flight[i] = problem.position[i] + stage.h * problem.velocity[i];
+    guess_[i] = problem.force[i] + lumped_mass_[i] * problem.gravity;
+  }
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
@@ -70,26 +73,25 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
       for (int i = 0; i < c.node_count(); ++i) {
         Vec3 rows[C::rows];
         gradients.of_node(i, rows);
-        for (int r = 0; r < C::rows; ++r) pull_[c.nodes[i]] -= pool.multiplier(k)[r] * rows[r];
+        for (int r = 0; r < C::rows; ++r) guess_[c.nodes[i]] -= pool.multiplier(k)[r] * rows[r];
       }
     }
   });
   const ForceStage force_stage{stage.h, false, false};
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
-      const Vec3 force = f.force(f.arm.value(problem.position.data()), f.arm.value(guess_.data()), force_stage);
-      for (std::uint32_t i = 0; i < f.arm.count; ++i) pull_[f.arm.nodes[i]] += f.arm.weights[i] * force;
+      const Vec3 force = f.force(f.arm.value(problem.position.data()), f.arm.value(flight.data()), force_stage);
+      for (std::uint32_t i = 0; i < f.arm.count; ++i) guess_[f.arm.nodes[i]] += f.arm.weights[i] * force;
     }
   });
   // A pull that would fling points away (a stiff spring, an outdated multiplier) is no help.
   const double limit = newton_.reference_length() * newton_.reference_length();
   double farthest = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    pull_[i] *= 1 / (stage.inertia * lumped_mass_[i]);
-    farthest = std::max(farthest, dot(pull_[i], pull_[i]));
+    guess_[i] *= 1 / (stage.inertia * lumped_mass_[i]);
+    farthest = std::max(farthest, dot(guess_[i], guess_[i]));
   }
-  if (farthest < limit)
-    for (std::size_t i = 0; i < n; ++i) guess_[i] += pull_[i];
+  if (!(farthest < limit)) std::fill(guess_.begin(), guess_.end(), Vec3{});
 }
 
 bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& report) {
@@ -205,8 +207,9 @@ bool Integrator::turns_too_far(const Problem& problem) const {
 bool Integrator::gains_energy(const Problem& problem, const Stage& stage) {
   if (!conservative_) return false;
   const auto x1 = newton_.solution();
-  for (std::size_t i = 0; i < problem.size(); ++i) velocity_[i] = (1 / stage.h) * (x1[i] - problem.position[i]);
-  const double kinetic = 0.5 * problem.mass_norm2(velocity_.data());
+  const std::span<Vec3> velocity = guess_;  // which has served
+  for (std::size_t i = 0; i < problem.size(); ++i) velocity[i] = (1 / stage.h) * (x1[i] - problem.position[i]);
+  const double kinetic = 0.5 * problem.mass_norm2(velocity.data());
   const double gain =
       kinetic + problem.potential_energy(x1.data()) + problem.row_energy(x1.data(), stage.fraction) - energy_;
   const double slack = 1e-9 * (kinetic_ + kinetic) + 1e-12;

@@ -73,7 +73,8 @@ class Integrator {
   void close_gaps(Problem&, AdvanceReport&);
 
   Newton newton_;
-  std::vector<Vec3> guess_, pull_, velocity_, start_position_, start_velocity_;
+  std::vector<Vec3> guess_;  // of the displacement from free flight, m
+  std::vector<Vec3> start_position_, start_velocity_;
   std::vector<double> lumped_mass_;
   std::vector<double> multipliers_saved_;
   double step_length_ = 0;           ///< of the whole step, s

@@ -125,10 +125,10 @@ void Newton::compile(Problem& problem) {
     for (std::size_t i = 0; i < pool.items.size(); ++i) set_slots(pool, i);
   });
   multipliers_saved_.resize(multiplier_count), merit_weights_.resize(multiplier_count);
-  set_node_places(problem);
-
+  pattern_.forget_slots();
   has_laws_ = false;
   problem.for_each_constraint_pool([&](const auto& pool) { has_laws_ = has_laws_ || pool.has_laws(); });
+  set_node_places(problem);
 }
 
 template <bool Midpoint>
@@ -557,17 +557,20 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
 }
 
 NewtonReport Newton::solve(Problem& problem, const Stage& stage, std::span<const Vec3> guess) {
-  std::copy(guess.begin(), guess.end(), x_.begin());
+  const auto start = [&] {
+    for (std::size_t i = 0; i < problem.size(); ++i) {
+      u_[i] = guess[i];
+      x_[i] = problem.position[i] + stage.h * problem.velocity[i] + guess[i];
+    }
+  };
+  start();
   for (std::size_t i = 0; i < problem.size(); ++i) {
-    u_[i] = guess[i] - problem.position[i] - stage.h * problem.velocity[i];
     inverse_scale_[i] = 1 / (stage.inertia * problem.mass[i] * reference_length_);
   }
   if (external_ && !stage.is_projection()) {
-    u_saved_ = u_;
     NewtonReport report = solve_externally(problem, stage);
     if (report.converged) return report;
-    std::copy(guess.begin(), guess.end(), x_.begin());
-    u_ = u_saved_;
+    start();
     report = stage.midpoint ? solve_as<true>(problem, stage) : solve_as<false>(problem, stage);
     report.handed_back = true;
     return report;

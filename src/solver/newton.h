@@ -72,10 +72,12 @@ class Newton {
   void relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
               std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched);
 
-  /// Solves for positions and multipliers, from `guess` and the pools' multipliers. On success `solution()` and the
+  /// Solves for positions and multipliers, from `guess`, a displacement from free flight x0 + h v0, and the pools' multipliers. On success `solution()` and the
   /// pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.
   NewtonReport solve(Problem& problem, const Stage& stage, std::span<const Vec3> guess);
   std::span<const Vec3> solution() const { return x_; }
+  /// Where the next solution will be: scratch until then.
+  std::span<Vec3> room() { return x_; }
   /// Of the solution: x - x0 - h v0, m. The unknown itself, to its own relative precision: velocities taken from it keep
   /// momentum to round-off, whereas differences of positions lose 1e-16 |x| / h a step.
   std::span<const Vec3> displacement() const { return u_; }

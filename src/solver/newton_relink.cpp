@@ -17,7 +17,8 @@ void Newton::set_node_places(const Problem& problem) {
     node_stride_[i] = pattern_.node_stride(i);
   }
   make_room(n, x_, x_saved_, u_, u_saved_, momentum_, inverse_scale_);
-  make_room(pattern_.unknown_count(), residual_, step_, impulses_);
+  make_room(pattern_.unknown_count(), residual_, step_);
+  if (has_laws_) make_room(pattern_.unknown_count(), impulses_);
 }
 
 void Newton::relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
