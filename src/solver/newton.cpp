@@ -214,6 +214,7 @@ void Newton::add_rows(const Problem& problem, const Stage& stage, const Constrai
         momentum_[c.nodes[i]] += lambda[r] * direction;
       }
     }
+    const double per_length = 1 / c.reference_length();
     compliance *= stage.compliance / stage.inertia;
     for (int r = 0; r < C::rows; ++r) {
       double value, gap = g[r];
@@ -230,8 +231,8 @@ void Newton::add_rows(const Problem& problem, const Stage& stage, const Constrai
         value = g[r] - compliance * lambda[r];
       }
       residual_[pool.slots[k].unknown + r] = value;
-      worst.add(std::abs(value) / c.reference_length());
-      violation.add(std::abs(gap) / c.reference_length());
+      worst.add(std::abs(value) * per_length);
+      violation.add(std::abs(gap) * per_length);
       largest_multiplier_ = std::max(largest_multiplier_, std::abs(lambda[r]));
     }
   }
@@ -499,19 +500,20 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   if (has_laws_) begin_sides(problem, stage), choose_sides(problem, stage);
   report.residual = residual<Midpoint>(problem, stage, x_.data());
   Hessian hessian = Hessian::exact;
-  bool stuck = false, settled = true;
+  bool stuck = false, settled = true, factor_will_do = false;
   int most_iterations = stage.max_iterations;
   while (true) {
     if (has_laws_ && report.iterations > 0) {
       settled = !choose_sides(problem, stage);
       if (!settled) {
+        factor_will_do = false;
         report.residual = residual<Midpoint>(problem, stage, x_.data());
         most_iterations = std::min(most_iterations + 1, 4 * stage.max_iterations);  // choosing sides takes turns, too
       }
     }
     if (!(report.residual > stage.tolerance) || report.iterations >= most_iterations) break;
     ++report.iterations;
-    if (assemble_and_factor<Midpoint>(problem, stage, hessian) > 0 && hessian == Hessian::exact)
+    if (!factor_will_do && assemble_and_factor<Midpoint>(problem, stage, hessian) > 0 && hessian == Hessian::exact)
       (void)assemble_and_factor<Midpoint>(problem, stage, Hessian::clamped);
     solve_linear();
     save(problem);
@@ -544,6 +546,8 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     } else {
       hessian = Hessian::exact;
     }
+    // Near the solution the factor at hand serves on, where making another costs much more than an iteration.
+    factor_will_do = factor_.is_dear() && after <= (factor_will_do ? 0.1 : 0.03) * before;
     report.residual = after;
   }
   if (!stuck && !stage.is_projection() && (Midpoint || report.iterations == 0))

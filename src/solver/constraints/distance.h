@@ -26,14 +26,17 @@ struct DistanceConstraint {
   static constexpr int node_count() { return 2; }
   void value(const Vec3* x, double /*fraction*/, double* g) const {
     const Vec3 d = x[nodes[1]] - x[nodes[0]];
-    g[0] = (dot(d, d) - length * length) / (2 * scale);
+    g[0] = (0.5 * (1 / scale)) * (dot(d, d) - length * length);  // everywhere the same division: it is done once
   }
   /// Gradient with respect to node i, at x, one Vec3 a row.
   void gradient(const Vec3* x, int i, Vec3* rows_out) const {
-    rows_out[0] = ((i == 0 ? -1 : 1) / scale) * (x[nodes[1]] - x[nodes[0]]);
+    const Vec3 along = (1 / scale) * (x[nodes[1]] - x[nodes[0]]);
+    rows_out[0] = i == 0 ? -along : along;
   }
   /// Hessian block of multiplier * g between nodes i and j is this times the identity.
-  double curvature(const double* multiplier, int i, int j) const { return (i == j ? 1 : -1) * multiplier[0] / scale; }
+  double curvature(const double* multiplier, int i, int j) const {
+    return (i == j ? 1 : -1) * (multiplier[0] * (1 / scale));
+  }
   double reference_length() const { return scale; }
   /// Whether moving all points alike leaves g as it is: then its forces keep momentum.
   static constexpr bool is_internal() { return true; }

@@ -14,6 +14,9 @@ class BlockFactor {
  public:
   /// Sizes the storage. The pattern must outlive the factor.
   void reset(const BlockPattern& pattern);
+  /// Whether a factorisation costs several times what a solution does: not on chains, but in nets and among many-point
+  /// bodies.
+  bool is_dear() const { return lower_.size() > 10 * std::size_t{pattern_->unknown_count()}; }
   /// Follows a pattern that has grown by `adapt`.
   void grow();
 
