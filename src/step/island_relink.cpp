@@ -9,6 +9,7 @@ namespace iota::step {
 using model::Body;
 using model::Model;
 using model::none;
+using model::Particle;
 
 namespace {
 
@@ -16,8 +17,10 @@ namespace {
 bool is_plain(const Model& model, std::uint32_t slot) {
   const Body& body = model.bodies[slot];
   bool plain = body.kind == BodyKind::dynamic && body.rank >= 2 && body.count == body.rank;
-  model.for_each_particle_of(
-      slot, [&](std::uint32_t p) { plain = plain && model.particles[p].uses == 0 && model.particles[p].mass > 0; });
+  model.for_each_particle_of(slot, [&](std::uint32_t p) {
+    const Particle& particle = model.particles[p];
+    plain = plain && particle.uses == 0 && particle.first_constraint == none && particle.mass > 0;
+  });
   return plain;
 }
 
