@@ -51,7 +51,17 @@ void bind_nails(nb::class_<ParticleHandle>& type) {
       .def_prop_ro("is_nailed", [](const ParticleHandle& self) { return self.use().is_nailed(self.id); })
       .def_prop_ro(
           "nail_force", [](const ParticleHandle& self) { return self.use().nail_force(self.id); },
-          "By the nail on the particle in the last step, N.");
+          "By the nail on the particle in the last step, N.")
+      .def_prop_ro(
+          "hinge_force", [](const ParticleHandle& self) { return self.use().hinge_force(self.id); },
+          "On its body by all that shares or nails its place in the last step, N: what the hinge carries. A force applied\n"
+          "to the shared particle itself counts as held by all its bodies alike.")
+      .def_prop_rw(
+          "break_force", [](const ParticleHandle& self) { return self.use().break_force(self.id); },
+          [](const ParticleHandle& self, double force) {
+            between_steps(self, "break_force = ...").set_break_force(self.id, force);
+          },
+          "Beyond this hinge_force (N; inf: never) it leaves its hinge or nail: see `System.broken`.");
 }
 
 }  // namespace

@@ -281,6 +281,12 @@ class System {
   Vec3 net_force(ParticleId) const;  ///< all that acted on its share of mass in the last step, N
   bool is_nailed(ParticleId) const;
   Vec3 nail_force(ParticleId) const;          ///< by the nail on the particle in the last step, N
+  /// On the particle's body by all that shares or nails its place, in the last step, N: what the hinge carries. A force
+  /// applied to the shared particle itself counts as held by all its bodies alike.
+  Vec3 hinge_force(ParticleId) const;
+  /// Beyond this `hinge_force` the particle leaves its ring, or its nail, at the end of a step (StepReport::broken).
+  void set_break_force(ParticleId, double newtons);
+  double break_force(ParticleId) const;       ///< N; infinite: never
   void apply_force(ParticleId, const Vec3&);  ///< added during the next step only, N
 
   std::pair<ParticleId, ParticleId> ends(BondId) const;

@@ -2,6 +2,7 @@
 #include "model/model.h"
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 
 namespace iota::model {
@@ -49,6 +50,7 @@ std::uint32_t Model::make_body(BodyKind kind, double body_damping) {
 }
 
 void Model::remove_particle(std::uint32_t particle) {
+  set_fuse(particle, std::numeric_limits<double>::infinity());
   if (twins.size() > 0)
     for (std::uint32_t t = 0; t < twins.slot_count(); ++t)
       if (twins.is_alive(t) && twins[t].particle == particle) twins.destroy(t);

@@ -36,6 +36,7 @@ struct Particle {
   double mass = 1;             ///< kg
   /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
   std::int32_t basis_index = -1;
+  std::uint32_t fuse = none;  ///< see `Fuse`
   std::array<double, 4> weights{};
   std::array<double, 3> multiplier{};  ///< of the rows that tie it to the basis, N; warm start
 
@@ -48,8 +49,9 @@ struct Particle {
 struct Ring {
   std::uint32_t first = none, last = none, count = 0;
   Vec3 position, velocity;
-  Vec3 acceleration;   ///< change of velocity in the last step by its length, m/s^2
-  Vec3 applied_force;  ///< for the next step only, N
+  Vec3 acceleration;    ///< change of velocity in the last step by its length, m/s^2
+  Vec3 applied_force;   ///< for the next step only, N
+  Vec3 applied_before;  ///< in the last step, N
   std::uint8_t nailed = 0;
   std::array<std::uint8_t, 7> padding{};
   Vec3 nail, nail_before;  ///< where the nail is, and where it was at the last step, m
@@ -179,6 +181,12 @@ struct Grip {
   double force = 0;  ///< in the last step, N
 };
 
+/// How much the hinge or nail of a particle bears, N.
+struct Fuse {
+  std::uint32_t particle = none, padding = 0;
+  double force = 0;
+};
+
 /// Two particles on their way to each other.
 struct Closing : Ends {
   double distance = 0;               ///< at the start, m
@@ -205,6 +213,7 @@ class Model {
   SlotTable<Closing, Id<Closing>> closings;
   SlotTable<Constraint, ConstraintId> constraints;
   std::vector<Vec3> curve_points;  ///< of paths, m
+  SlotTable<Fuse, Id<Fuse>> fuses;
   /// Of function surfaces, by key; not saved.
   std::map<std::uint64_t, SurfaceFunction> surface_functions;
 
@@ -272,7 +281,8 @@ class Model {
   void remove_cosmetic_bond(std::uint32_t bond);
   std::uint64_t bonds_revision = 0;  ///< rises when a bond is added, removed, moved or switched; not saved
   std::uint32_t add_constraint(const Constraint&);
-  void remove_constraint(std::uint32_t constraint);  ///< its markers stay
+  void remove_constraint(std::uint32_t constraint);     ///< its markers stay
+  void set_fuse(std::uint32_t particle, double force);  ///< infinite: none
   const ConstraintGeometry& geometry(std::uint32_t constraint) const { return geometries_[constraint]; }
   void make_geometries();  ///< anew, after a restore
   /// Bonds, closings and constraints of q become p's; those that would join p to itself are removed.
@@ -392,6 +402,7 @@ class Model {
   double bond_energy(std::uint32_t bond) const;  ///< J; of implicit bonds, at `time`
   /// Of its springs at the coordinates it was last seen at, J.
   double constraint_energy(std::uint32_t constraint) const;
+  Vec3 bond_force(std::uint32_t bond) const;  ///< on its second particle, as things stand, N
   /// The two ends of a bond for its law: distance and its rate (positions `ahead` seconds on), time, masses.
   laws::PairState bond_state(const Bond& bond, double ahead = 0) const;
   Vec3 momentum() const;          ///< kg m/s
@@ -482,7 +493,7 @@ void Model::archive(Archive& ar) {
       twins.archive(ar);
   articulates.archive(ar);
   laws.archive(ar), bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
-  constraints.archive(ar), ar.vector(curve_points);
+  constraints.archive(ar), ar.vector(curve_points), fuses.archive(ar);
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);

@@ -74,6 +74,19 @@ laws::PairState Model::bond_state(const Bond& b, double ahead) const {
   return {r, dot(d, u) / (r + 1e-300), time, particles[b.p].mass, particles[b.q].mass};
 }
 
+Vec3 Model::bond_force(std::uint32_t slot) const {
+  const Bond& b = bonds[slot];
+  const laws::PairLaw& law = compiled(b.law);
+  const laws::PairState state = bond_state(b);
+  const Vec3 d = position(b.q) - position(b.p), u = velocity(b.q) - velocity(b.p);
+  const double* const parameters = b.parameters.data();
+  double along = -law.elastic(state, parameters).slope;
+  if (law.has_push()) along += law.push(state, parameters).value;
+  if (law.has_damping()) along += law.damping(state, parameters).value;
+  const double drag = law.has_drag() ? law.drag(state, parameters) : 0;
+  return (along / (state.r + 1e-300)) * d - drag * u;
+}
+
 double Model::constraint_energy(std::uint32_t slot) const {
   const Constraint& c = constraints[slot];
   double energy = 0;

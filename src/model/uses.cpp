@@ -3,6 +3,7 @@
 #include "model/model.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace iota::model {
 
@@ -96,6 +97,18 @@ std::uint32_t Model::add_constraint(const Constraint& constraint) {
   return slot;
 }
 
+void Model::set_fuse(std::uint32_t particle, double force) {
+  std::uint32_t& fuse = particles[particle].fuse;
+  if (std::isinf(force)) {
+    if (fuse != none) fuses.destroy(fuse);
+    fuse = none;
+  } else if (fuse != none) {
+    fuses[fuse].force = force;
+  } else {
+    fuse = fuses.create({particle, 0, force}).slot;
+  }
+}
+
 void Model::make_geometries() {
   geometries_.assign(constraints.slot_count(), {});
   constraints.for_each([&](std::uint32_t slot, const Constraint& c) { geometries_[slot] = make_geometry(*this, c); });
@@ -158,7 +171,7 @@ void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
     const std::uint32_t place = particles[q].first_constraint % place_count;
     Constraint& c = constraints[slot];
     if (std::find(c.particles.begin(), c.particles.end(), p) != c.particles.end()) {  // two of its places in one
-      for (std::uint32_t i = 0; i < place_count; ++i)  // both stay
+      for (std::uint32_t i = 0; i < place_count; ++i)                                 // both stay
         if (c.particles[i] == p || c.particles[i] == q) c.owned &= static_cast<std::uint8_t>(~(1u << i));
       destroy_constraint(*this, slot);
       continue;
@@ -167,6 +180,10 @@ void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
     c.particles[place] = p;
     c.owned &= static_cast<std::uint8_t>(~(1u << place));
     link_place(slot, place);
+  }
+  if (const std::uint32_t fuse = particles[q].fuse; fuse != none) {  // the weaker one counts
+    const double force = fuses[fuse].force, own = particles[p].fuse == none ? force : fuses[particles[p].fuse].force;
+    set_fuse(p, std::min(force, own));
   }
   const std::uint32_t uses = particles[q].uses;
   ++bonds_revision;

@@ -182,6 +182,10 @@ std::vector<std::string> Model::validate() const {
     }
     complaints.require(p.uses == uses[slot], "particle ", slot, " counts ", p.uses, " uses, has ", uses[slot]);
   });
+  fuses.for_each([&](std::uint32_t slot, const Fuse& f) {
+    complaints.require(particles.is_alive(f.particle) && particles[f.particle].fuse == slot, "fuse ", slot,
+                       " is of no particle");
+  });
   complaints.require(constraint_ends_listed == constraint_ends, "the particles list ", constraint_ends_listed, " of ",
                      constraint_ends, " places of constraints");
   grips.for_each([&](std::uint32_t slot, const Grip& g) {

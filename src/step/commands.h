@@ -150,6 +150,10 @@ struct CreateSurface {
 struct CreateSurfacePair {
   model::SurfacePairData spec;
 };
+struct SetBreakForce {
+  ParticleId particle;
+  double force;
+};
 struct SetConstraintActive {
   ConstraintId constraint;
   bool active;
@@ -251,8 +255,7 @@ using Command = std::variant<
     SetConstraintActive,
     SetCoordinate,
     SetLength,
-    SetBreakLimits,
-    Destroy<ConstraintId>>;
+    SetBreakLimits, SetBreakForce, Destroy<ConstraintId>>;
 // clang-format on
 
 template <class C>

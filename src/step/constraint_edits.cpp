@@ -3,6 +3,7 @@
 #include "step/checks.h"
 #include "step/constraint_rows.h"
 #include "step/execute.h"
+#include "step/hinge_force.h"
 
 #include <cmath>
 
@@ -207,6 +208,12 @@ void System::Implementation::apply(const step::SetBreakLimits& c) {
   model.constraints[slot].breaks = c.limits;
 }
 
+void System::Implementation::apply(const step::SetBreakForce& c) {
+  const std::uint32_t particle = require(c.particle);
+  require_limits({.force = c.force});
+  model.set_fuse(particle, c.force);
+}
+
 void System::Implementation::apply(const step::Destroy<ConstraintId>& c) {
   const std::uint32_t slot = require(c.id);
   model.edit_energy -= model.constraint_energy(slot);
@@ -225,6 +232,23 @@ void System::Implementation::break_overloaded(StepReport& report) {
     report.broken.push_back({model.constraints.id(slot), {}, reaction.position, force, torque});
     apply(SetConstraintActive{model.constraints.id(slot), false});
     model.constraints[slot].broken = 1;
+  }
+  std::vector<Broken> overloaded;
+  model.fuses.for_each([&](std::uint32_t, const model::Fuse& fuse) {
+    const double force = norm(calc_hinge_force(model, fuse.particle));
+    if (force > fuse.force)
+      overloaded.push_back({{}, model.particles.id(fuse.particle), model.position(fuse.particle), force, 0});
+  });
+  for (const Broken& broken : overloaded) {
+    const model::Ring& ring = model.rings[model.particles[broken.particle.slot].ring];
+    if (ring.count > 1)
+      (void)apply(
+          Separate{model.particles.id(ring.first == broken.particle.slot ? ring.last : ring.first), broken.particle});
+    else if (ring.nailed)
+      apply(Release{broken.particle});
+    else
+      continue;
+    report.broken.push_back(broken);
   }
 }
 
@@ -270,6 +294,15 @@ void System::set_break_limits(ConstraintId id, const BreakLimits& limits) {
 const CoordinateOptions& System::coordinate(ConstraintId id, JointCoordinate coordinate) const {
   const model::Constraint& c = implementation_->model.constraints[implementation_->require(id)];
   return c.options[static_cast<std::size_t>(coordinate)];
+}
+void System::set_break_force(ParticleId id, double force) { implementation_->execute(SetBreakForce{id, force}); }
+double System::break_force(ParticleId id) const {
+  const model::Model& m = implementation_->model;
+  const std::uint32_t fuse = m.particles[implementation_->require(id)].fuse;
+  return fuse == none ? std::numeric_limits<double>::infinity() : m.fuses[fuse].force;
+}
+Vec3 System::hinge_force(ParticleId id) const {
+  return calc_hinge_force(implementation_->model, implementation_->require(id));
 }
 ConstraintState System::state(ConstraintId id) const {
   const model::Model& m = implementation_->model;

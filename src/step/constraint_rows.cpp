@@ -419,11 +419,13 @@ void refresh_coordinates(Model& model, std::uint32_t slot) {
       c.coordinate[static_cast<std::size_t>(which)] = calc_coordinate(model, slot, which).first;
 }
 
-Reaction calc_reaction(const Model& model, std::uint32_t slot) {
+namespace {
+
+/// The forces of a constraint on all its places.
+std::array<Vec3, place_count> forces_at(const Model& model, std::uint32_t slot, const Places& places) {
   const Constraint& c = model.constraints[slot];
-  const Places places(model, c);
-  Reaction reaction;
-  reaction.position = places.position[a_origin];
+  std::array<Vec3, place_count> forces{};
+  if (!c.active) return forces;
   auto sink = [&]<class Row>(const Row& row, RowUse use) {
     Row loaded = row;
     double multipliers[Row::rows];
@@ -433,15 +435,30 @@ Reaction calc_reaction(const Model& model, std::uint32_t slot) {
       multipliers[0] = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
     const solver::Gradients<Row> gradients(loaded, places.position.data(), 1);
     for (int i = 0; i < row.node_count(); ++i) {
-      if (row.nodes[i] >= b_origin) continue;
-      Vec3 direction[Row::rows], force;
+      Vec3 direction[Row::rows];
       gradients.of_node(i, direction);
-      for (int r = 0; r < Row::rows; ++r) force -= multipliers[r] * direction[r];
-      reaction.force += force;
-      reaction.torque += cross(places.position[row.nodes[i]] - reaction.position, force);
+      for (int r = 0; r < Row::rows; ++r) forces[row.nodes[i]] -= multipliers[r] * direction[r];
     }
   };
   Expansion<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
+  return forces;
+}
+
+}  // namespace
+
+Vec3 calc_force_at(const Model& model, std::uint32_t slot, int place) {
+  return forces_at(model, slot, Places(model, model.constraints[slot]))[static_cast<std::size_t>(place)];
+}
+
+Reaction calc_reaction(const Model& model, std::uint32_t slot) {
+  const Places places(model, model.constraints[slot]);
+  const std::array<Vec3, place_count> forces = forces_at(model, slot, places);
+  Reaction reaction;
+  reaction.position = places.position[a_origin];
+  for (int place = a_origin; place < b_origin; ++place) {
+    reaction.force += forces[place];
+    reaction.torque += cross(places.position[place] - reaction.position, forces[place]);
+  }
   return reaction;
 }
 

@@ -69,6 +69,9 @@ struct Reaction {
 };
 Reaction calc_reaction(const model::Model&, std::uint32_t constraint);
 
+/// Force of a constraint on one of its places, N, as `calc_reaction` has it.
+Vec3 calc_force_at(const model::Model&, std::uint32_t constraint, int place);
+
 /// Value and speed of a coordinate at the present places; the angle is unwrapped near the last one.
 std::pair<double, double> calc_coordinate(const model::Model&, std::uint32_t constraint, JointCoordinate);
 

@@ -80,6 +80,7 @@ struct System::Implementation {
   void apply(const step::SetCoordinate&);
   void apply(const step::SetLength&);
   void apply(const step::SetBreakLimits&);
+  void apply(const step::SetBreakForce&);
   void apply(const step::Destroy<ConstraintId>&);
   void apply(const step::SetParticleActive&);
   void apply(const step::SetRest&);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 namespace iota::step {
 
@@ -369,7 +370,8 @@ void Island::load(const Model& model, double h) {
 void Island::store(Model& model, double h) {
   const bool stepped = h > 0;
   const auto put = [&](Ring& r, const Vec3& position, const Vec3& velocity) {
-    if (stepped) r.acceleration = (1 / h) * (velocity - r.velocity), r.applied_force = {};
+    if (stepped)
+      r.acceleration = (1 / h) * (velocity - r.velocity), r.applied_before = std::exchange(r.applied_force, Vec3{});
     r.position = position, r.velocity = velocity;
   };
   for (std::size_t i = 0; i < rings_.size(); ++i)

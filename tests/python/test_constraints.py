@@ -216,6 +216,26 @@ def test_what_breaks_is_named_and_can_be_repaired() -> None:
     assert joint.gap < 1e-8
 
 
+def test_a_hinge_tells_what_it_carries_and_breaks_under_too_much() -> None:
+    system = iota.System(damping=5)
+    links = iota.builder.chain(system, links=3, length=0.3)
+    run(system, 3)
+    upper = links[1].particles[0]
+    weight = sum(link.mass for link in links[1:]) * 9.81
+    assert upper.hinge_force == pytest.approx((0, weight, 0), abs=1e-3 * weight)
+    assert math.isinf(upper.break_force)
+    upper.break_force = 2 * weight
+    run(system, 0.1)
+    assert upper in links[1].particles
+    assert len(upper.ring) == 2
+    links[2].particles[1].apply_force((0, -5 * weight, 0))
+    system.step(1 / 120)
+    (broken,) = system.broken
+    assert broken.particle == upper
+    assert broken.constraint is None
+    assert len(upper.ring) == 1
+
+
 def test_the_page_of_constraints_runs_and_shows_every_picture() -> None:
     docs = Path(__file__).parents[2] / "docs"
     page = (docs / "constraints.md").read_text(encoding="utf-8")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every kind of constraint against what a textbook says of it.
-#include <iota/system.h>
+#include "scenes/chain.h"
 
 #include <gtest/gtest.h>
 
@@ -512,6 +512,70 @@ TEST(Break, a_weld_gives_way_to_a_moment) {
   for (int i = 0; i < 10; ++i) broken += static_cast<int>(system.step(1.0 / 120).broken.size());
   EXPECT_EQ(broken, 1);
   EXPECT_FALSE(system.state(weld).active);
+}
+
+TEST(HingeForce, of_a_hanging_chain_is_the_weight_below_it) {
+  for (const auto mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
+    System system{SystemOptions{.mode = mode, .damping = 5}};
+    const auto chain = scenes::make_chain(system, {.links = 5, .link_mass = 0.4, .direction = {0, -1, 0}});
+    for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 120);
+    for (std::size_t i = 0; i < 5; ++i) {
+      const double below = 0.4 * g * static_cast<double>(5 - i);
+      EXPECT_NEAR(norm(system.hinge_force(chain.upper[i]) - Vec3{0, below, 0}), 0, 1e-6) << i;
+      EXPECT_NEAR(norm(system.hinge_force(chain.lower[i]) - Vec3{0, -(below - 0.4 * g), 0}), 0, 1e-6) << i;
+    }
+  }
+}
+
+TEST(HingeForce, of_bodies_in_flight_is_what_their_motion_takes) {
+  // Two blocks, hinged at a carried point of each, tumble freely: the hinge gives each what gravity does not.
+  System system{SystemOptions{.gravity = {0, -3, 0}}};
+  const BodyId a = make_block(system, {-0.5, 0, 0}, {0.8, 0.2, 0.3}, 1, {0, 1, 0});
+  const BodyId b = make_block(system, {0.5, 0, 0}, {0.8, 0.3, 0.2}, 2, {0, 0, 1});
+  const ParticleId p = system.create_particle(a, {0, 0, 0}, 0), q = system.create_particle(b, {0, 0, 0}, 0.2);
+  (void)system.combine(p, q);
+  (void)system.step(1e-3);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 before_a = system.velocity(a), before_b = system.velocity(b);
+    (void)system.step(1e-3);
+    const Vec3 needs_a = system.mass(a) * (1e3 * (system.velocity(a) - before_a) - Vec3{0, -3, 0});
+    const Vec3 needs_b = system.mass(b) * (1e3 * (system.velocity(b) - before_b) - Vec3{0, -3, 0});
+    ASSERT_NEAR(norm(system.hinge_force(p) - needs_a), 0, 1e-3 * (0.1 + norm(needs_a))) << i;
+    ASSERT_NEAR(norm(system.hinge_force(q) - needs_b), 0, 1e-3 * (0.1 + norm(needs_b))) << i;
+  }
+}
+
+TEST(HingeForce, tells_springs_and_constraints_from_hinges) {
+  System system{SystemOptions{.mode = IntegrationMode::robust, .damping = 20}};
+  const BodyId upper = make_block(system, {0, 1, 0}, {0.2, 1, 0.2}, 1);
+  const BodyId lower = make_block(system, {0, 0, 0}, {0.2, 1, 0.2}, 3);
+  const ParticleId p = system.create_particle(upper, {0, 0.5, 0}, 0), q = system.create_particle(lower, {0, 0.5, 0}, 0);
+  system.create_constraint(JointSpec{.kind = ConstraintKind::weld, .a = upper, .at = {0, 1.5, 0}});
+  (void)system.combine(p, q);
+  const ParticleId hook = system.create_particle(system.create_body({.kind = BodyKind::static_}), {0, 2, 0});
+  system.create_bond(q, hook, SpringLaw{.stiffness = 10, .length = 0.5});  // pulls q up with 10 N
+  for (int i = 0; i < 240; ++i) (void)system.step(1.0 / 120);
+  EXPECT_NEAR(norm(system.hinge_force(q) - Vec3{0, 3 * g - 10, 0}), 0, 1e-4);
+  EXPECT_NEAR(norm(system.hinge_force(p) + Vec3{0, 3 * g - 10, 0}), 0, 1e-4);
+}
+
+TEST(Break, a_hinge_and_a_nail_give_way_to_their_loads) {
+  System system{SystemOptions{.damping = 5}};
+  const auto chain = scenes::make_chain(system, {.links = 4, .link_mass = 1, .direction = {0, -1, 0}});
+  system.set_break_force(chain.upper[2], 2.5 * g);
+  system.set_break_force(chain.upper[0], 2.5 * g);
+  const StepReport report = system.step(1.0 / 120);
+  ASSERT_EQ(report.broken.size(), 1u) << "the nail bears 4 g; below it nothing is overloaded";
+  EXPECT_EQ(report.broken[0].particle, chain.upper[0]);
+  EXPECT_FALSE(system.is_nailed(chain.upper[0]));
+  system.nail(chain.upper[0]), system.set_break_force(chain.upper[0], 100 * g);
+  for (int i = 0; i < 30; ++i) (void)system.step(1.0 / 120);
+  system.apply_force(chain.lower[3], {0, -2 * g, 0});
+  const StepReport torn = system.step(1.0 / 120);
+  ASSERT_EQ(torn.broken.size(), 1u);
+  EXPECT_EQ(torn.broken[0].particle, chain.upper[2]);
+  EXPECT_EQ(system.ring(chain.upper[2]).size(), 1u);
+  EXPECT_EQ(system.validate(), std::vector<std::string>{});
 }
 
 }  // namespace

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "step/hinge_force.h"
+
+#include "model/restructure.h"
+#include "step/constraint_rows.h"
+
+#include <tuple>
+
+namespace iota::step {
+
+using namespace model;
+
+namespace {
+
+/// The equations of motion of one body at one of its points: what is left of M a - f + G' lambda there, when the body's
+/// own masses, rows and forces are all taken, comes from the bodies that it shares the point with.
+class PointBalance {
+ public:
+  PointBalance(const Model& model, std::uint32_t particle)
+      : model_(model), particle_(model.particles[particle]), slot_(particle), body_(model.bodies[particle_.body]) {
+    const bool robust = model.mode == IntegrationMode::robust;
+    back_ = robust ? 0 : model.last_dt / 2;
+  }
+
+  Vec3 unbalanced() {
+    if (particle_.basis_index >= 0)
+      at_basis();
+    else
+      tied();
+    implicit_bonds();
+    return sum_;
+  }
+
+ private:
+  /// Where the scheme takes gradients: at the end of the step, or half way, x = x1 - h (v0 + v1) / 4.
+  Vec3 place(std::uint32_t p) const {
+    const Ring& r = model_.rings[model_.particles[p].ring];
+    return r.position - back_ * (r.velocity - back_ / 2 * r.acceleration);
+  }
+  /// Weight of the particle at the point; those that are unknowns of their own and no basis points have none.
+  double weight(std::uint32_t p) const {
+    const Particle& k = model_.particles[p];
+    if (k.basis_index < 0 && model_.is_unknown(k)) return 0;
+    return k.weights[static_cast<std::size_t>(particle_.basis_index)];
+  }
+  Vec3 inertial(std::uint32_t p) const {
+    const Ring& r = model_.rings[model_.particles[p].ring];
+    return r.acceleration - model_.gravity + (model_.damping + body_.damping) * r.velocity;
+  }
+
+  void at_basis() {
+    const auto index = static_cast<std::size_t>(particle_.basis_index);
+    model_.for_each_particle_of(particle_.body, [&](std::uint32_t p) {
+      const Particle& k = model_.particles[p];
+      const double w = weight(p);
+      if (w != 0) sum_ += (w * k.mass) * inertial(p);
+      if (w != 0 && p != slot_ && k.basis_index < 0) sum_ -= w * model_.rings[k.ring].applied_before;
+      if (k.basis_index < 0 && model_.is_unknown(k))  // its tie to the basis
+        sum_ -= k.weights[index] * Vec3{k.multiplier[0], k.multiplier[1], k.multiplier[2]};
+      model_.for_each_constraint_of(p, [&](std::uint32_t c, int at) {
+        if (k.weights[index] != 0) sum_ -= k.weights[index] * calc_force_at(model_, c, at);
+      });
+    });
+    model_.for_each_inertia_of(particle_.body, [&](std::uint32_t i) {
+      const InertiaPair& pair = model_.inertia_pairs[i];
+      const double w = weight(pair.p) - weight(pair.q);
+      if (w != 0)
+        sum_ += (w * pair.inertia) * (model_.rings[model_.particles[pair.p].ring].acceleration -
+                                      model_.rings[model_.particles[pair.q].ring].acceleration);
+    });
+    for (int row = 0; row < body_.row_count; ++row) {
+      const auto [i, j] = basis_pairs[row];
+      if (i != index && j != index) continue;
+      const Vec3 d = place(body_.basis[j]) - place(body_.basis[i]);
+      sum_ += ((j == index ? 1 : -1) * body_.multipliers[row] / body_.lengths[row]) * d;
+    }
+    model_.grips.for_each([&](std::uint32_t, const Grip& g) {
+      for (std::uint32_t i = 0; i < g.count; ++i) {
+        if (g.body != particle_.body || g.points[i] != slot_) continue;
+        const Vec3 pull = g.target - grip_point(model_, g);
+        if (norm(pull) > 0) sum_ -= (g.weights[i] * g.force / norm(pull)) * pull;
+      }
+    });
+  }
+
+  void tied() {
+    sum_ += particle_.mass * inertial(slot_);
+    sum_ += Vec3{particle_.multiplier[0], particle_.multiplier[1], particle_.multiplier[2]};
+  }
+
+  void implicit_bonds() {
+    model_.for_each_bond_of(slot_, [&](std::uint32_t b) {
+      const Bond& bond = model_.bonds[b];
+      if (bond.ties()) sum_ -= (bond.p == slot_ ? -1 : 1) * model_.bond_force(b);
+    });
+  }
+
+  const Model& model_;
+  const Particle& particle_;
+  std::uint32_t slot_;
+  const Body& body_;
+  double back_ = 0;
+  Vec3 sum_;
+};
+
+bool moves_freely(const Model& model, std::uint32_t particle) {
+  return is_free(model.bodies[model.particles[particle].body].kind);
+}
+
+}  // namespace
+
+Vec3 calc_hinge_force(const Model& model, std::uint32_t particle) {
+  const Ring& ring = model.rings[model.particles[particle].ring];
+  const bool pinned = model.is_pinned(model.particles[particle].ring);
+  if (ring.count == 1) return ring.nailed && moves_freely(model, particle) ? -ring.nail_multiplier : Vec3{};
+  Vec3 own, all;
+  int free = 0;
+  model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t p) {
+    if (!moves_freely(model, p)) return;
+    const Vec3 force = PointBalance(model, p).unbalanced();
+    all += force, ++free;
+    if (p == particle) own = force;
+  });
+  if (!moves_freely(model, particle)) return -(all - ring.applied_before);  // it carries what the others do not
+  return pinned ? own - (1.0 / free) * ring.applied_before : own - (1.0 / free) * all;
+}
+
+}  // namespace iota::step
