@@ -19,8 +19,10 @@ PyType_Slot system_slots[] = {
 
 constexpr const char* doc =
     "A world of particles, bodies and bonds that is advanced step by step. SI units, right-handed, y up.\n\n"
-    "gravity: m/s^2. mode: 'energy_keeping' (mid-point discrete gradient; falls back to 'robust' where it must, and says\n"
-    "so) or 'robust' (backward Euler; never fails, dissipates). damping: 1/s, all velocities fall by exp(-damping t).\n"
+    "gravity: m/s^2. mode: the dial from plausible to accurate. 'plausible' and 'robust' (backward Euler; never fails,\n"
+    "never gains energy, dissipates), 'energy_keeping' (mid-point discrete gradient; falls back to 'robust' where it must,\n"
+    "and says so), 'accurate' (in sub-steps with an error estimate). damping: 1/s, all velocities fall by\n"
+    "exp(-damping t).\n"
     "threads: how many share a step, 0: one a core; the results are the same bits for any number.\n\n"
     "A system belongs to the thread that made it; while a World runs it, to the World's. Other threads get\n"
     "WrongThreadError.\n\n"
@@ -72,7 +74,7 @@ void bind_settings(nb::class_<SystemObject>& type) {
           [](SystemObject& self, const ModeWord& mode) {
             self.use_between_steps("mode = ...").set_mode(to_mode(mode));
           },
-          "'energy_keeping' or 'robust'")
+          "the dial: 'plausible', 'robust', 'energy_keeping' or 'accurate'; may be turned at any time")
       .def_prop_rw(
           "solver", [](SystemObject& self) { return self.use().solver(); },
           [](SystemObject& self, const std::string& name) { self.use_between_steps("solver = ...").set_solver(name); },

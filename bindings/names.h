@@ -18,8 +18,10 @@ namespace nb = nanobind;
 template <class Value, std::size_t count>
 using Words = std::array<std::pair<std::string_view, Value>, count>;
 
-inline constexpr Words<IntegrationMode, 2> mode_words{
-    {{"energy_keeping", IntegrationMode::energy_keeping}, {"robust", IntegrationMode::robust}}};
+inline constexpr Words<IntegrationMode, 4> mode_words{{{"plausible", IntegrationMode::plausible},
+                                                       {"robust", IntegrationMode::robust},
+                                                       {"energy_keeping", IntegrationMode::energy_keeping},
+                                                       {"accurate", IntegrationMode::accurate}}};
 inline constexpr Words<BodyKind, 5> kind_words{{{"dynamic", BodyKind::dynamic},
                                                 {"static", BodyKind::static_},
                                                 {"scripted", BodyKind::scripted},
@@ -107,7 +109,7 @@ struct word_caster {
 template <>
 struct type_caster<iota::bindings::ModeWord> : word_caster<iota::bindings::ModeWord> {
   using Value = iota::bindings::ModeWord;
-  static constexpr auto Name = const_name("typing.Literal['energy_keeping', 'robust']");
+  static constexpr auto Name = const_name("typing.Literal['plausible', 'robust', 'energy_keeping', 'accurate']");
 };
 template <>
 struct type_caster<iota::bindings::KindWord> : word_caster<iota::bindings::KindWord> {

@@ -29,9 +29,12 @@ struct StaleIdError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// The dial from plausible to accurate; may be turned at any time. docs/solver.md says what each costs and is worth.
 enum class IntegrationMode : std::uint8_t {
-  robust,          ///< backward Euler: never fails, dissipates
+  plausible,       ///< `robust` with gaps up to 1e-7 of a link: for what is far away
+  robust,          ///< backward Euler: never fails, never gains energy, dissipates
   energy_keeping,  ///< mid-point discrete gradient with bisection; falls back to `robust` where it must, and says so
+  accurate,        ///< `energy_keeping` in sub-steps whose estimated errors add up to 1e-4 of a link a second
 };
 
 enum class BodyKind : std::uint8_t {

@@ -122,6 +122,8 @@ struct Articulate {
   std::uint32_t jolted = 0;     ///< velocities were assigned and may violate constraints: project before the next step
   std::uint32_t disturbed = 0;  ///< since the last step: wakes it
   double slow_time = 0;         ///< s; of an island, at the articulate of its first body
+  std::uint64_t standing_steps = 0;  ///< since a conflict was last tried to be closed
+  double standing_gap = 0;           ///< that was left then, relative; 0: no conflict
 };
 
 /// What joins two particles is in a list of each of them, so that looking after one particle's uses costs what it has.

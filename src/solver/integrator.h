@@ -10,6 +10,22 @@ enum class Scheme : std::uint8_t {
   mid_point,  ///< energy-momentum: v1 = 2 (x1 - x0)/h - v0 (Betsch and Leyendecker 2006)
 };
 
+/// How carefully to step: the dial from plausible to accurate. `docs/solver.md` has what each setting costs and is worth.
+struct Care {
+  Scheme scheme = Scheme::mid_point;
+  double tolerance = 1;  ///< of Newton's method, as a multiple of the usual 1e-9 (end point) and 1e-10 (mid-point)
+  double max_turn = 1.1, max_turn_cosine = 0.4536;  ///< rad: a mid-point (sub-)step that turns a link further is halved
+  int max_depth = 6;                                ///< sub-steps down to a 64th: a whip needs them, for a few steps
+  double max_error = 0;  ///< estimated, of mid-point (sub-)steps, in link lengths per second; 0: not asked
+
+  static Care plausible() { return {.scheme = Scheme::end_point, .tolerance = 100, .max_depth = 4}; }
+  static Care robust() { return {.scheme = Scheme::end_point}; }
+  static Care energy_keeping() { return {}; }
+  static Care accurate() {
+    return {.tolerance = 0.1, .max_turn = 0.35, .max_turn_cosine = 0.9394, .max_depth = 10, .max_error = 1e-4};
+  }
+};
+
 /// What one problem went through in one step.
 struct [[nodiscard]] AdvanceReport {
   int solves = 0;
@@ -35,10 +51,11 @@ class Integrator {
               std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched);
 
   /// Positions, velocities and multipliers of `problem` become those after h seconds.
-  /// mid_point halves the step (to a 64th) when a link turns more than 1.1 rad in it or Newton fails, and then
-  /// falls back to end_point. Constraints that are violated at the start are first closed by moving positions only; what
-  /// cannot be closed is held as it is during the step, so that a conflict neither shakes nor heats the world.
-  AdvanceReport advance(Problem& problem, double h, Scheme scheme);
+  /// mid_point halves the step (to a 64th) when a link turns too far in it, its error is too large or Newton fails, and
+  /// then falls back to end_point, for that sub-step only. end_point never ends with more energy than it began with,
+  /// unless something outside does work. Constraints that are violated at the start are first closed by moving
+  /// positions only; what cannot be closed is held as it is, so that a conflict neither shakes nor heats the world.
+  AdvanceReport advance(Problem& problem, double h, const Care& care);
 
   /// Moves positions by the least mass-weighted displacement that meets all constraints; velocities stay.
   /// Returns false where no solution was found: the violation is then shared, and smaller after each call.
@@ -53,9 +70,10 @@ class Integrator {
   void make_room(const Problem&);
   void make_guess(const Problem&, const Stage&);
   bool try_step(Problem&, const Stage&, AdvanceReport&);
+  bool solve(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);
   void take_stock(const Problem&, double fraction);
-  void absorb_impact(Problem&, double to, AdvanceReport&);
+  bool settle_velocities(Problem&, double to, AdvanceReport&);
   double work_of_drives(const Problem&, const Stage&) const;
   double work_of_gaps(const Problem&, const Stage&) const;
   void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
@@ -63,7 +81,10 @@ class Integrator {
   bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;
   void smooth_multipliers(Problem&) const;
-  bool gains_energy(const Problem&, const Stage&);
+  double gain(const Problem&, const Stage&);
+  void shed(Problem&, double excess, double fraction, AdvanceReport&);
+  bool is_accurate(Problem&, const Stage&, AdvanceReport&);
+  void hold_offsets(Problem&, AdvanceReport&);
   void save_multipliers(const Problem&);
   void restore_multipliers(Problem&) const;
   bool least_violation(Problem&, Stage, AdvanceReport&);
@@ -73,15 +94,18 @@ class Integrator {
   void close_gaps(Problem&, AdvanceReport&);
 
   Newton newton_;
+  Care care_;
   std::vector<Vec3> guess_;  // of the displacement from free flight, m
   std::vector<Vec3> start_position_, start_velocity_;
+  std::vector<Vec3> candidate_;  // only where errors are estimated, or nothing else helps
   std::vector<double> lumped_mass_;
-  std::vector<double> multipliers_saved_;
+  std::vector<double> multipliers_saved_, candidate_multipliers_;
   double step_length_ = 0;           ///< of the whole step, s
   double kinetic_ = 0, energy_ = 0;  ///< of the problem's state as it is now, J
   bool conservative_ = true;         ///< nothing outside does work during this step
   bool holds_offsets_ = false;
-  int met_ = 0;  ///< bounded rows that met in the latest solve
+  double violation_ = 0;  ///< relative, left by the latest solve
+  int met_ = 0;           ///< bounded rows that met in the latest solve
 };
 
 }  // namespace iota::solver

@@ -109,6 +109,8 @@ struct Problem {
   ConstraintPools<ConstraintPool> constraints;
   ForcePools<ForcePool> forces;
   Vec3 gravity;
+  double standing_gap = 0;           ///< of a conflict that the last attempt could not close, relative; 0: none
+  std::uint64_t standing_steps = 0;  ///< since then
 
   std::size_t size() const { return position.size(); }
 

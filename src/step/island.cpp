@@ -25,6 +25,16 @@ double closing_factor(double elapsed, double duration) {
   return 1 - 0.99 * s * s * (3 - 2 * s);
 }
 
+solver::Care care_of(IntegrationMode mode) {
+  switch (mode) {
+    case IntegrationMode::plausible: return solver::Care::plausible();
+    case IntegrationMode::robust: return solver::Care::robust();
+    case IntegrationMode::energy_keeping: return solver::Care::energy_keeping();
+    case IntegrationMode::accurate: return solver::Care::accurate();
+  }
+  return {};
+}
+
 }  // namespace
 
 Island::Weighted Island::nodes_of(const Model& model, std::uint32_t particle,
@@ -449,8 +459,10 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     integrator_.project_velocities(problem_, h);
     given = problem_.kinetic_energy() - before_jolt;
   }
-  auto report = integrator_.advance(
-      problem_, h, mode == IntegrationMode::robust ? solver::Scheme::end_point : solver::Scheme::mid_point);
+  model::Articulate& articulate = model.articulates[model.bodies[bodies_.front()].articulate];
+  problem_.standing_gap = articulate.standing_gap, problem_.standing_steps = articulate.standing_steps;
+  auto report = integrator_.advance(problem_, h, care_of(mode));
+  articulate.standing_gap = problem_.standing_gap, articulate.standing_steps = problem_.standing_steps;
   report.external_work += given;
   for (std::size_t i = 0; i < nails_.size(); ++i) problem_.velocity[nails_[i]] = nail_velocity(i);
   if (damped_ || model.damping > 0) {
@@ -465,6 +477,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
 }
 
 bool Island::settle(Model& model, bool positions) {
+  if (!bodies_.empty()) model.articulates[model.bodies[bodies_.front()].articulate].standing_gap = 0;  // try again
   load(model, 0);
   bool met = true;
   if (idle_) {

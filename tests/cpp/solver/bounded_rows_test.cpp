@@ -58,7 +58,7 @@ class Rows : public testing::TestWithParam<Scheme> {
   void SetUp() override { problem.gravity = {0, -g, 0}; }
   void start() { integrator.compile(problem); }
   void step(double h) {
-    const AdvanceReport report = integrator.advance(problem, h, GetParam());
+    const AdvanceReport report = integrator.advance(problem, h, Care{.scheme = GetParam()});
     ASSERT_TRUE(report.converged);
     EXPECT_EQ(report.fallbacks, 0);
     total.impacts += report.impacts, total.dissipated += report.dissipated;
