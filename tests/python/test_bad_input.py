@@ -33,7 +33,10 @@ BAD_VALUES: dict[str, tuple[Callable[[iota.System], object], str]] = {
     "gravity": (lambda s: setattr(s, "gravity", (0, NAN)), "gravity must be finite"),
     "damping": (lambda s: setattr(s, "damping", -1.0), "damping must be finite and at least 0 1/s, not -1"),
     "body damping": (lambda s: iota.Body(s, damping=NAN), "damping"),
-    "mode": (lambda s: setattr(s, "mode", "robut"), "mode must be one of 'energy_keeping', 'robust', not 'robut'"),
+    "mode": (
+        lambda s: setattr(s, "mode", "robut"),
+        "mode must be one of 'plausible', 'robust', 'energy_keeping', 'accurate', not 'robut'",
+    ),
     "kind": (lambda s: iota.Body(s, kind="frozen"), "kind must be one of 'dynamic', 'static'.* not 'frozen'"),
     "dt zero": (lambda s: s.step(0), "dt"),
     "dt negative": (lambda s: s.step(-0.01), "dt"),
