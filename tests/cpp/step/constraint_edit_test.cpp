@@ -156,7 +156,7 @@ TEST(RandomConstraints, keep_the_structure_whole_and_finite_through_random_edits
     }
     made += world.made;
   }
-  EXPECT_GT(made, 200) << "most of what was asked for was possible";
+  EXPECT_GT(made, 150) << "most of what was asked for was possible";
 }
 
 TEST(LargeIslands, follow_a_cut_beside_a_rope) {
