@@ -271,10 +271,11 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
 // The half step lies (a - a') h^2 / 8 from the parabola of the whole one. Leaves the whole step solved.
 bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const int met = met_;
-  std::copy(newton_.solution().begin(), newton_.solution().end(), candidate_.begin());
-  auto out = candidate_multipliers_.begin();
-  problem.for_each_constraint_pool(
-      [&](const auto& pool) { out = std::copy(pool.multipliers.begin(), pool.multipliers.end(), out); });
+  candidate_.assign(newton_.displacement().begin(), newton_.displacement().end());
+  candidate_multipliers_.clear();
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    candidate_multipliers_.insert(candidate_multipliers_.end(), pool.multipliers.begin(), pool.multipliers.end());
+  });
 
   Stage half = Stage::mid_point(stage.h / 2, stage.fraction_start, (stage.fraction_start + stage.fraction) / 2);
   half.tolerance = stage.tolerance;
