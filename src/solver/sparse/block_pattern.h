@@ -123,7 +123,7 @@ class BlockPattern {
   PairSlot pair_slot(std::uint32_t a, std::uint32_t b) const;
   const ConstraintSlot& constraint_slot(std::size_t constraint) const { return constraint_slots_[constraint]; }
   /// The slots are needed once, and larger than all the rest.
-  void forget_slots() { constraint_slots_ = {}; }
+  void forget_slots() { std::vector<ConstraintSlot>().swap(constraint_slots_); }
 
  private:
   ConstraintSlot calc_slot(std::span<const std::uint32_t> nodes, std::uint32_t home, std::uint8_t row) const;

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a link takes, all told: run by itself, since memory that earlier cases gave back is still the process's.
+#include "bench/engine/chain.h"
+
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace iota::bench {
+namespace {
+
+/// Resident bytes of this process (Linux; 0 elsewhere).
+double resident() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0, resident_pages = 0;
+  file >> pages >> resident_pages;
+  return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+void chain_in_memory(benchmark::State& state, IntegrationMode mode) {
+  const int links = static_cast<int>(state.range(0));
+  for (auto _ : state) {
+    const double before = resident();
+    Chain chain(links, false, mode);
+    (void)chain.system.step(1.0 / 120), (void)chain.system.step(1.0 / 120);
+    state.counters["bytes_per_link"] = (resident() - before) / links;
+  }
+}
+BENCHMARK_CAPTURE(chain_in_memory, robust, IntegrationMode::robust)
+    ->Name("memory/robust")
+    ->Arg(100000)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(chain_in_memory, energy_keeping, IntegrationMode::energy_keeping)
+    ->Name("memory/energy_keeping")
+    ->Arg(100000)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace iota::bench
