@@ -54,6 +54,7 @@ AIMS = (
     ),
     ("heavy end 1000:1, 64 links, robust, us/link/step", r"heavy_end/robust/", "us_per_link_step", 1, 0.3, "<="),
     ("heavy end 1000:1, 64 links, energy-keeping", r"heavy_end/energy_keeping/", "us_per_link_step", 1, 0.8, "<="),
+    ("body with hinges, robust, us/hinge/step", r"hub/robust/", "us_per_link_step", 1, None, "<="),
     ("net 32 x 32, robust, ms a step (median)", r"net/robust/120/32/", "step_ms_p50", 1, 5, "<="),
     ("net 64 x 64, robust, ms a step (median)", r"net/robust/120/64/", "step_ms_p50", 1, None, "<="),
     ("net 100 x 100, robust, ms a step (median)", r"net/robust/120/100/", "step_ms_p50", 1, None, "<="),

@@ -5,6 +5,7 @@
 #include "scenes/chain.h"
 #include "scenes/net.h"
 
+#include <cmath>
 #include <string>
 
 namespace iota::bench {
@@ -30,6 +31,21 @@ void make_rigid_chain(System& system, int links) {
   }
 }
 
+/// A body of `hinges` points with a link hinged to each.
+void make_hub(System& system, int hinges) {
+  const BodyId hub = system.create_body();
+  for (int i = 0; i < hinges; ++i) {
+    const double angle = 6.283185307179586 * i / hinges, radius = 1 + 0.2 * (i % 3);
+    const Vec3 at{radius * std::cos(angle), 0.1 * (i % 5), radius * std::sin(angle)};
+    const ParticleId on_hub = system.create_particle(hub, at, 0.01);
+    const BodyId link = system.create_body();
+    const ParticleId top = system.create_particle(link, at, 0.05);
+    (void)system.create_particle(link, at + Vec3{0, -0.3, 0.05}, 0.05);
+    (void)system.combine(on_hub, top);
+    if (i == 0) system.nail(on_hub);
+  }
+}
+
 const bool registered = [] {
   for (const auto mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     const auto add = [&](const std::string& what, int size, int steps, auto run) {
@@ -44,6 +60,12 @@ const bool registered = [] {
       add("rigid_chain", links, links <= 512 ? 1200 : 240, [mode](benchmark::State& state, int n) {
         System system({.mode = mode, .threads = 1});
         make_rigid_chain(system, n);
+        step_and_judge(state, system, n, 120);
+      });
+    for (const int hinges : {100, 1000})
+      add("hub", hinges, 120, [mode](benchmark::State& state, int n) {
+        System system({.mode = mode, .threads = 1});
+        make_hub(system, n);
         step_and_judge(state, system, n, 120);
       });
     for (const int side : {16, 32, 64, 100}) {

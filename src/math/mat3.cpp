@@ -35,7 +35,10 @@ SymmetricEigen symmetric_eigen(const Mat3& a) {
 }
 
 Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance) {
-  const SymmetricEigen e = symmetric_eigen(a);
+  return solve_semidefinite(symmetric_eigen(a), b, tolerance);
+}
+
+Vec3 solve_semidefinite(const SymmetricEigen& e, const Vec3& b, double tolerance) {
   const double largest = std::max({e.values[0], e.values[1], e.values[2]});
   Vec3 x;
   for (int k = 0; k < 3; ++k)

@@ -53,6 +53,8 @@ SymmetricEigen symmetric_eigen(const Mat3& a);
 /// Least-squares solution of A x = b for symmetric positive semi-definite A: directions in which A is (nearly) zero,
 /// below `tolerance` times its largest pivot, get no part. Diagonal pivoting.
 Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance = 1e-10);
+/// The same where the eigenvectors are known: for many right-hand sides.
+Vec3 solve_semidefinite(const SymmetricEigen& a, const Vec3& b, double tolerance);
 
 // Quaternions.
 Quaternion multiply(const Quaternion& a, const Quaternion& b);

@@ -23,8 +23,10 @@ class BasisWeights {
     const Body& body = model.bodies[body_slot];
     origin_ = model.position(body.basis[0]);
     for (int i = 1; i < body.rank; ++i) vectors_[i - 1] = model.position(body.basis[i]) - origin_;
+    Mat3 gram;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) gram_.m[i][j] = dot(vectors_[i], vectors_[j]);
+      for (int j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors_[i], vectors_[j]);
+    gram_ = symmetric_eigen(gram);
   }
   /// Of the point nearest to `place` that the basis spans.
   std::array<double, 4> of(const Vec3& place) const {
@@ -36,7 +38,7 @@ class BasisWeights {
  private:
   Vec3 origin_;
   std::array<Vec3, 3> vectors_;
-  Mat3 gram_;
+  SymmetricEigen gram_;
 };
 
 }  // namespace
