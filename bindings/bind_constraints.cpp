@@ -205,10 +205,7 @@ struct CoordinateView {
 
   std::size_t index() const { return static_cast<std::size_t>(which); }
   CoordinateOptions options() const { return joint.use().coordinate(joint.id, which); }
-  void set(const CoordinateOptions& options) const {
-    joint.use();
-    joint.system->use_between_steps("changing a joint").set_coordinate(joint.id, which, options);
-  }
+  void set(const CoordinateOptions& options) const { joint.use().set_coordinate(joint.id, which, options); }
 };
 
 void bind_coordinate(nb::module_& module) {
@@ -344,9 +341,7 @@ void bind_handle(nb::module_& module) {
           nb::sig("def particles(self) -> list[Particle]"), "Those that it refers to, its own markers included.")
       .def_prop_rw(
           "active", read(&ConstraintState::active),
-          [](const ConstraintHandle& self, bool active) {
-            between_steps(self, "active = ...").set_active(self.id, active);
-          },
+          [](const ConstraintHandle& self, bool active) { self.use().set_active(self.id, active); },
           "False while it is switched off or broken; True repairs it, and bodies go back to how they were joined.")
       .def_prop_ro("broken", read(&ConstraintState::broken), "By a load beyond break_force or break_torque.")
       .def_prop_ro("position", read(&ConstraintState::position), "Where it acts on a, m.")
@@ -357,7 +352,7 @@ void bind_handle(nb::module_& module) {
       .def_prop_rw(
           "length", read(&ConstraintState::length),
           [](const ConstraintHandle& self, double length) {
-            between_steps(self, "length = ...").set_length(self.id, finite_positive(length, "length", "m"));
+            self.use().set_length(self.id, finite_positive(length, "length", "m"));
           },
           "Of a rod or rope, m.")
       .def_prop_ro("angle", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::angle); })

@@ -618,6 +618,27 @@ NewtonReport Newton::solve_externally(Problem& problem, const Stage& stage) {
 }
 
 // Sides as the multipliers from the last step tell: nothing else needs to be remembered between steps.
+namespace {
+
+/// Whether velocities differ from what a hold row wants by more than a bent coordinate makes of a step. A motor that has
+/// just been switched on would else be thrown back and forth about its speed for ever by the mid-point rule.
+template <class C>
+bool is_off_speed(const Problem& problem, const C& c, int row, double rate, const Stage& stage) {
+  constexpr double bent = 1e-3, still = 1e-9;
+  const Gradients<C> gradients(c, problem.position.data(), stage.fraction_start);
+  double speed = 0, largest = std::abs(rate);
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 rows[C::rows];
+    gradients.of_node(i, rows);
+    const Vec3& v = problem.velocity[c.nodes[i]];
+    speed += dot(rows[row], v);
+    largest += norm(rows[row]) * norm(v);
+  }
+  return std::abs(speed - rate) * stage.h > bent * largest * stage.h + still * c.reference_length();
+}
+
+}  // namespace
+
 void Newton::begin_sides(Problem& problem, const Stage& stage) {
   fewest_wrong_ = std::numeric_limits<int>::max(), stalled_ = 0;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
@@ -635,6 +656,7 @@ void Newton::begin_sides(Problem& problem, const Stage& stage) {
         state.side = lambda <= bounds.lower ? -1 : lambda >= bounds.upper ? 1 : 0;
         if (state.side != 0) lambda = state.side < 0 ? bounds.lower : bounds.upper;
         state.side_before = state.side;
+        state.off_speed = law[r].hold && is_off_speed(problem, pool.items[k], r, law[r].rate, stage);
       }
     }
   });
@@ -643,7 +665,7 @@ void Newton::begin_sides(Problem& problem, const Stage& stage) {
 int Newton::count_met(const Problem& problem) const {
   int count = 0;
   problem.for_each_constraint_pool([&](const auto& pool) {
-    for (const RowState& state : pool.states) count += state.side == 0 && state.side_before != 0;
+    for (const RowState& state : pool.states) count += state.side == 0 && (state.side_before != 0 || state.off_speed);
   });
   return count;
 }

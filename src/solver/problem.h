@@ -49,6 +49,7 @@ struct RowLaw {
 struct RowState {
   std::int8_t side = 0;         ///< -1, 1: its multiplier is at the lower, upper bound; 0: free, the equation holds
   std::int8_t side_before = 0;  ///< at the start of the (sub-)step
+  bool off_speed = false;       ///< a hold row whose velocity there was not the wanted one
   double start = 0;             ///< g there
 };
 

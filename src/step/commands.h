@@ -280,5 +280,11 @@ template <>
 inline constexpr bool is_queueable<Nail> = true;
 template <>
 inline constexpr bool is_queueable<Release> = true;
+template <>
+inline constexpr bool is_queueable<SetConstraintActive> = true;
+template <>
+inline constexpr bool is_queueable<SetCoordinate> = true;
+template <>
+inline constexpr bool is_queueable<SetLength> = true;
 
 }  // namespace iota::step

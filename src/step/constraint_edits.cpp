@@ -81,6 +81,13 @@ void System::Implementation::constraint_changed(std::uint32_t constraint) {
   structure_changed();
 }
 
+void System::Implementation::wake(std::uint32_t constraint) {
+  for (const int side : {0, 1}) {
+    const std::uint32_t body = body_of_side(model, model.constraints[constraint], side);
+    if (body != none && model.bodies[body].kind == BodyKind::resting) return constraint_changed(constraint);
+  }
+}
+
 ConstraintId System::Implementation::apply(const step::CreateJoint& c) {
   const model::ConstraintKindInfo& kind = model::info(c.spec.kind);
   if (kind.form != model::ConstraintKindInfo::Form::joint)
@@ -187,7 +194,7 @@ void System::Implementation::apply(const step::SetCoordinate& c) {
   model.edit_energy -= model.constraint_energy(slot);
   options = c.options;
   model.edit_energy += model.constraint_energy(slot);
-  if (same_rows) return;
+  if (same_rows) return wake(slot);
   const RowsOf rows = rows_of(options);
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (!rows[i]) constraint.efforts[static_cast<std::size_t>(c.coordinate)][i] = 0;
@@ -200,6 +207,7 @@ void System::Implementation::apply(const step::SetLength& c) {
     throw std::invalid_argument("only rods and ropes have a length");
   require_positive("length", c.value);
   model.constraints[slot].length = c.value;
+  wake(slot);
 }
 
 void System::Implementation::apply(const step::SetBreakLimits& c) {

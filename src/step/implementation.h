@@ -143,6 +143,7 @@ struct System::Implementation {
   /// What comes after making or changing a constraint: its island is made anew, its velocities are projected before the
   /// next step, and what is apart closes there.
   void constraint_changed(std::uint32_t constraint);
+  void wake(std::uint32_t constraint);  ///< bodies at rest that a changed motor or rope must move
   ConstraintId made(std::uint32_t constraint);
   ParticleId make_marker(std::uint32_t body, const Vec3& position);
   /// Ends a closing before its particles have met.

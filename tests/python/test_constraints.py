@@ -236,6 +236,35 @@ def test_a_hinge_tells_what_it_carries_and_breaks_under_too_much() -> None:
     assert len(upper.ring) == 1
 
 
+def test_the_function_of_a_bond_may_change_joints_for_after_the_step() -> None:
+    system, box = hanging_box()
+    joint = system.revolute(box, at=(0, 0, 0), axis=(0, 0, 1), motor=(1, 100))
+    weld = system.weld(iota.Body(system, shape=iota.Sphere(0.1), position=(0, -0.8, 0)), box, at=(0, -0.7, 0))
+
+    def pull(_bond: iota.BondState) -> tuple[float, float, float]:
+        joint.angle.motor = (-1, 100)
+        weld.active = False
+        return 0, 0, 0
+
+    iota.Bond(box.particles[0], iota.Particle(iota.Body(system, kind="static"), (0, 5, 0)), pull)
+    system.step(1 / 120)
+    assert joint.angle.motor == (-1, 100)
+    assert not weld.active
+    run(system, 0.5)
+    assert joint.angle.speed == pytest.approx(-1, rel=1e-2)
+
+
+def test_a_joint_that_moves_wakes_what_rests() -> None:
+    system, box = hanging_box()
+    joint = system.revolute(box, at=(0, 0, 0), axis=(0, 0, 1), motor=(0, 100))
+    box.kind = "resting"
+    run(system, 0.1)
+    assert box.kind == "resting"
+    joint.angle.motor = (1, 100)
+    run(system, 1)
+    assert joint.angle.value == pytest.approx(1, abs=0.05)
+
+
 def test_the_page_of_constraints_runs_and_shows_every_picture() -> None:
     docs = Path(__file__).parents[2] / "docs"
     page = (docs / "constraints.md").read_text(encoding="utf-8")

@@ -259,6 +259,18 @@ TEST(Motor, reaches_its_speed_and_a_weak_one_stalls) {
   }
 }
 
+TEST(Motor, a_strong_one_does_not_ring_about_its_speed) {
+  System system;  // energy keeping
+  const BodyId block = make_block(system, {0.5, 0, 0}, {0.2, 0.2, 0.2}, 1);
+  const ConstraintId joint = system.create_constraint(JointSpec{
+      .kind = ConstraintKind::revolute, .a = block, .axis = {0, 0, 1}, .angle = {.motor_speed = 3, .motor_max = 1e4}});
+  int step = 0;
+  run(system, 1, 1.0 / 120, [&](const StepReport&) {
+    if (++step == 60) system.set_coordinate(joint, JointCoordinate::angle, {.motor_speed = -2, .motor_max = 1e4});
+    EXPECT_NEAR(system.state(joint).speed[0], step <= 60 ? 3 : -2, 0.01) << step;
+  });
+}
+
 TEST(Limit, stops_a_swinging_block) {
   System system;
   const BodyId block = make_block(system, {0.5, 0, 0}, {0.2, 0.2, 0.2}, 1);
