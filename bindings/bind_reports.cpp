@@ -71,6 +71,10 @@ void bind_step_report(nb::module_& module) {
       .def_ro("worst_gap", &StepReport::worst_gap, "Largest hinge separation or rigidity error, m.")
       .def_ro("energy", &StepReport::energy)
       .def_ro("articulates", &StepReport::articulates)
+      .def_prop_ro(
+          "births", [](const StepReport& r) { return r.born.size(); }, "Particles that emitters bore.")
+      .def_prop_ro(
+          "deaths", [](const StepReport& r) { return r.died.size(); }, "Particles whose lifetime ended.")
       .def_ro("resting", &StepReport::resting, "Bodies asleep.")
       .def_ro("structure_version", &StepReport::structure_version)
       .def_ro("warnings", &StepReport::warnings, "Plain sentences.")
@@ -104,6 +108,18 @@ void bind_restructure_report(nb::module_& module) {
                    [](const RestructureResult& self) {
                      return wrap_all<ParticleHandle>(self.system_object, self.system, self.report.created_particles);
                    })
+      .def_prop_ro(
+          "destroyed_bodies",
+          [](const RestructureResult& self) {
+            return wrap_all<BodyHandle>(self.system_object, self.system, self.report.destroyed_bodies);
+          },
+          "Of a batch of edits.")
+      .def_prop_ro(
+          "destroyed_particles",
+          [](const RestructureResult& self) {
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.report.destroyed_particles);
+          },
+          "Of a batch of edits.")
       .def_prop_ro(
           "absorbed_bodies",
           [](const RestructureResult& self) { return wrap_pairs(self, self.report.absorbed_bodies); },

@@ -34,6 +34,8 @@ void bind_bonds(nb::module_&);
 void bind_grip(nb::module_&);
 void bind_constraints(nb::module_&);
 void bind_parts(nb::module_&);
+void bind_edits(nb::module_&);
+void bind_emitters(nb::module_&);
 void bind_restructuring(nb::module_&);
 void bind_server(nb::module_&);
 void bind_solvers(nb::module_&);

@@ -19,6 +19,8 @@ NB_MODULE(_core, module) {
   bind_constraints(module);
   bind_restructuring(module);
   bind_parts(module);
+  bind_edits(module);
+  bind_emitters(module);
   bind_server(module);
   bind_solvers(module);
 }

@@ -76,6 +76,8 @@ void raise_stale(const ConstraintHandle& handle) {
                  nb::none());
 }
 
+void raise_stale(const EmitterHandle& handle) { raise_stale_as(name_of(handle.id) + " was destroyed", nb::none()); }
+
 void raise_runtime(const std::string& text) {
   PyErr_SetString(PyExc_RuntimeError, text.c_str());
   throw nb::python_error();
@@ -143,6 +145,7 @@ StepReport SystemObject::step(double dt) {
     nb::gil_scoped_release unlocked;
     report = system.step(dt);
   }
+  step_edits = report.edits;
   broken = report.broken;
   for (const Broken& b : broken) note_edit("break", b.position);
   // Functions that the engine has dropped: ours is the only reference left.

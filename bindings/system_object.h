@@ -72,6 +72,7 @@ class SystemObject {
     ParticleId p, q;
   };
   std::vector<CosmeticBond> cosmetic_bonds;
+  std::optional<RestructureReport> step_edits;  ///< asked for during the last step
   bool watch_edits = false;
   std::vector<VisibleEdit> edits;
   std::vector<Broken> broken;  ///< in the last step
@@ -98,6 +99,7 @@ using BodyHandle = Handle<BodyId>;
 using ParticleHandle = Handle<ParticleId>;
 using BondHandle = Handle<BondId>;
 using GripHandle = Handle<GripId>;
+using EmitterHandle = Handle<EmitterId>;
 using ConstraintHandle = Handle<ConstraintId>;
 struct CosmeticBondHandle : Handle<CosmeticBondId> {
   ParticleId p, q;
@@ -106,6 +108,7 @@ struct CosmeticBondHandle : Handle<CosmeticBondId> {
 constexpr const char* kind_name(BodyId) { return "body"; }
 constexpr const char* kind_name(ParticleId) { return "particle"; }
 constexpr const char* kind_name(BondId) { return "bond"; }
+constexpr const char* kind_name(EmitterId) { return "emitter"; }
 constexpr const char* kind_name(GripId) { return "grip"; }
 constexpr const char* kind_name(CosmeticBondId) { return "cosmetic bond"; }
 constexpr const char* kind_name(ConstraintId) { return "constraint"; }
@@ -131,6 +134,7 @@ Handle<IdType> sibling(const Other& handle, IdType id) {
 [[noreturn]] void raise_stale(const ParticleHandle&);
 [[noreturn]] void raise_stale(const BondHandle&);
 [[noreturn]] void raise_stale(const GripHandle&);
+[[noreturn]] void raise_stale(const EmitterHandle&);
 [[noreturn]] void raise_stale(const Handle<CosmeticBondId>&);
 [[noreturn]] void raise_stale(const ConstraintHandle&);
 

@@ -22,6 +22,7 @@ using BodyId = Id<struct BodyKindTag>;
 using ParticleId = Id<struct ParticleKindTag>;  ///< one body's point of a (possibly shared) particle
 using BondId = Id<struct BondKindTag>;
 using CosmeticBondId = Id<struct CosmeticBondKindTag>;
+using EmitterId = Id<struct EmitterKindTag>;
 using GripId = Id<struct GripKindTag>;
 using ConstraintId = Id<struct ConstraintKindTag>;
 

@@ -5,6 +5,7 @@
 #include <iota/vec3.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,32 @@ struct Broken {
   double torque = 0;        ///< N m
 };
 
+/// What one structural edit did.
+struct RestructureReport {
+  bool queued = false;   ///< asked for during a step: applied right after it
+  bool changed = false;  ///< false where the edit had nothing to do (e.g. separating unrelated particles)
+  std::uint32_t structure_version = 0;
+  std::vector<BodyId> created_bodies;
+  std::vector<ParticleId> created_particles;
+  std::vector<BodyId> destroyed_bodies;  ///< of batches (begin_edit); absorbed ones are below
+  std::vector<ParticleId> destroyed_particles;
+  struct AbsorbedParticle {
+    ParticleId retired, survivor;
+  };
+  struct AbsorbedBody {
+    BodyId retired, survivor;
+  };
+  std::vector<AbsorbedParticle> absorbed_particles;
+  std::vector<AbsorbedBody> absorbed_bodies;
+  std::uint32_t articulates_before = 0, articulates_after = 0;  ///< of the whole system
+  double closed_distance = 0;                                   ///< how far apart the combined particles were, m
+  double remaining_gap = 0;                                     ///< what no position could close, m
+  double energy_change = 0;                                     ///< J
+  Vec3 momentum_change;                                         ///< what could not be kept, kg m/s (a nail took it)
+  Vec3 angular_momentum_change;                                 ///< about the origin, kg m^2/s
+  std::vector<std::string> notes;                               ///< plain sentences
+};
+
 /// What one `step` did. Not converged is a result, never an exception.
 struct [[nodiscard]] StepReport {
   std::uint64_t step = 0;      ///< number of the step just finished, from 1
@@ -47,31 +74,9 @@ struct [[nodiscard]] StepReport {
   std::uint32_t structure_version = 0;
   std::vector<BondId> switched_off;  ///< bonds whose force was not finite, or whose function threw
   std::vector<Broken> broken;
-  std::vector<std::string> warnings;  ///< plain sentences: a quarantined bond, a conflict ...
-};
-
-/// What one structural edit did.
-struct RestructureReport {
-  bool queued = false;   ///< asked for during a step: applied right after it
-  bool changed = false;  ///< false where the edit had nothing to do (e.g. separating unrelated particles)
-  std::uint32_t structure_version = 0;
-  std::vector<BodyId> created_bodies;
-  std::vector<ParticleId> created_particles;
-  struct AbsorbedParticle {
-    ParticleId retired, survivor;
-  };
-  struct AbsorbedBody {
-    BodyId retired, survivor;
-  };
-  std::vector<AbsorbedParticle> absorbed_particles;
-  std::vector<AbsorbedBody> absorbed_bodies;
-  std::uint32_t articulates_before = 0, articulates_after = 0;  ///< of the whole system
-  double closed_distance = 0;                                   ///< how far apart the combined particles were, m
-  double remaining_gap = 0;                                     ///< what no position could close, m
-  double energy_change = 0;                                     ///< J
-  Vec3 momentum_change;                                         ///< what could not be kept, kg m/s (a nail took it)
-  Vec3 angular_momentum_change;                                 ///< about the origin, kg m^2/s
-  std::vector<std::string> notes;                               ///< plain sentences
+  std::vector<ParticleId> born, died;      ///< of emitters, and of those with a lifetime
+  std::optional<RestructureReport> edits;  ///< asked for during the step and made right after it, as one
+  std::vector<std::string> warnings;       ///< plain sentences: a quarantined bond, a conflict ...
 };
 
 /// Whether the constraints of bodies that are solved together contradict or repeat each other, by singular value

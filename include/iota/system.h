@@ -2,6 +2,7 @@
 #pragma once
 
 #include <iota/constraints.h>
+#include <iota/emitters.h>
 #include <iota/forces.h>
 #include <iota/ids.h>
 #include <iota/pose_snapshot.h>
@@ -308,6 +309,60 @@ class System {
   void read_velocities(std::span<double> out) const;
   PoseSnapshot poses() const;
   std::vector<BodyArticulate> body_articulates() const;
+  ///@}
+
+  /// @name Particles that live for a time
+  ///@{
+  EmitterId create_emitter(const EmitterOptions& options);
+  void destroy(EmitterId emitter);  ///< its particles live on
+  void set_active(EmitterId, bool);
+  void set_rate(EmitterId, double per_second);
+  void move_emitter(EmitterId, const Vec3& position, const Quaternion& orientation);
+  bool contains(EmitterId) const;
+  bool is_active(EmitterId) const;
+  double rate(EmitterId) const;
+  std::uint32_t count(EmitterId) const;  ///< alive now
+  std::uint64_t born(EmitterId) const;   ///< so far
+  std::vector<ParticleId> particles(EmitterId) const;
+  /// Age, lifetime, radius and colour; radius and colour of an emitted particle are those of its emitter's curve.
+  ParticleAttributes attributes(ParticleId) const;
+  bool has_attributes(ParticleId) const;
+  /// Any particle may get a lifetime: it is destroyed, with its bonds, in the step in which its age reaches it.
+  void set_attributes(ParticleId, const ParticleAttributes&);
+  ///@}
+
+  /// @name Oriented particles (surfels; Szeliski and Tonnesen 1992). They turn like balls, each by itself, whatever body
+  /// they are in; their local z is their preferred direction or normal. All but is_oriented and set_orientation throw
+  /// std::invalid_argument for particles without an orientation.
+  ///@{
+  bool is_oriented(ParticleId) const;
+  Quaternion orientation(ParticleId) const;
+  /// Makes it oriented, with the moment of inertia of a ball of its radius (0.05 m where it has none).
+  void set_orientation(ParticleId, const Quaternion&);
+  Vec3 normal(ParticleId) const;  ///< its local z in the world frame
+  Vec3 spin(ParticleId) const;    ///< rad/s, world; constant in free flight, to the last bit
+  void set_spin(ParticleId, const Vec3&);
+  double moment(ParticleId) const;  ///< of inertia, kg m^2
+  void set_moment(ParticleId, double);
+  void set_spin_damping(ParticleId, double per_second);
+  void apply_torque(ParticleId, const Vec3&);  ///< during the next step only, N m
+  /// Draws its normal to a direction: torque stiffness (normal x direction) - damping spin, N m; stiffness 0 ends it.
+  void align(ParticleId, const Vec3& direction, double stiffness, double damping);
+  ///@}
+
+  /// @name Batches of edits: one report for all, and undone as one
+  ///@{
+  void begin_edit();  ///< batches within a batch are part of it
+  /// What has been created, destroyed and absorbed since, and its energy; empty for a batch within a batch.
+  RestructureReport end_edit();
+  void cancel_edit();  ///< the system is what it was at begin_edit
+  bool is_editing() const;
+  /// Back to just before the last batch, time included: a batch is kept as the whole state before it. At most 64, and
+  /// 256 MiB, are kept; restore() and start_recording() forget them. False when there is none.
+  bool undo();
+  bool redo();
+  std::size_t undo_count() const;
+  std::size_t redo_count() const;
   ///@}
 
   /// @name Time

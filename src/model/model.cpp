@@ -54,6 +54,10 @@ void Model::remove_particle(std::uint32_t particle) {
   if (twins.size() > 0)
     for (std::uint32_t t = 0; t < twins.slot_count(); ++t)
       if (twins.is_alive(t) && twins[t].particle == particle) twins.destroy(t);
+  if (const std::uint32_t slot = particles[particle].attributes; slot != none) {
+    if (const std::uint32_t emitter = attributes[slot].emitter; emitter != none) --emitters[emitter].alive;
+    attributes.destroy(slot);
+  }
   take_from_body(particle);
   take_from_ring(particle);
   particles.destroy(particle);

@@ -4,6 +4,7 @@
 #include "base/archive.h"
 #include "base/slot_table.h"
 #include "laws/pair_law.h"
+#include "model/attributes.h"
 #include "model/constraint.h"
 
 #include <iota/system.h>
@@ -37,6 +38,7 @@ struct Particle {
   /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
   std::int32_t basis_index = -1;
   std::uint32_t fuse = none;  ///< see `Fuse`
+  std::uint32_t attributes = none;  ///< see `Attributes`
   std::array<double, 4> weights{};
   std::array<double, 3> multiplier{};  ///< of the rows that tie it to the basis, N; warm start
 
@@ -207,6 +209,8 @@ class Model {
   SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
   SlotTable<Solid, Id<Solid>> solids;
   SlotTable<Twin, Id<Twin>> twins;
+  SlotTable<Attributes, Id<Attributes>> attributes;
+  SlotTable<Emitter, EmitterId> emitters;
   SlotTable<Articulate, Id<Articulate>> articulates;
   SlotTable<Law, LawId> laws;
   SlotTable<Bond, BondId> bonds;
@@ -493,6 +497,7 @@ template <class Archive>
 void Model::archive(Archive& ar) {
   particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), solids.archive(ar),
       twins.archive(ar);
+  attributes.archive(ar), emitters.archive(ar);
   articulates.archive(ar);
   laws.archive(ar), bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
   constraints.archive(ar), ar.vector(curve_points), fuses.archive(ar);

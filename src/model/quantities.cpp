@@ -48,6 +48,10 @@ double Model::kinetic_energy() const {
     const Vec3 v = velocity(i.p) - velocity(i.q);
     twice += i.inertia * dot(v, v);
   });
+  attributes.for_each([&](std::uint32_t, const Attributes& a) {
+    if (a.oriented && bodies[particles[a.particle].body].kind != BodyKind::inactive)
+      twice += a.moment * dot(a.spin, a.spin);
+  });
   return twice / 2;
 }
 
@@ -114,6 +118,9 @@ Vec3 Model::angular_momentum() const {
   inertia_pairs.for_each([&](std::uint32_t, const InertiaPair& i) {
     if (bodies[i.body].kind == BodyKind::inactive) return;
     sum += i.inertia * cross(position(i.p) - position(i.q), velocity(i.p) - velocity(i.q));
+  });
+  attributes.for_each([&](std::uint32_t, const Attributes& a) {
+    if (a.oriented && bodies[particles[a.particle].body].kind != BodyKind::inactive) sum += a.moment * a.spin;
   });
   return sum;
 }

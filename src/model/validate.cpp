@@ -134,6 +134,17 @@ std::vector<std::string> Model::validate() const {
     complaints.require(particles.is_alive(p) && particles.is_alive(q) && p != q, what, " ", slot, " joins ", p, " and ",
                        q);
   };
+  std::vector<std::uint32_t> emitted(emitters.slot_count(), 0);
+  attributes.for_each([&](std::uint32_t slot, const Attributes& a) {
+    complaints.require(particles.is_alive(a.particle) && particles[a.particle].attributes == slot, "attributes ", slot,
+                       " are of no living particle");
+    if (a.emitter != none && emitters.is_alive(a.emitter)) ++emitted[a.emitter];
+    complaints.require(a.emitter == none || emitters.is_alive(a.emitter), "attributes ", slot, " are of no emitter");
+  });
+  emitters.for_each([&](std::uint32_t slot, const Emitter& e) {
+    complaints.require(e.alive == emitted[slot], "emitter ", slot, " counts ", e.alive, " particles, has ",
+                       emitted[slot]);
+  });
   twins.for_each([&](std::uint32_t slot, const Twin& t) {
     complaints.require(particles.is_alive(t.particle) && t.mass >= 0, "twin ", slot, " is of no living particle");
   });

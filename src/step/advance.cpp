@@ -61,6 +61,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
   stepping = false;
 
   // 4. Edits: what broke, particles that have met, then what was asked for during the step, in order.
+  if (model.attributes.size() + model.emitters.size() > 0) live(report);
   break_overloaded(report);
   finish_closings(report);
   apply_queue(report);
@@ -97,15 +98,31 @@ void System::Implementation::finish_closings(StepReport& report) {
 }
 
 void System::Implementation::apply_queue(StepReport& report) {
+  if (queue.empty()) return;
+  report.edits.emplace();
+  report.edits->articulates_before = model.articulates.size();
+  const double energy = model.edit_energy;
+  const std::uint32_t version = model.structure_version;
   std::vector<step::Command> edits;
   edits.swap(queue);
   for (const step::Command& edit : edits) {
     try {
-      std::visit([&](const auto& c) { (void)apply(c); }, edit);
+      std::visit(
+          [&](const auto& c) {
+            if constexpr (std::is_same_v<decltype(apply(c)), RestructureReport>)
+              step::add_report(*report.edits, apply(c));
+            else
+              (void)apply(c);
+          },
+          edit);
     } catch (const std::exception& error) {
       report.warnings.push_back(std::string("an edit asked for during the step could not be made: ") + error.what());
     }
   }
+  report.edits->changed = model.structure_version != version;
+  report.edits->articulates_after = model.articulates.size();
+  report.edits->structure_version = model.structure_version;
+  report.edits->energy_change = model.edit_energy - energy;
 }
 
 }  // namespace iota

@@ -3,6 +3,8 @@
 
 #include "model/constraint.h"
 
+#include "model/attributes.h"
+
 #include <iota/system.h>
 
 #include <array>
@@ -171,6 +173,32 @@ struct SetBreakLimits {
   ConstraintId constraint;
   BreakLimits limits;
 };
+struct CreateEmitter {
+  model::Emitter emitter;
+};
+struct SetEmitter {
+  EmitterId emitter;
+  bool active;
+  double rate;
+  Vec3 position, velocity;
+  Quaternion orientation;
+};
+struct SetAttributes {
+  ParticleId particle;
+  ParticleAttributes value;
+};
+struct SetTurn {
+  enum class What : std::uint32_t { orientation, spin, torque, moment, damping, align } what;
+  ParticleId particle;
+  Vec3 vector;
+  Quaternion quaternion;
+  double number, second;
+};
+struct BeginEdit {};
+struct EndEdit {};
+struct CancelEdit {};
+struct Undo {};
+struct Redo {};
 struct Step {
   double dt;
 };
@@ -233,6 +261,16 @@ using Command = std::variant<
     SetPose,
     SetBodyVelocity,
     SetAngularVelocity,
+    CreateEmitter,
+    SetEmitter,
+    Destroy<EmitterId>,
+    SetAttributes,
+    SetTurn,
+    BeginEdit,
+    EndEdit,
+    CancelEdit,
+    Undo,
+    Redo,
     Step,
     Destroy<BodyId>,
     Destroy<ParticleId>,

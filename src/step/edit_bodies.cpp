@@ -25,19 +25,7 @@ Matrix3 to_rows(const Mat3& m) {
   return rows;
 }
 
-/// Its sizes as three numbers, and back.
-std::array<double, 3> sizes_of(const Shape& shape) {
-  struct Visitor {
-    std::array<double, 3> operator()(const Sphere& s) const { return {s.radius}; }
-    std::array<double, 3> operator()(const Box& b) const { return {b.size.x, b.size.y, b.size.z}; }
-    std::array<double, 3> operator()(const Cylinder& c) const { return {c.radius, c.length}; }
-    std::array<double, 3> operator()(const Capsule& c) const { return {c.radius, c.length}; }
-    std::array<double, 3> operator()(const Torus& t) const { return {t.radius, t.tube}; }
-    std::array<double, 3> operator()(const Mesh&) const { return {}; }
-  };
-  return std::visit(Visitor{}, shape);
-}
-
+/// The shape of these sizes.
 Shape primitive(model::SolidKind kind, const std::array<double, 3>& s) {
   switch (kind) {
     case model::SolidKind::sphere: return Sphere{s[0]};
@@ -66,6 +54,18 @@ Quaternion unit(std::string_view name, const Quaternion& q) {
 }
 
 }  // namespace
+
+std::array<double, 3> step::sizes_of(const Shape& shape) {
+  struct Visitor {
+    std::array<double, 3> operator()(const Sphere& s) const { return {s.radius}; }
+    std::array<double, 3> operator()(const Box& b) const { return {b.size.x, b.size.y, b.size.z}; }
+    std::array<double, 3> operator()(const Cylinder& c) const { return {c.radius, c.length}; }
+    std::array<double, 3> operator()(const Capsule& c) const { return {c.radius, c.length}; }
+    std::array<double, 3> operator()(const Torus& t) const { return {t.radius, t.tube}; }
+    std::array<double, 3> operator()(const Mesh&) const { return {}; }
+  };
+  return std::visit(Visitor{}, shape);
+}
 
 BodyId System::create_body(const Shape& shape, const SolidOptions& o) {
   const MassProperties p = mass_properties(shape);

@@ -321,6 +321,11 @@ System::Implementation::Conserved System::Implementation::conserved(std::span<co
       sum.potential -= mass * dot(model.gravity, x);
       sum.momentum += mass * v;
       sum.angular_momentum += mass * cross(x, v);
+      if (const std::uint32_t a = model.particles[p].attributes; a != none && model.attributes[a].oriented) {
+        const model::Attributes& ball = model.attributes[a];
+        sum.kinetic += 0.5 * ball.moment * dot(ball.spin, ball.spin);
+        sum.angular_momentum += ball.moment * ball.spin;
+      }
       model.for_each_bond_of(p, [&](std::uint32_t b) {
         if (model.bonds[b].p == p) sum.potential += model.bond_energy(b);
       });

@@ -50,6 +50,8 @@ auto System::Implementation::execute(const C& command) {
     record();
   } else {
     Result result = apply(command);
+    if constexpr (std::is_same_v<Result, RestructureReport>)
+      if (batch) batch->add(result);
     record();
     return result;
   }

@@ -5,6 +5,7 @@
 #include "model/model.h"
 #include "model/restructure.h"
 #include "step/commands.h"
+#include "step/edit_batch.h"
 #include "step/held_forces.h"
 #include "step/islands.h"
 
@@ -13,6 +14,11 @@
 #include <map>
 
 namespace iota {
+
+namespace step {
+/// A primitive's sizes, in the order of iota/shapes.h.
+std::array<double, 3> sizes_of(const Shape&);
+}  // namespace step
 
 /// The model, its solver islands, and the one door through which everything changes: `execute`.
 struct System::Implementation {
@@ -35,6 +41,8 @@ struct System::Implementation {
   bool stepping = false;
   std::vector<step::Command> queue;  // edits asked for during a step
   std::optional<Recording> recording;
+  std::optional<step::EditBatch> batch;
+  step::History done, undone;  // batches
   std::uint64_t oriented_step = ~0ull;
 
   /// Applies a command now, or queues it if it is a structural edit asked for during a step; records it.
@@ -84,6 +92,16 @@ struct System::Implementation {
   void apply(const step::Destroy<ConstraintId>&);
   void apply(const step::SetParticleActive&);
   void apply(const step::SetRest&);
+  EmitterId apply(const step::CreateEmitter&);
+  void apply(const step::SetEmitter&);
+  void apply(const step::Destroy<EmitterId>&);
+  void apply(const step::SetAttributes&);
+  void apply(const step::SetTurn&);
+  void apply(const step::BeginEdit&);
+  RestructureReport apply(const step::EndEdit&);
+  void apply(const step::CancelEdit&);
+  bool apply(const step::Undo&);
+  bool apply(const step::Redo&);
   StepReport apply(const step::Step&);
   void apply(const step::Destroy<BodyId>&);
   void apply(const step::Destroy<ParticleId>&);
@@ -102,6 +120,7 @@ struct System::Implementation {
   std::uint32_t require(BondId) const;
   std::uint32_t require(LawId) const;
   std::uint32_t require(GripId) const;
+  std::uint32_t require(EmitterId) const;
   std::uint32_t require(ConstraintId) const;
 
   /// Runs a structural edit and settles its physics: positions, velocities, momenta, energy; fills the report.
@@ -161,6 +180,10 @@ struct System::Implementation {
   void add_force(const model::Bond&, const Vec3& on_p);
   void switch_off(std::uint32_t bond, const std::string& why, StepReport&);
   ///@}
+  void live(StepReport&);  ///< particles age, turn, die and are born
+  void turn(model::Attributes&, double h);
+  void emit(std::uint32_t emitter, StepReport&);
+  model::Attributes& attributes_of(std::uint32_t particle);  ///< made where it has none
   void finish_closings(StepReport&);
   /// Switches off what the step has loaded beyond its limits.
   void break_overloaded(StepReport&);
@@ -168,7 +191,10 @@ struct System::Implementation {
   void structure_changed() { ++model.structure_version; }
   void jolt(std::uint32_t particle);
   void refresh_orientations();
+  Snapshot snapshot();
   void restore(const Snapshot&);
+  bool go_to(step::History& from, step::History& to);
+  void forget_edits() { batch.reset(), done.clear(), undone.clear(); }
 };
 
 }  // namespace iota

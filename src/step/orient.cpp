@@ -30,7 +30,11 @@ void System::Implementation::refresh_orientations() {
       b.orientation = solid_pose(model, b.first_solid).orientation;
       return;
     }
-    if (b.rank < 2) return;
+    if (b.rank < 2) {  // a ball may know how it is turned
+      const std::uint32_t a = b.rank > 0 ? model.particles[b.basis[0]].attributes : none;
+      if (a != none && model.attributes[a].oriented) b.orientation = model.attributes[a].orientation;
+      return;
+    }
     const Vec3 x0 = model.position(b.basis[0]);
     const Vec3 old_x = rotate(b.orientation, {1, 0, 0});
     const Vec3 x = unit_or(model.position(b.basis[1]) - x0, old_x);

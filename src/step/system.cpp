@@ -292,13 +292,15 @@ std::vector<BodyArticulate> System::body_articulates() const {
 
 // --- save, restore, replay --------------------------------------------------------------------------------------------
 
-Snapshot System::snapshot() const {
+Snapshot System::snapshot() const { return implementation_->snapshot(); }
+
+Snapshot System::Implementation::snapshot() {
   std::vector<std::byte> content;
   Writer content_writer(content);
-  implementation_->model.archive(content_writer);
+  model.archive(content_writer);
   // A restored system builds its islands from what is saved; so does this one, or replays would differ in the last bits.
-  implementation_->islands.renew();
-  implementation_->scripts_saved_below = implementation_->next_script;
+  islands.renew();
+  scripts_saved_below = next_script;
   Snapshot snapshot;
   Writer writer(snapshot.bytes);
   std::uint64_t magic = snapshot_magic, check = check_sum(content);
@@ -334,9 +336,13 @@ void System::restore(const Snapshot& snapshot) {
   if (implementation_->stepping) throw std::logic_error("restore: not while the system steps");
   if (implementation_->recording) throw std::logic_error("restore: stop the recording first");
   implementation_->restore(snapshot);
+  implementation_->forget_edits();
 }
 
-void System::start_recording() { implementation_->recording = Recording{snapshot(), {}, {}}; }
+void System::start_recording() {
+  implementation_->forget_edits();  // a replay would not have them
+  implementation_->recording = Recording{snapshot(), {}, {}};
+}
 
 Recording System::stop_recording() {
   if (!implementation_->recording) throw std::logic_error("stop_recording: nothing is being recorded");

@@ -140,7 +140,7 @@ class Scene:
         """A class for one body: by its particles, in the style of the class it had."""
         thickness = self._scale()
         if len(particles) == 1:
-            return self._shared("(particle)", sphere(2 * thickness), classes)
+            return self._particle_class(particles[0], thickness, classes)
         if len(particles) == 2:
             return self._shared("(rod)", capsule(thickness), classes)
         styles = classes.get(base or "", {"*": capsule(thickness)})
@@ -174,6 +174,15 @@ class Scene:
             place = {"offset": [round(v, 6) + 0.0 for v in offset], "rotation": [round(v, 6) + 0.0 for v in turn]}
             shapes += solid_shapes(solid.shape, like["material"], **place, **more)
         return shapes
+
+    def _particle_class(self, particle: Any, thickness: float, classes: dict[str, Any]) -> str:
+        """A ball; one with attributes has its radius and color, in steps, so that many share a class."""
+        if not getattr(particle, "has_attributes", False):
+            return self._shared("(particle)", sphere(2 * thickness), classes)
+        radius = float(f"{particle.radius:.1g}") or 2 * thickness
+        red, green, blue = (round(c * 7) * 255 // 7 for c in particle.color[:3])
+        color = f"#{red:02x}{green:02x}{blue:02x}"
+        return self._shared(f"(particle {radius:g} {color})", sphere(radius, "paint", color=color), classes)
 
     @staticmethod
     def _shared(name: str, shape: Shape, classes: dict[str, Any]) -> str:

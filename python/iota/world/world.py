@@ -229,6 +229,21 @@ class World:
         for hook in self._on_reset:
             self._call(f"on_reset ({hook.name})", hook, "reset")
 
+    def undo(self) -> bool:
+        """Back to just before the last batch of edits (`with world.system.edit(): ...`), time included. False when there
+        is none. Timed events and what the script keeps itself stay as they are."""
+        return self._moved_in_history(self.system.undo())
+
+    def redo(self) -> bool:
+        """Undoes the last `undo`."""
+        return self._moved_in_history(self.system.redo())
+
+    def _moved_in_history(self, moved: bool) -> bool:
+        if moved:
+            self._hands.forget()
+            self._dirty = True
+        return moved
+
     # --- running --------------------------------------------------------------------------------------------------
 
     def run(self, seconds: float | None = None, port: int = 8080, open: bool = False) -> RunSummary:

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "binders.h"
+#include "restructure_result.h"
+
+namespace iota::bindings {
+
+namespace {
+
+/// The context manager that `System.edit` gives.
+struct EditScope {
+  nb::object system_object;
+  SystemObject* system = nullptr;
+  std::optional<RestructureReport> report;
+};
+
+constexpr const char* scope_doc =
+    "A batch of edits: `with system.edit() as edit: ...`. One report for all of them, undone as one. Where the block raises,\n"
+    "the system is what it was before. A batch within a batch is part of it.";
+
+}  // namespace
+
+void bind_edits(nb::module_& module) {
+  nb::class_<EditScope>(module, "Edit", scope_doc)
+      .def(
+          "__enter__",
+          [](nb::handle_t<EditScope> self) {
+            nb::inst_ptr<EditScope>(self)->system->use_between_steps("edit").begin_edit();
+            return nb::borrow(self);
+          },
+          nb::sig("def __enter__(self) -> Edit"))
+      .def(
+          "__exit__",
+          [](EditScope& self, nb::handle type, nb::handle, nb::handle) {
+            System& engine = self.system->use_between_steps("edit");
+            if (!engine.is_editing()) return;
+            if (type.is_none())
+              self.report = engine.end_edit();
+            else
+              engine.cancel_edit();
+          },
+          "type"_a.none(), "value"_a.none(), "traceback"_a.none(),
+          nb::sig("def __exit__(self, type: object, value: object, traceback: object) -> None"))
+      .def_prop_ro(
+          "report",
+          [](const EditScope& self) {
+            if (!self.report) raise_runtime("the report of an edit is there once its block is over");
+            return RestructureResult{self.system_object, self.system, *self.report};
+          },
+          "RestructureReport of all edits in the block, once it is over.");
+
+  auto system = nb::borrow<nb::class_<SystemObject>>(module.attr("System"));
+  system
+      .def(
+          "edit",
+          [](nb::handle_t<SystemObject> self) {
+            return EditScope{nb::borrow(self), nb::inst_ptr<SystemObject>(self), std::nullopt};
+          },
+          nb::sig("def edit(self) -> Edit"), scope_doc)
+      .def(
+          "undo", [](SystemObject& self) { return self.use_between_steps("undo").undo(); },
+          "Goes back to just before the last batch of edits, time included; handles from then are good again. A batch is\n"
+          "kept as the whole state before it: at most 64, and 256 MiB, are. `restore` and `start_recording` forget them.\n"
+          "False when there is none.")
+      .def(
+          "redo", [](SystemObject& self) { return self.use_between_steps("redo").redo(); },
+          "Undoes the last `undo`. False when there is none, or something was edited since.")
+      .def_prop_ro(
+          "step_edits",
+          [](nb::handle_t<SystemObject> self) -> std::optional<RestructureResult> {
+            SystemObject* object = nb::inst_ptr<SystemObject>(self);
+            object->use();
+            if (!object->step_edits) return std::nullopt;
+            return RestructureResult{nb::borrow(self), object, *object->step_edits};
+          },
+          "One report of all edits that were asked for during the last step and made right after it; None without any.")
+      .def_prop_ro("undo_count", [](SystemObject& self) { return self.use().undo_count(); })
+      .def_prop_ro("redo_count", [](SystemObject& self) { return self.use().redo_count(); });
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/emitters.h>
+
+#include <array>
+#include <cstdint>
+
+namespace iota::model {
+
+/// What few particles have: a life, a look, an orientation of their own.
+struct Attributes {
+  std::uint32_t particle = 0xffffffff, emitter = 0xffffffff;
+  double age = 0, lifetime = std::numeric_limits<double>::infinity();  ///< s
+  double radius = 0;                                                   ///< m
+  Colour colour{1, 1, 1, 1};
+
+  // An oriented particle turns like a ball: its moment of inertia is the same about every axis.
+  std::uint32_t oriented = 0, padding = 0;
+  Quaternion orientation;
+  Vec3 spin;                                    ///< rad/s, world
+  Vec3 torque;                                  ///< for the next step only, N m
+  double moment = 0, damping = 0;               ///< kg m^2, 1/s
+  Vec3 preferred;                               ///< unit direction that its local z is drawn to, world
+  double stiffness = 0, alignment_damping = 0;  ///< N m / rad, N m s
+};
+
+/// EmitterOptions as plain data, and how far it has come.
+struct Emitter {
+  std::uint32_t source = 0;  ///< index in iota::Shape
+  std::uint32_t active = 1;
+  std::array<double, 3> sizes{};
+  double rate = 0;
+  Vec3 position, velocity;
+  Quaternion orientation;
+  double velocity_spread = 0, lifetime = 1, lifetime_spread = 0, mass = 0, damping = 0;
+  std::uint32_t max_count = 0, key_count = 0;
+  std::array<AttributeKey, 8> keys{};
+  std::uint64_t seed = 0, draws = 0;  ///< numbers drawn so far: the whole state of its dice
+  double due = 0;                     ///< births that are owed, a fraction
+  std::uint32_t alive = 0, padding = 0;
+  std::uint64_t born = 0;
+};
+
+}  // namespace iota::model

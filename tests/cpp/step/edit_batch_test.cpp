@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scenes/chain.h"
+
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+namespace iota {
+namespace {
+
+TEST(EditBatch, HasOneReportForAll) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 6});
+  (void)system.step(0.01);
+  const double energy = system.energy().edits;
+  system.begin_edit();
+  const BodyId ball = system.create_body(Sphere{0.1}, {.attachments = {{0, 0, 0}}});
+  (void)system.separate(chain.lower[1], chain.upper[2]);
+  system.begin_edit();  // part of the batch
+  (void)system.separate(chain.lower[3], chain.upper[4]);
+  system.destroy(chain.links[5]);
+  EXPECT_FALSE(system.end_edit().changed);
+  (void)system.combine(chain.links[2], chain.links[3]);
+  const RestructureReport report = system.end_edit();
+  EXPECT_TRUE(report.changed);
+  EXPECT_EQ(report.created_bodies, std::vector<BodyId>{ball});
+  EXPECT_EQ(report.created_particles.size(), 5u);
+  EXPECT_EQ(report.destroyed_bodies, std::vector<BodyId>{chain.links[5]});
+  EXPECT_EQ(report.destroyed_particles, (std::vector<ParticleId>{chain.upper[5], chain.lower[5]}));
+  ASSERT_EQ(report.absorbed_bodies.size(), 1u);
+  EXPECT_EQ(report.absorbed_bodies[0].retired, chain.links[3]);
+  EXPECT_EQ(report.articulates_before, 1u);
+  EXPECT_EQ(report.articulates_after, 4u);
+  EXPECT_NE(report.energy_change, 0);
+  EXPECT_DOUBLE_EQ(report.energy_change, system.energy().edits - energy);
+  EXPECT_THROW((void)system.end_edit(), std::logic_error);
+}
+
+TEST(EditBatch, UndoAndRedoGiveTheSameHash) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 6});
+  for (int i = 0; i < 10; ++i) (void)system.step(0.01);
+  const std::uint64_t before = system.state_hash();
+  system.begin_edit();
+  (void)system.separate(chain.lower[1], chain.upper[2]);
+  system.destroy(chain.links[5]);
+  (void)system.end_edit();
+  for (int i = 0; i < 5; ++i) (void)system.step(0.01);
+  const std::uint64_t after = system.state_hash();
+  EXPECT_TRUE(system.undo());
+  EXPECT_EQ(system.state_hash(), before);
+  EXPECT_TRUE(system.contains(chain.links[5]));
+  EXPECT_TRUE(system.validate().empty());
+  EXPECT_FALSE(system.undo());
+  EXPECT_TRUE(system.redo());
+  EXPECT_EQ(system.state_hash(), after);
+  EXPECT_FALSE(system.redo());
+  EXPECT_TRUE(system.undo());
+  system.begin_edit();  // a new edit ends the way forward
+  (void)system.end_edit();
+  EXPECT_EQ(system.redo_count(), 0u);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
+}
+
+TEST(EditBatch, ACancelledOneNeverWas) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 3});
+  const std::uint64_t before = system.state_hash();
+  system.begin_edit();
+  system.destroy(chain.links[1]);
+  EXPECT_THROW((void)system.undo(), std::logic_error);
+  system.cancel_edit();
+  EXPECT_EQ(system.state_hash(), before);
+  EXPECT_EQ(system.undo_count(), 0u);
+}
+
+TEST(EditBatch, KeepsSoManyAndForgetsTheOldest) {
+  System system;
+  for (int i = 0; i < 100; ++i) {
+    system.begin_edit();
+    (void)system.create_body(Box{});
+    (void)system.end_edit();
+  }
+  EXPECT_EQ(system.undo_count(), 64u);
+  while (system.undo()) {
+  }
+  EXPECT_EQ(system.bodies().size(), 36u);
+}
+
+TEST(EditBatch, EditsAskedForDuringAStepAreReportedAsOne) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 4});
+  const BodyId ball = system.create_body();
+  const ParticleId p = system.create_particle(ball, {0, 1, 0});
+  bool asked = false;
+  (void)system.create_bond(p, chain.lower[3], ScriptedLaw{[&](const BondState&) {
+                             if (!asked) {
+                               (void)system.separate(chain.lower[0], chain.upper[1]);
+                               (void)system.combine(chain.links[1], chain.links[2]);
+                               asked = true;
+                             }
+                             return Vec3{};
+                           }});
+  const StepReport report = system.step(0.01);
+  ASSERT_TRUE(report.edits.has_value());
+  EXPECT_TRUE(report.edits->changed);
+  EXPECT_EQ(report.edits->absorbed_bodies.size(), 1u);
+  EXPECT_EQ(report.edits->articulates_after, report.edits->articulates_before + 1);
+  EXPECT_FALSE(system.step(0.01).edits.has_value());
+}
+
+TEST(EditBatch, BatchesAndUndoAreRecordedAndReplayed) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 4});
+  system.start_recording();
+  (void)system.step(0.01);
+  system.begin_edit();
+  (void)system.separate(chain.lower[1], chain.upper[2]);
+  (void)system.end_edit();
+  for (int i = 0; i < 3; ++i) (void)system.step(0.01);
+  (void)system.undo();
+  for (int i = 0; i < 3; ++i) (void)system.step(0.01);
+  (void)system.redo();
+  (void)system.step(0.01);
+  EXPECT_EQ(system.replay(system.stop_recording()), std::nullopt);
+}
+
+}  // namespace
+}  // namespace iota

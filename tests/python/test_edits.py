@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import pytest
+
+import iota
+
+
+def test_a_batch_of_edits_has_one_report_and_is_undone_as_one(system: iota.System, chain: list[iota.Body]) -> None:
+    system.step(0.01)
+    before = system.state_hash()
+    with system.edit() as edit:
+        ball = iota.Body(system, shape=iota.Sphere(0.1))
+        iota.separate(chain[1].particles[1], chain[2].particles[0])
+        chain[5].destroy()
+    assert edit.report.created_bodies == [ball] and edit.report.destroyed_bodies == [chain[5]]
+    assert edit.report.articulates_after == 3
+    assert system.undo() and system.state_hash() == before and chain[5].alive
+    assert not system.undo() and system.redo() and not chain[5].alive
+    assert (system.undo_count, system.redo_count) == (1, 0)
+
+
+def test_a_batch_that_raises_never_was(system: iota.System, chain: list[iota.Body]) -> None:
+    before = system.state_hash()
+    with pytest.raises(ZeroDivisionError), system.edit() as edit:
+        chain[0].destroy()
+        _ = 1 / 0
+    assert system.state_hash() == before and chain[0].alive and system.undo_count == 0
+    with pytest.raises(RuntimeError, match="once its block is over"):
+        _ = edit.report
+
+
+def test_edits_of_a_function_are_reported_by_the_step(system: iota.System, chain: list[iota.Body]) -> None:
+    p = iota.Particle(iota.Body(system), (0, 1, 0))
+
+    def cut(bond: iota.BondState) -> tuple[float, float, float]:
+        iota.separate(chain[1].particles[1], chain[2].particles[0])
+        return (0, 0, 0)
+
+    bond = iota.Bond(p, chain[-1].particles[-1], cut)
+    system.step(0.01)
+    report = system.step_edits
+    assert report is not None and report.changed
+    assert report.articulates_after == report.articulates_before + 1
+    bond.destroy()
+    system.step(0.01)
+    assert system.step_edits is None
+
+
+def test_a_world_goes_back(system: iota.System, chain: list[iota.Body]) -> None:
+    world = iota.World(system)
+    with system.edit():
+        chain[0].destroy()
+    assert world.undo() and chain[0].alive and world.redo() and not world.redo()

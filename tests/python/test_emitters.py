@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Particles that are born, age, turn and die."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import iota
+from iota.world.scene import Scene
+
+
+def test_an_emitter_bears_and_its_particles_die(system: iota.System) -> None:
+    fire = iota.Emitter(
+        system, rate=200, lifetime=0.3, velocity_spread=0.5, curve=[(0, 0.02, (1, 1, 0)), (1, 0.1, (1, 0, 0, 0))]
+    )
+    births = deaths = 0
+    for _ in range(100):
+        report = system.step(0.01)
+        births += report.births
+        deaths += report.deaths
+    assert births == fire.born == 200 and fire.count == births - deaths == len(fire.particles) == 60
+    assert system.ages.max() < 0.3 and system.colors.shape == (60, 4)
+    np.testing.assert_allclose(system.radii, 0.02 + 0.08 * system.ages / 0.3, atol=1e-9)
+    particle = fire.particles[0]
+    assert particle.has_attributes and particle.lifetime == pytest.approx(0.3)
+    assert particle.color[1] == pytest.approx(1 - particle.age / 0.3, abs=1e-6)
+    fire.active = False
+    fire.rate = 5
+    fire.move((1, 0, 0))
+    assert not fire.active and fire.rate == 5
+    classes, bodies = (json.loads(text) for text in Scene(system).describe())
+    assert all(classes[body["class"]]["*"]["type"] == "sphere" for body in bodies)
+    assert len({body["class"] for body in bodies}) > 3  # they are drawn as old as they are
+    fire.destroy()
+    assert not fire.alive and particle.alive and system.validate() == []
+    with pytest.raises(iota.StaleIdError):
+        _ = fire.rate
+
+
+def test_thousands_of_particles_are_no_matter(system: iota.System) -> None:
+    rain = iota.Emitter(system, rate=20_000, source=iota.Box((10, 0.1, 10)), lifetime=0.2, max_count=5000)
+    for _ in range(30):
+        system.step(0.01)
+    assert rain.count == 4000 and system.validate() == []
+
+
+def test_any_particle_may_have_a_lifetime_and_a_look(system: iota.System) -> None:
+    spark = iota.Particle(iota.Body(system))
+    assert not spark.has_attributes and spark.lifetime == math.inf
+    spark.lifetime, spark.radius, spark.color = 0.025, 0.3, (1, 0, 0)
+    assert spark.color == (1, 0, 0, 1) and spark.radius == 0.3
+    assert [system.step(0.01).deaths for _ in range(3)] == [0, 0, 1] and not spark.alive
+
+
+def test_oriented_particles_spin_and_are_drawn_to_a_direction(system: iota.System) -> None:
+    surfel = iota.Particle(iota.Body(system))
+    with pytest.raises(ValueError, match="no orientation of its own"):
+        _ = surfel.spin
+    surfel.orientation = (0, 0, 0, 2)
+    assert surfel.is_oriented and surfel.normal == pytest.approx((0, 0, 1))
+    surfel.moment, surfel.spin = 2, (0, 1, 0)
+    surfel.apply_torque((0, 4, 0))
+    system.step(0.5)
+    assert surfel.spin == pytest.approx((0, 2, 0))
+    assert surfel.normal == pytest.approx((math.sin(0.75), 0, math.cos(0.75)))
+    surfel.align((1, 0, 0), stiffness=50, damping=30)
+    for _ in range(500):
+        system.step(0.02)
+    assert surfel.normal == pytest.approx((1, 0, 0), abs=1e-4)
+
+
+def test_bad_emitters_are_refused(system: iota.System) -> None:
+    for bad in (
+        {"rate": -1},
+        {"lifetime": 0},
+        {"lifetime": 1, "lifetime_spread": 2},
+        {"mass": math.nan},
+        {"source": iota.Torus(1, 0.1)},
+        {"curve": [(0.5, 1, (1, 1, 1)), (0.2, 1, (1, 1, 1))]},
+        {"curve": [(0, 1, (1, 1))]},
+        {"curve": [(0, 1)]},
+        {"curve": [(i / 10, 1, (1, 1, 1)) for i in range(9)]},
+    ):
+        with pytest.raises(ValueError):
+            iota.Emitter(system, **bad)
+    assert system.validate() == []
