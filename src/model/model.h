@@ -37,7 +37,7 @@ struct Particle {
   double mass = 1;             ///< kg
   /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
   std::int32_t basis_index = -1;
-  std::uint32_t fuse = none;  ///< see `Fuse`
+  std::uint32_t fuse = none;        ///< see `Fuse`
   std::uint32_t attributes = none;  ///< see `Attributes`
   std::array<double, 4> weights{};
   std::array<double, 3> multiplier{};  ///< of the rows that tie it to the basis, N; warm start
