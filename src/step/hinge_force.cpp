@@ -18,8 +18,8 @@ class PointBalance {
  public:
   PointBalance(const Model& model, std::uint32_t particle)
       : model_(model), particle_(model.particles[particle]), slot_(particle), body_(model.bodies[particle_.body]) {
-    const bool robust = model.mode == IntegrationMode::robust;
-    back_ = robust ? 0 : model.last_dt / 2;
+    const bool at_end = model.mode == IntegrationMode::robust || model.mode == IntegrationMode::plausible;
+    back_ = at_end ? 0 : model.last_dt / 2;
   }
 
   Vec3 unbalanced() {
