@@ -282,16 +282,17 @@ def main() -> int:
     parser.add_argument("--binary", type=Path, default=ROOT / "build" / "iota_bench")
     parser.add_argument("--quick", action="store_true", help="8, 64 and 512 links, peers for at most 2 s a row")
     parser.add_argument("--cap", type=float, default=5, help="most seconds of wall clock a peer's row")
-    parser.add_argument("--hz", nargs="+", type=int, default=[60, 120])
+    parser.add_argument("--hz", nargs="+", type=int, help="frames a second; 60 and 120, quick: 120")
     parser.add_argument("--filter", default="", help="of the engine's cases, a regular expression")
     parser.add_argument("--no-peers", action="store_true")
     parser.add_argument("--json", action="store_true", help="print results.json in place of the tables")
     options = parser.parse_args()
+    options.hz = options.hz or ([120] if options.quick else [60, 120])
     if not options.binary.is_file():
         print(f"run_bench.py: {options.binary} is not built; try: make bench", file=sys.stderr)
         return 1
     links = LINKS[:3] if options.quick else LINKS
-    quick = f"chain/.*/({'|'.join(map(str, links))})/|rigid_chain/.*/64/|net/robust/120/32/|heavy_end|ragdolls/sep|cut_and_rejoin|particles"
+    quick = f"chain/.*/120/({'|'.join(map(str, links))})/|rigid_chain/.*/64/|net/robust/120/32/|heavy_end|ragdolls/sep|cut_and_rejoin|particles"
     pattern = options.filter or (quick if options.quick else ".")
     core, began = pin_to_one_core(), time.time()
 

@@ -232,6 +232,24 @@ def page_packages() -> Step:
     )
 
 
+def peer_packages() -> Step:
+    """The one peer that only npm has."""
+    folder = ROOT / "bench" / "peers"
+    stamp = folder / "node_modules" / ".iota.stamp"
+
+    def work(log: Path) -> None:
+        run(log, VENV / "bin" / "npm", "install", "--no-package-lock", "--no-audit", "--no-fund", folder=folder)
+        write_stamp(stamp, digest(folder / "package.json"))
+
+    return Step(
+        "peer-packages",
+        "installing peers from npm",
+        work,
+        lambda: is_stale(stamp, digest(folder / "package.json")),
+        "The npm registry must be in reach.",
+    )
+
+
 PROTOCOL_INPUTS = [ROOT / "protocol" / "schema.json", ROOT / "tools" / "generate_protocol.py"]
 
 
@@ -459,6 +477,7 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         steps.insert(2, python_environment("verify"))
     elif goal == "bench":
         steps.insert(2, python_environment("bench"))
+        steps.append(peer_packages())
         steps.append(cmake_build("bench", "building the benchmarks", "release", "iota_bench"))
     elif goal == "wheel":
         steps.append(wheel())

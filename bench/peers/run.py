@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the chain in the packaged peers and prints one JSON object a line (bench/requirements.txt names the packages).
+"""Runs the chain in the packaged peers and prints one JSON object a line (bench/requirements.txt and package.json here name
+the packages).
 
     python bench/peers/run.py                                   # defaults, and the cheapest setting known to survive
     python bench/peers/run.py --engines rapier --links 64 --hz 120 --substeps 1 2 4 8
@@ -21,8 +22,16 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-ENGINES = ("mujoco", "mujoco-tied", "bullet", "rapier")
-MODULES = {"mujoco": "mujoco", "mujoco-tied": "mujoco", "bullet": "pybullet", "rapier": "rapier3d"}
+ENGINES = ("mujoco", "mujoco-tied", "bullet", "rapier", "jolt")
+MODULES = {
+    "mujoco": "mujoco",
+    "mujoco-tied": "mujoco",
+    "bullet": "pybullet",
+    "rapier": "rapier3d",
+    "jolt": "jolt-physics",
+}
+HERE = Path(__file__).resolve().parent
+NODE = str(Path(sys.executable).parent / "node")  # .venv's; Jolt is an npm package
 LINKS = (8, 64, 512, 4096, 16384)
 HZ = (60, 120)
 MOST_SUBSTEPS = 64
@@ -38,13 +47,14 @@ SURVIVES = {
     ("rapier", 512, 60): 4, ("rapier", 512, 120): 2,
     ("rapier", 4096, 60): 8, ("rapier", 4096, 120): 4,
     ("rapier", 16384, 60): 8, ("rapier", 16384, 120): 4,
+    ("jolt", 512, 120): 8,
 }  # fmt: skip
 """(engine, links, hz) -> fewest sub-steps (of 1, 2, 4 ...) with every gap under a link and no made-up energy, as `--search`
 found it with 8 s a row. Bullet's at 512 links and Rapier's at 4096 were whole as far as the cap let them go; Rapier's at 16 384
 take over those of 4096, since no row got through there. MuJoCo found none at 64 links (tree) and 512 links (either)
 up to 64 sub-steps; a stiffer solref did not change that."""
 
-LONGEST = {"mujoco": 512, "mujoco-tied": 512, "bullet": 4096, "rapier": 16384}
+LONGEST = {"mujoco": 512, "mujoco-tied": 512, "bullet": 4096, "rapier": 16384, "jolt": 4096}
 """Links beyond which an engine only wastes the cap: a tree's mass matrix is dense along a chain (160 us a link at 512);
 tied bodies run out of memory at 4096; Bullet does not get through its first steps at 16 384."""
 
@@ -75,13 +85,11 @@ def run_here(engine: str, links: int, hz: int, substeps: int, seconds: float, ca
 
 def run_apart(engine: str, links: int, hz: int, substeps: int, seconds: float, cap: float) -> dict[str, object]:
     """One row in a new process; a row without numbers and with a note if that fails."""
-    command = [
-        sys.executable,
-        str(Path(__file__).resolve()),
-        "--one",
-        engine,
-        *map(str, (links, hz, substeps, seconds, cap)),
-    ]
+    numbers = list(map(str, (links, hz, substeps, seconds, cap)))
+    if engine == "jolt":
+        command = [NODE, str(HERE / "jolt_chain.mjs"), *numbers]
+    else:
+        command = [sys.executable, str(Path(__file__).resolve()), "--one", engine, *numbers]
     setting = f"sub{substeps}" if substeps > 1 else "default"
     row: dict[str, object] = {"engine": engine, "setting": setting, "links": links, "hz": hz, "us_per_link_step": None}
     try:
@@ -124,7 +132,9 @@ def rows(engines: Sequence[str], links: Sequence[int], hz: Sequence[int], subste
 def missing(engines: Sequence[str]) -> list[str]:
     """The packages that these engines need and that cannot be imported here."""
     absent = []
-    for name in dict.fromkeys(MODULES[engine] for engine in engines):
+    if "jolt" in engines and not (HERE / "node_modules" / "jolt-physics").is_dir():
+        absent.append("jolt-physics")
+    for name in dict.fromkeys(MODULES[engine] for engine in engines if engine != "jolt"):
         try:
             importlib.import_module(name)
         except ImportError:
