@@ -358,8 +358,12 @@ std::uint32_t make_constraint(Model& model, const SurfacePairData& spec) {
 void destroy_constraint(Model& model, std::uint32_t slot) {
   const Constraint c = model.constraints[slot];
   model.remove_constraint(slot);
-  for (int place = 0; place < place_count; ++place)
-    if (c.owned >> place & 1) destroy_particle(model, c.particles[place]);
+  for (int place = 0; place < place_count; ++place) {
+    if (!(c.owned >> place & 1)) continue;
+    const Particle& p = model.particles[c.particles[place]];
+    // What has been hinged, bonded, constrained or given a mass since is not the constraint's alone any more.
+    if (p.is_marker() && !model.is_needed(p) && p.first_constraint == none) destroy_particle(model, c.particles[place]);
+  }
 }
 
 std::uint32_t body_of_side(const Model& model, const Constraint& c, int side) {

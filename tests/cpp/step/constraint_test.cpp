@@ -489,6 +489,21 @@ TEST(SurfacePair, a_ball_held_to_a_slope_slides_down_it) {
   EXPECT_NEAR(norm(system.state(contact).force), g * std::cos(slope), 1e-3);
 }
 
+TEST(Markers, of_a_joint_that_were_put_to_use_outlive_it) {
+  System system;
+  const BodyId block = make_block(system, {}, {1, 1, 1}, 8);
+  const ConstraintId joint = system.create_constraint(JointSpec{.a = block, .at = {}});
+  const auto markers = system.particles(joint);
+  ASSERT_EQ(markers.size(), 3u);
+  (void)system.combine(markers[1], system.particles(block)[0]);  // it has a mass now
+  system.nail(markers[2]);
+  system.destroy(joint);
+  EXPECT_FALSE(system.contains(markers[0]));
+  EXPECT_TRUE(system.contains(markers[1]) && system.contains(markers[2]));
+  EXPECT_NEAR(system.mass(block), 8, 1e-12);
+  EXPECT_EQ(system.validate(), std::vector<std::string>{});
+}
+
 TEST(Break, a_rope_snaps_when_its_load_is_too_much_and_the_report_names_it) {
   System system;
   const BodyId anchor = system.create_body({.kind = BodyKind::static_}), ball = system.create_body();
