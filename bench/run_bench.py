@@ -248,7 +248,7 @@ def other_table(cases: Sequence[Row]) -> str:
     """Edits, building, snapshots: cost a link or edit, and over one step of one link of the same chain."""
     lines = []
     step = next((c["us_per_link_step"] for c in cases if c["name"].startswith("chain/rod/robust/120/64/")), None)
-    units = ("us_per_edit", "us_per_link_step", "us_per_link")
+    units = ("us_per_edit", "us_per_link_step", "us_per_link", "us_per_bond")
     for case in cases:
         unit = next((key for key in units if key in case), None)
         if case["name"].startswith("chain/") or unit is None:

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
 #include "bond_view.h"
+#include "law_argument.h"
 #include "restructure_result.h"
 
-#include <limits>
+#include <cmath>
 
 namespace iota::bindings {
 
@@ -11,75 +12,65 @@ namespace {
 
 constexpr const char* bond_doc =
     "A force between two particles, equal and opposite.\n\n"
-    "law: 'spring' (stiffness in N/m, damping in N s/m along the line, length in m at rest, None for the distance now),\n"
-    "'drag' (damping in N s/m) or a function of the script, called once a step with a BondState; it returns the force on\n"
-    "p in N. Springs and drags are solved implicitly: any stiffness is stable. A function that raises or gives no finite\n"
-    "force switches the bond off, and `System.step` raises BondError. It costs about a microsecond a call.\n\n"
+    "law: a predefined one by name ('spring', 'drag', 'dashpot', 'tether', 'soft_repulsion', 'gravity', 'coulomb',\n"
+    "'lennard_jones', 'morse', 'attract_repel'), an expression such as 'energy = 0.5*k*(r - r0)^2', a Law, or a function of\n"
+    "the script, called once a step with a BondState; it returns the force on p in N. Parameters of the law are keywords;\n"
+    "None is the distance now. Laws with a derivative are solved implicitly, unless implicit=False: any stiffness is\n"
+    "stable. A function that raises, or a law without a finite force, switches the bond off, and `System.step` raises\n"
+    "BondError. docs/forces.md says what each costs.\n\n"
     "    iota.Bond(p, q, 'spring', stiffness=200, damping=1)\n"
+    "    iota.Bond(p, q, 'energy = k*(r - r0)^4; force = -c*v', k=50, r0=None, c=0.1)\n"
     "    iota.Bond(p, q, lambda bond: 50 * (bond.distance - 1) * bond.direction)";
 
 constexpr const char* state_doc = "What the function of a bond is shown: its two ends at the start of the step.";
 
-struct LawArguments {
-  std::optional<double> stiffness, damping, length;
-};
-
-[[noreturn]] void raise_unused(const char* law, const char* argument) {
-  const std::string text = std::string("a ") + law + " has no " + argument;
-  throw nb::type_error(text.c_str());
-}
-
-SpringLaw make_spring(const LawArguments& arguments) {
-  SpringLaw law;
-  if (arguments.stiffness) law.stiffness = finite_not_negative(*arguments.stiffness, "stiffness", "N/m");
-  if (arguments.damping) law.damping = finite_not_negative(*arguments.damping, "damping", "N s/m");
-  if (arguments.length) law.length = finite_not_negative(*arguments.length, "length", "m");
-  return law;
-}
-
-DragLaw make_drag(const LawArguments& arguments) {
-  if (arguments.stiffness) raise_unused("drag", "stiffness");
-  if (arguments.length) raise_unused("drag", "length");
-  DragLaw law;
-  if (arguments.damping) law.damping = finite_not_negative(*arguments.damping, "damping", "N s/m");
-  return law;
-}
-
-std::string function_name(nb::handle function) {
-  nb::object name = nb::getattr(function, "__qualname__", nb::none());
-  return name.is_none() ? nb::type_name(function.type()).c_str() : nb::str(name).c_str();
-}
-
 void make_bond(BondHandle* self, const ParticleHandle& p, const ParticleHandle& q, nb::object law,
-               std::optional<double> stiffness, std::optional<double> damping, std::optional<double> length) {
+               std::optional<bool> implicit, const nb::kwargs& keywords) {
   check_one_system(p, q, "Bond");
   p.use();
   q.use();
   System& engine = p.system->use_between_steps("Bond(...)");
-  const LawArguments arguments{stiffness, damping, length};
+  std::vector<LawParameter> parameters = to_parameters(keywords);
   std::shared_ptr<BondFunction> function;
   BondLaw engine_law;
+  const LawHandle* shared = nullptr;
   if (nb::isinstance<nb::str>(law)) {
-    const std::string word = nb::cast<std::string>(law);
-    if (word == "spring")
-      engine_law = make_spring(arguments);
-    else if (word == "drag")
-      engine_law = make_drag(arguments);
-    else
-      throw nb::value_error(("law must be 'spring', 'drag' or a function, not '" + word + "'").c_str());
+    const LawId id = law_of_text(*p.system, nb::cast<std::string>(law), parameters);
+    engine_law = SharedLaw{id, std::move(parameters), implicit};
+  } else if (nb::try_cast<const LawHandle*>(law, shared) && shared) {
+    shared->use();
+    if (shared->system != p.system) throw nb::value_error("Bond takes a law of the system that its particles are of");
+    engine_law = SharedLaw{shared->id, std::move(parameters), implicit};
   } else if (PyCallable_Check(law.ptr())) {
-    if (stiffness) raise_unused("function", "stiffness");
-    if (damping) raise_unused("function", "damping");
-    if (length) raise_unused("function", "length");
-    function = std::make_shared<BondFunction>(BondFunction{law, {}, p.id, q.id});
+    if (!parameters.empty()) throw nb::type_error(("a function has no " + parameters.front().name).c_str());
+    if (implicit.value_or(false)) throw nb::value_error("a function has no derivative: its bond cannot be implicit");
+    const std::string name = function_name(law);
+    function = std::make_shared<BondFunction>(BondFunction{{law, "function " + name}, {}, p.id, q.id});
     p.system->keep(function);
-    engine_law = p.system->make_scripted_law(function, function_name(law));
+    engine_law = p.system->make_scripted_law(function, name);
   } else {
-    throw nb::type_error(("law must be 'spring', 'drag' or a function, not " + describe(law)).c_str());
+    throw nb::type_error(
+        ("law must be a predefined law, an expression, a Law or a function, not " + describe(law)).c_str());
   }
   const BondId id = engine.create_bond(p.id, q.id, std::move(engine_law));
   if (function) function->bond = id;
   new (self) BondHandle{p.system_object, p.system, id};
+}
+
+void set_parameters(const BondHandle& self, const nb::kwargs& keywords) {
+  System& engine = self.use();
+  self.system->use_between_steps("set of a bond");
+  const std::vector<LawParameter> changes = to_parameters(keywords);
+  const auto [p, q] = engine.ends(self.id);
+  const double distance = norm(engine.position(q) - engine.position(p));
+  std::vector<LawParameter> before = engine.parameters(self.id);
+  try {
+    for (const LawParameter& c : changes)
+      engine.set_parameter(self.id, c.name, std::isnan(c.value) ? distance : c.value);
+  } catch (...) {  // all or none
+    for (const LawParameter& b : before) engine.set_parameter(self.id, b.name, b.value);
+    throw;
+  }
 }
 
 std::string repr(const BondHandle& self) {
@@ -92,12 +83,11 @@ std::string repr(const BondHandle& self) {
 void bind_bond(nb::module_& module) {
   nb::class_<BondHandle> type(module, "Bond", bond_doc, nb::type_slots(handle_slots<BondHandle>),
                               nb::is_weak_referenceable());
-  type.def("__init__", &make_bond, "p"_a, "q"_a, "law"_a, nb::kw_only(), "stiffness"_a = nb::none(),
-           "damping"_a = nb::none(), "length"_a = nb::none(),
-           nb::sig("def __init__(self, p: Particle, q: Particle, law: str | "
+  type.def("__init__", &make_bond, "p"_a, "q"_a, "law"_a, nb::kw_only(), "implicit"_a = nb::none(), "parameters"_a,
+           nb::sig("def __init__(self, p: Particle, q: Particle, law: str | Law | "
                    "collections.abc.Callable[[BondState], Vec3 | collections.abc.Sequence[float] | "
-                   "numpy.typing.NDArray[numpy.float64]], *, stiffness: float | None = None, "
-                   "damping: float | None = None, length: float | None = None) -> None"));
+                   "numpy.typing.NDArray[numpy.float64]], *, implicit: bool | None = None, "
+                   "**parameters: float | None) -> None"));
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const BondHandle& self) { return self.is_alive(); },
@@ -116,6 +106,16 @@ void bind_bond(nb::module_& module) {
             self.system->use_between_steps("active = ...").set_active(self.id, active);
           },
           "False while it is switched off.")
+      .def_prop_ro(
+          "law", [](const BondHandle& self) { return sibling(self, self.use().law(self.id)); }, "Its Law.")
+      .def_prop_ro(
+          "implicit", [](const BondHandle& self) { return self.use().is_implicit(self.id); },
+          "Whether it is solved together with the joints; else it is taken once a step and held.")
+      .def_prop_ro(
+          "parameters", [](const BondHandle& self) { return to_dict(self.use().parameters(self.id)); },
+          nb::sig("def parameters(self) -> dict[str, float]"), "A copy; change them with `set`.")
+      .def("set", &set_parameters, "parameters"_a, nb::sig("def set(self, **parameters: float | None) -> None"),
+           "Changes parameters of its law; None is the distance now.\n\n    bond.set(stiffness=500, length=None)")
       .def(
           "destroy", [](const BondHandle& self) { self.use().destroy(self.id); }, "Removes it.")
       .def("__repr__", &repr);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "array_argument.h"
 #include "binders.h"
 #include "names.h"
 
@@ -30,22 +31,16 @@ constexpr const char* doc =
     "    ball = iota.Particle(iota.Body(system), position=(0, 1, 0))\n"
     "    report = system.step(1 / 120)";
 
-/// The rows of an array or nested sequence of shape (n, 3).
+/// The rows of an array or nested sequence of shape (n, 3), finite.
 std::vector<double> rows(nb::handle values, std::size_t count, const char* name) {
-  nb::object array = nb::module_::import_("numpy").attr("ascontiguousarray")(values, "float64");
-  const auto view = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(array);
-  if (view.ndim() != 2 || view.shape(0) != count || view.shape(1) != 3) {
-    const std::string text = std::string(name) + " must have the shape (" + std::to_string(count) +
-                             ", 3), one row a particle, not " + nb::repr(array.attr("shape")).c_str();
-    throw nb::value_error(text.c_str());
-  }
-  std::vector<double> numbers(view.data(), view.data() + 3 * count);
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (std::isfinite(numbers[i])) continue;
+  nb::object array;
+  const auto view = view_rows(values, count, name, "particle", array);
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    if (std::isfinite(view[i])) continue;
     const std::string text = std::string(name) + " must be finite; row " + std::to_string(i / 3) + " is not";
     throw nb::value_error(text.c_str());
   }
-  return numbers;
+  return {view.begin(), view.end()};
 }
 
 template <class Read>
@@ -178,8 +173,18 @@ void bind_time(nb::class_<SystemObject>& type) {
   type.def(
           "step", [](SystemObject& self, double dt) { return self.step(dt); }, "dt"_a = 1.0 / 120,
           "Advances by dt seconds, 0 < dt <= 1. Never raises for numerical reasons: see the report.\n\n"
-          "Raises BondError, after the step is done, for a bond whose function raised or gave no finite force; that bond\n"
-          "is switched off.")
+          "Raises BondError, after the step is done, for a bond whose function raised or that had no finite force, ForceError\n"
+          "for a function that serves many; what failed is switched off. See `force_errors`.")
+      .def_prop_rw(
+          "force_errors", [](SystemObject& self) { return self.use(), self.warn_of_forces ? "warn" : "raise"; },
+          [](SystemObject& self, const std::string& value) {
+            if (value != "raise" && value != "warn") {
+              const std::string text = "force_errors must be 'raise' or 'warn', not '" + value + "'";
+              throw nb::value_error(text.c_str());
+            }
+            self.use(), self.warn_of_forces = value == "warn";
+          },
+          "'raise' (standard): `step` raises for forces that fail. 'warn': it issues a ForceWarning.")
       .def(
           "snapshot",
           [](SystemObject& self) {
@@ -251,6 +256,7 @@ void bind_system(nb::module_& module) {
   bind_readings(type);
   bind_poses(type);
   bind_time(type);
+  def_fields(type);
   type.def("__repr__", [](SystemObject& self) {
     if (self.owner != std::this_thread::get_id()) return std::string("<System of another thread>");
     return "<System: " + std::to_string(self.engine.bodies().size()) + " bodies in " +

@@ -31,6 +31,9 @@ void bind_system(nb::module_&);
 void bind_body(nb::module_&);
 void bind_particle(nb::module_&);
 void bind_bonds(nb::module_&);
+void bind_laws(nb::module_&);
+void bind_fields(nb::module_&);
+void def_fields(nb::class_<SystemObject>&);  ///< what System says of them
 void bind_grip(nb::module_&);
 void bind_constraints(nb::module_&);
 void bind_parts(nb::module_&);

@@ -14,7 +14,9 @@ NB_MODULE(_core, module) {
   bind_system(module);
   bind_body(module);
   bind_particle(module);
+  bind_laws(module);
   bind_bonds(module);
+  bind_fields(module);
   bind_grip(module);
   bind_constraints(module);
   bind_restructuring(module);

@@ -67,6 +67,11 @@ void raise_stale(const BondHandle& handle) {
       nb::none());
 }
 
+void raise_stale(const LawHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
+void raise_stale(const GroupHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
+void raise_stale(const FieldHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
+void raise_stale(const PairsHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
+
 void raise_stale(const GripHandle& handle) {
   raise_stale_as(name_of(handle.id) + " was let go, or its body is gone", nb::none());
 }
@@ -109,9 +114,8 @@ BondLaw SystemObject::make_scripted_law(std::shared_ptr<BondFunction> function, 
   ScriptedLaw law;
   law.name = std::move(name);
   law.force = [this, function = std::move(function)](const BondState& state) -> Vec3 {
-    nb::gil_scoped_acquire lock;
-    try {
-      Vec3 force;
+    Vec3 force;
+    guard(function, function->bond, [&] {
       nb::object result = function->function(BondView{nb::find(this), this, function, state});
       if (!try_vec3(result, force)) {
         const std::string text = "the force must be 2 or 3 numbers (N), not " + describe(result);
@@ -121,17 +125,8 @@ BondLaw SystemObject::make_scripted_law(std::shared_ptr<BondFunction> function, 
         const std::string text = "the force must be finite (N), not " + describe(force);
         throw nb::value_error(text.c_str());
       }
-      return force;
-    } catch (nb::python_error& error) {
-      const bool is_signal = !error.matches(PyExc_Exception);
-      failures.push_back({function, nb::borrow(error.value())});
-      // Ctrl-C happens to arrive here as anywhere: the bond is not to blame.
-      if (is_signal) return {};
-    } catch (nb::builtin_exception& error) {
-      PyObject* type = error.type() == nb::exception_type::type_error ? PyExc_TypeError : PyExc_ValueError;
-      failures.push_back({function, nb::borrow(type)(error.what())});
-    }
-    throw std::runtime_error("the bond's function raised");  // the engine switches the bond off and reports it
+    });
+    return force;
   };
   return law;
 }
@@ -150,35 +145,55 @@ StepReport SystemObject::step(double dt) {
   for (const Broken& b : broken) note_edit("break", b.position);
   // Functions that the engine has dropped: ours is the only reference left.
   std::erase_if(functions, [](const auto& function) { return function.use_count() == 1; });
-  if (!failures.empty()) raise_failures(report);
+  if (!failures.empty() || !report.switched_off.empty()) tell_failures(report);
   return report;
 }
 
-void SystemObject::raise_failures(const StepReport& report) {
-  std::vector<BondFailure> all;
+void SystemObject::tell_failures(const StepReport& report) {
+  std::vector<ForceFailure> all;
   all.swap(failures);
-  for (const BondFailure& failure : all) {
+  for (const ForceFailure& failure : all) {
     if (!PyObject_IsInstance(failure.exception.ptr(), PyExc_Exception)) raise_object(failure.exception);
   }
-  const BondFailure& first = all.front();
-  std::string text = name_of(first.bond->bond) + " between " + name_of(first.bond->p) + " and " +
-                     name_of(first.bond->q) + " was switched off: its function raised " +
-                     nb::type_name(first.exception.type()).c_str() + ": " + nb::str(first.exception).c_str();
-  if (all.size() > 1) text += " (and " + std::to_string(all.size() - 1) + " more in this step)";
-  nb::object self = nb::find(this);
-  nb::object error = error_class("BondError")(text, BondHandle{self, this, first.bond->bond}, nb::cast(report));
-  PyException_SetCause(error.ptr(), nb::object(first.exception).release().ptr());
+  BondId bond;
+  std::string text;
+  if (!all.empty()) {
+    const ForceFailure& first = all.front();
+    bond = first.bond;
+    if (const auto* own = bond ? static_cast<const BondFunction*>(first.source.get()) : nullptr)
+      text = name_of(bond) + " between " + name_of(own->p) + " and " + name_of(own->q);
+    else
+      text = first.source->what;
+    text += std::string(" was switched off: its function raised ") + nb::type_name(first.exception.type()).c_str() +
+            ": " + nb::str(first.exception).c_str();
+    if (all.size() > 1) text += " (and " + std::to_string(all.size() - 1) + " more in this step)";
+  } else {
+    bond = report.switched_off.front();
+    for (const std::string& warning : report.warnings)
+      if (text.empty() && warning.starts_with(name_of(bond))) text = warning;
+    const std::size_t more = report.switched_off.size() - 1;
+    if (more > 0) text += " (and " + std::to_string(more) + " more in this step)";
+  }
+  if (warn_of_forces) {
+    if (PyErr_WarnEx(error_class("ForceWarning").ptr(), text.c_str(), 1) != 0) throw nb::python_error();
+    return;
+  }
+  nb::object error = bond ? error_class("BondError")(text, nb::cast(report), BondHandle{nb::find(this), this, bond})
+                          : error_class("ForceError")(text, nb::cast(report));
+  if (!all.empty()) PyException_SetCause(error.ptr(), nb::object(all.front().exception).release().ptr());
   raise_object(error);
 }
 
 int SystemObject::traverse(visitproc visit, void* arg) {
   for (const auto& function : functions) Py_VISIT(function->function.ptr());
+  for (const auto& object : code) Py_VISIT(object.ptr());
   for (const auto& failure : failures) Py_VISIT(failure.exception.ptr());
   return 0;
 }
 
 void SystemObject::clear() {
   for (const auto& function : functions) function->function.reset();
+  code.clear();
   failures.clear();
 }
 

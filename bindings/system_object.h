@@ -8,6 +8,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -17,17 +18,23 @@ namespace iota::bindings {
 
 namespace nb = nanobind;
 
-/// The function of one scripted bond. The engine's copy of the law holds it by shared_ptr and may drop it while the
+/// A function of the script that the engine calls. The engine's copy holds it by shared_ptr and may drop it while the
 /// interpreter lock is released; `SystemObject` holds it too, so that the function itself always dies with the lock.
-struct BondFunction {
+struct ScriptFunction {
   nb::object function;
+  std::string what;  ///< "law wind", "field current"
+};
+
+/// That of one scripted bond.
+struct BondFunction : ScriptFunction {
   BondId bond;
   ParticleId p, q;
 };
 
-/// A bond's function that raised, or a signal that arrived in it.
-struct BondFailure {
-  std::shared_ptr<BondFunction> bond;
+/// A function that raised, or a signal that arrived in it.
+struct ForceFailure {
+  std::shared_ptr<ScriptFunction> source;
+  BondId bond;  ///< null where it was no bond's own
   nb::object exception;
 };
 
@@ -55,7 +62,11 @@ class SystemObject {
   void adopt();
   StepReport step(double dt);
   BondLaw make_scripted_law(std::shared_ptr<BondFunction> function, std::string name);
-  void keep(std::shared_ptr<BondFunction> function) { functions.push_back(std::move(function)); }
+  void keep(std::shared_ptr<ScriptFunction> function) { functions.push_back(std::move(function)); }
+  /// Runs `call` for the engine, with the lock held. Notes what it raises and throws std::runtime_error, which the engine
+  /// answers by switching off what the function is for; a signal that happens to arrive in it is noted only.
+  template <class Call>
+  void guard(const std::shared_ptr<ScriptFunction>& source, BondId bond, Call call);
   void note_edit(const char* kind, const Vec3& position, double delay = 0, ParticleId particle = {}) {
     if (watch_edits) edits.push_back({kind, position, delay, particle});
   }
@@ -65,8 +76,11 @@ class SystemObject {
 
   System engine;
   std::thread::id owner;
-  std::vector<std::shared_ptr<BondFunction>> functions;
-  std::vector<BondFailure> failures;  ///< of the step under way
+  std::vector<std::shared_ptr<ScriptFunction>> functions;
+  std::vector<nb::object> code;               ///< compiled functions that laws point at
+  std::vector<ForceFailure> failures;         ///< of the step under way
+  bool warn_of_forces = false;                ///< where forces fail: a warning instead of an exception
+  std::map<std::string, LawId> written_laws;  ///< of expressions given to bonds: by text and parameters
   struct CosmeticBond {
     CosmeticBondId id;
     ParticleId p, q;
@@ -79,7 +93,7 @@ class SystemObject {
 
  private:
   [[noreturn]] static void raise_foreign_thread();
-  [[noreturn]] void raise_failures(const StepReport& report);
+  void tell_failures(const StepReport& report);
 };
 
 /// A Python handle: a system and an id in it.
@@ -98,6 +112,10 @@ struct Handle {
 using BodyHandle = Handle<BodyId>;
 using ParticleHandle = Handle<ParticleId>;
 using BondHandle = Handle<BondId>;
+using LawHandle = Handle<LawId>;
+using GroupHandle = Handle<GroupId>;
+using FieldHandle = Handle<FieldId>;
+using PairsHandle = Handle<PairsId>;
 using GripHandle = Handle<GripId>;
 using EmitterHandle = Handle<EmitterId>;
 using ConstraintHandle = Handle<ConstraintId>;
@@ -109,6 +127,10 @@ constexpr const char* kind_name(BodyId) { return "body"; }
 constexpr const char* kind_name(ParticleId) { return "particle"; }
 constexpr const char* kind_name(BondId) { return "bond"; }
 constexpr const char* kind_name(EmitterId) { return "emitter"; }
+constexpr const char* kind_name(LawId) { return "law"; }
+constexpr const char* kind_name(GroupId) { return "group"; }
+constexpr const char* kind_name(FieldId) { return "field"; }
+constexpr const char* kind_name(PairsId) { return "pairwise force"; }
 constexpr const char* kind_name(GripId) { return "grip"; }
 constexpr const char* kind_name(CosmeticBondId) { return "cosmetic bond"; }
 constexpr const char* kind_name(ConstraintId) { return "constraint"; }
@@ -133,10 +155,32 @@ Handle<IdType> sibling(const Other& handle, IdType id) {
 [[noreturn]] void raise_stale(const BodyHandle&);
 [[noreturn]] void raise_stale(const ParticleHandle&);
 [[noreturn]] void raise_stale(const BondHandle&);
+[[noreturn]] void raise_stale(const LawHandle&);
+[[noreturn]] void raise_stale(const GroupHandle&);
+[[noreturn]] void raise_stale(const FieldHandle&);
+[[noreturn]] void raise_stale(const PairsHandle&);
 [[noreturn]] void raise_stale(const GripHandle&);
 [[noreturn]] void raise_stale(const EmitterHandle&);
 [[noreturn]] void raise_stale(const Handle<CosmeticBondId>&);
 [[noreturn]] void raise_stale(const ConstraintHandle&);
+
+template <class Call>
+void SystemObject::guard(const std::shared_ptr<ScriptFunction>& source, BondId bond, Call call) {
+  nb::gil_scoped_acquire lock;
+  try {
+    call();
+    return;
+  } catch (nb::python_error& error) {
+    const bool is_signal = !error.matches(PyExc_Exception);
+    failures.push_back({source, bond, nb::borrow(error.value())});
+    // Ctrl-C happens to arrive here as anywhere: the function is not to blame.
+    if (is_signal) return;
+  } catch (nb::builtin_exception& error) {
+    PyObject* type = error.type() == nb::exception_type::type_error ? PyExc_TypeError : PyExc_ValueError;
+    failures.push_back({source, bond, nb::borrow(type)(error.what())});
+  }
+  throw std::runtime_error("its function raised");
+}
 
 template <class IdType>
 bool Handle<IdType>::is_alive() const {

@@ -90,4 +90,40 @@ struct SharedLaw {
 
 using BondLaw = std::variant<SpringLaw, DragLaw, ScriptedLaw, SharedLaw>;
 
+using GroupId = Id<struct GroupTag>;
+using FieldId = Id<struct FieldTag>;
+using PairsId = Id<struct PairsTag>;
+
+inline constexpr int max_field_parameters = 12;
+inline constexpr int max_groups = 32;
+
+/// All particles of a field at once, arrays of `count` rows in C order. Particles that are hinged together are one row.
+struct ParticleBatch {
+  std::size_t count;
+  double time, dt;              ///< at the start of the step; its length, s
+  const double* position;       ///< (count, 3), m
+  const double* velocity;       ///< (count, 3), m/s
+  const double* mass;           ///< (count), kg
+  const ParticleId* particles;  ///< (count)
+  double* force;                ///< out: (count, 3), N
+};
+/// May throw: the field is then switched off, and the step says so.
+using FieldFunction = std::function<void(const ParticleBatch&)>;
+
+/// A predefined field (uniform, wind, current, well, attractor), an expression that defines fx, fy, fz (N) of x, y, z, vx, vy,
+/// vz, m, t and its parameters, or a function.
+using FieldBody = std::variant<std::string, FieldFunction>;
+
+struct FieldOptions {
+  std::string name;  ///< for reports; at most 31 bytes
+  std::vector<LawParameter> parameters;
+  std::optional<GroupId> group;   ///< unset: all particles
+  bool replaces_gravity = false;  ///< while it is active, System::gravity() acts on nothing
+};
+
+struct PairsOptions {
+  double cutoff = 1;             ///< m: pairs farther apart do not feel each other
+  std::optional<GroupId> group;  ///< unset: all particles
+};
+
 }  // namespace iota

@@ -137,6 +137,18 @@ class System {
   LawId create_law(LawBody body, const LawOptions& options = {});
   /// A predefined law: spring, drag, dashpot, tether, soft_repulsion, gravity, coulomb, lennard_jones, morse, attract_repel.
   LawId find_law(std::string_view name) const;
+  /// A named set of particles; at most 32 at a time.
+  GroupId create_group(std::string_view name);
+  void add(GroupId group, ParticleId particle);
+  void remove(GroupId group, ParticleId particle);
+  /// A force on each particle of a group, or on all, by itself; taken once a step and held.
+  FieldId create_field(FieldBody body, const FieldOptions& options = {});
+  /// A force between all pairs of particles of a group, or of all, that are nearer than a cut-off; taken once a step and held.
+  /// Points of one body do not feel each other.
+  PairsId create_pairs(const SharedLaw& law, const PairsOptions& options = {});
+  void destroy(GroupId group);  ///< throws std::invalid_argument while a field or a pairwise force acts on it
+  void destroy(FieldId field);
+  void destroy(PairsId pairs);
   void destroy(LawId law);            ///< throws std::invalid_argument while bonds use it
   void destroy(BodyId body);          ///< with its particles and their bonds
   void destroy(ParticleId particle);  ///< with its bonds; its body too if it was the last one
@@ -223,6 +235,9 @@ class System {
   bool contains(BondId) const;
   bool contains(CosmeticBondId) const;
   bool contains(LawId) const;
+  bool contains(GroupId) const;
+  bool contains(FieldId) const;
+  bool contains(PairsId) const;
   /// What a retired id became (itself if alive), if it was absorbed within the last 65 536 retirements.
   std::optional<ParticleId> survivor_of(ParticleId) const;
   std::optional<BodyId> survivor_of(BodyId) const;
@@ -298,11 +313,39 @@ class System {
   bool is_active(BondId) const;
   void set_active(BondId, bool);
   LawId law(BondId) const;
-  std::string name(LawId) const;                       ///< of a law
+  std::string_view kind(LawId) const;   ///< predefined, expression, function (of one bond each), compiled, arrays
+  std::string expression(LawId) const;  ///< its expression, empty for code
+  std::string name(LawId) const;        ///< of a law
   std::vector<LawParameter> parameters(LawId) const;   ///< with its own values
   std::vector<LawParameter> parameters(BondId) const;  ///< with the bond's
   void set_parameter(BondId, std::string_view name, double value);
   bool is_implicit(BondId) const;
+
+  /// Evaluates the forces of all active bonds of a law, of a field or of a pairwise force where everything is now, without
+  /// applying them, to measure what they cost: implicit bonds once with their derivatives, as each iteration of the solver
+  /// does. Functions of the script are called. Returns how many bonds or particles those were.
+  std::size_t rehearse(LawId, double dt);
+  std::size_t rehearse(FieldId, double dt);
+  std::size_t rehearse(PairsId, double dt);
+
+  std::vector<GroupId> groups() const;
+  std::string name(GroupId) const;
+  std::vector<ParticleId> particles(GroupId) const;
+  bool contains(GroupId, ParticleId) const;
+  std::vector<FieldId> fields() const;
+  std::string name(FieldId) const;
+  bool is_active(FieldId) const;
+  void set_active(FieldId, bool);
+  std::vector<LawParameter> parameters(FieldId) const;
+  void set_parameter(FieldId, std::string_view name, double value);
+  std::vector<PairsId> all_pairs() const;
+  LawId law(PairsId) const;
+  double cutoff(PairsId) const;  ///< m
+  double energy(PairsId) const;  ///< of all pairs within the cut-off, now, J; no part of energy()
+  bool is_active(PairsId) const;
+  void set_active(PairsId, bool);
+  std::vector<LawParameter> parameters(PairsId) const;
+  void set_parameter(PairsId, std::string_view name, double value);
 
   /// (n, 3) in the order of particles(); out.size() == 3 n.
   void read_positions(std::span<double> out) const;

@@ -17,6 +17,7 @@ from iota import builder, forces, looks
 from iota._core import (
     Body,
     Bond,
+    BondBatch,
     BondState,
     Box,
     Capsule,
@@ -28,11 +29,16 @@ from iota._core import (
     Ellipsoid,
     Emitter,
     Energy,
+    Field,
     Grip,
+    Group,
+    Law,
     MassProperties,
     Mesh,
+    Pairs,
     Part,
     Particle,
+    ParticleBatch,
     Plane,
     Recording,
     RestructureReport,
@@ -46,7 +52,8 @@ from iota._core import (
     separate,
 )
 from iota._core import version as __version__
-from iota.errors import BondError, PageMissingError, StaleIdError, WrongThreadError
+from iota.errors import BondError, ForceError, ForceWarning, PageMissingError, StaleIdError, WrongThreadError
+from iota.profiling import ForceCost, ForceProfile, profile
 from iota.simulator import SimulatedBody, SimulatedGrip, SimulatedParticle, Simulator
 from iota.solvers import Problem, Solution, solve, solver, solver_names
 from iota.world import Camera, Client, Event, RunSummary, World
@@ -56,6 +63,7 @@ Sequence.register(Vec3)
 __all__ = [
     "Body",
     "Bond",
+    "BondBatch",
     "BondError",
     "BondState",
     "Box",
@@ -71,12 +79,21 @@ __all__ = [
     "Emitter",
     "Energy",
     "Event",
+    "Field",
+    "ForceCost",
+    "ForceError",
+    "ForceProfile",
+    "ForceWarning",
     "Grip",
+    "Group",
+    "Law",
     "MassProperties",
     "Mesh",
     "PageMissingError",
+    "Pairs",
     "Part",
     "Particle",
+    "ParticleBatch",
     "Plane",
     "Problem",
     "Recording",
@@ -101,6 +118,7 @@ __all__ = [
     "combine",
     "forces",
     "looks",
+    "profile",
     "separate",
     "solve",
     "solver",

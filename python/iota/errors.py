@@ -20,16 +20,30 @@ class StaleIdError(ValueError):
         self.survivor = survivor
 
 
-class BondError(RuntimeError):
-    """The function of a bond raised, or returned no finite force; the step was finished and the bond switched off.
+class ForceError(RuntimeError):
+    """A function of the script that gives forces raised; the step was finished and what the function is for switched off.
 
-    bond: the handle. report: of that step. `__cause__` is what the function raised.
+    report: of that step. `__cause__` is what the function raised.
     """
 
-    def __init__(self, text: str, bond: Bond, report: StepReport) -> None:
+    def __init__(self, text: str, report: StepReport) -> None:
         super().__init__(text)
-        self.bond = bond
         self.report = report
+
+
+class BondError(ForceError):
+    """A bond's function raised, or its law gave no finite force; the step was finished and the bond switched off.
+
+    bond: the handle. report: of that step. `__cause__` is what the function raised, if it did.
+    """
+
+    def __init__(self, text: str, report: StepReport, bond: Bond) -> None:
+        super().__init__(text, report)
+        self.bond = bond
+
+
+class ForceWarning(RuntimeWarning):
+    """As ForceError, where `System.force_errors` is 'warn'."""
 
 
 class WrongThreadError(RuntimeError):

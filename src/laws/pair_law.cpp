@@ -52,6 +52,7 @@ void PairLaw::with_list(Visit visit) const {
 PairLaw::PairLaw(std::uint32_t number) : number_(number) {
   with_list([&]<class Law>() {
     has_energy_ = Law::has_energy, has_damping_ = Law::has_dashpot, has_drag_ = Law::has_drag;
+    depends_on_mass_ = Law::needs_mass;
     parameter_count_ = parameter_count<Law>;
   });
 }
@@ -94,7 +95,10 @@ PairLaw::PairLaw(std::string_view text, std::vector<std::string> parameters) : p
   const Node damping = formula.make(Op::subtract, force, push);
   has_energy_ = energy != zero, has_push_ = push != zero, has_drag_ = drag != zero;
   has_damping_ = formula.depends_on(damping, var_v);
-  for (const Node part : {energy, force, drag}) depends_on_time_ = depends_on_time_ || formula.depends_on(part, var_t);
+  for (const Node part : {energy, force, drag}) {
+    depends_on_time_ = depends_on_time_ || formula.depends_on(part, var_t);
+    depends_on_mass_ = depends_on_mass_ || formula.depends_on(part, var_m_p) || formula.depends_on(part, var_m_q);
+  }
 
   std::vector<bool> each(formula.inputs().size(), false), shared = each;
   each[var_t] = shared[var_t] = true;

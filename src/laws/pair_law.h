@@ -40,6 +40,7 @@ class PairLaw {
   bool has_damping() const { return has_damping_; }  ///< forces of v
   bool has_drag() const { return has_drag_; }
   bool depends_on_time() const { return depends_on_time_; }
+  bool depends_on_mass() const { return depends_on_mass_; }
   /// Whether it may add energy to the world: a user's forces that no energy stands behind may do anything.
   bool may_do_work() const { return has_push_ || (number_ == pair_law_count && (has_damping_ || has_drag_)); }
 
@@ -65,7 +66,8 @@ class PairLaw {
   void with_list(Visit visit) const;
 
   std::uint32_t number_ = pair_law_count;  // of the list; else an expression
-  bool has_energy_ = false, has_push_ = false, has_damping_ = false, has_drag_ = false, depends_on_time_ = false;
+  bool has_energy_ = false, has_push_ = false, has_damping_ = false, has_drag_ = false, depends_on_time_ = false,
+       depends_on_mass_ = false;
   std::size_t parameter_count_ = 0;
   expression::Program elastic_, push_, damping_, drag_;
   expression::Program bonds_, pairs_;  // force and drag of batches: parameters of each, or the same for all

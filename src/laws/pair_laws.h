@@ -35,7 +35,7 @@ struct PairState {
 
 /// What all laws have unless they say otherwise: no energy, no dashpot, no drag.
 struct NoForce {
-  static constexpr bool has_energy = true, has_dashpot = false, has_drag = false;
+  static constexpr bool has_energy = true, has_dashpot = false, has_drag = false, needs_mass = false;
   static Elastic elastic(const PairState&, const double*) { return {}; }
   static double dashpot(const double*) { return 0; }  ///< c of the force -c v along the line, N s/m
   static double drag(const double*) { return 0; }     ///< c of the force -c (v_p - v_q), N s/m
@@ -96,6 +96,7 @@ struct SoftRepulsion : NoForce {
 
 /// Newton's law, Plummer-softened: strength is G in m^3/(kg s^2).
 struct Gravity : NoForce {
+  static constexpr bool needs_mass = true;
   static constexpr const char* name = "gravity";
   static constexpr const char* text = "energy = -strength*m_p*m_q/sqrt(r^2 + softening^2)";
   static constexpr Parameter parameters[] = {{"strength", 1}, {"softening", 0, Range::not_negative}};

@@ -57,8 +57,39 @@ void Model::compile_law(std::uint32_t slot) {
   }
 }
 
+std::uint32_t Model::make_field(const Field& field) {
+  const std::uint32_t slot = fields.create(field).slot;
+  try {
+    compile_field(slot);
+  } catch (...) {
+    fields.destroy(slot);
+    throw;
+  }
+  return slot;
+}
+
+void Model::compile_field(std::uint32_t slot) {
+  if (compiled_fields_.size() <= slot) compiled_fields_.resize(slot + 1);
+  const Field& field = fields[slot];
+  compiled_fields_[slot].reset();
+  if (field.kind == FieldKind::listed) {
+    compiled_fields_[slot] = std::make_shared<const laws::FieldLaw>(field.number);
+  } else if (field.kind == FieldKind::expression) {
+    std::vector<std::string> names;
+    for (std::uint32_t i = 0; i < field.parameter_count; ++i) names.emplace_back(field.names[i].data());
+    compiled_fields_[slot] = std::make_shared<const laws::FieldLaw>(field.text.data(), std::move(names));
+  }
+}
+
+Vec3 Model::acting_gravity() const {
+  bool replaced = false;
+  fields.for_each([&](std::uint32_t, const Field& f) { replaced = replaced || (f.active && f.replaces_gravity); });
+  return replaced ? Vec3{} : gravity;
+}
+
 void Model::compile_laws() {
-  compiled_laws_.clear();
+  compiled_laws_.clear(), compiled_fields_.clear();
+  fields.for_each([&](std::uint32_t slot, const Field&) { compile_field(slot); });
   laws.for_each([&](std::uint32_t slot, const Law&) { compile_law(slot); });
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/archive.h"
 #include "base/slot_table.h"
+#include "laws/field_law.h"
 #include "laws/pair_law.h"
 #include "model/attributes.h"
 #include "model/constraint.h"
@@ -33,8 +34,10 @@ struct Particle {
   std::uint32_t first_bond = none, first_closing = none, first_cosmetic_bond = none;  ///< see `Ends`
   std::uint32_t first_constraint = none;                                              ///< see `Constraint`
   std::uint32_t inactive = 0;  ///< its mass is then inactive_share of what it was given
-  BodyId part;                 ///< the body it was first in: what a body was combined from can still be told apart
-  double mass = 1;             ///< kg
+  std::uint32_t groups = 0;    ///< a bit for each group that it is in
+  std::uint32_t padding = 0;
+  BodyId part;      ///< the body it was first in: what a body was combined from can still be told apart
+  double mass = 1;  ///< kg
   /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
   std::int32_t basis_index = -1;
   std::uint32_t fuse = none;        ///< see `Fuse`
@@ -173,6 +176,38 @@ struct Bond : Ends {
   bool acts() const { return active && !muted; }
 };
 
+/// A named set of particles; its slot is its bit in Particle::groups.
+struct Group {
+  std::array<char, 32> name{};
+};
+
+enum class FieldKind : std::uint32_t { listed, expression, function };
+
+/// A force on each particle by itself.
+struct Field {
+  FieldKind kind = FieldKind::listed;
+  std::uint32_t number = 0;    ///< of a listed one
+  std::uint32_t group = none;  ///< none: all particles
+  std::uint32_t parameter_count = 0;
+  std::uint8_t active = 1, replaces_gravity = 0;
+  std::array<std::uint8_t, 6> padding{};
+  std::uint64_t function = 0;  ///< key of the function, which lives outside the tables
+  std::array<double, laws::max_field_parameters> parameters{};
+  std::array<std::array<char, 24>, laws::max_field_parameters> names{};
+  std::array<char, 32> name{};
+  std::array<char, 1000> text{};
+};
+
+/// A force between all pairs of a group that are nearer than a cut-off.
+struct Pairs {
+  std::uint32_t law = none;
+  std::uint32_t group = none;  ///< none: all particles
+  std::uint8_t active = 1;
+  std::array<std::uint8_t, 7> padding{};
+  double cutoff = 1;  ///< m
+  std::array<double, laws::max_parameters> parameters{};
+};
+
 struct CosmeticBond : Ends {};
 
 struct Grip {
@@ -213,6 +248,9 @@ class Model {
   SlotTable<Emitter, EmitterId> emitters;
   SlotTable<Articulate, Id<Articulate>> articulates;
   SlotTable<Law, LawId> laws;
+  SlotTable<Group, GroupId> groups;
+  SlotTable<Field, FieldId> fields;
+  SlotTable<Pairs, PairsId> pairs;
   SlotTable<Bond, BondId> bonds;
   SlotTable<CosmeticBond, CosmeticBondId> cosmetic_bonds;
   SlotTable<Grip, GripId> grips;
@@ -300,6 +338,11 @@ class Model {
   std::uint32_t make_law(const Law&);  ///< throws expression::ExpressionError for a text that is no law
   /// Ready for use; only laws with a derivative have one.
   const laws::PairLaw& compiled(std::uint32_t law) const { return *compiled_laws_[law]; }
+  std::uint32_t make_field(const Field&);  ///< throws expression::ExpressionError for a text that is no field
+  const laws::FieldLaw& compiled_field(std::uint32_t field) const { return *compiled_fields_[field]; }
+  /// What pulls on all masses: gravity, unless an active field replaces it.
+  Vec3 acting_gravity() const;
+  std::uint64_t members_revision = 0;  ///< rises when a group changes; not saved
   ///@}
 
   /// Chooses a body's basis from where its particles are now, and takes its rigid distances.
@@ -424,8 +467,10 @@ class Model {
 
  private:
   void compile_law(std::uint32_t law);
+  void compile_field(std::uint32_t field);
   void compile_laws();
   std::vector<std::shared_ptr<const laws::PairLaw>> compiled_laws_;  // by slot; not saved, made from the table
+  std::vector<std::shared_ptr<const laws::FieldLaw>> compiled_fields_;
 
   template <class Table, class Visit>
   static void visit_uses(const Table& items, std::uint32_t link, Visit visit) {
@@ -499,7 +544,8 @@ void Model::archive(Archive& ar) {
       twins.archive(ar);
   attributes.archive(ar), emitters.archive(ar);
   articulates.archive(ar);
-  laws.archive(ar), bonds.archive(ar), cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
+  laws.archive(ar), groups.archive(ar), fields.archive(ar), pairs.archive(ar), bonds.archive(ar),
+      cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
   constraints.archive(ar), ar.vector(curve_points), fuses.archive(ar);
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version);

@@ -57,8 +57,9 @@ double Model::kinetic_energy() const {
 
 double Model::potential_energy() const {
   double energy = 0;
+  const Vec3 g = acting_gravity();
   particles.for_each([&](std::uint32_t, const Particle& p) {
-    if (bodies[p.body].kind != BodyKind::inactive) energy -= p.mass * dot(gravity, rings[p.ring].position);
+    if (bodies[p.body].kind != BodyKind::inactive) energy -= p.mass * dot(g, rings[p.ring].position);
   });
   bonds.for_each([&](std::uint32_t slot, const Bond&) { energy += bond_energy(slot); });
   constraints.for_each([&](std::uint32_t slot, const Constraint&) { energy += constraint_energy(slot); });

@@ -147,6 +147,7 @@ void Model::unlink_place(std::uint32_t slot, std::uint32_t place) {
 }
 
 void Model::mute_bonds_of(std::uint32_t particle) {
+  ++members_revision;
   for_each_bond_of(particle, [&](std::uint32_t b) {
     bonds[b].muted = !acts(bonds[b].p) || !acts(bonds[b].q);
     ++bonds_revision;

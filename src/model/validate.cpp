@@ -199,6 +199,36 @@ std::vector<std::string> Model::validate() const {
   });
   complaints.require(constraint_ends_listed == constraint_ends, "the particles list ", constraint_ends_listed, " of ",
                      constraint_ends, " places of constraints");
+  std::vector<std::uint32_t> law_uses(laws.slot_count(), 0);
+  const auto require_law = [&](const char* what, std::uint32_t slot, std::uint32_t law) {
+    complaints.require(laws.is_alive(law), what, " ", slot, " has no living law");
+    if (laws.is_alive(law)) ++law_uses[law];
+  };
+  const auto require_group = [&](const char* what, std::uint32_t slot, std::uint32_t group) {
+    complaints.require(group == none || groups.is_alive(group), what, " ", slot, " acts on no living group");
+  };
+  bonds.for_each([&](std::uint32_t slot, const Bond& b) {
+    require_law("bond", slot, b.law);
+    if (laws.is_alive(b.law))
+      complaints.require(!b.implicit || laws[b.law].has_derivative(), "bond ", slot,
+                         " is implicit without a derivative");
+    for (const double v : b.parameters)
+      complaints.require(std::isfinite(v), "bond ", slot, " has a parameter that is not finite");
+  });
+  pairs.for_each([&](std::uint32_t slot, const Pairs& p) {
+    require_law("pairwise force", slot, p.law);
+    require_group("pairwise force", slot, p.group);
+    complaints.require(p.cutoff > 0 && std::isfinite(p.cutoff), "pairwise force ", slot, " has cut-off ", p.cutoff);
+  });
+  fields.for_each([&](std::uint32_t slot, const Field& f) { require_group("field", slot, f.group); });
+  laws.for_each([&](std::uint32_t slot, const Law& l) {
+    complaints.require(l.uses == law_uses[slot], "law ", slot, " counts ", l.uses, " uses, has ", law_uses[slot]);
+  });
+  std::uint32_t living_groups = 0;
+  groups.for_each([&](std::uint32_t slot, const Group&) { living_groups |= 1u << slot; });
+  particles.for_each([&](std::uint32_t slot, const Particle& p) {
+    complaints.require((p.groups & ~living_groups) == 0, "particle ", slot, " is in a group that is gone");
+  });
   grips.for_each([&](std::uint32_t slot, const Grip& g) {
     complaints.require(bodies.is_alive(g.body), "grip ", slot, " holds no living body");
     for (std::uint32_t i = 0; i < g.count; ++i)

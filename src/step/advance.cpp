@@ -18,18 +18,25 @@ StepReport System::Implementation::apply(const step::Step& command) {
   // 1. Forces of the script, at the state at the start of the step.
   run_laws(report);
   run_scripts(report);
+  run_fields(report);
 
   // 2. Islands whose structure changed are analysed anew; velocities that were assigned are made consistent.
   islands.update(model, parallel);
   std::vector<std::uint32_t> jolted;
   model.articulates.for_each([&](std::uint32_t slot, model::Articulate& a) {
     if (a.jolted) jolted.push_back(slot);
-    if (a.disturbed) islands.of_articulate(slot)->disturb();
+    if (a.disturbed) {
+      if (step::Island* const island = islands.of_articulate(slot))
+        island->disturb();
+      else
+        step::FreeParticles::wake(model, slot);
+    }
     a.jolted = a.disturbed = 0;
   });
   if (!jolted.empty()) {
     const double before = model.kinetic_energy();
-    for (const std::uint32_t articulate : jolted) (void)islands.of_articulate(articulate)->settle(model, false);
+    for (const std::uint32_t articulate : jolted)
+      if (step::Island* const island = islands.of_articulate(articulate)) (void)island->settle(model, false);
     model.edit_energy += model.kinetic_energy() - before;
   }
 
@@ -41,6 +48,8 @@ StepReport System::Implementation::apply(const step::Step& command) {
   int solves = 0, iterations = 0, handed_back = 0;
   for (const auto* island : all)
     if (island->rests(model)) report.resting += static_cast<std::uint32_t>(island->body_count());
+  advanced.push_back(islands.free_particles().advance(model, h, parallel));
+  report.resting += islands.free_particles().resting();
   for (const solver::AdvanceReport& r : advanced) {
     solves += r.solves, iterations += r.iterations, handed_back += r.handed_back;
     report.iterations_max = std::max(report.iterations_max, r.iterations_max);

@@ -70,11 +70,46 @@ struct SetAngularVelocity {
 struct CreateCosmeticBond {
   ParticleId p, q;
 };
-/// A piece of a law's record, which is too long for one command; `CreateLaw` makes the law of all pieces since the last.
-struct SpellLaw {
+/// A piece of a record that is too long for one command; the next `CreateLaw` or `CreateField` uses all pieces.
+struct Spell {
   std::array<std::byte, 64> piece;
 };
 struct CreateLaw {};
+struct CreateGroup {
+  std::array<char, 32> name;
+};
+struct SetMember {
+  GroupId group;
+  ParticleId particle;
+  bool member;
+};
+struct CreateField {
+  GroupId group;  ///< null: all particles
+};
+struct SetFieldParameter {
+  FieldId field;
+  std::uint32_t index;
+  double value;
+};
+struct SetFieldActive {
+  FieldId field;
+  bool active;
+};
+struct CreatePairs {
+  LawId law;
+  GroupId group;  ///< null: all particles
+  double cutoff;
+  std::array<double, max_law_parameters> parameters;
+};
+struct SetPairsParameter {
+  PairsId pairs;
+  std::uint32_t index;
+  double value;
+};
+struct SetPairsActive {
+  PairsId pairs;
+  bool active;
+};
 struct CreateBond {
   ParticleId p, q;
   LawId law;
@@ -240,7 +275,15 @@ using Command = std::variant<
     CreateBody,
     CreateParticle,
     SetRod,
-    SpellLaw,
+    Spell,
+    CreateGroup,
+    SetMember,
+    CreateField,
+    SetFieldParameter,
+    SetFieldActive,
+    CreatePairs,
+    SetPairsParameter,
+    SetPairsActive,
     CreateLaw,
     CreateCosmeticBond,
     CreateBond,
@@ -276,6 +319,9 @@ using Command = std::variant<
     Destroy<ParticleId>,
     Destroy<BondId>,
     Destroy<LawId>,
+    Destroy<GroupId>,
+    Destroy<FieldId>,
+    Destroy<PairsId>,
     Destroy<CosmeticBondId>,
     Destroy<GripId>,
     CombineParticles,

@@ -296,7 +296,11 @@ void System::Implementation::put_to_rest(std::uint32_t body) {
   islands.update(model, parallel);
   const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
   const double energy = conserved(affected).energy();
-  islands.of_articulate(model.bodies[body].articulate)->put_to_rest(model);
+  const std::uint32_t articulate = model.bodies[body].articulate;
+  if (const step::Island* const island = islands.of_articulate(articulate))
+    island->put_to_rest(model);
+  else
+    step::FreeParticles::put_to_rest(model, articulate);
   model.edit_energy += conserved(affected).energy() - energy;
   for (const std::uint32_t b : affected) {
     model::Articulate& a = model.articulates[model.bodies[b].articulate];

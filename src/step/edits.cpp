@@ -167,7 +167,7 @@ double System::Implementation::ring_potential(std::uint32_t ring) const {
   double energy = 0;
   bool bonded = false;
   model.for_each_in_ring(ring, [&](std::uint32_t p) {
-    energy -= model.particles[p].mass * dot(model.gravity, model.rings[ring].position);
+    energy -= model.particles[p].mass * dot(model.acting_gravity(), model.rings[ring].position);
     bonded = bonded || model.particles[p].uses > 0;
   });
   if (!bonded) return energy;
@@ -318,7 +318,7 @@ System::Implementation::Conserved System::Implementation::conserved(std::span<co
       const double mass = model.particles[p].mass;
       const Vec3 x = model.position(p), v = model.velocity(p);
       sum.kinetic += 0.5 * mass * dot(v, v);
-      sum.potential -= mass * dot(model.gravity, x);
+      sum.potential -= mass * dot(model.acting_gravity(), x);
       sum.momentum += mass * v;
       sum.angular_momentum += mass * cross(x, v);
       if (const std::uint32_t a = model.particles[p].attributes; a != none && model.attributes[a].oriented) {
@@ -366,6 +366,7 @@ void System::Implementation::settle(std::span<const std::uint32_t> bodies, bool 
   std::vector<step::Island*> settled;
   for (const std::uint32_t body : bodies) {
     step::Island* island = islands.of_articulate(model.bodies[body].articulate);
+    if (!island) continue;  // a free particle has nothing to settle
     if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
     settled.push_back(island);
     if (island->settle(model, positions)) continue;

@@ -189,6 +189,12 @@ bool System::Implementation::has_function(const LawBatch& batch, StepReport& rep
   return false;
 }
 
+void System::Implementation::call(LawBatch& batch) const {
+  law_functions.at(model.laws[batch.law].function)
+      .batch({batch.bonds.size(), model.time, batch.position_p.data(), batch.position_q.data(), batch.velocity_p.data(),
+              batch.velocity_q.data(), batch.parameter_rows.data(), batch.ids.data(), batch.force_rows.data()});
+}
+
 void System::Implementation::run_batch_function(LawBatch& batch, double ahead, StepReport& report) {
   if (!has_function(batch, report)) return;
   const model::Law& law = model.laws[batch.law];
@@ -202,10 +208,7 @@ void System::Implementation::run_batch_function(LawBatch& batch, double ahead, S
                                    batch.bonds.size() == 1 ? " bond is" : " bonds are", " switched off"));
   };
   try {
-    law_functions.at(law.function)
-        .batch({batch.bonds.size(), model.time, batch.position_p.data(), batch.position_q.data(),
-                batch.velocity_p.data(), batch.velocity_q.data(), batch.parameter_rows.data(), batch.ids.data(),
-                batch.force_rows.data()});
+    call(batch);
   } catch (const std::exception& error) {
     return fail(std::string(": ") + error.what());
   } catch (...) {
@@ -233,7 +236,7 @@ void System::Implementation::run_scripts(StepReport& report) {
       switch_off(slot, " has no function in this system", report);
       continue;
     }
-    const std::string name = script->second.name.empty() ? "" : " (" + script->second.name + ")";
+    const auto name = [&] { return script->second.name.empty() ? "" : " (" + script->second.name + ")"; };
     try {
       const model::Ring &p = model.rings[model.particles[bond.p].ring], &q = model.rings[model.particles[bond.q].ring];
       const Vec3 force = script->second.force({model.bonds.id(slot), p.position + ahead * p.velocity,
@@ -241,13 +244,97 @@ void System::Implementation::run_scripts(StepReport& report) {
       if (is_finite(force))
         add_force(bond, force);
       else
-        switch_off(slot, name + " returned a force that is not finite", report);
+        switch_off(slot, name() + " returned a force that is not finite", report);
     } catch (const std::exception& error) {
-      switch_off(slot, name + " raised: " + error.what(), report);
+      switch_off(slot, name() + " raised: " + error.what(), report);
     } catch (...) {
-      switch_off(slot, name + " raised", report);
+      switch_off(slot, name() + " raised", report);
     }
   }
+}
+
+// --- what forces cost -------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Force and stiffness of an implicit bond as one iteration of Newton asks for them.
+template <class Force>
+void rehearse_implicit(Force force, const Vec3& e, double h) {
+  const solver::ForceStage stage{h, true, false};
+  const Vec3 next = 1.0001 * e;
+  volatile double sink = force.force(e, next, stage).x + force.stiffness_matrix(e, next, stage).m[0][0];
+  (void)sink;
+}
+
+}  // namespace
+
+std::size_t System::Implementation::rehearse(std::uint32_t law, double h) {
+  held_forces.update(model);
+  std::size_t count = 0;
+  if (law == model::scripted_law) {
+    model.bonds.for_each([&](std::uint32_t slot, const model::Bond& bond) {
+      if (bond.law != law || !bond.acts() || !scripts.contains(bond.script)) return;
+      const model::Ring &p = model.rings[model.particles[bond.p].ring], &q = model.rings[model.particles[bond.q].ring];
+      (void)scripts.at(bond.script)
+          .force({model.bonds.id(slot), p.position, q.position, p.velocity, q.velocity, model.time});
+      ++count;
+    });
+    return count;
+  }
+  for (LawBatch& batch : held_forces.held) {
+    if (batch.law != law) continue;
+    count += batch.bonds.size();
+    if (model.laws[law].kind == model::LawKind::batch) {
+      batch.load_rows(model, 0);
+      call(batch);
+    } else {
+      batch.load(model, 0);
+      evaluate(batch, model.time);
+    }
+  }
+  model.bonds.for_each([&](std::uint32_t, const model::Bond& bond) {
+    if (bond.law != law || !bond.ties()) return;
+    const Vec3 e = model.position(bond.q) - model.position(bond.p);
+    const auto& p = bond.parameters;
+    if (law == model::spring_law)
+      rehearse_implicit(solver::SpringForce{{}, p[0], p[1], p[2]}, e, h);
+    else if (law == model::drag_law)
+      rehearse_implicit(solver::DragForce{{}, p[0]}, e, h);
+    else
+      rehearse_implicit(solver::RadialForce{{}, &model.compiled(law), p, model.time}, e, h);
+    ++count;
+  });
+  return count;
+}
+
+std::size_t System::Implementation::rehearse_field(std::uint32_t slot, double h) {
+  StepReport report;
+  report.dt = h;
+  particle_sets.update(model);
+  ParticleSet& set = particle_sets.of(model, model.fields[slot].group);
+  set.load(model, 0, parallel);
+  run_field(slot, set, report);
+  return set.rings.size();
+}
+
+std::size_t System::Implementation::rehearse_pairs(std::uint32_t slot, double h) {
+  StepReport report;
+  report.dt = h;
+  particle_sets.update(model);
+  ParticleSet& set = particle_sets.of(model, model.pairs[slot].group);
+  set.load(model, 0, parallel);
+  run_pairs(slot, set, report);
+  return set.rings.size();
+}
+
+std::size_t System::rehearse(LawId id, double dt) {
+  return implementation_->rehearse(implementation_->require(id), dt);
+}
+std::size_t System::rehearse(FieldId id, double dt) {
+  return implementation_->rehearse_field(implementation_->require(id), dt);
+}
+std::size_t System::rehearse(PairsId id, double dt) {
+  return implementation_->rehearse_pairs(implementation_->require(id), dt);
 }
 
 }  // namespace iota

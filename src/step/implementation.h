@@ -6,8 +6,10 @@
 #include "model/restructure.h"
 #include "step/commands.h"
 #include "step/edit_batch.h"
+#include "step/free_particles.h"
 #include "step/held_forces.h"
 #include "step/islands.h"
+#include "step/particle_sets.h"
 
 #include <iota/system.h>
 
@@ -25,6 +27,7 @@ struct System::Implementation {
   model::Model model;
   step::Islands islands;
   step::HeldForces held_forces;
+  step::ParticleSets particle_sets;
   Parallel parallel;
   std::vector<solver::AdvanceReport> advanced;   // of each island, in the step at hand
   std::map<std::uint64_t, ScriptedLaw> scripts;  // functions of scripted bonds; not part of the saved state
@@ -33,7 +36,8 @@ struct System::Implementation {
     BatchFunction batch;
   };
   std::map<std::uint64_t, LawFunction> law_functions;  // of laws that are code; not part of the saved state
-  std::vector<std::byte> spelled_law;
+  std::map<std::uint64_t, FieldFunction> field_functions;
+  std::vector<std::byte> spelled;  // pieces of a record so far
   std::uint64_t next_script = 1;
   std::uint64_t scripts_saved_below = 0;  // keys that the latest snapshot may name
   std::map<std::uint64_t, Mesh> meshes;   // for drawing, by content; not part of the saved state either
@@ -64,8 +68,19 @@ struct System::Implementation {
   void apply(const step::SetBodyVelocity&);
   void apply(const step::SetAngularVelocity&);
   CosmeticBondId apply(const step::CreateCosmeticBond&);
-  void apply(const step::SpellLaw&);
+  void apply(const step::Spell&);
   LawId apply(const step::CreateLaw&);
+  GroupId apply(const step::CreateGroup&);
+  void apply(const step::SetMember&);
+  FieldId apply(const step::CreateField&);
+  void apply(const step::SetFieldParameter&);
+  void apply(const step::SetFieldActive&);
+  PairsId apply(const step::CreatePairs&);
+  void apply(const step::SetPairsParameter&);
+  void apply(const step::SetPairsActive&);
+  void apply(const step::Destroy<GroupId>&);
+  void apply(const step::Destroy<FieldId>&);
+  void apply(const step::Destroy<PairsId>&);
   BondId apply(const step::CreateBond&);
   void apply(const step::SetParameter&);
   void apply(const step::Destroy<LawId>&);
@@ -119,6 +134,11 @@ struct System::Implementation {
   std::uint32_t require(ParticleId) const;
   std::uint32_t require(BondId) const;
   std::uint32_t require(LawId) const;
+  std::uint32_t require(GroupId) const;
+  std::uint32_t require(FieldId) const;
+  std::uint32_t require(PairsId) const;
+  void spell(const void* record, std::size_t size);  ///< executes the Spell commands of a record
+  void require_parameter_value(const model::Law&, std::uint32_t index, double value) const;
   std::uint32_t require(GripId) const;
   std::uint32_t require(EmitterId) const;
   std::uint32_t require(ConstraintId) const;
@@ -172,9 +192,19 @@ struct System::Implementation {
   double held_ahead(double h) const;  ///< how far ahead of the start of a step of h they are taken, s
   void run_laws(StepReport&);
   void run_held_law(step::LawBatch&, double ahead, StepReport&);
+  void call(step::LawBatch&) const;  ///< the function of a law for all its bonds; it may throw
   void run_batch_function(step::LawBatch&, double ahead, StepReport&);
   void run_scripts(StepReport&);
   void watch_implicit_law(step::LawBatch&, StepReport&);
+  void run_fields(StepReport&);
+  void run_field(std::uint32_t field, step::ParticleSet&, StepReport&);
+  bool run_field_function(std::uint32_t field, step::ParticleSet&, StepReport&);
+  void run_pairs(std::uint32_t pairs, step::ParticleSet&, StepReport&);
+  double pairs_energy(std::uint32_t pairs);
+  /// Evaluates without applying; returns for how many.
+  std::size_t rehearse(std::uint32_t law, double h);
+  std::size_t rehearse_field(std::uint32_t field, double h);
+  std::size_t rehearse_pairs(std::uint32_t pairs, double h);
   void evaluate(step::LawBatch&, double time);
   bool has_function(const step::LawBatch&, StepReport&);
   void add_force(const model::Bond&, const Vec3& on_p);

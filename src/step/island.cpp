@@ -327,7 +327,7 @@ void Island::carry_along(Model& model) const {
 }
 
 void Island::load(const Model& model, double h) {
-  problem_.gravity = model.gravity;
+  problem_.gravity = model.acting_gravity();
   for (std::size_t i = 0; i < rings_.size(); ++i) {
     const Ring& r = model.rings[rings_[i]];
     problem_.position[i] = r.position;

@@ -11,6 +11,7 @@ using model::none;
 void Islands::forget() {
   island_of_leader_.clear(), leader_of_.clear(), next_member_.clear(), is_waiting_.clear();
   followed_.clear();
+  free_particles_.forget();
   knows_all_ = false, order_is_old_ = true;
 }
 
@@ -27,6 +28,7 @@ void Islands::drop(std::uint32_t leader) {
 // `members_` become one island.
 void Islands::set_members(std::uint32_t leader) {
   for (std::size_t m = 0; m < members_.size(); ++m) {
+    free_particles_.set(members_[m], false);
     leader_of_[members_[m]] = leader;
     next_member_[members_[m]] = m + 1 < members_.size() ? members_[m + 1] : none;
   }
@@ -125,7 +127,10 @@ void Islands::update(Model& model, const Parallel& parallel) {
   // 2. Articulates that implicit bonds and constraints tie together are solved together: flood from each that waits.
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
     if (!is_waiting_[waiting_[i]]) continue;  // an earlier flood came by
-    if (!model.articulates.is_alive(waiting_[i])) {
+    const bool alive = model.articulates.is_alive(waiting_[i]);
+    const bool free = alive && FreeParticles::is_free(model, waiting_[i]);
+    free_particles_.set(waiting_[i], free);
+    if (!alive || free) {
       is_waiting_[waiting_[i]] = 0;
       continue;
     }
@@ -137,6 +142,7 @@ void Islands::update(Model& model, const Parallel& parallel) {
           const auto reach = [&](std::uint32_t far) {
             const std::uint32_t a = model.bodies[far].articulate;
             if (leader_of_[a] != none) drop(leader_of_[a]);
+            if (free_particles_.contains(a)) free_particles_.set(a, false), is_waiting_[a] = 1;  // no longer free
             if (is_waiting_[a]) is_waiting_[a] = 0, members_.push_back(a);
           };
           model.for_each_bond_of(p, [&](std::uint32_t b) {

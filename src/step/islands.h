@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/parallel.h"
+#include "step/free_particles.h"
 #include "step/island.h"
 
 namespace iota::step {
@@ -17,7 +18,12 @@ class Islands {
   std::span<Island* const> all();
   /// How many islands a thread should take in one go: all where threads would not pay.
   std::size_t grain(const Parallel&);
-  Island* of_articulate(std::uint32_t articulate) const { return island_of_leader_[leader_of_[articulate]].get(); }
+  /// Null for a free particle.
+  Island* of_articulate(std::uint32_t articulate) const {
+    const std::uint32_t leader = leader_of_[articulate];
+    return leader == model::none ? nullptr : island_of_leader_[leader].get();
+  }
+  FreeParticles& free_particles() { return free_particles_; }
 
  private:
   void drop(std::uint32_t leader);
@@ -40,6 +46,7 @@ class Islands {
   std::vector<Island*> in_order_;
   std::size_t total_size_ = 0, largest_size_ = 0;  // of those in order, points
   std::vector<std::uint32_t> node_of_ring_;
+  FreeParticles free_particles_;
   bool knows_all_ = false, order_is_old_ = true;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Laws and the bonds that use them: making, changing, destroying; and what System says of them.
-#include "step/checks.h"
 #include "step/execute.h"
+#include "step/law_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,68 +15,13 @@ namespace {
 
 static_assert(max_law_parameters == laws::max_parameters);
 
-std::string parameter_name(const model::Law& law, std::uint32_t index) { return law.parameters[index].data(); }
-
-/// Index of a parameter; throws with the names that there are.
-std::uint32_t require_parameter(const model::Law& law, std::string_view name) {
-  std::vector<std::string> known;
-  for (std::uint32_t i = 0; i < law.parameter_count; ++i) {
-    known.push_back(parameter_name(law, i));
-    if (known.back() == name) return i;
-  }
-  std::string message = text("the law ", law.name.data(), " has no parameter '", name, "'");
-  if (const std::string near = expression::nearest(name, known); !near.empty())
-    message += "; did you mean '" + near + "'?";
-  message += known.empty() ? "; it has none" : "; it has ";
-  for (std::size_t i = 0; i < known.size(); ++i) message += (i ? ", " : "") + known[i];
-  throw std::invalid_argument(message);
-}
-
-void require_parameter_value(const model::Law& law, std::uint32_t index, double value) {
-  const std::string name = parameter_name(law, index);
-  laws::Range range = laws::Range::any;
-  if (law.kind == model::LawKind::listed) range = laws::pair_law_parameters(law.number)[index].range;
-  if (range == laws::Range::positive) require_positive(name, value);
-  if (range == laws::Range::not_negative) require_not_negative(name, value);
-  if (!std::isfinite(value)) throw std::invalid_argument(text(name, " must be finite, got ", value));
-}
-
-template <std::size_t n>
-void put(std::array<char, n>& out, std::string_view from, const char* what) {
-  if (from.size() >= n)
-    throw std::invalid_argument(text(what, " must be shorter than ", n, " bytes, got ", from.size()));
-  if (from.find('\0') != std::string_view::npos)
-    throw std::invalid_argument(text(what, " must not contain a null character"));
-  std::copy(from.begin(), from.end(), out.begin());
-}
-
-bool is_name(std::string_view name) {
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  return !name.empty() && is_letter(name.front()) &&
-         std::all_of(name.begin(), name.end(), [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
-}
-
 model::Law make_law(const LawBody& body, const LawOptions& options) {
   model::Law law;
-  put(law.name, options.name, "the name of a law");
-  if (options.parameters.size() > law.parameters.size())
-    throw std::invalid_argument(
-        text("a law has at most ", law.parameters.size(), " parameters, got ", options.parameters.size()));
-  for (const LawParameter& parameter : options.parameters) {
-    if (!is_name(parameter.name))
-      throw std::invalid_argument(text("'", parameter.name, "' cannot be a parameter's name: use letters and digits"));
-    for (const char* const variable : laws::PairLaw::variables)
-      if (parameter.name == variable)
-        throw std::invalid_argument(text("'", parameter.name, "' cannot be a parameter's name: it is a variable"));
-    for (std::uint32_t i = 0; i < law.parameter_count; ++i)
-      if (parameter_name(law, i) == parameter.name)
-        throw std::invalid_argument(text("parameter '", parameter.name, "' is given twice"));
-    put(law.parameters[law.parameter_count], parameter.name, "the name of a parameter");
-    law.standard[law.parameter_count++] = parameter.value;
-  }
+  put_text(law.name, options.name, "the name of a law");
+  put_parameters(law.parameters, law.standard, law.parameter_count, options.parameters, laws::PairLaw::variables);
   if (const auto* expression = std::get_if<std::string>(&body)) {
     law.kind = model::LawKind::expression;
-    put(law.text, *expression, "the text of a law");
+    put_text(law.text, *expression, "the text of a law");
   } else {
     law.kind = std::holds_alternative<RadialFunction>(body) ? model::LawKind::radial : model::LawKind::batch;
   }
@@ -90,16 +35,35 @@ std::uint32_t System::Implementation::require(LawId id) const {
   return id.slot;
 }
 
-void System::Implementation::apply(const step::SpellLaw& c) {
-  if (spelled_law.size() >= sizeof(model::Law) + sizeof c.piece) spelled_law.clear();
-  spelled_law.insert(spelled_law.end(), c.piece.begin(), c.piece.end());
+void System::Implementation::require_parameter_value(const model::Law& law, std::uint32_t index, double value) const {
+  const bool listed = law.kind == model::LawKind::listed;
+  require_in_range(law.parameters[index].data(),
+                   listed ? laws::pair_law_parameters(law.number)[index].range : laws::Range::any, value);
+}
+
+void System::Implementation::apply(const step::Spell& c) {
+  constexpr std::size_t longest = 4096;
+  if (spelled.size() >= longest) spelled.clear();
+  spelled.insert(spelled.end(), c.piece.begin(), c.piece.end());
+}
+
+void System::Implementation::spell(const void* record, std::size_t size) {
+  const auto* bytes = static_cast<const std::byte*>(record);
+  spelled.clear();
+  for (std::size_t at = 0; at < size;) {
+    step::Spell piece{};
+    const std::size_t part = std::min(piece.piece.size(), size - at);
+    std::copy_n(bytes + at, part, piece.piece.begin());
+    execute(piece);
+    at += part;
+  }
 }
 
 LawId System::Implementation::apply(const step::CreateLaw&) {
-  if (spelled_law.size() < sizeof(model::Law)) throw std::invalid_argument("the record of a law is cut short");
+  if (spelled.size() < sizeof(model::Law)) throw std::invalid_argument("the record of a law is cut short");
   model::Law law;
-  std::memcpy(&law, spelled_law.data(), sizeof law);
-  spelled_law.clear();
+  std::memcpy(&law, spelled.data(), sizeof law);
+  spelled.clear();
   if (law.kind == model::LawKind::listed || law.kind == model::LawKind::scripted || law.kind > model::LawKind::batch)
     throw std::invalid_argument("the record of a law is damaged");
   law.parameter_count = std::min<std::uint32_t>(law.parameter_count, law.parameters.size());
@@ -166,8 +130,8 @@ void System::Implementation::apply(const step::Destroy<LawId>& c) {
   const model::Law& law = model.laws[slot];
   if (slot <= model::scripted_law) throw std::invalid_argument("a predefined law cannot be destroyed");
   if (law.uses > 0)
-    throw std::invalid_argument(
-        text("the law ", law.name.data(), " cannot be destroyed: ", law.uses, " bonds have it; destroy those first"));
+    throw std::invalid_argument(text("the law ", law.name.data(), " cannot be destroyed: ", law.uses,
+                                     law.uses == 1 ? " bond has it" : " bonds have it", "; destroy those first"));
   if (!recording && law.function >= scripts_saved_below) law_functions.erase(law.function);
   model.laws.destroy(slot);
 }
@@ -184,14 +148,7 @@ LawId System::create_law(LawBody body, const LawOptions& options) {
     if (!function.radial && !function.batch) throw std::invalid_argument("a law needs a function, got none");
     law.function = i.next_script;
   }
-  const auto* bytes = reinterpret_cast<const std::byte*>(&law);
-  for (std::size_t at = 0; at < sizeof law;) {
-    step::SpellLaw spell{};
-    const std::size_t size = std::min(spell.piece.size(), sizeof law - at);
-    std::copy_n(bytes + at, size, spell.piece.begin());
-    i.execute(spell);
-    at += size;
-  }
+  i.spell(&law, sizeof law);
   const LawId id = i.execute(step::CreateLaw{});
   if (!law.has_derivative()) i.law_functions[i.next_script++] = std::move(function);
   return id;
@@ -236,7 +193,8 @@ BondId System::create_bond(ParticleId p, ParticleId q, BondLaw body) {
     command.law = shared.law, command.parameters = law.standard;
     command.implicit = shared.implicit.value_or(law.has_derivative());
     for (const LawParameter& parameter : shared.parameters)
-      command.parameters[require_parameter(law, parameter.name)] = parameter.value;
+      command.parameters[require_parameter(law.name.data(), law.parameters, law.parameter_count, parameter.name)] =
+          parameter.value;
   }
   return i.execute(command);
 }
@@ -256,29 +214,29 @@ std::string System::name(LawId id) const {
   return implementation_->model.laws[implementation_->require(id)].name.data();
 }
 
-namespace {
-
-std::vector<LawParameter> list_parameters(const model::Law& law, const std::array<double, max_law_parameters>& values) {
-  std::vector<LawParameter> list;
-  for (std::uint32_t i = 0; i < law.parameter_count; ++i) list.push_back({parameter_name(law, i), values[i]});
-  return list;
+std::string_view System::kind(LawId id) const {
+  constexpr std::string_view words[] = {"predefined", "expression", "function", "compiled", "arrays"};
+  return words[static_cast<std::size_t>(implementation_->model.laws[implementation_->require(id)].kind)];
 }
-
-}  // namespace
+std::string System::expression(LawId id) const {
+  return implementation_->model.laws[implementation_->require(id)].text.data();
+}
 
 std::vector<LawParameter> System::parameters(LawId id) const {
   const model::Law& law = implementation_->model.laws[implementation_->require(id)];
-  return list_parameters(law, law.standard);
+  return list_parameters(law.parameters, law.parameter_count, law.standard.data());
 }
 std::vector<LawParameter> System::parameters(BondId id) const {
   const model::Model& m = implementation_->model;
   const model::Bond& bond = m.bonds[implementation_->require(id)];
-  return list_parameters(m.laws[bond.law], bond.parameters);
+  const model::Law& law = m.laws[bond.law];
+  return list_parameters(law.parameters, law.parameter_count, bond.parameters.data());
 }
 
 void System::set_parameter(BondId id, std::string_view name, double value) {
   const model::Model& m = implementation_->model;
-  const std::uint32_t index = require_parameter(m.laws[m.bonds[implementation_->require(id)].law], name);
+  const model::Law& law = m.laws[m.bonds[implementation_->require(id)].law];
+  const std::uint32_t index = require_parameter(law.name.data(), law.parameters, law.parameter_count, name);
   implementation_->execute(step::SetParameter{id, index, value});
 }
 

@@ -329,6 +329,7 @@ void System::Implementation::restore(const Snapshot& snapshot) {
   model.make_geometries();
   islands.forget();
   held_forces.forget();
+  particle_sets.forget();
   oriented_step = ~0ull;
 }
 

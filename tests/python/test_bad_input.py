@@ -44,9 +44,13 @@ BAD_VALUES: dict[str, tuple[Callable[[iota.System], object], str]] = {
     "dt too long": (lambda s: s.step(1.5), "dt"),
     "law": (
         lambda s: iota.Bond(*s.particles[:2], "sprong"),
-        "law must be 'spring', 'drag' or a function, not 'sprong'",
+        "no law is called 'sprong'; did you mean 'spring'",
     ),
-    "stiffness": (lambda s: iota.Bond(*s.particles[:2], "spring", stiffness=-1), "stiffness.*not -1"),
+    "drag with a length": (
+        lambda s: iota.Bond(*s.particles[:2], "drag", length=1),
+        "drag has no parameter 'length'; it has damping",
+    ),
+    "stiffness": (lambda s: iota.Bond(*s.particles[:2], "spring", stiffness=-1), "stiffness.*got -1"),
     "length": (lambda s: iota.Bond(*s.particles[:2], "spring", length=INF), "length.*not inf"),
     "drag damping": (lambda s: iota.Bond(*s.particles[:2], "drag", damping=NAN), "damping.*not nan"),
     "over": (lambda s: iota.combine(*s.particles[:2], over=-1), "over.*at least 0 s, not -1"),
@@ -69,12 +73,14 @@ BAD_VALUES: dict[str, tuple[Callable[[iota.System], object], str]] = {
 }
 
 BAD_TYPES: dict[str, tuple[Callable[[iota.System], object], str]] = {
-    "drag with a length": (lambda s: iota.Bond(*s.particles[:2], "drag", length=1), "a drag has no length"),
     "function with a stiffness": (
         lambda s: iota.Bond(*s.particles[:2], lambda b: (0, 0, 0), stiffness=1),
         "a function has no stiffness",
     ),
-    "no law": (lambda s: iota.Bond(*s.particles[:2], 7), "law must be 'spring', 'drag' or a function, not 7"),
+    "no law": (
+        lambda s: iota.Bond(*s.particles[:2], 7),
+        "law must be a predefined law, an expression, a Law or a function, not 7",
+    ),
     "text for a number": (lambda s: iota.Particle(s.bodies[0], mass="heavy"), "mass"),
     "body for a particle": (lambda s: iota.separate(s.bodies[0], s.bodies[1]), "incompatible"),
     "two arguments": (lambda s: iota.World(s).on_step(lambda a, b: None), "takes 2 arguments"),

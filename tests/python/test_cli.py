@@ -216,3 +216,10 @@ def test_bench_prints_json_rows() -> None:
         for rate in (60, 120)
     }
     assert all(case["us_per_link_step"] > 0 and case["worst_gap_m"] < 1e-6 for case in cases)
+
+
+def test_bench_forces_prints_a_row_for_every_way_of_writing_a_force(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bench", "forces", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["forces"]
+    assert [row["force"] for row in rows][:3] == ["predefined", "expression", "compiled code"] and len(rows) == 9
+    assert all(row["ns"] > 0 for row in rows)

@@ -12,7 +12,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, run, verify
+from iota.cli import bench, bench_forces, run, verify
 from iota.cli.failure import Failure
 
 
@@ -65,10 +65,10 @@ def make_parser() -> Parser:
     running.set_defaults(function=run.run)
 
     benching = commands.add_parser("bench", help="measures the engine through Python")
-    benching.add_argument("what", choices=["chain"])
+    benching.add_argument("what", choices=["chain", "forces"])
     benching.add_argument("--links", type=count, nargs="+", default=list(bench.LINKS), help="chain lengths")
     benching.add_argument("--json", action="store_true", help="print one JSON object instead of a table")
-    benching.set_defaults(function=bench.run)
+    benching.set_defaults(function=lambda a: (bench_forces if a.what == "forces" else bench).run(a))
 
     verifying = commands.add_parser("verify", help="compares what the engine computes with what is known")
     verifying.add_argument("--list", action="store_true", help="print the names of the verifications")

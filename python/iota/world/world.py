@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeVar, cast
 
 from iota._core import Body, StepReport, System, Vec3
-from iota.errors import BondError
+from iota.errors import ForceError
 from iota.looks import Looks, Shape
 from iota.simulator import Simulator
 from iota.world import options as run_options
@@ -428,9 +428,9 @@ class World:
         began = time.perf_counter()
         try:
             report = self.system.step(self.dt)
-        except BondError as error:
+        except ForceError as error:
             report = error.report
-            self._guard.failed("A bond's function", error, "The bond is switched off. " + GO_ON)
+            self._guard.failed("A force", error, "It is switched off. " + GO_ON)
         self.step_ms += 0.05 * ((time.perf_counter() - began) * 1e3 - self.step_ms)
         assert self._tally is not None
         self._tally.add(report)

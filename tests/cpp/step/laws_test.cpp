@@ -314,7 +314,7 @@ TEST(Law, BadOnesAreRefusedBeforeAnythingChanges) {
   const LawId code = system.create_law(&compiled_spring, {"code", {{"k", 1}, {"r0", 1}}});
   refuses([&] { system.create_bond(p, q, SharedLaw{code, {}, true}); }, "cannot be implicit");
   const BondId bond = system.create_bond(p, q, SharedLaw{code});
-  refuses([&] { system.destroy(code); }, "1 bonds have it");
+  refuses([&] { system.destroy(code); }, "1 bond has it");
   system.destroy(bond);
   system.destroy(code);
   EXPECT_THROW(system.create_bond(p, q, SharedLaw{code}), StaleIdError);

@@ -207,6 +207,18 @@ TEST(WarmStep, allocates_nothing) {
     system.create_constraint(DistanceSpec{.kind = ConstraintKind::rope, .p = bead, .q = corner, .length = 9});
     system.create_constraint(
         SurfaceSpec{.kind = ConstraintKind::inside, .particle = bead, .surface = {Sphere{9}, {}, {}}});
+    for (int i = 0; i < 40; ++i)
+      system.create_particle(system.create_body(), {-2 + 0.3 * (i % 7), 5 + 0.3 * (i / 7), 0}, 1,
+                             {0.1 * (i % 3), 0, 0});
+    const auto loose = system.particles();
+    for (const bool implicit : {true, false})
+      system.create_bond(loose[loose.size() - 1], loose[loose.size() - 9],
+                         SharedLaw{system.create_law("energy = 3*(r - 1)^4; force = -v"), {}, implicit});
+    system.create_bond(loose[loose.size() - 2], loose[loose.size() - 3],
+                       ScriptedLaw{[](const BondState&) { return Vec3{0, 0.1, 0}; }, "a name that is not a short one"});
+    system.create_field("current");
+    system.create_field("fx = sin(x + t)*m; fy = exp(-y^2)");
+    system.create_pairs({system.find_law("soft_repulsion"), {{"length", 0.5}}, {}}, {.cutoff = 0.5});
     for (int i = 0; i < 50; ++i) (void)system.step(1.0 / 120);
     const long before = allocations;
     for (int i = 0; i < 100; ++i) (void)system.step(1.0 / 120);

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Apache-2.0
+// Groups of particles, and the forces on all of a group: fields and pairwise forces.
+#include "array_argument.h"
+#include "binders.h"
+#include "law_argument.h"
+
+#include <algorithm>
+
+namespace iota::bindings {
+
+namespace {
+
+constexpr const char* group_doc =
+    "A named set of particles, for fields and pairwise forces to act on. A system has at most 32 at a time.\n\n"
+    "    fish = iota.Group(system, 'fish')\n"
+    "    fish.add(p, q)";
+
+constexpr const char* field_doc =
+    "A force on each particle of a group, or on all, by itself; taken once a step and held. Particles that are hinged\n"
+    "together count as one, with all their mass.\n\n"
+    "field is one of\n"
+    "- a predefined one: 'uniform' (acceleration), 'wind' (velocity, drag), 'current' (turbulent: velocity, drag, speed, size,\n"
+    "  octaves, evolution, seed), 'well' (centre, strength, softening: a heavy point), 'attractor' (centre, strength, range);\n"
+    "- an expression that defines fx, fy, fz (N) of x, y, z, vx, vy, vz, m, t and parameters;\n"
+    "- a function of NumPy arrays, called once a step with a ParticleBatch; it returns the forces, shape (n, 3), N.\n\n"
+    "Parameters are keywords; a vector stands for its three: velocity=(1, 0, 0). replaces_gravity=True makes it the default\n"
+    "force of all particles instead of gravity.\n\n"
+    "    iota.Field(system, 'wind', velocity=(3, 0, 0), drag=0.05, group=leaves)\n"
+    "    iota.Field(system, 'fy = -m*g*(1 - y/h)', g=9.81, h=100, replaces_gravity=True)";
+
+constexpr const char* pairs_doc =
+    "A force between all pairs of particles of a group, or of all, that are nearer than `cutoff` (m); taken once a step and\n"
+    "held. law is a predefined law, an expression or a Law with a derivative, as for Bond. Points of one body do not feel\n"
+    "each other.\n\n"
+    "    iota.Pairs(system, 'lennard_jones', cutoff=2.5, depth=1, size=1)";
+
+constexpr const char* batch_doc =
+    "The particles of a field, as its function sees them: arrays with a row a particle, in the order of `particles`. Good\n"
+    "only until the function returns; the arrays are copies and may be kept.";
+
+struct ParticlesView {
+  nb::object system_object;
+  SystemObject* system = nullptr;
+  const ParticleBatch* batch = nullptr;
+
+  const ParticleBatch& use() const {
+    if (!batch) raise_runtime("a ParticleBatch is good only until the function that was given it returns");
+    return *batch;
+  }
+};
+
+nb::object copy_rows(const double* rows, std::size_t count) {
+  return nb::cast(make_vector3_array(std::vector<double>(rows, rows + 3 * count)));
+}
+
+void bind_batch(nb::module_& module) {
+  nb::class_<ParticlesView>(module, "ParticleBatch", batch_doc)
+      .def("__len__", [](const ParticlesView& self) { return self.use().count; })
+      .def_prop_ro(
+          "position", [](const ParticlesView& self) { return copy_rows(self.use().position, self.use().count); },
+          nb::sig("def position(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "(n, 3), m; half a step ahead in the energy-keeping mode.")
+      .def_prop_ro(
+          "velocity", [](const ParticlesView& self) { return copy_rows(self.use().velocity, self.use().count); },
+          nb::sig("def velocity(self) -> numpy.typing.NDArray[numpy.float64]"), "(n, 3), m/s.")
+      .def_prop_ro(
+          "mass",
+          [](const ParticlesView& self) {
+            auto* const kept = new std::vector<double>(self.use().mass, self.use().mass + self.use().count);
+            nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+            return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(kept->data(), {kept->size()}, owner));
+          },
+          nb::sig("def mass(self) -> numpy.typing.NDArray[numpy.float64]"), "(n,), kg.")
+      .def_prop_ro(
+          "time", [](const ParticlesView& self) { return self.use().time; }, "At the start of the step, s.")
+      .def_prop_ro(
+          "dt", [](const ParticlesView& self) { return self.use().dt; }, "Length of the step, s.")
+      .def_prop_ro(
+          "particles",
+          [](const ParticlesView& self) {
+            return wrap_all<ParticleHandle>(self.system_object, self.system,
+                                            std::span(self.use().particles, self.use().count));
+          },
+          "The particles; of those hinged together, the first.");
+}
+
+FieldFunction make_field_function(SystemObject* system, std::shared_ptr<ScriptFunction> function) {
+  return [system, function = std::move(function)](const ParticleBatch& batch) {
+    std::fill_n(batch.force, 3 * batch.count, 0.0);
+    system->guard(function, BondId{}, [&] {
+      nb::object view = nb::cast(ParticlesView{nb::find(system), system, &batch});
+      struct Expire {
+        nb::object view;
+        ~Expire() {  // a view that is kept must not keep the system
+          ParticlesView& it = *nb::inst_ptr<ParticlesView>(view);
+          it.batch = nullptr;
+          it.system_object.reset();
+        }
+      } expire{view};
+      nb::object array;
+      const nb::object result = function->function(view);
+      const auto rows = view_rows(result, batch.count, ("the forces of " + function->what).c_str(), "particle", array);
+      std::copy(rows.begin(), rows.end(), batch.force);
+    });
+  };
+}
+
+std::optional<GroupId> to_group(nb::handle group, const SystemObject* system) {
+  if (group.is_none()) return std::nullopt;
+  const GroupHandle* handle = nullptr;
+  if (!nb::try_cast<const GroupHandle*>(group, handle) || !handle)
+    throw nb::type_error(("group must be a Group or None, not " + describe(group)).c_str());
+  handle->use();
+  if (handle->system != system) throw nb::value_error("group must be of the same system");
+  return handle->id;
+}
+
+/// As `to_parameters`; a vector stands for three parameters with _x, _y, _z behind their names.
+std::vector<LawParameter> to_field_parameters(const nb::kwargs& keywords) {
+  std::vector<LawParameter> list;
+  for (const auto& [key, value] : keywords) {
+    const std::string name = nb::cast<std::string>(key);
+    double number = 0;
+    Vec3 vector;
+    if (nb::try_cast<double>(value, number)) {
+      list.push_back({name, finite(number, name.c_str())});
+    } else if (try_vec3(value, vector)) {
+      to_vec3({value}, name.c_str());  // refuses what is not finite
+      list.push_back({name + "_x", vector.x});
+      list.push_back({name + "_y", vector.y});
+      list.push_back({name + "_z", vector.z});
+    } else {
+      throw nb::type_error((name + " must be a number or a vector, not " + describe(nb::handle(value))).c_str());
+    }
+  }
+  return list;
+}
+
+void make_field(FieldHandle* self, nb::object system_object, nb::object field, nb::handle group, bool replaces_gravity,
+                const std::string& name, const nb::kwargs& keywords) {
+  SystemObject* system = nb::cast<SystemObject*>(system_object);
+  System& engine = system->use_between_steps("Field(...)");
+  FieldOptions options{name, to_field_parameters(keywords), to_group(group, system), replaces_gravity};
+  FieldId id;
+  if (nb::isinstance<nb::str>(field)) {
+    id = engine.create_field(nb::cast<std::string>(field), options);
+  } else if (PyCallable_Check(field.ptr())) {
+    if (name.empty()) options.name = function_name(field).substr(0, 31);
+    auto function = std::make_shared<ScriptFunction>(ScriptFunction{field, "field " + options.name});
+    system->keep(function);
+    id = engine.create_field(make_field_function(system, function), options);
+  } else {
+    throw nb::type_error(
+        ("field must be a predefined field, an expression or a function of arrays, not " + describe(field)).c_str());
+  }
+  new (self) FieldHandle{system_object, system, id};
+}
+
+void make_pairs(PairsHandle* self, nb::object system_object, nb::object law, double cutoff, nb::handle group,
+                const nb::kwargs& keywords) {
+  SystemObject* system = nb::cast<SystemObject*>(system_object);
+  System& engine = system->use_between_steps("Pairs(...)");
+  finite_positive(cutoff, "cutoff", "m");
+  SharedLaw shared;
+  shared.parameters = to_parameters(keywords);
+  const LawHandle* handle = nullptr;
+  if (nb::isinstance<nb::str>(law)) {
+    shared.law = law_of_text(*system, nb::cast<std::string>(law), shared.parameters);
+  } else if (nb::try_cast<const LawHandle*>(law, handle) && handle) {
+    handle->use();
+    if (handle->system != system) throw nb::value_error("Pairs takes a law of the same system");
+    shared.law = handle->id;
+  } else {
+    throw nb::type_error(("law must be a predefined law, an expression or a Law, not " + describe(law)).c_str());
+  }
+  const PairsId id = engine.create_pairs(shared, {cutoff, to_group(group, system)});
+  new (self) PairsHandle{system_object, system, id};
+}
+
+/// All or none of several changes.
+template <class HandleType>
+void set_all(const HandleType& self, const std::vector<LawParameter>& changes) {
+  System& engine = self.use();
+  self.system->use_between_steps("set");
+  const std::vector<LawParameter> before = engine.parameters(self.id);
+  try {
+    for (const LawParameter& c : changes) engine.set_parameter(self.id, c.name, c.value);
+  } catch (...) {
+    for (const LawParameter& b : before) engine.set_parameter(self.id, b.name, b.value);
+    throw;
+  }
+}
+
+/// What fields and pairwise forces share.
+template <class HandleType>
+void def_force(nb::class_<HandleType>& type) {
+  def_identity(type);
+  type.def_prop_ro(
+          "alive", [](const HandleType& self) { return self.is_alive(); }, "False once it was destroyed.")
+      .def_prop_rw(
+          "active", [](const HandleType& self) { return self.use().is_active(self.id); },
+          [](const HandleType& self, bool active) {
+            self.use();
+            self.system->use_between_steps("active = ...").set_active(self.id, active);
+          },
+          "False while it is switched off.")
+      .def_prop_ro(
+          "parameters", [](const HandleType& self) { return to_dict(self.use().parameters(self.id)); },
+          nb::sig("def parameters(self) -> dict[str, float]"), "A copy; change them with `set`.")
+      .def(
+          "destroy", [](const HandleType& self) { self.use().destroy(self.id); },
+          "Removes it; in a function that gives forces, right after the step.");
+}
+
+template <class Add>
+void each_particle(const GroupHandle& self, const nb::args& particles, const char* call, Add add) {
+  self.use();
+  System& engine = self.system->use_between_steps(call);
+  for (const nb::handle item : particles) {
+    const ParticleHandle* particle = nullptr;
+    const BodyHandle* body = nullptr;
+    if (nb::try_cast<const ParticleHandle*>(item, particle) && particle) {
+      particle->use();
+      if (particle->system != self.system) throw nb::value_error("a group takes particles of its own system");
+      add(engine, particle->id);
+    } else if (nb::try_cast<const BodyHandle*>(item, body) && body) {
+      body->use();
+      if (body->system != self.system) throw nb::value_error("a group takes bodies of its own system");
+      for (const ParticleId p : engine.particles(body->id)) add(engine, p);
+    } else {
+      throw nb::type_error(("a group takes particles and bodies, not " + describe(item)).c_str());
+    }
+  }
+}
+
+void bind_group(nb::module_& module) {
+  nb::class_<GroupHandle> type(module, "Group", group_doc, nb::type_slots(handle_slots<GroupHandle>),
+                               nb::is_weak_referenceable());
+  type.def(
+      "__init__",
+      [](GroupHandle* self, nb::object system_object, const std::string& name) {
+        SystemObject* system = nb::cast<SystemObject*>(system_object);
+        const GroupId id = system->use_between_steps("Group(...)").create_group(name);
+        new (self) GroupHandle{system_object, system, id};
+      },
+      "system"_a, "name"_a, nb::sig("def __init__(self, system: System, name: str) -> None"));
+  def_identity(type);
+  type.def_prop_ro(
+          "alive", [](const GroupHandle& self) { return self.is_alive(); }, "False once it was destroyed.")
+      .def_prop_ro("name", [](const GroupHandle& self) { return self.use().name(self.id); })
+      .def(
+          "add",
+          [](const GroupHandle& self, const nb::args& members) {
+            each_particle(self, members, "add to a group",
+                          [&](System& engine, ParticleId p) { engine.add(self.id, p); });
+          },
+          "members"_a, nb::sig("def add(self, *members: Particle | Body) -> None"),
+          "Takes in particles, and all particles of bodies.")
+      .def(
+          "remove",
+          [](const GroupHandle& self, const nb::args& members) {
+            each_particle(self, members, "remove from a group",
+                          [&](System& engine, ParticleId p) { engine.remove(self.id, p); });
+          },
+          "members"_a, nb::sig("def remove(self, *members: Particle | Body) -> None"),
+          "Lets them go; those that are not in it are passed over.")
+      .def("__contains__",
+           [](const GroupHandle& self, const ParticleHandle& particle) {
+             particle.use();
+             return particle.system == self.system && self.use().contains(self.id, particle.id);
+           })
+      .def("__len__", [](const GroupHandle& self) { return self.use().particles(self.id).size(); })
+      .def_prop_ro(
+          "particles",
+          [](const GroupHandle& self) {
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().particles(self.id));
+          },
+          "In the order of slots.")
+      .def(
+          "destroy",
+          [](const GroupHandle& self) {
+            self.use();
+            self.system->use_between_steps("destroy of a group").destroy(self.id);
+          },
+          "Removes the group, not the particles. Raises ValueError while a force acts on it.")
+      .def("__repr__", [](const GroupHandle& self) {
+        if (!self.is_alive()) return stale_repr("Group", self);
+        return "<Group '" + self.system->engine.name(self.id) + "' of " +
+               std::to_string(self.system->engine.particles(self.id).size()) + " particles>";
+      });
+}
+
+void bind_field(nb::module_& module) {
+  nb::class_<FieldHandle> type(module, "Field", field_doc, nb::type_slots(handle_slots<FieldHandle>),
+                               nb::is_weak_referenceable());
+  type.def("__init__", &make_field, "system"_a, "field"_a, nb::kw_only(), "group"_a = nb::none(),
+           "replaces_gravity"_a = false, "name"_a = "", "parameters"_a,
+           nb::sig("def __init__(self, system: System, field: str | collections.abc.Callable[[ParticleBatch], "
+                   "numpy.typing.ArrayLike], *, group: Group | None = None, replaces_gravity: bool = False, "
+                   "name: str = '', **parameters: float | Vec3 | collections.abc.Sequence[float]) -> None"));
+  def_force(type);
+  type.def_prop_ro("name", [](const FieldHandle& self) { return self.use().name(self.id); })
+      .def(
+          "set",
+          [](const FieldHandle& self, const nb::kwargs& keywords) { set_all(self, to_field_parameters(keywords)); },
+          "parameters"_a,
+          nb::sig("def set(self, **parameters: float | Vec3 | collections.abc.Sequence[float]) -> None"),
+          "Changes parameters.\n\n    wind.set(velocity=(5, 0, 0))")
+      .def("__repr__", [](const FieldHandle& self) {
+        if (!self.is_alive()) return stale_repr("Field", self);
+        const std::string name = self.system->engine.name(self.id);
+        return "<Field " + std::to_string(self.id.slot) + (name.empty() ? ">" : " " + name + ">");
+      });
+}
+
+void bind_pairs(nb::module_& module) {
+  nb::class_<PairsHandle> type(module, "Pairs", pairs_doc, nb::type_slots(handle_slots<PairsHandle>),
+                               nb::is_weak_referenceable());
+  type.def("__init__", &make_pairs, "system"_a, "law"_a, nb::kw_only(), "cutoff"_a, "group"_a = nb::none(),
+           "parameters"_a,
+           nb::sig("def __init__(self, system: System, law: str | Law, *, cutoff: float, group: Group | None = None, "
+                   "**parameters: float) -> None"));
+  def_force(type);
+  type.def_prop_ro(
+          "law", [](const PairsHandle& self) { return sibling(self, self.use().law(self.id)); }, "Its Law.")
+      .def_prop_ro(
+          "cutoff", [](const PairsHandle& self) { return self.use().cutoff(self.id); }, "m")
+      .def_prop_ro(
+          "energy",
+          [](const PairsHandle& self) { return self.use(), self.system->use_between_steps("energy").energy(self.id); },
+          "Of all pairs within the cut-off, now, J; not part of `System.energy`, which counts these forces as external.")
+      .def(
+          "set", [](const PairsHandle& self, const nb::kwargs& keywords) { set_all(self, to_parameters(keywords)); },
+          "parameters"_a, nb::sig("def set(self, **parameters: float) -> None"), "Changes parameters of its law.")
+      .def("__repr__", [](const PairsHandle& self) {
+        if (!self.is_alive()) return stale_repr("Pairs", self);
+        const System& engine = self.system->engine;
+        return "<Pairs " + std::to_string(self.id.slot) + " " + engine.name(engine.law(self.id)) + ">";
+      });
+}
+
+}  // namespace
+
+void def_fields(nb::class_<SystemObject>& system) {
+  const auto def_list = [&]<class HandleType>(const char* name, const char* type, auto list, HandleType) {
+    system.def_prop_ro(
+        name, [list](SystemObject& self) { return wrap_all<HandleType>(nb::find(&self), &self, (self.use().*list)()); },
+        nb::sig((std::string("def ") + name + "(self) -> list[" + type + "]").c_str()), "In the order of slots.");
+  };
+  def_list("groups", "Group", &System::groups, GroupHandle{});
+  def_list("fields", "Field", &System::fields, FieldHandle{});
+  def_list("pairs", "Pairs", &System::all_pairs, PairsHandle{});
+  system.def(
+      "rehearse",
+      [](SystemObject& self, nb::handle force, double dt) -> std::size_t {
+        System& engine = self.use_between_steps("rehearse");
+        const LawHandle* law = nullptr;
+        const FieldHandle* field = nullptr;
+        const PairsHandle* pairs = nullptr;
+        self.failures.clear();
+        if (nb::try_cast<const LawHandle*>(force, law) && law) return engine.rehearse(law->id, dt);
+        if (nb::try_cast<const FieldHandle*>(force, field) && field) return engine.rehearse(field->id, dt);
+        if (nb::try_cast<const PairsHandle*>(force, pairs) && pairs) return engine.rehearse(pairs->id, dt);
+        throw nb::type_error(("rehearse takes a Law, a Field or Pairs, not " + describe(force)).c_str());
+      },
+      "force"_a, "dt"_a = 1.0 / 120, nb::sig("def rehearse(self, force: Law | Field | Pairs, dt: float = ...) -> int"),
+      "Evaluates forces without applying them, to measure what they cost; see iota.profile. Returns for how many bonds or\n"
+      "particles.");
+  system.def(
+      "profile",
+      [](nb::handle self, double dt) { return nb::module_::import_("iota.profiling").attr("profile")(self, dt); },
+      "dt"_a = 1.0 / 120, nb::sig("def profile(self, dt: float = ...) -> typing.Any"),
+      "What each law, field and pairwise force costs, in ns for each bond or particle: see iota.profile.");
+}
+
+void bind_fields(nb::module_& module) {
+  bind_batch(module);
+  bind_group(module);
+  bind_field(module);
+  bind_pairs(module);
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "array_argument.h"
+#include "binders.h"
+#include "law_argument.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace iota::bindings {
+
+namespace {
+
+constexpr const char* law_doc =
+    "A law of force that any number of bonds share. Parameters are keywords, with the values that bonds have unless they\n"
+    "say otherwise; None is the distance of the two ends when a bond is made.\n\n"
+    "law is one of\n"
+    "- an expression of r (distance, m), v = dr/dt, t, m_p, m_q and the parameters, which defines `energy` (J), `force`\n"
+    "  (N along the line, positive pushes apart) or `drag` (N s/m, times the velocity difference): implicit, any stiffness\n"
+    "  is stable;\n"
+    "- compiled code: a Numba cfunc, a ctypes function or an address, of signature 'radial',\n"
+    "  double f(double r, double v, double t, const double* parameters), or 'batch', see docs/forces.md;\n"
+    "- a function of NumPy arrays, called once a step with a BondBatch of all its bonds; it returns the forces on p,\n"
+    "  shape (n, 3), N.\n"
+    "Code is evaluated once a step and held.\n\n"
+    "    law = iota.Law(system, 'energy = 0.5*k*(r - r0)^2; force = -c*v', k=100, r0=None, c=1)\n"
+    "    bond = iota.Bond(p, q, law, k=200)";
+
+constexpr const char* batch_doc =
+    "All bonds of one law, as its function sees them: arrays with a row a bond, in the order of `bonds`. Good only until\n"
+    "the function returns; the arrays are copies and may be kept.";
+
+/// A batch while its function runs; afterwards `batch` is null.
+struct BatchView {
+  nb::object system_object;
+  SystemObject* system = nullptr;
+  LawId law;
+  const BondBatch* batch = nullptr;
+
+  const BondBatch& use() const {
+    if (!batch) raise_runtime("a BondBatch is good only until the function that was given it returns");
+    return *batch;
+  }
+};
+using BatchPointer = std::shared_ptr<BatchView>;
+
+using Array1 = nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig>;
+
+nb::object make_array(std::vector<double> numbers) {
+  auto* const kept = new std::vector<double>(std::move(numbers));
+  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return nb::cast(Array1(kept->data(), {kept->size()}, owner));
+}
+
+nb::object copy_rows(const double* rows, std::size_t count) {
+  return nb::cast(make_vector3_array(std::vector<double>(rows, rows + 3 * count)));
+}
+
+double distance_of(const BondBatch& b, std::size_t i) {
+  const double *p = b.position_p + 3 * i, *q = b.position_q + 3 * i;
+  return norm(Vec3{q[0] - p[0], q[1] - p[1], q[2] - p[2]});
+}
+
+void bind_batch(nb::module_& module) {
+  nb::class_<BatchView> type(module, "BondBatch", batch_doc);
+  const auto def_rows = [&](const char* name, const double* BondBatch::* rows, const char* text) {
+    type.def_prop_ro(
+        name, [rows](const BatchView& self) { return copy_rows(self.use().*rows, self.use().count); },
+        nb::sig((std::string("def ") + name + "(self) -> numpy.typing.NDArray[numpy.float64]").c_str()), text);
+  };
+  def_rows("position_p", &BondBatch::position_p, "(n, 3), m, in the middle of the step in the energy-keeping mode.");
+  def_rows("position_q", &BondBatch::position_q, "(n, 3), m.");
+  def_rows("velocity_p", &BondBatch::velocity_p, "(n, 3), m/s, at the start of the step.");
+  def_rows("velocity_q", &BondBatch::velocity_q, "(n, 3), m/s.");
+  type.def("__len__", [](const BatchView& self) { return self.use().count; })
+      .def_prop_ro(
+          "time", [](const BatchView& self) { return self.use().time; }, "At the start of the step, s.")
+      .def_prop_ro(
+          "distance",
+          [](const BatchView& self) {
+            const BondBatch& b = self.use();
+            std::vector<double> numbers(b.count);
+            for (std::size_t i = 0; i < b.count; ++i) numbers[i] = distance_of(b, i);
+            return make_array(std::move(numbers));
+          },
+          nb::sig("def distance(self) -> numpy.typing.NDArray[numpy.float64]"), "(n,), m.")
+      .def_prop_ro(
+          "direction",
+          [](const BatchView& self) {
+            const BondBatch& b = self.use();
+            std::vector<double> numbers(3 * b.count);
+            for (std::size_t i = 0; i < numbers.size(); ++i) {
+              const double length = distance_of(b, i / 3);
+              numbers[i] = length > 0 ? (b.position_q[i] - b.position_p[i]) / length : 0;
+            }
+            return nb::cast(make_vector3_array(std::move(numbers)));
+          },
+          nb::sig("def direction(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "(n, 3), unit vectors from p to q; zero where they are at one place.")
+      .def_prop_ro(
+          "parameters",
+          [](const BatchView& self) {
+            const BondBatch& b = self.use();
+            const auto names = self.system->engine.parameters(self.law);
+            nb::dict all;
+            for (std::size_t k = 0; k < names.size(); ++k) {
+              std::vector<double> column(b.count);
+              for (std::size_t i = 0; i < b.count; ++i) column[i] = b.parameters[i * names.size() + k];
+              all[names[k].name.c_str()] = make_array(std::move(column));
+            }
+            return all;
+          },
+          nb::sig("def parameters(self) -> dict[str, numpy.typing.NDArray[numpy.float64]]"),
+          "By name, an array (n,) each.")
+      .def_prop_ro(
+          "bonds",
+          [](const BatchView& self) {
+            const BondBatch& b = self.use();
+            return wrap_all<BondHandle>(self.system_object, self.system, std::span(b.bonds, b.count));
+          },
+          "The bonds.");
+}
+
+BatchFunction make_batch_function(SystemObject* system, std::shared_ptr<ScriptFunction> function,
+                                  std::shared_ptr<LawId> law) {
+  return [system, function = std::move(function), law = std::move(law)](const BondBatch& batch) {
+    std::fill_n(batch.force, 3 * batch.count, 0.0);
+    system->guard(function, BondId{}, [&] {
+      nb::object view = nb::cast(BatchView{nb::find(system), system, *law, &batch});
+      struct Expire {
+        nb::object view;
+        ~Expire() {  // a view that is kept must not keep the system
+          BatchView& it = *nb::inst_ptr<BatchView>(view);
+          it.batch = nullptr;
+          it.system_object.reset();
+        }
+      } expire{view};
+      nb::object array;
+      const nb::object result = function->function(view);
+      const auto rows = view_rows(result, batch.count, ("the forces of " + function->what).c_str(), "bond", array);
+      std::copy(rows.begin(), rows.end(), batch.force);
+    });
+  };
+}
+
+/// The address of compiled code: a number, a Numba cfunc, a ctypes function; 0 for anything else.
+std::uintptr_t address_of(nb::handle law) {
+  if (PyLong_Check(law.ptr()) && !PyBool_Check(law.ptr())) return nb::cast<std::uintptr_t>(law);
+  if (nb::hasattr(law, "address")) return nb::cast<std::uintptr_t>(law.attr("address"));
+  nb::object ctypes = nb::module_::import_("ctypes");
+  if (!nb::isinstance(law, ctypes.attr("_CFuncPtr"))) return 0;
+  return nb::cast<std::uintptr_t>(ctypes.attr("cast")(law, ctypes.attr("c_void_p")).attr("value"));
+}
+
+using BatchCode = void (*)(std::int64_t count, double t, const double* position_p, const double* position_q,
+                           const double* velocity_p, const double* velocity_q, const double* parameters, double* force);
+
+LawBody code_at(std::uintptr_t address, const std::string& signature) {
+  if (signature == "radial") return reinterpret_cast<RadialFunction>(address);
+  if (signature != "batch") {
+    const std::string text = "signature must be 'radial' or 'batch', not '" + signature + "'";
+    throw nb::value_error(text.c_str());
+  }
+  return BatchFunction([code = reinterpret_cast<BatchCode>(address)](const BondBatch& b) {
+    code(static_cast<std::int64_t>(b.count), b.time, b.position_p, b.position_q, b.velocity_p, b.velocity_q,
+         b.parameters, b.force);
+  });
+}
+
+void make_law(LawHandle* self, nb::object system_object, nb::object law, const std::string& name,
+              const std::string& signature, const nb::kwargs& parameters) {
+  SystemObject* system = nb::cast<SystemObject*>(system_object);
+  System& engine = system->use_between_steps("Law(...)");
+  LawOptions options{name, to_parameters(parameters)};
+  LawId id;
+  if (nb::isinstance<nb::str>(law)) {
+    const std::string text = nb::cast<std::string>(law);
+    if (text.find('=') == std::string::npos && options.parameters.empty())
+      id = engine.find_law(text);
+    else
+      id = engine.create_law(text, options);
+  } else if (const std::uintptr_t address = address_of(law)) {
+    if (name.empty()) options.name = function_name(law).substr(0, 31);
+    id = engine.create_law(code_at(address, signature), options);
+    system->code.push_back(law);
+  } else if (PyCallable_Check(law.ptr())) {
+    if (name.empty()) options.name = function_name(law).substr(0, 31);
+    auto function = std::make_shared<ScriptFunction>(ScriptFunction{law, "law " + options.name});
+    auto own_id = std::make_shared<LawId>();
+    system->keep(function);
+    id = engine.create_law(make_batch_function(system, function, own_id), options);
+    *own_id = id;
+  } else {
+    throw nb::type_error(
+        ("law must be an expression, compiled code or a function of arrays, not " + describe(law)).c_str());
+  }
+  new (self) LawHandle{system_object, system, id};
+}
+
+}  // namespace
+
+std::string function_name(nb::handle function) {
+  nb::object name = nb::getattr(function, "__qualname__", nb::none());
+  return name.is_none() ? nb::type_name(function.type()).c_str() : nb::str(name).c_str();
+}
+
+std::vector<LawParameter> to_parameters(const nb::kwargs& arguments) {
+  std::vector<LawParameter> list;
+  for (const auto& [key, value] : arguments) {
+    const std::string name = nb::cast<std::string>(key);
+    double number = std::numeric_limits<double>::quiet_NaN();
+    if (!value.is_none()) {
+      if (!nb::try_cast<double>(value, number)) {
+        const std::string text = name + " must be a number, not " + describe(nb::handle(value));
+        throw nb::type_error(text.c_str());
+      }
+      finite(number, name.c_str());
+    }
+    list.push_back({name, number});
+  }
+  return list;
+}
+
+nb::dict to_dict(const std::vector<LawParameter>& parameters) {
+  nb::dict all;
+  for (const LawParameter& p : parameters)
+    all[p.name.c_str()] = std::isnan(p.value) ? nb::object(nb::none()) : nb::object(nb::float_(p.value));
+  return all;
+}
+
+LawId law_of_text(SystemObject& system, const std::string& text, const std::vector<LawParameter>& parameters) {
+  if (text.find('=') == std::string::npos) return system.engine.find_law(text);
+  std::string key = text;
+  for (const LawParameter& p : parameters) key += '\n' + p.name;
+  // A restore may have taken the law away, or put another in its place.
+  const auto known = system.written_laws.find(key);
+  if (known != system.written_laws.end() && system.engine.contains(known->second) &&
+      system.engine.expression(known->second) == text) {
+    const auto theirs = system.engine.parameters(known->second);
+    if (std::equal(theirs.begin(), theirs.end(), parameters.begin(), parameters.end(),
+                   [](const auto& a, const auto& b) { return a.name == b.name; }))
+      return known->second;
+  }
+  return system.written_laws[key] = system.engine.create_law(text, {"", parameters});
+}
+
+void bind_laws(nb::module_& module) {
+  bind_batch(module);
+  nb::class_<LawHandle> type(module, "Law", law_doc, nb::type_slots(handle_slots<LawHandle>),
+                             nb::is_weak_referenceable());
+  type.def("__init__", &make_law, "system"_a, "law"_a, nb::kw_only(), "name"_a = "", "signature"_a = "radial",
+           "parameters"_a,
+           nb::sig("def __init__(self, system: System, law: str | int | collections.abc.Callable[[BondBatch], "
+                   "numpy.typing.ArrayLike] | object, *, name: str = '', signature: str = 'radial', "
+                   "**parameters: float | None) -> None"));
+  def_identity(type);
+  type.def_prop_ro(
+          "alive", [](const LawHandle& self) { return self.is_alive(); }, "False once it was destroyed.")
+      .def_prop_ro("name", [](const LawHandle& self) { return self.use().name(self.id); })
+      .def_prop_ro(
+          "kind", [](const LawHandle& self) { return self.use().kind(self.id); },
+          "'predefined', 'expression', 'function' (of one bond each), 'compiled' or 'arrays'.")
+      .def_prop_ro(
+          "text", [](const LawHandle& self) { return self.use().expression(self.id); },
+          "The expression; empty for code.")
+      .def_prop_ro(
+          "parameters", [](const LawHandle& self) { return to_dict(self.use().parameters(self.id)); },
+          nb::sig("def parameters(self) -> dict[str, float | None]"),
+          "The values that bonds have unless they say otherwise; None is the distance of the ends.")
+      .def(
+          "destroy",
+          [](const LawHandle& self) {
+            self.use();
+            self.system->use_between_steps("destroy of a law").destroy(self.id);
+          },
+          "Removes it. Raises ValueError while bonds have it, and for a predefined law.")
+      .def("__repr__", [](const LawHandle& self) {
+        if (!self.is_alive()) return stale_repr("Law", self);
+        const std::string name = self.system->engine.name(self.id), text = self.system->engine.expression(self.id);
+        return "<Law " + std::to_string(self.id.slot) + (name.empty() ? "" : " " + name) +
+               (text.empty() ? "" : ": " + text) + ">";
+      });
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "system_object.h"
+
+namespace iota::bindings {
+
+/// What a script calls a function.
+std::string function_name(nb::handle function);
+
+/// Keyword arguments as parameters of a law; None is the distance of the two ends (NaN).
+std::vector<LawParameter> to_parameters(const nb::kwargs& arguments);
+nb::dict to_dict(const std::vector<LawParameter>& parameters);
+
+/// The law that a word names or an expression spells; an expression is made once for each text and set of parameters.
+/// `parameters` are its defaults.
+LawId law_of_text(SystemObject& system, const std::string& text, const std::vector<LawParameter>& parameters);
+
+}  // namespace iota::bindings

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`iota bench forces`: what one bond costs on each rung of the ladder of docs/forces.md, and what pairwise forces cost."""
+
+from __future__ import annotations
+
+import argparse
+import ctypes
+import json
+import platform
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+import iota
+from iota.profiling import ForceCost, profile
+
+BONDS = 2000
+_Radial = ctypes.CFUNCTYPE(
+    ctypes.c_double, ctypes.c_double, ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double)
+)
+
+
+def _arrays(bonds: iota.BondBatch) -> np.ndarray:
+    r = bonds.distance
+    return (bonds.parameters["k"] * (r - bonds.parameters["r0"]))[:, None] * bonds.direction
+
+
+def _one(bond: iota.BondState) -> iota.Vec3:
+    return 10 * (bond.distance - 0.1) * bond.direction
+
+
+def _compiled(system: iota.System) -> iota.Law:
+    """Truly compiled where Numba is there; else a function of the C library, which costs what compiled code costs."""
+    try:
+        import numba
+    except ImportError:
+        code: Any = _Radial(("fma", ctypes.CDLL(None)))  # x y + z of r, v, t: no spring, but as quick as one
+    else:
+        code = numba.cfunc("float64(float64, float64, float64, CPointer(float64))")(
+            lambda r, v, t, p: -p[0] * (r - p[1])
+        )
+    return iota.Law(system, code, name="compiled", k=10, r0=0.1)
+
+
+RUNGS: tuple[tuple[str, Callable[[iota.System], Any], dict[str, Any]], ...] = (
+    ("predefined", lambda s: "spring", {"stiffness": 10, "length": 0.1, "implicit": False}),
+    ("expression", lambda s: "energy = 0.5*k*(r - r0)^2", {"k": 10, "r0": 0.1, "implicit": False}),
+    ("compiled code", _compiled, {}),
+    ("function of arrays", lambda s: iota.Law(s, _arrays, name="arrays", k=10, r0=0.1), {}),
+    ("function for one bond", lambda s: _one, {}),
+    ("predefined, implicit", lambda s: "spring", {"stiffness": 10, "length": 0.1}),
+    ("expression, implicit", lambda s: "energy = 0.5*k*(r - r0)^2", {"k": 10, "r0": 0.1}),
+)
+
+
+def measure() -> list[ForceCost]:
+    rows = []
+    for name, law, arguments in RUNGS:
+        system = iota.System(gravity=(0, 0, 0))
+        ready = law(system)
+        for i in range(BONDS):
+            p = iota.Particle(iota.Body(system), (0.1 * i, 0, 0))
+            iota.Bond(p, iota.Particle(iota.Body(system), (0.1 * i, 0.11, 0)), ready, **arguments)
+        (row,) = profile(system)
+        rows.append(ForceCost(name, "bond", row.count, row.ns))
+    for name, law, arguments in (
+        ("pairs, predefined", "lennard_jones", {"depth": 1, "size": 1}),
+        ("pairs, expression", "energy = 4*e*((s/r)^12 - (s/r)^6)", {"e": 1, "s": 1}),
+    ):
+        system = iota.System(gravity=(0, 0, 0))
+        for i in range(20**3):  # about 30 neighbours within the cut-off
+            iota.Particle(iota.Body(system), (1.3 * (i % 20), 1.3 * (i // 20 % 20), 1.3 * (i // 400)))
+        iota.Pairs(system, law, cutoff=2.5, **arguments)
+        (row,) = profile(system)
+        rows.append(ForceCost(name, "particle", row.count, row.ns))
+    return rows
+
+
+def run(arguments: argparse.Namespace) -> None:
+    rows = measure()
+    if arguments.json:
+        print(
+            json.dumps({"iota": iota.__version__, "machine": platform.machine(), "forces": [asdict(r) for r in rows]})
+        )
+        return
+    print(f"{'written as':24} {'ns each':>10}")
+    for row in rows:
+        print(f"{row.force:24} {row.ns:10.1f} a {row.kind}")

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "laws/noise.h"
+#include "laws/pair_laws.h"
+
+#include <algorithm>
+#include <tuple>
+
+/// The predefined forces on single particles, one list. A new field is a struct and a name in `FieldLaws`.
+namespace iota::laws {
+
+inline constexpr int max_field_parameters = 12;
+
+/// One particle at time t (s), in a step of h seconds.
+struct FieldState {
+  Vec3 position, velocity;  ///< m, m/s
+  double mass = 1;          ///< kg
+  double t = 0, h = 0;
+};
+
+/// The force that over a step of h brings a free particle as far towards velocity u as f = -drag (v - u) would, exactly:
+/// v1 = u + (v - u) exp(-drag h / m). Held over the step the plain force would overshoot where drag h > m.
+inline Vec3 drag_towards(const Vec3& u, double drag, const FieldState& s) {
+  const double c = drag * s.h / s.mass;
+  const double share = c < 1e-5 ? 1 - c / 2 : (1 - expression::exp(-c)) / c;
+  return (drag * share) * (u - s.velocity);
+}
+
+/// Acceleration (m/s^2): another gravity.
+struct Uniform {
+  static constexpr const char* name = "uniform";
+  static constexpr Parameter parameters[] = {{"acceleration_x", 0}, {"acceleration_y", 0}, {"acceleration_z", 0}};
+  static Vec3 force(const FieldState& s, const double* p) { return s.mass * Vec3{p[0], p[1], p[2]}; }
+};
+
+/// Drag (N s/m) relative to moving air.
+struct Wind {
+  static constexpr const char* name = "wind";
+  static constexpr Parameter parameters[] = {
+      {"velocity_x", 0}, {"velocity_y", 0}, {"velocity_z", 0}, {"drag", 0.1, Range::not_negative}};
+  static Vec3 force(const FieldState& s, const double* p) { return drag_towards({p[0], p[1], p[2]}, p[3], s); }
+};
+
+/// Drag (N s/m) relative to a turbulent current; see Turbulence.
+struct Current {
+  static constexpr const char* name = "current";
+  static constexpr Parameter parameters[] = {{"velocity_x", 0},
+                                             {"velocity_y", 0},
+                                             {"velocity_z", 0},
+                                             {"drag", 0.1, Range::not_negative},
+                                             {"speed", 1, Range::not_negative},
+                                             {"size", 1, Range::positive},
+                                             {"octaves", 3, Range::not_negative},
+                                             {"evolution", 0.1},
+                                             {"seed", 0, Range::not_negative}};
+  static Vec3 force(const FieldState& s, const double* p) {
+    const Turbulence current{{p[0], p[1], p[2]},
+                             p[4],
+                             p[5],
+                             static_cast<int>(std::min(p[6], 16.0)),
+                             p[7],
+                             static_cast<std::uint32_t>(std::min(p[8], 4e9))};
+    return drag_towards(turbulent_velocity(current, s.position, s.t), p[3], s);
+  }
+};
+
+/// A heavy point: acceleration strength/d^2 towards the centre (strength in m^3/s^2), Plummer-softened. Negative repels.
+struct Well {
+  static constexpr const char* name = "well";
+  static constexpr Parameter parameters[] = {
+      {"centre_x", 0}, {"centre_y", 0}, {"centre_z", 0}, {"strength", 1}, {"softening", 0.1, Range::not_negative}};
+  static Vec3 force(const FieldState& s, const double* p) {
+    const Vec3 d = Vec3{p[0], p[1], p[2]} - s.position;
+    const double inverse = 1 / (dot(d, d) + p[4] * p[4]);
+    return (s.mass * p[3] * inverse * std::sqrt(inverse)) * d;
+  }
+};
+
+/// Pulls with `strength` (N) towards the centre, less so beyond `range` (m): strength exp(-d/range). Negative repels.
+struct Attractor {
+  static constexpr const char* name = "attractor";
+  static constexpr Parameter parameters[] = {
+      {"centre_x", 0}, {"centre_y", 0}, {"centre_z", 0}, {"strength", 1}, {"range", 1, Range::positive}};
+  static Vec3 force(const FieldState& s, const double* p) {
+    const Vec3 d = Vec3{p[0], p[1], p[2]} - s.position;
+    const double r = norm(d);
+    return (p[3] * expression::exp(-r / p[4]) / (r + 1e-300)) * d;
+  }
+};
+
+using FieldLaws = std::tuple<Uniform, Wind, Current, Well, Attractor>;
+inline constexpr std::uint32_t field_law_count = std::tuple_size_v<FieldLaws>;
+
+}  // namespace iota::laws

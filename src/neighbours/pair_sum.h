@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/parallel.h"
+#include "laws/pair_law.h"
+#include "laws/particle_arrays.h"
+#include "neighbours/pair_list.h"
+
+#include <array>
+#include <vector>
+
+namespace iota::neighbours {
+
+/// A law among all pairs nearer than a cut-off. The list of pairs reaches a skin further and is made anew only when some
+/// particle has moved half of that; pairs beyond the cut-off are passed over, rows are sorted, and many particles are
+/// summed in four parts however many threads there are: so every bit is the same whenever the list was made, and by whom.
+class PairSum {
+ public:
+  /// Adds the forces to particles.fx, fy, fz. Pairs whose force is not finite get none; returns how many those were, and
+  /// which was the first.
+  struct Bad {
+    std::size_t count = 0;
+    std::uint32_t i = 0, j = 0;
+  };
+  Bad add_forces(laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family, const laws::PairLaw& law,
+                 const double* parameters, double cutoff, double t, const Parallel& parallel);
+
+  /// Energy of all pairs within the cut-off, J; 0 for laws without one.
+  double energy(const laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family,
+                const laws::PairLaw& law, const double* parameters, double cutoff, double t);
+
+  std::size_t build_count() const { return builds_; }  ///< for reports
+
+ private:
+  /// A range of rows, with room for a block of pairs and, but for the first part, for forces of its own.
+  struct Part {
+    std::vector<std::uint32_t> i, j;
+    std::vector<double> dx, dy, dz, r, v, m_p, m_q, force, drag;
+    std::vector<double> fx, fy, fz;
+    Bad bad;
+  };
+  struct Task {
+    const laws::ParticleArrays& particles;
+    const laws::PairLaw& law;
+    std::array<const double*, laws::max_parameters> parameters;
+    double cutoff, t;
+  };
+  void update(const laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family, double cutoff);
+  void sum(Part&, const Task&, std::size_t first, std::size_t last, double* fx, double* fy, double* fz) const;
+  static void evaluate(Part&, const Task&, std::size_t count, double* fx, double* fy, double* fz);
+
+  PairList list_;
+  std::vector<double> built_at_x_, built_at_y_, built_at_z_;
+  double built_radius_ = 0;
+  std::size_t builds_ = 0;
+  std::array<Part, 4> parts_;
+};
+
+}  // namespace iota::neighbours

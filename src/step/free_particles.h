@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/parallel.h"
+#include "model/model.h"
+#include "solver/integrator.h"
+
+#include <vector>
+
+namespace iota::step {
+
+/// Particles that nothing holds: no hinge, nail, hand, constraint or implicit bond. There is nothing to solve for them; their
+/// steps are written down. The same results as an island's, up to round-off.
+class FreeParticles {
+ public:
+  static bool is_free(const model::Model&, std::uint32_t articulate);
+
+  void forget() { articulates_.clear(), in_order_.clear(), is_old_ = false; }
+  void set(std::uint32_t articulate, bool free);
+  bool contains(std::uint32_t articulate) const { return articulate < articulates_.size() && articulates_[articulate]; }
+
+  /// Stops a free particle until something pushes it, or wakes it; see System::set_rest.
+  static void put_to_rest(model::Model&, std::uint32_t articulate);
+  static void wake(model::Model&, std::uint32_t articulate);
+  std::uint32_t resting() const { return resting_; }  ///< how many rested in the last step
+
+  /// One step of h seconds for all of them.
+  solver::AdvanceReport advance(model::Model&, double h, const Parallel&);
+
+  std::size_t size(const model::Model&);
+
+ private:
+  struct Place {
+    std::uint32_t articulate, body, particle, ring;
+  };
+  void refresh(const model::Model&);
+
+  std::vector<std::uint8_t> articulates_;  // 1 where free, by slot
+  std::vector<Place> in_order_;
+  struct Share {
+    double dissipated = 0, work = 0;
+    std::uint32_t resting = 0;
+    bool lost = false;
+  };
+  std::vector<Share> shares_;
+  std::uint32_t resting_ = 0;
+  bool is_old_ = false;
+};
+
+}  // namespace iota::step

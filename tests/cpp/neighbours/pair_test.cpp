@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neighbours/pair_sum.h"
+
+#include <iota/vec3.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+namespace iota::neighbours {
+namespace {
+
+const Parallel one(1), two(2);
+
+laws::ParticleArrays cloud(std::size_t n, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto number = [&] { return std::uniform_real_distribution(-size, size)(random); };
+  laws::ParticleArrays p;
+  p.resize(n);
+  for (auto* const a : {&p.x, &p.y, &p.z, &p.vx, &p.vy, &p.vz})
+    for (double& v : *a) v = number();
+  std::fill(p.m.begin(), p.m.end(), 1.5);
+  return p;
+}
+
+double distance2(const laws::ParticleArrays& p, std::size_t i, std::size_t j) {
+  const double x = p.x[j] - p.x[i], y = p.y[j] - p.y[i], z = p.z[j] - p.z[i];
+  return x * x + y * y + z * z;
+}
+
+void expect_brute_force(const laws::ParticleArrays& p, double radius, const std::vector<std::uint32_t>& family) {
+  PairList list;
+  list.build(p, radius, family);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    std::vector<std::uint32_t> wanted;
+    for (std::uint32_t j = static_cast<std::uint32_t>(i) + 1; j < p.size(); ++j)
+      if (distance2(p, i, j) < radius * radius && (family.empty() || family[i] != family[j])) wanted.push_back(j);
+    ASSERT_EQ(std::vector<std::uint32_t>(list.row(i), list.row(i) + list.row_size(i)), wanted) << "row " << i;
+    count += wanted.size();
+  }
+  EXPECT_EQ(list.pair_count(), count);
+}
+
+TEST(PairList, FindsWhatAllAgainstAllFinds) {
+  for (const double radius : {0.01, 0.2, 0.7, 5.0}) expect_brute_force(cloud(400, 1, 2), radius, {});
+  expect_brute_force(cloud(1, 1, 2), 1, {});
+  expect_brute_force(cloud(0, 1, 2), 1, {});
+  std::vector<std::uint32_t> family(400);
+  for (std::size_t i = 0; i < family.size(); ++i) family[i] = static_cast<std::uint32_t>(i / 7);
+  expect_brute_force(cloud(400, 1, 3), 0.5, family);
+}
+
+TEST(PairList, TakesAnyPlacesOnALatticeOnALineAndFarAway) {
+  laws::ParticleArrays p = cloud(343, 1, 4);
+  for (std::size_t i = 0; i < 343; ++i)
+    p.x[i] = 0.5 * static_cast<double>(i % 7), p.y[i] = 0.5 * static_cast<double>(i / 7 % 7),
+    p.z[i] = 0.5 * static_cast<double>(i / 49);
+  expect_brute_force(p, 0.5, {});
+  expect_brute_force(p, 0.50001, {});
+  for (double& z : p.z) z = 3;
+  expect_brute_force(p, 0.6, {});
+  p.x[3] = 1e9, p.y[5] = -1e9, p.x[8] = 1e9 + 0.1;
+  expect_brute_force(p, 0.6, {});
+  p.x[10] = NAN, p.y[11] = INFINITY;
+  expect_brute_force(p, 0.6, {});
+}
+
+TEST(PairSum, IsTheSumOverAllPairs) {
+  const laws::PairLaw listed(laws::find_pair_law("lennard_jones"));
+  const laws::PairLaw written("energy = 4*e*((s/r)^12 - (s/r)^6); force = -c*v; drag = 0.1*m_p*m_q", {"e", "s", "c"});
+  const double parameters[laws::max_parameters] = {1.2, 0.05, 0.3};
+  for (const laws::PairLaw* const law : {&listed, &written}) {
+    laws::ParticleArrays p = cloud(500, 0.5, 5), slow = p;
+    PairSum sum;
+    const auto bad = sum.add_forces(p, {}, *law, parameters, 0.25, 0, one);
+    EXPECT_EQ(bad.count, 0u);
+    double energy = 0, total = 0;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      for (std::size_t j = i + 1; j < p.size(); ++j) {
+        const double r = std::sqrt(distance2(slow, i, j));
+        if (!(r < 0.25)) continue;
+        const Vec3 d{slow.x[j] - slow.x[i], slow.y[j] - slow.y[i], slow.z[j] - slow.z[i]};
+        const Vec3 u{slow.vx[j] - slow.vx[i], slow.vy[j] - slow.vy[i], slow.vz[j] - slow.vz[i]};
+        const laws::PairState s{r, dot(d, u) / r, 0, slow.m[i], slow.m[j]};
+        const double f = law->damping(s, parameters).value - law->elastic(s, parameters).slope;
+        const Vec3 on_j = (f / r) * d - law->drag(s, parameters) * u;
+        slow.fx[j] += on_j.x, slow.fy[j] += on_j.y, slow.fz[j] += on_j.z;
+        slow.fx[i] -= on_j.x, slow.fy[i] -= on_j.y, slow.fz[i] -= on_j.z;
+        energy += law->elastic(s, parameters).energy;
+      }
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      EXPECT_NEAR(p.fx[i], slow.fx[i], 1e-11 * (1 + std::abs(slow.fx[i])));
+      EXPECT_NEAR(p.fz[i], slow.fz[i], 1e-11 * (1 + std::abs(slow.fz[i])));
+      total += std::abs(p.fx[i]);
+    }
+    EXPECT_GT(total, 1);
+    EXPECT_NEAR(sum.energy(p, {}, *law, parameters, 0.25, 0), energy, 1e-9 * std::abs(energy));
+  }
+}
+
+TEST(PairSum, HasTheSameBitsWheneverItsListWasMadeAndByHowManyThreads) {
+  const laws::PairLaw law(laws::find_pair_law("soft_repulsion"));
+  const double parameters[laws::max_parameters] = {100, 0.3};
+  laws::ParticleArrays p = cloud(6000, 1.4, 6);
+  PairSum kept;
+  for (int step = 0; step < 40; ++step) {
+    PairSum fresh;
+    laws::ParticleArrays q = p;
+    (void)kept.add_forces(p, {}, law, parameters, 0.3, 0, one);
+    (void)fresh.add_forces(q, {}, law, parameters, 0.3, 0, two);
+    ASSERT_EQ(p.fx, q.fx);
+    ASSERT_EQ(p.fz, q.fz);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      p.x[i] += 0.002 * p.vx[i], p.y[i] += 0.002 * p.vy[i], p.z[i] += 0.002 * p.vz[i];
+      p.fx[i] = p.fy[i] = p.fz[i] = 0;
+    }
+  }
+  EXPECT_LT(kept.build_count(), 20u);
+  EXPECT_GT(kept.build_count(), 2u);
+}
+
+TEST(PairSum, PassesOverPairsWithoutAFiniteForceAndCountsThem) {
+  const laws::PairLaw law(laws::find_pair_law("lennard_jones"));
+  const double parameters[laws::max_parameters] = {1, 0.1};
+  laws::ParticleArrays p = cloud(50, 0.5, 7);
+  p.x[9] = p.x[4], p.y[9] = p.y[4], p.z[9] = p.z[4];
+  PairSum sum;
+  const auto bad = sum.add_forces(p, {}, law, parameters, 0.3, 0, one);
+  EXPECT_EQ(bad.count, 1u);
+  EXPECT_EQ(bad.i, 4u);
+  EXPECT_EQ(bad.j, 9u);
+  for (const double f : p.fx) EXPECT_TRUE(std::isfinite(f));
+}
+
+}  // namespace
+}  // namespace iota::neighbours

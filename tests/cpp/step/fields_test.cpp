@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+// Groups, fields, pairwise forces, and the lane of particles that nothing holds.
+#include "scenes/chain.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace iota {
+namespace {
+
+std::vector<ParticleId> scatter(System& system, int count, unsigned seed, double size = 1, double speed = 1) {
+  std::mt19937 random(seed);
+  const auto number = [&] { return std::uniform_real_distribution(-1.0, 1.0)(random); };
+  std::vector<ParticleId> list;
+  for (int i = 0; i < count; ++i)
+    list.push_back(system.create_particle(system.create_body(), size * Vec3{number(), number(), number()},
+                                          0.5 + 0.4 * number(), speed * Vec3{number(), number(), number()}));
+  return list;
+}
+
+std::vector<double> positions(const System& system) {
+  std::vector<double> all(3 * system.particles().size());
+  system.read_positions(all);
+  return all;
+}
+
+double book(const Energy& e) { return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits; }
+
+TEST(FreeParticles, MoveAsTheSolverMovesThem) {
+  for (const IntegrationMode mode : {IntegrationMode::energy_keeping, IntegrationMode::robust}) {
+    std::vector<std::vector<double>> ends;
+    std::vector<Energy> energies;
+    for (const bool held : {false, true}) {
+      System system(SystemOptions{.mode = mode, .damping = 0.1});
+      const auto particles = scatter(system, 20, 3);
+      system.set_damping(system.body(particles[3]), 0.5);
+      if (held)  // bonds without force: they bring the particles into islands
+        for (int i = 0; i < 20; i += 2) system.create_bond(particles[i], particles[i + 1], DragLaw{0});
+      system.create_field("fx = -3*x; fy = -3*y + 0.1*vx; fz = m*sin(t)");
+      for (int i = 0; i < 200; ++i) {
+        if (i % 10 == 0) system.apply_force(particles[5], {1, 2, 3});
+        const StepReport report = system.step(1.0 / 120);
+        ASSERT_EQ(report.unconverged, 0);
+        ASSERT_NEAR(book(report.energy), book(system.energy()), 1e-12);
+      }
+      ends.push_back(positions(system));
+      energies.push_back(system.energy());
+    }
+    for (std::size_t i = 0; i < ends[0].size(); ++i) EXPECT_NEAR(ends[0][i], ends[1][i], 1e-10);
+    EXPECT_NEAR(energies[0].dissipated, energies[1].dissipated, 1e-8);
+    EXPECT_NEAR(energies[0].external_work, energies[1].external_work, 1e-8);
+    EXPECT_GT(std::abs(energies[0].external_work), 0.1);
+  }
+}
+
+TEST(FreeParticles, AreTakenIntoIslandsAndLetGoAgain) {
+  System system;
+  const auto particles = scatter(system, 6, 4);
+  const double start = book(system.energy());
+  const auto run = [&] {
+    for (int i = 0; i < 10; ++i) ASSERT_NEAR(book(system.step(0.01).energy), start, 1e-9);
+    ASSERT_EQ(system.validate(), std::vector<std::string>{});
+  };
+  run();
+  const BondId bond = system.create_bond(particles[0], particles[1], SpringLaw{});
+  run();
+  system.set_active(bond, false);
+  run();
+  system.set_active(bond, true);
+  system.combine(particles[2], particles[3]);
+  run();
+  system.separate(particles[2], particles[3]);
+  system.destroy(bond);
+  run();
+  const GripId grip = system.create_grip(system.body(particles[4]), {}, {0, 0, 0});
+  run();
+  EXPECT_GT(system.energy().external_work, -1e9);
+  system.destroy(grip);
+  system.nail(particles[5]);
+  run();
+  system.release(particles[5]);
+  const Snapshot saved = system.snapshot();
+  run();
+  const std::uint64_t hash = system.state_hash();
+  system.restore(saved);
+  run();
+  EXPECT_EQ(system.state_hash(), hash);
+}
+
+TEST(FreeParticles, PushedByAnAbsurdForceStayWhereTheyAre) {
+  System system;
+  const auto particles = scatter(system, 2, 4);
+  const Vec3 before = system.position(particles[0]);
+  system.apply_force(particles[0], {1e9, 0, 0});
+  (void)system.step(0.01);
+  EXPECT_NE(system.position(particles[0]), before);
+  for (int i = 0; i < 2; ++i) system.create_field("fx = 1.5e308");
+  const StepReport report = system.step(0.01);
+  EXPECT_GT(report.unconverged, 0);
+  EXPECT_TRUE(std::isfinite(system.position(particles[0]).x));
+}
+
+TEST(Field, UniformIsGravityAndCanReplaceIt) {
+  System plain, replaced(SystemOptions{.gravity = {0, 50, 0}});
+  FieldOptions options;
+  options.parameters = {{"acceleration_y", -9.81}};
+  options.replaces_gravity = true;
+  const FieldId field = replaced.create_field("uniform", options);
+  for (System* const s : {&plain, &replaced}) {
+    (void)scatter(*s, 3, 5);
+    scenes::make_chain(*s, {.links = 5});
+    for (int i = 0; i < 100; ++i) (void)s->step(0.01);
+  }
+  const auto a = positions(plain), b = positions(replaced);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-7);
+  replaced.set_active(field, false);
+  const double before = replaced.velocity(replaced.particles()[0]).y;
+  (void)replaced.step(0.01);
+  EXPECT_NEAR(replaced.velocity(replaced.particles()[0]).y - before, 0.5, 1e-9) << "gravity is back";
+}
+
+TEST(Field, ActsOnItsGroupOnly) {
+  System system(SystemOptions{.gravity = {}});
+  const auto particles = scatter(system, 4, 6, 1, 0);
+  const GroupId group = system.create_group("leaves");
+  system.add(group, particles[1]);
+  system.add(group, particles[2]);
+  FieldOptions options;
+  options.group = group;
+  options.parameters = {{"velocity_x", 5}, {"drag", 1e9}};
+  const FieldId wind = system.create_field("wind", options);
+  (void)system.step(0.01);
+  EXPECT_EQ(system.velocity(particles[0]), Vec3{});
+  EXPECT_NEAR(system.velocity(particles[1]).x, 5, 1e-9) << "as fast as the wind, no faster";
+  system.remove(group, particles[1]);
+  system.set_parameter(wind, "velocity_x", 7);
+  (void)system.step(0.01);
+  EXPECT_NEAR(system.velocity(particles[1]).x, 5, 1e-9);
+  EXPECT_NEAR(system.velocity(particles[2]).x, 7, 1e-9);
+  EXPECT_EQ(system.particles(group), std::vector<ParticleId>{particles[2]});
+  EXPECT_THROW(system.destroy(group), std::invalid_argument);
+  system.destroy(wind);
+  system.destroy(group);
+  EXPECT_FALSE(system.contains(group));
+  EXPECT_EQ(system.validate(), std::vector<std::string>{});
+}
+
+TEST(Field, OfAWellKeepsAnOrbitClosed) {
+  for (const std::string text : {"well", "written"}) {
+    System system(SystemOptions{.gravity = {}});
+    const ParticleId p = system.create_particle(system.create_body(), {1, 0, 0}, 3, {0, 1, 0});
+    if (text == "well")
+      system.create_field("well", {"", {{"strength", 1}, {"softening", 0}}, {}, false});
+    else
+      system.create_field("r = sqrt(x^2 + y^2 + z^2); fx = -m*x/r^3; fy = -m*y/r^3; fz = -m*z/r^3");
+    const double turn = 2 * 3.14159265358979323846;
+    for (int i = 0; i < 20 * 500; ++i) (void)system.step(turn / 500);
+    EXPECT_NEAR(norm(system.position(p)), 1, 1e-4) << "twenty turns";
+    EXPECT_NEAR(system.position(p).x, 1, 5e-3) << "twenty turns";
+  }
+}
+
+TEST(Field, AFunctionSeesAllItsParticlesAndIsSwitchedOffWhenItThrows) {
+  System system(SystemOptions{.gravity = {}});
+  const auto particles = scatter(system, 3, 8, 1, 0);
+  bool angry = false;
+  std::size_t seen = 0;
+  const FieldId field = system.create_field(FieldFunction([&](const ParticleBatch& b) {
+                                              if (angry) throw std::runtime_error("enough");
+                                              seen = b.count;
+                                              for (std::size_t i = 0; i < 3 * b.count; ++i) b.force[i] = b.mass[i / 3];
+                                            }),
+                                            {"push", {}, {}, false});
+  (void)system.step(0.5);
+  EXPECT_EQ(seen, 3u);
+  EXPECT_NEAR(norm(system.velocity(particles[1]) - Vec3{0.5, 0.5, 0.5}), 0, 1e-12);
+  angry = true;
+  const StepReport report = system.step(0.5);
+  EXPECT_EQ(report.warnings, std::vector<std::string>{"field 0 (push) raised: enough; the field is switched off"});
+  EXPECT_FALSE(system.is_active(field));
+  EXPECT_TRUE(system.step(0.5).warnings.empty());
+}
+
+TEST(Field, WithoutAFiniteForceSaysWhere) {
+  System system(SystemOptions{.gravity = {}});
+  const ParticleId good = system.create_particle(system.create_body(), {1, 0, 0});
+  const ParticleId bad = system.create_particle(system.create_body(), {0, 0, 0});
+  system.create_field("fx = 1/x", {"pole", {}, {}, false});
+  const StepReport report = system.step(0.1);
+  EXPECT_EQ(report.warnings,
+            std::vector<std::string>{"field 0 (pole) gives no finite force on particle 1; there it gives none"});
+  EXPECT_NEAR(system.velocity(good).x, 0.1, 1e-12);
+  EXPECT_EQ(system.velocity(bad), Vec3{});
+}
+
+TEST(Pairs, ALennardJonesFluidKeepsItsEnergy) {
+  System system(SystemOptions{.gravity = {}});
+  std::mt19937 random(9);
+  for (int i = 0; i < 216; ++i) {
+    const Vec3 place{1.15 * (i % 6), 1.15 * (i / 6 % 6), 1.15 * (i / 36)};
+    const auto number = [&] { return std::uniform_real_distribution(-0.5, 0.5)(random); };
+    system.create_particle(system.create_body(), place, 1, {number(), number(), number()});
+  }
+  const PairsId pairs = system.create_pairs({system.find_law("lennard_jones"), {}, {}}, {.cutoff = 6});
+  const Vec3 momentum = system.momentum();
+  const double start = system.energy().kinetic + system.energy(pairs);
+  double drift = 0;
+  for (int i = 0; i < 400; ++i) {
+    const StepReport report = system.step(0.004);
+    ASSERT_TRUE(report.warnings.empty());
+    drift = std::max(drift, std::abs(report.energy.kinetic + system.energy(pairs) - start));
+  }
+  EXPECT_LT(drift, 1e-3 * std::abs(start));
+  EXPECT_LT(norm(system.momentum() - momentum), 1e-11);
+}
+
+TEST(Pairs, AreTheSameWrittenRestoredAndReplayed) {
+  std::vector<std::vector<double>> ends;
+  for (const bool written : {false, true}) {
+    System system(SystemOptions{.gravity = {}});
+    (void)scatter(system, 200, 10, 1, 0.2);
+    const LawId law = written
+                          ? system.create_law("energy = 0.5*k*where(r < d, r - d, 0)^2", {"", {{"k", 30}, {"d", 0.4}}})
+                          : system.find_law("soft_repulsion");
+    SharedLaw shared{law, {}, {}};
+    if (!written) shared.parameters = {{"stiffness", 30}, {"length", 0.4}};
+    system.start_recording();
+    system.create_pairs(shared, {.cutoff = 0.4});
+    for (int i = 0; i < 50; ++i) (void)system.step(0.01);
+    const Snapshot middle = system.snapshot();
+    for (int i = 0; i < 50; ++i) (void)system.step(0.01);
+    ends.push_back(positions(system));
+    const std::uint64_t hash = system.state_hash();
+    const Recording recording = system.stop_recording();
+    System other;
+    other.restore(middle);
+    for (int i = 0; i < 50; ++i) (void)other.step(0.01);
+    EXPECT_EQ(other.state_hash(), hash) << "the list of neighbours is no hidden state";
+    EXPECT_EQ(other.replay(recording), std::nullopt);
+  }
+  for (std::size_t i = 0; i < ends[0].size(); ++i) EXPECT_NEAR(ends[0][i], ends[1][i], 1e-10);
+}
+
+TEST(Pairs, LeaveOutPointsOfOneBodyAndPushNothingStatic) {
+  System system(SystemOptions{.gravity = {}});
+  const BodyId rod = system.create_body(), wall = system.create_body({.kind = BodyKind::static_});
+  const ParticleId a = system.create_particle(rod, {0, 0, 0}), b = system.create_particle(rod, {0.1, 0, 0});
+  const ParticleId post = system.create_particle(wall, {0.3, 0, 0});
+  SharedLaw law{system.find_law("coulomb"), {{"strength", 1}}, {}};
+  system.create_pairs(law, {.cutoff = 1});
+  (void)system.step(0.01);
+  EXPECT_NEAR(system.momentum().x, -0.01 * (1 / 0.09 + 1 / 0.04), 1e-9);
+  EXPECT_EQ(system.position(post).x, 0.3);
+  EXPECT_NEAR(norm(system.position(b) - system.position(a)), 0.1, 1e-12);
+}
+
+TEST(Groups, AndForcesRefuseBadInput) {
+  System system;
+  const ParticleId p = system.create_particle(system.create_body(), {});
+  const std::uint64_t hash = system.state_hash();
+  const auto refuses = [](auto call, const std::string& words) {
+    try {
+      call();
+      ADD_FAILURE() << "not refused: " << words;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  refuses([&] { system.create_group(""); }, "needs a name");
+  refuses([&] { system.create_group(std::string(40, 'x')); }, "shorter than 32");
+  refuses([&] { system.create_field("wnd"); }, "no field is called 'wnd'");
+  refuses([&] { system.create_field("fx = q"); }, "unknown name 'q'");
+  refuses([&] { system.create_field("gx = 1"); }, "defines 'fx', 'fy' or 'fz'");
+  refuses([&] { system.create_field("wind", {"", {{"drag", -1}}, {}, false}); }, "drag must be zero or more");
+  refuses([&] { system.create_field("wind", {"", {{"drga", 1}}, {}, false}); }, "did you mean 'drag'");
+  refuses([&] { system.create_field("wind", {"", {{"drag", NAN}}, {}, false}); }, "drag");
+  refuses([&] { system.create_field(FieldFunction{}); }, "needs a function");
+  const SharedLaw morse{system.find_law("morse"), {}, {}};
+  refuses([&] { system.create_pairs(morse, {.cutoff = 1}); }, "need a value for length");
+  refuses([&] { system.create_pairs({system.find_law("coulomb"), {}, {}}, {.cutoff = 0}); }, "cutoff must be positive");
+  refuses([&] { system.create_pairs({system.find_law("coulomb"), {}, {}}, {.cutoff = NAN}); }, "cutoff");
+  EXPECT_EQ(system.state_hash(), hash);
+  const GroupId group = system.create_group("a");
+  refuses([&] { system.create_group("a"); }, "already");
+  for (int i = 1; i < 32; ++i) system.create_group("g" + std::to_string(i));
+  refuses([&] { system.create_group("one more"); }, "at most 32");
+  system.destroy(group);
+  EXPECT_THROW(system.add(group, p), StaleIdError);
+}
+
+}  // namespace
+}  // namespace iota

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Groups, fields and pairwise forces from a script."""
+
+from __future__ import annotations
+
+import gc
+import math
+import weakref
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iota
+
+
+@pytest.fixture
+def space() -> iota.System:
+    return iota.System(gravity=(0, 0, 0))
+
+
+def scatter(system: iota.System, count: int, speed: float = 0.0) -> list[iota.Particle]:
+    random = np.random.default_rng(1)
+    return [
+        iota.Particle(iota.Body(system), place, velocity=tuple(velocity))
+        for place, velocity in zip(
+            random.uniform(-1, 1, (count, 3)), speed * random.normal(size=(count, 3)), strict=True
+        )
+    ]
+
+
+def test_wind_carries_the_particles_of_its_group_only(space: iota.System) -> None:
+    still, *leaves = scatter(space, 3)
+    group = iota.Group(space, "leaves")
+    group.add(*leaves)
+    wind = iota.Field(space, "wind", velocity=(3, 0, 0), drag=1000, group=group)
+    space.step(0.1)
+    assert still.velocity == (0, 0, 0) and leaves[0].velocity == pytest.approx((3, 0, 0))
+    wind.set(velocity=(0, 2, 0))
+    space.step(0.1)
+    assert leaves[0].velocity == pytest.approx((0, 2, 0))
+    assert wind.parameters == {"velocity_x": 0, "velocity_y": 2, "velocity_z": 0, "drag": 1000}
+    group.remove(leaves[0])
+    assert leaves[0] not in group and leaves[1] in group and len(group) == 1 and group.particles == [leaves[1]]
+    assert "leaves" in repr(group)
+
+
+def test_a_current_is_turbulent_and_repeats(space: iota.System) -> None:
+    ends = []
+    for _ in range(2):
+        system = iota.System(gravity=(0, 0, 0))
+        scatter(system, 50)
+        iota.Field(system, "current", velocity=(0.2, 0, 0), speed=1, size=0.5, drag=5, seed=4)
+        for _ in range(50):
+            system.step(0.02)
+        ends.append(system.positions)
+    np.testing.assert_array_equal(ends[0], ends[1])
+    assert np.std(system.velocities) > 0.2
+
+
+@pytest.mark.parametrize(
+    ("field", "arguments"),
+    [
+        ("well", {"strength": 1.0, "softening": 0.0}),
+        ("r = sqrt(x^2 + y^2 + z^2); fx = -m*k*x/r^3; fy = -m*k*y/r^3; fz = -m*k*z/r^3", {"k": 1.0}),
+        (lambda b: -b.mass[:, None] * b.position / np.linalg.norm(b.position, axis=1)[:, None] ** 3, {}),
+    ],
+)
+def test_a_well_holds_an_orbit_however_it_is_written(space: iota.System, field: Any, arguments: Any) -> None:
+    planet = iota.Particle(iota.Body(space), (1, 0, 0), mass=2, velocity=(0, 1, 0))
+    iota.Field(space, field, **arguments)
+    for _ in range(1000):
+        space.step(2 * math.pi / 1000)
+    assert planet.position == pytest.approx((1, 0, 0), abs=1e-3)
+
+
+def test_a_field_can_replace_gravity() -> None:
+    system = iota.System()
+    ball = iota.Particle(iota.Body(system))
+    link = iota.builder.chain(system, links=3)[0]
+    start = abs(system.momentum)
+    field = iota.Field(system, "fy = 0", replaces_gravity=True)
+    system.step(0.1)
+    assert ball.velocity == (0, 0, 0) and abs(system.momentum) == pytest.approx(start) and link.alive
+    field.active = False
+    system.step(0.1)
+    assert ball.velocity.y == pytest.approx(-0.981)
+
+
+def test_a_function_sees_arrays_in_the_order_of_its_particles(space: iota.System) -> None:
+    particles = scatter(space, 5)
+    group = iota.Group(space, "some")
+    group.add(*particles[1:4])
+    seen: list[Any] = []
+
+    def push(batch: iota.ParticleBatch) -> np.ndarray:
+        seen.extend([len(batch), batch.particles, batch.mass, batch.time, batch.dt, batch])
+        return np.outer(np.arange(len(batch)), [1, 0, 0])
+
+    iota.Field(space, push, group=group)
+    space.step(0.5)
+    assert seen[0] == 3 and seen[1] == particles[1:4] and seen[2].tolist() == [1, 1, 1] and seen[3:5] == [0, 0.5]
+    assert [p.velocity.x for p in particles] == pytest.approx([0, 0, 0.5, 1, 0])
+    with pytest.raises(RuntimeError, match="only until the function"):
+        len(seen[5])
+
+
+def test_hinged_particles_are_one_row_with_all_their_mass(space: iota.System) -> None:
+    bodies = iota.builder.chain(space, links=4)
+    rows: list[int] = []
+    masses: list[float] = []
+
+    def look(batch: iota.ParticleBatch) -> np.ndarray:
+        rows.append(len(batch))
+        masses.append(batch.mass.sum())
+        return np.zeros((len(batch), 3))
+
+    iota.Field(space, look)
+    space.step()
+    assert rows == [5] and masses[0] == pytest.approx(sum(p.mass for body in bodies for p in body.particles))
+
+
+@pytest.mark.parametrize(
+    ("function", "cause", "text"),
+    [
+        (lambda b: 1 / 0, ZeroDivisionError, "division by zero"),
+        (lambda b: np.zeros(3), ValueError, r"must have the shape \(2, 3\), one row a particle, not \(3,\)"),
+        (lambda b: iota.Body(b.particles[0].system), RuntimeError, "not possible"),
+    ],
+)
+def test_a_field_that_fails_is_named_and_switched_off(space: iota.System, function: Any, cause: Any, text: str) -> None:
+    scatter(space, 2)
+    field = iota.Field(space, function, name="gusts")
+    with pytest.raises(iota.ForceError, match=text) as caught:
+        space.step()
+    assert str(caught.value).startswith("field gusts was switched off") and isinstance(caught.value.__cause__, cause)
+    assert not field.active and caught.value.report.step == 1
+    space.step()
+
+
+def test_a_field_without_a_finite_force_warns_in_the_report(space: iota.System) -> None:
+    iota.Particle(iota.Body(space))
+    iota.Field(space, "fx = 1/x", name="pole")
+    assert space.step().warnings == ["field 0 (pole) gives no finite force on particle 0; there it gives none"]
+
+
+def test_pairwise_forces_by_name_and_by_expression_are_the_same() -> None:
+    ends = []
+    for law, arguments in (
+        ("lennard_jones", {"depth": 1, "size": 0.2}),
+        ("energy = 4*e*((s/r)^12 - (s/r)^6)", {"e": 1, "s": 0.2}),
+    ):
+        system = iota.System(gravity=(0, 0, 0))
+        for i in range(64):
+            iota.Particle(iota.Body(system), (0.24 * (i % 4), 0.24 * (i // 4 % 4), 0.24 * (i // 16)))
+        pairs = iota.Pairs(system, law, cutoff=2, **arguments)
+        start = pairs.energy
+        for _ in range(100):
+            system.step(0.001)
+        ends.append(system.positions)
+        assert system.energy.kinetic + pairs.energy == pytest.approx(start, rel=1e-2)
+        assert abs(system.momentum) < 1e-12
+    np.testing.assert_allclose(ends[0], ends[1], rtol=0, atol=1e-10)
+
+
+def test_a_flock_aligns(space: iota.System) -> None:
+    scatter(space, 60, speed=1.0)
+    before = space.momentum
+    iota.Pairs(space, "attract_repel", cutoff=1.5, alignment=0.5, repulsion_range=0.2)
+    spread = np.std(space.velocities, axis=0).sum()
+    for _ in range(150):
+        space.step(0.02)
+    assert np.std(space.velocities, axis=0).sum() < 0.5 * spread
+    assert abs(space.momentum - before) < 1e-11
+
+
+def test_two_particles_at_one_place_are_told(space: iota.System) -> None:
+    for _ in range(2):
+        iota.Particle(iota.Body(space))
+    pairs = iota.Pairs(space, "coulomb", cutoff=1)
+    assert space.step().warnings == [
+        "pairwise force 0 gives no finite force between particles 0 and 1; there it gives none"
+    ]
+    pairs.active = False
+    assert space.step().warnings == []
+    pairs.destroy()
+    assert not pairs.alive
+
+
+def test_bad_groups_fields_and_pairs_are_refused(space: iota.System) -> None:
+    (ball,) = scatter(space, 1)
+    group = iota.Group(space, "a")
+    before = space.state_hash()
+    for call, error, text in (
+        (lambda: iota.Group(space, "a"), ValueError, "already"),
+        (lambda: group.add(3), TypeError, "takes particles and bodies, not 3"),
+        (lambda: iota.Field(space, "wimd"), ValueError, "no field is called 'wimd'"),
+        (lambda: iota.Field(space, "fx = qq"), ValueError, "unknown name 'qq'"),
+        (lambda: iota.Field(space, "wind", velocity=(math.nan, 0, 0)), ValueError, "velocity must be finite"),
+        (lambda: iota.Field(space, "wind", drag="much"), TypeError, "drag must be a number or a vector"),
+        (lambda: iota.Field(space, 3), TypeError, "field must be"),
+        (lambda: iota.Field(space, "wind", group=ball), TypeError, "group must be a Group or None"),
+        (lambda: iota.Field(space, "wind", group=iota.Group(iota.System(), "b")), ValueError, "same system"),
+        (lambda: iota.Pairs(space, "morse", cutoff=1), ValueError, "need a value for length"),
+        (lambda: iota.Pairs(space, "coulomb", cutoff=-1), ValueError, "cutoff"),
+        (lambda: iota.Pairs(space, lambda b: 0, cutoff=1), TypeError, "law must be"),
+    ):
+        with pytest.raises(error, match=text):
+            call()
+    assert space.state_hash() == before and space.validate() == []
+
+
+def test_a_field_whose_function_knows_the_system_is_freed() -> None:
+    class Flag:
+        pass
+
+    flag = Flag()
+    gone = weakref.ref(flag)
+    system = iota.System()
+    iota.Particle(iota.Body(system))
+    iota.Field(system, lambda b, flag=flag, system=system: np.zeros((len(b), 3)))
+    system.step()
+    del flag, system
+    gc.collect()
+    assert gone() is None
+
+
+def test_forces_on_many_are_saved_and_restored(space: iota.System) -> None:
+    scatter(space, 30, speed=1.0)
+    iota.Field(space, "current", drag=1)
+    iota.Pairs(space, "soft_repulsion", cutoff=0.5, length=0.5)
+    saved = space.snapshot()
+    hashes = []
+    for _ in range(2):
+        for _ in range(20):
+            space.step(0.01)
+        hashes.append(space.state_hash())
+        space.restore(saved)
+    assert hashes[0] == hashes[1]
