@@ -22,7 +22,8 @@ constexpr const char* field_doc =
     "- a predefined one: 'uniform' (acceleration), 'wind' (velocity, drag), 'current' (turbulent: velocity, drag, speed, size,\n"
     "  octaves, evolution, seed), 'well' (centre, strength, softening: a heavy point), 'attractor' (centre, strength, range);\n"
     "- an expression that defines fx, fy, fz (N) of x, y, z, vx, vy, vz, m, t and parameters;\n"
-    "- a function of NumPy arrays, called once a step with a ParticleBatch; it returns the forces, shape (n, 3), N.\n\n"
+    "- a function of NumPy arrays, called once a step with a ParticleBatch; it returns the forces, shape (n, 3), N;\n"
+    "- compiled code, see docs/forces.md.\n\n"
     "Parameters are keywords; a vector stands for its three: velocity=(1, 0, 0). replaces_gravity=True makes it the default\n"
     "force of all particles instead of gravity.\n\n"
     "    iota.Field(system, 'wind', velocity=(3, 0, 0), drag=0.05, group=leaves)\n"
@@ -144,6 +145,16 @@ void make_field(FieldHandle* self, nb::object system_object, nb::object field, n
   FieldId id;
   if (nb::isinstance<nb::str>(field)) {
     id = engine.create_field(nb::cast<std::string>(field), options);
+  } else if (const std::uintptr_t address = address_of(field)) {
+    using Code = void (*)(std::int64_t count, double t, const double* position, const double* velocity,
+                          const double* mass, double* force);
+    if (name.empty()) options.name = function_name(field).substr(0, 31);
+    id =
+        engine.create_field(FieldFunction([code = reinterpret_cast<Code>(address)](const ParticleBatch& b) {
+                              code(static_cast<std::int64_t>(b.count), b.time, b.position, b.velocity, b.mass, b.force);
+                            }),
+                            options);
+    system->code.push_back(field);
   } else if (PyCallable_Check(field.ptr())) {
     if (name.empty()) options.name = function_name(field).substr(0, 31);
     auto function = std::make_shared<ScriptFunction>(ScriptFunction{field, "field " + options.name});
@@ -295,7 +306,7 @@ void bind_field(nb::module_& module) {
                                nb::is_weak_referenceable());
   type.def("__init__", &make_field, "system"_a, "field"_a, nb::kw_only(), "group"_a = nb::none(),
            "replaces_gravity"_a = false, "name"_a = "", "parameters"_a,
-           nb::sig("def __init__(self, system: System, field: str | collections.abc.Callable[[ParticleBatch], "
+           nb::sig("def __init__(self, system: System, field: str | int | collections.abc.Callable[[ParticleBatch], "
                    "numpy.typing.ArrayLike], *, group: Group | None = None, replaces_gravity: bool = False, "
                    "name: str = '', **parameters: float | Vec3 | collections.abc.Sequence[float]) -> None"));
   def_force(type);

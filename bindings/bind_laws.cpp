@@ -143,15 +143,6 @@ BatchFunction make_batch_function(SystemObject* system, std::shared_ptr<ScriptFu
   };
 }
 
-/// The address of compiled code: a number, a Numba cfunc, a ctypes function; 0 for anything else.
-std::uintptr_t address_of(nb::handle law) {
-  if (PyLong_Check(law.ptr()) && !PyBool_Check(law.ptr())) return nb::cast<std::uintptr_t>(law);
-  if (nb::hasattr(law, "address")) return nb::cast<std::uintptr_t>(law.attr("address"));
-  nb::object ctypes = nb::module_::import_("ctypes");
-  if (!nb::isinstance(law, ctypes.attr("_CFuncPtr"))) return 0;
-  return nb::cast<std::uintptr_t>(ctypes.attr("cast")(law, ctypes.attr("c_void_p")).attr("value"));
-}
-
 using BatchCode = void (*)(std::int64_t count, double t, const double* position_p, const double* position_q,
                            const double* velocity_p, const double* velocity_q, const double* parameters, double* force);
 
@@ -202,6 +193,14 @@ void make_law(LawHandle* self, nb::object system_object, nb::object law, const s
 std::string function_name(nb::handle function) {
   nb::object name = nb::getattr(function, "__qualname__", nb::none());
   return name.is_none() ? nb::type_name(function.type()).c_str() : nb::str(name).c_str();
+}
+
+std::uintptr_t address_of(nb::handle code) {
+  if (PyLong_Check(code.ptr()) && !PyBool_Check(code.ptr())) return nb::cast<std::uintptr_t>(code);
+  if (nb::hasattr(code, "address")) return nb::cast<std::uintptr_t>(code.attr("address"));
+  nb::object ctypes = nb::module_::import_("ctypes");
+  if (!nb::isinstance(code, ctypes.attr("_CFuncPtr"))) return 0;
+  return nb::cast<std::uintptr_t>(ctypes.attr("cast")(code, ctypes.attr("c_void_p")).attr("value"));
 }
 
 std::vector<LawParameter> to_parameters(const nb::kwargs& arguments) {

@@ -8,6 +8,9 @@ namespace iota::bindings {
 /// What a script calls a function.
 std::string function_name(nb::handle function);
 
+/// The address of compiled code: a number, a Numba cfunc, a ctypes function; 0 for anything else.
+std::uintptr_t address_of(nb::handle code);
+
 /// Keyword arguments as parameters of a law; None is the distance of the two ends (NaN).
 std::vector<LawParameter> to_parameters(const nb::kwargs& arguments);
 nb::dict to_dict(const std::vector<LawParameter>& parameters);

@@ -154,6 +154,25 @@ void print_restless(IntegrationMode mode, const char* name) {
   });
 }
 
+/// Forces of every make: expressions implicit and held, fields, noise, pairs with cell lists.
+void print_cloud() {
+  System system;
+  Random random(5);
+  std::vector<ParticleId> particles;
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3 place = 6 * random.point(), velocity = random.point();
+    particles.push_back(system.create_particle(system.create_body(), place, random.uniform(0.5, 2), velocity));
+  }
+  const LawId law =
+      system.create_law("energy = a*exp(-r)*(r - 1)^2 + 0.1*cos(3*r); force = -tanh(v)", {"", {{"a", 5}}});
+  for (std::size_t i = 0; i < 200; i += 2)
+    system.create_bond(particles[i], particles[i + 1], SharedLaw{law, {}, i % 4 == 0});
+  system.create_field("current", {"", {{"drag", 0.3}}, {}, false});
+  system.create_field("fx = -0.1*x*pow(abs(x), 0.3); fy = 9.81*m - 0.1*y; fz = -log(1 + z^2)*sign(z)");
+  system.create_pairs({system.find_law("morse"), {{"length", 0.3}, {"width", 4}}, {}}, {.cutoff = 0.9});
+  print("cloud", system, 50, 1.0 / 120);
+}
+
 }  // namespace
 }  // namespace iota
 
@@ -167,6 +186,7 @@ int main() {
   print_chain("free_flight", IntegrationMode::energy_keeping, {.links = 8, .nailed = false});
   print_net("net", 6);
   print_bodies();
+  print_cloud();
   print_restless(IntegrationMode::energy_keeping, "restless_energy_keeping");
   print_restless(IntegrationMode::robust, "restless_robust");
 }

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import math
 import weakref
@@ -103,6 +104,19 @@ def test_a_function_sees_arrays_in_the_order_of_its_particles(space: iota.System
     assert [p.velocity.x for p in particles] == pytest.approx([0, 0, 0.5, 1, 0])
     with pytest.raises(RuntimeError, match="only until the function"):
         len(seen[5])
+
+
+def test_a_field_can_be_compiled_code(space: iota.System) -> None:
+    scatter(space, 3)
+    doubles = ctypes.POINTER(ctypes.c_double)
+
+    @ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.c_double, doubles, doubles, doubles, doubles)
+    def push(count: int, time: float, position: Any, velocity: Any, mass: Any, force: Any) -> None:
+        np.ctypeslib.as_array(force, (count, 3))[:] = [1, 2, 3]
+
+    iota.Field(space, push)
+    space.step(0.5)
+    np.testing.assert_allclose(space.velocities, [[0.5, 1, 1.5]] * 3)
 
 
 def test_hinged_particles_are_one_row_with_all_their_mass(space: iota.System) -> None:
