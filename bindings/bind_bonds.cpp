@@ -22,7 +22,9 @@ constexpr const char* bond_doc =
     "    iota.Bond(p, q, 'energy = k*(r - r0)^4; force = -c*v', k=50, r0=None, c=0.1)\n"
     "    iota.Bond(p, q, lambda bond: 50 * (bond.distance - 1) * bond.direction)";
 
-constexpr const char* state_doc = "What the function of a bond is shown: its two ends at the start of the step.";
+constexpr const char* state_doc =
+    "What the function of a bond is shown: its two ends. In the energy-keeping mode positions are those of the middle of the\n"
+    "step, half a step ahead as velocities go; see docs/forces.md.";
 
 void make_bond(BondHandle* self, const ParticleHandle& p, const ParticleHandle& q, nb::object law,
                std::optional<bool> implicit, const nb::kwargs& keywords) {
