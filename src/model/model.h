@@ -263,6 +263,8 @@ class Model {
 
   Vec3 gravity{0, -9.81, 0};
   IntegrationMode mode = IntegrationMode::energy_keeping;
+  /// Whether forces are those at the end of a step (backward Euler), not in its middle.
+  bool steps_to_end_point() const { return mode == IntegrationMode::plausible || mode == IntegrationMode::robust; }
   double damping = 0;
   /// Name of who solves the equations of steps, ended by zeros; empty: the built-in one.
   std::array<char, 32> solver{};

@@ -170,7 +170,7 @@ System::Implementation::Rates System::Implementation::rates(std::uint32_t body, 
   }
   if (!(mass > 0)) return {};
   const Vec3 x = (1 / mass) * position, v = (1 / mass) * velocity, a = (1 / mass) * force;
-  const bool at_end = model.mode == IntegrationMode::robust || model.mode == IntegrationMode::plausible;
+  const bool at_end = model.steps_to_end_point();
   const double back = at_end ? 0 : model.last_dt / 2;
   Vec3 torque;
   const auto add = [&](double m, const Vec3& r, const Vec3& v1, const Vec3& a1) {

@@ -67,7 +67,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
   constexpr std::size_t chunk = 4096;  // sums are over chunks, so that they do not depend on the number of threads
   const std::size_t chunks = (in_order_.size() + chunk - 1) / chunk;
   shares_.assign(chunks, {});
-  const bool robust = model.mode == IntegrationMode::robust;
+  const bool robust = model.steps_to_end_point();
   const Vec3 gravity = model.acting_gravity();
   parallel.for_each(chunks, 1, [&](std::size_t c) {
     Share share;

@@ -18,7 +18,7 @@ class PointBalance {
  public:
   PointBalance(const Model& model, std::uint32_t particle)
       : model_(model), particle_(model.particles[particle]), slot_(particle), body_(model.bodies[particle_.body]) {
-    const bool at_end = model.mode == IntegrationMode::robust || model.mode == IntegrationMode::plausible;
+    const bool at_end = model.steps_to_end_point();
     back_ = at_end ? 0 : model.last_dt / 2;
   }
 
