@@ -196,7 +196,11 @@ std::string function_name(nb::handle function) {
 }
 
 std::uintptr_t address_of(nb::handle code) {
-  if (PyLong_Check(code.ptr()) && !PyBool_Check(code.ptr())) return nb::cast<std::uintptr_t>(code);
+  if (PyLong_Check(code.ptr()) && !PyBool_Check(code.ptr())) {
+    std::uintptr_t address = 0;
+    // No code lies at small numbers: whoever passes one means something else.
+    return nb::try_cast<std::uintptr_t>(code, address) && address >= 0x10000 ? address : 0;
+  }
   if (nb::hasattr(code, "address")) return nb::cast<std::uintptr_t>(code.attr("address"));
   nb::object ctypes = nb::module_::import_("ctypes");
   if (!nb::isinstance(code, ctypes.attr("_CFuncPtr"))) return 0;
