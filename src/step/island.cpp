@@ -86,7 +86,7 @@ void Island::add_masses(const Model& model, std::uint32_t body, const std::vecto
       add_mass_outer(nodes_of(model, p, node_of_ring), particle.mass);
     else if (model.is_unknown(particle) && model.ring_mass(particle.ring) == 0)
       add_virtual_mass(model, p, node_of_ring);
-    if (!model.is_unknown(particle)) slaves_.push_back(p);
+    if (!model.is_unknown(particle)) slaves_.push_back(p), slave_nodes_.push_back(nodes_of(model, p, node_of_ring));
   });
   model.for_each_inertia_of(body, [&](std::uint32_t i) {
     const model::InertiaPair& pair = model.inertia_pairs[i];
@@ -334,14 +334,11 @@ void Island::load(const Model& model, double h) {
     problem_.velocity[i] = r.velocity;
     problem_.force[i] = r.applied_force;
   }
-  for (const std::uint32_t p : slaves_) {  // forces on carried particles act through the basis
-    const Vec3& f = model.rings[model.particles[p].ring].applied_force;
+  for (std::size_t i = 0; i < slaves_.size(); ++i) {  // forces on carried particles act through the basis
+    const Vec3& f = model.rings[model.particles[slaves_[i]].ring].applied_force;
     if (f == Vec3{}) continue;
-    const Body& body = model.bodies[model.particles[p].body];
-    for (int i = 0; i < body.rank; ++i) {
-      const auto node = std::find(rings_.begin(), rings_.end(), model.particles[body.basis[i]].ring) - rings_.begin();
-      problem_.force[static_cast<std::size_t>(node)] += model.particles[p].weights[i] * f;
-    }
+    for (const auto& [node, weight] : slave_nodes_[i])
+      if (weight != 0) problem_.force[node] += weight * f;
   }
   load_bonds(model, h);
   auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints);

@@ -92,6 +92,7 @@ class Island {
   std::vector<std::uint32_t> tied_;      // particles of the first affine constraints
   std::vector<std::uint32_t> nails_;     // nodes of the affine constraints after them
   std::vector<std::uint32_t> slaves_;    // particles carried by their basis
+  std::vector<Weighted> slave_nodes_;    // of each, by which it is carried
   std::vector<std::uint32_t> springs_, drags_, radials_, grips_;
   ConstraintRows constraint_rows_;
   std::vector<double> grip_masses_;  // kg, what a hand can feel

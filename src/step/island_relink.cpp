@@ -144,6 +144,9 @@ bool Island::relink(const Model& model, std::span<const std::uint32_t> bodies) {
   for (const std::uint32_t node : removed) {
     const auto last = static_cast<std::uint32_t>(rings_.size() - 1);
     std::replace(nails_.begin(), nails_.end(), last, node);
+    for (auto& carriers : slave_nodes_)
+      for (auto& carrier : carriers)
+        if (carrier.first == last) carrier.first = node;
     rings_[node] = rings_.back(), pinned_[node] = pinned_.back(), node_damping_[node] = node_damping_.back();
     rings_.pop_back(), pinned_.pop_back(), node_damping_.pop_back();
   }
