@@ -299,7 +299,7 @@ class System {
   void set_mass(ParticleId, double);
   Vec3 net_force(ParticleId) const;  ///< all that acted on its share of mass in the last step, N
   bool is_nailed(ParticleId) const;
-  Vec3 nail_force(ParticleId) const;          ///< by the nail on the particle in the last step, N
+  Vec3 nail_force(ParticleId) const;  ///< by the nail on the particle in the last step, N
   /// On the particle's body by all that shares or nails its place, in the last step, N: what the hinge carries. A force
   /// applied to the shared particle itself counts as held by all its bodies alike.
   Vec3 hinge_force(ParticleId) const;

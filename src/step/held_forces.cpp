@@ -105,9 +105,7 @@ void System::Implementation::add_force(const model::Bond& bond, const Vec3& on_p
 
 // Held forces act best in the middle of the step. With the mid-point rule, positions half a step ahead make that the
 // leapfrog scheme, which neither gains nor loses energy in the long run; forces at the start of the step would pump energy in.
-double System::Implementation::held_ahead(double h) const {
-  return model.steps_to_end_point() ? 0 : h / 2;
-}
+double System::Implementation::held_ahead(double h) const { return model.steps_to_end_point() ? 0 : h / 2; }
 
 void System::Implementation::run_laws(StepReport& report) {
   held_forces.update(model);
