@@ -9,7 +9,8 @@ import pytest
 
 import iota
 from iota import looks
-from iota.world.scene import Scene, fitting_camera, into_frame, turn_from_x
+from iota.world.frames import into_frame, turn_from_x
+from iota.world.scene import Scene, fitting_camera
 
 
 def described(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:

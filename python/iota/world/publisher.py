@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from iota._core import Particle, Server, System, Vec3
 from iota.simulator import Simulator
-from iota.world import page
+from iota.world import page, ties
 from iota.world.callbacks import Hook
 from iota.world.scene import fitting_camera
 
@@ -82,6 +82,7 @@ class Publisher:
         self._set("statics", json.dumps(world.statics))
         self._set("actions", json.dumps([action.describe() for action in world._actions.values()]))
         self._set("bodies", bodies)
+        self._set("ties", ties.describe(system))
         if isinstance(system, System):
             self.server.publish_structure(system)
         else:

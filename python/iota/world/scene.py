@@ -13,8 +13,8 @@ import numpy as np
 
 from iota._core import Body, Box, Capsule, Cylinder, Mesh, Particle, Solid, Sphere, System, Torus, Vec3
 from iota.looks import Looks, Shape, box, capsule, cylinder, sphere, torus
-
-Quaternion = Sequence[float]
+from iota.world import ties
+from iota.world.frames import Quaternion, into_frame, relative_turn, turn_from_x, turned
 
 
 @dataclass(frozen=True)
@@ -34,37 +34,6 @@ def fitting_camera(system: System) -> Camera:
     centre, size = (low + high) / 2, max(float(np.linalg.norm(high - low)), 1.0)
     eye = centre + size * np.array([0.6, 0.25, 1.2])
     return Camera(tuple(map(float, eye)), tuple(map(float, centre)))
-
-
-def into_frame(point: Vec3, centre: Vec3, orientation: Quaternion) -> Vec3:
-    """World place -> the body's drawn frame."""
-    x, y, z, w = orientation
-    axis, arm = Vec3(-x, -y, -z), point - centre
-    twice = axis.cross(arm) * 2.0
-    return arm + twice * w + axis.cross(twice)
-
-
-def turn_from_x(direction: Vec3) -> tuple[float, float, float, float]:
-    """The shortest rotation that takes +x to a unit vector, as a quaternion x y z w."""
-    if direction.x < -0.999999:
-        return (0.0, 0.0, 1.0, 0.0)
-    w = ((1 + direction.x) / 2) ** 0.5
-    axis = Vec3(1, 0, 0).cross(direction) * (0.5 / w)
-    return (axis.x, axis.y, axis.z, w)
-
-
-def relative_turn(frame: Quaternion, turned: Quaternion) -> Quaternion:
-    """The rotation from a frame to another one, as a quaternion x y z w with w at least 0."""
-    ax, ay, az, aw = -frame[0], -frame[1], -frame[2], frame[3]
-    bx, by, bz, bw = turned
-    w = aw * bw - ax * bx - ay * by - az * bz
-    q = (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        w,
-    )
-    return q if w >= 0 else (-q[0], -q[1], -q[2], -w)
 
 
 def solid_shapes(solid: object, material: str, **more: Any) -> list[Shape]:
@@ -95,12 +64,6 @@ def solid_shapes(solid: object, material: str, **more: Any) -> list[Shape]:
     return shapes
 
 
-def turned(q: Quaternion, v: Vec3) -> Vec3:
-    axis = Vec3(q[0], q[1], q[2])
-    twice = axis.cross(v) * 2.0
-    return v + twice * q[3] + axis.cross(twice)
-
-
 class Scene:
     """Classes of bodies and their looks. `describe` gives the page's "bodies" and "classes"."""
 
@@ -117,7 +80,7 @@ class Scene:
 
     def describe(self) -> tuple[str, str]:
         """JSON texts of "classes" and "bodies"."""
-        classes: dict[str, Any] = dict(self.classes)
+        classes: dict[str, Any] = {**ties.default_looks(self._scale()), **self.classes}
         bodies = [self._describe_body(body, classes) for body in self._system.bodies]
         return json.dumps(classes, separators=(",", ":")), json.dumps(bodies, separators=(",", ":"))
 

@@ -20,11 +20,12 @@ from iota.simulator import Simulator
 from iota.world import options as run_options
 from iota.world.callbacks import GO_ON, Guard, Hook
 from iota.world.event import Event
+from iota.world.frames import turn_from_x
 from iota.world.hands import Client, Hands
 from iota.world.inputs import MAX_SPEED, Inputs
 from iota.world.pacer import Pacer
 from iota.world.publisher import LEVELS, Action, Publisher
-from iota.world.scene import Camera, Scene, turn_from_x
+from iota.world.scene import Camera, Scene
 from iota.world.schedule import Schedule
 from iota.world.summary import RunSummary, Tally
 

@@ -17,6 +17,7 @@ import { HoldLines } from "../scene/hold_lines.ts";
 import { materialOf, palette } from "../scene/materials.ts";
 import { Stage } from "../scene/stage.ts";
 import { allowAnisotropy } from "../scene/textures.ts";
+import { TieView } from "../scene/tie_view.ts";
 import { usualLateness } from "../scene/pose_buffer.ts";
 import { WorldModel, type Change } from "../scene/world_model.ts";
 import { Sound } from "../ui/sound.ts";
@@ -75,6 +76,7 @@ export class Page implements ConnectionListener, GestureListener {
   readonly camera = new PerspectiveCamera(42, 1, 0.02, 200);
   readonly model = new WorldModel((change) => this.modelChanged_(change));
   readonly view = new BodyView(this.model);
+  readonly ties = new TieView(this.model, this.view.poses);
   readonly stage: Stage;
   readonly gestures = new Gestures(this.view, this);
   readonly navigation = new Navigation(this.camera);
@@ -98,6 +100,7 @@ export class Page implements ConnectionListener, GestureListener {
   private placed_ = false;
   private fresh_ = true;
   private rebuild_: "no" | "yes" | "regrow" = "no";
+  private retie_ = false;
   private last_ = 0;
   private drawUntil_ = 0;
   private warmed_ = 0;
@@ -113,7 +116,7 @@ export class Page implements ConnectionListener, GestureListener {
     allowAnisotropy(this.renderer);
     this.stage = new Stage(this.scene, this.renderer);
     this.rig.add(this.camera);
-    this.scene.add(this.rig, this.statics_, this.view.root, this.holdLines_.root, this.flashes_.root);
+    this.scene.add(this.rig, this.statics_, this.view.root, this.ties.root, this.holdLines_.root, this.flashes_.root);
     this.selectedOutline_.material.thickness.value = 0.0026;
     this.hoverOutline_.material.thickness.value = 0.0022;
     this.view.addOutline(this.selectedOutline_);
@@ -286,6 +289,9 @@ export class Page implements ConnectionListener, GestureListener {
       case "bodies":
         if (this.rebuild_ === "no") this.rebuild_ = "yes";
         break;
+      case "ties":
+        this.retie_ = true;
+        break;
       case "statics":
         this.buildStatics_();
         break;
@@ -355,6 +361,10 @@ export class Page implements ConnectionListener, GestureListener {
     this.last_ = now;
     const seconds = Math.min(Math.max(elapsed, 0), 100) / 1000;
     this.timing.frameMs += (Math.min(elapsed, 1000) - this.timing.frameMs) * 0.05;
+    if (this.rebuild_ !== "no" || this.retie_) {
+      this.ties.rebuild(this.look);
+      this.retie_ = false;
+    }
     if (this.rebuild_ !== "no") {
       this.view.rebuild(this.look, this.rebuild_ === "regrow");
       this.rebuild_ = "no";
@@ -369,6 +379,7 @@ export class Page implements ConnectionListener, GestureListener {
     this.gestures.updateAll();
     this.mark_();
     this.view.draw(seconds);
+    this.ties.draw();
     this.flashes_.update(seconds, this.camera);
     for (const listener of this.listeners) listener.beforeRender?.(seconds, xr);
     const scripted = performance.now();

@@ -21,6 +21,24 @@ export interface StaticEntry {
   readonly rotation: Quat;
 }
 
+/** A point of a body, in its frame; of the world without a body. m. */
+export interface TieEnd {
+  readonly body: number | null;
+  readonly point: Vec3;
+}
+
+/** What ties two bodies together, and is drawn between them. */
+export interface TieEntry {
+  readonly kind: TieKind;
+  readonly className: string;
+  readonly a: TieEnd;
+  readonly b: TieEnd;
+  /** Of a spring at rest, a rope pulled taut, a rod, m. */
+  readonly length: number;
+}
+
+export type TieKind = "spring" | "rope" | "rod";
+
 export interface ActionEntry {
   readonly name: string;
   readonly key: string;
@@ -53,7 +71,7 @@ export interface Hold {
 }
 
 /** Which part of the model changed; listeners redraw only that. */
-export type Change = "world" | "bodies" | "statics" | "actions" | "structure" | "clients";
+export type Change = "world" | "bodies" | "ties" | "statics" | "actions" | "structure" | "clients";
 
 const emptyWorld: WorldSettings = { title: "", looks: [], look: "", camera: null, ground: null, dt: 0 };
 
@@ -84,6 +102,7 @@ export class WorldModel {
   classes = new Map<string, Map<string, readonly Shape[]>>();
   bodies = new Map<number, BodyEntry>();
   statics: readonly StaticEntry[] = [];
+  ties: readonly TieEntry[] = [];
   actions: readonly ActionEntry[] = [];
   clients: readonly ClientEntry[] = [];
   articulates: readonly BodyArticulate[] = [];
@@ -123,6 +142,10 @@ export class WorldModel {
       case "bodies":
         this.bodies = readBodies(value === null ? [] : list(value, key));
         this.changed_("bodies");
+        break;
+      case "ties":
+        this.ties = value === null ? [] : list(value, key).map(readTie);
+        this.changed_("ties");
         break;
       case "statics":
         this.statics = value === null ? [] : list(value, key).map(readStatic);
@@ -188,6 +211,17 @@ export class WorldModel {
     return looks.get(look) ?? looks.get("*") ?? looks.values().next().value ?? [];
   }
 
+  /** Ties that are drawn alike. */
+  tiesByClass(): Map<string, TieEntry[]> {
+    const classes = new Map<string, TieEntry[]>();
+    for (const tie of this.ties) {
+      const members = classes.get(tie.className);
+      if (members === undefined) classes.set(tie.className, [tie]);
+      else members.push(tie);
+    }
+    return classes;
+  }
+
   /** Shapes of a body at their places, in a look. */
   placedShapes(entry: BodyEntry, look: string): PlacedShape[] {
     return this.shapesOfClass(entry.className, look).map((shape) => placeShape(shape, entry.odd, entry.length));
@@ -225,14 +259,18 @@ function readClasses(json: Json): Map<string, Map<string, readonly Shape[]>> {
 
 const kinds: readonly string[] = ["dynamic", "static", "scripted", "inactive"];
 
+function readSlot(value: unknown): number {
+  if (typeof value !== "number" || !Number.isInteger(value) || value < 0 || value > 0xffff) {
+    throw new Error(`body must be a slot from 0 to 65535, it is ${JSON.stringify(value)}`);
+  }
+  return value;
+}
+
 function readBodies(items: unknown[]): Map<number, BodyEntry> {
   const bodies = new Map<number, BodyEntry>();
   for (const item of items) {
     const json = object(item, "body");
-    const body = json["body"];
-    if (typeof body !== "number" || !Number.isInteger(body) || body < 0 || body > 0xffff) {
-      throw new Error(`body must be a slot from 0 to 65535, it is ${JSON.stringify(body)}`);
-    }
+    const body = readSlot(json["body"]);
     const kind = text(json["kind"], "dynamic");
     const length = json["length"];
     bodies.set(body, {
@@ -249,6 +287,26 @@ function readBodies(items: unknown[]): Map<number, BodyEntry> {
 function readStatic(item: unknown): StaticEntry {
   const json = object(item, "static");
   return { shape: parseShape(json["shape"]), position: vec3(json["position"], "position"), rotation: parseRotation(json["rotation"]) };
+}
+
+const tieKinds: readonly string[] = ["spring", "rope", "rod"];
+
+function readTie(item: unknown): TieEntry {
+  const json = object(item, "tie");
+  const kind = text(json["kind"], "");
+  if (!tieKinds.includes(kind)) throw new Error(`unknown kind of tie ${JSON.stringify(kind)}; known: ${tieKinds.join(", ")}`);
+  const end = (name: string): TieEnd => {
+    const of = object(json[name], name);
+    return { body: of["body"] === null ? null : readSlot(of["body"]), point: vec3(of["point"], `${name}.point`) };
+  };
+  const length = json["length"];
+  return {
+    kind: kind as TieKind,
+    className: text(json["class"], kind),
+    a: end("a"),
+    b: end("b"),
+    length: typeof length === "number" && length > 0 ? length : 0,
+  };
 }
 
 function readAction(item: unknown): ActionEntry {

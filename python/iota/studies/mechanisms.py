@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A workbench of small machines: an engine, a torsion pendulum, a shaft with two crosses, a crane whose rope can break."""
+
+from __future__ import annotations
+
+import math
+
+import iota
+from iota import looks
+
+BENCH = 0.9  # height of the bench's top, m
+STEEL = 7800.0  # kg/m^3
+WOOD = 700.0
+
+
+def build() -> iota.World:
+    """The world of the study."""
+    system = iota.System(damping=0.05)
+    world = iota.World(system, title="mechanisms")
+    present(world)
+    engine(world, iota.Vec3(-1.0, BENCH + 0.28, 0))
+    pendulum(world, iota.Vec3(-0.28, BENCH + 0.26, 0))
+    shaft(world, iota.Vec3(0.12, BENCH + 0.3, 0))
+    crane(world, iota.Vec3(1.0, BENCH, 0))
+    return world
+
+
+def present(world: iota.World) -> None:
+    """The bench, and where one stands in front of it."""
+    world.add_static(looks.box((2.9, 0.05, 0.6), "wood"), (0.1, BENCH - 0.025, 0))
+    for x in (-1.2, 1.4):
+        for z in (-0.22, 0.22):
+            world.add_static(looks.box((0.07, BENCH - 0.05, 0.07), "wood"), (x, (BENCH - 0.05) / 2, z))
+    world.camera = iota.Camera(position=(0.25, 1.65, 2.5), target=(0.1, 1.15, 0))
+
+
+def stand(world: iota.World, at: iota.Vec3, depth: float = 0.1) -> None:
+    """A bearing block behind `at`, with its axle along z, on a post."""
+    world.add_strut((at.x, BENCH, -depth), (at.x, at.y, -depth), looks.cylinder(0.016, "steel"))
+    world.add_strut((at.x, at.y, -depth - 0.02), (at.x, at.y, 0.03), looks.cylinder(0.01, "brass"))
+
+
+def bar(system: iota.System, start: iota.Vec3, end: iota.Vec3, width: float, density: float = STEEL) -> iota.Body:
+    """A flat bar from `start` to `end` in a plane across z."""
+    along, middle = end - start, (start + end) * 0.5
+    turn = math.atan2(along.y, along.x) / 2
+    return iota.Body(
+        system,
+        shape=iota.Box((abs(along) + width, width, 0.012)),
+        density=density,
+        position=middle,
+        orientation=(0, 0, math.sin(turn), math.cos(turn)),
+    )
+
+
+def engine(world: iota.World, axle: iota.Vec3) -> None:
+    """A motor turns a crank, a rod pushes a piston along its guide: one closed loop, exact all the way round."""
+    system, crank, rod = world.system, 0.09, 0.3
+    about_z = (0.0, 0.5**0.5, 0.0, 0.5**0.5)
+    wheel = iota.Body(system, shape=iota.Cylinder(0.12, 0.02), density=STEEL, position=axle, orientation=about_z)
+    pin, wrist = axle + (crank, 0, 0.03), axle + (crank + rod, 0, 0.03)
+    connecting_rod = bar(system, pin, wrist, 0.025)
+    piston = iota.Body(system, shape=iota.Box((0.1, 0.07, 0.07)), density=2700, position=wrist)
+    motor = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(2 * math.pi, 20))
+    system.revolute(connecting_rod, wheel, at=pin, axis=(0, 0, 1))
+    system.revolute(connecting_rod, piston, at=wrist, axis=(0, 0, 1))
+    system.prismatic(piston, at=wrist, axis=(1, 0, 0))
+    stand(world, axle)
+    for side in (-0.05, 0.05):
+        world.add_static(looks.box((0.34, 0.012, 0.09), "steel"), (wrist.x - crank, wrist.y + side, wrist.z))
+    world.add_static(looks.box((0.04, axle.y - BENCH, 0.04), "steel"), (wrist.x, (axle.y + BENCH) / 2 - 0.03, -0.05))
+
+    @world.action("reverse", key="r", help="turns the engine's motor the other way")
+    def reverse() -> None:
+        motor.angle.motor_speed = -motor.angle.motor_speed
+
+
+def pendulum(world: iota.World, axle: iota.Vec3) -> None:
+    """A bar on a torsion spring, with stops."""
+    system = world.system
+    swing = bar(system, axle - (0, 0.05, 0), axle + (0, 0.24, 0), 0.03)
+    joint = system.revolute(swing, at=axle, axis=(0, 0, 1), limits=(-1.0, 1.0), spring=(25.0, 0.02, 0.0))
+    swing.angular_velocity = (0, 0, 6)
+    assert joint.angle.value == 0
+    stand(world, axle, 0.06)
+
+
+def shaft(world: iota.World, bearing: iota.Vec3) -> None:
+    """A motor turns a shaft; two crosses carry the turn round a corner and make it even again."""
+    system, lean, length = world.system, 0.5, 0.2
+    directions = [iota.Vec3(math.cos(a), math.sin(a), 0) for a in (0, lean, 0)]
+    place, parts = bearing, []
+    for direction, angle in zip(directions, (0, lean, 0), strict=True):
+        end = place + direction * length
+        parts.append(
+            iota.Body(
+                system,
+                shape=iota.Box((length * 0.9, 0.035, 0.035)),
+                density=STEEL,
+                position=(place + end) * 0.5,
+                orientation=(0, 0, math.sin(angle / 2), math.cos(angle / 2)),
+            )
+        )
+        place = end
+    first, middle, last = parts
+    cross = bearing + directions[0] * length
+    system.revolute(first, at=bearing + directions[0] * (length / 2), axis=(1, 0, 0), motor=(3.0, 5))
+    system.universal(first, middle, at=cross, axis=(0, 0, 1), second_axis=directions[1].cross((0, 0, 1)))
+    cross = cross + directions[1] * length
+    system.universal(middle, last, at=cross, axis=directions[1].cross((0, 0, 1)), second_axis=(0, 0, 1))
+    system.cylindrical(last, at=cross + directions[2] * (length / 2), axis=(1, 0, 0))
+    for x, y in ((bearing.x + length / 2, bearing.y), (cross.x + length / 2, cross.y)):
+        world.add_strut((x, BENCH, 0), (x, y - 0.03, 0), looks.cylinder(0.014, "steel"))
+        world.add_static(looks.torus(0.036, 0.012, "brass"), (x, y, 0), (0, 0.5**0.5, 0, 0.5**0.5))
+
+
+def crane(world: iota.World, foot: iota.Vec3) -> None:
+    """A boom that a weld holds; from its end a weight on a rope that breaks when it is pulled too hard."""
+    system = world.system
+    shoulder = foot + (0, 0.55, 0)
+    tip = shoulder + (0.32, 0.12, 0)
+    boom = bar(system, shoulder, tip, 0.03)
+    system.weld(boom, at=shoulder)
+    hook = boom.attach(tip)
+    weight = iota.Body(
+        system, shape=iota.Sphere(0.05), density=STEEL, position=tip - (0, 0.36, 0), attachments=[(0, 0.05, 0)]
+    )
+    rope = system.rope(hook, weight.attachments[0], break_force=150)
+    world.add_strut(foot - (0, 0, 0), shoulder, looks.cylinder(0.025, "steel"))
+
+    @world.action("mend", key="m", help="ties the crane's rope again")
+    def mend() -> None:
+        if rope.broken:
+            rope.active = True

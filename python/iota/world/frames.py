@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames of bodies: a place and a unit quaternion x y z w."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from iota._core import Vec3
+
+Quaternion = Sequence[float]
+
+
+def into_frame(point: Vec3, centre: Vec3, orientation: Quaternion) -> Vec3:
+    """World place -> the body's drawn frame."""
+    x, y, z, w = orientation
+    axis, arm = Vec3(-x, -y, -z), point - centre
+    twice = axis.cross(arm) * 2.0
+    return arm + twice * w + axis.cross(twice)
+
+
+def turned(q: Quaternion, v: Vec3) -> Vec3:
+    """The vector after the rotation q."""
+    axis = Vec3(q[0], q[1], q[2])
+    twice = axis.cross(v) * 2.0
+    return v + twice * q[3] + axis.cross(twice)
+
+
+def turn_from_x(direction: Vec3) -> tuple[float, float, float, float]:
+    """The shortest rotation that takes +x to a unit vector, as a quaternion x y z w."""
+    if direction.x < -0.999999:
+        return (0.0, 0.0, 1.0, 0.0)
+    w = ((1 + direction.x) / 2) ** 0.5
+    axis = Vec3(1, 0, 0).cross(direction) * (0.5 / w)
+    return (axis.x, axis.y, axis.z, w)
+
+
+def relative_turn(frame: Quaternion, turned: Quaternion) -> Quaternion:
+    """The rotation from a frame to another one, as a quaternion x y z w with w at least 0."""
+    ax, ay, az, aw = -frame[0], -frame[1], -frame[2], frame[3]
+    bx, by, bz, bw = turned
+    w = aw * bw - ax * bx - ay * by - az * bz
+    q = (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        w,
+    )
+    return q if w >= 0 else (-q[0], -q[1], -q[2], -w)

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What ties bodies together, as the page draws it: springs, ropes and rods, each between two points."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from iota._core import Particle, System
+from iota.looks import Looks, cylinder
+from iota.simulator import Simulator
+from iota.world.frames import into_frame
+
+KINDS = ("spring", "rope", "rod")
+
+
+def default_looks(radius: float) -> dict[str, Looks]:
+    """How each kind is drawn unless the script has a class of that name; radius: that of a rod, m."""
+    return {
+        "spring": {"*": {**cylinder(0.8 * radius, "steel"), "tube": 0.12 * radius}},
+        "rope": {"*": cylinder(0.35 * radius, "rope")},
+        "rod": {"*": cylinder(0.4 * radius, "steel")},
+    }
+
+
+def describe(system: System | Simulator) -> str:
+    """JSON text of the scene's "ties": those that are active, of kinds that one can see."""
+    if not isinstance(system, System):
+        return "[]"
+    ties = [
+        _tie("spring", *bond.ends, bond.parameters["length"])
+        for bond in system.bonds
+        if bond.active and bond.law.name == "spring"
+    ]
+    ties += [
+        _tie(constraint.kind, *constraint.particles[:2], constraint.length)
+        for constraint in system.constraints
+        if constraint.active and constraint.kind in KINDS
+    ]
+    return json.dumps(ties, separators=(",", ":"))
+
+
+def _tie(kind: str, p: Particle, q: Particle, length: float) -> dict[str, Any]:
+    return {"kind": kind, "class": kind, "length": length, "a": _end(p), "b": _end(q)}
+
+
+def _end(particle: Particle) -> dict[str, Any]:
+    body = particle.body
+    point = into_frame(particle.position, body.centre_of_mass, body.orientation)
+    # To a micrometre: the same point of a body that has moved gives the same text, and is not sent again.
+    return {"body": body.slot, "point": [round(v, 6) + 0.0 for v in point]}
