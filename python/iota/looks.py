@@ -30,6 +30,8 @@ def _shape(kind: str, material: str, more: dict[str, Any], **sizes: float | None
         if size is not None and not (math.isfinite(size) and size >= 0):
             raise ValueError(f"{name} of a {kind} must be finite and at least 0 m, not {size}")
     unknown = more.keys() - {"color", "offset", "rotation", "turn"}
+    if kind == "solid":
+        unknown = more.keys() - {"color"}
     if unknown:
         raise TypeError(f"a {kind} has no {', '.join(sorted(unknown))}")
     return {"type": kind, "material": material, **{n: s for n, s in sizes.items() if s is not None}, **more}
@@ -67,3 +69,8 @@ def chain_link(length: float, material: str = "steel") -> Shape:
     """A link of a real chain for a body of `length` m: neighbours touch where they are hinged, turned by 90 degrees."""
     tube, radius = 0.085 * length, 0.26 * length
     return torus(radius, tube, material, stretch=length + 2 * (tube - radius), turn=math.pi / 2)
+
+
+def solid(material: str, **more: Any) -> Shape:
+    """For bodies given by shape: that shape in another material. `more`: color."""
+    return _shape("solid", material, more)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A workbench of small machines: an engine, a torsion pendulum, a shaft with two crosses, a crane whose rope can break."""
+"""A workbench of small machines: an engine, a torsion pendulum, a shaft with two crosses, scales, a crane whose rope can break."""
 
 from __future__ import annotations
 
@@ -15,23 +15,27 @@ WOOD = 700.0
 
 def build() -> iota.World:
     """The world of the study."""
-    system = iota.System(damping=0.05)
-    world = iota.World(system, title="mechanisms")
+    world = iota.World(iota.System(), title="mechanisms")
     present(world)
-    engine(world, iota.Vec3(-1.0, BENCH + 0.28, 0))
-    pendulum(world, iota.Vec3(-0.28, BENCH + 0.26, 0))
-    shaft(world, iota.Vec3(0.12, BENCH + 0.3, 0))
-    crane(world, iota.Vec3(1.0, BENCH, 0))
+    engine(world, iota.Vec3(-0.78, BENCH + 0.24, 0))
+    pendulum(world, iota.Vec3(-0.2, BENCH + 0.2, 0))
+    shaft(world, iota.Vec3(-0.02, BENCH + 0.24, 0))
+    scales(world, iota.Vec3(0.72, BENCH + 0.62, 0))
+    crane(world, iota.Vec3(0.98, BENCH, 0))
     return world
 
 
 def present(world: iota.World) -> None:
     """The bench, and where one stands in front of it."""
-    world.add_static(looks.box((2.9, 0.05, 0.6), "wood"), (0.1, BENCH - 0.025, 0))
-    for x in (-1.2, 1.4):
+    world.add_static(looks.box((2.5, 0.05, 0.6), "wood"), (0.15, BENCH - 0.025, 0))
+    for x in (-1.0, 1.3):
         for z in (-0.22, 0.22):
             world.add_static(looks.box((0.07, BENCH - 0.05, 0.07), "wood"), (x, (BENCH - 0.05) / 2, z))
-    world.camera = iota.Camera(position=(0.25, 1.65, 2.5), target=(0.1, 1.15, 0))
+    for material in ("steel", "brass", "rubber", "wood"):
+        world.classes[material] = {"*": looks.solid(material)}
+    world.classes["spring"] = {"*": {**looks.cylinder(0.016, "steel"), "tube": 0.0022}}
+    world.classes["rope"] = {"*": looks.cylinder(0.005, "rope")}
+    world.camera = iota.Camera(position=(0.2, 1.5, 1.85), target=(0.12, 1.14, 0))
 
 
 def stand(world: iota.World, at: iota.Vec3, depth: float = 0.1) -> None:
@@ -61,6 +65,8 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
     pin, wrist = axle + (crank, 0, 0.03), axle + (crank + rod, 0, 0.03)
     connecting_rod = bar(system, pin, wrist, 0.025)
     piston = iota.Body(system, shape=iota.Box((0.1, 0.07, 0.07)), density=2700, position=wrist)
+    world.look(wheel, "brass")
+    world.look([connecting_rod, piston], "steel")
     motor = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(2 * math.pi, 20))
     system.revolute(connecting_rod, wheel, at=pin, axis=(0, 0, 1))
     system.revolute(connecting_rod, piston, at=wrist, axis=(0, 0, 1))
@@ -79,9 +85,9 @@ def pendulum(world: iota.World, axle: iota.Vec3) -> None:
     """A bar on a torsion spring, with stops."""
     system = world.system
     swing = bar(system, axle - (0, 0.05, 0), axle + (0, 0.24, 0), 0.03)
-    joint = system.revolute(swing, at=axle, axis=(0, 0, 1), limits=(-1.0, 1.0), spring=(25.0, 0.02, 0.0))
+    world.look(swing, "brass")
+    system.revolute(swing, at=axle, axis=(0, 0, 1), limits=(-1.0, 1.0), spring=(25.0, 0.02, 0.0))
     swing.angular_velocity = (0, 0, 6)
-    assert joint.angle.value == 0
     stand(world, axle, 0.06)
 
 
@@ -102,6 +108,7 @@ def shaft(world: iota.World, bearing: iota.Vec3) -> None:
             )
         )
         place = end
+    world.look(parts, "steel")
     first, middle, last = parts
     cross = bearing + directions[0] * length
     system.revolute(first, at=bearing + directions[0] * (length / 2), axis=(1, 0, 0), motor=(3.0, 5))
@@ -112,6 +119,28 @@ def shaft(world: iota.World, bearing: iota.Vec3) -> None:
     for x, y in ((bearing.x + length / 2, bearing.y), (cross.x + length / 2, cross.y)):
         world.add_strut((x, BENCH, 0), (x, y - 0.03, 0), looks.cylinder(0.014, "steel"))
         world.add_static(looks.torus(0.036, 0.012, "brass"), (x, y, 0), (0, 0.5**0.5, 0, 0.5**0.5))
+
+
+def scales(world: iota.World, beam: iota.Vec3) -> None:
+    """Three weights on springs: one solve for soft and rigid; the middle one pulls the beam's ends along."""
+    system = world.system
+    yoke = bar(system, beam - (0.14, 0, 0), beam + (0.14, 0, 0), 0.02)
+    world.look(yoke, "steel")
+    system.revolute(yoke, at=beam, axis=(0, 0, 1), friction=0.01)
+    stand(world, beam, 0.05)
+    for x, drop in ((-0.13, 0.20), (0.13, 0.26)):
+        end = yoke.attach(beam + (x, 0, 0))
+        place = end.position - (0, drop, 0)
+        weight = iota.Body(
+            system,
+            shape=iota.Cylinder(0.03, 0.05),
+            density=STEEL,
+            position=place,
+            orientation=(0, 0, 0.5**0.5, 0.5**0.5),
+            attachments=[(0.025, 0, 0)],
+        )
+        world.look(weight, "brass")
+        iota.Bond(end, weight.attachments[0], "spring", stiffness=120, damping=0.15, length=0.11)
 
 
 def crane(world: iota.World, foot: iota.Vec3) -> None:
@@ -125,10 +154,11 @@ def crane(world: iota.World, foot: iota.Vec3) -> None:
     weight = iota.Body(
         system, shape=iota.Sphere(0.05), density=STEEL, position=tip - (0, 0.36, 0), attachments=[(0, 0.05, 0)]
     )
+    world.look(boom, "wood")
+    world.look(weight, "rubber")
     rope = system.rope(hook, weight.attachments[0], break_force=150)
     world.add_strut(foot - (0, 0, 0), shoulder, looks.cylinder(0.025, "steel"))
 
     @world.action("mend", key="m", help="ties the crane's rope again")
     def mend() -> None:
-        if rope.broken:
-            rope.active = True
+        rope.active = True

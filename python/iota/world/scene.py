@@ -36,6 +36,15 @@ def fitting_camera(system: System) -> Camera:
     return Camera(tuple(map(float, eye)), tuple(map(float, centre)))
 
 
+def is_solid(looks: Looks) -> bool:
+    """Whether a class only says what bodies given by shape are made of (`looks.solid`)."""
+    return any(shape["type"] == "solid" for style in looks.values() for shape in listed(style))
+
+
+def listed(style: Shape | list[Shape]) -> list[Shape]:
+    return style if isinstance(style, list) else [style]
+
+
 def solid_shapes(solid: object, material: str, **more: Any) -> list[Shape]:
     """What the page draws for a solid: a primitive, or for a mesh its edges (at most 400 of them)."""
     if isinstance(solid, Sphere):
@@ -82,7 +91,8 @@ class Scene:
         """JSON texts of "classes" and "bodies"."""
         classes: dict[str, Any] = {**ties.default_looks(self._scale()), **self.classes}
         bodies = [self._describe_body(body, classes) for body in self._system.bodies]
-        return json.dumps(classes, separators=(",", ":")), json.dumps(bodies, separators=(",", ":"))
+        drawable = {name: looks for name, looks in classes.items() if not is_solid(looks)}
+        return json.dumps(drawable, separators=(",", ":")), json.dumps(bodies, separators=(",", ":"))
 
     def _describe_body(self, body: Body, classes: dict[str, Any]) -> dict[str, Any]:
         particles = body.particles
@@ -92,7 +102,7 @@ class Scene:
         if len(particles) == 2:
             entry["length"] = abs(particles[1].position - particles[0].position)
         solids = body.solids
-        if solids and (name is None or len(solids) > 1):
+        if solids and (name is None or len(solids) > 1 or is_solid(classes.get(name, {}))):
             name = self._solid_class(body, solids, classes, name)
         elif name is None or (len(particles) > 2 and name in classes and not solids):
             name = self._own_class(body, particles, classes, name)
@@ -128,7 +138,7 @@ class Scene:
     def _solids(
         self, centre: Vec3, orientation: Quaternion, solids: list[Solid], style: Shape | list[Shape]
     ) -> list[Shape]:
-        like = style[0] if isinstance(style, list) else style
+        like = listed(style)[0]
         more = {"color": like["color"]} if "color" in like else {}
         shapes: list[Shape] = []
         for solid in solids:
@@ -154,7 +164,7 @@ class Scene:
 
     def _compound(self, body: Body, particles: list[Particle], style: Shape | list[Shape]) -> list[Shape]:
         """Capsules along the body's cosmetic bonds, or from particle to particle in their order where it has none."""
-        like = style[0] if isinstance(style, list) else style
+        like = listed(style)[0]
         radius = float(like.get("tube") or like.get("radius") or self._scale())
         more = {"color": like["color"]} if "color" in like else {}
         lines = [(p, q) for p, q in self._system.cosmetic_lines if p.body == body and q.body == body]

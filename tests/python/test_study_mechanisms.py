@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import json
+import math
+
+import iota
+from iota.studies import mechanisms
+from iota.world import ties
+
+
+def build() -> tuple[iota.System, dict[str, list[iota.Constraint]]]:
+    system = mechanisms.build().system
+    constraints: dict[str, list[iota.Constraint]] = {}
+    for constraint in system.constraints:
+        constraints.setdefault(constraint.kind, []).append(constraint)
+    return system, constraints
+
+
+def test_the_piston_goes_as_crank_and_rod_say() -> None:
+    system, constraints = build()
+    motor, (guide,) = constraints["revolute"][0], constraints["prismatic"]
+    start = guide.slide.value
+    crank, rod = 0.09, 0.3
+    for _ in range(480):
+        report = system.step(1 / 120)
+        assert report.unconverged == 0 and report.fallbacks == 0
+        angle = motor.angle.value
+        expected = crank * math.cos(angle) + math.sqrt(rod**2 - (crank * math.sin(angle)) ** 2) - (crank + rod)
+        assert abs(guide.slide.value - start - expected) < 1e-9
+    assert abs(motor.angle.speed - 2 * math.pi) < 1e-2  # points move along chords of their circles
+    assert system.worst_gap < 1e-9
+
+
+def test_two_crosses_turn_the_last_shaft_as_the_first() -> None:
+    system, constraints = build()
+    first = next(c for c in constraints["revolute"] if abs(c.axis.x) > 0.9)
+    (last,) = constraints["cylindrical"]
+    for _ in range(240):
+        assert system.step(1 / 120).unconverged == 0
+        assert abs(last.angle.value - first.angle.value) < 1e-6
+
+
+def test_the_rope_breaks_when_it_is_pulled_and_can_be_mended() -> None:
+    system, constraints = build()
+    (rope,) = constraints["rope"]
+    kinds = [tie["kind"] for tie in json.loads(ties.describe(system))]
+    assert kinds.count("rope") == 1 and kinds.count("spring") == 2
+    weight = rope.particles[1].body
+    version, broken = system.structure_version, []
+    for _ in range(60):
+        rope.particles[1].apply_force((0, -300, 0))
+        report = system.step(1 / 120)
+        if rope.broken:
+            broken = report.warnings
+            break
+    assert broken and system.structure_version > version
+    assert "rope" not in [tie["kind"] for tie in json.loads(ties.describe(system))]
+    while weight.centre_of_mass.y > mechanisms.BENCH - 1:
+        assert system.step(1 / 120).unconverged == 0
+    rope.active = True
+    for _ in range(240):
+        assert system.step(1 / 120).unconverged == 0
+    assert rope.gap < 1e-9
+
+
+def test_ties_are_told_once_however_their_bodies_move() -> None:
+    system, _ = build()
+    text = ties.describe(system)
+    for _ in range(50):
+        assert system.step(1 / 120).unconverged == 0
+    assert ties.describe(system) == text

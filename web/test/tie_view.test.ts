@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+import { Matrix4, Vector3, type InstancedMesh } from "three";
+import { describe, expect, it } from "vitest";
+import { makeCoil } from "../src/scene/geometry.ts";
+import { PoseBuffer } from "../src/scene/pose_buffer.ts";
+import { TieView } from "../src/scene/tie_view.ts";
+import { WorldModel } from "../src/scene/world_model.ts";
+
+const classes = { rope: { "*": { type: "cylinder", radius: 0.01, material: "rope" } }, spring: { "*": { type: "cylinder", radius: 0.02 } } };
+
+function ties(...entries: object[]): { view: TieView; poses: PoseBuffer; pieces: () => { middle: Vector3; length: number }[] } {
+  const model = new WorldModel(() => {});
+  const poses = new PoseBuffer();
+  poses.reserve(2);
+  model.setScene("classes", JSON.stringify(classes));
+  model.setScene("ties", JSON.stringify(entries));
+  const view = new TieView(model, poses);
+  view.rebuild("");
+  const pieces = () => {
+    const mesh = view.root.children[0] as InstancedMesh;
+    mesh.geometry.computeBoundingBox();
+    const box = mesh.geometry.boundingBox!;
+    return Array.from({ length: mesh.count }, (_, index) => {
+      const matrix = new Matrix4();
+      mesh.getMatrixAt(index, matrix);
+      return {
+        middle: new Vector3().setFromMatrixPosition(matrix),
+        length: new Vector3().setFromMatrixColumn(matrix, 0).length() * (box.max.x - box.min.x),
+      };
+    });
+  };
+  return { view, poses, pieces };
+}
+
+const world = (x: number, y: number, z: number) => ({ body: null, point: [x, y, z] });
+
+describe("ties", () => {
+  it("a spring is as long as its ends are apart, wherever its body goes", () => {
+    const { view, poses, pieces } = ties({ kind: "spring", class: "spring", a: world(0, 1, 0), b: { body: 1, point: [0, 0.5, 0] }, length: 0.4 });
+    view.draw();
+    expect(pieces()[0].length).toBe(0); // its body has not been told of yet
+    poses.known[1] = 1;
+    poses.position.set([0.6, 0.5, 0.8], 3);
+    poses.rotation.set([0, 0, 0, 1], 4);
+    view.draw();
+    expect(pieces()[0].middle.distanceTo(new Vector3(0.3, 1, 0.4))).toBeLessThan(1e-6);
+    expect(pieces()[0].length).toBeCloseTo(1, 1);
+    poses.rotation.set([1, 0, 0, 0], 4); // upside down: its point is below it now
+    view.draw();
+    expect(pieces()[0].middle.y).toBeCloseTo(0.5, 6);
+  });
+
+  it("a taut rope is straight, a slack one hangs through by about its length", () => {
+    const taut = ties({ kind: "rope", class: "rope", a: world(0, 0, 0), b: world(2, 0, 0), length: 2 });
+    taut.view.draw();
+    for (const { middle } of taut.pieces()) expect(Math.abs(middle.y)).toBeLessThan(1e-9);
+    const slack = ties({ kind: "rope", class: "rope", a: world(0, 0, 0), b: world(2, 0, 0), length: 2.2 });
+    slack.view.draw();
+    const pieces = slack.pieces();
+    expect(Math.min(...pieces.map(({ middle }) => middle.y))).toBeLessThan(-0.3);
+  });
+
+  it("says what is wrong with a tie", () => {
+    const model = new WorldModel(() => {});
+    expect(() => model.setScene("ties", '[{"kind": "ghost"}]')).toThrow(/unknown kind of tie "ghost"/);
+    expect(() => model.setScene("ties", '[{"kind": "rope", "a": {"body": -1}, "b": {"body": null}}]')).toThrow(/slot/);
+    expect(model.ties).toEqual([]);
+  });
+
+  it("a coil is as long and as wide as it was asked for", () => {
+    const coil = makeCoil(0.02, 0.002, 0.3);
+    coil.computeBoundingBox();
+    const { min, max } = coil.boundingBox!;
+    expect(max.x - min.x).toBeGreaterThan(0.295);
+    expect(max.x - min.x).toBeLessThan(0.31);
+    expect(max.y).toBeGreaterThan(0.019);
+    expect(max.y).toBeLessThan(0.0225);
+    expect(coil.getAttribute("normal").array.every(Number.isFinite)).toBe(true);
+  });
+});
