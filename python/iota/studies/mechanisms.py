@@ -35,7 +35,7 @@ def present(world: iota.World) -> None:
         world.classes[material] = {"*": looks.solid(material)}
     world.classes["spring"] = {"*": {**looks.cylinder(0.016, "steel"), "tube": 0.0022}}
     world.classes["rope"] = {"*": looks.cylinder(0.005, "rope")}
-    world.camera = iota.Camera(position=(0.2, 1.5, 1.85), target=(0.12, 1.14, 0))
+    world.camera = iota.Camera(position=(0.25, 1.5, 2.2), target=(0.17, 1.13, 0))
 
 
 def stand(world: iota.World, at: iota.Vec3, depth: float = 0.1) -> None:

@@ -30,7 +30,7 @@ def describe(system: System | Simulator) -> str:
     ties = [
         _tie("spring", *bond.ends, bond.parameters["length"])
         for bond in system.bonds
-        if bond.active and getattr(bond, "law", None) and bond.law.name == "spring"
+        if bond.active and bond.law.name == "spring"
     ]
     ties += [
         _tie(constraint.kind, *constraint.particles[:2], constraint.length)
