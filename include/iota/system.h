@@ -263,7 +263,7 @@ class System {
   double mass(BodyId) const;
   Vec3 centre_of_mass(BodyId) const;
   Quaternion orientation(BodyId) const;  ///< of the drawn frame: that of its first solid, or of its basis
-  /// Moves the body, and rigidly with it all that hangs on it, nails included. A scripted body arrives at the end of the
+  /// Moves the body, and rigidly with it all that hangs on it, nails and velocities included. A scripted body arrives at the end of the
   /// next step. position: of the centre of mass.
   void set_pose(BodyId, const Vec3& position, const Quaternion& orientation);
   Matrix3 inertia(BodyId) const;  ///< about the centre of mass, world axes, kg m^2 (thesis, Eq. 2.28)
@@ -283,7 +283,7 @@ class System {
   Vec3 net_force(BodyId body, BodyId part) const;
   Vec3 net_torque(BodyId body, BodyId part) const;
   std::vector<SolidView> solids(BodyId) const;        ///< empty for bodies of particles alone
-  std::vector<ParticleId> attachments(BodyId) const;  ///< its particles that are no solid's own points
+  std::vector<ParticleId> attachments(BodyId) const;  ///< its particles with mass that are no solid's own points
 
   BodyId body(ParticleId) const;
   std::vector<ParticleId> ring(ParticleId) const;  ///< every particle hinged with it, itself included

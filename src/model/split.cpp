@@ -159,11 +159,14 @@ Edit break_cosmetic_bond(Model& model, std::uint32_t bond, RestructureReport& re
   const std::uint32_t body = model.particles[p].body;
   model.remove_cosmetic_bond(bond);
   report.changed = true;
+  if (model.particles[q].body != body) return {};  // separated since
 
   Pieces pieces(model, body);
   for (const std::uint32_t particle : pieces.particles)
-    model.for_each_cosmetic_bond_of(
-        particle, [&](std::uint32_t b) { pieces.join(model.cosmetic_bonds[b].p, model.cosmetic_bonds[b].q); });
+    model.for_each_cosmetic_bond_of(particle, [&](std::uint32_t b) {
+      const CosmeticBond& line = model.cosmetic_bonds[b];
+      if (model.particles[line.p].body == model.particles[line.q].body) pieces.join(line.p, line.q);
+    });
   model.for_each_solid_of(body, [&](std::uint32_t s) {
     const Solid& solid = model.solids[s];
     for (const std::uint32_t point : solid.points) pieces.join(point, solid.points[0]);

@@ -5,6 +5,7 @@
 #include "step/execute.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace iota {
 
@@ -212,7 +213,7 @@ std::vector<ParticleId> System::attachments(BodyId id) const {
     m.for_each_solid_of(body, [&](std::uint32_t s) {
       own = own || std::find(m.solids[s].points.begin(), m.solids[s].points.end(), p) != m.solids[s].points.end();
     });
-    if (!own) ids.push_back(m.particles.id(p));
+    if (!own && !m.particles[p].is_marker()) ids.push_back(m.particles.id(p));
   });
   return ids;
 }
@@ -254,7 +255,16 @@ ParticleId System::Implementation::apply(const CreateAttachment& c) {
         text("create_attachment: something is hinged, nailed or bonded to the own four points of "
              "body ",
              body, ", which therefore cannot give; use attachments for that"));
+  // Velocities of the mid-point rule are rigid on the average only, so a new basis may carry the others differently.
+  const double before = conserved(std::array{body}).energy();
   const std::uint32_t particle = attach(model, solid, c.position);
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (model.is_unknown(model.particles[p])) return;
+    model::Ring& ring = model.rings[model.particles[p].ring];
+    std::tie(ring.position, ring.velocity) = model.carried(p);
+  });
+  model.edit_energy += conserved(std::array{body}).energy() - before;
+  jolt(particle);
   structure_changed();
   return model.particles.id(particle);
 }
@@ -262,6 +272,7 @@ ParticleId System::Implementation::apply(const CreateAttachment& c) {
 // The whole articulate moves as if it were rigid, so that no joint notices.
 void System::Implementation::apply(const SetPose& c) {
   const std::uint32_t body = require(c.body);
+  if (model.bodies[body].count == 0) throw std::invalid_argument(text("set_pose: body ", body, " has no particles"));
   require_finite("position", c.position);
   const Quaternion wanted = unit("orientation", c.orientation);
   refresh_orientations();
@@ -275,21 +286,30 @@ void System::Implementation::apply(const SetPose& c) {
         body, [&](std::uint32_t p) { apply(Nail{model.particles.id(p), false, moved(model.position(p))}); });
     return;
   }
-  const double before = model.potential_energy();
+  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
+  const Conserved before = conserved(affected);
   std::vector<std::uint32_t> rings;
+  double mass = 0;
+  Vec3 momentum;
   model.for_each_body_of(articulate, [&](std::uint32_t b) {
-    model.for_each_particle_of(b, [&](std::uint32_t p) { rings.push_back(model.particles[p].ring); });
+    model.for_each_particle_of(b, [&](std::uint32_t p) {
+      rings.push_back(model.particles[p].ring);
+      mass += model.particles[p].mass, momentum += model.particles[p].mass * model.velocity(p);
+    });
   });
   std::sort(rings.begin(), rings.end());
   rings.erase(std::unique(rings.begin(), rings.end()), rings.end());
+  const Vec3 mean = (1 / mass) * momentum;  // velocities turn along, so that momentum and kinetic energy stay
   for (const std::uint32_t slot : rings) {
     model::Ring& ring = model.rings[slot];
     ring.position = moved(ring.position);
+    ring.velocity = mean + rotate(turn, ring.velocity - mean);
     if (ring.nailed) ring.nail = ring.nail_before = moved(ring.nail);
   }
   model.bodies[body].orientation = wanted;
   oriented_step = ~0ull;
-  model.edit_energy += model.potential_energy() - before;
+  jolt(model.bodies[body].first);
+  model.edit_energy += conserved(affected).energy() - before.energy();
 }
 
 void System::Implementation::put_to_rest(std::uint32_t body) {

@@ -343,6 +343,16 @@ TEST(Solid, APoseMovesAllThatHangsOnIt) {
   EXPECT_THROW(system.set_pose(a, {}, {0, 0, 0, 0}), std::invalid_argument);
 }
 
+TEST(Solid, APoseTurnsTheMotionAlong) {
+  System system({.gravity = {}});
+  const BodyId body = system.create_body(Box{{1, 2, 3}}, {.velocity = {1, 2, 3}, .spin = {3, 0, 0}});
+  const double energy = system.energy().kinetic;
+  system.set_pose(body, {}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)});
+  expect_near(system.velocity(body), {1, 2, 3}, 1e-12);
+  expect_near(system.angular_velocity(body), {0, 3, 0}, 1e-12);
+  EXPECT_NEAR(system.energy().kinetic, energy, 1e-9 * energy);
+}
+
 TEST(Solid, CombiningSolidsAddsMassAndInertiaAndKeepsMomenta) {
   System system({.gravity = {}});
   const BodyId a = system.create_body(Box{{1, 1, 1}}, {.mass = 2, .velocity = {1, 0, 0}, .spin = {0, 0, 1}});

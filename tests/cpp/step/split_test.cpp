@@ -219,6 +219,14 @@ TEST(Split, NetForcesOfPartsAddUpToTheBodys) {
   expect_near(sum, system.net_force(a), 1e-9);
 }
 
+TEST(Split, ABondWhoseEndsWereSeparatedJustGoes) {
+  Molecule m(zigzag);
+  (void)m.system.separate(m.atoms[1], m.atoms[2]);  // now of two bodies, its bonds with it
+  for (const CosmeticBondId bond : m.bonds) (void)m.system.destroy(bond);
+  EXPECT_TRUE(m.system.cosmetic_bonds().empty());
+  EXPECT_TRUE(m.system.validate().empty());
+}
+
 TEST(Split, SplitsAreRecordedAndReplayed) {
   Molecule m(zigzag);
   System& system = m.system;

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random edits of worlds of solids: the structure stays whole, momenta are kept, the energy book adds up.
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <utility>
+
+namespace iota {
+namespace {
+
+class Playground {
+ public:
+  explicit Playground(unsigned seed) : random_(seed) {
+    for (int i = 0; i < 6; ++i) add_solid();
+    const BodyId molecule = system.create_body();
+    ParticleId last{};
+    for (int i = 0; i < 6; ++i) {
+      const ParticleId atom = system.create_particle(molecule, {0.5 * i, number(-1, 1), number(-1, 1)}, number(0.5, 2));
+      if (i > 0) (void)system.create_cosmetic_bond(last, atom);
+      last = atom;
+    }
+  }
+
+  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  template <class Id>
+  Id any(const std::vector<Id>& ids) {
+    return ids[std::uniform_int_distribution<std::size_t>(0, ids.size() - 1)(random_)];
+  }
+  Vec3 vector(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
+
+  void add_solid() {
+    const std::array<Shape, 4> shapes{Sphere{number(0.1, 0.5)}, Box{{number(0.1, 1), number(0.1, 1), number(0.1, 1)}},
+                                      Cylinder{number(0.05, 0.3), number(0.2, 1)}, Torus{0.4, 0.1}};
+    const auto which = static_cast<std::size_t>(number(0, 3.999));
+    (void)system.create_body(shapes[which], {.mass = number(0.3, 3),
+                                             .position = vector(3),
+                                             .orientation = {number(-1, 1), number(-1, 1), number(-1, 1), 1.5},
+                                             .velocity = vector(1),
+                                             .spin = vector(2),
+                                             .attachments = {vector(0.6), vector(0.6)}});
+  }
+
+  /// Edits that must keep momentum and angular momentum, unless the report says otherwise.
+  RestructureReport edit() {
+    const BodyId body = any(system.bodies());
+    switch (static_cast<int>(number(0, 5))) {
+      case 0: return system.combine(any(system.particles()), any(system.particles()), number(0, 1) < 0.3 ? 0.05 : 0.0);
+      case 1: return system.separate(any(system.particles()), any(system.particles()));
+      case 2: return system.combine(body, any(system.bodies()));
+      case 3: return system.separate(body, any(system.parts(body)));
+      default: {
+        const auto bonds = system.cosmetic_bonds();
+        if (!bonds.empty()) return system.destroy(any(bonds));
+        const auto particles = system.particles(body);
+        if (particles.size() > 1 && particles[0] != particles.back())
+          (void)system.create_cosmetic_bond(particles[0], particles.back());
+        return {};
+      }
+    }
+  }
+
+  /// Edits that take away or bring what they like.
+  void upset() {
+    const BodyId body = any(system.bodies());
+    switch (static_cast<int>(number(0, 7))) {
+      case 0: system.set_active(body, !system.is_active(body)); break;
+      case 1: {
+        const ParticleId p = any(system.particles());
+        system.set_active(p, !system.is_active(p));
+        break;
+      }
+      case 2: system.set_velocity(body, vector(1)); break;
+      case 3: system.set_angular_velocity(body, vector(1)); break;
+      case 4:
+        if (system.bodies().size() < 12) add_solid();
+        created = true;
+        break;
+      case 5: (void)system.create_attachment(body, system.centre_of_mass(body) + vector(0.5)); break;
+      default: system.set_pose(body, system.centre_of_mass(body) + vector(0.2), {number(-1, 1), 0.3, 0.1, 1});
+    }
+  }
+
+  System system{{.gravity = {}}};
+  bool created = false;  ///< something, which brings energy that is no edit's
+
+ private:
+  std::mt19937 random_;
+};
+
+double book(const System& system) {
+  const Energy e = system.energy();
+  return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits;
+}
+
+TEST(SolidProperty, RandomEditsKeepTheStructureWholeAndMomentaWhereTheySaySo) {
+  int kept = 0, edits = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    Playground world(seed);
+    System& system = world.system;
+    for (int i = 0; i < 30; ++i) {
+      const Vec3 momentum = system.momentum(), angular = system.angular_momentum();
+      try {
+        const RestructureReport report = world.edit();
+        ++edits;
+        const double scale = 1 + norm(momentum) + norm(angular);
+        EXPECT_LT(norm(system.momentum() - momentum - report.momentum_change), 1e-8 * scale) << seed << ' ' << i;
+        EXPECT_LT(norm(system.angular_momentum() - angular - report.angular_momentum_change), 1e-8 * scale)
+            << seed << ' ' << i;
+        kept += norm(report.momentum_change) < 1e-8 * scale;
+      } catch (const std::invalid_argument&) {  // what cannot be is refused, and changes nothing
+        EXPECT_EQ(system.momentum(), momentum);
+      }
+      ASSERT_TRUE(system.validate().empty()) << "seed " << seed << " edit " << i << ": " << system.validate()[0];
+      const StepReport report = system.step(0.01);
+      ASSERT_TRUE(std::isfinite(report.energy.kinetic)) << seed << ' ' << i;
+    }
+  }
+  EXPECT_GT(edits, 800);
+  EXPECT_GT(kept, edits * 95 / 100);
+}
+
+TEST(SolidProperty, TheEnergyBookAddsUpThroughAnyEdits) {
+  for (unsigned seed = 100; seed < 130; ++seed) {
+    Playground world(seed);
+    System& system = world.system;
+    double start = book(system), largest = system.energy().kinetic;
+    for (int i = 0; i < 30; ++i) {
+      const double before = book(system);
+      try {
+        if (i % 2)
+          (void)world.edit();
+        else
+          world.upset();
+      } catch (const std::invalid_argument&) {
+      }
+      ASSERT_TRUE(system.validate().empty()) << "seed " << seed << " edit " << i << ": " << system.validate()[0];
+      if (std::exchange(world.created, false)) start += book(system) - before;
+      (void)system.step(0.01);
+      largest = std::max(largest, std::abs(system.energy().kinetic));
+      ASSERT_NEAR(book(system), start, 1e-6 * (1 + largest)) << "seed " << seed << " edit " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace iota
