@@ -108,6 +108,27 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
     }
     particle.weights = weights.of(position(p));
   });
+  keep_inertia_positive(body_slot);
+}
+
+// Rods have less inertia than point masses at their ends: a negative pair. With less mass at an end than the rod had
+// (assigned, or shared with a twin), motions of negative energy would be left. Masses above twice what the pairs take, as
+// a rod has them, make the matrix diagonally dominant whatever else is hinged or tied there.
+void Model::keep_inertia_positive(std::uint32_t body_slot) {
+  std::vector<std::pair<std::uint32_t, double>> taken;  // by each pair from each of its ends
+  for_each_inertia_of(body_slot, [&](std::uint32_t i) {
+    const InertiaPair& pair = inertia_pairs[i];
+    if (!(pair.inertia < 0)) return;
+    taken.push_back({pair.p, -pair.inertia});
+    taken.push_back({pair.q, -pair.inertia});
+  });
+  std::sort(taken.begin(), taken.end());
+  for (std::size_t i = 0; i < taken.size();) {
+    const std::uint32_t particle = taken[i].first;
+    double sum = 0;
+    for (; i < taken.size() && taken[i].first == particle; ++i) sum += taken[i].second;
+    if (!(particles[particle].mass > 2.001 * sum)) remove_inertia_of(body_slot, particle);
+  }
 }
 
 void Model::prefer_unknowns(std::uint32_t body_slot) {

@@ -59,7 +59,8 @@ struct Ring {
   Vec3 applied_before;  ///< in the last step, N
   std::uint8_t nailed = 0;
   std::array<std::uint8_t, 7> padding{};
-  Vec3 nail, nail_before;  ///< where the nail is, and where it was at the last step, m
+  /// Where the nail is, and where it was at the last step, m; of a ring that a static body holds: where that was put.
+  Vec3 nail, nail_before;
   Vec3 nail_multiplier;    ///< minus the nail's force, N; warm start and reaction
 };
 
@@ -303,6 +304,7 @@ class Model {
   /// Notes that the bodies of a ring are about to be hinged otherwise, or have been, and nothing else: a problem that
   /// holds them can follow.
   void relink(std::uint32_t ring);
+  bool is_touched() const { return !touched_.empty(); }
   /// What has changed since the last call.
   struct Touched {
     std::vector<std::uint32_t> articulates;   ///< slots, destroyed ones too, each once
@@ -346,6 +348,9 @@ class Model {
   Vec3 acting_gravity() const;
   std::uint64_t members_revision = 0;  ///< rises when a group changes; not saved
   ///@}
+
+  /// Drops inertia pairs of a body (it is then its point masses) that could leave its mass matrix indefinite.
+  void keep_inertia_positive(std::uint32_t body);
 
   /// Chooses a body's basis from where its particles are now, and takes its rigid distances.
   void rebuild_basis(std::uint32_t body);

@@ -132,7 +132,7 @@ double Model::worst_gap() const {
     if (!(gap <= worst)) worst = gap;
   };
   bodies.for_each([&](std::uint32_t slot, const Body& b) {
-    if (b.kind == BodyKind::inactive) return;
+    if (b.kind != BodyKind::dynamic && b.kind != BodyKind::resting) return;  // nothing holds them, they are where they were put
     for (int row = 0; row < b.row_count; ++row) {
       const auto [i, j] = basis_pairs[row];
       add(std::abs(norm(position(b.basis[j]) - position(b.basis[i])) - b.lengths[row]));

@@ -26,17 +26,28 @@ void require_no_shared_body(const Model& model, std::uint32_t ring_a, std::uint3
   });
 }
 
-/// All particles of `from` join `into`; position and velocity become the mass-weighted means, unless a nail decides.
+bool is_fixed(const Model& model, std::uint32_t ring, std::uint32_t except_body = none) {
+  bool fixed = false;
+  model.for_each_in_ring(ring, [&](std::uint32_t p) {
+    const std::uint32_t body = model.particles[p].body;
+    const BodyKind kind = model.bodies[body].kind;
+    fixed = fixed || (body != except_body && (kind == BodyKind::static_ || kind == BodyKind::scripted));
+  });
+  return fixed;
+}
+
+/// All particles of `from` join `into`; position and velocity become the mass-weighted means, unless a nail or a body that
+/// does not give way decides.
 Edit merge_rings(Model& model, std::uint32_t into, std::uint32_t from) {
   Ring& r = model.rings[into];
   const Ring s = model.rings[from];
   const double m_r = model.ring_mass(into), m_s = model.ring_mass(from),
                share = m_r + m_s > 0 ? m_s / (m_r + m_s) : 0.5;
   Edit edit{r.position != s.position, r.velocity != s.velocity || r.nailed || s.nailed};
-  if (r.nailed) {
+  if (r.nailed || is_fixed(model, into)) {
     // the first one's nail wins
-  } else if (s.nailed) {
-    r.nailed = 1, r.nail = s.nail, r.nail_before = s.nail_before, r.nail_multiplier = s.nail_multiplier;
+  } else if (s.nailed || is_fixed(model, from)) {
+    r.nailed = s.nailed, r.nail = s.nail, r.nail_before = s.nail_before, r.nail_multiplier = s.nail_multiplier;
     r.position = s.position;
   } else {
     r.position += share * (s.position - r.position);
@@ -195,6 +206,17 @@ void call_off(Model& model, std::uint32_t closing) {
   split_where_apart(model, bodies);
 }
 
+void require_can_meet(const Model& model, std::uint32_t p, std::uint32_t q) {
+  const std::uint32_t a = model.particles[p].ring, b = model.particles[q].ring;
+  const std::uint32_t body = model.particles[p].body;  // of one body, q leaves the ring that is brought to p
+  const std::uint32_t leaving = body == model.particles[q].body ? body : none;
+  const bool fixed = is_fixed(model, b, leaving), held = fixed || model.rings[b].nailed;
+  const bool stuck = (is_fixed(model, a) && held) || (fixed && model.is_pinned(a));
+  if (stuck && model.rings[a].position != model.rings[b].position)
+    throw std::invalid_argument("combine: particles " + std::to_string(p) + " and " + std::to_string(q) +
+                                " are apart, and static or scripted bodies and nails hold both; release or move one");
+}
+
 Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
   if (p == q) return {};
   const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
@@ -204,6 +226,7 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
 
   if (body_p == body_q) {  // same body: the latter is removed
     if (ring_p != ring_q) require_no_shared_body(model, ring_p, ring_q, body_p);
+    if (model.rings[ring_q].count > 1) require_can_meet(model, p, q);
     // The body keeps its shape without q; what was hinged to q is then brought to p.
     const bool q_was_hinged = model.rings[ring_q].count > 1;
     const Vec3 momentum = model.particles[p].mass * model.velocity(p) + model.particles[q].mass * model.velocity(q);
@@ -231,6 +254,7 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
   }
 
   require_no_shared_body(model, ring_p, ring_q, none);
+  require_can_meet(model, p, q);
   if (const std::uint32_t closing = closing_between(model, p, q); closing != none) model.remove_closing(closing);
   const Edit edit = merge_rings(model, ring_p, ring_q);
   model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);

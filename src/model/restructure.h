@@ -14,6 +14,8 @@ struct Edit {
 /// The topology of Tables 4.2 and 4.3: who belongs to which body, ring and articulate, masses, positions and velocities of
 /// merged rings. All slots must be alive. Throws std::invalid_argument, before anything changes, for what cannot be.
 Edit combine_particles(Model&, std::uint32_t p, std::uint32_t q, RestructureReport&);
+/// Throws where p and q are apart and something that does not give way holds each of them.
+void require_can_meet(const Model&, std::uint32_t p, std::uint32_t q);
 Edit combine_bodies(Model&, std::uint32_t a, std::uint32_t b, RestructureReport&);
 Edit separate_particles(Model&, std::uint32_t p, std::uint32_t q, RestructureReport&);
 

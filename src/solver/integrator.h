@@ -64,7 +64,9 @@ class Integrator {
   /// Who solves the equations of steps; null: the built-in Newton.
   void set_external(Solver* solver) { newton_.set_external(solver); }
 
-  void project_velocities(Problem& problem, double h = 0) { newton_.project_velocities(problem, h); }
+  void project_velocities(Problem& problem, double h = 0, std::span<const Vec3> impulses = {}) {
+    newton_.project_velocities(problem, h, false, impulses);
+  }
 
  private:
   void make_room(const Problem&);

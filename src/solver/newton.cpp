@@ -770,14 +770,14 @@ bool Newton::release_impulses(Problem& problem) {
   return released;
 }
 
-void Newton::project_velocities(Problem& problem, double h, bool as_solved) {
+void Newton::project_velocities(Problem& problem, double h, bool as_solved, std::span<const Vec3> impulses) {
   std::copy(problem.position.begin(), problem.position.end(), x_.begin());
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
   if (has_laws_) begin_impulse_sides(problem, as_solved);
-  bool found = project_onto_sides(problem, h, as_solved);
+  bool found = project_onto_sides(problem, h, as_solved, impulses);
   while (has_laws_ && !as_solved && found && release_impulses(problem)) {
     std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
-    found = project_onto_sides(problem, h, as_solved);
+    found = project_onto_sides(problem, h, as_solved, impulses);
   }
 
   // Nearly redundant rows have huge multipliers that cancel only to round-off. Where nothing outside holds on, momentum
@@ -797,28 +797,35 @@ void Newton::project_velocities(Problem& problem, double h, bool as_solved) {
     mass += 2 * c.mass;
     lost += c.mass * (u_saved_[c.a] - problem.velocity[c.a] + u_saved_[c.b] - problem.velocity[c.b]);
   }
+  for (const Vec3& impulse : impulses) lost += impulse;
   for (Vec3& v : problem.velocity) v += (1 / mass) * lost;
 }
 
 // min |v - velocity|_M with G v = rate: one linear solve with the matrix of a projection without curvature. Redundant
 // rows (a closed loop in a plane) can leave no pivot at the usual compliance, so it may have to rise.
-bool Newton::project_onto_sides(Problem& problem, double h, bool as_solved) {
+bool Newton::project_onto_sides(Problem& problem, double h, bool as_solved, std::span<const Vec3> impulses) {
   for (const double compliance : {1e-12, 1e-9, 1e-6, 1e-3}) {
     Stage stage = Stage::projection(compliance);
     stage.fraction = as_solved ? 1 : 0;
     (void)assemble_and_factor<false>(problem, stage, Hessian::none);
     std::fill(impulses_.begin(), impulses_.end(), 0.0);
     const double energy = problem.kinetic_energy();
-    for (int pass = 0; pass < 3; ++pass) project_once(problem, h);  // again: compliance and round-off leave a little
+    project_once(problem, h, impulses);
+    for (int again = 0; again < 2; ++again) project_once(problem, h, {});  // compliance and round-off leave a little
     const double projected = problem.kinetic_energy();
-    if (std::isfinite(projected) && (h > 0 || projected <= energy * (1 + 1e-9))) return true;
+    const bool given = h > 0 || !impulses.empty();  // then energy may come in
+    if (std::isfinite(projected) && (given || projected <= energy * (1 + 1e-9))) return true;
     std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
   }
   return false;
 }
 
-void Newton::project_once(Problem& problem, double h) {
+void Newton::project_once(Problem& problem, double h, std::span<const Vec3> impulses) {
   std::fill(residual_.begin(), residual_.end(), 0.0);
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    double* const r = residual_.data() + node_unknown_[i];
+    r[0] = -impulses[i].x, r[1] = -impulses[i].y, r[2] = -impulses[i].z;
+  }
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];

@@ -90,7 +90,8 @@ class Newton {
   /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what
   /// nails take. Of bounded rows those count that are met and would take an impulse; `as_solved`: those that the latest
   /// solve left free.
-  void project_velocities(Problem& problem, double h, bool as_solved = false);
+  /// `impulses`: of each node, if any, that act at the same time, N s.
+  void project_velocities(Problem& problem, double h, bool as_solved = false, std::span<const Vec3> impulses = {});
 
   double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
 
@@ -132,8 +133,8 @@ class Newton {
     return factor_.factorise();
   }
   double merit(const Problem&, const Stage&, const Vec3* x) const;
-  bool project_onto_sides(Problem&, double h, bool as_solved);
-  void project_once(Problem&, double h);
+  bool project_onto_sides(Problem&, double h, bool as_solved, std::span<const Vec3> impulses);
+  void project_once(Problem&, double h, std::span<const Vec3> impulses);
   /// Takes a residual that is within tolerance to round-off; returns what it is then.
   template <bool Midpoint>
   double polish(Problem&, const Stage&, NewtonReport&);

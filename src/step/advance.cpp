@@ -21,24 +21,24 @@ StepReport System::Implementation::apply(const step::Step& command) {
   run_fields(report);
 
   // 2. Islands whose structure changed are analysed anew; velocities that were assigned are made consistent.
-  islands.update(model, parallel);
-  std::vector<std::uint32_t> jolted;
+  std::vector<std::uint32_t> jolted, disturbed;
   model.articulates.for_each([&](std::uint32_t slot, model::Articulate& a) {
     if (a.jolted) jolted.push_back(slot);
-    if (a.disturbed) {
-      if (step::Island* const island = islands.of_articulate(slot))
-        island->disturb();
-      else
-        step::FreeParticles::wake(model, slot);
-    }
+    if (a.disturbed) disturbed.push_back(slot);
     a.jolted = a.disturbed = 0;
   });
-  if (!jolted.empty()) {
-    const double before = model.kinetic_energy();
-    for (const std::uint32_t articulate : jolted)
-      if (step::Island* const island = islands.of_articulate(articulate)) (void)island->settle(model, false);
-    model.edit_energy += model.kinetic_energy() - before;
+  const bool unsettled = !jolted.empty() || model.is_touched();
+  const double before = unsettled ? model.kinetic_energy() + model.potential_energy() : 0;
+  islands.update(model, parallel);
+  for (const std::uint32_t articulate : disturbed) {
+    if (step::Island* const island = islands.of_articulate(articulate))
+      island->disturb();
+    else
+      step::FreeParticles::wake(model, articulate);
   }
+  for (const std::uint32_t articulate : jolted)
+    if (step::Island* const island = islands.of_articulate(articulate)) (void)island->settle(model, false);
+  if (unsettled) model.edit_energy += model.kinetic_energy() + model.potential_energy() - before;
 
   // 3. Every island by itself, on as many threads as pay; reports are added up in a fixed order.
   const auto all = islands.all();
@@ -98,7 +98,9 @@ void System::Implementation::finish_closings(StepReport& report) {
   for (const auto& [closing, combine] : met) {
     if (!model.closings.contains(closing)) continue;  // an earlier one has settled it
     try {
-      for (const std::string& note : apply(combine).notes) report.warnings.push_back(note);
+      const RestructureReport met_now = apply(combine);
+      report.unconverged += met_now.remaining_gap > 0;
+      for (const std::string& note : met_now.notes) report.warnings.push_back(note);
     } catch (const std::exception& error) {  // it cannot be; give up rather than ask again at every step
       (void)call_off(closing.slot);
       report.warnings.push_back(error.what());

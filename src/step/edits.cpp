@@ -253,8 +253,12 @@ void System::Implementation::apply(const step::SetVelocity& c) {
 void System::Implementation::apply(const step::SetMass& c) {
   const std::uint32_t particle = require(c.particle);
   require_mass("mass", c.value);
+  const std::array body{model.particles[particle].body};
+  const double before = conserved(body).energy();
   model.particles[particle].mass = model.particles[particle].inactive ? c.value * model::inactive_share : c.value;
-  model.touch(model.bodies[model.particles[particle].body].articulate);
+  model.keep_inertia_positive(body.front());
+  model.edit_energy += conserved(body).energy() - before;
+  model.touch(model.bodies[body.front()].articulate);
 }
 
 void System::Implementation::apply(const step::ApplyForce& c) {
@@ -438,6 +442,7 @@ void System::Implementation::apply(const SetKind& c) {
     model::Body& body = model.bodies[slot];
     if (c.kind == BodyKind::inactive) body.kind_before = body.kind;
     body.kind = c.kind;
+    if (c.kind == BodyKind::dynamic && before != BodyKind::inactive) model.rebuild_basis(slot);  // rigid as it was put
     model.for_each_particle_of(slot, [&](std::uint32_t p) {
       model.mute_bonds_of(p);
       model::Ring& ring = model.rings[model.particles[p].ring];
@@ -469,6 +474,7 @@ RestructureReport System::Implementation::apply(const step::CombineParticles& c)
   const double distance = norm(model.position(q) - model.position(p));
   const bool unrelated = body_p != body_q && model.particles[p].ring != model.particles[q].ring;
   if (c.over > 0 && unrelated && distance > 1e-9) {
+    require_can_meet(model, p, q);
     return restructure(std::array{body_p, body_q}, false, [&](RestructureReport& report) {
       if (closing_between(model, p, q) != none)
         throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));
@@ -497,7 +503,8 @@ RestructureReport System::Implementation::apply(const step::CombineBodies& c) {
 RestructureReport System::Implementation::apply(const step::Separate& c) {
   const std::uint32_t p = require(c.p), q = require(c.q);
   const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
-  bool gentle = p == q || (body_p != body_q && model.particles[p].ring == model.particles[q].ring);
+  bool gentle = p == q ? model.bodies[body_p].first_inertia == none  // a rod with less mass at its end is no rod
+                       : body_p != body_q && model.particles[p].ring == model.particles[q].ring;
   model.for_each_in_ring(model.particles[q].ring, [&](std::uint32_t r) { gentle = gentle && model.follows_basis(r); });
   return restructure(std::array{body_p, body_q}, gentle, [&](RestructureReport& report) {
     model::Edit edit = separate_particles(model, p, q, report);
@@ -521,6 +528,11 @@ void System::Implementation::apply(const step::Nail& c) {
   const Vec3 position = c.in_place ? model.position(particle) : c.position;
   require_finite("position", position);
   model::Ring& ring = model.rings[model.particles[particle].ring];
+  model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t p) {
+    if (model.bodies[model.particles[p].body].kind == BodyKind::static_ && position != ring.position)
+      throw std::invalid_argument(text("nail: static body ", model.particles[p].body, " holds particle ", particle,
+                                       "; make it dynamic or scripted to move it"));
+  });
   if (ring.nailed) {
     ring.nail = position;  // moves there during the next step
     return;
@@ -559,7 +571,9 @@ void System::Implementation::apply(const step::Destroy<ParticleId>& c) {
   const std::uint32_t particle = require(c.id);
   const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{model.particles[particle].body});
   const double before = conserved(affected).energy();
+  const std::vector<HeldPoint> held = held_points(std::array{model.particles[particle].body});
   destroy_particle(model, particle);
+  hold_again(held);
   model.edit_energy += conserved(affected).energy() - before;
   structure_changed();
 }

@@ -122,7 +122,10 @@ void Island::add_constraints(const Model& model, std::uint32_t slot, const std::
     const auto [i, j] = model::basis_pairs[row];
     const std::uint32_t a = node_of(body.basis[i]), b = node_of(body.basis[j]);
     extent = std::max(extent, body.lengths[row]);
-    if (pinned_[a] && pinned_[b]) continue;
+    if (pinned_[a] && pinned_[b]) {
+      if (body.kind == BodyKind::dynamic) pinned_rows_.push_back({slot, static_cast<std::uint8_t>(row)});
+      continue;
+    }
     distances.push_back({{a, b}, body.lengths[row], body.lengths[row]});
     rigid_rows_.push_back({slot, static_cast<std::uint8_t>(row)});
   }
@@ -140,7 +143,10 @@ void Island::add_constraints(const Model& model, std::uint32_t slot, const std::
       tie.nodes[tie.count] = node_of(body.basis[i]);
       tie.weights[tie.count++] = -particle.weights[i];
     }
-    if (!movable) return;
+    if (!movable) {
+      if (body.kind == BodyKind::dynamic) pinned_ties_.push_back(p);
+      return;
+    }
     affines.push_back(tie);
     tied_.push_back(p);
   });
@@ -310,20 +316,27 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   for (const std::uint32_t ring : rings_) node_of_ring[ring] = none;
 }
 
-void Island::carry_along(Model& model) const {
-  Vec3 lost;
-  for (const std::uint32_t p : slaves_) {
-    Ring& r = model.rings[model.particles[p].ring];
-    const auto [x, v] = model.carried(p);
-    lost += model.particles[p].mass * (r.velocity - v);
-    r.position = x, r.velocity = v;
+void Island::carry_along(Model& model) {
+  // What a static body holds is nailed where the body was put: held where it is, it would creep under its load.
+  constexpr double creep = 1e-7;  // m: farther, and somebody has moved it
+  for (const std::uint32_t node : nails_) {
+    Ring& r = model.rings[rings_[node]];
+    if (!r.nailed && norm(r.position - r.nail) > creep) r.nail = r.nail_before = r.position;
   }
-  if (lost == Vec3{} || std::any_of(pinned_.begin(), pinned_.end(), [](std::uint8_t p) { return p != 0; })) return;
-  double mass = 0;
-  for (const std::uint32_t b : bodies_) mass += model.body_mass(b);
-  const Vec3 given = (1 / mass) * lost;
-  for (const std::uint32_t ring : rings_) model.rings[ring].velocity += given;
-  for (const std::uint32_t p : slaves_) model.rings[model.particles[p].ring].velocity += given;
+  bool differs = false;
+  std::vector<Vec3> impulses;
+  for (std::size_t i = 0; i < slaves_.size(); ++i) {
+    const Vec3 v = model.velocity(slaves_[i]), ahead = v - model.carried(slaves_[i]).second;
+    if (norm(ahead) <= 1e-12 * norm(v)) continue;
+    if (!differs) impulses.assign(rings_.size(), Vec3{});
+    differs = true;
+    for (const auto& [node, weight] : slave_nodes_[i])
+      if (weight != 0) impulses[node] += (weight * model.particles[slaves_[i]].mass) * ahead;
+  }
+  if (!differs || idle_) return store_carried(model);
+  load(model, 0);
+  integrator_.project_velocities(problem_, 0, impulses);
+  store(model, 0);
 }
 
 void Island::load(const Model& model, double h) {
@@ -356,7 +369,7 @@ void Island::load(const Model& model, double h) {
   for (std::size_t i = 0; i < nails_.size(); ++i) {
     const Ring& r = model.rings[rings_[nails_[i]]];
     auto& nail = affines.items[tied_.size() + i];
-    nail.target = r.nailed ? r.nail : r.position;
+    nail.target = r.nail;
     nail.target_start = r.nailed && h > 0 ? r.nail_before : nail.target;
     double* const l = affines.multiplier(tied_.size() + i);
     l[0] = r.nail_multiplier.x, l[1] = r.nail_multiplier.y, l[2] = r.nail_multiplier.z;
@@ -371,6 +384,13 @@ void Island::load(const Model& model, double h) {
     const double distance = norm(grips[i].arm.value(problem_.position.data()));
     grips[i].stiffness = mass * std::min(omega * omega, g.max_acceleration / (distance + 1e-12));
     grips[i].damping = 2 * mass * omega;
+  }
+}
+
+void Island::store_carried(Model& model) const {
+  for (const std::uint32_t p : slaves_) {
+    Ring& r = model.rings[model.particles[p].ring];
+    std::tie(r.position, r.velocity) = model.carried(p);
   }
 }
 
@@ -440,28 +460,43 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
   const auto nail_velocity = [&](std::size_t i) {
     return (1 / h) * (nails[tied_.size() + i].target - nails[tied_.size() + i].target_start);
   };
-  double jolt = 0;
-  for (std::size_t i = 0; i < nails_.size(); ++i)
-    jolt = std::max(jolt, norm(nail_velocity(i) - problem_.velocity[nails_[i]]));
-  const double before_jolt = jolt > 1e-9 ? problem_.kinetic_energy() : 0;
-  for (std::size_t i = 0; i < nails_.size(); ++i) problem_.velocity[nails_[i]] = nail_velocity(i);
-  if (idle_) {  // carried by the script: there is nothing to solve
+  const auto energy = [&] { return problem_.kinetic_energy() + problem_.potential_energy(problem_.position.data()); };
+  const auto jolt = [&] {  // how much the nails' velocities differ from what they are about to be
+    double largest = 0;
+    for (std::size_t i = 0; i < nails_.size(); ++i)
+      largest = std::max(largest, norm(nail_velocity(i) - problem_.velocity[nails_[i]]));
+    return largest;
+  };
+  const auto take_nails_along = [&] {
+    for (std::size_t i = 0; i < nails_.size(); ++i) problem_.velocity[nails_[i]] = nail_velocity(i);
+  };
+  double given = 0;  // by the nails at once, J
+  if (idle_) {       // carried by the script: there is nothing to solve
+    solver::AdvanceReport report;
+    report.external_work -= energy();
+    take_nails_along();
     for (std::size_t i = 0; i < nails_.size(); ++i) problem_.position[nails_[i]] = nails[tied_.size() + i].target;
+    report.external_work += energy();
     store(model, h);
-    return {};
+    return report;
   }
   use_solver(model.solver);
-  double given = 0;  // by a nail at once, J
-  if (jolt > 1e-9) {
+  if (jolt() > 1e-9) {
+    given -= problem_.kinetic_energy();
+    take_nails_along();
     integrator_.project_velocities(problem_, h);
-    given = problem_.kinetic_energy() - before_jolt;
+    given += problem_.kinetic_energy();
   }
   model::Articulate& articulate = model.articulates[model.bodies[bodies_.front()].articulate];
   problem_.standing_gap = articulate.standing_gap, problem_.standing_steps = articulate.standing_steps;
   auto report = integrator_.advance(problem_, h, care_of(mode));
   articulate.standing_gap = problem_.standing_gap, articulate.standing_steps = problem_.standing_steps;
+  if (jolt() > 0) {  // where there was no solution
+    given -= problem_.kinetic_energy();
+    take_nails_along();
+    given += problem_.kinetic_energy();
+  }
   report.external_work += given;
-  for (std::size_t i = 0; i < nails_.size(); ++i) problem_.velocity[nails_[i]] = nail_velocity(i);
   if (damped_ || model.damping > 0) {
     const double before = problem_.kinetic_energy();
     for (std::size_t i = 0; i < rings_.size(); ++i)
@@ -469,8 +504,24 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     report.dissipated += before - problem_.kinetic_energy();
   }
   store(model, h);
+  report.converged = report.converged && meets_pinned_rows(model);
   tire(model, h, report);
   return report;
+}
+
+bool Island::meets_pinned_rows(const Model& model) const {
+  constexpr double met = 1e-6;  // of the body's extent
+  const bool rows = std::all_of(pinned_rows_.begin(), pinned_rows_.end(), [&](const RigidRow& r) {
+    const Body& body = model.bodies[r.body];
+    const auto [i, j] = model::basis_pairs[r.row];
+    const double length = norm(model.position(body.basis[j]) - model.position(body.basis[i]));
+    return std::abs(length - body.lengths[r.row]) <= met * body.lengths[r.row];
+  });
+  return rows && std::all_of(pinned_ties_.begin(), pinned_ties_.end(), [&](std::uint32_t p) {
+           const auto& lengths = model.bodies[model.particles[p].body].lengths;
+           const double extent = *std::max_element(lengths.begin(), lengths.end());
+           return norm(model.carried(p).first - model.position(p)) <= met * (extent > 0 ? extent : 1);
+         });
 }
 
 bool Island::settle(Model& model, bool positions) {

@@ -30,9 +30,9 @@ class Island {
   /// Points to solve for: a measure of the work.
   std::size_t size() const { return rings_.size(); }
 
-  /// Puts carried particles where their basis has them. In a conflict that moves them; momentum is then given back by a
-  /// translation, unless something is pinned.
-  void carry_along(model::Model&) const;
+  /// Puts carried particles where their basis has them, and as fast. Where they were not (assigned velocities, conflicts),
+  /// their momentum goes over to what carries them.
+  void carry_along(model::Model&);
 
   /// State of the model into the problem, for a step of h seconds (h = 0: for projections).
   void load(const model::Model&, double h);
@@ -64,6 +64,8 @@ class Island {
   bool is_pushed(const model::Model&) const;  ///< by forces applied for the step
   /// Falls asleep once it has been slow for long enough, if the model asks for that.
   void tire(model::Model&, double h, solver::AdvanceReport&) const;
+  bool meets_pinned_rows(const model::Model&) const;
+  void store_carried(model::Model&) const;
   using Weighted = std::array<std::pair<std::uint32_t, double>, 4>;  // nodes and weights; weight 0 ends the list
   Weighted nodes_of(const model::Model&, std::uint32_t particle, const std::vector<std::uint32_t>& node_of_ring) const;
   void add_masses(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
@@ -87,7 +89,10 @@ class Island {
     std::uint32_t body;
     std::uint8_t row;
   };
-  std::vector<RigidRow> rigid_rows_;     // of the first distance constraints
+  std::vector<RigidRow> rigid_rows_;  // of the first distance constraints
+  // Rows and tied particles none of whose points can move: nails decide whether they are met.
+  std::vector<RigidRow> pinned_rows_;
+  std::vector<std::uint32_t> pinned_ties_;
   std::vector<std::uint32_t> closings_;  // of the distance constraints after them
   std::vector<std::uint32_t> tied_;      // particles of the first affine constraints
   std::vector<std::uint32_t> nails_;     // nodes of the affine constraints after them

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// What random scenes have found: edits that left the energy book, momentum or a body's shape behind.
+#include "scenes/chain.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace iota {
+namespace {
+
+double book(const System& system) {
+  const Energy e = system.energy();
+  return e.total() + e.dissipated - e.external_work - e.edits;
+}
+
+struct Plate {
+  System system{SystemOptions{.gravity = {}}};
+  BodyId body = system.create_body();
+  std::vector<ParticleId> points;
+  Plate() {  // five points: the fifth is carried by the other four
+    for (const Vec3& x : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{0.3, 0.2, 0.1}})
+      points.push_back(system.create_particle(body, x, 2));
+  }
+};
+
+TEST(AssignedVelocity, of_a_carried_particle_keeps_its_momentum_and_the_book) {
+  Plate plate;
+  plate.system.set_velocity(plate.points[4], {3, -1, 2});
+  const Vec3 momentum = plate.system.momentum(), spin = plate.system.angular_momentum();
+  const double before = book(plate.system);
+  (void)plate.system.step(1e-3);
+  EXPECT_LT(norm(plate.system.momentum() - momentum), 1e-12);
+  EXPECT_LT(norm(plate.system.angular_momentum() - spin), 1e-12);
+  EXPECT_NEAR(book(plate.system), before, 1e-12) << "what a rigid body cannot have of it is booked under edits";
+  EXPECT_LT(plate.system.energy().edits - 0.5 * 2 * 14, -1);
+}
+
+TEST(EnergyBook, adds_up_when_masses_and_kinds_change) {
+  Plate plate;
+  for (const ParticleId p : plate.points) plate.system.set_velocity(p, {1, 2, 0});
+  (void)plate.system.step(1e-2);
+  const double before = book(plate.system);
+  plate.system.set_mass(plate.points[1], 7);
+  EXPECT_NEAR(book(plate.system), before, 1e-12);
+  (void)plate.system.step(1e-2);
+  EXPECT_NEAR(book(plate.system), before, 1e-9);
+  plate.system.set_kind(plate.body, BodyKind::static_);
+  EXPECT_EQ(plate.system.energy().kinetic, 0);
+  EXPECT_NEAR(book(plate.system), before, 1e-9);
+  plate.system.set_kind(plate.body, BodyKind::scripted);
+  plate.system.set_position(plate.points[0], {0, 0.5, 0});
+  (void)plate.system.step(1e-2);
+  EXPECT_NEAR(book(plate.system), before, 1e-9) << "what the script carries is external work";
+}
+
+TEST(Rod, with_too_little_mass_at_an_end_has_no_motion_of_negative_energy) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId rod = system.create_body();
+  const ParticleId p = system.create_particle(rod, {0, 0, 0}), q = system.create_particle(rod, {1, 0, 0});
+  system.set_rod(rod, 6, 0.01);
+  system.set_mass(p, 0.01);
+  system.set_velocity(p, {0, -1, 0}), system.set_velocity(q, {0, 0.01, 0});
+  EXPECT_GT(system.energy().kinetic, 0);
+  const double before = book(system);
+  for (int i = 0; i < 100; ++i) (void)system.step(1.0 / 60);
+  EXPECT_GT(system.energy().kinetic, 0);
+  EXPECT_NEAR(book(system), before, 1e-9);
+}
+
+TEST(Rod, whose_end_is_shared_with_a_twin_that_leaves_stays_whole) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId rod = system.create_body();
+  const ParticleId p = system.create_particle(rod, {0, 0, 0}), q = system.create_particle(rod, {1, 0, 0});
+  system.set_rod(rod, 6, 0.01);
+  system.set_velocity(p, {0, -1, 0}), system.set_velocity(q, {0, 2, 1});
+  (void)system.step(1e-2);
+  const double before = book(system);
+  const ParticleId twin = system.separate(p, p).created_particles.front();
+  (void)system.separate(p, twin);  // a body of its own, hinged to p
+  (void)system.separate(p, twin);  // and free
+  for (int i = 0; i < 100; ++i) {
+    (void)system.step(1.0 / 60);
+    ASSERT_GT(system.energy().kinetic, 0);
+  }
+  EXPECT_NEAR(book(system), before, 1e-9);
+  EXPECT_EQ(system.validate(), std::vector<std::string>{});
+}
+
+TEST(Combine, with_a_static_body_brings_the_other_one_to_it) {
+  System system;
+  const BodyId wall = system.create_body({.kind = BodyKind::static_}), link = system.create_body();
+  const ParticleId hook = system.create_particle(wall, {0, 1, 0}, 0.001);
+  system.create_particle(wall, {2, 1, 0}, 0.001);
+  const ParticleId eye = system.create_particle(link, {0.3, 0.8, 0}, 100);
+  system.create_particle(link, {0.3, 0.2, 0}, 100);
+  (void)system.combine(eye, hook);
+  EXPECT_LT(norm(system.position(eye) - Vec3{0, 1, 0}), 1e-9);
+  for (int i = 0; i < 60; ++i) EXPECT_EQ(system.step(1.0 / 60).unconverged, 0);
+  EXPECT_LT(system.worst_gap(), 1e-9);
+}
+
+TEST(StaticBody, does_not_creep_under_a_load) {
+  System system{SystemOptions{.mode = IntegrationMode::robust}};
+  const auto chain =
+      scenes::make_chain(system, {.links = 100, .nailed = false, .heavy_end = 1e6, .direction = {0, -1, 0}});
+  const ParticleId hook = system.create_particle(system.create_body({.kind = BodyKind::static_}), {0, 0, 0}, 1e-3);
+  (void)system.combine(hook, chain.upper[0]);
+  for (int i = 0; i < 600; ++i) (void)system.step(1.0 / 60);
+  EXPECT_LT(norm(system.position(hook)), 3e-8);  // as far as the nails' relative compliance of 1e-12 gives under 1e6 N
+}
+
+TEST(Combine, of_particles_that_do_not_give_way_is_refused_and_changes_nothing) {
+  System system;
+  const BodyId wall = system.create_body({.kind = BodyKind::static_}), link = system.create_body();
+  const ParticleId hook = system.create_particle(wall, {0, 1, 0}), eye = system.create_particle(link, {0.3, 0.8, 0});
+  system.nail(eye);
+  const auto hash = system.state_hash();
+  EXPECT_THROW((void)system.combine(hook, eye), std::invalid_argument);
+  EXPECT_THROW((void)system.combine(eye, hook, 0.5), std::invalid_argument);
+  EXPECT_THROW(system.nail(hook, {0, 2, 0}), std::invalid_argument);
+  EXPECT_EQ(system.state_hash(), hash);
+  system.release(eye);
+  EXPECT_NO_THROW((void)system.combine(hook, eye));
+}
+
+TEST(Conflict, between_two_nails_on_one_link_is_no_solution) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 1, .link_length = 0.3});
+  system.nail(chain.lower[0]);
+  EXPECT_EQ(system.step(1.0 / 60).unconverged, 0);
+  system.nail(chain.lower[0], {0.5, 0, 0});
+  const StepReport report = system.step(1.0 / 60);
+  EXPECT_NEAR(report.worst_gap, 0.2, 1e-9);
+  EXPECT_EQ(report.unconverged, 1);
+}
+
+TEST(Grip, hangs_on_what_is_left_when_a_particle_that_it_holds_is_destroyed) {
+  Plate plate;
+  const GripId grip = plate.system.create_grip(plate.body, {0.1, 0, 0}, {1, 1, 1});
+  plate.system.destroy(plate.points[3]);
+  EXPECT_TRUE(plate.system.contains(grip));
+  EXPECT_EQ(plate.system.validate(), std::vector<std::string>{});
+  for (int i = 0; i < 30; ++i) (void)plate.system.step(1.0 / 60);
+  EXPECT_EQ(plate.system.validate(), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace iota
