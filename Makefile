@@ -10,15 +10,16 @@ SECONDS :=
 endif
 # Which suites `make test` runs; all when empty. `make test SUITES="cpp python"`
 SUITES ?=
-# Arguments of bench/run_bench.py and of `iota verify`.
+# Arguments of bench/run_bench.py, `iota verify` and tools/soak.py.
 BENCH ?=
 VERIFY ?=
+SOAK ?=
 
 iota = .venv/bin/iota
 cpp_presets = debug asan ubsan tsan coverage strict
 
 .DEFAULT_GOAL := help
-.PHONY: help build demo test bench verify check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
+.PHONY: help build demo test bench verify soak check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
 
 help: ## what there is to make (this list)
 	@awk 'BEGIN { FS = ":.*## " } /^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -42,6 +43,10 @@ bench: ## build, then measure engine and packaged peers in one run (BENCH="--qui
 verify: ## build, compare with what is known, renew docs/verification.md (VERIFY="--quick")
 	@$(PYTHON) tools/build.py verify
 	@$(iota) verify $(VERIFY)
+
+soak: ## build, then for half an hour: random scenes, edits by the million, linkages for ten minutes (SOAK="scenes edits")
+	@$(PYTHON) tools/build.py soak
+	@.venv/bin/python tools/soak.py $(SOAK)
 
 check-determinism: ## the same bits from gcc and clang at -O1 and -O3
 	@$(PYTHON) tools/check_determinism.py

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds iota step by step: system packages, .venv with Node.js, page, engine, command line.
 
-    tools/build.py build | test | bench | verify | wheel | lint
+    tools/build.py build | test | bench | verify | soak | wheel | lint
     tools/build.py cpp --preset asan
 
 Each step says in one line what it does and writes the rest to build/logs/STEP.log. A step whose inputs are unchanged
@@ -475,6 +475,9 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests"), wheel()]
     elif goal == "verify":
         steps.insert(2, python_environment("verify"))
+    elif goal == "soak":
+        steps.insert(2, python_environment("verify"))
+        steps.append(cmake_build("soak", "building the long runs", "release", "iota_soak"))
     elif goal == "bench":
         steps.insert(2, python_environment("bench"))
         steps.append(peer_packages())
@@ -516,7 +519,7 @@ def report_failure(step: Step, error: Exception, log: Path) -> None:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Builds iota step by step.")
-    parser.add_argument("goal", choices=["build", "test", "bench", "verify", "wheel", "lint", "cpp"])
+    parser.add_argument("goal", choices=["build", "test", "bench", "verify", "soak", "wheel", "lint", "cpp"])
     parser.add_argument("--preset", default="debug", help="the CMake preset of the goal cpp")
     options = parser.parse_args()
     with only_one():

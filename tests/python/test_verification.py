@@ -14,7 +14,7 @@ from iota.verify.run import Case, Run
 
 @pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
 def test_what_is_computed_agrees_with_what_is_known(case: Case) -> None:
-    run = Run(quick=True)
+    run = Run(scale="quick")
     case.check(run)
     assert [row for row in run.rows if not row.passed] == []
     assert sum(bool(row.expected) for row in run.rows) >= 2, "a case that asks nothing proves nothing"

@@ -73,8 +73,13 @@ def make_parser() -> Parser:
     verifying = commands.add_parser("verify", help="compares what the engine computes with what is known")
     verifying.add_argument("--list", action="store_true", help="print the names of the verifications")
     verifying.add_argument("--figure", metavar="NAME", nargs="+", help="only these")
-    verifying.add_argument("--quick", action="store_true", help="smaller sizes; writes nothing unless --out is given")
-    verifying.add_argument("--out", metavar="FOLDER", help="where the page and its figures go (default: docs)")
+    scale = verifying.add_mutually_exclusive_group()
+    scale.add_argument("--quick", action="store_const", dest="scale", const="quick", help="smaller sizes, seconds")
+    scale.add_argument("--long", action="store_const", dest="scale", const="long", help="longer runs, many minutes")
+    verifying.set_defaults(scale="full")
+    verifying.add_argument(
+        "--out", metavar="FOLDER", help="where page and figures go (default: docs; nowhere for --quick, --long)"
+    )
     verifying.set_defaults(function=verify.run)
     return parser
 

@@ -8,7 +8,7 @@ import difflib
 import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from iota.cli.failure import Failure
 
@@ -36,9 +36,9 @@ def run(arguments: argparse.Namespace) -> None:
             raise Failure(
                 f"there is no verification {name!r}. " + (f"Did you mean {near[0]}?" if near else "Try: --list")
             )
-    out = Path(arguments.out) if arguments.out else None if arguments.quick else Path("docs")
+    out = Path(arguments.out) if arguments.out else Path("docs") if arguments.scale == "full" else None
 
-    done = [(case, run_case(case, arguments.quick)) for case in CASES if case.name in wanted]
+    done = [(case, run_case(case, arguments.scale)) for case in CASES if case.name in wanted]
     print_table(done)
     if out is not None:
         from iota.verify import report
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> None:
         raise Failure(f"{failed} of the checks failed")
 
 
-def run_case(case: Case, quick: bool) -> Run:
+def run_case(case: Case, scale: Literal["quick", "full", "long"]) -> Run:
     """Runs one case with a bar while it runs, where somebody watches."""
     from iota.verify.run import Run
 
@@ -66,7 +66,7 @@ def run_case(case: Case, quick: bool) -> Run:
             shown = full
             print(f"\r{case.name:18} [{'#' * full}{'.' * (BAR - full)}]", end="", file=sys.stderr, flush=True)
 
-    case_run = Run(quick=quick, progress=progress)
+    case_run = Run(scale=scale, progress=progress)
     began = time.monotonic()
     progress(0)
     case.check(case_run)

@@ -68,8 +68,8 @@ def table(run: Run) -> list[str]:
 def section(case: Case, run: Run, pictures: list[Path]) -> str:
     lines = [f"<!-- begin {case.name} -->", f"## {case.title}", ""]
     lines += [line for line in case.text[1:]] if len(case.text) > 1 else []
-    if run.quick:
-        lines += ["", "(A quick run: smaller than the one this page is meant to show.)"]
+    if run.scale != "full":
+        lines += ["", f"(A {run.scale} run, not the one that this page is meant to show.)"]
     lines += ["", *table(run), ""]
     for picture, path in zip(run.pictures, pictures, strict=True):
         lines += [f"![{picture.caption}]({PICTURES}/{path.name})", ""]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 T = TypeVar("T")
 Draw = Callable[[Any], None]  # draws on a matplotlib Figure
@@ -38,16 +38,16 @@ class Picture:
 class Run:
     """Collects the rows and pictures of one case.
 
-    quick: the size that suits a test suite instead of the one that suits a report. progress: called with 0 ... 1.
+    scale: 'quick' suits a test suite, 'full' a report, 'long' a night. progress: called with 0 ... 1.
     """
 
-    quick: bool = False
+    scale: Literal["quick", "full", "long"] = "full"
     progress: Callable[[float], None] = lambda _: None
     rows: list[Row] = field(default_factory=list)
     pictures: list[Picture] = field(default_factory=list)
 
-    def size(self, full: T, quick: T) -> T:
-        return quick if self.quick else full
+    def size(self, full: T, quick: T, long: T | None = None) -> T:
+        return quick if self.scale == "quick" else long if self.scale == "long" and long is not None else full
 
     def near(self, quantity: str, measured: float, expected: float, tolerance: float) -> None:
         """Passes where measured is within an absolute tolerance of expected; never for NaN."""

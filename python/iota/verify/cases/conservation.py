@@ -60,7 +60,7 @@ def momenta(run: Run) -> None:
     system = flying_mixture()
     system.step(1 / 240)
     masses = np.array([p.mass for p in system.particles])
-    steps = run.size(24000, 1500)
+    steps = run.size(24_000, 1500, 240_000)
 
     def sizes() -> tuple[float, float]:
         v, x = system.velocities, system.positions
@@ -127,7 +127,7 @@ def energy(run: Run) -> None:
     millionth of the initial energy above rest in 100 000 steps (7 minutes), without any fall-back. Robust mode loses energy
     and never gains any.
     """
-    steps = run.size(100_000, 1500)
+    steps = run.size(100_000, 1500, 1_000_000)
     kept, start, fallbacks, unconverged = swing("energy_keeping", 64, 10, 1 / 240, steps, run, (0, 0.8))
     run.note("energy above rest at the start, J", start)
     run.note("steps", steps)
@@ -175,7 +175,7 @@ def heavy_end(run: Run) -> None:
         for particle in last.particles:
             particle.mass = 0.5 * 0.1 * 1e6
         start = system.energy
-        steps, gap, unconverged, excess, kinetic = run.size(1200, 240), 0.0, 0, 0.0, 0.0
+        steps, gap, unconverged, excess, kinetic = run.size(1200, 240, 36_000), 0.0, 0, 0.0, 0.0
         for step in range(steps):
             report = system.step(1 / 60)
             gap = max(gap, report.worst_gap / length)

@@ -99,7 +99,7 @@ def four_bar(run: Run) -> None:
     across = np.array([-np.sin(0.6), np.cos(0.6), 0])
     for pin in linkage.pins["B"]:
         pin.velocity = 2.0 * across
-    seconds, h = run.size(60.0, 6.0), 1 / 240
+    seconds, h = run.size(60.0, 6.0, 600.0), 1 / 240
     system.step(h)
     start = system.energy.total
     off, turned, last, path = 0.0, 0.0, 0.6, []
@@ -188,7 +188,7 @@ def jansen(run: Run) -> None:
     linkage.nail("pivot")
     linkage.nail("crank")
     linkage.nail("tip")
-    seconds, h = run.size(60.0, 4.0), 1 / 120
+    seconds, h = run.size(60.0, 4.0, 600.0), 1 / 120
     off, path = 0.0, []
 
     def each(step: int) -> None:

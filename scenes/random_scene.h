@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/system.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Random scenes and what may be asked of any of them: random graphs, loops, nails, springs, grips and edits every frame,
+/// masses over six decades.
+namespace iota::scenes {
+
+enum class DeedKind : std::uint8_t {
+  make_body,       // of one to five particles
+  make_solid,      // a box, sphere, cylinder ... with two attachments, the first combined with particle a
+  make_link,       // a two-point body that hangs on particle a
+  bridge,          // a two-point body from particle a to particle b
+  combine,         // particles a and b
+  combine_slowly,  // over a time
+  combine_bodies,
+  cut,  // particle a leaves, or parts from, another one of its ring
+  separate,
+  nail,
+  move_nail,
+  release,
+  spring,
+  drag,
+  destroy_bond,
+  grip,
+  move_grip,
+  let_go,
+  push,
+  set_velocity,
+  set_mass,
+  set_kind,
+  destroy_particle,
+  destroy_body,
+  set_mode,
+  step,
+};
+
+/// One thing done to a scene, as plain numbers. `a` and `b` are taken modulo how many particles there are, and further
+/// numbers come from `seed`: so any part of a script is a script.
+struct Deed {
+  DeedKind kind = DeedKind::step;
+  std::uint32_t a = 0, b = 0;
+  std::uint64_t seed = 0;
+};
+
+/// How a scene starts: of which shape the graph of its bodies is.
+enum class Graph : std::uint8_t { soup, chain, ring, tree, star, net, count };
+
+struct RandomSceneOptions {
+  int bodies = 14;  ///< at the start, at most
+  int frames = 30;  ///< steps
+  int edits = 2;    ///< a frame, at most
+};
+
+std::vector<Deed> random_script(std::uint64_t seed, const RandomSceneOptions& options = {});
+
+/// Counts over many plays.
+struct Tally {
+  std::uint64_t scenes = 0, steps = 0, edits = 0, refused = 0, unconverged = 0, fallbacks = 0;
+  /// Largest energy made up by a step without hands and moved nails, over its motion; and by a step that had to
+  /// fall back to the robust scheme or to a least violation.
+  double made_up = 0, made_up_by_rescues = 0;
+  double gap = 0;  ///< worst of the steps that were reported as solved, m
+};
+
+/// Plays a script on a fresh system. Returns what is wrong, in a sentence, after the first deed that shows it: numbers that
+/// are not finite, structure that is not whole, a gap of a step reported as solved, energy out of nothing, a refused edit
+/// that changed something.
+std::optional<std::string> play(const std::vector<Deed>& script, Tally& tally);
+
+/// Whether another script ends in the same complaint as this one.
+std::function<bool(const std::vector<Deed>&)> same_complaint_as(const std::vector<Deed>& script);
+/// The shortest script found, by leaving out, that still fails.
+std::vector<Deed> shrink(std::vector<Deed> script, const std::function<bool(const std::vector<Deed>&)>& fails);
+
+/// A script as lines of C++.
+std::string tell(const std::vector<Deed>& script);
+
+}  // namespace iota::scenes

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// iota_soak scenes [COUNT [FIRST_SEED]]: random scenes by the thousand. On a failure: the seed, and the shortest script found.
+// iota_soak edits [COUNT [SEED]]: random edits of the structure by the million, beside a brute-force twin.
+#include "scenes/random_scene.h"
+#include "soak/edit_twin.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace {
+
+int play_scenes(std::uint64_t count, std::uint64_t first) {
+  using namespace iota::scenes;
+  Tally tally;
+  int failures = 0;
+  for (std::uint64_t seed = first; seed < first + count && failures < 10; ++seed) {
+    const std::vector<Deed> script = random_script(seed);
+    if (const auto wrong = play(script, tally)) {
+      ++failures;
+      std::printf("seed %llu, %s\n", static_cast<unsigned long long>(seed), wrong->c_str());
+      const std::vector<Deed> least = shrink(script, same_complaint_as(script));
+      Tally ignored;
+      std::printf("%s%s\n", tell(least).c_str(), play(least, ignored).value_or("").c_str());
+    }
+    if ((seed - first + 1) % 1000 == 0)
+      std::fprintf(stderr, "%llu scenes\n", static_cast<unsigned long long>(seed - first + 1));
+  }
+  std::printf("%llu scenes, %llu steps, %llu edits (%llu refused): %d failed\n",
+              static_cast<unsigned long long>(tally.scenes), static_cast<unsigned long long>(tally.steps),
+              static_cast<unsigned long long>(tally.edits), static_cast<unsigned long long>(tally.refused), failures);
+  std::printf("steps reported as not converged: %llu, handed to the robust scheme: %llu\n",
+              static_cast<unsigned long long>(tally.unconverged), static_cast<unsigned long long>(tally.fallbacks));
+  std::printf("worst gap of a solved step: %.2e m\n", tally.gap);
+  std::printf("most energy made up, of the motion: %.2e by a solved step, %.2e by one that had to fall back\n",
+              tally.made_up, tally.made_up_by_rescues);
+  return failures == 0 ? 0 : 1;
+}
+
+int make_edits(std::uint64_t count, std::uint64_t seed) {
+  iota::soak::EditCount counted;
+  constexpr std::uint64_t portion = 1'000'000;
+  for (std::uint64_t done = 0; done < count; done += portion) {
+    const auto wrong = iota::soak::compare_edits(seed + done, std::min(portion, count - done), counted);
+    if (wrong) std::printf("%s\n", wrong->c_str());
+    if (wrong) return 1;
+    std::fprintf(stderr, "%llu edits\n", static_cast<unsigned long long>(counted.edits));
+  }
+  std::printf("%llu edits agree with the twin: %llu joined articulates, %llu cut them, %llu were refused\n",
+              static_cast<unsigned long long>(counted.edits), static_cast<unsigned long long>(counted.joined),
+              static_cast<unsigned long long>(counted.cut), static_cast<unsigned long long>(counted.refused));
+  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const std::string what = count > 1 ? words[1] : "";
+  const auto number = [&](int at, std::uint64_t otherwise) {
+    return count > at ? std::strtoull(words[at], nullptr, 10) : otherwise;
+  };
+  if (what == "scenes") return play_scenes(number(2, 10'000), number(3, 1));
+  if (what == "edits") return make_edits(number(2, 10'000'000), number(3, 1));
+  std::fprintf(stderr, "usage: iota_soak scenes|edits [COUNT [FIRST_SEED]]\n");
+  return 2;
+}

@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The long runs, one after the other; the build makes what they need.
+
+    tools/soak.py [NAME ...]      scenes edits verify; all without a name
+
+Exit code 0 only when none failed. A random scene that fails is printed as the shortest script that still does.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+RUNS = {
+    "scenes": [str(ROOT / "build" / "iota_soak"), "scenes", "10000"],
+    "edits": [str(ROOT / "build" / "iota_soak"), "edits", "10000000"],
+    "verify": [str(ROOT / ".venv" / "bin" / "iota"), "verify", "--long"],
+}
+
+
+def main(names: list[str]) -> int:
+    for name in names:
+        if name not in RUNS:
+            print(f"no long run is called {name!r}; there are: {' '.join(RUNS)}", file=sys.stderr)
+            return 2
+    failed = []
+    for name in names or RUNS:
+        print(f"--- {name}: {' '.join(RUNS[name][1:])}", flush=True)
+        began = time.monotonic()
+        if subprocess.run(RUNS[name], cwd=ROOT).returncode != 0:
+            failed.append(name)
+        print(f"--- {name}: {time.monotonic() - began:.0f} s", flush=True)
+    print(f"failed: {' '.join(failed)}" if failed else "nothing failed", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
