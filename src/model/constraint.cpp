@@ -392,10 +392,15 @@ void end_settled_constraints(Model& model, std::span<const std::uint32_t> bodies
     for (int place = 0; place < place_count; ++place)
       if (c.particles[place] != none)
         torn = torn || model.particles[c.particles[place]].body != (place < b_origin ? a : b);
-    if (a != b && !torn) continue;
+    const std::uint32_t p = c.particles[a_origin], q = c.particles[b_origin];
+    const bool met =
+        c.kind == ConstraintKind::rod && p != none && q != none && model.particles[p].ring == model.particles[q].ring;
+    if (a != b && !torn && !met) continue;
     const std::string name = std::string(info(c.kind).name) + " " + std::to_string(slot);
-    notes.push_back(torn ? name + " ended: one of its bodies came apart there"
-                         : name + " ended: its two bodies are one rigid body now");
+    notes.push_back(name + " ended: " +
+                    (torn  ? "one of its bodies came apart there"
+                     : met ? "its two ends are hinged together now"
+                           : "its two bodies are one rigid body now"));
     destroy_constraint(model, slot);
   }
 }

@@ -102,7 +102,7 @@ void System::Implementation::finish_closings(StepReport& report) {
       report.unconverged += met_now.remaining_gap > 0;
       for (const std::string& note : met_now.notes) report.warnings.push_back(note);
     } catch (const std::exception& error) {  // it cannot be; give up rather than ask again at every step
-      (void)call_off(closing.slot);
+      if (model.closings.contains(closing)) (void)call_off(closing.slot);
       report.warnings.push_back(error.what());
     }
   }

@@ -135,6 +135,23 @@ TEST(Conflict, between_two_nails_on_one_link_is_no_solution) {
   EXPECT_EQ(report.unconverged, 1);
 }
 
+TEST(Rod, ends_when_its_two_ends_are_hinged_together_and_a_rope_hangs_on) {
+  for (const auto kind : {ConstraintKind::rod, ConstraintKind::rope})
+    for (const double over : {0.0, 0.1}) {
+      System system;
+      const auto a = scenes::make_chain(system, {.links = 2, .top = {0, 0, 0}});
+      const auto b = scenes::make_chain(system, {.links = 2, .top = {0, -0.3, 0}, .direction = {0.8, 0.6, 0}});
+      (void)system.create_constraint(DistanceSpec{.kind = kind, .p = a.lower[1], .q = b.lower[1]});
+      (void)system.step(1.0 / 60);
+      (void)system.combine(a.lower[1], b.lower[1], over);
+      for (int i = 0; i < 30; ++i) (void)system.step(1.0 / 60);
+      EXPECT_EQ(system.constraints().size(), kind == ConstraintKind::rope ? 1u : 0u);
+      EXPECT_EQ(system.validate(), std::vector<std::string>{});
+      const StepReport report = system.step(1.0 / 60);
+      EXPECT_LT(report.worst_gap, 1e-6);
+    }
+}
+
 TEST(Grip, hangs_on_what_is_left_when_a_particle_that_it_holds_is_destroyed) {
   Plate plate;
   const GripId grip = plate.system.create_grip(plate.body, {0.1, 0, 0}, {1, 1, 1});
