@@ -69,7 +69,9 @@ double Model::potential_energy() const {
 double Model::bond_energy(std::uint32_t slot) const {
   const Bond& b = bonds[slot];
   if (!b.ties()) return 0;
-  return compiled(b.law).elastic(bond_state(b), b.parameters.data()).energy;
+  // Infinite where its ends have met, say: counts for nothing, and the next step switches it off.
+  const double energy = compiled(b.law).elastic(bond_state(b), b.parameters.data()).energy;
+  return std::isfinite(energy) ? energy : 0;
 }
 
 laws::PairState Model::bond_state(const Bond& b, double ahead) const {
@@ -132,7 +134,8 @@ double Model::worst_gap() const {
     if (!(gap <= worst)) worst = gap;
   };
   bodies.for_each([&](std::uint32_t slot, const Body& b) {
-    if (b.kind != BodyKind::dynamic && b.kind != BodyKind::resting) return;  // nothing holds them, they are where they were put
+    if (b.kind != BodyKind::dynamic && b.kind != BodyKind::resting)
+      return;  // nothing holds them, they are where they were put
     for (int row = 0; row < b.row_count; ++row) {
       const auto [i, j] = basis_pairs[row];
       add(std::abs(norm(position(b.basis[j]) - position(b.basis[i])) - b.lengths[row]));

@@ -83,6 +83,7 @@ class Integrator {
   bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;
   void smooth_multipliers(Problem&) const;
+  bool shoots(const Problem&, const Stage&);
   double gain(const Problem&, const Stage&);
   void shed(Problem&, double excess, double fraction, AdvanceReport&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);

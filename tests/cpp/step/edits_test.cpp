@@ -152,6 +152,32 @@ TEST(Rod, ends_when_its_two_ends_are_hinged_together_and_a_rope_hangs_on) {
     }
 }
 
+TEST(Law, that_is_infinite_where_its_ends_meet_leaves_the_energy_book_finite) {
+  System system;
+  const auto chain = scenes::make_chain(system, {.links = 3});
+  const ParticleId lone = system.create_particle(system.create_body(), {0.4, 0.2, 0});
+  system.create_bond(chain.lower[2], lone, SharedLaw{.law = system.find_law("gravity")});
+  (void)system.combine(chain.lower[2], lone);
+  EXPECT_TRUE(std::isfinite(book(system)));
+  (void)system.step(1.0 / 60);
+  EXPECT_TRUE(std::isfinite(book(system)));
+}
+
+TEST(Path, with_sharp_bends_makes_up_no_energy) {
+  for (const double speed : {5.0, 20.0, 60.0}) {
+    System system{SystemOptions{.gravity = {}}};
+    const ParticleId bead = system.create_particle(system.create_body(), {0, 0, 0}, 1, {speed, 0, 0});
+    PathSpec path{.particle = bead, .curve = CurveKind::polyline, .closed = true, .rounding = 0.05};
+    path.points = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0.3, 0}, {0.5, 0.8, 0}, {-1, 0.5, 0}};
+    (void)system.create_constraint(path);
+    (void)system.step(1.0 / 240);
+    const double start = system.energy().total();
+    double highest = 0;
+    for (int i = 0; i < 240; ++i) highest = std::max(highest, system.step(1.0 / 240).energy.total());
+    EXPECT_LT(highest, 1.1 * start) << speed << " m/s";
+  }
+}
+
 TEST(Grip, hangs_on_what_is_left_when_a_particle_that_it_holds_is_destroyed) {
   Plate plate;
   const GripId grip = plate.system.create_grip(plate.body, {0.1, 0, 0}, {1, 1, 1});
