@@ -28,7 +28,14 @@ enum class DeedKind : std::uint8_t {
   release,
   spring,
   drag,
+  law,  // another one of the predefined laws
   destroy_bond,
+  joint,     // of any kind between the bodies of a and b, or between a's and the world
+  distance,  // a rod or a rope between a and b
+  surface,   // a stays on, inside or outside a sphere, a plane or a box
+  path,      // a slides along a curve
+  switch_constraint,
+  destroy_constraint,
   grip,
   move_grip,
   let_go,
@@ -64,9 +71,9 @@ std::vector<Deed> random_script(std::uint64_t seed, const RandomSceneOptions& op
 /// Counts over many plays.
 struct Tally {
   std::uint64_t scenes = 0, steps = 0, edits = 0, refused = 0, unconverged = 0, fallbacks = 0;
-  /// Largest energy made up by a step without hands and moved nails, over its motion; and by a step that had to
-  /// fall back to the robust scheme or to a least violation.
-  double made_up = 0, made_up_by_rescues = 0;
+  /// Largest energy made up by a step without hands and moved nails, over its motion; by one that had to fall back to the
+  /// robust scheme or to a least violation; and in scenes with joints.
+  double made_up = 0, made_up_by_rescues = 0, made_up_with_joints = 0;
   double gap = 0;  ///< worst of the steps that were reported as solved, m
 };
 

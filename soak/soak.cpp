@@ -33,8 +33,9 @@ int play_scenes(std::uint64_t count, std::uint64_t first) {
   std::printf("steps reported as not converged: %llu, handed to the robust scheme: %llu\n",
               static_cast<unsigned long long>(tally.unconverged), static_cast<unsigned long long>(tally.fallbacks));
   std::printf("worst gap of a solved step: %.2e m\n", tally.gap);
-  std::printf("most energy made up, of the motion: %.2e by a solved step, %.2e by one that had to fall back\n",
-              tally.made_up, tally.made_up_by_rescues);
+  std::printf(
+      "most energy made up, of the motion: %.2e by a solved step, %.2e by one that had to fall back, %.2e with joints\n",
+      tally.made_up, tally.made_up_by_rescues, tally.made_up_with_joints);
   return failures == 0 ? 0 : 1;
 }
 
