@@ -160,19 +160,29 @@ SurfaceShape to_surface_shape(SystemObject& self, nb::handle value, double size)
         ("surface must be a Plane, Sphere, Ellipsoid, Box, Cylinder, Capsule, Torus or a function, not " +
          describe(value))
             .c_str());
-  auto function = std::make_shared<BondFunction>(BondFunction{nb::borrow(value), {}, {}, {}});
+  auto function = std::make_shared<ScriptFunction>(ScriptFunction{nb::borrow(value), "a surface"});
+  finite_positive(size, "size", "m");
   self.keep(function);
-  return SurfaceFunction{[function](const Vec3& r) -> double {
+  const auto call = std::make_shared<SurfaceCall>();
+  call->function = function;
+  self.surfaces.push_back(call);
+  return SurfaceFunction{[call](const Vec3& r) -> double {
+                           if (call->failed) return std::nan("");
                            nb::gil_scoped_acquire lock;
+                           std::string failure = "returned no number";
                            try {
-                             return nb::cast<double>(function->function(r.x, r.y, r.z));
+                             const double phi = nb::cast<double>(call->function->function(r.x, r.y, r.z));
+                             if (std::isfinite(phi)) return phi;
+                             failure = "returned " + std::to_string(phi);
                            } catch (nb::python_error& error) {
-                             error.discard_as_unraisable("the function of a surface");
+                             failure = std::string("raised ") + nb::type_name(error.type()).c_str() + ": " +
+                                       nb::str(error.value()).c_str();
                            } catch (const std::exception&) {
                            }
+                           if (!call->failed) call->failure = failure, call->failed = true;
                            return std::nan("");
                          },
-                         finite_positive(size, "size", "m")};
+                         size};
 }
 
 Quaternion to_quaternion(nb::handle value) {
@@ -552,7 +562,9 @@ void bind_makers(nb::class_<SystemObject>& type) {
           spec.surface = to_surface(self, surface, at, orientation, body, size);
           if (body) spec.body = body->id;
           spec.breaks = to_limits(break_force, infinity);
-          return ConstraintHandle{p.system_object, p.system, engine.create_constraint(spec)};
+          const ConstraintId id = engine.create_constraint(spec);
+          self.settle_surfaces(id);
+          return ConstraintHandle{p.system_object, p.system, id};
         },
         "p"_a, "surface"_a, "body"_a.none() = nb::none(), nb::kw_only(), "at"_a.none() = nb::none(),
         "orientation"_a.none() = nb::none(), "size"_a = 1.0, "break_force"_a = infinity, text);
@@ -561,7 +573,8 @@ void bind_makers(nb::class_<SystemObject>& type) {
       "on_surface", ConstraintKind::surface,
       "A particle stays on a surface of body (None: the world). surface: Plane, Sphere, Ellipsoid, Box, Cylinder\n"
       "(endless), Capsule, Torus, or a function of x, y, z that is 0 on it, negative inside and about the distance (m)\n"
-      "near it; `size`, m, is then that of what it describes. at, orientation: of the surface's frame, None: the body's.");
+      "near it; `size`, m, is then that of what it describes. A function that raises or returns no\n"
+      "finite number switches the constraint off, with a warning in the step's report. at, orientation: of the surface's frame, None: the body's.");
   on_surface("inside", ConstraintKind::inside,
              "A particle stays on the inner side of a surface: as `on_surface`, one-sided.");
   on_surface("outside", ConstraintKind::outside,
@@ -582,7 +595,9 @@ void bind_makers(nb::class_<SystemObject>& type) {
         spec.surface_a = to_surface(self, surface_a, at_a, orientation_a, &a, 1);
         spec.surface_b = to_surface(self, surface_b, at_b, orientation_b, b, 1);
         spec.breaks = to_limits(break_force, infinity);
-        return ConstraintHandle{a.system_object, a.system, engine.create_constraint(spec)};
+        const ConstraintId id = engine.create_constraint(spec);
+        self.settle_surfaces(id);
+        return ConstraintHandle{a.system_object, a.system, id};
       },
       "a"_a, "surface_a"_a, "b"_a.none(), "surface_b"_a, nb::kw_only(), "one_sided"_a = true,
       "at_a"_a.none() = nb::none(), "orientation_a"_a.none() = nb::none(), "at_b"_a.none() = nb::none(),

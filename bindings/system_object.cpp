@@ -135,6 +135,8 @@ StepReport SystemObject::step(double dt) {
   System& system = use_between_steps("step");
   finite_positive(dt, "dt", "s");
   failures.clear();
+  std::vector<std::string> warnings;
+  switch_off_failed_surfaces(warnings);
   StepReport report;
   {
     nb::gil_scoped_release unlocked;
@@ -143,6 +145,8 @@ StepReport SystemObject::step(double dt) {
   step_edits = report.edits;
   broken = report.broken;
   for (const Broken& b : broken) note_edit("break", b.position);
+  switch_off_failed_surfaces(warnings);
+  report.warnings.insert(report.warnings.begin(), warnings.begin(), warnings.end());
   // Functions that the engine has dropped: ours is the only reference left.
   std::erase_if(functions, [](const auto& function) { return function.use_count() == 1; });
   if (!failures.empty() || !report.switched_off.empty()) tell_failures(report);
@@ -182,6 +186,31 @@ void SystemObject::tell_failures(const StepReport& report) {
                           : error_class("ForceError")(text, nb::cast(report));
   if (!all.empty()) PyException_SetCause(error.ptr(), nb::object(all.front().exception).release().ptr());
   raise_object(error);
+}
+
+void SystemObject::settle_surfaces(ConstraintId constraint) {
+  std::string failure;
+  std::erase_if(surfaces,
+                [](const auto& surface) { return surface.use_count() == 1; });  // of constraints that were refused
+  for (const auto& surface : surfaces) {
+    if (surface->constraint) continue;
+    surface->constraint = constraint;
+    if (surface->failed) failure = surface->failure;
+  }
+  if (failure.empty()) return;
+  engine.destroy(constraint);
+  throw nb::value_error(("the function of the surface " + failure).c_str());
+}
+
+void SystemObject::switch_off_failed_surfaces(std::vector<std::string>& warnings) {
+  std::erase_if(surfaces, [&](const auto& surface) {
+    if (surface->constraint && !engine.contains(surface->constraint)) return true;
+    if (!surface->failed || !surface->constraint) return surface.use_count() == 1;
+    engine.set_active(surface->constraint, false);
+    warnings.push_back("constraint " + std::to_string(surface->constraint.slot) +
+                       " is switched off: the function of its surface " + surface->failure);
+    return true;
+  });
 }
 
 int SystemObject::traverse(visitproc visit, void* arg) {

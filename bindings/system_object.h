@@ -8,6 +8,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <string>
@@ -29,6 +30,14 @@ struct ScriptFunction {
 struct BondFunction : ScriptFunction {
   BondId bond;
   ParticleId p, q;
+};
+
+/// The function of a surface, and how it failed first. Called from any thread of a step, and no more once it has failed.
+struct SurfaceCall {
+  std::shared_ptr<ScriptFunction> function;
+  std::atomic<bool> failed = false;
+  std::string failure;
+  ConstraintId constraint;
 };
 
 /// A function that raised, or a signal that arrived in it.
@@ -63,6 +72,8 @@ class SystemObject {
   StepReport step(double dt);
   BondLaw make_scripted_law(std::shared_ptr<BondFunction> function, std::string name);
   void keep(std::shared_ptr<ScriptFunction> function) { functions.push_back(std::move(function)); }
+  /// Names the constraint that surfaces just made belong to. Throws ValueError, without a constraint, if one has failed.
+  void settle_surfaces(ConstraintId constraint);
   /// Runs `call` for the engine, with the lock held. Notes what it raises and throws std::runtime_error, which the engine
   /// answers by switching off what the function is for; a signal that happens to arrive in it is noted only.
   template <class Call>
@@ -77,8 +88,9 @@ class SystemObject {
   System engine;
   std::thread::id owner;
   std::vector<std::shared_ptr<ScriptFunction>> functions;
-  std::vector<nb::object> code;               ///< compiled functions that laws point at
-  std::vector<ForceFailure> failures;         ///< of the step under way
+  std::vector<nb::object> code;        ///< compiled functions that laws point at
+  std::vector<ForceFailure> failures;  ///< of the step under way
+  std::vector<std::shared_ptr<SurfaceCall>> surfaces;
   bool warn_of_forces = false;                ///< where forces fail: a warning instead of an exception
   std::map<std::string, LawId> written_laws;  ///< of expressions given to bonds: by text and parameters
   struct CosmeticBond {
@@ -92,6 +104,7 @@ class SystemObject {
   std::vector<Broken> broken;  ///< in the last step
 
  private:
+  void switch_off_failed_surfaces(std::vector<std::string>& warnings);
   [[noreturn]] static void raise_foreign_thread();
   void tell_failures(const StepReport& report);
 };

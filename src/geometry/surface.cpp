@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -12,8 +13,11 @@ namespace iota::geometry {
 namespace {
 
 double positive(double v, const char* what) {
-  if (!(v > 0 && std::isfinite(v)))
-    throw std::invalid_argument(std::string(what) + " must be above 0 and finite, got " + std::to_string(v));
+  if (!(v >= 1e-9 && v <= 1e9)) {
+    std::ostringstream text;
+    text << what << " must be between 1e-9 and 1e9 m, got " << v;
+    throw std::invalid_argument(text.str());
+  }
   return v;
 }
 

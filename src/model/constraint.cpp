@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 namespace iota::model {
@@ -15,7 +16,11 @@ namespace {
 
 constexpr double straight = 1e-6;  // sine of an angle that counts as none
 
-Vec3 unit(const Vec3& v) { return (1 / norm(v)) * v; }
+/// Of any length, tiny or huge ones too.
+Vec3 unit(const Vec3& v) {
+  const Vec3 scaled = (1 / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)})) * v;
+  return (1 / norm(scaled)) * scaled;
+}
 
 /// What one side of a joint can hold: any direction where it is the world or has four points off a plane, those in its
 /// plane or along its line where it is flat or thin, none where it is a point.
@@ -227,8 +232,11 @@ std::uint32_t make_constraint(Model& model, const DistanceSpec& spec) {
   Constraint c;
   c.kind = spec.kind;
   c.length = std::isnan(spec.length) ? distance : spec.length;
-  if (!(c.length > 1e-9) || !std::isfinite(c.length))
-    cannot(name, "length must be positive and finite, got " + std::to_string(c.length) + " m");
+  if (!(c.length > 1e-9 && c.length <= 1e9)) {
+    std::ostringstream got;
+    got << c.length;
+    cannot(name, "length must be between 1e-9 and 1e9 m, got " + got.str());
+  }
   if (spec.kind == ConstraintKind::rod && model.particles[p].ring == model.particles[q].ring)
     cannot(name, "particles " + std::to_string(p) + " and " + std::to_string(q) + " are hinged to each other");
   c.breaks = spec.breaks;

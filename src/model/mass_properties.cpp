@@ -24,7 +24,7 @@ template <class... Parts>
 }
 
 void require_length(std::string_view what, double v) {
-  if (!(v > 0) || !std::isfinite(v)) refuse(what, " must be positive and finite, got ", v, " m");
+  if (!(v >= 1e-9 && v <= 1e9)) refuse(what, " must be between 1e-9 and 1e9 m, got ", v);
 }
 
 Matrix3 diagonal(double x, double y, double z) { return {Vec3{x, 0, 0}, Vec3{0, y, 0}, Vec3{0, 0, z}}; }
@@ -98,7 +98,10 @@ MassProperties properties(const Mesh& mesh) {
   double extent = 0;
   Vec3 mean;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (!is_finite(mesh.vertices[v])) refuse("vertex ", v, " of the mesh is not finite");
+    const Vec3& at = mesh.vertices[v];
+    if (!is_finite(at)) refuse("vertex ", v, " of the mesh is not finite");
+    if (std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) > 1e9)
+      refuse("vertex ", v, " of the mesh is more than 1e9 m from its origin");
     mean += (1.0 / static_cast<double>(mesh.vertices.size())) * mesh.vertices[v];
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

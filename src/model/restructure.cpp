@@ -159,13 +159,14 @@ std::vector<std::uint32_t> ring_neighbours(const Model& model, std::uint32_t par
   return bodies;
 }
 
-/// Destroys what refers to a particle that is about to go; tells the bodies that a closing held to it.
-void destroy_uses(Model& model, std::uint32_t particle, std::vector<std::uint32_t>* held_bodies) {
+/// Destroys what refers to a particle that is about to go. Articulates are split at once: no cut may find one of another
+/// cut waiting.
+void destroy_uses(Model& model, std::uint32_t particle) {
   model.for_each_bond_of(particle, [&](std::uint32_t b) { model.remove_bond(b); });
   model.for_each_closing_of(particle, [&](std::uint32_t c) {
-    const Closing& closing = model.closings[c];
-    if (held_bodies) held_bodies->push_back(model.particles[closing.p == particle ? closing.q : closing.p].body);
+    const std::array held{model.particles[model.closings[c].p].body, model.particles[model.closings[c].q].body};
     model.remove_closing(c);
+    split_where_apart(model, held);
   });
   while (model.particles[particle].first_constraint != none) {
     const std::uint32_t link = model.particles[particle].first_constraint;
@@ -352,34 +353,35 @@ void destroy_particle(Model& model, std::uint32_t particle) {
   const std::uint32_t body = model.particles[particle].body;
   const bool massive = !model.particles[particle].is_marker();
   if (massive && massive_count(model, body) == 1) return destroy_body(model, body);
+  std::vector<std::pair<std::uint32_t, Vec3>> held;  // hands stay where they hold
+  model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
+    if (massive && g.body == body) held.push_back({slot, grip_point(model, g)});
+  });
+  destroy_uses(model, particle);
   std::vector<std::uint32_t> apart = ring_neighbours(model, particle);
-  destroy_uses(model, particle, &apart);
   model.remove_particle(particle);
   model.touch(model.bodies[body].articulate);
-  if (massive) {
-    model.rebuild_basis(body);
-    destroy_stray_markers(model, body, model.notes);
-  }
   apart.push_back(body);
   split_where_apart(model, apart);
+  if (!massive) return;
+  model.rebuild_basis(body);
+  destroy_stray_markers(model, body, model.notes);
+  for (const auto& [slot, point] : held) anchor_grip(model, model.grips[slot], point);
 }
 
 void destroy_body(Model& model, std::uint32_t body) {
-  std::vector<std::uint32_t> apart;
   while (model.bodies[body].first != none) {
     const std::uint32_t particle = model.bodies[body].first;
-    for (const std::uint32_t neighbour : ring_neighbours(model, particle)) apart.push_back(neighbour);
-    destroy_uses(model, particle, &apart);
+    destroy_uses(model, particle);
+    std::vector<std::uint32_t> apart = ring_neighbours(model, particle);
     model.remove_particle(particle);
+    apart.push_back(body);
+    split_where_apart(model, apart);
   }
   model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
     if (g.body == body) model.grips.destroy(slot);
   });
   model.remove_body(body);
-  std::erase(apart, body);
-  std::sort(apart.begin(), apart.end());
-  apart.erase(std::unique(apart.begin(), apart.end()), apart.end());
-  split_where_apart(model, apart);
 }
 
 Vec3 grip_point(const Model& model, const Grip& grip) {

@@ -76,9 +76,9 @@ void finish_split(Model& model, std::uint32_t body, std::uint32_t own, std::vect
   for (const std::uint32_t b : {body, own}) {
     model.rebuild_basis(b);
     model.touch_body(b);
-    destroy_stray_markers(model, b, notes);
   }
-  split_where_apart(model, std::vector{body, own});
+  split_where_apart(model, std::vector{body, own});  // before markers go, whose cuts split for themselves
+  for (const std::uint32_t b : {body, own}) destroy_stray_markers(model, b, notes);
 }
 
 /// Particles of a body in sets that are merged.
@@ -90,7 +90,11 @@ class Pieces {
     parent_.resize(particles.size());
     std::iota(parent_.begin(), parent_.end(), std::size_t{0});
   }
-  void join(std::uint32_t p, std::uint32_t q) { parent_[piece(p)] = piece(q); }
+  /// Nothing for what is of another body.
+  void join(std::uint32_t p, std::uint32_t q) {
+    if (has(p) && has(q)) parent_[piece(p)] = piece(q);
+  }
+  bool has(std::uint32_t p) const { return std::binary_search(particles.begin(), particles.end(), p); }
   /// A number that is equal for particles of one piece.
   std::size_t piece(std::uint32_t p) const {
     auto i = static_cast<std::size_t>(std::lower_bound(particles.begin(), particles.end(), p) - particles.begin());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One step of the whole system, stage by stage; `docs/architecture.md` tells the same story.
+#include "step/checks.h"
 #include "step/implementation.h"
 
 #include <algorithm>
@@ -9,8 +10,7 @@ namespace iota {
 
 StepReport System::Implementation::apply(const step::Step& command) {
   const double h = command.dt;
-  if (!(h > 0 && h <= 1))
-    throw std::invalid_argument("step: dt must be above 0 and at most 1 s, got " + std::to_string(h));
+  if (!(h > 0 && h <= 1)) throw std::invalid_argument(step::text("step: dt must be above 0 and at most 1 s, got ", h));
   StepReport report;
   report.dt = h;
   stepping = true;

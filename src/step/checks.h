@@ -28,7 +28,7 @@ inline void require_finite(std::string_view name, const Vec3& v) {
   if (!is_finite(v)) throw std::invalid_argument(text(name, " must be finite, got ", text_of(v)));
   constexpr double limit = 1e9;  // metres or m/s: beyond it a double no longer resolves micrometres
   if (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > limit)
-    throw std::invalid_argument(text(name, " must stay within 1e9 of the origin, got ", text_of(v)));
+    throw std::invalid_argument(text(name, " must have no component above 1e9, got ", text_of(v)));
 }
 inline void require_positive(std::string_view name, double v) {
   if (!(v > 0) || !std::isfinite(v)) throw std::invalid_argument(text(name, " must be positive and finite, got ", v));

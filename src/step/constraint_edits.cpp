@@ -205,7 +205,8 @@ void System::Implementation::apply(const step::SetLength& c) {
   const std::uint32_t slot = require(c.constraint);
   if (model::info(model.constraints[slot].kind).form != model::ConstraintKindInfo::Form::distance)
     throw std::invalid_argument("only rods and ropes have a length");
-  require_positive("length", c.value);
+  if (!(c.value > 1e-9 && c.value <= 1e9))
+    throw std::invalid_argument(text("length must be between 1e-9 and 1e9 m, got ", c.value));
   model.constraints[slot].length = c.value;
   wake(slot);
 }

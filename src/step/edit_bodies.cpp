@@ -270,11 +270,16 @@ ParticleId System::Implementation::apply(const CreateAttachment& c) {
 }
 
 // The whole articulate moves as if it were rigid, so that no joint notices.
+static void require_particles(const model::Model& model, std::uint32_t body) {
+  if (model.bodies[body].count == 0) throw std::invalid_argument(text("body ", body, " has no particles to move"));
+}
+
 void System::Implementation::apply(const SetPose& c) {
   const std::uint32_t body = require(c.body);
   if (model.bodies[body].count == 0) throw std::invalid_argument(text("set_pose: body ", body, " has no particles"));
   require_finite("position", c.position);
   const Quaternion wanted = unit("orientation", c.orientation);
+  require_particles(model, body);
   refresh_orientations();
   const Quaternion& q = model.bodies[body].orientation;
   const Quaternion turn = multiply(wanted, {-q.x, -q.y, -q.z, q.w});
@@ -372,6 +377,7 @@ void System::Implementation::add_motion(std::uint32_t body, Motion motion) {
 void System::Implementation::apply(const SetBodyVelocity& c) {
   const std::uint32_t body = require(c.body);
   require_finite("velocity", c.value);
+  require_particles(model, body);
   const Vec3 change = c.value - body_velocity(model, body);
   add_motion(body, [&](const Vec3&) { return change; });
 }
@@ -379,6 +385,7 @@ void System::Implementation::apply(const SetBodyVelocity& c) {
 void System::Implementation::apply(const SetAngularVelocity& c) {
   const std::uint32_t body = require(c.body);
   require_finite("angular velocity", c.value);
+  require_particles(model, body);
   const Vec3 change = c.value - body_angular_velocity(model, body), centre = model.centre_of_mass(body);
   add_motion(body, [&](const Vec3& x) { return cross(change, x - centre); });
 }

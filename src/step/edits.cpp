@@ -56,7 +56,11 @@ void System::Implementation::apply(const step::SetGravity& c) {
 void System::Implementation::apply(const step::SetMode& c) { model.mode = c.mode; }
 void System::Implementation::apply(const step::SetSolver& c) {
   if (c.name.back() != 0) throw std::invalid_argument("set_solver: the name does not end");
-  if (c.name[0] != 0) (void)make_solver(c.name.data());  // refuses unknown names
+  try {
+    if (c.name[0] != 0) (void)make_solver(c.name.data());
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(text(error.what(), "; or \"direct\", the system's own"));
+  }
   model.solver = c.name;
 }
 void System::Implementation::apply(const step::SetSystemDamping& c) {
@@ -100,7 +104,8 @@ ParticleId System::Implementation::make_marker(std::uint32_t body, const Vec3& p
 void System::Implementation::apply(const step::SetRod& c) {
   const std::uint32_t body = require(c.body);
   require_mass("mass", c.mass);
-  require_positive("radius", c.radius);
+  if (!(c.radius > 0 && c.radius <= 1e9))
+    throw std::invalid_argument(text("radius must be above 0 and at most 1e9 m, got ", c.radius));
   std::vector<std::uint32_t> massive;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     if (!model.particles[p].is_marker()) massive.push_back(p);

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from iota._core import Body, Particle, System, Vec3, combine
@@ -29,11 +30,20 @@ def chain(
     """
     if not (isinstance(links, int) and links >= 1):
         raise ValueError(f"links must be a whole number from 1 up, not {links!r}")
-    if not length > 0:
-        raise ValueError(f"length must be above 0 m, not {length}")
-    start, step = Vec3(*top), Vec3(*direction).unit() * (length / links)
-    if abs(step) == 0:
-        raise ValueError(f"direction must not be zero: {tuple(direction)}")
+    if not 0 < length <= 1e6:
+        raise ValueError(f"length must be above 0 m and at most 1e6 m, not {length}")
+    if not 2e-12 <= mass / links <= 1e15:
+        raise ValueError(f"mass must give each of {links} links between 2e-12 and 1e15 kg, not {mass / links}")
+    start, way = Vec3(*top), Vec3(*direction)
+    if not abs(start) <= 1e8:
+        raise ValueError(f"top must be finite and at most 1e8 m from the origin, not {tuple(top)}")
+    if not 0 < abs(way) < math.inf:
+        raise ValueError(f"direction must not be zero, and finite: {tuple(direction)}")
+    step = way.unit() * (length / links)
+    if start + step == start:
+        raise ValueError(f"links of {length / links} m are lost in round-off at {tuple(top)}")
+    if rods and not 0 < radius <= 1e6:
+        raise ValueError(f"radius must be above 0 and at most 1e6 m, not {radius}")
     bodies: list[Body] = []
     end: Particle | None = None
     for index in range(links):
