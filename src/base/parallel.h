@@ -31,9 +31,8 @@ class Parallel {
       return;
     }
     using Function = std::remove_reference_t<Work>;
-    run(count, grain, const_cast<void*>(static_cast<const void*>(&work)), [](void* function, std::size_t i) {
-      (*static_cast<Function*>(function))(i);
-    });
+    run(count, grain, const_cast<void*>(static_cast<const void*>(&work)),
+        [](void* function, std::size_t i) { (*static_cast<Function*>(function))(i); });
   }
 
  private:

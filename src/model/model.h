@@ -61,7 +61,7 @@ struct Ring {
   std::array<std::uint8_t, 7> padding{};
   /// Where the nail is, and where it was at the last step, m; of a ring that a static body holds: where that was put.
   Vec3 nail, nail_before;
-  Vec3 nail_multiplier;    ///< minus the nail's force, N; warm start and reaction
+  Vec3 nail_multiplier;  ///< minus the nail's force, N; warm start and reaction
 };
 
 /// A rigid set of particles, held by distance rows between its basis points.

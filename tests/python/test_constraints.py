@@ -314,7 +314,10 @@ REFUSED = {
     ),
     "a point reaches nothing": (lambda s, a, b: s.ball(b, at=(0, 0, 0)), r"does not reach \(0.*0.*0.*\)"),
     "rod within a body": (lambda s, a, b: s.rod(*a.particles[:2]), "one rigid body"),
-    "rod of no length": (lambda s, a, b: s.rod(a.particles[0], b.particles[0], 0), "length must be between 1e-9 and 1e9 m"),
+    "rod of no length": (
+        lambda s, a, b: s.rod(a.particles[0], b.particles[0], 0),
+        "length must be between 1e-9 and 1e9 m",
+    ),
     "break force": (lambda s, a, b: s.ball(a, at=(0, 0, 0), break_force=0), "break_force must be above zero, got 0"),
     "another system": (lambda s, a, b: s.ball(iota.Body(iota.System()), at=(0, 0, 0)), "another system"),
 }

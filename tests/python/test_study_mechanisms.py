@@ -32,6 +32,15 @@ def test_the_piston_goes_as_crank_and_rod_say() -> None:
     assert system.worst_gap < 1e-9
 
 
+def test_the_motor_can_be_reversed() -> None:
+    world = mechanisms.build()
+    motor = next(c for c in world.system.constraints if c.kind == "revolute")
+    world._actions["reverse"].hook.function()
+    for _ in range(60):
+        assert world.system.step(1 / 120).unconverged == 0
+    assert motor.angle.value < -2
+
+
 def test_two_crosses_turn_the_last_shaft_as_the_first() -> None:
     system, constraints = build()
     first = next(c for c in constraints["revolute"] if abs(c.axis.x) > 0.9)

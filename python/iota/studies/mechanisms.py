@@ -67,7 +67,8 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
     piston = iota.Body(system, shape=iota.Box((0.1, 0.07, 0.07)), density=2700, position=wrist)
     world.look(wheel, "brass")
     world.look([connecting_rod, piston], "steel")
-    motor = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(2 * math.pi, 20))
+    speed, torque = 2 * math.pi, 20.0
+    axis = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(speed, torque)).angle
     system.revolute(connecting_rod, wheel, at=pin, axis=(0, 0, 1))
     system.revolute(connecting_rod, piston, at=wrist, axis=(0, 0, 1))
     system.prismatic(piston, at=wrist, axis=(1, 0, 0))
@@ -78,7 +79,9 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
 
     @world.action("reverse", key="r", help="turns the engine's motor the other way")
     def reverse() -> None:
-        motor.angle.motor_speed = -motor.angle.motor_speed
+        nonlocal speed
+        speed = -speed
+        axis.motor = (speed, torque)
 
 
 def pendulum(world: iota.World, axle: iota.Vec3) -> None:
@@ -157,7 +160,7 @@ def crane(world: iota.World, foot: iota.Vec3) -> None:
     world.look(boom, "wood")
     world.look(weight, "rubber")
     rope = system.rope(hook, weight.attachments[0], break_force=150)
-    world.add_strut(foot - (0, 0, 0), shoulder, looks.cylinder(0.025, "steel"))
+    world.add_strut(tuple(foot), tuple(shoulder), looks.cylinder(0.025, "steel"))
 
     @world.action("mend", key="m", help="ties the crane's rope again")
     def mend() -> None:

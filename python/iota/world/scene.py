@@ -50,7 +50,7 @@ def solid_shapes(solid: object, material: str, **more: Any) -> list[Shape]:
     if isinstance(solid, Sphere):
         return [sphere(solid.radius, material, **more)]
     if isinstance(solid, Box):
-        return [box(solid.size, material, **more)]
+        return [box(tuple(solid.size), material, **more)]
     if isinstance(solid, Cylinder):
         return [cylinder(solid.radius, material, length=solid.length, **more)]
     if isinstance(solid, Capsule):

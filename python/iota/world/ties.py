@@ -28,19 +28,19 @@ def describe(system: System | Simulator) -> str:
     if not isinstance(system, System):
         return "[]"
     ties = [
-        _tie("spring", *bond.ends, bond.parameters["length"])
+        _tie("spring", bond.parameters["length"], *bond.ends)
         for bond in system.bonds
         if bond.active and bond.law.name == "spring"
     ]
     ties += [
-        _tie(constraint.kind, *constraint.particles[:2], constraint.length)
+        _tie(constraint.kind, constraint.length, *constraint.particles[:2])
         for constraint in system.constraints
         if constraint.active and constraint.kind in KINDS
     ]
     return json.dumps(ties, separators=(",", ":"))
 
 
-def _tie(kind: str, p: Particle, q: Particle, length: float) -> dict[str, Any]:
+def _tie(kind: str, length: float, p: Particle, q: Particle) -> dict[str, Any]:
     return {"kind": kind, "class": kind, "length": length, "a": _end(p), "b": _end(q)}
 
 
