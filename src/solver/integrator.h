@@ -88,6 +88,7 @@ class Integrator {
   void shed(Problem&, double excess, double fraction, AdvanceReport&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   void hold_offsets(Problem&, AdvanceReport&);
+  void let_go(Problem&);
   void save_multipliers(const Problem&);
   void restore_multipliers(Problem&) const;
   bool least_violation(Problem&, Stage, AdvanceReport&);

@@ -126,8 +126,7 @@ void Newton::compile(Problem& problem) {
   });
   multipliers_saved_.resize(multiplier_count), merit_weights_.resize(multiplier_count);
   pattern_.forget_slots();
-  has_laws_ = false;
-  problem.for_each_constraint_pool([&](const auto& pool) { has_laws_ = has_laws_ || pool.has_laws(); });
+  has_laws_ = problem.has_laws();
   set_node_places(problem);
 }
 
@@ -561,6 +560,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
 }
 
 NewtonReport Newton::solve(Problem& problem, const Stage& stage, std::span<const Vec3> guess) {
+  has_laws_ = problem.has_laws();
   const auto start = [&] {
     for (std::size_t i = 0; i < problem.size(); ++i) {
       u_[i] = guess[i];

@@ -30,6 +30,7 @@ struct RowLaw {
   double rate = 0;                               ///< of a hold row, m/s
   bool hold = false;
 
+  friend bool operator==(const RowLaw&, const RowLaw&) = default;
   bool is_off() const { return lower == upper; }  ///< both 0
   bool is_compliant() const { return compliance > 0; }
   /// What is left of the bounds where only positions or impulses count: finite forces do nothing there.
@@ -67,6 +68,7 @@ struct ConstraintPool {
   std::vector<double> offsets;      ///< C::rows each: what cannot be closed and is held as it is, usually zero
   std::vector<RowLaw> laws;         ///< C::rows each; or empty: all are equations, which costs nothing
   std::vector<RowState> states;     ///< beside laws
+  std::vector<std::uint32_t> held;  ///< rows to which the integrator has lent a bound, see there
   std::vector<Slots> slots;
 
   double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }
@@ -150,6 +152,11 @@ struct Problem {
     std::apply([&](const auto&... pool) { (visit(pool), ...); }, forces);
   }
 
+  bool has_laws() const {
+    bool any = false;
+    for_each_constraint_pool([&](const auto& pool) { any = any || pool.has_laws(); });
+    return any;
+  }
   void clear_multipliers() {
     for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
   }
