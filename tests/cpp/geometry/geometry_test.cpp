@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometry/curve.h"
+#include "geometry/surface.h"
+#include "solver/constraints/surface_pair.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace iota::geometry {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+TEST(Spline, through_a_circle_has_its_length_and_runs_at_unit_speed) {
+  const auto circle =
+      Spline::of_function([](double u) { return Vec3{2 * std::cos(u), 2 * std::sin(u), 0}; }, 0, 2 * pi, true, 40);
+  EXPECT_NEAR(circle.length(), 4 * pi, 1e-4);
+  for (int i = 0; i < 100; ++i) {
+    const CurvePoint c = circle.at(0.3 * i);  // any number of rounds
+    EXPECT_NEAR(norm(c.position), 2, 1e-4);
+    EXPECT_NEAR(norm(c.d1), 1, 1e-4);
+    EXPECT_NEAR(norm(c.d2), 0.5, 1e-2);
+  }
+}
+
+TEST(Spline, passes_its_points_and_goes_on_straight_beyond_its_ends) {
+  const std::vector<Vec3> points{{0, 0, 0}, {1, 0.5, 0}, {2, 0, 1}, {2.5, 1, 1}};
+  const Spline spline(points);
+  for (const Vec3& p : points) EXPECT_NEAR(norm(spline.at(spline.nearest(p)).position - p), 0, 1e-9);
+  const CurvePoint end = spline.at(spline.length()), beyond = spline.at(spline.length() + 0.5);
+  EXPECT_NEAR(norm(beyond.position - end.position - 0.5 * end.d1), 0, 1e-12);
+}
+
+TEST(Polyline, rounds_its_corners_without_a_jump_of_the_tangent) {
+  const Polyline line(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 1, 1}}, false, 0.2);
+  CurvePoint last = line.at(0);
+  const double step = 1e-3;
+  for (double s = step; s < line.length(); s += step) {
+    const CurvePoint c = line.at(s);
+    ASSERT_NEAR(norm(c.position - last.position), step, 1e-6);
+    ASSERT_LT(norm(c.d1 - last.d1), 1.01 * step / 0.2) << "curvature is at most one over the radius";
+    last = c;
+  }
+  EXPECT_LT(norm(last.position - Vec3{2, 1, 1}), 2 * step);
+}
+
+TEST(Polyline, refuses_what_is_no_curve) {
+  EXPECT_THROW(Polyline(std::vector<Vec3>{{0, 0, 0}}), std::invalid_argument);
+  EXPECT_THROW(Polyline(std::vector<Vec3>{{1, 2, 3}, {1, 2, 3}}), std::invalid_argument);
+  EXPECT_THROW(Polyline(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}), std::invalid_argument)
+      << "turns back on itself";
+  EXPECT_THROW(Polyline(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}, true), std::invalid_argument);
+  EXPECT_THROW(Spline(std::vector<Vec3>{{0, 0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0, 0}}),
+               std::invalid_argument);
+}
+
+TEST(Curve, finds_the_nearest_place_that_brute_force_finds) {
+  const auto knot = Spline::of_function(
+      [](double u) {
+        return Vec3{std::sin(u) + 2 * std::sin(2 * u), std::cos(u) - 2 * std::cos(2 * u), -std::sin(3 * u)};
+      },
+      0, 2 * pi, true);
+  const Polyline line(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 1, 1}, {0, 2, 0}});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> number(-3, 3);
+  for (const Curve* curve : {static_cast<const Curve*>(&knot), static_cast<const Curve*>(&line)})
+    for (int round = 0; round < 100; ++round) {
+      const Vec3 p{number(random), number(random), number(random)};
+      double least = std::numeric_limits<double>::infinity();
+      for (int i = 0; i <= 4000; ++i) least = std::min(least, norm(p - curve->at(curve->length() * i / 4000).position));
+      ASSERT_LE(norm(p - curve->at(curve->nearest(p)).position), least + 1e-12);
+    }
+}
+
+TEST(Surface, of_each_kind_is_where_it_should_be) {
+  EXPECT_NEAR(Plane({0, 2, 0}, 1).at({5, 3, 1}).value, 2, 1e-12);
+  EXPECT_NEAR(Ellipsoid({1, 2, 3}).at({0, 2, 0}).value, 0, 1e-12);
+  EXPECT_NEAR(Capsule(0.5, 1).at({0, 1.5, 0}).value, 0, 1e-12);
+  EXPECT_NEAR(Capsule(0.5, 1).at({0.5, -0.7, 0}).value, 0, 1e-12);
+  EXPECT_NEAR(Torus(2, 0.5).at({0, 0.5, 2}).value, 0, 1e-12);
+  EXPECT_NEAR(Box({1, 2, 3}).at({1, 0.3, -1}).value, 0, 1e-12);
+  EXPECT_LT(Box({1, 2, 3}).at({0.2, 0.3, -1}).value, 0);
+  EXPECT_THROW(Ellipsoid(-1.0), std::invalid_argument);
+  EXPECT_THROW(Plane({0, 0, 0}), std::invalid_argument);
+  const FunctionSurface broken([](const Vec3&) -> double { throw std::runtime_error("no"); }, 1);
+  EXPECT_TRUE(std::isnan(broken.at({}).value)) << "nothing throws inside a step";
+}
+
+TEST(SurfacePair, has_the_gap_of_closed_forms_apart_and_overlapping) {
+  const auto gap = [](const Surface& a, const Surface& b, const Vec3& apart) {
+    solver::SurfacePairConstraint c;
+    c.surface_a = &a, c.surface_b = &b;
+    c.set_constant(0, apart);
+    for (int k = 0; k < 3; ++k)
+      for (const int first : {1, 4}) c.set_constant(first + k, {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0});
+    c.start(nullptr, 0);
+    double g = 0;
+    c.value(nullptr, 0, &g);
+    return g;
+  };
+  for (const double d : {0.5, 0.8, 2.0}) {
+    EXPECT_NEAR(gap(Ellipsoid(0.5), Ellipsoid(0.3), {0, d, 0}), d - 0.8, 1e-12);
+    EXPECT_NEAR(gap(Ellipsoid({0.5, 0.2, 0.3}), Plane({0, -1, 0}), {0.1, d, 0.3}), d - 0.2, 1e-12)
+        << "from below a ceiling";
+    EXPECT_NEAR(gap(Capsule(0.2, 0.4), Ellipsoid(0.1), {0.1 + d, 0.1, 0}), d - 0.2, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace iota::geometry
