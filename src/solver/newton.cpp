@@ -776,6 +776,9 @@ void Newton::project_velocities(Problem& problem, double h, bool as_solved, std:
   has_laws_ = problem.has_laws();  // which may have been lent since the last solve
   impulses_.resize(has_laws_ ? pattern_.unknown_count() : 0);
   if (has_laws_) begin_impulse_sides(problem, as_solved);
+  has_laws_ = problem.has_laws();  // which may have been lent since the last solve
+  impulses_.resize(has_laws_ ? pattern_.unknown_count() : 0);
+  if (has_laws_) begin_impulse_sides(problem, as_solved);
   bool found = project_onto_sides(problem, h, as_solved, impulses);
   while (has_laws_ && !as_solved && found && release_impulses(problem)) {
     std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
