@@ -463,7 +463,7 @@ void Newton::move(Problem& problem, const Stage& stage, double t) {
 // is there anyway take the residual to round-off (measured: 10 % of a step in the energy-keeping mode; the robust mode,
 // which dissipates far more, pays it only where the guess was good enough by itself).
 template <bool Midpoint>
-double Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report) {
+double Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, bool factor_is_old) {
   constexpr int most_steps = 3;
   const auto balanced = [&] {
     Largest displacement;
@@ -472,9 +472,11 @@ double Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report
   };
   double now = report.residual;
   if (!(now <= stage.tolerance) || (violation_ <= round_off && balanced())) return now;
-  if (report.iterations == 0) {
+  // A factor that has served on from further away leaves more: angular momentum of a loop drifted fifty times as far.
+  if (report.iterations == 0 || factor_is_old) {
     ++report.iterations;
-    if (assemble_and_factor<Midpoint>(problem, stage, Hessian::exact) > 0) return now;
+    if (assemble_and_factor<Midpoint>(problem, stage, Hessian::exact) > 0)
+      (void)assemble_and_factor<Midpoint>(problem, stage, Hessian::clamped);
   }
   for (int step = 0; step < most_steps; ++step) {
     const double imbalance = imbalance_;
@@ -499,7 +501,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   if (has_laws_) begin_sides(problem, stage), choose_sides(problem, stage);
   report.residual = residual<Midpoint>(problem, stage, x_.data());
   Hessian hessian = Hessian::exact;
-  bool stuck = false, settled = true, factor_will_do = false;
+  bool stuck = false, settled = true, factor_will_do = false, served_on = false;
   int most_iterations = stage.max_iterations;
   while (true) {
     if (has_laws_ && report.iterations > 0) {
@@ -512,6 +514,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     }
     if (!(report.residual > stage.tolerance) || report.iterations >= most_iterations) break;
     ++report.iterations;
+    served_on = factor_will_do;
     if (!factor_will_do && assemble_and_factor<Midpoint>(problem, stage, hessian) > 0 && hessian == Hessian::exact)
       (void)assemble_and_factor<Midpoint>(problem, stage, Hessian::clamped);
     solve_linear();
@@ -550,7 +553,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     report.residual = after;
   }
   if (!stuck && !stage.is_projection() && (Midpoint || report.iterations == 0))
-    report.residual = polish<Midpoint>(problem, stage, report);
+    report.residual = polish<Midpoint>(problem, stage, report, served_on);
   report.violation = violation_;
   if (has_laws_) report.met = count_met(problem);
   const bool exact = stage.compliance <= 1e-12;
@@ -773,9 +776,6 @@ bool Newton::release_impulses(Problem& problem) {
 void Newton::project_velocities(Problem& problem, double h, bool as_solved, std::span<const Vec3> impulses) {
   std::copy(problem.position.begin(), problem.position.end(), x_.begin());
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
-  has_laws_ = problem.has_laws();  // which may have been lent since the last solve
-  impulses_.resize(has_laws_ ? pattern_.unknown_count() : 0);
-  if (has_laws_) begin_impulse_sides(problem, as_solved);
   has_laws_ = problem.has_laws();  // which may have been lent since the last solve
   impulses_.resize(has_laws_ ? pattern_.unknown_count() : 0);
   if (has_laws_) begin_impulse_sides(problem, as_solved);

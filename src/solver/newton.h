@@ -137,7 +137,7 @@ class Newton {
   void project_once(Problem&, double h, std::span<const Vec3> impulses);
   /// Takes a residual that is within tolerance to round-off; returns what it is then.
   template <bool Midpoint>
-  double polish(Problem&, const Stage&, NewtonReport&);
+  double polish(Problem&, const Stage&, NewtonReport&, bool factor_is_old);
   void solve_linear();
   void save(const Problem&);
   /// u + t du and lambda + t d_lambda, from the saved iterate.
