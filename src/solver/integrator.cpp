@@ -10,13 +10,9 @@ namespace iota::solver {
 
 namespace {
 
-constexpr double standing_gap = 1e-6;        // relative start gap beyond which positions are projected before the step
-constexpr std::uint64_t standing_steps = 8;  // a conflict that stands is tried again after so many
-constexpr double ample = 1.1;                // of a gap that moves: leave some play, a straight arm has none
-constexpr double soft_compliance = 1e-3;     // relative: shares what cannot be closed
-constexpr int patience = 400;                // iterations after which sub-steps are no longer halved
-constexpr double round_off = 1e-14;          // of energies
-constexpr double largest_violation = 1e-2;   // relative: a step that opens wider gaps is no answer
+constexpr int patience = 400;               // iterations after which sub-steps are no longer halved
+constexpr double round_off = 1e-14;         // of energies
+constexpr double largest_violation = 1e-2;  // relative: a step that opens wider gaps is no answer
 
 }  // namespace
 
@@ -36,23 +32,7 @@ void Integrator::make_room(const Problem& problem) {
   resize_with_slack(lumped_mass_, problem.size());
   std::copy(problem.mass.begin(), problem.mass.end(), lumped_mass_.begin());
   for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
-  std::size_t count = 0;
-  problem.for_each_constraint_pool([&](const auto& pool) { count += pool.multipliers.size(); });
-  multipliers_saved_.resize(count);
-}
-
-void Integrator::save_multipliers(const Problem& problem) {
-  auto out = multipliers_saved_.begin();
-  problem.for_each_constraint_pool(
-      [&](const auto& p) { out = std::copy(p.multipliers.begin(), p.multipliers.end(), out); });
-}
-
-void Integrator::restore_multipliers(Problem& problem) const {
-  auto in = multipliers_saved_.begin();
-  problem.for_each_constraint_pool([&](auto& pool) {
-    std::copy_n(in, pool.multipliers.size(), pool.multipliers.begin());
-    in += static_cast<std::ptrdiff_t>(pool.multipliers.size());
-  });
+  multipliers_saved_.resize(problem.multiplier_count());
 }
 
 // End point: where the forces of the last step would carry the points, x0 + h v0 + (f - G0' lambda) / (inertia m), which
@@ -255,7 +235,7 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
     advance_mid_point(problem, h / 2, middle, to, depth + 1, report);
   };
   if (depth < care_.max_depth && will_turn_too_far(problem, h)) return halve();  // do not even try
-  save_multipliers(problem);
+  problem.copy_multipliers_to(multipliers_saved_);
   Stage stage = Stage::mid_point(h, from, to);
   stage.tolerance *= care_.tolerance;
   if (try_step(problem, stage, report) && !turns_too_far(problem) &&
@@ -268,10 +248,10 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
       if (met || care_.max_error > 0) report.impacts += settle_velocities(problem, to, report) && met;
       return;
     }
-    restore_multipliers(problem);
+    problem.set_multipliers(multipliers_saved_);
     return halve();
   }
-  restore_multipliers(problem);
+  problem.set_multipliers(multipliers_saved_);
   if (depth == care_.max_depth || report.iterations > patience) {
     ++report.fallbacks;
     return advance_end_point(problem, h, from, to, depth, report);
@@ -285,10 +265,8 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
 bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const int met = met_;
   candidate_.assign(newton_.displacement().begin(), newton_.displacement().end());
-  candidate_multipliers_.clear();
-  problem.for_each_constraint_pool([&](const auto& pool) {
-    candidate_multipliers_.insert(candidate_multipliers_.end(), pool.multipliers.begin(), pool.multipliers.end());
-  });
+  candidate_multipliers_.resize(problem.multiplier_count());
+  problem.copy_multipliers_to(candidate_multipliers_);
 
   Stage half = Stage::mid_point(stage.h / 2, stage.fraction_start, (stage.fraction_start + stage.fraction) / 2);
   half.tolerance = stage.tolerance;
@@ -302,11 +280,7 @@ bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport
   if (!solved || !(worst <= limit * limit)) return false;
 
   std::copy(candidate_.begin(), candidate_.end(), guess_.begin());
-  auto in = candidate_multipliers_.begin();
-  problem.for_each_constraint_pool([&](auto& pool) {
-    std::copy_n(in, pool.multipliers.size(), pool.multipliers.begin());
-    in += static_cast<std::ptrdiff_t>(pool.multipliers.size());
-  });
+  problem.set_multipliers(candidate_multipliers_);
   const bool again = solve(problem, stage, report);  // it is the solution: no iterations
   met_ = met;
   return again;
@@ -326,7 +300,7 @@ bool Integrator::settle_velocities(Problem& problem, double to, AdvanceReport& r
 
 void Integrator::advance_end_point(Problem& problem, double h, double from, double to, int depth,
                                    AdvanceReport& report) {
-  save_multipliers(problem);
+  problem.copy_multipliers_to(multipliers_saved_);
   Stage stage = Stage::end_point(h, from, to);
   stage.tolerance *= care_.tolerance;
   const bool solved = try_step(problem, stage, report);
@@ -347,7 +321,7 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
       return;
     }
   }
-  restore_multipliers(problem);
+  problem.set_multipliers(multipliers_saved_);
   if (depth < care_.max_depth && report.iterations <= patience) {
     const double middle = (from + to) / 2;
     advance_end_point(problem, h / 2, from, middle, depth + 1, report);
@@ -365,12 +339,8 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
 // Takes made-up energy out of the motion: all velocities get smaller alike, relative to the centre of mass where nothing
 // outside holds on, which no constraint notices.
 void Integrator::shed(Problem& problem, double excess, double fraction, AdvanceReport& report) {
-  bool internal = true;
-  problem.for_each_constraint_pool([&](const auto& pool) {
-    for (const auto& c : pool.items) internal = internal && c.is_internal();
-  });
   Vec3 drift;
-  if (internal) {
+  if (problem.is_isolated()) {
     double mass = 0;
     for (std::size_t i = 0; i < problem.size(); ++i)
       mass += lumped_mass_[i], drift += lumped_mass_[i] * problem.velocity[i];
@@ -390,7 +360,7 @@ void Integrator::shed(Problem& problem, double excess, double fraction, AdvanceR
 // not energy-keeping, but plausible, finite, whole, and reported.
 void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
   constexpr int pieces = 8;
-  restore_multipliers(problem);
+  problem.set_multipliers(multipliers_saved_);
   const double before = energy_;
   bool whole = true;
   for (int piece = 0; piece < pieces && whole; ++piece) {
@@ -419,7 +389,7 @@ bool Integrator::least_violation(Problem& problem, Stage stage, AdvanceReport& r
   // Rising compliance turns conflicting constraints into the springs that share the violation.
   for (const double compliance : {1e-8, 1e-6, 1e-4, 1e-2}) {
     stage.compliance = compliance;
-    restore_multipliers(problem);
+    problem.set_multipliers(multipliers_saved_);
     if (try_step(problem, stage, report)) return violation_ <= largest_violation;
   }
   return false;
@@ -475,139 +445,6 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
   }
   let_go(problem);
   return report;
-}
-
-void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
-  if (holds_offsets_) problem.clear_offsets();
-  holds_offsets_ = false;
-  const double gap = problem.worst_gap(problem.position.data(), 0, true);
-  if (!(gap > standing_gap)) {
-    problem.standing_gap = 0;
-    return;
-  }
-  // A conflict that nothing has changed is left in peace for a while: trying costs tens of iterations.
-  if (conservative_ && gap <= 1.001 * problem.standing_gap && ++problem.standing_steps < standing_steps) {
-    hold_offsets(problem, report);
-    return;
-  }
-  const double kinetic = problem.kinetic_energy();
-  const double before = kinetic + problem.potential_energy(problem.position.data());
-  problem.standing_gap = 0, problem.standing_steps = 0;
-  if (!project_positions(problem)) {
-    hold_offsets(problem, report);
-    problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
-  }
-  project_velocities(problem);
-  const double closed = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
-  report.closing_energy += closed - before;
-  if (holds_offsets_ && conservative_ &&
-      closed > before) {  // pulling for ever on what cannot meet must not heat the world
-    take_stock(problem, 0);
-    const double dissipated = report.dissipated;
-    shed(problem, closed - before, 0, report);
-    report.closing_energy -= report.dissipated - dissipated, report.dissipated = dissipated;
-  }
-}
-
-// What cannot be closed stays as it is during the step. Where nails move it may become what it will be at their end, or
-// less: rows get a bound instead of an equation. Held to its length, an arm that was pulled beyond its reach would have to
-// snap sideways when the pull lets up (measured: 400 J to 3 kJ, against 20 J).
-void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
-  report.converged = false;
-  holds_offsets_ = true;
-  bool moving = false;
-  problem.for_each_constraint_pool([&](const auto& pool) {
-    for (const auto& c : pool.items) moving = moving || c.is_moving();
-  });
-  candidate_.assign(problem.position.begin(), problem.position.end());
-  if (moving) {
-    save_multipliers(problem);
-    problem.clear_multipliers();
-    problem.clear_offsets();
-    const Stage stage = Stage::projection(soft_compliance);
-    if (try_step(problem, stage, report)) candidate_.assign(newton_.solution().begin(), newton_.solution().end());
-    restore_multipliers(problem);
-  }
-  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
-    for (std::size_t i = 0; i < pool.items.size(); ++i) {
-      double* const offset = pool.offsets.data() + i * C::rows;
-      pool.items[i].value(candidate_.data(), moving ? 1 : 0, offset);
-      for (int r = 0; r < C::rows; ++r) {
-        const auto row = static_cast<std::uint32_t>(i * C::rows + r);
-        if (pool.has_laws() && pool.laws[row].violation(offset[r]) == 0) offset[r] = 0;
-        if (!moving || !(std::abs(offset[r]) > standing_gap * pool.items[i].reference_length())) continue;
-        RowLaw& law = pool.law(i)[r];
-        if (law.lower_impulse() == 0 || law.upper_impulse() == 0) continue;  // has a bound already
-        (offset[r] > 0 ? law.lower : law.upper) = 0;
-        offset[r] *= ample;
-        pool.held.push_back(row);
-      }
-    }
-    if (pool.has_laws()) pool.states.resize(pool.laws.size());
-  });
-}
-
-// Takes the lent bounds back.
-void Integrator::let_go(Problem& problem) {
-  problem.for_each_constraint_pool([&](auto& pool) {
-    if (pool.held.empty()) return;
-    for (const std::uint32_t row : pool.held) pool.laws[row] = {};
-    pool.held.clear();
-    const bool none =
-        std::all_of(pool.laws.begin(), pool.laws.end(), [](const RowLaw& law) { return law == RowLaw{}; });
-    if (none) pool.laws.clear(), pool.states.clear();
-  });
-}
-
-bool Integrator::project_positions(Problem& problem) {
-  save_multipliers(problem);
-  problem.clear_offsets();
-  AdvanceReport ignored;
-  const auto attempt = [&](double compliance, int iterations) {
-    problem.clear_multipliers();
-    Stage stage = Stage::projection(compliance);
-    stage.fraction = 0;
-    stage.max_iterations = iterations;
-    const bool solved = try_step(problem, stage, ignored);
-    if (solved) std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
-    return solved;
-  };
-  // At once; else bit by bit, as far as there is a way; else by soft steps, each of which shares what cannot be closed.
-  bool solved = attempt(1e-12, 20) || close_bit_by_bit(problem, attempt);
-  for (int soft = 0; soft < 3 && !solved; ++soft) {
-    if (!attempt(soft_compliance, 40)) break;
-    solved = attempt(1e-12, 12);
-  }
-  restore_multipliers(problem);
-  return solved;
-}
-
-// Many links away from a solution Newton gets lost, but a part of the way it finds (a fine chain pulled together over
-// centimetres). What remains is held as offsets meanwhile.
-template <class Attempt>
-bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
-  double remaining = 1, part = 0.25;
-  bool solved = false;
-  for (int tries = 0; tries < 60 && remaining > 0 && part > 2e-3; ++tries) {
-    part = std::min(part, remaining);
-    problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
-      for (std::size_t i = 0; i < pool.items.size(); ++i) {
-        double* const offset = pool.offsets.data() + i * C::rows;
-        pool.items[i].value(problem.position.data(), 0, offset);
-        for (int r = 0; r < C::rows; ++r) {
-          offset[r] *= (remaining - part) / remaining;
-          if (pool.has_laws() && pool.law(i)[r].violation(offset[r]) == 0) offset[r] = 0;
-        }
-      }
-    });
-    solved = attempt(1e-12, 10);
-    if (solved)
-      remaining -= part, part *= 2;
-    else
-      part /= 4;
-  }
-  problem.clear_offsets();
-  return solved && !(remaining > 0);
 }
 
 }  // namespace iota::solver

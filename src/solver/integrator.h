@@ -89,8 +89,6 @@ class Integrator {
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   void hold_offsets(Problem&, AdvanceReport&);
   void let_go(Problem&);
-  void save_multipliers(const Problem&);
-  void restore_multipliers(Problem&) const;
   bool least_violation(Problem&, Stage, AdvanceReport&);
   void coast(Problem&, double h, AdvanceReport&);
   template <class Attempt>

@@ -157,11 +157,38 @@ struct Problem {
     for_each_constraint_pool([&](const auto& pool) { any = any || pool.has_laws(); });
     return any;
   }
+  std::size_t multiplier_count() const {
+    std::size_t count = 0;
+    for_each_constraint_pool([&](const auto& pool) { count += pool.multipliers.size(); });
+    return count;
+  }
+  /// In the order of the pools; `out` has room for all.
+  void copy_multipliers_to(std::vector<double>& out) const {
+    auto at = out.begin();
+    for_each_constraint_pool(
+        [&](const auto& pool) { at = std::copy(pool.multipliers.begin(), pool.multipliers.end(), at); });
+  }
+  void set_multipliers(const std::vector<double>& from) {
+    auto at = from.begin();
+    for_each_constraint_pool([&](auto& pool) {
+      std::copy_n(at, pool.multipliers.size(), pool.multipliers.begin());
+      at += static_cast<std::ptrdiff_t>(pool.multipliers.size());
+    });
+  }
   void clear_multipliers() {
     for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
   }
   void clear_offsets() {
     for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
+  }
+
+  /// Whether no constraint holds on to the world: momentum stays.
+  bool is_isolated() const {
+    bool internal = true;
+    for_each_constraint_pool([&](const auto& pool) {
+      for (const auto& c : pool.items) internal = internal && c.is_internal();
+    });
+    return internal;
   }
 
   /// u' M u.

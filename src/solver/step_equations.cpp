@@ -18,14 +18,16 @@ void StepEquations::for_each_row(Visit visit) const {
 
 StepEquations::StepEquations(Newton& newton, Problem& problem, const Stage& stage)
     : newton_(newton), problem_(problem), stage_(stage) {
-  const std::size_t n = newton.pattern_.unknown_count();
-  const double length = newton.reference_length_;
+  const std::size_t n = newton.assembly_.unknown_count();
+  const double length = newton.reference_length();
   row_scale_.assign(n, 0), column_scale_.assign(n, 0);
   double mass = 0;
   for (const double m : problem.mass) mass += m / static_cast<double>(problem.size());
   for (std::size_t i = 0; i < problem.size(); ++i) {
-    std::fill_n(row_scale_.begin() + newton.node_unknown_[i], 3, newton.inverse_scale_[i]);
-    std::fill_n(column_scale_.begin() + newton.node_unknown_[i], 3, length);
+    const auto node = static_cast<std::uint32_t>(i);
+    const std::uint32_t unknown = newton.assembly_.unknown_of(node);
+    std::fill_n(row_scale_.begin() + unknown, 3, newton.assembly_.inverse_scale(node));
+    std::fill_n(column_scale_.begin() + unknown, 3, length);
   }
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
@@ -39,7 +41,7 @@ std::vector<double> StepEquations::unknowns() const {
   std::vector<double> out(size());
   for (std::size_t i = 0; i < problem_.size(); ++i) {
     const Vec3& u = newton_.u_[i];
-    double* const at = out.data() + newton_.node_unknown_[i];
+    double* const at = out.data() + newton_.assembly_.unknown_of(static_cast<std::uint32_t>(i));
     at[0] = u.x, at[1] = u.y, at[2] = u.z;
   }
   for_each_row([&](std::uint32_t unknown, double multiplier, bool) { out[unknown] = multiplier; });
@@ -49,20 +51,20 @@ std::vector<double> StepEquations::unknowns() const {
 
 double StepEquations::assign(std::span<const double> unknowns) {
   for (std::size_t i = 0; i < problem_.size(); ++i) {
-    const double* const at = unknowns.data() + newton_.node_unknown_[i];
-    newton_.u_[i] = newton_.reference_length_ * Vec3{at[0], at[1], at[2]};
+    const double* const at = unknowns.data() + newton_.assembly_.unknown_of(static_cast<std::uint32_t>(i));
+    newton_.u_[i] = newton_.reference_length() * Vec3{at[0], at[1], at[2]};
     newton_.x_[i] = problem_.position[i] + stage_.h * problem_.velocity[i] + newton_.u_[i];
   }
   for_each_row([&](std::uint32_t unknown, double& multiplier, bool bound) {
     if (!bound) multiplier = column_scale_[unknown] * unknowns[unknown];
   });
-  const Vec3* const x = newton_.x_.data();
-  return stage_.midpoint ? newton_.residual<true>(problem_, stage_, x) : newton_.residual<false>(problem_, stage_, x);
+  stage_.midpoint ? newton_.measure<true>(problem_, stage_) : newton_.measure<false>(problem_, stage_);
+  return newton_.residual_.worst;
 }
 
 void StepEquations::evaluate(std::span<const double> x, std::span<double> f) {
   (void)assign(x);
-  for (std::size_t i = 0; i < f.size(); ++i) f[i] = row_scale_[i] * newton_.residual_[i];
+  for (std::size_t i = 0; i < f.size(); ++i) f[i] = row_scale_[i] * newton_.assembly_.residuals()[i];
   for_each_row([&](std::uint32_t unknown, double multiplier, bool bound) {
     if (bound) f[unknown] = row_scale_[unknown] * (multiplier - column_scale_[unknown] * x[unknown]);
   });
@@ -70,16 +72,16 @@ void StepEquations::evaluate(std::span<const double> x, std::span<double> f) {
 
 bool StepEquations::jacobian(std::span<const double> x, std::span<double> jacobian) {
   (void)assign(x);
-  if (stage_.midpoint)
-    newton_.assemble<true>(problem_, stage_, Newton::Hessian::exact);
-  else
-    newton_.assemble<false>(problem_, stage_, Newton::Hessian::exact);
-  const double *const lower = newton_.factor_.lower(), *const upper = newton_.factor_.upper();
+  Assembly& assembly = newton_.assembly_;
+  const Vec3* const at = newton_.x_.data();
+  stage_.midpoint ? assembly.assemble<true>(problem_, stage_, at, Hessian::exact)
+                  : assembly.assemble<false>(problem_, stage_, at, Hessian::exact);
+  const double *const lower = assembly.factor().lower(), *const upper = assembly.factor().upper();
   std::fill(jacobian.begin(), jacobian.end(), 0.0);
   const auto put = [&](std::size_t i, std::size_t j, double value) {
     jacobian[i * size() + j] = row_scale_[i] * value * column_scale_[j];
   };
-  const auto& pattern = newton_.pattern_;
+  const BlockPattern& pattern = assembly.pattern();
   for (const BlockPattern::Vertex& v : pattern.vertices()) {
     for (std::uint32_t i = 0; i < v.pivot; ++i)
       for (std::uint32_t j = 0; j < v.pivot; ++j) {

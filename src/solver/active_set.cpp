@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/active_set.h"
+
+#include "solver/row_equation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace iota::solver {
+
+namespace {
+
+constexpr double closed_gap = 1e-6;  // relative: below it a bounded row is met
+
+/// Whether velocities differ from what a hold row wants by more than a bent coordinate makes of a step. A motor that has
+/// just been switched on would else be thrown back and forth about its speed for ever by the mid-point rule.
+template <class C>
+bool is_off_speed(const Problem& problem, const C& c, int row, double rate, const Stage& stage) {
+  constexpr double bent = 1e-3, still = 1e-9;
+  const Gradients<C> gradients(c, problem.position.data(), stage.fraction_start);
+  double speed = 0, largest = std::abs(rate);
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 rows[C::rows];
+    gradients.of_node(i, rows);
+    const Vec3& v = problem.velocity[c.nodes[i]];
+    speed += dot(rows[row], v);
+    largest += norm(rows[row]) * norm(v);
+  }
+  return std::abs(speed - rate) * stage.h > bent * largest * stage.h + still * c.reference_length();
+}
+
+}  // namespace
+
+void ActiveSet::begin(Problem& problem, const Stage& stage) {
+  fewest_wrong_ = std::numeric_limits<int>::max(), stalled_ = 0;
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    if (!pool.has_laws()) return;
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      double g[C::rows] = {};
+      const RowLaw* const law = pool.law(k);
+      if (std::any_of(law, law + C::rows, [](const RowLaw& l) { return !l.is_off() && (l.hold || l.is_compliant()); }))
+        pool.value(k, problem.position.data(), stage.fraction_start, g);
+      for (int r = 0; r < C::rows; ++r) {
+        const Bounds bounds = bounds_of(law[r], stage);
+        double& lambda = pool.multiplier(k)[r];
+        RowState& state = pool.states[k * C::rows + r];
+        state.start = g[r];
+        state.side = lambda <= bounds.lower ? -1 : lambda >= bounds.upper ? 1 : 0;
+        if (state.side != 0) lambda = state.side < 0 ? bounds.lower : bounds.upper;
+        state.side_before = state.side;
+        state.off_speed = law[r].hold && is_off_speed(problem, pool.items[k], r, law[r].rate, stage);
+      }
+    }
+  });
+}
+
+int ActiveSet::count_met(const Problem& problem) {
+  int count = 0;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    for (const RowState& state : pool.states) count += state.side == 0 && (state.side_before != 0 || state.off_speed);
+  });
+  return count;
+}
+
+bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
+  constexpr int patience = 6;
+  const bool one_only = stalled_ > patience;
+  int wrong = 0;
+  bool changed = false;
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    if (!pool.has_laws()) return;
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      const C& c = pool.items[k];
+      const RowLaw* const law = pool.law(k);
+      RowState* const states = pool.states.data() + k * C::rows;
+      double* const lambda = pool.multiplier(k);
+      bool any = false, any_free = false;
+      for (int r = 0; r < C::rows; ++r) {
+        const Bounds bounds = bounds_of(law[r], stage);
+        any = any || bounds.lower != bounds.upper;
+        any_free = any_free || states[r].side == 0;
+      }
+      if (!any) continue;
+      double g[C::rows], scale[C::rows] = {};
+      pool.value(k, x, stage.fraction, g);
+      if (any_free) {
+        const Gradients<C> gradients(c, x, stage.fraction);
+        for (int i = 0; i < c.node_count(); ++i) {
+          Vec3 rows[C::rows];
+          gradients.of_node(i, rows);
+          for (int r = 0; r < C::rows; ++r)
+            scale[r] += dot(rows[r], rows[r]) / (stage.inertia * problem.mass[c.nodes[i]]);
+        }
+      }
+      for (int r = 0; r < C::rows; ++r) {
+        const Bounds bounds = bounds_of(law[r], stage);
+        RowState& state = states[r];
+        if (bounds.lower == bounds.upper) continue;
+        const RowEquation equation = equation_of(law[r], state, g[r], stage);
+        const double open = equation.value - equation.softness * lambda[r];
+        const double little = stage.tolerance * c.reference_length();
+        int side = state.side;
+        if (side == 0) {
+          const double soft = scale[r] + equation.softness;
+          if (open + soft * (lambda[r] - bounds.lower) < -little) side = -1;
+          if (open + soft * (lambda[r] - bounds.upper) > little) side = 1;
+        } else if (side * open < -little) {
+          side = 0;
+        }
+        if (side == state.side) continue;
+        ++wrong;
+        if (one_only && changed) continue;
+        state.side = static_cast<std::int8_t>(side), changed = true;
+        if (side != 0) lambda[r] = side < 0 ? bounds.lower : bounds.upper;
+      }
+    }
+  });
+  if (wrong < fewest_wrong_)
+    fewest_wrong_ = wrong, stalled_ = 0;
+  else
+    ++stalled_;
+  return changed;
+}
+
+void ActiveSet::begin_impulses(Problem& problem, bool as_solved) {
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    if (!pool.has_laws()) return;
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      double g[C::rows];
+      pool.value(k, problem.position.data(), as_solved ? 1 : 0, g);
+      for (int r = 0; r < C::rows; ++r) {
+        const RowLaw& law = pool.law(k)[r];
+        RowState& state = pool.states[k * C::rows + r];
+        if (as_solved) {
+          if (law.is_compliant()) state.side = 1;
+          continue;
+        }
+        const double touching = closed_gap * pool.items[k].reference_length();
+        const bool pulls = law.upper_impulse() > 0 && g[r] > -touching;
+        const bool pushes = law.lower_impulse() < 0 && g[r] < touching;
+        state.side = pulls || pushes ? 0 : 1;
+      }
+    }
+  });
+}
+
+bool ActiveSet::release_impulses(Problem& problem, std::span<const double> impulses) {
+  bool released = false;
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    if (!pool.has_laws()) return;
+    for (std::size_t row = 0; row < pool.states.size(); ++row) {
+      const double impulse = impulses[pool.slots[row / C::rows].unknown + row % C::rows];
+      const RowLaw& law = pool.laws[row];
+      if (pool.states[row].side != 0 || (impulse >= law.lower_impulse() && impulse <= law.upper_impulse())) continue;
+      pool.states[row].side = 1, released = true;
+    }
+  });
+  return released;
+}
+
+}  // namespace iota::solver

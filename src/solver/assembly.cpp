@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/assembly.h"
+
+#include "solver/largest.h"
+#include "solver/row_equation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::solver {
+
+namespace {
+
+constexpr double largest_noise = 1e-8;  // of the scaled force residual
+constexpr double round_off = 4e-15;     // of the largest scaled force: below it a residual is noise
+
+struct NoGradients {
+  NoGradients(const auto&, const Vec3*, double) {}
+};
+/// Only the mid-point scheme takes gradients at the start.
+template <bool Midpoint, class C>
+using StartGradients = std::conditional_t<Midpoint, Gradients<C>, NoGradients>;
+
+}  // namespace
+
+void Assembly::set_scales(const Problem& problem, const Stage& stage) {
+  for (std::size_t i = 0; i < problem.size(); ++i)
+    inverse_scale_[i] = 1 / (stage.inertia * problem.mass[i] * reference_length_);
+}
+
+template <bool Midpoint>
+void Assembly::add_momentum(const Problem& problem, const Stage& stage, const Vec3* x, const Vec3* u) {
+  const std::size_t n = problem.size();
+  const Vec3* const x0 = problem.position.data();
+  const bool push = !stage.is_projection();
+
+  for (std::size_t i = 0; i < n; ++i) {
+    Vec3 f = (stage.inertia * problem.mass[i]) * u[i];
+    if (push) f -= problem.force[i] + problem.mass[i] * problem.gravity;
+    momentum_[i] = f;
+  }
+  for (const auto& c : problem.mass_couplings) {
+    momentum_[c.a] += (stage.inertia * c.mass) * u[c.b];
+    momentum_[c.b] += (stage.inertia * c.mass) * u[c.a];
+    if (push) {
+      momentum_[c.a] -= c.mass * problem.gravity;
+      momentum_[c.b] -= c.mass * problem.gravity;
+    }
+  }
+  if (!push) return;
+  const ForceStage force_stage{stage.h, Midpoint, false};
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items) {
+      const Vec3 force = f.force(f.arm.value(x0), f.arm.value(x), force_stage);
+      for (std::uint32_t i = 0; i < f.arm.count; ++i) momentum_[f.arm.nodes[i]] -= f.arm.weights[i] * force;
+    }
+  });
+}
+
+template <bool Midpoint>
+Residual Assembly::residual(const Problem& problem, const Stage& stage, const Vec3* x, const Vec3* u) {
+  add_momentum<Midpoint>(problem, stage, x, u);
+  worst_ = violation_ = largest_multiplier_ = 0;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    pool.has_laws() ? add_rows<Midpoint, true>(problem, stage, pool, x)
+                    : add_rows<Midpoint, false>(problem, stage, pool, x);
+  });
+  Largest worst_force;
+  double largest_inverse_scale = 0;
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    double* const r = residuals_.data() + node_unknown_[i];
+    r[0] = momentum_[i].x, r[1] = momentum_[i].y, r[2] = momentum_[i].z;
+    worst_force.add(largest_component(momentum_[i]) * inverse_scale_[i]);
+    largest_inverse_scale = std::max(largest_inverse_scale, inverse_scale_[i]);
+  }
+  Residual found{.violation = violation_, .imbalance = worst_force.value};
+  // Forces that cancel leave round-off; do not chase it. Enormous multipliers mean a conflict, not noise.
+  found.noise = std::min(round_off * largest_multiplier_ * largest_inverse_scale, largest_noise);
+  Largest worst{worst_};
+  worst.add(found.imbalance > found.noise ? found.imbalance : 0);
+  found.worst = worst.value;
+  return found;
+}
+
+// The constraint forces of a pool, and what is left of its equations.
+template <bool Midpoint, bool Laws, class C>
+void Assembly::add_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x) {
+  const Vec3* const x0 = problem.position.data();
+  Largest worst{worst_}, violation{violation_};
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    const C& c = pool.items[k];
+    const double* const lambda = pool.multiplier(k);
+    if constexpr (Laws)
+      if (is_out_of_play(pool, k)) {
+        for (int r = 0; r < C::rows; ++r) residuals_[pool.slots[k].unknown + r] = 0;
+        continue;
+      }
+    double g[C::rows];
+    pool.value(k, x, stage.fraction, g);
+    double compliance = 0, compliances[C::rows] = {};
+    const Gradients<C> gradients(c, x, stage.fraction);
+    [[maybe_unused]] const StartGradients<Midpoint, C> start_gradients(c, x0, stage.fraction_start);
+    for (int i = 0; i < c.node_count(); ++i) {
+      Vec3 rows[C::rows];
+      gradients.of_node(i, rows);
+      if constexpr (Laws)
+        for (int r = 0; r < C::rows; ++r) compliances[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
+      else if (stage.compliance != 0)
+        compliance += dot(rows[0], rows[0]) / problem.mass[c.nodes[i]];
+      Vec3 start_rows[C::rows];
+      if constexpr (Midpoint) start_gradients.of_node(i, start_rows);
+      for (int r = 0; r < C::rows; ++r) {
+        const Vec3 direction = Midpoint ? 0.5 * (rows[r] + start_rows[r]) : rows[r];
+        momentum_[c.nodes[i]] += lambda[r] * direction;
+      }
+    }
+    const double per_length = 1 / c.reference_length();
+    compliance *= stage.compliance / stage.inertia;
+    for (int r = 0; r < C::rows; ++r) {
+      double value, gap = g[r];
+      if constexpr (Laws) {
+        const RowState& state = pool.states[k * C::rows + r];
+        const RowEquation equation = equation_of(pool.law(k)[r], state, g[r], stage);
+        if (state.side != 0)
+          value = gap = 0;
+        else
+          value = equation.value - (equation.softness + compliances[r] * stage.compliance / stage.inertia) * lambda[r];
+        if (equation.softness > 0) gap = 0;
+        if (pool.law(k)[r].hold && state.side == 0) gap = equation.value;
+      } else {
+        value = g[r] - compliance * lambda[r];
+      }
+      residuals_[pool.slots[k].unknown + r] = value;
+      worst.add(std::abs(value) * per_length);
+      violation.add(std::abs(gap) * per_length);
+      largest_multiplier_ = std::max(largest_multiplier_, std::abs(lambda[r]));
+    }
+  }
+  worst_ = worst.value, violation_ = violation.value;
+}
+
+void Assembly::add_to_node(std::uint32_t node, double value) {
+  double* const d = factor_.lower() + node_diagonal_[node];
+  const int s = node_stride_[node];
+  d[0] += value, d[s + 1] += value, d[2 * s + 2] += value;
+}
+
+template <bool Midpoint>
+void Assembly::add_to_pair(const BlockPattern::PairSlot& slot, double value) {
+  const int s = slot.stride;
+  for (int r = 0; r < 3; ++r) factor_.lower()[slot.offset + r * (s + 1)] += value;
+  if constexpr (Midpoint)
+    for (int r = 0; r < 3; ++r) factor_.upper()[slot.offset + r * (s + 1)] += value;
+}
+
+template <bool Midpoint, class C>
+void Assembly::add_curvature(const C& c, const typename ConstraintPool<C>::Slots& slots, const Stage& stage,
+                             const Vec3* x, const double* lambda, bool clamp) {
+  Mat3 blocks[C::max_nodes * (C::max_nodes + 1) / 2];
+  c.curvature(x, stage.fraction, lambda, clamp, blocks);
+  const Mat3* block = blocks;
+  for (int i = 0, pair = 0; i < c.node_count(); ++i) {
+    double* const d = factor_.lower() + node_diagonal_[c.nodes[i]];
+    const int stride = node_stride_[c.nodes[i]];
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k) d[r * stride + k] += block->m[r][k];
+    ++block;
+    for (int j = i + 1; j < c.node_count(); ++j, ++pair, ++block) {
+      const auto& slot = slots.pairs[pair];
+      for (int r = 0; r < 3; ++r)
+        for (int k = 0; k < 3; ++k) {
+          const double value = slot.a_first ? block->m[k][r] : block->m[r][k];
+          factor_.lower()[slot.offset + r * slot.stride + k] += value;
+          if constexpr (Midpoint) factor_.upper()[slot.offset + r * slot.stride + k] += value;
+        }
+    }
+  }
+}
+
+template <bool Midpoint, class F>
+void Assembly::assemble_forces(const Problem& problem, const ForceStage& stage, const ForcePool<F>& pool,
+                               const Vec3* x) {
+  const Vec3* const x0 = problem.position.data();
+  double* const lower = factor_.lower();
+  [[maybe_unused]] double* const upper = factor_.upper();
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    const F& f = pool.items[k];
+    const Mat3 stiffness = f.stiffness_matrix(f.arm.value(x0), f.arm.value(x), stage);
+    for (std::uint32_t i = 0, pair = 0; i < f.arm.count; ++i) {
+      double* const d = lower + node_diagonal_[f.arm.nodes[i]];
+      const int s = node_stride_[f.arm.nodes[i]];
+      const double w = f.arm.weights[i];
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) d[r * s + c] += w * w * stiffness.m[r][c];
+      for (std::uint32_t j = i + 1; j < f.arm.count; ++j, ++pair) {
+        const auto& slot = pool.slots[k].pairs[pair];
+        for (int r = 0; r < 3; ++r)
+          for (int c = 0; c < 3; ++c) {
+            const std::uint32_t at = slot.offset + r * slot.stride + c;
+            lower[at] += w * f.arm.weights[j] * stiffness.m[r][c];
+            if constexpr (Midpoint) upper[at] += w * f.arm.weights[j] * stiffness.m[c][r];
+          }
+      }
+    }
+  }
+}
+
+template <bool Midpoint>
+void Assembly::assemble(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
+  factor_.clear(!Midpoint);
+  for (std::uint32_t i = 0; i < problem.size(); ++i) add_to_node(i, stage.inertia * problem.mass[i]);
+  for (const auto& c : problem.mass_couplings) add_to_pair<Midpoint>(c.slot, stage.inertia * c.mass);
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    pool.has_laws() ? assemble_rows<Midpoint, true>(problem, stage, pool, x, hessian)
+                    : assemble_rows<Midpoint, false>(problem, stage, pool, x, hessian);
+  });
+  if (stage.is_projection()) return;
+  const ForceStage force_stage{stage.h, Midpoint, hessian == Hessian::clamped};
+  problem.for_each_force_pool([&](const auto& pool) { assemble_forces<Midpoint>(problem, force_stage, pool, x); });
+}
+
+template <bool Midpoint, bool Laws, class C>
+void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x,
+                             Hessian hessian) {
+  const Vec3* const x0 = problem.position.data();
+  const bool clamp = hessian == Hessian::clamped;
+  double* const lower = factor_.lower();
+  [[maybe_unused]] double* const upper = factor_.upper();
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    const C& c = pool.items[k];
+    const auto& slots = pool.slots[k];
+    if constexpr (Laws)
+      if (is_out_of_play(pool, k)) {
+        for (int r = 0; r < C::rows; ++r) lower[slots.diagonal + r * (slots.stride + 1)] = -1;
+        continue;
+      }
+    double compliance = 0, compliances[C::rows] = {};
+    const Gradients<C> gradients(c, x, stage.fraction);
+    [[maybe_unused]] const StartGradients<Midpoint, C> start_gradients(c, x0, stage.fraction_start);
+    for (int i = 0; i < c.node_count(); ++i) {
+      Vec3 rows[C::rows], directions[C::rows];
+      gradients.of_node(i, rows);
+      if constexpr (Laws)
+        for (int r = 0; r < C::rows; ++r) compliances[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
+      else
+        compliance += dot(rows[0], rows[0]) / problem.mass[c.nodes[i]];
+      if constexpr (Midpoint) {
+        start_gradients.of_node(i, directions);
+        for (int r = 0; r < C::rows; ++r) directions[r] = 0.5 * (directions[r] + rows[r]);
+      }
+      const auto& slot = slots.gradients[i];
+      for (int r = 0; r < C::rows; ++r) {
+        if constexpr (Laws)
+          if (pool.states[k * C::rows + r].side != 0) continue;
+        const Vec3& in_row = rows[r];
+        const Vec3& in_column = Midpoint ? directions[r] : rows[r];
+        const Vec3& below = slot.lower_is_row ? in_row : in_column;
+        double* const l = lower + slot.offset + r * slot.row_stride;
+        l[0] = below.x, l[slot.column_stride] = below.y, l[2 * slot.column_stride] = below.z;
+        if constexpr (Midpoint) {
+          const Vec3& above = slot.lower_is_row ? in_column : in_row;
+          double* const u = slot.in_diagonal ? lower + slot.mirror + r : upper + (l - lower);
+          const int s = slot.in_diagonal ? slot.pivot : slot.column_stride;
+          u[0] = above.x, u[s] = above.y, u[2 * s] = above.z;
+        }
+      }
+    }
+    for (int r = 0; r < C::rows; ++r) {
+      double& diagonal = lower[slots.diagonal + r * (slots.stride + 1)];
+      if constexpr (Laws) {
+        const RowState& state = pool.states[k * C::rows + r];
+        diagonal = state.side != 0 ? -1
+                                   : -compliances[r] * stage.compliance / stage.inertia -
+                                         equation_of(pool.law(k)[r], state, 0, stage).softness;
+      } else {
+        diagonal = -compliance * stage.compliance / stage.inertia;
+      }
+    }
+    if constexpr (C::has_curvature) {
+      if (hessian == Hessian::none) continue;
+      double lambda[C::rows];
+      if constexpr (GeneralConstraint<C>) {
+        for (int r = 0; r < C::rows; ++r) lambda[r] = (Midpoint ? 0.5 : 1) * pool.multiplier(k)[r];
+        add_curvature<Midpoint>(c, slots, stage, x, lambda, clamp);
+      } else {
+        for (int r = 0; r < C::rows; ++r)
+          lambda[r] = (Midpoint ? 0.5 : 1) * (clamp ? std::max(pool.multiplier(k)[r], 0.0) : pool.multiplier(k)[r]);
+        for (int i = 0, pair = 0; i < c.node_count(); ++i) {
+          add_to_node(c.nodes[i], c.curvature(lambda, i, i));
+          for (int j = i + 1; j < c.node_count(); ++j, ++pair)
+            add_to_pair<Midpoint>(slots.pairs[pair], c.curvature(lambda, i, j));
+        }
+      }
+    }
+  }
+}
+
+void Assembly::solve() {
+  for (std::size_t i = 0; i < residuals_.size(); ++i) step_[i] = -residuals_[i];
+  factor_.solve(step_);
+}
+
+template Residual Assembly::residual<false>(const Problem&, const Stage&, const Vec3*, const Vec3*);
+template Residual Assembly::residual<true>(const Problem&, const Stage&, const Vec3*, const Vec3*);
+template void Assembly::assemble<false>(const Problem&, const Stage&, const Vec3*, Hessian);
+template void Assembly::assemble<true>(const Problem&, const Stage&, const Vec3*, Hessian);
+
+}  // namespace iota::solver

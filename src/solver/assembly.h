@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solver/problem.h"
+#include "solver/sparse/block_factor.h"
+#include "solver/stage.h"
+
+#include <span>
+#include <vector>
+
+namespace iota::solver {
+
+/// By how much the equations of a step are missed; all scaled, dimensionless.
+struct Residual {
+  double worst = 0;      ///< of all equations; forces that are round-off do not count
+  double violation = 0;  ///< of the constraints alone, as a fraction of their reference lengths: compliance lets
+                         ///< conflicting ones "converge" without being met
+  double imbalance = 0;  ///< of the forces
+  double noise = 0;      ///< what of the imbalance is round-off
+};
+
+/// Constraint curvature and force stiffness: as they are; made positive semi-definite (tension only); or left out.
+enum class Hessian { exact, clamped, none };
+
+/// The equations of a step (Stage) for one problem: their residual, their matrix and its factors. Knows where each node,
+/// row and coupling lies in the matrix.
+class Assembly {
+ public:
+  /// Analyses the structure of the problem; call again whenever nodes, constraints or forces were added or removed.
+  void compile(Problem&);
+  /// Does as `compile` after nodes were added at the end and rows between them rewired, for a fraction of the time where
+  /// that is possible. `added`: the new nodes and an old neighbour in the order each; `removed`: nodes that nothing
+  /// refers to any more, which go; `touched`: all nodes that gained or lost a coupling, those included.
+  void relink(Problem&, std::span<const std::array<std::uint32_t, 2>> added, std::span<const std::uint32_t> removed,
+              std::span<const std::uint32_t> touched);
+
+  /// Forces count as what they move a point by in a step, in mean constraint lengths.
+  void set_scales(const Problem&, const Stage&);
+  /// At positions x = x0 + h v0 + u and the pools' multipliers; by unknown in `residuals()`.
+  template <bool Midpoint>
+  Residual residual(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
+  /// The derivative of the residual.
+  template <bool Midpoint>
+  void assemble(const Problem&, const Stage&, const Vec3* x, Hessian);
+  /// Returns how many pivots have a sign that a minimum under constraints would not give.
+  template <bool Midpoint>
+  int assemble_and_factor(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
+    assemble<Midpoint>(problem, stage, x, hessian);
+    return factor_.factorise();
+  }
+  /// step = -matrix^-1 residuals, with the latest factors.
+  void solve();
+
+  std::size_t unknown_count() const { return residuals_.size(); }
+  std::uint32_t unknown_of(std::uint32_t node) const { return node_unknown_[node]; }
+  std::span<double> residuals() { return residuals_; }
+  std::span<double> step() { return step_; }
+  Vec3 step_of(std::uint32_t node) const {
+    const double* const d = step_.data() + node_unknown_[node];
+    return {d[0], d[1], d[2]};
+  }
+  double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
+  double inverse_scale(std::uint32_t node) const { return inverse_scale_[node]; }
+  /// Whether making a factor costs much more than an iteration does otherwise.
+  bool is_dear() const { return factor_.is_dear(); }
+  const BlockPattern& pattern() const { return pattern_; }
+  BlockFactor& factor() { return factor_; }
+
+ private:
+  bool try_relink(Problem&, std::span<const std::array<std::uint32_t, 2>> added, std::span<const std::uint32_t> removed,
+                  std::span<const std::uint32_t> touched);
+  template <class C>
+  void set_slots(ConstraintPool<C>&, std::size_t item, const BlockPattern::ConstraintSlot&) const;
+  template <class F>
+  void set_slots(ForcePool<F>&, std::size_t item) const;
+  void set_node_places(const Problem&);
+
+  template <bool Midpoint>
+  void add_momentum(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
+  template <bool Midpoint, bool Laws, class C>
+  void add_rows(const Problem&, const Stage&, const ConstraintPool<C>&, const Vec3* x);
+
+  void add_to_node(std::uint32_t node, double value);
+  template <bool Midpoint>
+  void add_to_pair(const BlockPattern::PairSlot&, double value);
+  template <bool Midpoint, class C>
+  void add_curvature(const C&, const typename ConstraintPool<C>::Slots&, const Stage&, const Vec3* x,
+                     const double* lambda, bool clamp);
+  template <bool Midpoint, bool Laws, class C>
+  void assemble_rows(const Problem&, const Stage&, const ConstraintPool<C>&, const Vec3* x, Hessian);
+  template <bool Midpoint, class F>
+  void assemble_forces(const Problem&, const ForceStage&, const ForcePool<F>&, const Vec3* x);
+
+  BlockPattern pattern_;
+  BlockFactor factor_;
+  std::vector<std::uint32_t> node_unknown_, node_diagonal_;
+  std::vector<std::uint8_t> node_stride_;
+  std::vector<Vec3> momentum_;  // what the force equation of each node lacks
+  std::vector<double> residuals_, step_;
+  std::vector<double> inverse_scale_;
+  double reference_length_ = 1;
+  double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // of the rows, while a residual is being summed up
+};
+
+}  // namespace iota::solver

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Constraints that are violated where a step begins: closed by moving positions only, or held as they are.
+#include "solver/integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::solver {
+
+namespace {
+
+constexpr double standing_gap = 1e-6;        // relative start gap beyond which positions are projected before the step
+constexpr std::uint64_t standing_steps = 8;  // a conflict that stands is tried again after so many
+constexpr double ample = 1.1;                // of a gap that moves: leave some play, a straight arm has none
+constexpr double soft_compliance = 1e-3;     // relative: shares what cannot be closed
+
+}  // namespace
+
+void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
+  if (holds_offsets_) problem.clear_offsets();
+  holds_offsets_ = false;
+  const double gap = problem.worst_gap(problem.position.data(), 0, true);
+  if (!(gap > standing_gap)) {
+    problem.standing_gap = 0;
+    return;
+  }
+  // A conflict that nothing has changed is left in peace for a while: trying costs tens of iterations.
+  if (conservative_ && gap <= 1.001 * problem.standing_gap && ++problem.standing_steps < standing_steps) {
+    hold_offsets(problem, report);
+    return;
+  }
+  const double kinetic = problem.kinetic_energy();
+  const double before = kinetic + problem.potential_energy(problem.position.data());
+  problem.standing_gap = 0, problem.standing_steps = 0;
+  if (!project_positions(problem)) {
+    hold_offsets(problem, report);
+    problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
+  }
+  project_velocities(problem);
+  const double closed = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  report.closing_energy += closed - before;
+  if (holds_offsets_ && conservative_ &&
+      closed > before) {  // pulling for ever on what cannot meet must not heat the world
+    take_stock(problem, 0);
+    const double dissipated = report.dissipated;
+    shed(problem, closed - before, 0, report);
+    report.closing_energy -= report.dissipated - dissipated, report.dissipated = dissipated;
+  }
+}
+
+// What cannot be closed stays as it is during the step. Where nails move it may become what it will be at their end, or
+// less: rows get a bound instead of an equation. Held to its length, an arm that was pulled beyond its reach would have to
+// snap sideways when the pull lets up (measured: 400 J to 3 kJ, against 20 J).
+void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
+  report.converged = false;
+  holds_offsets_ = true;
+  bool moving = false;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    for (const auto& c : pool.items) moving = moving || c.is_moving();
+  });
+  candidate_.assign(problem.position.begin(), problem.position.end());
+  if (moving) {
+    problem.copy_multipliers_to(multipliers_saved_);
+    problem.clear_multipliers();
+    problem.clear_offsets();
+    const Stage stage = Stage::projection(soft_compliance);
+    if (try_step(problem, stage, report)) candidate_.assign(newton_.solution().begin(), newton_.solution().end());
+    problem.set_multipliers(multipliers_saved_);
+  }
+  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    for (std::size_t i = 0; i < pool.items.size(); ++i) {
+      double* const offset = pool.offsets.data() + i * C::rows;
+      pool.items[i].value(candidate_.data(), moving ? 1 : 0, offset);
+      for (int r = 0; r < C::rows; ++r) {
+        const auto row = static_cast<std::uint32_t>(i * C::rows + r);
+        if (pool.has_laws() && pool.laws[row].violation(offset[r]) == 0) offset[r] = 0;
+        if (!moving || !(std::abs(offset[r]) > standing_gap * pool.items[i].reference_length())) continue;
+        RowLaw& law = pool.law(i)[r];
+        if (law.lower_impulse() == 0 || law.upper_impulse() == 0) continue;  // has a bound already
+        (offset[r] > 0 ? law.lower : law.upper) = 0;
+        offset[r] *= ample;
+        pool.held.push_back(row);
+      }
+    }
+    if (pool.has_laws()) pool.states.resize(pool.laws.size());
+  });
+}
+
+// Takes the lent bounds back.
+void Integrator::let_go(Problem& problem) {
+  problem.for_each_constraint_pool([&](auto& pool) {
+    if (pool.held.empty()) return;
+    for (const std::uint32_t row : pool.held) pool.laws[row] = {};
+    pool.held.clear();
+    const bool none =
+        std::all_of(pool.laws.begin(), pool.laws.end(), [](const RowLaw& law) { return law == RowLaw{}; });
+    if (none) pool.laws.clear(), pool.states.clear();
+  });
+}
+
+bool Integrator::project_positions(Problem& problem) {
+  problem.copy_multipliers_to(multipliers_saved_);
+  problem.clear_offsets();
+  AdvanceReport ignored;
+  const auto attempt = [&](double compliance, int iterations) {
+    problem.clear_multipliers();
+    Stage stage = Stage::projection(compliance);
+    stage.fraction = 0;
+    stage.max_iterations = iterations;
+    const bool solved = try_step(problem, stage, ignored);
+    if (solved) std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
+    return solved;
+  };
+  // At once; else bit by bit, as far as there is a way; else by soft steps, each of which shares what cannot be closed.
+  bool solved = attempt(1e-12, 20) || close_bit_by_bit(problem, attempt);
+  for (int soft = 0; soft < 3 && !solved; ++soft) {
+    if (!attempt(soft_compliance, 40)) break;
+    solved = attempt(1e-12, 12);
+  }
+  problem.set_multipliers(multipliers_saved_);
+  return solved;
+}
+
+// Many links away from a solution Newton gets lost, but a part of the way it finds (a fine chain pulled together over
+// centimetres). What remains is held as offsets meanwhile.
+template <class Attempt>
+bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
+  double remaining = 1, part = 0.25;
+  bool solved = false;
+  for (int tries = 0; tries < 60 && remaining > 0 && part > 2e-3; ++tries) {
+    part = std::min(part, remaining);
+    problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+      for (std::size_t i = 0; i < pool.items.size(); ++i) {
+        double* const offset = pool.offsets.data() + i * C::rows;
+        pool.items[i].value(problem.position.data(), 0, offset);
+        for (int r = 0; r < C::rows; ++r) {
+          offset[r] *= (remaining - part) / remaining;
+          if (pool.has_laws() && pool.law(i)[r].violation(offset[r]) == 0) offset[r] = 0;
+        }
+      }
+    });
+    solved = attempt(1e-12, 10);
+    if (solved)
+      remaining -= part, part *= 2;
+    else
+      part /= 4;
+  }
+  problem.clear_offsets();
+  return solved && !(remaining > 0);
+}
+
+}  // namespace iota::solver

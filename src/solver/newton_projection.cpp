@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Velocities that constraints allow.
+#include "solver/newton.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::solver {
+
+void Newton::project_velocities(Problem& problem, double h, bool as_solved, std::span<const Vec3> impulses) {
+  std::copy(problem.position.begin(), problem.position.end(), x_.begin());
+  std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
+  has_laws_ = problem.has_laws();  // which may have been lent since the last solve
+  impulses_.resize(has_laws_ ? assembly_.unknown_count() : 0);
+  if (has_laws_) ActiveSet::begin_impulses(problem, as_solved);
+  bool found = project_onto_sides(problem, h, as_solved, impulses);
+  while (has_laws_ && !as_solved && found && ActiveSet::release_impulses(problem, impulses_)) {
+    std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
+    found = project_onto_sides(problem, h, as_solved, impulses);
+  }
+
+  if (found && problem.is_isolated()) give_back_momentum(problem, impulses);
+}
+
+// Nearly redundant rows have huge multipliers that cancel only to round-off. Where nothing outside holds on, momentum is
+// given back by a translation, which no internal constraint notices.
+void Newton::give_back_momentum(Problem& problem, std::span<const Vec3> impulses) const {
+  double mass = 0;
+  Vec3 lost;
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    mass += problem.mass[i];
+    lost += problem.mass[i] * (u_saved_[i] - problem.velocity[i]);
+  }
+  for (const auto& c : problem.mass_couplings) {
+    mass += 2 * c.mass;
+    lost += c.mass * (u_saved_[c.a] - problem.velocity[c.a] + u_saved_[c.b] - problem.velocity[c.b]);
+  }
+  for (const Vec3& impulse : impulses) lost += impulse;
+  for (Vec3& v : problem.velocity) v += (1 / mass) * lost;
+}
+
+// min |v - velocity|_M with G v = rate: one linear solve with the matrix of a projection without curvature. Redundant
+// rows (a closed loop in a plane) can leave no pivot at the usual compliance, so it may have to rise.
+bool Newton::project_onto_sides(Problem& problem, double h, bool as_solved, std::span<const Vec3> impulses) {
+  for (const double compliance : {1e-12, 1e-9, 1e-6, 1e-3}) {
+    Stage stage = Stage::projection(compliance);
+    stage.fraction = as_solved ? 1 : 0;
+    (void)assembly_.assemble_and_factor<false>(problem, stage, x_.data(), Hessian::none);
+    std::fill(impulses_.begin(), impulses_.end(), 0.0);
+    const double energy = problem.kinetic_energy();
+    project_once(problem, h, impulses);
+    for (int again = 0; again < 2; ++again) project_once(problem, h, {});  // compliance and round-off leave a little
+    const double projected = problem.kinetic_energy();
+    const bool given = h > 0 || !impulses.empty();  // then energy may come in
+    if (std::isfinite(projected) && (given || projected <= energy * (1 + 1e-9))) return true;
+    std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
+  }
+  return false;
+}
+
+void Newton::project_once(Problem& problem, double h, std::span<const Vec3> impulses) {
+  const std::span<double> residuals = assembly_.residuals();
+  std::fill(residuals.begin(), residuals.end(), 0.0);
+  for (std::size_t i = 0; i < impulses.size(); ++i) {
+    double* const r = residuals.data() + assembly_.unknown_of(static_cast<std::uint32_t>(i));
+    r[0] = -impulses[i].x, r[1] = -impulses[i].y, r[2] = -impulses[i].z;
+  }
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      const C& c = pool.items[k];
+      double* const row = residuals.data() + pool.slots[k].unknown;
+      if (h > 0) {
+        double start[C::rows], end[C::rows];
+        c.value(problem.position.data(), 0, start);
+        c.value(problem.position.data(), 1, end);
+        for (int r = 0; r < C::rows; ++r) row[r] = (end[r] - start[r]) / h;
+      }
+      const Gradients<C> gradients(c, problem.position.data(), 0);
+      for (int i = 0; i < c.node_count(); ++i) {
+        Vec3 rows[C::rows];
+        gradients.of_node(i, rows);
+        for (int r = 0; r < C::rows; ++r) row[r] += dot(rows[r], problem.velocity[c.nodes[i]]);
+      }
+      if (pool.has_laws())
+        for (int r = 0; r < C::rows; ++r) {
+          if (pool.law(k)[r].hold) row[r] -= pool.law(k)[r].rate;
+          if (pool.states[k * C::rows + r].side != 0) row[r] = 0;
+        }
+    }
+  });
+  assembly_.solve();
+  for (std::size_t i = 0; i < impulses_.size(); ++i) impulses_[i] += assembly_.step()[i];
+  for (std::size_t i = 0; i < problem.size(); ++i)
+    problem.velocity[i] += assembly_.step_of(static_cast<std::uint32_t>(i));
+}
+
+}  // namespace iota::solver

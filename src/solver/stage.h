@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace iota::solver {
+
+/// Which equations a Newton solve closes. With u = x - x0 - h v0:
+///   inertia * M u - f(x) + Gh' lambda = 0,   g(x) - compliance * lambda = 0
+/// end point (backward Euler): inertia = 1/h^2, Gh = G(x);  mid-point: inertia = 2/h^2, Gh = (G(x0) + G(x)) / 2.
+struct Stage {
+  double h = 0;  ///< s; 0: a pure projection of positions, without velocities and forces
+  double inertia = 1;
+  bool midpoint = false;
+  double fraction = 1;        ///< of the step, for targets that move during it
+  double fraction_start = 0;  ///< where this (sub-)step begins
+  double compliance = 1e-12;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
+
+  double tolerance = 1e-9;  ///< of the scaled residual; gaps end at about this fraction of a link
+  int max_iterations = 60;
+
+  bool is_projection() const { return h == 0; }
+  static Stage end_point(double h, double from, double to) {
+    return {.h = h, .inertia = 1 / (h * h), .fraction = to, .fraction_start = from};
+  }
+  static Stage mid_point(double h, double from, double to) {
+    return {.h = h,
+            .inertia = 2 / (h * h),
+            .midpoint = true,
+            .fraction = to,
+            .fraction_start = from,
+            .tolerance = 1e-10,
+            .max_iterations = 30};
+  }
+  static Stage projection(double compliance = 1e-12) { return {.compliance = compliance}; }
+};
+
+}  // namespace iota::solver
