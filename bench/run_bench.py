@@ -123,19 +123,17 @@ def faster_of(first: list[Row], second: list[Row]) -> tuple[list[Row], float]:
     return best, sorted(spread)[len(spread) // 2] if spread else 1.0
 
 
-def run_peers(links: Sequence[int], hz: Sequence[int], cap: float) -> list[Row]:
-    """Every peer's row, with a line of progress for each."""
-    command = [sys.executable, str(HERE / "peers" / "run.py"), "--cap", str(cap)]
-    command += ["--links", *map(str, links), "--hz", *map(str, hz)]
+def run_peers(cases: Sequence[str], cap: float) -> list[Row]:
+    """Every peer's row of these cases, SCENE/SIZE/HZ, with a line of progress for each."""
+    command = [sys.executable, str(HERE / "peers" / "run.py"), "--cap", str(cap), "--cases", *cases]
     rows: list[Row] = []
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout
         for line in process.stdout:
             if line.startswith("{"):
-                rows.append(json.loads(line))
-                show(
-                    f"peers: {rows[-1]['engine']} {rows[-1]['setting']}, {rows[-1]['links']} links, {rows[-1]['hz']} Hz"
-                )
+                row = json.loads(line)
+                rows.append(row)
+                show(f"peers: {row['engine']} {row['setting']}, {row['scene']} {row['size']}, {row['hz']} Hz")
     return rows
 
 
@@ -147,18 +145,28 @@ def show(text: str) -> None:
 # --- tables ----------------------------------------------------------------------------------------------------------
 
 
-def chain_row(case: Row) -> Row:
-    """An engine case chain/LINK/MODE/HZ/LINKS in the shape of a peer's row."""
-    _, link, mode, hz, links = case["name"].split("/")[:5]
+def engine_row(case: Row) -> Row:
+    """One of the engine's cases in the shape of a peer's row: chain/LINK/MODE/HZ/SIZE, ragdolls/MODE/SIZE/THREADS,
+    SCENE/MODE/HZ/SIZE."""
+    scene, *rest = case["name"].split("/iterations")[0].split("/")
+    link = rest.pop(0) if scene == "chain" else "rod"
+    mode = rest[0]
+    hz, size = (60, int(rest[1])) if scene == "ragdolls" else map(int, rest[1:3])
     warnings = [f"{case[key]:.0f} {key}" for key in ("fallbacks", "unconverged") if case[key]]
     return {
-        "engine": "iota", "setting": f"{mode} {link}", "link": link, "mode": mode, "links": int(links), "hz": int(hz),
+        "engine": "iota", "setting": mode if link == "rod" else f"{mode} {link}", "link": link, "mode": mode,
+        "scene": scene, "size": size, "hz": hz,
         "us_per_link_step": case["us_per_link_step"], "worst_gap_m": case["gap_m"],
         "energy_end": case["energy_change"], "energy_gain": case["energy_gain"], "simulated_s": case["simulated_s"],
         "iterations_mean": case["iterations_mean"], "iterations_max": case["iterations_max"],
         "step_ms_p50": case.get("step_ms_p50"), "step_ms_p99": case.get("step_ms_p99"), "blew_up": "",
         "note": ", ".join(warnings),
     }  # fmt: skip
+
+
+def is_compared(name: str) -> bool:
+    """Whether the peers have this case of the engine's, or an engine's row of this kind stands beside theirs."""
+    return bool(re.match(r"chain/|heavy_end/|net/\w+/120/32/|ragdolls/\w+/1000/1/", name))
 
 
 def text_of(value: float | None, style: str) -> str:
@@ -178,8 +186,14 @@ def table(title: str, head: Sequence[str], lines: Sequence[Sequence[str]]) -> st
     return "\n".join([f"### {title}", "", draw(head), draw(["-" * width for width in widths]), *map(draw, lines), ""])
 
 
-def chain_tables(rows: Sequence[Row]) -> list[str]:
-    """One table for each length and step: ratios to iota's robust rod, the twin of what the peers simulate."""
+TITLES = {
+    "chain": "{} links", "heavy_end": "{} links, the last 1000 times as heavy", "net": "net of {0} x {0} knots",
+    "ragdolls": "{} ragdolls of 20 bodies",
+}  # fmt: skip
+
+
+def scene_tables(rows: Sequence[Row]) -> list[str]:
+    """One table for each scene, size and step: ratios to iota's robust mode with what the peers simulate."""
     head = [
         "engine",
         "setting",
@@ -193,34 +207,31 @@ def chain_tables(rows: Sequence[Row]) -> list[str]:
         "stays whole",
     ]
     tables = []
-    for hz in sorted({row["hz"] for row in rows}, reverse=True):
-        for links in sorted({row["links"] for row in rows}):
-            here = [row for row in rows if row["links"] == links and row["hz"] == hz]
-            base = next((r["us_per_link_step"] for r in here if r["setting"] == "robust rod"), None)
-            lines = []
-            for row in here:
-                cost = row["us_per_link_step"]
-                newton = (
-                    f"{row['iterations_mean']:.1f}/{row['iterations_max']:.0f}" if "iterations_mean" in row else "-"
-                )
-                whole = row.get("blew_up") or ("yes" if row.get("simulated_s", 0) >= 9.99 else "so far" if cost else "")
-                whole = ", ".join(part for part in (whole, row.get("note")) if part)
-                lines.append([
-                    row["engine"], row["setting"], text_of(cost / base if cost and base else None, ".2f"),
-                    text_of(cost, ".3f"), text_of(row.get("worst_gap_m"), ".1e"), text_of(row.get("energy_end"), ".1e"),
-                    text_of(row.get("energy_gain"), ".0e"), newton, text_of(row.get("simulated_s"), ".1f"), whole,
-                ])  # fmt: skip
-            tables.append(table(f"{links} links, 1/{hz} s", head, lines))
+    for scene, size, hz in dict.fromkeys((row["scene"], row["size"], row["hz"]) for row in rows):
+        here = [row for row in rows if (row["scene"], row["size"], row["hz"]) == (scene, size, hz)]
+        base = next((r["us_per_link_step"] for r in here if r["setting"] == "robust"), None)
+        lines = []
+        for row in here:
+            cost = row["us_per_link_step"]
+            newton = f"{row['iterations_mean']:.1f}/{row['iterations_max']:.0f}" if "iterations_mean" in row else "-"
+            whole = row.get("blew_up") or ("yes" if row.get("simulated_s", 0) >= 9.99 else "so far" if cost else "")
+            whole = ", ".join(part for part in (whole, row.get("note")) if part)
+            lines.append([
+                row["engine"], row["setting"], text_of(cost / base if cost and base else None, ".2f"),
+                text_of(cost, ".3f"), text_of(row.get("worst_gap_m"), ".1e"), text_of(row.get("energy_end"), ".1e"),
+                text_of(row.get("energy_gain"), ".0e"), newton, text_of(row.get("simulated_s"), ".1f"), whole,
+            ])  # fmt: skip
+        tables.append(table(f"{TITLES[scene].format(size)}, 1/{hz} s", head, lines))
     return tables
 
 
 def summary_table(rows: Sequence[Row]) -> str:
     """What a link costs against the aim, and how flat that is in the length of the chain."""
-    head = ["mode", "link", "1/h", *map(str, sorted({r["links"] for r in rows})), "longest / 64", "Newton mean/max"]
+    head = ["mode", "link", "1/h", *map(str, sorted({r["size"] for r in rows})), "longest / 64", "Newton mean/max"]
     lines = []
     for key in dict.fromkeys((r["mode"], r["link"], r["hz"]) for r in rows):
-        here = sorted((r for r in rows if (r["mode"], r["link"], r["hz"]) == key), key=lambda r: r["links"])
-        cost = {r["links"]: r["us_per_link_step"] for r in here}
+        here = sorted((r for r in rows if (r["mode"], r["link"], r["hz"]) == key), key=lambda r: r["size"])
+        cost = {r["size"]: r["us_per_link_step"] for r in here}
         flat = cost[max(cost)] / cost[64] if 64 in cost else None
         lines.append([
             key[0], key[1], str(key[2]),
@@ -238,7 +249,7 @@ def frame_table(rows: Sequence[Row]) -> str:
     lines = [
         [r["mode"], r["link"], str(r["hz"]), f"{r['step_ms_p50']:.2f}", f"{r['step_ms_p99']:.2f}",
          f"{r['hz'] / 60 * r['step_ms_p99'] / (1000 / 60):.2f}"]
-        for r in rows if r["links"] == 2000
+        for r in rows if r["size"] == 2000
     ]  # fmt: skip
     head = ["mode", "link", "1/h", "step ms median", "99 %", "share of a 60 Hz frame (99 %)"]
     return table("2000 links at 60 frames a second", head, lines)
@@ -303,13 +314,16 @@ def main() -> int:
         alone += run_engine(options.binary, "ragdolls/.*/1000/", all_cores=True)
     show("engine, first time")
     first = run_engine(options.binary, pattern if pattern != "." else "-memory/|ragdolls/.*/1000/")  # all but those
-    peers = [] if options.no_peers else run_peers(links, options.hz, 2 if options.quick else options.cap)
+    compared = [f"chain/{size}/{hz}" for hz in options.hz for size in links if size != 100000]
+    compared += ["heavy_end/64/120", "net/32/120"] + ["ragdolls/1000/60"] * (not options.filter)
+    peers = [] if options.no_peers else run_peers(compared, 2 if options.quick else options.cap)
     show("engine, second time")
     cases, spread = faster_of(first, run_engine(options.binary, pattern if pattern != "." else "^chain/.*/120/"))
     cases += alone
 
-    own = [chain_row(case) for case in cases if case["name"].startswith("chain/")]
-    own = [row for row in own if row["hz"] in options.hz]
+    own = [engine_row(case) for case in cases if is_compared(case["name"])]
+    own = [row for row in own if row["scene"] != "chain" or row["hz"] in options.hz]
+    chains = [row for row in own if row["scene"] == "chain"]
     parts = [
         "# Benchmarks\n",
         f"{platform.machine()}, one core ({core}), load {os.getloadavg()[0]:.1f}; the engine's two runs differ by "
@@ -318,18 +332,18 @@ def main() -> int:
         "`ratio`: to iota's robust rod in the same table.\n",
     ]  # fmt: skip
     parts.append(aims_table(cases))
-    if own:
-        parts.append(summary_table([row for row in own if row["links"] != 2000]))
-        parts.append(frame_table(own))
-        parts += chain_tables([row for row in own if row["links"] != 2000] + peers)
+    if chains:
+        parts.append(summary_table([row for row in chains if row["size"] != 2000]))
+        parts.append(frame_table(chains))
+    parts += scene_tables([row for row in own if row["size"] != 2000] + peers)
     parts.append(other_table(cases))
     text = "\n".join(part for part in parts if part)
 
     RESULTS.mkdir(parents=True, exist_ok=True)
     result = {
         "when": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(began)), "machine": platform.machine(),
-        "python": platform.python_version(), "spread": spread, "chain": own, "peers": peers,
-        "other": [case for case in cases if not case["name"].startswith("chain/")],
+        "python": platform.python_version(), "spread": spread, "scenes": own, "peers": peers,
+        "other": [case for case in cases if not is_compared(case["name"])],
     }  # fmt: skip
     (RESULTS / "results.json").write_text(json.dumps(result, indent=1) + "\n")
     (RESULTS / "results.md").write_text(text)
