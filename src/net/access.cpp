@@ -55,7 +55,7 @@ std::optional<HostAndPort> split_host(std::string_view text) {
 
 /// How an address or name stands in a Host header.
 std::string in_header(std::string_view host) {
-  return host.find(':') == std::string_view::npos ? lower(host) : "[" + lower(host) + "]";
+  return host.find(':') == std::string_view::npos ? lower(host) : std::string("[").append(lower(host)).append("]");
 }
 
 }  // namespace
