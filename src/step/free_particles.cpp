@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace iota::step {
 
@@ -97,7 +98,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
       share.work += dot(ring.applied_force, moved);
       if (robust) share.dissipated += 0.5 * mass * dot(gained, gained);
       const bool pushed = ring.applied_force != Vec3{};
-      ring.applied_force = {};
+      ring.applied_before = std::exchange(ring.applied_force, {});
       if (damping > 0) {
         const double left = std::exp(-damping * h);
         share.dissipated += 0.5 * mass * dot(ring.velocity, ring.velocity) * (1 - left * left);

@@ -45,7 +45,7 @@ class PointBalance {
   }
   Vec3 inertial(std::uint32_t p) const {
     const Ring& r = model_.rings[model_.particles[p].ring];
-    return r.acceleration - model_.gravity + (model_.damping + body_.damping) * r.velocity;
+    return r.acceleration - model_.acting_gravity() + (model_.damping + body_.damping) * r.velocity;
   }
 
   void at_basis() {

@@ -102,6 +102,7 @@ void System::Implementation::live(StepReport& report) {
 // The births of a step are spread over it: each particle has already moved since its own.
 void System::Implementation::emit(std::uint32_t slot, StepReport& report) {
   const double h = report.dt;
+  const Vec3 gravity = model.acting_gravity();
   const double rate = model.emitters[slot].rate, owed = model.emitters[slot].due + rate * h;
   const auto count = static_cast<std::uint64_t>(owed);
   model.emitters[slot].due = owed - static_cast<double>(count);
@@ -113,8 +114,8 @@ void System::Implementation::emit(std::uint32_t slot, StepReport& report) {
     Vec3 position = e.position + rotate(e.orientation, draw.in_source());
     Vec3 velocity = rotate(e.orientation, e.velocity) + draw.in_ball(e.velocity_spread);
     const double lifetime = e.lifetime + draw.number(-e.lifetime_spread, e.lifetime_spread);
-    position += since * velocity + (since * since / 2) * model.gravity;
-    velocity += since * model.gravity;
+    position += since * velocity + (since * since / 2) * gravity;
+    velocity += since * gravity;
     if (!(since < lifetime)) continue;
     const std::uint32_t body = model.make_body(BodyKind::dynamic, e.damping);
     const std::uint32_t particle = model.make_particle(body, position, e.mass, velocity);
@@ -123,7 +124,7 @@ void System::Implementation::emit(std::uint32_t slot, StepReport& report) {
     a.particle = particle, a.emitter = slot, a.age = since, a.lifetime = lifetime;
     model.particles[particle].attributes = model.attributes.create(a).slot;
     ++e.alive, ++e.born;
-    model.edit_energy += e.mass * (0.5 * dot(velocity, velocity) - dot(model.gravity, position));
+    model.edit_energy += e.mass * (0.5 * dot(velocity, velocity) - dot(gravity, position));
     report.born.push_back(model.particles.id(particle));
     structure_changed();
   }
