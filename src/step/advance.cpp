@@ -8,6 +8,18 @@
 
 namespace iota {
 
+namespace {
+
+/// Forces act for one step, also where nothing takes them: kept, they would strike at once when a body becomes dynamic.
+void forget_unheeded_forces(model::Model& model) {
+  model.bodies.for_each([&](std::uint32_t slot, const model::Body& body) {
+    if (model::is_free(body.kind)) return;
+    model.for_each_particle_of(slot, [&](std::uint32_t p) { model.rings[model.particles[p].ring].applied_force = {}; });
+  });
+}
+
+}  // namespace
+
 StepReport System::Implementation::apply(const step::Step& command) {
   const double h = command.dt;
   if (!(h > 0 && h <= 1)) throw std::invalid_argument(step::text("step: dt must be above 0 and at most 1 s, got ", h));

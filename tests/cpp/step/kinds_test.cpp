@@ -111,6 +111,30 @@ TEST(Resting, ASleeperStaysAsleepThroughSnapshotAndReplay) {
   EXPECT_EQ(s.system.kind(s.chain.links[0]), BodyKind::resting);
 }
 
+TEST(Forces, OnWhatDoesNotMoveByThemAreOverWithTheStep) {
+  for (const BodyKind kind : {BodyKind::static_, BodyKind::scripted, BodyKind::inactive}) {
+    System system{{.gravity = {}}};
+    const BodyId body = system.create_body();
+    const ParticleId p = system.create_particle(body, {0, 0, 0}), q = system.create_particle(body, {1, 0, 0});
+    const ParticleId far = system.create_particle(system.create_body(), {2, 0, 0});
+    const BondId pull = system.create_bond(p, far, ScriptedLaw{[](const BondState&) { return Vec3{1, 0, 0}; }, ""});
+    system.set_kind(body, kind);
+    for (int i = 0; i < 10; ++i) {
+      system.apply_force(q, {0, 100, 0});
+      (void)system.step(0.01);
+    }
+    system.destroy(pull);
+    system.set_kind(body, BodyKind::dynamic);
+    (void)system.step(0.01);
+    EXPECT_EQ(norm(system.velocity(body)), 0) << static_cast<int>(kind);
+    system.set_kind(body, kind);
+    system.apply_force(q, {0, 100, 0});
+    system.set_kind(body, BodyKind::dynamic);
+    (void)system.step(0.01);
+    EXPECT_NEAR(system.velocity(body).y, 0.5, 1e-12) << "but it is in time for the step to come";
+  }
+}
+
 TEST(Active, AnInactiveBodyIsOutOfTheWorldUntilItIsBack) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 4});
