@@ -11,6 +11,7 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 
@@ -50,6 +51,19 @@ def pull(p: np.ndarray, q: np.ndarray, k: np.ndarray, length: np.ndarray) -> np.
     return (k * (r - length) / r)[:, None] * d
 
 
+numba_radial_spring = numba.cfunc("float64(float64, float64, float64, CPointer(float64))")(radial_spring)
+
+
+@numba.cfunc("void(int64, float64" + ", CPointer(float64)" * 6 + ")")
+def numba_batch_spring(count, t, xp, xq, vp, vq, parameters, force):
+    p, q, f = (numba.carray(xp, (count, 3)), numba.carray(xq, (count, 3)), numba.carray(force, (count, 3)))
+    k = numba.carray(parameters, (count, 2))
+    for i in range(count):
+        d = q[i] - p[i]
+        r = math.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+        f[i] = (k[i, 0] * (r - k[i, 1]) / r) * d
+
+
 def numpy_spring(bonds: iota.BondBatch) -> np.ndarray:
     return pull(bonds.position_p, bonds.position_q, bonds.parameters["k"], bonds.parameters["r0"])
 
@@ -86,6 +100,8 @@ RUNGS: dict[str, tuple[Callable[[iota.System], Any], dict[str, Any]]] = {
     "force expression": (lambda s: "force = -k*(r - r0)", {"k": 20, "r0": 0.1, "implicit": False}),
     "compiled": (lambda s: iota.Law(s, Radial(radial_spring), k=20, r0=0.1), {}),
     "compiled batch": (lambda s: iota.Law(s, Batch(batch_spring), signature="batch", k=20, r0=0.1), {}),
+    "numba": (lambda s: iota.Law(s, numba_radial_spring, k=20, r0=0.1), {}),
+    "numba batch": (lambda s: iota.Law(s, numba_batch_spring, signature="batch", k=20, r0=0.1), {}),
     "numpy": (lambda s: iota.Law(s, numpy_spring, k=20, r0=0.1), {}),
     "python": (lambda s: python_spring, {}),
 }
