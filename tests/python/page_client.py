@@ -109,8 +109,8 @@ class PageClient:
     def send_bytes(self, data: bytes) -> None:
         self.socket.send(data)
 
-    def wait_for(self, condition: Callable[[], Any], seconds: float = 5.0) -> Any:
-        """Until a condition on what was received holds; its value."""
+    def wait_for(self, condition: Callable[[], Any], seconds: float = 60.0) -> Any:
+        """Until a condition on what was received holds; its value. `seconds` is for machines that are busy."""
         end = time.monotonic() + seconds
         with self._changed:
             while not (value := condition()):

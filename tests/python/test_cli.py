@@ -11,10 +11,10 @@ import socket
 import subprocess
 import sys
 import textwrap
-import time
 from pathlib import Path
 
 import pytest
+from page_client import PageClient
 
 import iota
 from iota.cli import main
@@ -36,7 +36,7 @@ KEYS = [
 ]
 
 
-def run(*arguments: str | Path, seconds: float = 30) -> subprocess.CompletedProcess[str]:
+def run(*arguments: str | Path, seconds: float = 120) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "iota", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=seconds, stdin=subprocess.DEVNULL)
 
@@ -183,11 +183,11 @@ def test_a_missing_page_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pyt
 
 def test_run_serves_prints_the_address_and_keys_and_stops_by_itself() -> None:
     done = run("run", "chain", "--no-open", "--port", "0", "--seconds", "1", "--json")
-    assert done.returncode == 0 and done.stderr == ""
+    assert done.returncode == 0 and all("slow motion" in line for line in done.stderr.splitlines())
     lines = done.stdout.splitlines()
     assert re.fullmatch(r"chain: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0])
     assert [line.split()[0] for line in lines[1:3]] == ["b", "c"]
-    assert 30 <= json.loads(lines[3])["steps"] <= 125 and len(lines) == 4
+    assert 1 <= json.loads(lines[3])["steps"] <= 125 and len(lines) == 4
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -195,16 +195,17 @@ def test_it_ends_cleanly_when_told_to(number: signal.Signals) -> None:
     command = [sys.executable, "-m", "iota", "run", "chain", "--no-open", "--port", "0"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ)
     assert process.stdout is not None and process.stderr is not None
-    assert "http://" in process.stdout.readline()
-    time.sleep(0.3)
+    with PageClient(process.stdout.readline().removeprefix("chain: ").strip()) as page:
+        step = page.last["poses"]["step"]
+        page.wait_for(lambda: page.last["poses"]["step"] > step)
     process.send_signal(number)
-    assert process.wait(10) == 0
-    assert process.stderr.read() == ""
+    assert process.wait(60) == 0
+    assert [line for line in process.stderr if "slow motion" not in line] == []  # a busy machine may be too slow
     process.stdout.close(), process.stderr.close()
 
 
 def test_bench_prints_json_rows() -> None:
-    done = run("bench", "chain", "--links", "8", "64", "--json", seconds=60)
+    done = run("bench", "chain", "--links", "8", "64", "--json")
     assert done.returncode == 0, done.stderr
     cases = json.loads(done.stdout)["cases"]
     assert len(cases) == 2 * 2 * 2 * 2

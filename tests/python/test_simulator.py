@@ -44,9 +44,9 @@ def test_a_page_shows_drags_cuts_pauses_and_resets_it(example: dict[str, Any], r
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.places) == 64 and page.parts() == 1)
         assert [body["kind"] for body in page.scene["bodies"]].count("static") == 2
-        page.wait_for(lambda: page.places[60][1] < 1.0, seconds=10)  # the free edge falls
+        page.wait_for(lambda: page.places[60][1] < 1.0)  # the free edge falls
         page.send("grab_start", hold=1, body=60, local_point=(0, 0, 0), target=(0, 1, 2))
-        page.wait_for(lambda: page.places[60][2] > 1.2, seconds=10)
+        page.wait_for(lambda: page.places[60][2] > 1.2)
         (hold,) = page.last["poses"]["holds"]
         assert hold["client"] == page.id and hold["body"] == 60 and hold["force"] > 0
         assert world.call(lambda: world.held(page.id)) is cloth.bodies[60]

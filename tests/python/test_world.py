@@ -66,16 +66,16 @@ def test_a_dragged_link_follows_and_swings_back(world: iota.World, run_world: Ru
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: 23 in page.places)
         page.send("grab_start", hold=1, body=23, local_point=(0, 0, 0), target=(1.2, 1.2, 1.0))
-        page.wait_for(lambda: abs(page.places[23][2] - 1.0) < 0.15, seconds=10)
+        page.wait_for(lambda: abs(page.places[23][2] - 1.0) < 0.15)
         (hold,) = page.wait_for(lambda: page.last["poses"]["holds"])
         assert hold["client"] == page.id and hold["hold"] == 1 and hold["body"] == 23 and hold["force"] > 0
         assert world.call(lambda: world.held(page.id)) == world.call(lambda: world.held())
         assert world.call(lambda: world.held(page.id).slot) == 23
         page.send("grab_move", hold=1, target=(-1.2, 1.2, 0.0))
-        page.wait_for(lambda: page.places[23][0] < -0.8, seconds=10)
+        page.wait_for(lambda: page.places[23][0] < -0.8)
         page.send("grab_end", hold=1)
         page.wait_for(lambda: not page.last["poses"]["holds"])
-        page.wait_for(lambda: page.places[23][0] > -0.3, seconds=10)
+        page.wait_for(lambda: page.places[23][0] > -0.3)
 
 
 def test_two_pages_have_their_own_selections_and_agree_on_the_rest(world: iota.World, run_world: Runner) -> None:
