@@ -160,29 +160,12 @@ SurfaceShape to_surface_shape(SystemObject& self, nb::handle value, double size)
         ("surface must be a Plane, Sphere, Ellipsoid, Box, Cylinder, Capsule, Torus or a function, not " +
          describe(value))
             .c_str());
-  auto function = std::make_shared<ScriptFunction>(ScriptFunction{nb::borrow(value), "a surface"});
   finite_positive(size, "size", "m");
+  auto function = std::make_shared<ScriptFunction>(ScriptFunction{nb::borrow(value), "a surface", {}});
   self.keep(function);
-  const auto call = std::make_shared<SurfaceCall>();
-  call->function = function;
-  self.surfaces.push_back(call);
-  return SurfaceFunction{[call](const Vec3& r) -> double {
-                           if (call->failed) return std::nan("");
-                           nb::gil_scoped_acquire lock;
-                           std::string failure = "returned no number";
-                           try {
-                             const double phi = nb::cast<double>(call->function->function(r.x, r.y, r.z));
-                             if (std::isfinite(phi)) return phi;
-                             failure = "returned " + std::to_string(phi);
-                           } catch (nb::python_error& error) {
-                             failure = std::string("raised ") + nb::type_name(error.type()).c_str() + ": " +
-                                       nb::str(error.value()).c_str();
-                           } catch (const std::exception&) {
-                           }
-                           if (!call->failed) call->failure = failure, call->failed = true;
-                           return std::nan("");
-                         },
-                         size};
+  self.new_surfaces.push_back(function);
+  return SurfaceFunction{
+      [&self, function = std::move(function)](const Vec3& r) { return self.call_surface(function, r); }, size};
 }
 
 Quaternion to_quaternion(nb::handle value) {
@@ -558,13 +541,12 @@ void bind_makers(nb::class_<SystemObject>& type) {
             throw nb::value_error("the particle or body belongs to another system");
           SurfaceSpec spec;
           spec.kind = kind, spec.particle = p.id;
-          System& engine = self.use_between_steps("a surface");
+          self.use_between_steps("a surface");
+          self.new_surfaces.clear();
           spec.surface = to_surface(self, surface, at, orientation, body, size);
           if (body) spec.body = body->id;
           spec.breaks = to_limits(break_force, infinity);
-          const ConstraintId id = engine.create_constraint(spec);
-          self.settle_surfaces(id);
-          return ConstraintHandle{p.system_object, p.system, id};
+          return ConstraintHandle{p.system_object, p.system, self.create_surface_constraint(spec)};
         },
         "p"_a, "surface"_a, "body"_a.none() = nb::none(), nb::kw_only(), "at"_a.none() = nb::none(),
         "orientation"_a.none() = nb::none(), "size"_a = 1.0, "break_force"_a = infinity, text);
@@ -573,8 +555,9 @@ void bind_makers(nb::class_<SystemObject>& type) {
       "on_surface", ConstraintKind::surface,
       "A particle stays on a surface of body (None: the world). surface: Plane, Sphere, Ellipsoid, Box, Cylinder\n"
       "(endless), Capsule, Torus, or a function of x, y, z that is 0 on it, negative inside and about the distance (m)\n"
-      "near it; `size`, m, is then that of what it describes. A function that raises or returns no\n"
-      "finite number switches the constraint off, with a warning in the step's report. at, orientation: of the surface's frame, None: the body's.");
+      "near it; `size`, m, is then that of what it describes. It must not use the system; where it raises or returns no\n"
+      "finite number, the constraint is switched off and `step` raises ConstraintError. at, orientation: of the surface's\n"
+      "frame, None: the body's.");
   on_surface("inside", ConstraintKind::inside,
              "A particle stays on the inner side of a surface: as `on_surface`, one-sided.");
   on_surface("outside", ConstraintKind::outside,
@@ -587,7 +570,8 @@ void bind_makers(nb::class_<SystemObject>& type) {
         a.use();
         if (a.system != &self) throw nb::value_error("body a belongs to another system");
         if (b) check_one_system(a, *b, "surface_to_surface"), b->use();
-        System& engine = self.use_between_steps("surface_to_surface");
+        self.use_between_steps("surface_to_surface");
+        self.new_surfaces.clear();
         SurfacePairSpec spec;
         spec.kind = one_sided ? ConstraintKind::apart : ConstraintKind::touching;
         spec.a = a.id;
@@ -595,9 +579,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
         spec.surface_a = to_surface(self, surface_a, at_a, orientation_a, &a, 1);
         spec.surface_b = to_surface(self, surface_b, at_b, orientation_b, b, 1);
         spec.breaks = to_limits(break_force, infinity);
-        const ConstraintId id = engine.create_constraint(spec);
-        self.settle_surfaces(id);
-        return ConstraintHandle{a.system_object, a.system, id};
+        return ConstraintHandle{a.system_object, a.system, self.create_surface_constraint(spec)};
       },
       "a"_a, "surface_a"_a, "b"_a.none(), "surface_b"_a, nb::kw_only(), "one_sided"_a = true,
       "at_a"_a.none() = nb::none(), "orientation_a"_a.none() = nb::none(), "at_b"_a.none() = nb::none(),

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <memory>
 #include <tuple>
+#include <utility>
 
 namespace iota::bindings {
 
@@ -72,13 +73,30 @@ struct Equations {
   }
 };
 
+nb::object& solver_failure() {
+  static nb::object* const failure = new nb::object;  // never destroyed: the interpreter may be gone by then
+  return *failure;
+}
+
 class ScriptedSolver final : public Solver {
  public:
   explicit ScriptedSolver(std::string name) : name_(std::move(name)) {}
 
  protected:
   Ending search(NonlinearProblem& problem, std::span<double> x, const SolverOptions& options) override {
+    // Steps are solved without the lock; a thread that has it solves equations of the script.
+    const MidStep mid_step(!PyGILState_Check());
     nb::gil_scoped_acquire lock;
+    try {
+      return ask(problem, x, options);
+    } catch (nb::python_error& error) {
+      if (MidStep::is_now() && !solver_failure().is_valid()) solver_failure() = nb::borrow(error.value());
+      throw;
+    }
+  }
+
+ private:
+  Ending ask(NonlinearProblem& problem, std::span<double> x, const SolverOptions& options) {
     const auto equations = std::make_shared<Equations>(&problem);
     struct Withdraw {
       Equations& equations;
@@ -90,7 +108,6 @@ class ScriptedSolver final : public Solver {
     return {0, "the solver ended"};
   }
 
- private:
   std::string name_;
 };
 
@@ -106,6 +123,8 @@ Solution solve_equations(std::size_t size, nb::object evaluate, nb::object jacob
 }
 
 }  // namespace
+
+nb::object take_solver_failure() { return std::exchange(solver_failure(), nb::object()); }
 
 void bind_solvers(nb::module_& module) {
   nb::class_<Equations>(module, "Equations", "The equations that a solver of the script is asked to solve.")

@@ -4,6 +4,7 @@
 #include "bond_view.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace iota::bindings {
 
@@ -19,6 +20,13 @@ nb::object error_class(const char* name) { return nb::module_::import_("iota.err
 
 [[noreturn]] void raise_stale_as(const std::string& text, const nb::object& survivor) {
   raise_object(error_class("StaleIdError")(text, survivor));
+}
+
+/// Ctrl-C and the like: no fault of the function that they happen to arrive in.
+bool is_signal(const nb::object& raised) { return !PyObject_IsInstance(raised.ptr(), PyExc_Exception); }
+
+std::string describe_exception(const nb::object& raised) {
+  return std::string(nb::type_name(raised.type()).c_str()) + ": " + nb::str(raised).c_str();
 }
 
 /// What the engine says of a stale id; `touch` is any call that checks it.
@@ -88,6 +96,12 @@ void raise_runtime(const std::string& text) {
   throw nb::python_error();
 }
 
+void SystemObject::raise_mid_step() {
+  raise_runtime(
+      "the function of a surface or a solver is called in the middle of a step, on any thread: it cannot use the system. "
+      "Give it what it needs beforehand, or act in a bond's function or between the steps");
+}
+
 void SystemObject::raise_foreign_thread() {
   nb::object error = error_class("WrongThreadError");
   PyErr_SetString(error.ptr(),
@@ -131,12 +145,27 @@ BondLaw SystemObject::make_scripted_law(std::shared_ptr<BondFunction> function, 
   return law;
 }
 
+double SystemObject::call_surface(const std::shared_ptr<ScriptFunction>& function, const Vec3& r) {
+  const MidStep mid_step;
+  double phi = 0;
+  bool is_done = false;
+  for (int attempt = 0; attempt < 2 && !is_done; ++attempt)  // twice, where a signal arrived in it
+    guard(function, BondId{}, [&] {
+      const nb::object result = function->function(r.x, r.y, r.z);
+      if (!nb::try_cast<double>(result, phi) || !std::isfinite(phi)) {
+        const std::string text = "a surface must be a finite number (m), not " + describe(result);
+        throw nb::value_error(text.c_str());
+      }
+      is_done = true;
+    });
+  if (!is_done) throw std::runtime_error("it was interrupted");
+  return phi;
+}
+
 StepReport SystemObject::step(double dt) {
   System& system = use_between_steps("step");
   finite_positive(dt, "dt", "s");
-  failures.clear();
-  std::vector<std::string> warnings;
-  switch_off_failed_surfaces(warnings);
+  std::erase_if(failures, [](const ForceFailure& failure) { return !failure.source->constraint; });
   StepReport report;
   {
     nb::gil_scoped_release unlocked;
@@ -145,72 +174,65 @@ StepReport SystemObject::step(double dt) {
   step_edits = report.edits;
   broken = report.broken;
   for (const Broken& b : broken) note_edit("break", b.position);
-  switch_off_failed_surfaces(warnings);
-  report.warnings.insert(report.warnings.begin(), warnings.begin(), warnings.end());
   // Functions that the engine has dropped: ours is the only reference left.
   std::erase_if(functions, [](const auto& function) { return function.use_count() == 1; });
-  if (!failures.empty() || !report.switched_off.empty()) tell_failures(report);
+  if (nb::object raised = take_solver_failure(); raised.is_valid()) {
+    if (is_signal(raised)) raise_object(raised);
+    for (std::string& warning : report.warnings)
+      if (warning.starts_with("the solver ")) warning += "; it raised " + describe_exception(raised);
+  }
+  if (!failures.empty() || !report.switched_off.empty() || !report.switched_off_constraints.empty())
+    tell_failures(report);
   return report;
+}
+
+void SystemObject::raise_first_failure() {
+  const nb::object exception = failures.back().exception;
+  failures.clear();
+  raise_object(exception);
 }
 
 void SystemObject::tell_failures(const StepReport& report) {
   std::vector<ForceFailure> all;
   all.swap(failures);
-  for (const ForceFailure& failure : all) {
-    if (!PyObject_IsInstance(failure.exception.ptr(), PyExc_Exception)) raise_object(failure.exception);
-  }
+  for (const ForceFailure& failure : all)
+    if (is_signal(failure.exception)) raise_object(failure.exception);
   BondId bond;
+  ConstraintId constraint;
   std::string text;
+  std::size_t count = all.size();
   if (!all.empty()) {
     const ForceFailure& first = all.front();
-    bond = first.bond;
+    bond = first.bond, constraint = first.source->constraint;
     if (const auto* own = bond ? static_cast<const BondFunction*>(first.source.get()) : nullptr)
       text = name_of(bond) + " between " + name_of(own->p) + " and " + name_of(own->q);
     else
-      text = first.source->what;
-    text += std::string(" was switched off: its function raised ") + nb::type_name(first.exception.type()).c_str() +
-            ": " + nb::str(first.exception).c_str();
-    if (all.size() > 1) text += " (and " + std::to_string(all.size() - 1) + " more in this step)";
+      text = constraint ? name_of(constraint) : first.source->what;
+    text += std::string(" was switched off: its function raised ") + describe_exception(first.exception);
   } else {
-    bond = report.switched_off.front();
+    if (report.switched_off.empty())
+      constraint = report.switched_off_constraints.front();
+    else
+      bond = report.switched_off.front();
+    const std::string name = bond ? name_of(bond) : name_of(constraint);
     for (const std::string& warning : report.warnings)
-      if (text.empty() && warning.starts_with(name_of(bond))) text = warning;
-    const std::size_t more = report.switched_off.size() - 1;
-    if (more > 0) text += " (and " + std::to_string(more) + " more in this step)";
+      if (text.empty() && warning.starts_with(name)) text = warning;
+    count = report.switched_off.size() + report.switched_off_constraints.size();
   }
+  if (count > 1) text += " (and " + std::to_string(count - 1) + " more in this step)";
   if (warn_of_forces) {
     if (PyErr_WarnEx(error_class("ForceWarning").ptr(), text.c_str(), 1) != 0) throw nb::python_error();
     return;
   }
-  nb::object error = bond ? error_class("BondError")(text, nb::cast(report), BondHandle{nb::find(this), this, bond})
-                          : error_class("ForceError")(text, nb::cast(report));
+  nb::object error;
+  if (bond)
+    error = error_class("BondError")(text, nb::cast(report), BondHandle{nb::find(this), this, bond});
+  else if (constraint)
+    error = error_class("ConstraintError")(text, nb::cast(report), ConstraintHandle{nb::find(this), this, constraint});
+  else
+    error = error_class("ForceError")(text, nb::cast(report));
   if (!all.empty()) PyException_SetCause(error.ptr(), nb::object(all.front().exception).release().ptr());
   raise_object(error);
-}
-
-void SystemObject::settle_surfaces(ConstraintId constraint) {
-  std::string failure;
-  std::erase_if(surfaces,
-                [](const auto& surface) { return surface.use_count() == 1; });  // of constraints that were refused
-  for (const auto& surface : surfaces) {
-    if (surface->constraint) continue;
-    surface->constraint = constraint;
-    if (surface->failed) failure = surface->failure;
-  }
-  if (failure.empty()) return;
-  engine.destroy(constraint);
-  throw nb::value_error(("the function of the surface " + failure).c_str());
-}
-
-void SystemObject::switch_off_failed_surfaces(std::vector<std::string>& warnings) {
-  std::erase_if(surfaces, [&](const auto& surface) {
-    if (surface->constraint && !engine.contains(surface->constraint)) return true;
-    if (!surface->failed || !surface->constraint) return surface.use_count() == 1;
-    engine.set_active(surface->constraint, false);
-    warnings.push_back("constraint " + std::to_string(surface->constraint.slot) +
-                       " is switched off: the function of its surface " + surface->failure);
-    return true;
-  });
 }
 
 int SystemObject::traverse(visitproc visit, void* arg) {

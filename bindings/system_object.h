@@ -8,11 +8,11 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 
-#include <atomic>
 #include <map>
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace iota::bindings {
@@ -23,7 +23,8 @@ namespace nb = nanobind;
 /// interpreter lock is released; `SystemObject` holds it too, so that the function itself always dies with the lock.
 struct ScriptFunction {
   nb::object function;
-  std::string what;  ///< "law wind", "field current"
+  std::string what;         ///< "law wind", "field current"
+  ConstraintId constraint;  ///< that holds on to the surface which it gives; else null
 };
 
 /// That of one scripted bond.
@@ -32,12 +33,18 @@ struct BondFunction : ScriptFunction {
   ParticleId p, q;
 };
 
-/// The function of a surface, and how it failed first. Called from any thread of a step, and no more once it has failed.
-struct SurfaceCall {
-  std::shared_ptr<ScriptFunction> function;
-  std::atomic<bool> failed = false;
-  std::string failure;
-  ConstraintId constraint;
+/// While one lives, its thread may not use any system: the engine is in the middle of something, in which other threads may
+/// have a part, and which of them calls a function is chance.
+class MidStep {
+ public:
+  explicit MidStep(bool is_so = true) : is_so_(is_so) { depth_ += is_so_; }
+  ~MidStep() { depth_ -= is_so_; }
+  MidStep(const MidStep&) = delete;
+  static bool is_now() { return depth_ > 0; }
+
+ private:
+  bool is_so_;
+  static inline thread_local int depth_ = 0;
 };
 
 /// A function that raised, or a signal that arrived in it.
@@ -62,6 +69,7 @@ class SystemObject {
 
   /// The engine's system, for a caller on the owner thread; throws `RuntimeError` on any other.
   System& use() {
+    if (MidStep::is_now()) raise_mid_step();
     if (owner != std::this_thread::get_id()) raise_foreign_thread();
     return engine;
   }
@@ -70,10 +78,13 @@ class SystemObject {
 
   void adopt();
   StepReport step(double dt);
+  /// phi of a surface of the script, m; throws std::runtime_error for what is no finite number. Called on any thread.
+  double call_surface(const std::shared_ptr<ScriptFunction>& function, const Vec3& r);
   BondLaw make_scripted_law(std::shared_ptr<BondFunction> function, std::string name);
   void keep(std::shared_ptr<ScriptFunction> function) { functions.push_back(std::move(function)); }
-  /// Names the constraint that surfaces just made belong to. Throws ValueError, without a constraint, if one has failed.
-  void settle_surfaces(ConstraintId constraint);
+  /// Makes a constraint, and tells its functions whose they are. What one of them raises goes on as it is.
+  template <class Spec>
+  ConstraintId create_surface_constraint(const Spec& spec);
   /// Runs `call` for the engine, with the lock held. Notes what it raises and throws std::runtime_error, which the engine
   /// answers by switching off what the function is for; a signal that happens to arrive in it is noted only.
   template <class Call>
@@ -88,9 +99,9 @@ class SystemObject {
   System engine;
   std::thread::id owner;
   std::vector<std::shared_ptr<ScriptFunction>> functions;
-  std::vector<nb::object> code;        ///< compiled functions that laws point at
-  std::vector<ForceFailure> failures;  ///< of the step under way
-  std::vector<std::shared_ptr<SurfaceCall>> surfaces;
+  std::vector<std::shared_ptr<ScriptFunction>> new_surfaces;  ///< of a constraint that is about to be made
+  std::vector<nb::object> code;                               ///< compiled functions that laws point at
+  std::vector<ForceFailure> failures;         ///< of the step under way; of surfaces, since the last one
   bool warn_of_forces = false;                ///< where forces fail: a warning instead of an exception
   std::map<std::string, LawId> written_laws;  ///< of expressions given to bonds: by text and parameters
   struct CosmeticBond {
@@ -104,8 +115,9 @@ class SystemObject {
   std::vector<Broken> broken;  ///< in the last step
 
  private:
-  void switch_off_failed_surfaces(std::vector<std::string>& warnings);
   [[noreturn]] static void raise_foreign_thread();
+  [[noreturn]] static void raise_mid_step();
+  [[noreturn]] void raise_first_failure();
   void tell_failures(const StepReport& report);
 };
 
@@ -156,6 +168,9 @@ std::string name_of(IdType id) {
 /// Makes the engine's StaleIdError Python's, for ids that it finds stale itself.
 void register_errors();
 
+/// What a solver of the script has raised in steps since the last call; null if nothing.
+nb::object take_solver_failure();
+
 /// Throws Python's RuntimeError.
 [[noreturn]] void raise_runtime(const std::string& text);
 
@@ -177,6 +192,20 @@ Handle<IdType> sibling(const Other& handle, IdType id) {
 [[noreturn]] void raise_stale(const Handle<CosmeticBondId>&);
 [[noreturn]] void raise_stale(const ConstraintHandle&);
 
+template <class Spec>
+ConstraintId SystemObject::create_surface_constraint(const Spec& spec) {
+  const auto functions_of_it = std::exchange(new_surfaces, {});
+  const std::size_t known = failures.size();
+  try {
+    const ConstraintId constraint = engine.create_constraint(spec);
+    for (const auto& function : functions_of_it) function->constraint = constraint;
+    return constraint;
+  } catch (...) {
+    if (failures.size() > known) raise_first_failure();
+    throw;
+  }
+}
+
 template <class Call>
 void SystemObject::guard(const std::shared_ptr<ScriptFunction>& source, BondId bond, Call call) {
   nb::gil_scoped_acquire lock;
@@ -192,7 +221,8 @@ void SystemObject::guard(const std::shared_ptr<ScriptFunction>& source, BondId b
     PyObject* type = error.type() == nb::exception_type::type_error ? PyExc_TypeError : PyExc_ValueError;
     failures.push_back({source, bond, nb::borrow(type)(error.what())});
   }
-  throw std::runtime_error("its function raised");
+  const nb::object& raised = failures.back().exception;
+  throw std::runtime_error(std::string(nb::type_name(raised.type()).c_str()) + ": " + nb::str(raised).c_str());
 }
 
 template <class IdType>

@@ -72,7 +72,8 @@ struct [[nodiscard]] StepReport {
   std::uint32_t articulates = 0;
   std::uint32_t resting = 0;  ///< bodies asleep
   std::uint32_t structure_version = 0;
-  std::vector<BondId> switched_off;  ///< bonds whose force was not finite, or whose function threw
+  std::vector<BondId> switched_off;                    ///< bonds whose force was not finite, or whose function threw
+  std::vector<ConstraintId> switched_off_constraints;  ///< the same of the functions of their surfaces
   std::vector<Broken> broken;
   std::vector<ParticleId> born, died;      ///< of emitters, and of those with a lifetime
   std::optional<RestructureReport> edits;  ///< asked for during the step and made right after it, as one

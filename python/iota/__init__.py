@@ -52,7 +52,15 @@ from iota._core import (
     separate,
 )
 from iota._core import version as __version__
-from iota.errors import BondError, ForceError, ForceWarning, PageMissingError, StaleIdError, WrongThreadError
+from iota.errors import (
+    BondError,
+    ConstraintError,
+    ForceError,
+    ForceWarning,
+    PageMissingError,
+    StaleIdError,
+    WrongThreadError,
+)
 from iota.profiling import ForceCost, ForceProfile, profile
 from iota.simulator import SimulatedBody, SimulatedGrip, SimulatedParticle, Simulator
 from iota.solvers import Problem, Solution, solve, solver, solver_names
@@ -72,6 +80,7 @@ __all__ = [
     "Capsule",
     "Client",
     "Constraint",
+    "ConstraintError",
     "Cylinder",
     "Diagnosis",
     "Edit",

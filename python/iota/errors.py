@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from iota._core import Body, Bond, Particle, StepReport
+    from iota._core import Body, Bond, Constraint, Particle, StepReport
 
 
 class StaleIdError(ValueError):
@@ -40,6 +40,18 @@ class BondError(ForceError):
     def __init__(self, text: str, report: StepReport, bond: Bond) -> None:
         super().__init__(text, report)
         self.bond = bond
+
+
+class ConstraintError(ForceError):
+    """The function of a constraint's surface raised, or gave no finite number; the step was finished without the
+    constraint, which is switched off.
+
+    constraint: the handle. report: of that step. `__cause__` is what the function raised, if it did.
+    """
+
+    def __init__(self, text: str, report: StepReport, constraint: Constraint) -> None:
+        super().__init__(text, report)
+        self.constraint = constraint
 
 
 class ForceWarning(RuntimeWarning):

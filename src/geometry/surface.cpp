@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -111,16 +110,28 @@ SurfacePoint Box::at(const Vec3& p) const {
 }
 
 FunctionSurface::FunctionSurface(std::function<double(const Vec3&)> phi, double size)
-    : phi_(std::move(phi)), size_(positive(size, "the size of a surface")) {}
+    : phi_(std::move(phi)), size_(positive(size, "the size of a surface")) {
+  if (!phi_) failure_ = "has no function in this system";
+}
 
 SurfacePoint FunctionSurface::at(const Vec3& p) const {
-  const auto phi = [&](double x, double y, double z) {
-    try {
-      return phi_(p + Vec3{x, y, z});
-    } catch (...) {
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-  };
+  if (!failure_.empty()) return {};
+  SurfacePoint s;
+  try {
+    s = differentiate(p);
+  } catch (const std::exception& error) {
+    failure_ = std::string("raised: ") + error.what();
+  } catch (...) {
+    failure_ = "raised";
+  }
+  double sum = s.value;
+  for (const auto& row : s.hessian.m) sum += row[0] + row[1] + row[2];
+  if (failure_.empty() && !(std::isfinite(sum) && is_finite(s.gradient))) failure_ = "is not finite";
+  return failure_.empty() ? s : SurfacePoint{};
+}
+
+SurfacePoint FunctionSurface::differentiate(const Vec3& p) const {
+  const auto phi = [&](double x, double y, double z) { return phi_(p + Vec3{x, y, z}); };
   const double h = 1e-4 * size_;
   SurfacePoint s;
   s.value = phi(0, 0, 0);

@@ -4,6 +4,8 @@
 #include "math/mat3.h"
 
 #include <functional>
+#include <string>
+#include <string_view>
 
 namespace iota::geometry {
 
@@ -21,6 +23,8 @@ class Surface {
   virtual ~Surface() = default;
   virtual SurfacePoint at(const Vec3& p) const = 0;
   virtual double size() const = 0;  ///< a length to measure violations by, m
+  /// Why it is nowhere any more; empty while it is somewhere.
+  virtual std::string_view failure() const { return {}; }
 };
 
 /// phi = n.p - offset.
@@ -84,14 +88,21 @@ class Box final : public Surface {
   double rounding_, size_;
 };
 
-/// phi given by a function; derivatives by central differences. Where it throws or is not a number, phi is NaN.
+/// phi given by a function; derivatives by central differences. Once the function has thrown, or was not finite, it is not
+/// called again and the surface is nowhere: phi and its derivatives are zero, which holds nothing. (A phi that is not a
+/// number would take Newton's method, and all that is solved together with it, down.)
 class FunctionSurface final : public Surface {
  public:
+  /// Without a function it has failed from the start.
   FunctionSurface(std::function<double(const Vec3&)> phi, double size);
   SurfacePoint at(const Vec3& p) const override;
   double size() const override { return size_; }
+  std::string_view failure() const override { return failure_; }
 
  private:
+  SurfacePoint differentiate(const Vec3& p) const;
+
+  mutable std::string failure_;
   std::function<double(const Vec3&)> phi_;
   double size_;
 };

@@ -284,8 +284,7 @@ std::shared_ptr<const geometry::Surface> make_surface(const Model& model, const 
     default: break;
   }
   const auto found = model.surface_functions.find(data.function);
-  if (found == model.surface_functions.end())
-    return std::make_shared<geometry::FunctionSurface>([](const Vec3&) { return std::nan(""); }, 1.0);
+  if (found == model.surface_functions.end()) return std::make_shared<geometry::FunctionSurface>(nullptr, 1.0);
   return std::make_shared<geometry::FunctionSurface>(found->second.phi, found->second.size);
 }
 

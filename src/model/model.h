@@ -333,6 +333,9 @@ class Model {
   void set_fuse(std::uint32_t particle, double force);  ///< infinite: none
   const ConstraintGeometry& geometry(std::uint32_t constraint) const { return geometries_[constraint]; }
   void make_geometries();  ///< anew, after a restore
+  void make_geometry_anew(std::uint32_t constraint) {
+    geometries_[constraint] = make_geometry(*this, constraints[constraint]);
+  }
   /// Bonds, closings and constraints of q become p's; those that would join p to itself are removed.
   void redirect_uses(std::uint32_t q, std::uint32_t p);
   ///@}

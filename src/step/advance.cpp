@@ -80,8 +80,10 @@ StepReport System::Implementation::apply(const step::Step& command) {
   model.time += h, model.last_dt = h;
   ++model.step;
   stepping = false;
+  forget_unheeded_forces(model);
 
-  // 4. Edits: what broke, particles that have met, then what was asked for during the step, in order.
+  // 4. Edits: what failed or broke, particles that have met, then what was asked for during the step, in order.
+  switch_off_failed_surfaces(report);
   if (model.attributes.size() + model.emitters.size() > 0) live(report);
   break_overloaded(report);
   finish_closings(report);

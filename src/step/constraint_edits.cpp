@@ -45,7 +45,18 @@ void require_surface(const model::PlacedSurface& surface) {
         text("orientation of the surface must be a unit quaternion x y z w, got length ", size));
 }
 
-model::SurfaceData to_data(model::Model& model, std::uint64_t& next_key, const SurfaceShape& shape) {
+/// Calls a surface's function once, for what would otherwise only show in the next step. point: world frame.
+void require_function(const model::Model& model, const model::PlacedSurface& surface, const Vec3& point) {
+  const auto found = model.surface_functions.find(surface.data.function);
+  if (found == model.surface_functions.end()) return;
+  const Quaternion& q = surface.orientation;
+  const geometry::FunctionSurface function(found->second.phi, found->second.size);
+  (void)function.at(rotate({-q.x, -q.y, -q.z, q.w}, point - surface.position));
+  if (!function.failure().empty())
+    throw std::invalid_argument(text("the function of a surface ", function.failure(), ", at ", text_of(point)));
+}
+
+model::SurfaceData to_data(const SurfaceShape& shape) {
   model::SurfaceData data;
   data.type = static_cast<std::uint32_t>(shape.index());
   std::visit(
@@ -57,11 +68,6 @@ model::SurfaceData to_data(model::Model& model, std::uint64_t& next_key, const S
         if constexpr (std::is_same_v<S, Cylinder>) data.size = {s.radius, 0, 0};
         if constexpr (std::is_same_v<S, Capsule>) data.size = {s.radius, s.length, 0};
         if constexpr (std::is_same_v<S, Torus>) data.size = {s.radius, s.tube, 0};
-        if constexpr (std::is_same_v<S, SurfaceFunction>) {
-          if (!s.phi) throw std::invalid_argument("a function surface needs a function");
-          data.function = next_key++;
-          model.surface_functions[data.function] = s;
-        }
       },
       shape);
   return data;
@@ -151,6 +157,7 @@ ConstraintId System::Implementation::apply(const step::CreateSurface& c) {
   if (c.spec.body && require(c.spec.body) == model.particles[particle].body)
     throw std::invalid_argument(text(name, ": particle ", particle, " is of the body that holds the surface"));
   require_surface(c.spec.surface);
+  require_function(model, c.spec.surface, model.position(particle));
   require_limits(c.spec.breaks);
   return made(make_constraint(model, c.spec));
 }
@@ -164,6 +171,7 @@ ConstraintId System::Implementation::apply(const step::CreateSurfacePair& c) {
   if (c.spec.a == c.spec.b)
     throw std::invalid_argument(text(name, ": needs two bodies, got body ", c.spec.a.slot, " twice"));
   for (const model::PlacedSurface& surface : c.spec.surfaces) require_surface(surface);
+  for (const std::size_t i : {0, 1}) require_function(model, c.spec.surfaces[i], c.spec.surfaces[1 - i].position);
   require_limits(c.spec.breaks);
   return made(make_constraint(model, c.spec));
 }
@@ -175,6 +183,7 @@ void System::Implementation::apply(const step::SetConstraintActive& c) {
   if (constraint.active == static_cast<std::uint8_t>(c.active)) return;
   model.edit_energy -= model.constraint_energy(slot);
   constraint.active = c.active;
+  if (c.active) model.make_geometry_anew(slot);  // a surface that has failed gets another chance
   step::refresh_coordinates(model, slot);
   model.edit_energy += model.constraint_energy(slot);
   constraint.multipliers.fill(0), constraint.efforts = {}, constraint.gap = 0;
@@ -226,8 +235,26 @@ void System::Implementation::apply(const step::SetBreakForce& c) {
 void System::Implementation::apply(const step::Destroy<ConstraintId>& c) {
   const std::uint32_t slot = require(c.id);
   model.edit_energy -= model.constraint_energy(slot);
+  if (!recording)
+    for (const model::SurfaceData& surface : model.constraints[slot].surfaces)
+      if (surface.function >= scripts_saved_below) model.surface_functions.erase(surface.function);
   destroy_constraint(model, slot);
   structure_changed();
+}
+
+void System::Implementation::switch_off_failed_surfaces(StepReport& report) {
+  for (std::uint32_t slot = 0; slot < model.constraints.slot_count(); ++slot) {
+    if (!model.constraints.is_alive(slot) || !model.constraints[slot].active) continue;
+    for (const auto& surface : model.geometry(slot).surfaces) {
+      if (!surface || surface->failure().empty()) continue;
+      report.switched_off_constraints.push_back(model.constraints.id(slot));
+      report.warnings.push_back(text("constraint ", slot, " (", model::info(model.constraints[slot].kind).name,
+                                     "): the function of its surface ", surface->failure(),
+                                     "; the constraint is switched off"));
+      apply(SetConstraintActive{model.constraints.id(slot), false});
+      break;
+    }
+  }
 }
 
 void System::Implementation::break_overloaded(StepReport& report) {
@@ -263,6 +290,27 @@ void System::Implementation::break_overloaded(StepReport& report) {
 
 // --- the public edge --------------------------------------------------------------------------------------------------
 
+model::PlacedSurface System::Implementation::placed(const Surface& surface) {
+  model::PlacedSurface placed{to_data(surface.shape), surface.position, surface.orientation};
+  if (const auto* function = std::get_if<SurfaceFunction>(&surface.shape)) {
+    if (!function->phi) throw std::invalid_argument("a function surface needs a function");
+    placed.data.function = next_script++;
+    model.surface_functions[placed.data.function] = *function;
+  }
+  return placed;
+}
+
+template <class Specify>
+ConstraintId System::Implementation::make_with_functions(Specify specify) {
+  const std::uint64_t first = next_script;
+  try {
+    return execute(specify());
+  } catch (...) {  // refused: nobody has its functions
+    model.surface_functions.erase(model.surface_functions.lower_bound(first), model.surface_functions.end());
+    throw;
+  }
+}
+
 ConstraintId System::create_constraint(const JointSpec& spec) { return implementation_->execute(CreateJoint{spec}); }
 ConstraintId System::create_constraint(const DistanceSpec& spec) {
   return implementation_->execute(CreateDistance{spec});
@@ -278,17 +326,18 @@ ConstraintId System::create_constraint(const PathSpec& spec) {
       CreatePath{{spec.particle, spec.body, spec.curve, spec.closed, spec.rounding, spec.slide, spec.breaks}});
 }
 ConstraintId System::create_constraint(const SurfaceSpec& spec) {
-  const auto data = to_data(implementation_->model, implementation_->next_script, spec.surface.shape);
-  return implementation_->execute(CreateSurface{
-      {spec.kind, spec.particle, spec.body, {data, spec.surface.position, spec.surface.orientation}, spec.breaks}});
+  return implementation_->make_with_functions([&] {
+    return CreateSurface{{spec.kind, spec.particle, spec.body, implementation_->placed(spec.surface), spec.breaks}};
+  });
 }
 ConstraintId System::create_constraint(const SurfacePairSpec& spec) {
-  CreateSurfacePair command{{spec.kind, spec.a, spec.b, {}, spec.breaks}};
-  const std::array<const Surface*, 2> surfaces{&spec.surface_a, &spec.surface_b};
-  for (std::size_t i = 0; i < 2; ++i)
-    command.spec.surfaces[i] = {to_data(implementation_->model, implementation_->next_script, surfaces[i]->shape),
-                                surfaces[i]->position, surfaces[i]->orientation};
-  return implementation_->execute(command);
+  return implementation_->make_with_functions([&] {
+    return CreateSurfacePair{{spec.kind,
+                              spec.a,
+                              spec.b,
+                              {implementation_->placed(spec.surface_a), implementation_->placed(spec.surface_b)},
+                              spec.breaks}};
+  });
 }
 void System::destroy(ConstraintId id) { implementation_->execute(step::Destroy<ConstraintId>{id}); }
 void System::set_active(ConstraintId id, bool active) { implementation_->execute(SetConstraintActive{id, active}); }

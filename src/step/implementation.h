@@ -184,6 +184,10 @@ struct System::Implementation {
   void constraint_changed(std::uint32_t constraint);
   void wake(std::uint32_t constraint);  ///< bodies at rest that a changed motor or rope must move
   ConstraintId made(std::uint32_t constraint);
+  /// A surface as plain data; its function, if it has one, is kept under the next key.
+  model::PlacedSurface placed(const Surface&);
+  template <class Specify>
+  ConstraintId make_with_functions(Specify specify);
   ParticleId make_marker(std::uint32_t body, const Vec3& position);
   /// Ends a closing before its particles have met.
   RestructureReport call_off(std::uint32_t closing);
@@ -217,6 +221,8 @@ struct System::Implementation {
   void finish_closings(StepReport&);
   /// Switches off what the step has loaded beyond its limits.
   void break_overloaded(StepReport&);
+  /// Switches off constraints on surfaces whose function has failed.
+  void switch_off_failed_surfaces(StepReport&);
   void apply_queue(StepReport&);
   void structure_changed() { ++model.structure_version; }
   void jolt(std::uint32_t particle);

@@ -260,7 +260,7 @@ def check(c: Scene, steps: int = 2) -> None:
     for _ in range(steps):
         try:
             report = system.step(1 / 60)
-        except iota.BondError as error:
+        except iota.ForceError as error:
             report = error.report
         assert math.isfinite(report.energy.kinetic), report
         assert math.isfinite(report.worst_gap), report

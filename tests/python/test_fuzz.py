@@ -58,7 +58,7 @@ def test_random_calls_leave_the_system_whole(seed: int) -> None:
             assert scene.system.validate() == []
             if number % 10 == 0:
                 sweep.check(scene, steps=1)
-        except iota.BondError:
+        except iota.ForceError:
             pass
         except Exception as error:
             raise AssertionError(f"seed {seed}: {error!r} after\n" + "\n".join(made[-8:])) from error

@@ -217,6 +217,7 @@ def test_a_solver_of_the_script_that_raises_in_a_step_is_replaced_and_named() ->
     direct, _ = swing("direct", 5)
     other, warnings = swing("moody", 5)
     assert len(warnings) == 5 and "the solver moody found no root" in warnings[0]
+    assert "it raised KeyError: 'not now'" in warnings[0]
     assert (other == direct).all()
 
 

@@ -93,29 +93,3 @@ def test_destroying_everything_in_any_order_leaves_an_empty_whole_system() -> No
             body.destroy()
         assert scene.system.particles == [] and scene.system.constraints == [] and scene.system.bonds == []
         sweep.check(scene)
-
-
-def test_a_surface_whose_function_fails_is_switched_off_and_named() -> None:
-    scene = sweep.Scene()
-    calls = []
-
-    def surface(x: float, y: float, z: float) -> float:
-        calls.append(x)
-        return 1 / 0 if len(calls) > limit else y + 9
-
-    limit = 10**9
-    constraint = scene.system.outside(scene.point, surface)
-    scene.system.step(1 / 60)
-    assert constraint.active
-    limit = len(calls) + 3
-    report = scene.system.step(1 / 60)
-    assert [w for w in report.warnings if "ZeroDivisionError: division by zero" in w and "switched off" in w]
-    assert not constraint.active
-    assert len(calls) == limit + 1, "it is not called again"
-    sweep.check(scene)
-    made = [
-        scene.system.outside(scene.point, bad) for bad in (sweep.raising, sweep.not_finite, lambda *r: float("nan"))
-    ]
-    report = scene.system.step(1 / 60)
-    assert len([w for w in report.warnings if "function of its surface" in w]) == 3
-    assert not any(constraint.active for constraint in made)

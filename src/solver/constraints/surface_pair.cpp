@@ -144,17 +144,19 @@ void SurfacePairConstraint::track(const Vec3* x, double fraction) {
 
 void SurfacePairConstraint::calc_value(const Vec3* e, double /*fraction*/, double* g) const {
   g[0] = find(e, contact).gap;
+  if (is_nowhere()) g[0] = 0;
 }
 
 // With t_j = a_j.d and R_jk = a_j.b_k the gap's derivatives are n_j and grad B_k (q - t)_j / |R grad B|.
 void SurfacePairConstraint::calc_gradient(const Vec3* e, Vec3 (*d)[7]) const {
   const Contact c = find(e, contact);
+  std::fill(d[0], d[0] + 7, Vec3{});
+  if (is_nowhere()) return;
   const Relative relative(e);
   const Vec3 u = c.q - relative.t;
   const double size = norm(relative.turn * c.gradient);
   const double n[3] = {c.normal.x, c.normal.y, c.normal.z}, us[3] = {u.x, u.y, u.z};
   const double gradient[3] = {c.gradient.x / size, c.gradient.y / size, c.gradient.z / size};
-  for (int k = 0; k < 7; ++k) d[0][k] = {};
   for (int j = 0; j < 3; ++j) {
     d[0][0] += n[j] * e[1 + j];
     d[0][1 + j] += n[j] * e[0];

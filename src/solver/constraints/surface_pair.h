@@ -36,6 +36,7 @@ struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
     Vec3 place, gradient;  // of q and of phi_B, in B's frame
   };
   Contact find(const Vec3* e, const Vec3& near) const;
+  bool is_nowhere() const { return !surface_a->failure().empty() || !surface_b->failure().empty(); }
 };
 
 }  // namespace iota::solver

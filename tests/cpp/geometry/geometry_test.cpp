@@ -86,8 +86,27 @@ TEST(Surface, of_each_kind_is_where_it_should_be) {
   EXPECT_LT(Box({1, 2, 3}).at({0.2, 0.3, -1}).value, 0);
   EXPECT_THROW(Ellipsoid(-1.0), std::invalid_argument);
   EXPECT_THROW(Plane({0, 0, 0}), std::invalid_argument);
-  const FunctionSurface broken([](const Vec3&) -> double { throw std::runtime_error("no"); }, 1);
-  EXPECT_TRUE(std::isnan(broken.at({}).value)) << "nothing throws inside a step";
+}
+
+TEST(Surface, whose_function_fails_is_nowhere_from_then_on_and_says_why) {
+  for (const bool throws : {true, false}) {
+    int calls = 0;
+    const FunctionSurface broken(
+        [&](const Vec3& p) -> double {
+          if (++calls == 25 && throws) throw std::runtime_error("no");
+          return calls < 25 ? p.x : std::nan("");
+        },
+        1);
+    EXPECT_EQ(broken.at({2, 0, 0}).value, 2);
+    EXPECT_EQ(broken.failure(), "");
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_EQ(broken.at({2, 0, 0}).value, 0);
+      EXPECT_EQ(norm(broken.at({2, 0, 0}).gradient), 0);
+      EXPECT_EQ(broken.failure(), throws ? "raised: no" : "is not finite");
+    }
+    EXPECT_LT(calls, 40) << "it is not called again";
+  }
+  EXPECT_EQ(FunctionSurface(nullptr, 1).failure(), "has no function in this system");
 }
 
 TEST(SurfacePair, has_the_gap_of_closed_forms_apart_and_overlapping) {

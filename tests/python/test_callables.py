@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Functions of the script that the engine calls: what they may do to the system that calls them, and what becomes of those
+that fail. (Bonds: test_bonds.py, laws: test_laws.py, fields: test_fields.py.)"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iota
+
+Surface = Callable[[float, float, float], Any]
+
+
+class Marble:
+    """A point on a floor that is a function, and a second world's worth of things beside it."""
+
+    def __init__(self) -> None:
+        self.system = iota.System()
+        self.point = iota.Particle(iota.Body(self.system), (0, 0, 0))
+        self.far = iota.Particle(iota.Body(self.system, kind="static"), (9, 0, 0))
+        self.phi: Surface = lambda x, y, z: y
+        self.floor = self.system.outside(self.point, lambda x, y, z: self.phi(x, y, z))
+        self.system.step(1 / 60)
+
+
+FAILURES: dict[str, tuple[Surface, type[Exception], str]] = {
+    "raises": (lambda x, y, z: 1 / 0, ZeroDivisionError, "ZeroDivisionError: division by zero"),
+    "nan": (lambda x, y, z: math.nan, ValueError, "a surface must be a finite number .m., not nan"),
+    "infinite": (lambda x, y, z: -math.inf, ValueError, "not -inf"),
+    "shape": (lambda x, y, z: (1, 0), ValueError, r"not \(1, 0\)"),
+    "none": (lambda x, y, z: None, ValueError, "not None"),
+    "arguments": (lambda x, y: y, TypeError, "positional argument"),
+    "huge": (lambda x, y, z: 1e307 * (1 + 1e4 * y), ValueError, "is not finite"),
+}
+
+
+@pytest.mark.parametrize("name", FAILURES)
+def test_a_surface_whose_function_fails_in_a_step_is_switched_off_and_named(name: str) -> None:
+    marble = Marble()
+    marble.phi, cause, text = FAILURES[name]
+    with pytest.raises(iota.ConstraintError, match=text) as caught:
+        marble.system.step(1 / 60)
+    assert str(caught.value).startswith(f"constraint {marble.floor.slot}")
+    assert caught.value.constraint == marble.floor and caught.value.report.step == 2
+    assert isinstance(caught.value.__cause__, cause) or name == "huge"
+    assert not marble.floor.active and marble.system.validate() == []
+
+    before = marble.point.position.y
+    for _ in range(10):
+        marble.system.step(1 / 60)
+    assert marble.point.position.y < before - 0.1, "it falls"
+    marble.floor.active = True
+    with pytest.raises(iota.ConstraintError):
+        marble.system.step(1 / 60)
+    marble.phi = lambda x, y, z: y
+    marble.floor.active = True
+    for _ in range(10):
+        marble.system.step(1 / 60)
+    assert marble.floor.active and marble.point.position.y > -1e-6, "it holds again"
+
+
+def test_a_surface_that_fails_can_be_a_warning() -> None:
+    marble = Marble()
+    marble.system.force_errors = "warn"
+    marble.phi = lambda x, y, z: 1 / 0
+    with pytest.warns(iota.ForceWarning, match="constraint 0 was switched off"):
+        marble.system.step()
+    marble.system.step()
+
+
+def test_a_world_reports_a_failed_surface_and_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
+    marble = Marble()
+    marble.phi = lambda x, y, z: 1 / 0
+    iota.World(marble.system).run(seconds=0.1)
+    assert marble.system.step_count >= 5 and "constraint 0 was switched off" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("wrong", [lambda *r: 1 / 0, lambda *r: math.nan, lambda *r: None])
+def test_a_surface_that_fails_at_once_is_not_made(wrong: Surface) -> None:
+    marble = Marble()
+    ball = iota.Body(marble.system, shape=iota.Sphere(0.1), position=(3, 3, 3))
+    before = marble.system.state_hash()
+    with pytest.raises((ValueError, ZeroDivisionError)):
+        marble.system.on_surface(marble.point, wrong)
+    with pytest.raises((ValueError, ZeroDivisionError)):
+        marble.system.surface_to_surface(ball, iota.Sphere(0.1), None, wrong)
+    assert marble.system.state_hash() == before
+    marble.system.step()
+
+
+def test_curves_pass_on_what_their_function_raises_and_show_what_is_no_point() -> None:
+    marble = Marble()
+    before = marble.system.state_hash()
+    with pytest.raises(ZeroDivisionError):
+        marble.system.on_path(marble.point, lambda t: (1 / (t - t), 0, 0))
+    for wrong in (lambda t: (math.nan, 0, 0), lambda t: None, lambda t: (t, 0, 0, 0), lambda t: "up"):
+        with pytest.raises((ValueError, TypeError), match="each point of the path"):
+            marble.system.on_path(marble.point, wrong)
+    assert marble.system.state_hash() == before and marble.system.constraints == [marble.floor]
+
+
+# --- functions that touch the system that calls them ------------------------------------------------------------------
+
+EDITS: dict[str, Callable[[Marble], Any]] = {
+    "step": lambda m: m.system.step(),
+    "create": lambda m: iota.Body(m.system),
+    "assign": lambda m: setattr(m.point, "position", (1, 1, 1)),
+    "snapshot": lambda m: m.system.snapshot(),
+    "restore": lambda m: m.system.restore(b""),
+    "undo": lambda m: m.system.undo(),
+    "law": lambda m: iota.Law(m.system, "energy = r"),
+    "field": lambda m: iota.Field(m.system, "wind"),
+    "joint": lambda m: m.system.rope(m.point, m.far),
+    "recording": lambda m: m.system.start_recording(),
+    "solver": lambda m: setattr(m.system, "solver", "newton"),
+}
+QUEUED: dict[str, Callable[[Marble], Any]] = {
+    "nail": lambda m: m.far.nail(),
+    "separate": lambda m: iota.separate(m.point, m.far),
+    "destroy": lambda m: m.far.destroy(),
+    "switch": lambda m: setattr(m.floor, "active", False),
+}
+
+
+def zeros(batch: iota.BondBatch | iota.ParticleBatch) -> np.ndarray:
+    return np.zeros((len(batch), 3))
+
+
+CALLERS: dict[str, Callable[[Marble, Callable[[], Any]], Any]] = {
+    "bond": lambda m, act: iota.Bond(m.point, m.far, lambda b: (act() and None) or (0, 0, 0)),
+    "law": lambda m, act: iota.Bond(m.point, m.far, iota.Law(m.system, lambda b: (act() and None) or zeros(b))),
+    "field": lambda m, act: iota.Field(m.system, lambda b: (act() and None) or zeros(b)),
+}
+
+
+@pytest.mark.parametrize("caller", CALLERS)
+@pytest.mark.parametrize("edit", EDITS)
+def test_what_cannot_be_done_during_a_step_is_an_error_that_says_so(caller: str, edit: str) -> None:
+    marble = Marble()
+    CALLERS[caller](marble, lambda: EDITS[edit](marble))
+    with pytest.raises(iota.ForceError) as caught:
+        marble.system.step()
+    assert isinstance(caught.value.__cause__, RuntimeError), caught.value.__cause__
+    assert marble.system.validate() == []
+    marble.system.step()
+
+
+@pytest.mark.parametrize("caller", CALLERS)
+@pytest.mark.parametrize("edit", QUEUED)
+def test_what_is_asked_for_during_a_step_is_done_right_after_it(caller: str, edit: str) -> None:
+    marble = Marble()
+    CALLERS[caller](marble, lambda: QUEUED[edit](marble))
+    alive = len(marble.system.particles)
+    marble.system.step()
+    assert marble.system.validate() == []
+    done = {
+        "nail": lambda: marble.far.is_nailed,
+        "separate": lambda: True,
+        "destroy": lambda: len(marble.system.particles) < alive,
+        "switch": lambda: not marble.floor.active,
+    }
+    assert done[edit]()
+
+
+@pytest.mark.parametrize("edit", [*EDITS, *QUEUED, "read"])
+def test_the_function_of_a_surface_cannot_use_the_system(edit: str) -> None:
+    """It may be called on any thread, while others step: what it saw or did would be chance."""
+    marble = Marble()
+    act = {**EDITS, **QUEUED, "read": lambda m: m.point.position}[edit]
+
+    def phi(x: float, y: float, z: float) -> float:
+        act(marble)
+        return y
+
+    with pytest.raises(RuntimeError, match="cannot use the system"):
+        marble.system.on_surface(marble.point, phi)
+    marble.phi = phi
+    with pytest.raises(iota.ConstraintError, match="cannot use the system"):
+        marble.system.step()
+    assert marble.system.validate() == [] and not marble.floor.active
+    marble.system.step()
+
+
+def test_a_solver_that_raises_is_named_and_the_built_in_one_takes_over() -> None:
+    marble = Marble()
+    rod = iota.builder.chain(marble.system, links=2)
+
+    @iota.solver("stubborn")
+    def stubborn(equations: Any, x: np.ndarray, tolerance: float, max_iterations: int) -> Any:
+        return rod[0].mass + x[:0]
+
+    marble.system.solver = "stubborn"
+    report = marble.system.step()
+    (warning,) = report.warnings
+    assert "the built-in one took over; it raised RuntimeError" in warning and "cannot use the system" in warning
+
+    @iota.solver("stubborn")
+    def interrupted(*_: Any) -> Any:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        marble.system.step()
+    assert marble.system.validate() == []
+
+    @iota.solver("stubborn")
+    def shooting(equations: Any, x: np.ndarray, tolerance: float, max_iterations: int) -> Any:
+        return x - equations.evaluate(x)
+
+    other = iota.System()
+    solution = iota.solve(lambda x: [x[0] - iota.Body(other).slot * 0 - 3], [1.0], method="stubborn")
+    assert solution.x[0] == 3, "equations of the script may use a system"
