@@ -54,7 +54,7 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
   const std::array<std::uint32_t, 4> old_basis = body.basis;
   body.rank = 0, body.row_count = 0, body.basis_needs = 0;
   body.basis.fill(none);
-  if (body.count == 0) return;
+  if (body.count == 0) return more_rows.erase(body_slot);
 
   const auto is_preferred = [&](std::uint32_t p) {
     return body.first_solid != none && is_needed(particles[p]) && !particles[p].is_marker();
@@ -63,7 +63,7 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
   for_each_particle_of(body_slot, [&](std::uint32_t p) {
     if (is_preferred(p) ? body.basis_needs++ == 0 : first == none && !particles[p].is_marker()) first = p;
   });
-  if (first == none) return;
+  if (first == none) return more_rows.erase(body_slot);
   body.basis[body.rank++] = first;
   const Vec3 origin = position(first);
   std::array<Vec3, 3> axes;
@@ -87,26 +87,27 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
   }
 
   body.row_count = static_cast<std::uint8_t>(body.rank * (body.rank - 1) / 2);
+  if (body.row_count > 1)
+    (void)more_rows.make(body_slot);
+  else
+    more_rows.erase(body_slot);
   for (int row = 0; row < body.row_count; ++row) {
     const auto [i, j] = basis_pairs[row];
-    body.lengths[row] = norm(position(body.basis[j]) - position(body.basis[i]));
+    RigidRow& rigid = this->row(body_slot, row);
+    rigid.length = norm(position(body.basis[j]) - position(body.basis[i]));
+    if (old_basis != body.basis) rigid.multiplier = 0;  // a warm start of other rows would mislead
   }
-  if (old_basis != body.basis) body.multipliers.fill(0);  // a warm start of other rows would mislead
 
   const BasisWeights weights(*this, body_slot);
-  const int rank = body.rank;
   for_each_particle_of(body_slot, [&](std::uint32_t p) {
     Particle& particle = particles[p];
     particle.basis_index = -1;
-    particle.multiplier.fill(0);
-    for (int i = 0; i < rank; ++i)
-      if (bodies[body_slot].basis[i] == p) particle.basis_index = i;
-    particle.weights.fill(0);
-    if (particle.basis_index >= 0) {
-      particle.weights[particle.basis_index] = 1;
-      return;
-    }
-    particle.weights = weights.of(position(p));
+    for (std::int8_t i = 0; i < body.rank; ++i)
+      if (body.basis[static_cast<std::size_t>(i)] == p) particle.basis_index = i;
+    if (particle.basis_index >= 0)
+      ties.erase(p);
+    else
+      ties.make(p) = {weights.of(position(p)), {}};
   });
   keep_inertia_positive(body_slot);
 }
@@ -145,12 +146,12 @@ void Model::prefer_unknowns(std::uint32_t body_slot) {
   // Decided once for each number of needs, so that it does not depend on when somebody looks.
   if (needs == body.basis_needs) return;
   body.basis_needs = needs;
-  double extent = 0;
-  for (int row = 0; row < body.row_count; ++row) {
-    const auto [i, j] = basis_pairs[row];
-    extent = std::max(extent, body.lengths[row]);
-    const double gap = norm(position(body.basis[j]) - position(body.basis[i])) - body.lengths[row];
-    in_shape = in_shape && std::abs(gap) < 1e-9 * extent;
+  double longest = 0;
+  for (int k = 0; k < body.row_count; ++k) {
+    const auto [i, j] = basis_pairs[k];
+    const double length = row(body_slot, k).length;
+    longest = std::max(longest, length);
+    in_shape = in_shape && std::abs(norm(position(body.basis[j]) - position(body.basis[i])) - length) < 1e-9 * longest;
   }
   if (!outside || !in_shape) return;
   grips.for_each([&](std::uint32_t, Grip& g) {  // they hang on basis points
@@ -164,23 +165,36 @@ void Model::prefer_unknowns(std::uint32_t body_slot) {
 
 std::uint32_t Model::make_marker(std::uint32_t body, const Vec3& position) {
   const std::uint32_t marker = make_particle(body, position, 0, {});
-  particles[marker].weights = BasisWeights(*this, body).of(position);
+  ties.make(marker).weights = BasisWeights(*this, body).of(position);
   Ring& ring = rings[particles[marker].ring];
   std::tie(ring.position, ring.velocity) = carried(marker);
   touch_body(body);
   return marker;
 }
 
+double Model::extent(std::uint32_t body) const {
+  double longest = 0;
+  for (int k = 0; k < bodies[body].row_count; ++k) longest = std::max(longest, row(body, k).length);
+  return longest;
+}
+
+std::array<double, 4> Model::weights(std::uint32_t particle) const {
+  const int own = particles[particle].basis_index;
+  if (own < 0) return ties[particle].weights;
+  std::array<double, 4> weights{};
+  weights[static_cast<std::size_t>(own)] = 1;
+  return weights;
+}
+
 bool Model::spans(std::uint32_t body_slot, const Vec3& place) const {
   constexpr double off = 1e-6;  // of the extent: what is farther from the body's point, line or plane is not on it
   const Body& body = bodies[body_slot];
   if (body.rank == 0) return false;
-  double extent = 0;
-  for (int row = 0; row < body.row_count; ++row) extent = std::max(extent, body.lengths[row]);
+  const double longest = extent(body_slot);
   const std::array<double, 4> weights = BasisWeights(*this, body_slot).of(place);
   Vec3 nearest;
   for (int i = 0; i < body.rank; ++i) nearest += weights[i] * position(body.basis[i]);
-  return norm(nearest - place) <= off * (extent > 0 ? std::max(extent, norm(place - position(body.basis[0]))) : 1e-3);
+  return norm(nearest - place) <= off * (longest > 0 ? std::max(longest, norm(place - position(body.basis[0]))) : 1e-3);
 }
 
 }  // namespace iota::model

@@ -369,7 +369,8 @@ void destroy_constraint(Model& model, std::uint32_t slot) {
     if (!(c.owned >> place & 1)) continue;
     const Particle& p = model.particles[c.particles[place]];
     // What has been hinged, bonded, constrained or given a mass since is not the constraint's alone any more.
-    if (p.is_marker() && !model.is_needed(p) && p.first_constraint == none) destroy_particle(model, c.particles[place]);
+    if (p.is_marker() && !model.is_needed(p) && model.references[c.particles[place]].first_constraint == none)
+      destroy_particle(model, c.particles[place]);
   }
 }
 

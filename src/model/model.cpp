@@ -60,6 +60,7 @@ void Model::remove_particle(std::uint32_t particle) {
   }
   take_from_body(particle);
   take_from_ring(particle);
+  ties.erase(particle), references.erase(particle);
   particles.destroy(particle);
 }
 
@@ -84,7 +85,9 @@ void Model::take_from_ring(std::uint32_t particle) {
   const std::uint32_t ring = particles[particle].ring;
   unlink(particles, rings[ring], particle, &Particle::next_in_ring, &Particle::previous_in_ring);
   particles[particle].ring = none;
-  if (rings[ring].count == 0) rings.destroy(ring);
+  if (rings[ring].count > 0) return;
+  nails.erase(ring), pushes.erase(ring);
+  rings.destroy(ring);
 }
 
 void Model::enter_articulate(std::uint32_t body, std::uint32_t articulate) {
@@ -112,6 +115,7 @@ void Model::remove_body(std::uint32_t body) {
   remove_inertia_of(body, none);
   remove_solids_of(body, none);
   take_from_articulate(body);
+  more_rows.erase(body);
   bodies.destroy(body);
 }
 

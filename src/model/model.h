@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/archive.h"
+#include "base/side_table.h"
 #include "base/slot_table.h"
 #include "laws/field_law.h"
 #include "laws/pair_law.h"
@@ -25,43 +26,67 @@ inline constexpr double inactive_share = 0x1p-20;  ///< of its mass that an inac
 
 inline bool is_free(BodyKind kind) { return kind == BodyKind::dynamic || kind == BodyKind::resting; }
 
+// A model of a hundred thousand links lives or dies by the size of these three records: what few items have is in side
+// tables beside them.
+
 /// One body's point. Points of different bodies in one ring share position and velocity; each holds its share of mass.
 struct Particle {
   std::uint32_t body = none, ring = none;
   std::uint32_t next_in_body = none, previous_in_body = none;
   std::uint32_t next_in_ring = none, previous_in_ring = none;
-  std::uint32_t uses = 0;  ///< bonds and closings that need it as an unknown of its own
-  std::uint32_t first_bond = none, first_closing = none, first_cosmetic_bond = none;  ///< see `Ends`
-  std::uint32_t first_constraint = none;                                              ///< see `Constraint`
-  std::uint32_t inactive = 0;  ///< its mass is then inactive_share of what it was given
-  std::uint32_t groups = 0;    ///< a bit for each group that it is in
-  std::uint32_t padding = 0;
+  std::uint32_t uses = 0;           ///< bonds and closings that need it as an unknown of its own
+  std::uint32_t groups = 0;         ///< a bit for each group that it is in
+  std::uint32_t attributes = none;  ///< see `Attributes`
+  /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them, see
+  /// `Tie`.
+  std::int8_t basis_index = -1;
+  std::uint8_t inactive = 0;  ///< its mass is then inactive_share of what it was given
+  std::array<std::uint8_t, 2> padding{};
   BodyId part;      ///< the body it was first in: what a body was combined from can still be told apart
   double mass = 1;  ///< kg
-  /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them.
-  std::int32_t basis_index = -1;
-  std::uint32_t fuse = none;        ///< see `Fuse`
-  std::uint32_t attributes = none;  ///< see `Attributes`
-  std::array<double, 4> weights{};
-  std::array<double, 3> multiplier{};  ///< of the rows that tie it to the basis, N; warm start
 
   /// A massless place on a body that its massive particles carry.
   bool is_marker() const { return mass == 0; }
+};
+
+/// How a particle that is in no basis hangs on its body's.
+struct Tie {
+  std::array<double, 4> weights{};  ///< of the basis points
+  std::array<double, 3>
+      multiplier{};  ///< of the rows that tie it to them, where it is an unknown of its own, N; warm start
+};
+
+/// Where the lists begin of what refers to a particle: see `Ends` and `Constraint`.
+struct References {
+  std::uint32_t first_bond = none, first_closing = none, first_cosmetic_bond = none, first_constraint = none;
 };
 
 /// What the particles of a ring share: one position, one unknown of the solver. (The thesis: a particle is a ring of
 /// points.)
 struct Ring {
   std::uint32_t first = none, last = none, count = 0;
+  std::uint32_t nailed = 0;
   Vec3 position, velocity;
-  Vec3 acceleration;    ///< change of velocity in the last step by its length, m/s^2
-  Vec3 applied_force;   ///< for the next step only, N
-  Vec3 applied_before;  ///< in the last step, N
-  std::uint8_t nailed = 0;
-  std::array<std::uint8_t, 7> padding{};
-  /// Where the nail is, and where it was at the last step, m; of a ring that a static body holds: where that was put.
-  Vec3 nail, nail_before;
-  Vec3 nail_multiplier;  ///< minus the nail's force, N; warm start and reaction
+  Vec3 acceleration;  ///< change of velocity in the last step by its length, m/s^2
+};
+
+/// What holds a ring that is nailed or a static or scripted body's.
+struct Nail {
+  /// Where it is, and where it was at the last step, m; of a ring that a static body holds: where that was put.
+  Vec3 position, position_before;
+  Vec3 multiplier;  ///< minus its force, N; warm start and reaction
+};
+
+/// Forces that were applied to a ring, N.
+struct Push {
+  Vec3 force;   ///< for the next step only
+  Vec3 before;  ///< in the last step
+};
+
+/// Two basis points of a body keep their distance.
+struct RigidRow {
+  double length = 0;      ///< m
+  double multiplier = 0;  ///< N; warm start
 };
 
 /// A rigid set of particles, held by distance rows between its basis points.
@@ -76,12 +101,12 @@ struct Body {
   std::uint32_t first_inertia = none;  ///< list of inertia pairs
   std::uint32_t first_solid = none;    ///< list of the solids it was given as
   std::uint32_t basis_needs = 0;       ///< particles that were unknowns anyway when the basis was chosen
-  double damping = 0;                  ///< 1/s
   std::array<std::uint32_t, 4> basis{none, none, none, none};
-  std::array<double, 6> lengths{};      ///< of the basis pairs (0,1) (0,2) (1,2) (0,3) (1,3) (2,3), m
-  std::array<double, 6> multipliers{};  ///< N; warm start
-  Quaternion orientation;               ///< of the drawn frame
+  double damping = 0;      ///< 1/s
+  RigidRow first_row;      ///< of the basis pairs; see Model::row
+  Quaternion orientation;  ///< of the drawn frame
 };
+using MoreRows = std::array<RigidRow, 5>;  ///< of bodies whose basis is more than two points
 
 /// Which two basis points the k-th rigidity row of a body joins.
 inline constexpr std::array<std::array<std::uint8_t, 2>, 6> basis_pairs{
@@ -221,12 +246,6 @@ struct Grip {
   double force = 0;  ///< in the last step, N
 };
 
-/// How much the hinge or nail of a particle bears, N.
-struct Fuse {
-  std::uint32_t particle = none, padding = 0;
-  double force = 0;
-};
-
 /// Two particles on their way to each other.
 struct Closing : Ends {
   double distance = 0;               ///< at the start, m
@@ -240,8 +259,14 @@ class Model {
   Model();
 
   SlotTable<Particle, ParticleId> particles;
+  SideTable<Tie> ties;               ///< of particles in no basis
+  SideTable<References> references;  ///< of particles
+  SideTable<double> fuses;           ///< how much the hinge or nail of a particle bears, N
   SlotTable<Ring, Id<Ring>> rings;
+  SideTable<Nail> nails;   ///< of rings
+  SideTable<Push> pushes;  ///< of rings
   SlotTable<Body, BodyId> bodies;
+  SideTable<MoreRows> more_rows;  ///< of bodies
   SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
   SlotTable<Solid, Id<Solid>> solids;
   SlotTable<Twin, Id<Twin>> twins;
@@ -258,7 +283,6 @@ class Model {
   SlotTable<Closing, Id<Closing>> closings;
   SlotTable<Constraint, ConstraintId> constraints;
   std::vector<Vec3> curve_points;  ///< of paths, m
-  SlotTable<Fuse, Id<Fuse>> fuses;
   /// Of function surfaces, by key; not saved.
   std::map<std::uint64_t, SurfaceFunction> surface_functions;
 
@@ -355,6 +379,18 @@ class Model {
   /// Drops inertia pairs of a body (it is then its point masses) that could leave its mass matrix indefinite.
   void keep_inertia_positive(std::uint32_t body);
 
+  /// The k-th rigidity row of a body, between the k-th of `basis_pairs`.
+  RigidRow& row(std::uint32_t body, int k) {
+    return k == 0 ? bodies[body].first_row : more_rows.at(body)[static_cast<std::size_t>(k - 1)];
+  }
+  const RigidRow& row(std::uint32_t body, int k) const {
+    return k == 0 ? bodies[body].first_row : more_rows.at(body)[static_cast<std::size_t>(k - 1)];
+  }
+  /// Longest of its rigid distances, m; 0: a point.
+  double extent(std::uint32_t body) const;
+  /// Of the basis points in a particle's place.
+  std::array<double, 4> weights(std::uint32_t particle) const;
+
   /// Chooses a body's basis from where its particles are now, and takes its rigid distances.
   void rebuild_basis(std::uint32_t body);
   /// A body made of solids has more points than a basis needs: makes those its basis that are unknowns anyway (hinged,
@@ -411,20 +447,20 @@ class Model {
   /// visit(slot of the bond); it may remove that bond.
   template <class Visit>
   void for_each_bond_of(std::uint32_t particle, Visit visit) const {
-    visit_uses(bonds, particles[particle].first_bond, visit);
+    visit_uses(bonds, references[particle].first_bond, visit);
   }
   template <class Visit>
   void for_each_closing_of(std::uint32_t particle, Visit visit) const {
-    visit_uses(closings, particles[particle].first_closing, visit);
+    visit_uses(closings, references[particle].first_closing, visit);
   }
   template <class Visit>
   void for_each_cosmetic_bond_of(std::uint32_t particle, Visit visit) const {
-    visit_uses(cosmetic_bonds, particles[particle].first_cosmetic_bond, visit);
+    visit_uses(cosmetic_bonds, references[particle].first_cosmetic_bond, visit);
   }
   /// visit(slot of the constraint, place): once for each place that the particle is at.
   template <class Visit>
   void for_each_constraint_of(std::uint32_t particle, Visit visit) const {
-    for (std::uint32_t link = particles[particle].first_constraint, next; link != none; link = next) {
+    for (std::uint32_t link = references[particle].first_constraint, next; link != none; link = next) {
       next = constraints[link / place_count].next[link % place_count];
       visit(link / place_count, static_cast<int>(link % place_count));
     }
@@ -556,7 +592,11 @@ void Model::archive(Archive& ar) {
   articulates.archive(ar);
   laws.archive(ar), groups.archive(ar), fields.archive(ar), pairs.archive(ar), bonds.archive(ar),
       cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
-  constraints.archive(ar), ar.vector(curve_points), fuses.archive(ar);
+  constraints.archive(ar), ar.vector(curve_points);
+  ties.archive(ar, particles.slot_count()), references.archive(ar, particles.slot_count()),
+      fuses.archive(ar, particles.slot_count());
+  nails.archive(ar, rings.slot_count()), pushes.archive(ar, rings.slot_count());
+  more_rows.archive(ar, bodies.slot_count());
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);

@@ -17,13 +17,13 @@ bool Model::is_pinned(std::uint32_t ring) const {
 }
 
 std::pair<Vec3, Vec3> Model::carried(std::uint32_t particle) const {
-  const Particle& p = particles[particle];
-  const Body& body = bodies[p.body];
+  const Body& body = bodies[particles[particle].body];
+  const std::array<double, 4> w = weights(particle);
   Vec3 x, v;
   for (int i = 0; i < body.rank; ++i) {
     const Ring& b = rings[particles[body.basis[i]].ring];
-    x += p.weights[i] * b.position;
-    v += p.weights[i] * b.velocity;
+    x += w[i] * b.position;
+    v += w[i] * b.velocity;
   }
   return {x, v};
 }
@@ -138,7 +138,7 @@ double Model::worst_gap() const {
       return;  // nothing holds them, they are where they were put
     for (int row = 0; row < b.row_count; ++row) {
       const auto [i, j] = basis_pairs[row];
-      add(std::abs(norm(position(b.basis[j]) - position(b.basis[i])) - b.lengths[row]));
+      add(std::abs(norm(position(b.basis[j]) - position(b.basis[i])) - this->row(slot, row).length));
     }
     if (b.count == b.rank) return;
     for_each_particle_of(slot, [&](std::uint32_t p) {
@@ -146,8 +146,8 @@ double Model::worst_gap() const {
       add(norm(carried(p).first - position(p)));
     });
   });
-  rings.for_each([&](std::uint32_t, const Ring& r) {
-    if (r.nailed) add(norm(r.position - r.nail_before));
+  nails.for_each([&](std::uint32_t ring, const Nail& nail) {
+    if (rings[ring].nailed) add(norm(rings[ring].position - nail.position_before));
   });
   constraints.for_each([&](std::uint32_t, const Constraint& c) {
     if (c.active) add(c.gap);

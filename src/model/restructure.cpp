@@ -47,13 +47,13 @@ Edit merge_rings(Model& model, std::uint32_t into, std::uint32_t from) {
   if (r.nailed || is_fixed(model, into)) {
     // the first one's nail wins
   } else if (s.nailed || is_fixed(model, from)) {
-    r.nailed = s.nailed, r.nail = s.nail, r.nail_before = s.nail_before, r.nail_multiplier = s.nail_multiplier;
-    r.position = s.position;
+    r.nailed = s.nailed, r.position = s.position;
+    model.nails.copy(from, into);
   } else {
     r.position += share * (s.position - r.position);
   }
   r.velocity += share * (s.velocity - r.velocity);
-  r.applied_force += s.applied_force;
+  if (const Vec3 force = model.pushes[from].force; force != Vec3{}) model.pushes.make(into).force += force;
   for (std::uint32_t left = s.count; left > 0; --left) {  // the last one takes the ring `from` with it
     const std::uint32_t moved = model.rings[from].first;
     model.take_from_ring(moved);
@@ -168,8 +168,8 @@ void destroy_uses(Model& model, std::uint32_t particle) {
     model.remove_closing(c);
     split_where_apart(model, held);
   });
-  while (model.particles[particle].first_constraint != none) {
-    const std::uint32_t link = model.particles[particle].first_constraint;
+  while (model.references[particle].first_constraint != none) {
+    const std::uint32_t link = model.references[particle].first_constraint;
     model.constraints[link / place_count].owned &= static_cast<std::uint8_t>(~(1u << link % place_count));
     destroy_constraint(model, link / place_count);
   }
@@ -237,8 +237,8 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
     const Ring left_behind = model.rings[ring_q];
     if (model.rings[ring_p].count == 1) model.rings[ring_p].velocity = velocity;
     if (!q_was_hinged && left_behind.nailed && !model.rings[ring_p].nailed) {
-      Ring& r = model.rings[ring_p];
-      r.nailed = 1, r.nail = left_behind.nail, r.nail_before = left_behind.nail_before;
+      model.rings[ring_p].nailed = 1;
+      model.nails.copy(ring_q, ring_p);
       edit.moved = true;
     }
     absorb_particle(model, p, q, report);

@@ -35,7 +35,7 @@ std::uint32_t Model::add_bond(const Bond& bond) {
   ++laws[bond.law].uses, ++bonds_revision;
   for (const std::uint32_t end : {0u, 1u}) {
     const std::uint32_t particle = particle_at(bond, end);
-    link(bonds, particles[particle].first_bond, slot, end);
+    link(bonds, references.make(particle).first_bond, slot, end);
     ++particles[particle].uses;
     touch_particle(particle);
   }
@@ -47,7 +47,7 @@ std::uint32_t Model::add_closing(const Closing& closing) {
   const std::uint32_t slot = closings.create(closing).slot;
   for (const std::uint32_t end : {0u, 1u}) {
     const std::uint32_t particle = particle_at(closing, end);
-    link(closings, particles[particle].first_closing, slot, end);
+    link(closings, references.make(particle).first_closing, slot, end);
     ++particles[particle].uses;
     touch_particle(particle);
   }
@@ -57,7 +57,7 @@ std::uint32_t Model::add_closing(const Closing& closing) {
 std::uint32_t Model::add_cosmetic_bond(const CosmeticBond& bond) {
   const std::uint32_t slot = cosmetic_bonds.create(bond).slot;
   for (const std::uint32_t end : {0u, 1u})
-    link(cosmetic_bonds, particles[particle_at(bond, end)].first_cosmetic_bond, slot, end);
+    link(cosmetic_bonds, references.make(particle_at(bond, end)).first_cosmetic_bond, slot, end);
   return slot;
 }
 
@@ -65,7 +65,7 @@ void Model::remove_bond(std::uint32_t slot) {
   --laws[bonds[slot].law].uses, ++bonds_revision;
   for (const std::uint32_t end : {0u, 1u}) {
     const std::uint32_t particle = particle_at(bonds[slot], end);
-    unlink(bonds, particles[particle].first_bond, slot, end);
+    unlink(bonds, references.at(particle).first_bond, slot, end);
     --particles[particle].uses;
     touch_particle(particle);
   }
@@ -75,7 +75,7 @@ void Model::remove_bond(std::uint32_t slot) {
 void Model::remove_closing(std::uint32_t slot) {
   for (const std::uint32_t end : {0u, 1u}) {
     const std::uint32_t particle = particle_at(closings[slot], end);
-    unlink(closings, particles[particle].first_closing, slot, end);
+    unlink(closings, references.at(particle).first_closing, slot, end);
     --particles[particle].uses;
     touch_particle(particle);
   }
@@ -84,7 +84,7 @@ void Model::remove_closing(std::uint32_t slot) {
 
 void Model::remove_cosmetic_bond(std::uint32_t slot) {
   for (const std::uint32_t end : {0u, 1u})
-    unlink(cosmetic_bonds, particles[particle_at(cosmetic_bonds[slot], end)].first_cosmetic_bond, slot, end);
+    unlink(cosmetic_bonds, references.at(particle_at(cosmetic_bonds[slot], end)).first_cosmetic_bond, slot, end);
   cosmetic_bonds.destroy(slot);
 }
 
@@ -98,15 +98,10 @@ std::uint32_t Model::add_constraint(const Constraint& constraint) {
 }
 
 void Model::set_fuse(std::uint32_t particle, double force) {
-  std::uint32_t& fuse = particles[particle].fuse;
-  if (std::isinf(force)) {
-    if (fuse != none) fuses.destroy(fuse);
-    fuse = none;
-  } else if (fuse != none) {
-    fuses[fuse].force = force;
-  } else {
-    fuse = fuses.create({particle, 0, force}).slot;
-  }
+  if (std::isinf(force))
+    fuses.erase(particle);
+  else
+    fuses.make(particle) = force;
 }
 
 void Model::make_geometries() {
@@ -130,7 +125,7 @@ void Model::remove_constraint(std::uint32_t slot) {
 
 void Model::link_place(std::uint32_t slot, std::uint32_t place) {
   Constraint& c = constraints[slot];
-  std::uint32_t& first = particles[c.particles[place]].first_constraint;
+  std::uint32_t& first = references.make(c.particles[place]).first_constraint;
   c.next[place] = first, c.previous[place] = none;
   if (first != none) constraints[first / place_count].previous[first % place_count] = place_count * slot + place;
   first = place_count * slot + place;
@@ -140,7 +135,7 @@ void Model::link_place(std::uint32_t slot, std::uint32_t place) {
 void Model::unlink_place(std::uint32_t slot, std::uint32_t place) {
   const Constraint& c = constraints[slot];
   const std::uint32_t before = c.previous[place], after = c.next[place];
-  (before == none ? particles[c.particles[place]].first_constraint
+  (before == none ? references.at(c.particles[place]).first_constraint
                   : constraints[before / place_count].next[before % place_count]) = after;
   if (after != none) constraints[after / place_count].previous[after % place_count] = before;
   touch_particle(c.particles[place]);
@@ -155,21 +150,21 @@ void Model::mute_bonds_of(std::uint32_t particle) {
 }
 
 void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
-  const auto redirect = [&](auto& items, std::uint32_t Particle::* first, auto remove) {
-    while (particles[q].*first != none) {
-      const std::uint32_t slot = particles[q].*first / 2, end = particles[q].*first % 2;
+  const auto redirect = [&](auto& items, std::uint32_t References::* first, auto remove) {
+    while (references[q].*first != none) {
+      const std::uint32_t slot = references[q].*first / 2, end = references[q].*first % 2;
       if (particle_at(items[slot], 1 - end) == p) {
         remove(slot);
         continue;
       }
-      unlink(items, particles[q].*first, slot, end);
+      unlink(items, references.at(q).*first, slot, end);
       (end == 0 ? items[slot].p : items[slot].q) = p;
-      link(items, particles[p].*first, slot, end);
+      link(items, references.make(p).*first, slot, end);
     }
   };
-  while (particles[q].first_constraint != none) {
-    const std::uint32_t slot = particles[q].first_constraint / place_count;
-    const std::uint32_t place = particles[q].first_constraint % place_count;
+  while (references[q].first_constraint != none) {
+    const std::uint32_t slot = references[q].first_constraint / place_count;
+    const std::uint32_t place = references[q].first_constraint % place_count;
     Constraint& c = constraints[slot];
     if (std::find(c.particles.begin(), c.particles.end(), p) != c.particles.end()) {  // two of its places in one
       for (std::uint32_t i = 0; i < place_count; ++i)                                 // both stay
@@ -182,15 +177,13 @@ void Model::redirect_uses(std::uint32_t q, std::uint32_t p) {
     c.owned &= static_cast<std::uint8_t>(~(1u << place));
     link_place(slot, place);
   }
-  if (const std::uint32_t fuse = particles[q].fuse; fuse != none) {  // the weaker one counts
-    const double force = fuses[fuse].force, own = particles[p].fuse == none ? force : fuses[particles[p].fuse].force;
-    set_fuse(p, std::min(force, own));
-  }
+  if (const double* const force = fuses.find(q))  // the weaker one counts
+    set_fuse(p, fuses.has(p) ? std::min(*force, fuses[p]) : *force);
   const std::uint32_t uses = particles[q].uses;
   ++bonds_revision;
-  redirect(bonds, &Particle::first_bond, [&](std::uint32_t slot) { remove_bond(slot); });
-  redirect(closings, &Particle::first_closing, [&](std::uint32_t slot) { remove_closing(slot); });
-  redirect(cosmetic_bonds, &Particle::first_cosmetic_bond, [&](std::uint32_t slot) { remove_cosmetic_bond(slot); });
+  redirect(bonds, &References::first_bond, [&](std::uint32_t slot) { remove_bond(slot); });
+  redirect(closings, &References::first_closing, [&](std::uint32_t slot) { remove_closing(slot); });
+  redirect(cosmetic_bonds, &References::first_cosmetic_bond, [&](std::uint32_t slot) { remove_cosmetic_bond(slot); });
   mute_bonds_of(p);
   const std::uint32_t moved = particles[q].uses;  // the others were removed, and counted off
   particles[p].uses += moved, particles[q].uses = 0;

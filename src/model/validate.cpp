@@ -39,7 +39,9 @@ std::vector<std::string> Model::validate() const {
                        " is in its body's basis, or alone in it");
     ++in_body[p.body], ++in_ring[p.ring];
     double weight_sum = 0;
-    for (const double w : p.weights) weight_sum += w;
+    for (const double w : weights(slot)) weight_sum += w;
+    complaints.require((p.basis_index < 0) == ties.has(slot), "particle ", slot,
+                       " is in a basis and tied to it, or neither");
     complaints.require(std::abs(weight_sum - 1) < 1e-9, "particle ", slot, " has basis weights that sum to ",
                        weight_sum);
   });
@@ -60,6 +62,18 @@ std::vector<std::string> Model::validate() const {
     complaints.require(is_finite(r.position) && is_finite(r.velocity), "ring ", slot, " is not finite");
   });
 
+  const auto require_owners = [&](const char* what, const auto& values, const auto& owners) {
+    values.for_each([&](std::uint32_t slot, const auto&) {
+      complaints.require(owners.is_alive(slot), what, " of ", slot, ", which does not live");
+    });
+  };
+  require_owners("a tie", ties, particles), require_owners("lists", references, particles);
+  require_owners("a fuse", fuses, particles), require_owners("rows", more_rows, bodies);
+  require_owners("a nail", nails, rings), require_owners("a push", pushes, rings);
+  rings.for_each([&](std::uint32_t slot, const Ring& r) {
+    complaints.require(!r.nailed || nails.has(slot), "ring ", slot, " is nailed nowhere");
+  });
+
   std::uint32_t listed_solids = 0;
   bodies.for_each([&](std::uint32_t slot, const Body& b) {
     std::uint32_t walked = 0;
@@ -73,6 +87,8 @@ std::vector<std::string> Model::validate() const {
     if (articulates.is_alive(b.articulate)) ++in_articulate[b.articulate];
     complaints.require(b.row_count == b.rank * (b.rank - 1) / 2 || b.count == 0, "body ", slot, " has ",
                        int(b.row_count), " rows at rank ", int(b.rank));
+    complaints.require((b.row_count > 1) == more_rows.has(slot), "body ", slot, " with ", int(b.row_count),
+                       " rows has a wrong table of them");
     for (int i = 0; i < b.rank; ++i)
       complaints.require(particles.is_alive(b.basis[i]) && particles[b.basis[i]].body == slot &&
                              particles[b.basis[i]].basis_index == i,
@@ -155,10 +171,10 @@ std::vector<std::string> Model::validate() const {
   cosmetic_bonds.for_each(
       [&](std::uint32_t slot, const CosmeticBond& b) { require_ends("cosmetic bond", slot, b.p, b.q); });
   // Every end is in the list of its particle, and in no other.
-  const auto require_listed = [&](const char* what, const auto& items, std::uint32_t Particle::* first) {
+  const auto require_listed = [&](const char* what, const auto& items, std::uint32_t References::* first) {
     std::uint32_t listed = 0;
-    particles.for_each([&](std::uint32_t slot, const Particle& p) {
-      for (std::uint32_t link = p.*first; link != none; link = items[link / 2].next[link % 2]) {
+    references.for_each([&](std::uint32_t slot, const References& of) {
+      for (std::uint32_t link = of.*first; link != none; link = items[link / 2].next[link % 2]) {
         const bool good = items.is_alive(link / 2) && (link % 2 ? items[link / 2].q : items[link / 2].p) == slot;
         complaints.require(good, "particle ", slot, " lists ", what, " ", link / 2, ", which does not end there");
         if (!good || ++listed > 2 * items.size()) return;
@@ -167,9 +183,9 @@ std::vector<std::string> Model::validate() const {
     complaints.require(listed == 2 * items.size(), "the particles list ", listed, " ends of ", items.size(), " ", what,
                        "s");
   };
-  require_listed("bond", bonds, &Particle::first_bond);
-  require_listed("closing", closings, &Particle::first_closing);
-  require_listed("cosmetic bond", cosmetic_bonds, &Particle::first_cosmetic_bond);
+  require_listed("bond", bonds, &References::first_bond);
+  require_listed("closing", closings, &References::first_closing);
+  require_listed("cosmetic bond", cosmetic_bonds, &References::first_cosmetic_bond);
   std::uint32_t constraint_ends = 0;
   constraints.for_each([&](std::uint32_t slot, const Constraint& c) {
     for (int place = 0; place < place_count; ++place) {
@@ -184,7 +200,7 @@ std::vector<std::string> Model::validate() const {
   });
   std::uint32_t constraint_ends_listed = 0;
   particles.for_each([&](std::uint32_t slot, const Particle& p) {
-    for (std::uint32_t link = p.first_constraint; link != none;
+    for (std::uint32_t link = references[slot].first_constraint; link != none;
          link = constraints[link / place_count].next[link % place_count]) {
       const bool good = constraints.is_alive(link / place_count) &&
                         constraints[link / place_count].particles[link % place_count] == slot;
@@ -192,10 +208,6 @@ std::vector<std::string> Model::validate() const {
       if (!good || ++constraint_ends_listed > constraint_ends) break;
     }
     complaints.require(p.uses == uses[slot], "particle ", slot, " counts ", p.uses, " uses, has ", uses[slot]);
-  });
-  fuses.for_each([&](std::uint32_t slot, const Fuse& f) {
-    complaints.require(particles.is_alive(f.particle) && particles[f.particle].fuse == slot, "fuse ", slot,
-                       " is of no particle");
   });
   complaints.require(constraint_ends_listed == constraint_ends, "the particles list ", constraint_ends_listed, " of ",
                      constraint_ends, " places of constraints");

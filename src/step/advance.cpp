@@ -12,9 +12,12 @@ namespace {
 
 /// Forces act for one step, also where nothing takes them: kept, they would strike at once when a body becomes dynamic.
 void forget_unheeded_forces(model::Model& model) {
-  model.bodies.for_each([&](std::uint32_t slot, const model::Body& body) {
-    if (model::is_free(body.kind)) return;
-    model.for_each_particle_of(slot, [&](std::uint32_t p) { model.rings[model.particles[p].ring].applied_force = {}; });
+  model.pushes.for_each([&](std::uint32_t ring, const model::Push& push) {
+    if (push.force == Vec3{}) return;
+    bool heeded = true;
+    model.for_each_in_ring(
+        ring, [&](std::uint32_t p) { heeded = heeded && model::is_free(model.bodies[model.particles[p].body].kind); });
+    if (!heeded) model.pushes.at(ring).force = {};
   });
 }
 

@@ -270,10 +270,9 @@ void System::Implementation::break_overloaded(StepReport& report) {
     model.constraints[slot].broken = 1;
   }
   std::vector<Broken> overloaded;
-  model.fuses.for_each([&](std::uint32_t, const model::Fuse& fuse) {
-    const double force = norm(calc_hinge_force(model, fuse.particle));
-    if (force > fuse.force)
-      overloaded.push_back({{}, model.particles.id(fuse.particle), model.position(fuse.particle), force, 0});
+  model.fuses.for_each([&](std::uint32_t particle, double most) {
+    const double force = norm(calc_hinge_force(model, particle));
+    if (force > most) overloaded.push_back({{}, model.particles.id(particle), model.position(particle), force, 0});
   });
   for (const Broken& broken : overloaded) {
     const model::Ring& ring = model.rings[model.particles[broken.particle.slot].ring];
@@ -356,8 +355,8 @@ const CoordinateOptions& System::coordinate(ConstraintId id, JointCoordinate coo
 void System::set_break_force(ParticleId id, double force) { implementation_->execute(SetBreakForce{id, force}); }
 double System::break_force(ParticleId id) const {
   const model::Model& m = implementation_->model;
-  const std::uint32_t fuse = m.particles[implementation_->require(id)].fuse;
-  return fuse == none ? std::numeric_limits<double>::infinity() : m.fuses[fuse].force;
+  const double* const force = m.fuses.find(implementation_->require(id));
+  return force ? *force : std::numeric_limits<double>::infinity();
 }
 Vec3 System::hinge_force(ParticleId id) const {
   return calc_hinge_force(implementation_->model, implementation_->require(id));

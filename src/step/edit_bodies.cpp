@@ -309,7 +309,10 @@ void System::Implementation::apply(const SetPose& c) {
     model::Ring& ring = model.rings[slot];
     ring.position = moved(ring.position);
     ring.velocity = mean + rotate(turn, ring.velocity - mean);
-    if (ring.nailed) ring.nail = ring.nail_before = moved(ring.nail);
+    if (ring.nailed) {
+      model::Nail& nail = model.nails.at(slot);
+      nail.position = nail.position_before = moved(nail.position);
+    }
   }
   model.bodies[body].orientation = wanted;
   oriented_step = ~0ull;
@@ -336,7 +339,7 @@ void System::Implementation::put_to_rest(std::uint32_t body) {
 void System::Implementation::apply(const SetParticleActive& c) {
   const std::uint32_t slot = require(c.particle);
   model::Particle& p = model.particles[slot];
-  if (p.inactive != static_cast<std::uint32_t>(c.active)) return;
+  if (p.inactive != static_cast<std::uint8_t>(c.active)) return;
   const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{p.body});
   const double energy = conserved(affected).energy();
   p.inactive = !c.active;

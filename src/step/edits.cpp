@@ -229,7 +229,7 @@ void System::Implementation::apply(const step::SetPosition& c) {
   model::Ring& r = model.rings[ring];
   const double before = ring_potential(ring) + joint_springs_of(ring);
   r.position = c.value;
-  if (r.nailed) r.nail = r.nail_before = c.value;
+  if (r.nailed) model.nails.at(ring).position = model.nails.at(ring).position_before = c.value;
   model.for_each_in_ring(ring, [&](std::uint32_t moved) {
     const std::uint32_t body = model.particles[moved].body;
     model.for_each_particle_of(body, [&](std::uint32_t p) {  // markers go where the basis takes them
@@ -269,7 +269,7 @@ void System::Implementation::apply(const step::SetMass& c) {
 void System::Implementation::apply(const step::ApplyForce& c) {
   const std::uint32_t particle = require(c.particle);
   require_finite("force", c.value);
-  model.rings[model.particles[particle].ring].applied_force += c.value;
+  model.pushes.make(model.particles[particle].ring).force += c.value;
 }
 
 // --- structural edits -------------------------------------------------------------------------------------------------
@@ -532,22 +532,22 @@ void System::Implementation::apply(const step::Nail& c) {
   const std::uint32_t particle = require(c.particle);
   const Vec3 position = c.in_place ? model.position(particle) : c.position;
   require_finite("position", position);
-  model::Ring& ring = model.rings[model.particles[particle].ring];
-  model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t p) {
+  const std::uint32_t slot = model.particles[particle].ring;
+  model::Ring& ring = model.rings[slot];
+  model.for_each_in_ring(slot, [&](std::uint32_t p) {
     if (model.bodies[model.particles[p].body].kind == BodyKind::static_ && position != ring.position)
       throw std::invalid_argument(text("nail: static body ", model.particles[p].body, " holds particle ", particle,
                                        "; make it dynamic or scripted to move it"));
   });
   if (ring.nailed) {
-    ring.nail = position;  // moves there during the next step
+    model.nails.at(slot).position = position;  // moves there during the next step
     return;
   }
   (void)restructure(std::array{model.particles[particle].body}, false, [&](RestructureReport& report) {
     report.changed = true;
     const bool moved = ring.position != position;
-    ring.nailed = 1;
-    ring.nail = ring.nail_before = ring.position = position;
-    ring.velocity = {};
+    ring.nailed = 1, ring.position = position, ring.velocity = {};
+    model.nails.make(slot) = {position, position, {}};
     model.touch(model.bodies[model.particles[particle].body].articulate);
     return model::Edit{moved, true};
   });
@@ -555,10 +555,10 @@ void System::Implementation::apply(const step::Nail& c) {
 
 void System::Implementation::apply(const step::Release& c) {
   const std::uint32_t particle = require(c.particle);
-  model::Ring& ring = model.rings[model.particles[particle].ring];
-  if (!ring.nailed) return;
-  ring.nailed = 0;
-  ring.nail_multiplier = {};
+  const std::uint32_t ring = model.particles[particle].ring;
+  if (!model.rings[ring].nailed) return;
+  model.rings[ring].nailed = 0;
+  model.nails.at(ring).multiplier = {};
   model.touch(model.bodies[model.particles[particle].body].articulate);
   structure_changed();
 }

@@ -18,7 +18,8 @@ bool FreeParticles::is_free(const Model& model, std::uint32_t articulate) {
   const model::Particle& p = model.particles[body.first];
   const model::Ring& ring = model.rings[p.ring];
   if (ring.count != 1 || ring.nailed || !(p.mass > 0)) return false;
-  if (p.first_closing != none || p.first_constraint != none) return false;
+  const model::References& lists = model.references[body.first];
+  if (lists.first_closing != none || lists.first_constraint != none) return false;
   bool held = false;
   model.for_each_bond_of(body.first, [&](std::uint32_t b) { held = held || model.bonds[b].ties(); });
   model.grips.for_each([&](std::uint32_t, const model::Grip& g) { held = held || g.body == a.first; });
@@ -75,8 +76,11 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
     for (std::size_t i = c * chunk; i < std::min(in_order_.size(), (c + 1) * chunk); ++i) {
       const Place& place = in_order_[i];
       model::Ring& ring = model.rings[place.ring];
+      model::Push* const push = model.pushes.find(place.ring);
+      if (push) push->before = std::exchange(push->force, Vec3{});
+      const Vec3 force = push ? push->before : Vec3{};
       if (model.bodies[place.body].kind == BodyKind::resting) {
-        if (ring.applied_force == Vec3{}) {
+        if (force == Vec3{}) {
           ++share.resting;
           continue;
         }
@@ -85,20 +89,18 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
       const double mass = model.particles[place.particle].mass;
       const double damping = model.damping + model.bodies[place.body].damping;
       const Vec3 before = ring.velocity;
-      const Vec3 gained = h * ((1 / mass) * ring.applied_force + gravity);
+      const Vec3 gained = h * ((1 / mass) * force + gravity);
       const Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
       if (!is_finite(moved + after))
           [[unlikely]] {  // an absurd force: the particle stays where it is, and that is told
-        ring.applied_force = {};
         share.lost = true;
         continue;
       }
       ring.velocity = after;
       ring.position += moved;
-      share.work += dot(ring.applied_force, moved);
+      share.work += dot(force, moved);
       if (robust) share.dissipated += 0.5 * mass * dot(gained, gained);
-      const bool pushed = ring.applied_force != Vec3{};
-      ring.applied_before = std::exchange(ring.applied_force, {});
+      const bool pushed = force != Vec3{};
       if (damping > 0) {
         const double left = std::exp(-damping * h);
         share.dissipated += 0.5 * mass * dot(ring.velocity, ring.velocity) * (1 - left * left);

@@ -99,8 +99,8 @@ void System::Implementation::switch_off(std::uint32_t slot, const std::string& w
 }
 
 void System::Implementation::add_force(const model::Bond& bond, const Vec3& on_p) {
-  model.rings[model.particles[bond.p].ring].applied_force += on_p;
-  model.rings[model.particles[bond.q].ring].applied_force -= on_p;
+  model.pushes.make(model.particles[bond.p].ring).force += on_p;
+  model.pushes.make(model.particles[bond.q].ring).force -= on_p;
 }
 
 // Held forces act best in the middle of the step. With the mid-point rule, positions half a step ahead make that the

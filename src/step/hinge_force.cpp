@@ -41,7 +41,11 @@ class PointBalance {
   double weight(std::uint32_t p) const {
     const Particle& k = model_.particles[p];
     if (k.basis_index < 0 && model_.is_unknown(k)) return 0;
-    return k.weights[static_cast<std::size_t>(particle_.basis_index)];
+    return model_.weights(p)[static_cast<std::size_t>(particle_.basis_index)];
+  }
+  Vec3 pull_of_tie(std::uint32_t p) const {
+    const auto& multiplier = model_.ties[p].multiplier;
+    return {multiplier[0], multiplier[1], multiplier[2]};
   }
   Vec3 inertial(std::uint32_t p) const {
     const Ring& r = model_.rings[model_.particles[p].ring];
@@ -54,11 +58,11 @@ class PointBalance {
       const Particle& k = model_.particles[p];
       const double w = weight(p);
       if (w != 0) sum_ += (w * k.mass) * inertial(p);
-      if (w != 0 && p != slot_ && k.basis_index < 0) sum_ -= w * model_.rings[k.ring].applied_before;
+      if (w != 0 && p != slot_ && k.basis_index < 0) sum_ -= w * model_.pushes[k.ring].before;
       if (k.basis_index < 0 && model_.is_unknown(k))  // its tie to the basis
-        sum_ -= k.weights[index] * Vec3{k.multiplier[0], k.multiplier[1], k.multiplier[2]};
+        sum_ -= model_.ties[p].weights[index] * pull_of_tie(p);
       model_.for_each_constraint_of(p, [&](std::uint32_t c, int at) {
-        if (k.weights[index] != 0) sum_ -= k.weights[index] * calc_force_at(model_, c, at);
+        if (const double part = model_.weights(p)[index]; part != 0) sum_ -= part * calc_force_at(model_, c, at);
       });
     });
     model_.for_each_inertia_of(particle_.body, [&](std::uint32_t i) {
@@ -72,7 +76,8 @@ class PointBalance {
       const auto [i, j] = basis_pairs[row];
       if (i != index && j != index) continue;
       const Vec3 d = place(body_.basis[j]) - place(body_.basis[i]);
-      sum_ += ((j == index ? 1 : -1) * body_.multipliers[row] / body_.lengths[row]) * d;
+      const RigidRow& rigid = model_.row(particle_.body, row);
+      sum_ += ((j == index ? 1 : -1) * rigid.multiplier / rigid.length) * d;
     }
     model_.grips.for_each([&](std::uint32_t, const Grip& g) {
       for (std::uint32_t i = 0; i < g.count; ++i) {
@@ -85,7 +90,7 @@ class PointBalance {
 
   void tied() {
     sum_ += particle_.mass * inertial(slot_);
-    sum_ += Vec3{particle_.multiplier[0], particle_.multiplier[1], particle_.multiplier[2]};
+    sum_ += pull_of_tie(slot_);
   }
 
   void implicit_bonds() {
@@ -110,9 +115,11 @@ bool moves_freely(const Model& model, std::uint32_t particle) {
 }  // namespace
 
 Vec3 calc_hinge_force(const Model& model, std::uint32_t particle) {
-  const Ring& ring = model.rings[model.particles[particle].ring];
-  const bool pinned = model.is_pinned(model.particles[particle].ring);
-  if (ring.count == 1) return ring.nailed && moves_freely(model, particle) ? -ring.nail_multiplier : Vec3{};
+  const std::uint32_t slot = model.particles[particle].ring;
+  const Ring& ring = model.rings[slot];
+  const bool pinned = model.is_pinned(slot);
+  if (ring.count == 1) return ring.nailed && moves_freely(model, particle) ? -model.nails[slot].multiplier : Vec3{};
+  const Vec3& applied = model.pushes[slot].before;
   Vec3 own, all;
   int free = 0;
   model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t p) {
@@ -121,8 +128,8 @@ Vec3 calc_hinge_force(const Model& model, std::uint32_t particle) {
     all += force, ++free;
     if (p == particle) own = force;
   });
-  if (!moves_freely(model, particle)) return -(all - ring.applied_before);  // it carries what the others do not
-  return pinned ? own - (1.0 / free) * ring.applied_before : own - (1.0 / free) * all;
+  if (!moves_freely(model, particle)) return -(all - applied);  // it carries what the others do not
+  return pinned ? own - (1.0 / free) * applied : own - (1.0 / free) * all;
 }
 
 }  // namespace iota::step

@@ -46,9 +46,10 @@ Island::Weighted Island::nodes_of(const Model& model, std::uint32_t particle,
     return list;
   }
   const Body& body = model.bodies[p.body];
+  const auto& weights = model.ties[particle].weights;
   int used = 0;
   for (int i = 0; i < body.rank; ++i)
-    if (p.weights[i] != 0) list[used++] = {node_of_ring[model.particles[body.basis[i]].ring], p.weights[i]};
+    if (weights[i] != 0) list[used++] = {node_of_ring[model.particles[body.basis[i]].ring], weights[i]};
   return list;
 }
 
@@ -67,9 +68,10 @@ void Island::add_virtual_mass(const Model& model, std::uint32_t marker,
   const Particle& p = model.particles[marker];
   const Body& body = model.bodies[p.body];
   std::array<std::pair<std::uint32_t, double>, 5> difference{{{node_of_ring[p.ring], 1.0}}};
+  const auto& weights = model.ties[marker].weights;
   int used = 1;
   for (int i = 0; i < body.rank; ++i)
-    if (p.weights[i] != 0) difference[used++] = {node_of_ring[model.particles[body.basis[i]].ring], -p.weights[i]};
+    if (weights[i] != 0) difference[used++] = {node_of_ring[model.particles[body.basis[i]].ring], -weights[i]};
   const double mass = 0.1 * model.body_mass(p.body);
   for (int a = 0; a < used; ++a) {
     problem_.mass[difference[a].first] += mass * difference[a].second * difference[a].second;
@@ -117,16 +119,16 @@ void Island::add_constraints(const Model& model, std::uint32_t slot, const std::
   auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints).items;
   auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints).items;
   const auto node_of = [&](std::uint32_t particle) { return node_of_ring[model.particles[particle].ring]; };
-  double extent = 0;
+  const double extent = model.extent(slot);
   for (int row = 0; row < body.row_count; ++row) {
     const auto [i, j] = model::basis_pairs[row];
     const std::uint32_t a = node_of(body.basis[i]), b = node_of(body.basis[j]);
-    extent = std::max(extent, body.lengths[row]);
     if (pinned_[a] && pinned_[b]) {
       if (body.kind == BodyKind::dynamic) pinned_rows_.push_back({slot, static_cast<std::uint8_t>(row)});
       continue;
     }
-    distances.push_back({{a, b}, body.lengths[row], body.lengths[row]});
+    const double length = model.row(slot, row).length;
+    distances.push_back({{a, b}, length, length});
     rigid_rows_.push_back({slot, static_cast<std::uint8_t>(row)});
   }
   if (body.count == body.rank) return;
@@ -136,12 +138,13 @@ void Island::add_constraints(const Model& model, std::uint32_t slot, const std::
     solver::AffineConstraint tie;
     tie.nodes[0] = node_of(p), tie.weights[0] = 1, tie.count = 1;
     tie.reference = extent > 0 ? extent : 1;
+    const auto& weights = model.ties[p].weights;
     bool movable = !pinned_[tie.nodes[0]];
     for (int i = 0; i < body.rank; ++i) {
-      if (particle.weights[i] == 0) continue;
+      if (weights[i] == 0) continue;
       movable = movable || !pinned_[node_of(body.basis[i])];
       tie.nodes[tie.count] = node_of(body.basis[i]);
-      tie.weights[tie.count++] = -particle.weights[i];
+      tie.weights[tie.count++] = -weights[i];
     }
     if (!movable) {
       if (body.kind == BodyKind::dynamic) pinned_ties_.push_back(p);
@@ -222,14 +225,14 @@ void Island::add_joints(const Model& model, const std::vector<std::uint32_t>& no
         continue;
       }
       // Through the basis, also where the particle is an unknown of its own: a row then couples two bodies and no more.
-      const Particle& p = model.particles[c.particles[place]];
-      const Body& body = model.bodies[p.body];
+      const Body& body = model.bodies[model.particles[c.particles[place]].body];
+      const std::array<double, 4> weights = model.weights(c.particles[place]);
       int used = 0;
       for (int i = 0; i < body.rank; ++i) {
-        if (p.weights[i] == 0) continue;
+        if (weights[i] == 0) continue;
         const std::uint32_t node = node_of_ring[model.particles[body.basis[i]].ring];
         complete = complete && node != none;
-        places[place].nodes[used++] = {node, p.weights[i]};
+        places[place].nodes[used++] = {node, weights[i]};
       }
     }
     if (complete) constraint_rows_.add(model, slot, places, pinned_, problem_);
@@ -320,8 +323,9 @@ void Island::carry_along(Model& model) {
   // What a static body holds is nailed where the body was put: held where it is, it would creep under its load.
   constexpr double creep = 1e-7;  // m: farther, and somebody has moved it
   for (const std::uint32_t node : nails_) {
-    Ring& r = model.rings[rings_[node]];
-    if (!r.nailed && norm(r.position - r.nail) > creep) r.nail = r.nail_before = r.position;
+    const Ring& r = model.rings[rings_[node]];
+    model::Nail& nail = model.nails.at(rings_[node]);
+    if (!r.nailed && norm(r.position - nail.position) > creep) nail.position = nail.position_before = r.position;
   }
   bool differs = false;
   std::vector<Vec3> impulses;
@@ -345,10 +349,10 @@ void Island::load(const Model& model, double h) {
     const Ring& r = model.rings[rings_[i]];
     problem_.position[i] = r.position;
     problem_.velocity[i] = r.velocity;
-    problem_.force[i] = r.applied_force;
+    problem_.force[i] = model.pushes[rings_[i]].force;
   }
   for (std::size_t i = 0; i < slaves_.size(); ++i) {  // forces on carried particles act through the basis
-    const Vec3& f = model.rings[model.particles[slaves_[i]].ring].applied_force;
+    const Vec3& f = model.pushes[model.particles[slaves_[i]].ring].force;
     if (f == Vec3{}) continue;
     for (const auto& [node, weight] : slave_nodes_[i])
       if (weight != 0) problem_.force[node] += weight * f;
@@ -356,7 +360,7 @@ void Island::load(const Model& model, double h) {
   load_bonds(model, h);
   auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints);
   for (std::size_t i = 0; i < rigid_rows_.size(); ++i)
-    distances.multipliers[i] = model.bodies[rigid_rows_[i].body].multipliers[rigid_rows_[i].row];
+    distances.multipliers[i] = model.row(rigid_rows_[i].body, rigid_rows_[i].row).multiplier;
   for (std::size_t i = 0; i < closings_.size(); ++i) {
     const model::Closing& c = model.closings[closings_[i]];
     const std::size_t k = rigid_rows_.size() + i;
@@ -365,14 +369,15 @@ void Island::load(const Model& model, double h) {
   }
   auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints);
   for (std::size_t i = 0; i < tied_.size(); ++i)
-    std::copy_n(model.particles[tied_[i]].multiplier.begin(), 3, affines.multiplier(i));
+    std::copy_n(model.ties.at(tied_[i]).multiplier.begin(), 3, affines.multiplier(i));
   for (std::size_t i = 0; i < nails_.size(); ++i) {
-    const Ring& r = model.rings[rings_[nails_[i]]];
+    const std::uint32_t ring = rings_[nails_[i]];
+    const model::Nail& from = model.nails.at(ring);
     auto& nail = affines.items[tied_.size() + i];
-    nail.target = r.nail;
-    nail.target_start = r.nailed && h > 0 ? r.nail_before : nail.target;
+    nail.target = from.position;
+    nail.target_start = model.rings[ring].nailed && h > 0 ? from.position_before : nail.target;
     double* const l = affines.multiplier(tied_.size() + i);
-    l[0] = r.nail_multiplier.x, l[1] = r.nail_multiplier.y, l[2] = r.nail_multiplier.z;
+    l[0] = from.multiplier.x, l[1] = from.multiplier.y, l[2] = from.multiplier.z;
   }
   constraint_rows_.load(model, problem_);
   auto& grips = std::get<solver::ForcePool<solver::GripForce>>(problem_.forces).items;
@@ -396,31 +401,33 @@ void Island::store_carried(Model& model) const {
 
 void Island::store(Model& model, double h) {
   const bool stepped = h > 0;
-  const auto put = [&](Ring& r, const Vec3& position, const Vec3& velocity) {
-    if (stepped)
-      r.acceleration = (1 / h) * (velocity - r.velocity), r.applied_before = std::exchange(r.applied_force, Vec3{});
+  const bool any_pushed = stepped && !model.pushes.is_empty();
+  const auto put = [&](std::uint32_t ring, const Vec3& position, const Vec3& velocity) {
+    Ring& r = model.rings[ring];
+    if (stepped) r.acceleration = (1 / h) * (velocity - r.velocity);
+    if (any_pushed)
+      if (model::Push* const push = model.pushes.find(ring)) push->before = std::exchange(push->force, Vec3{});
     r.position = position, r.velocity = velocity;
   };
-  for (std::size_t i = 0; i < rings_.size(); ++i)
-    put(model.rings[rings_[i]], problem_.position[i], problem_.velocity[i]);
+  for (std::size_t i = 0; i < rings_.size(); ++i) put(rings_[i], problem_.position[i], problem_.velocity[i]);
   for (const std::uint32_t p : slaves_) {
     const auto [position, velocity] = model.carried(p);
-    put(model.rings[model.particles[p].ring], position, velocity);
+    put(model.particles[p].ring, position, velocity);
   }
   if (!stepped) return constraint_rows_.refresh_coordinates(model);
   const auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints);
   for (std::size_t i = 0; i < rigid_rows_.size(); ++i)
-    model.bodies[rigid_rows_[i].body].multipliers[rigid_rows_[i].row] = distances.multipliers[i];
+    model.row(rigid_rows_[i].body, rigid_rows_[i].row).multiplier = distances.multipliers[i];
   for (std::size_t i = 0; i < closings_.size(); ++i)
     model.closings[closings_[i]].multiplier = distances.multipliers[rigid_rows_.size() + i];
   const auto& affines = std::get<solver::ConstraintPool<solver::AffineConstraint>>(problem_.constraints);
   for (std::size_t i = 0; i < tied_.size(); ++i)
-    std::copy_n(affines.multiplier(i), 3, model.particles[tied_[i]].multiplier.begin());
+    std::copy_n(affines.multiplier(i), 3, model.ties.at(tied_[i]).multiplier.begin());
   for (std::size_t i = 0; i < nails_.size(); ++i) {
-    Ring& r = model.rings[rings_[nails_[i]]];
+    model::Nail& nail = model.nails.at(rings_[nails_[i]]);
     const double* const l = affines.multiplier(tied_.size() + i);
-    r.nail_multiplier = {l[0], l[1], l[2]};
-    r.nail_before = r.nail;
+    nail.multiplier = {l[0], l[1], l[2]};
+    nail.position_before = nail.position;
   }
   constraint_rows_.store(model, problem_);
   const auto& grips = std::get<solver::ForcePool<solver::GripForce>>(problem_.forces).items;
@@ -431,7 +438,8 @@ void Island::store(Model& model, double h) {
 bool Island::nails_move(const Model& model) const {
   return std::any_of(nails_.begin(), nails_.end(), [&](std::uint32_t node) {
     const Ring& r = model.rings[rings_[node]];
-    return (r.nailed && r.nail != r.nail_before) || r.velocity != Vec3{};
+    const model::Nail& nail = model.nails.at(rings_[node]);
+    return (r.nailed && nail.position != nail.position_before) || r.velocity != Vec3{};
   });
 }
 
@@ -515,11 +523,11 @@ bool Island::meets_pinned_rows(const Model& model) const {
     const Body& body = model.bodies[r.body];
     const auto [i, j] = model::basis_pairs[r.row];
     const double length = norm(model.position(body.basis[j]) - model.position(body.basis[i]));
-    return std::abs(length - body.lengths[r.row]) <= met * body.lengths[r.row];
+    const double wanted = model.row(r.body, r.row).length;
+    return std::abs(length - wanted) <= met * wanted;
   });
   return rows && std::all_of(pinned_ties_.begin(), pinned_ties_.end(), [&](std::uint32_t p) {
-           const auto& lengths = model.bodies[model.particles[p].body].lengths;
-           const double extent = *std::max_element(lengths.begin(), lengths.end());
+           const double extent = model.extent(model.particles[p].body);
            return norm(model.carried(p).first - model.position(p)) <= met * (extent > 0 ? extent : 1);
          });
 }

@@ -19,7 +19,7 @@ bool is_plain(const Model& model, std::uint32_t slot) {
   bool plain = body.kind == BodyKind::dynamic && body.rank >= 2 && body.count == body.rank;
   model.for_each_particle_of(slot, [&](std::uint32_t p) {
     const Particle& particle = model.particles[p];
-    plain = plain && particle.uses == 0 && particle.first_constraint == none && particle.mass > 0;
+    plain = plain && particle.uses == 0 && model.references[p].first_constraint == none && particle.mass > 0;
   });
   return plain;
 }

@@ -78,6 +78,16 @@ bool Islands::relink(const Model& model, std::uint32_t old_leader) {
   return true;
 }
 
+// What an island takes for granted and adds to tables, which is not for many threads.
+void Islands::make_ready(Model& model, std::uint32_t articulate) {
+  model.for_each_body_of(articulate, [&](std::uint32_t body) {
+    model.prefer_unknowns(body);
+    const BodyKind kind = model.bodies[body].kind;
+    if (kind == BodyKind::static_ || kind == BodyKind::scripted)
+      model.for_each_particle_of(body, [&](std::uint32_t p) { (void)model.nails.make(model.particles[p].ring); });
+  });
+}
+
 void Islands::update(Model& model, const Parallel& parallel) {
   model.take_touched(touched_);
   if (!knows_all_) {
@@ -159,12 +169,13 @@ void Islands::update(Model& model, const Parallel& parallel) {
 
   // 3. Build them; each by itself, so at once where there are many.
   node_of_ring_.resize(model.rings.slot_count(), none);
-  for (const std::uint32_t leader : fresh_) island_of_leader_[leader] = std::make_unique<Island>();
+  for (const std::uint32_t leader : fresh_) {
+    island_of_leader_[leader] = std::make_unique<Island>();
+    for (std::uint32_t a = leader; a != none; a = next_member_[a]) make_ready(model, a);
+  }
   parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
     std::vector<std::uint32_t> members;
     for (std::uint32_t a = fresh_[i]; a != none; a = next_member_[a]) members.push_back(a);
-    for (const std::uint32_t a : members)
-      model.for_each_body_of(a, [&](std::uint32_t body) { model.prefer_unknowns(body); });
     Island& island = *island_of_leader_[fresh_[i]];
     island.assemble(model, members, node_of_ring_);
     island.carry_along(model);

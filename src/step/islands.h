@@ -28,6 +28,7 @@ class Islands {
  private:
   void drop(std::uint32_t leader);
   void set_members(std::uint32_t leader);
+  static void make_ready(model::Model&, std::uint32_t articulate);
   bool relink(const model::Model&, std::uint32_t leader);
 
   // All by articulate slot. The leader of an island is the lowest of its articulates.

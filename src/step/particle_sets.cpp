@@ -56,9 +56,11 @@ void ParticleSet::load(const model::Model& model, double ahead, const Parallel& 
 }
 
 void ParticleSet::unload(model::Model& model, const Parallel& parallel) const {
+  for (std::size_t i = 0; i < rings.size(); ++i)  // here, since making room is not for many threads
+    if (is_pushed[i]) (void)model.pushes.make(rings[i]);
   in_chunks(rings.size(), parallel, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)
-      if (is_pushed[i]) model.rings[rings[i]].applied_force += Vec3{arrays.fx[i], arrays.fy[i], arrays.fz[i]};
+      if (is_pushed[i]) model.pushes.at(rings[i]).force += Vec3{arrays.fx[i], arrays.fy[i], arrays.fz[i]};
   });
 }
 

@@ -12,7 +12,7 @@ using model::Model;
 using model::Ring;
 
 bool Island::is_pushed(const Model& model) const {
-  const auto has_force = [&](std::uint32_t ring) { return model.rings[ring].applied_force != Vec3{}; };
+  const auto has_force = [&](std::uint32_t ring) { return model.pushes[ring].force != Vec3{}; };
   return std::any_of(rings_.begin(), rings_.end(), has_force) ||
          std::any_of(slaves_.begin(), slaves_.end(),
                      [&](std::uint32_t p) { return has_force(model.particles[p].ring); });

@@ -214,7 +214,7 @@ bool System::is_nailed(ParticleId id) const {
 }
 Vec3 System::nail_force(ParticleId id) const {
   const model::Model& m = implementation_->model;
-  return -m.rings[m.particles[implementation_->require(id)].ring].nail_multiplier;
+  return -m.nails[m.particles[implementation_->require(id)].ring].multiplier;
 }
 
 std::pair<ParticleId, ParticleId> System::ends(BondId id) const {

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/archive.h"
+
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace iota {
+
+/// Values that only some items of a slot table have, by the items' slots: four bytes for each slot up to the highest that
+/// has one, and nothing beyond. Reading is safe from many threads, as is writing to values that are there.
+template <class T>
+class SideTable {
+  static_assert(std::is_trivially_copyable_v<T>, "tables are saved as bytes");
+  static constexpr std::uint32_t absent = 0xffffffff;
+
+ public:
+  bool is_empty() const { return values_.empty(); }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(values_.size()); }
+  bool has(std::uint32_t slot) const { return slot < place_of_.size() && place_of_[slot] != absent; }
+
+  /// The value of an item, a default one where it has none.
+  const T& operator[](std::uint32_t slot) const {
+    static const T standard{};
+    return has(slot) ? values_[place_of_[slot]] : standard;
+  }
+  T* find(std::uint32_t slot) { return has(slot) ? &values_[place_of_[slot]] : nullptr; }
+  const T* find(std::uint32_t slot) const { return has(slot) ? &values_[place_of_[slot]] : nullptr; }
+  /// Of an item that has one.
+  T& at(std::uint32_t slot) { return values_[place_of_[slot]]; }
+  const T& at(std::uint32_t slot) const { return values_[place_of_[slot]]; }
+
+  /// The value of an item, which from now on has one.
+  T& make(std::uint32_t slot) {
+    if (!has(slot)) {
+      if (place_of_.size() <= slot) place_of_.resize(slot + std::size_t{1}, absent);
+      place_of_[slot] = size();
+      values_.push_back({}), owners_.push_back(slot);
+    }
+    return at(slot);
+  }
+  /// Item `to` gets what `from` has, if it has any.
+  void copy(std::uint32_t from, std::uint32_t to) {
+    if (!has(from)) return;
+    const T value = at(from);
+    make(to) = value;
+  }
+  /// Does nothing to an item without one. The last value takes the place.
+  void erase(std::uint32_t slot) {
+    if (!has(slot)) return;
+    const std::uint32_t place = place_of_[slot];
+    place_of_[slot] = absent;
+    if (place + 1 < size()) {
+      values_[place] = values_.back(), owners_[place] = owners_.back();
+      place_of_[owners_[place]] = place;
+    }
+    values_.pop_back(), owners_.pop_back();
+  }
+
+  template <class Visit>
+  void for_each(Visit visit) const {
+    for (std::uint32_t place = 0; place < size(); ++place) visit(owners_[place], values_[place]);
+  }
+
+  /// `slots`: of the table of items, whatever is claimed beyond is refused.
+  template <class Archive>
+  void archive(Archive& ar, std::uint32_t slots) {
+    ar.vector(values_), ar.vector(owners_);
+    place_of_.clear();
+    bool good = values_.size() == owners_.size();
+    for (std::uint32_t place = 0; good && place < size(); ++place) {
+      good = owners_[place] < slots && !has(owners_[place]);
+      if (!good) break;
+      if (place_of_.size() <= owners_[place]) place_of_.resize(owners_[place] + std::size_t{1}, absent);
+      place_of_[owners_[place]] = place;
+    }
+    if (!good) ar.fail(), values_.clear(), owners_.clear(), place_of_.clear();
+  }
+
+ private:
+  std::vector<T> values_;
+  std::vector<std::uint32_t> owners_;    // of each value
+  std::vector<std::uint32_t> place_of_;  // of each slot's value; not saved
+};
+
+}  // namespace iota
