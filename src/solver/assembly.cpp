@@ -23,11 +23,6 @@ using StartGradients = std::conditional_t<Midpoint, Gradients<C>, NoGradients>;
 
 }  // namespace
 
-void Assembly::set_scales(const Problem& problem, const Stage& stage) {
-  for (std::size_t i = 0; i < problem.size(); ++i)
-    inverse_scale_[i] = 1 / (stage.inertia * problem.mass[i] * reference_length_);
-}
-
 template <bool Midpoint>
 void Assembly::add_momentum(const Problem& problem, const Stage& stage, const Vec3* x, const Vec3* u) {
   const std::size_t n = problem.size();
@@ -36,23 +31,22 @@ void Assembly::add_momentum(const Problem& problem, const Stage& stage, const Ve
 
   for (std::size_t i = 0; i < n; ++i) {
     Vec3 f = (stage.inertia * problem.mass[i]) * u[i];
-    if (push) f -= problem.force[i] + problem.mass[i] * problem.gravity;
-    momentum_[i] = f;
+    if (push) f -= problem.mass[i] * problem.gravity;
+    double* const r = unknowns_.data() + node_unknown_[i];
+    r[0] = f.x, r[1] = f.y, r[2] = f.z;
   }
   for (const auto& c : problem.mass_couplings) {
-    momentum_[c.a] += (stage.inertia * c.mass) * u[c.b];
-    momentum_[c.b] += (stage.inertia * c.mass) * u[c.a];
-    if (push) {
-      momentum_[c.a] -= c.mass * problem.gravity;
-      momentum_[c.b] -= c.mass * problem.gravity;
-    }
+    const Vec3 pull = push ? c.mass * problem.gravity : Vec3{};
+    add_force(c.a, (stage.inertia * c.mass) * u[c.b] - pull);
+    add_force(c.b, (stage.inertia * c.mass) * u[c.a] - pull);
   }
   if (!push) return;
+  for (std::size_t i = 0; i < problem.force.size(); ++i) add_force(static_cast<std::uint32_t>(i), -problem.force[i]);
   const ForceStage force_stage{stage.h, Midpoint, false};
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
       const Vec3 force = f.force(f.arm.value(x0), f.arm.value(x), force_stage);
-      for (std::uint32_t i = 0; i < f.arm.count; ++i) momentum_[f.arm.nodes[i]] -= f.arm.weights[i] * force;
+      for (std::uint32_t i = 0; i < f.arm.count; ++i) add_force(f.arm.nodes[i], -f.arm.weights[i] * force);
     }
   });
 }
@@ -66,12 +60,13 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
                     : add_rows<Midpoint, false>(problem, stage, pool, x);
   });
   Largest worst_force;
+  const double inverse_scale_of_one = inverse_scale(stage);
   double largest_inverse_scale = 0;
   for (std::size_t i = 0; i < problem.size(); ++i) {
-    double* const r = residuals_.data() + node_unknown_[i];
-    r[0] = momentum_[i].x, r[1] = momentum_[i].y, r[2] = momentum_[i].z;
-    worst_force.add(largest_component(momentum_[i]) * inverse_scale_[i]);
-    largest_inverse_scale = std::max(largest_inverse_scale, inverse_scale_[i]);
+    const double* const r = unknowns_.data() + node_unknown_[i];
+    const double inverse_scale = inverse_scale_of_one / problem.mass[i];
+    worst_force.add(largest_component({r[0], r[1], r[2]}) * inverse_scale);
+    largest_inverse_scale = std::max(largest_inverse_scale, inverse_scale);
   }
   Residual found{.violation = violation_, .imbalance = worst_force.value};
   // Forces that cancel leave round-off; do not chase it. Enormous multipliers mean a conflict, not noise.
@@ -92,7 +87,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
     const double* const lambda = pool.multiplier(k);
     if constexpr (Laws)
       if (is_out_of_play(pool, k)) {
-        for (int r = 0; r < C::rows; ++r) residuals_[pool.slots[k].unknown + r] = 0;
+        for (int r = 0; r < C::rows; ++r) unknowns_[pool.slots[k].unknown + r] = 0;
         continue;
       }
     double g[C::rows];
@@ -111,7 +106,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
       if constexpr (Midpoint) start_gradients.of_node(i, start_rows);
       for (int r = 0; r < C::rows; ++r) {
         const Vec3 direction = Midpoint ? 0.5 * (rows[r] + start_rows[r]) : rows[r];
-        momentum_[c.nodes[i]] += lambda[r] * direction;
+        add_force(c.nodes[i], lambda[r] * direction);
       }
     }
     const double per_length = 1 / c.reference_length();
@@ -130,7 +125,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
       } else {
         value = g[r] - compliance * lambda[r];
       }
-      residuals_[pool.slots[k].unknown + r] = value;
+      unknowns_[pool.slots[k].unknown + r] = value;
       worst.add(std::abs(value) * per_length);
       violation.add(std::abs(gap) * per_length);
       largest_multiplier_ = std::max(largest_multiplier_, std::abs(lambda[r]));
@@ -140,7 +135,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
 }
 
 void Assembly::add_to_node(std::uint32_t node, double value) {
-  double* const d = factor_.lower() + node_diagonal_[node];
+  double* const d = factor_.diagonals() + node_diagonal_[node];
   const int s = node_stride_[node];
   d[0] += value, d[s + 1] += value, d[2 * s + 2] += value;
 }
@@ -160,7 +155,7 @@ void Assembly::add_curvature(const C& c, const typename ConstraintPool<C>::Slots
   c.curvature(x, stage.fraction, lambda, clamp, blocks);
   const Mat3* block = blocks;
   for (int i = 0, pair = 0; i < c.node_count(); ++i) {
-    double* const d = factor_.lower() + node_diagonal_[c.nodes[i]];
+    double* const d = factor_.diagonals() + node_diagonal_[c.nodes[i]];
     const int stride = node_stride_[c.nodes[i]];
     for (int r = 0; r < 3; ++r)
       for (int k = 0; k < 3; ++k) d[r * stride + k] += block->m[r][k];
@@ -187,7 +182,7 @@ void Assembly::assemble_forces(const Problem& problem, const ForceStage& stage, 
     const F& f = pool.items[k];
     const Mat3 stiffness = f.stiffness_matrix(f.arm.value(x0), f.arm.value(x), stage);
     for (std::uint32_t i = 0, pair = 0; i < f.arm.count; ++i) {
-      double* const d = lower + node_diagonal_[f.arm.nodes[i]];
+      double* const d = factor_.diagonals() + node_diagonal_[f.arm.nodes[i]];
       const int s = node_stride_[f.arm.nodes[i]];
       const double w = f.arm.weights[i];
       for (int r = 0; r < 3; ++r)
@@ -224,14 +219,14 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
                              Hessian hessian) {
   const Vec3* const x0 = problem.position.data();
   const bool clamp = hessian == Hessian::clamped;
-  double* const lower = factor_.lower();
+  double *const diagonals = factor_.diagonals(), *const lower = factor_.lower();
   [[maybe_unused]] double* const upper = factor_.upper();
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
     const C& c = pool.items[k];
     const auto& slots = pool.slots[k];
     if constexpr (Laws)
       if (is_out_of_play(pool, k)) {
-        for (int r = 0; r < C::rows; ++r) lower[slots.diagonal + r * (slots.stride + 1)] = -1;
+        for (int r = 0; r < C::rows; ++r) diagonals[slots.diagonal + r * (slots.stride + 1)] = -1;
         continue;
       }
     double compliance = 0, compliances[C::rows] = {};
@@ -255,18 +250,18 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
         const Vec3& in_row = rows[r];
         const Vec3& in_column = Midpoint ? directions[r] : rows[r];
         const Vec3& below = slot.lower_is_row ? in_row : in_column;
-        double* const l = lower + slot.offset + r * slot.row_stride;
+        double* const l = (slot.in_diagonal ? diagonals : lower) + slot.offset + r * slot.row_stride;
         l[0] = below.x, l[slot.column_stride] = below.y, l[2 * slot.column_stride] = below.z;
         if constexpr (Midpoint) {
           const Vec3& above = slot.lower_is_row ? in_column : in_row;
-          double* const u = slot.in_diagonal ? lower + slot.mirror + r : upper + (l - lower);
-          const int s = slot.in_diagonal ? slot.pivot : slot.column_stride;
+          double* const u = slot.in_diagonal ? diagonals + slot.offset + slot.mirror + r : upper + (l - lower);
+          const int s = slot.in_diagonal ? slot.row_stride : slot.column_stride;
           u[0] = above.x, u[s] = above.y, u[2 * s] = above.z;
         }
       }
     }
     for (int r = 0; r < C::rows; ++r) {
-      double& diagonal = lower[slots.diagonal + r * (slots.stride + 1)];
+      double& diagonal = diagonals[slots.diagonal + r * (slots.stride + 1)];
       if constexpr (Laws) {
         const RowState& state = pool.states[k * C::rows + r];
         diagonal = state.side != 0 ? -1
@@ -295,13 +290,18 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
   }
 }
 
-void Assembly::solve() {
-  for (std::size_t i = 0; i < residuals_.size(); ++i) step_[i] = -residuals_[i];
-  factor_.solve(step_);
+template <bool Midpoint>
+bool Assembly::factor_and_solve(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
+  assemble<Midpoint>(problem, stage, x, hessian);
+  const bool good = factor_.factorise(unknowns_) == 0;
+  factor_.finish(unknowns_);
+  return good;
 }
 
 template Residual Assembly::residual<false>(const Problem&, const Stage&, const Vec3*, const Vec3*);
 template Residual Assembly::residual<true>(const Problem&, const Stage&, const Vec3*, const Vec3*);
+template bool Assembly::factor_and_solve<false>(const Problem&, const Stage&, const Vec3*, Hessian);
+template bool Assembly::factor_and_solve<true>(const Problem&, const Stage&, const Vec3*, Hessian);
 template void Assembly::assemble<false>(const Problem&, const Stage&, const Vec3*, Hessian);
 template void Assembly::assemble<true>(const Problem&, const Stage&, const Vec3*, Hessian);
 

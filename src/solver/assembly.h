@@ -34,33 +34,29 @@ class Assembly {
   void relink(Problem&, std::span<const std::array<std::uint32_t, 2>> added, std::span<const std::uint32_t> removed,
               std::span<const std::uint32_t> touched);
 
-  /// Forces count as what they move a point by in a step, in mean constraint lengths.
-  void set_scales(const Problem&, const Stage&);
   /// At positions x = x0 + h v0 + u and the pools' multipliers; by unknown in `residuals()`.
   template <bool Midpoint>
   Residual residual(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
   /// The derivative of the residual.
   template <bool Midpoint>
   void assemble(const Problem&, const Stage&, const Vec3* x, Hessian);
-  /// Returns how many pivots have a sign that a minimum under constraints would not give.
+  /// Turns residuals into the step that removes them, matrix^-1 residuals, to be subtracted: with the latest factors ...
+  void solve() { factor_.solve(unknowns_); }
+  /// ... or with new ones. False where pivots have signs that a minimum under constraints would not give.
   template <bool Midpoint>
-  int assemble_and_factor(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
-    assemble<Midpoint>(problem, stage, x, hessian);
-    return factor_.factorise();
-  }
-  /// step = -matrix^-1 residuals, with the latest factors.
-  void solve();
+  bool factor_and_solve(const Problem&, const Stage&, const Vec3* x, Hessian);
 
-  std::size_t unknown_count() const { return residuals_.size(); }
+  std::size_t unknown_count() const { return unknowns_.size(); }
   std::uint32_t unknown_of(std::uint32_t node) const { return node_unknown_[node]; }
-  std::span<double> residuals() { return residuals_; }
-  std::span<double> step() { return step_; }
+  std::span<double> residuals() { return unknowns_; }
+  std::span<const double> step() const { return unknowns_; }
   Vec3 step_of(std::uint32_t node) const {
-    const double* const d = step_.data() + node_unknown_[node];
+    const double* const d = unknowns_.data() + node_unknown_[node];
     return {d[0], d[1], d[2]};
   }
   double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
-  double inverse_scale(std::uint32_t node) const { return inverse_scale_[node]; }
+  /// Forces count as what they move a point by in a step, in mean constraint lengths.
+  double inverse_scale(const Stage& stage) const { return 1 / (stage.inertia * reference_length_); }  ///< times mass
   /// Whether making a factor costs much more than an iteration does otherwise.
   bool is_dear() const { return factor_.is_dear(); }
   const BlockPattern& pattern() const { return pattern_; }
@@ -80,6 +76,10 @@ class Assembly {
   template <bool Midpoint, bool Laws, class C>
   void add_rows(const Problem&, const Stage&, const ConstraintPool<C>&, const Vec3* x);
 
+  void add_force(std::uint32_t node, const Vec3& force) {
+    double* const r = unknowns_.data() + node_unknown_[node];
+    r[0] += force.x, r[1] += force.y, r[2] += force.z;
+  }
   void add_to_node(std::uint32_t node, double value);
   template <bool Midpoint>
   void add_to_pair(const BlockPattern::PairSlot&, double value);
@@ -95,9 +95,7 @@ class Assembly {
   BlockFactor factor_;
   std::vector<std::uint32_t> node_unknown_, node_diagonal_;
   std::vector<std::uint8_t> node_stride_;
-  std::vector<Vec3> momentum_;  // what the force equation of each node lacks
-  std::vector<double> residuals_, step_;
-  std::vector<double> inverse_scale_;
+  std::vector<double> unknowns_;  // residuals, and then the step
   double reference_length_ = 1;
   double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // of the rows, while a residual is being summed up
 };

@@ -77,7 +77,7 @@ void Assembly::compile(Problem& problem) {
   std::size_t index = 0;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     pool.multipliers.resize(pool.items.size() * C::rows, 0.0);
-    pool.offsets.assign(pool.multipliers.size(), 0.0);
+    pool.offsets.clear(), pool.offsets.reserve(pool.multipliers.size());
     if (pool.has_laws()) pool.laws.resize(pool.multipliers.size());
     pool.states.assign(pool.laws.size(), {});
     pool.slots.assign(pool.items.size(), {});
@@ -100,8 +100,7 @@ void Assembly::set_node_places(const Problem& problem) {
     node_diagonal_[i] = pattern_.node_diagonal(i);
     node_stride_[i] = pattern_.node_stride(i);
   }
-  make_room(n, momentum_, inverse_scale_);
-  make_room(pattern_.unknown_count(), residuals_, step_);
+  make_room(pattern_.unknown_count(), unknowns_);
 }
 
 void Assembly::relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,

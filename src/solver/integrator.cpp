@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace iota::solver {
 
@@ -28,7 +29,7 @@ void Integrator::relink(Problem& problem, std::span<const std::array<std::uint32
 }
 
 void Integrator::make_room(const Problem& problem) {
-  for (auto* list : {&guess_, &start_position_, &start_velocity_}) resize_with_slack(*list, problem.size());
+  for (auto* list : {&start_position_, &start_velocity_}) reserve_with_slack(*list, problem.size());
   resize_with_slack(lumped_mass_, problem.size());
   std::copy(problem.mass.begin(), problem.mass.end(), lumped_mass_.begin());
   for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
@@ -40,14 +41,16 @@ void Integrator::make_room(const Problem& problem) {
 // Mid-point: plain x0 + h v0, since its multipliers ring from step to step (measured: twice the iterations otherwise).
 void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   const std::size_t n = problem.size();
-  std::fill(guess_.begin(), guess_.end(), Vec3{});
+  const std::span<Vec3> guess = newton_.displacement();
+  std::fill(guess.begin(), guess.end(), Vec3{});
   if (stage.midpoint || stage.is_projection()) return;
 
   const std::span<Vec3> flight = newton_.room();
   for (std::size_t i = 0; i < n; ++i) {
     flight[i] = problem.position[i] + stage.h * problem.velocity[i];
-    guess_[i] = problem.force[i] + lumped_mass_[i] * problem.gravity;
+    guess[i] = lumped_mass_[i] * problem.gravity;
   }
+  for (std::size_t i = 0; i < problem.force.size(); ++i) guess[i] += problem.force[i];
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
@@ -55,7 +58,7 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
       for (int i = 0; i < c.node_count(); ++i) {
         Vec3 rows[C::rows];
         gradients.of_node(i, rows);
-        for (int r = 0; r < C::rows; ++r) guess_[c.nodes[i]] -= pool.multiplier(k)[r] * rows[r];
+        for (int r = 0; r < C::rows; ++r) guess[c.nodes[i]] -= pool.multiplier(k)[r] * rows[r];
       }
     }
   });
@@ -63,17 +66,17 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items) {
       const Vec3 force = f.force(f.arm.value(problem.position.data()), f.arm.value(flight.data()), force_stage);
-      for (std::uint32_t i = 0; i < f.arm.count; ++i) guess_[f.arm.nodes[i]] += f.arm.weights[i] * force;
+      for (std::uint32_t i = 0; i < f.arm.count; ++i) guess[f.arm.nodes[i]] += f.arm.weights[i] * force;
     }
   });
   // A pull that would fling points away (a stiff spring, an outdated multiplier) is no help.
   const double limit = newton_.reference_length() * newton_.reference_length();
   double farthest = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    guess_[i] *= 1 / (stage.inertia * lumped_mass_[i]);
-    farthest = std::max(farthest, dot(guess_[i], guess_[i]));
+    guess[i] *= 1 / (stage.inertia * lumped_mass_[i]);
+    farthest = std::max(farthest, dot(guess[i], guess[i]));
   }
-  if (!(farthest < limit)) std::fill(guess_.begin(), guess_.end(), Vec3{});
+  if (!(farthest < limit)) std::fill(guess.begin(), guess.end(), Vec3{});
 }
 
 bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& report) {
@@ -82,7 +85,7 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
 }
 
 bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& report) {
-  const NewtonReport newton = newton_.solve(problem, stage, guess_);
+  const NewtonReport newton = newton_.solve(problem, stage);
   ++report.solves;
   met_ = newton.met, violation_ = newton.violation;
   report.handed_back += newton.handed_back;
@@ -115,7 +118,7 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
   work += work_of_drives(problem, stage);
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const Vec3 moved = x1[i] - problem.position[i];
-    work += dot(problem.force[i], moved);
+    if (!problem.force.empty()) work += dot(problem.force[i], moved);
     problem.velocity[i] += ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[i];
     problem.position[i] = x1[i];
   }
@@ -194,10 +197,10 @@ bool Integrator::turns_too_far(const Problem& problem) const {
 double Integrator::gain(const Problem& problem, const Stage& stage) {
   if (!conservative_) return -1;
   const auto x1 = newton_.solution();
-  const std::span<Vec3> velocity = guess_;  // which has served
-  for (std::size_t i = 0; i < problem.size(); ++i)
-    velocity[i] = problem.velocity[i] + ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[i];
-  return 0.5 * problem.mass_norm2(velocity.data()) + problem.potential_energy(x1.data()) +
+  const auto velocity = [&](std::size_t i) {
+    return problem.velocity[i] + ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[i];
+  };
+  return problem.kinetic_energy(velocity) + problem.potential_energy(x1.data()) +
          problem.row_energy(x1.data(), stage.fraction) - energy_;
 }
 
@@ -230,6 +233,7 @@ double Integrator::work_of_gaps(const Problem& problem, const Stage& stage) cons
 void Integrator::advance_mid_point(Problem& problem, double h, double from, double to, int depth,
                                    AdvanceReport& report) {
   const auto halve = [&] {
+    keep_start(problem);
     const double middle = (from + to) / 2;
     advance_mid_point(problem, h / 2, from, middle, depth + 1, report);
     advance_mid_point(problem, h / 2, middle, to, depth + 1, report);
@@ -254,6 +258,7 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
   problem.set_multipliers(multipliers_saved_);
   if (depth == care_.max_depth || report.iterations > patience) {
     ++report.fallbacks;
+    keep_start(problem);
     return advance_end_point(problem, h, from, to, depth, report);
   }
   halve();
@@ -279,7 +284,7 @@ bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport
   const double limit = care_.max_error * stage.h * newton_.reference_length() * 3 / 8;
   if (!solved || !(worst <= limit * limit)) return false;
 
-  std::copy(candidate_.begin(), candidate_.end(), guess_.begin());
+  std::copy(candidate_.begin(), candidate_.end(), newton_.displacement().begin());
   problem.set_multipliers(candidate_multipliers_);
   const bool again = solve(problem, stage, report);  // it is the solution: no iterations
   met_ = met;
@@ -309,7 +314,6 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
     if (gained > round_off * (std::abs(energy_) + kinetic_)) {  // what the tolerance leaves, or more?
       Stage finer = stage;
       finer.tolerance *= 1e-4;
-      std::copy(newton_.displacement().begin(), newton_.displacement().end(), guess_.begin());
       (void)solve(problem, finer, report);
       gained = gain(problem, stage);
     }
@@ -322,6 +326,7 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
     }
   }
   problem.set_multipliers(multipliers_saved_);
+  keep_start(problem);
   if (depth < care_.max_depth && report.iterations <= patience) {
     const double middle = (from + to) / 2;
     advance_end_point(problem, h / 2, from, middle, depth + 1, report);
@@ -385,6 +390,14 @@ void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
   ++report.substeps;
 }
 
+// The start of the step is gone back to where nothing else helps. That cannot be where the first solve of a conservative
+// problem is good, so most steps need not remember it.
+void Integrator::keep_start(const Problem& problem) {
+  if (std::exchange(keeps_start_, true)) return;
+  start_position_.assign(problem.position.begin(), problem.position.end());
+  start_velocity_.assign(problem.velocity.begin(), problem.velocity.end());
+}
+
 bool Integrator::least_violation(Problem& problem, Stage stage, AdvanceReport& report) {
   // Rising compliance turns conflicting constraints into the springs that share the violation.
   for (const double compliance : {1e-8, 1e-6, 1e-4, 1e-2}) {
@@ -406,8 +419,8 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
   });
   step_length_ = h;
   close_gaps(problem, report);
-  std::copy(problem.position.begin(), problem.position.end(), start_position_.begin());
-  std::copy(problem.velocity.begin(), problem.velocity.end(), start_velocity_.begin());
+  keeps_start_ = false;
+  if (!conservative_ || !report.converged) keep_start(problem);
   take_stock(problem, 0);
   const double start_kinetic = kinetic_, start_energy = energy_;
   const double start_work = report.external_work, start_dissipated = report.dissipated;

@@ -89,6 +89,7 @@ class Integrator {
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   void hold_offsets(Problem&, AdvanceReport&);
   void let_go(Problem&);
+  void keep_start(const Problem&);
   bool least_violation(Problem&, Stage, AdvanceReport&);
   void coast(Problem&, double h, AdvanceReport&);
   template <class Attempt>
@@ -97,7 +98,6 @@ class Integrator {
 
   Newton newton_;
   Care care_;
-  std::vector<Vec3> guess_;  // of the displacement from free flight, m
   std::vector<Vec3> start_position_, start_velocity_;
   std::vector<Vec3> candidate_;  // only where errors are estimated, or nothing else helps
   std::vector<double> lumped_mass_;
@@ -106,6 +106,7 @@ class Integrator {
   double kinetic_ = 0, energy_ = 0;  ///< of the problem's state as it is now, J
   bool conservative_ = true;         ///< nothing outside does work during this step
   bool holds_offsets_ = false;
+  bool keeps_start_ = false;
   double violation_ = 0;  ///< relative, left by the latest solve
   int met_ = 0;           ///< bounded rows that met in the latest solve
 };

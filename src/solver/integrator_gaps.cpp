@@ -68,6 +68,7 @@ void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
     problem.set_multipliers(multipliers_saved_);
   }
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+    pool.offsets.resize(pool.multipliers.size());
     for (std::size_t i = 0; i < pool.items.size(); ++i) {
       double* const offset = pool.offsets.data() + i * C::rows;
       pool.items[i].value(candidate_.data(), moving ? 1 : 0, offset);
@@ -130,6 +131,7 @@ bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
   for (int tries = 0; tries < 60 && remaining > 0 && part > 2e-3; ++tries) {
     part = std::min(part, remaining);
     problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
+      pool.offsets.resize(pool.multipliers.size());
       for (std::size_t i = 0; i < pool.items.size(); ++i) {
         double* const offset = pool.offsets.data() + i * C::rows;
         pool.items[i].value(problem.position.data(), 0, offset);

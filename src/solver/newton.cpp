@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace iota::solver {
 
@@ -32,29 +33,28 @@ void Newton::relink(Problem& problem, std::span<const std::array<std::uint32_t, 
 }
 
 void Newton::make_room(const Problem& problem) {
-  for (auto* list : {&x_, &x_saved_, &u_, &u_saved_}) resize_with_slack(*list, problem.size());
+  for (auto* list : {&x_, &u_, &u_saved_}) resize_with_slack(*list, problem.size());
   if (problem.has_laws()) resize_with_slack(impulses_, assembly_.unknown_count());
-  multipliers_saved_.resize(problem.multiplier_count()), merit_weights_.resize(problem.multiplier_count());
+  multipliers_saved_.resize(problem.multiplier_count());
+  merit_weights_.reserve(problem.multiplier_count());
 }
 
-void Newton::start_from(const Problem& problem, const Stage& stage, std::span<const Vec3> guess) {
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    u_[i] = guess[i];
-    x_[i] = problem.position[i] + stage.h * problem.velocity[i] + guess[i];
-  }
+void Newton::place(const Problem& problem, const Stage& stage) {
+  for (std::size_t i = 0; i < problem.size(); ++i) x_[i] = problem.position[i] + stage.h * problem.velocity[i] + u_[i];
 }
 
-NewtonReport Newton::solve(Problem& problem, const Stage& stage, std::span<const Vec3> guess) {
+NewtonReport Newton::solve(Problem& problem, const Stage& stage) {
   has_laws_ = problem.has_laws();
-  assembly_.set_scales(problem, stage);
-  start_from(problem, stage, guess);
   bool handed_back = false;
   if (external_ && !stage.is_projection()) {
+    const std::vector<Vec3> guess = u_;
+    place(problem, stage);
     const NewtonReport report = solve_externally(problem, stage);
     if (report.converged) return report;
-    start_from(problem, stage, guess);
+    u_ = guess;
     handed_back = true;
   }
+  place(problem, stage);
   NewtonReport report = stage.midpoint ? solve_as<true>(problem, stage) : solve_as<false>(problem, stage);
   report.handed_back = handed_back;
   return report;
@@ -65,11 +65,13 @@ void Newton::measure(const Problem& problem, const Stage& stage) {
   residual_ = assembly_.residual<Midpoint>(problem, stage, x_.data(), u_.data());
 }
 
+// By a new factor.
 template <bool Midpoint>
-void Newton::factorise(const Problem& problem, const Stage& stage, Hessian hessian) {
-  const bool wrong = assembly_.assemble_and_factor<Midpoint>(problem, stage, x_.data(), hessian) > 0;
-  if (wrong && hessian == Hessian::exact)
-    (void)assembly_.assemble_and_factor<Midpoint>(problem, stage, x_.data(), Hessian::clamped);
+void Newton::find_step(const Problem& problem, const Stage& stage, Hessian hessian) {
+  const bool good = assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), hessian);
+  if (good || hessian != Hessian::exact) return;
+  measure<Midpoint>(problem, stage);  // the step has taken the residuals' place
+  (void)assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), Hessian::clamped);
 }
 
 template <bool Midpoint>
@@ -92,11 +94,12 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     if (!(residual_.worst > stage.tolerance) || report.iterations >= most_iterations) break;
     ++report.iterations;
     served_on = factor_will_do;
-    if (!factor_will_do) factorise<Midpoint>(problem, stage, hessian);
     const double before = residual_.worst;
-    assembly_.solve();
-    save(problem);
-    move(problem, stage, 1);
+    if (factor_will_do)
+      assembly_.solve();
+    else
+      find_step<Midpoint>(problem, stage, hessian);
+    take_step(problem, stage);
     measure<Midpoint>(problem, stage);
     hessian = Hessian::exact;
     if (!(residual_.worst <= 0.5 * before)) {
@@ -123,16 +126,19 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
 template <bool Midpoint>
 int Newton::shorten(Problem& problem, const Stage& stage, double before) {
   // Weights above the new multipliers make the merit exact: it cannot fall by leaving the constraints.
+  merit_weights_.resize(problem.multiplier_count());
   problem.copy_multipliers_to(merit_weights_);
   for (double& weight : merit_weights_) weight = 1.5 * std::abs(weight);
-  const double merit_before = merit(problem, stage, x_saved_.data());
+  u_.swap(u_saved_), place(problem, stage);
+  const double merit_before = merit(problem, stage, x_.data());
+  u_.swap(u_saved_), place(problem, stage);
   double t = 1;
   int halvings = 0;
   while (!(residual_.worst < (1 - 1e-4 * t) * before) && !(merit(problem, stage, x_.data()) < merit_before) &&
          halvings < max_halvings) {
     t *= 0.5;
     ++halvings;
-    move(problem, stage, t);
+    halve_step(problem, stage);
     measure<Midpoint>(problem, stage);
   }
   return halvings;
@@ -143,8 +149,9 @@ double Newton::merit(const Problem& problem, const Stage& stage, const Vec3* x) 
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const Vec3 u = x[i] - problem.position[i] - stage.h * problem.velocity[i];
     value += 0.5 * stage.inertia * problem.mass[i] * dot(u, u);
-    if (!stage.is_projection()) value -= dot(problem.force[i], x[i]);
   }
+  if (!stage.is_projection())
+    for (std::size_t i = 0; i < problem.force.size(); ++i) value -= dot(problem.force[i], x[i]);
   for (const auto& c : problem.mass_couplings) {
     const auto u = [&](std::uint32_t i) { return x[i] - problem.position[i] - stage.h * problem.velocity[i]; };
     value += stage.inertia * c.mass * dot(u(c.a), u(c.b));
@@ -173,23 +180,37 @@ double Newton::merit(const Problem& problem, const Stage& stage, const Vec3* x) 
   return value;
 }
 
-void Newton::save(const Problem& problem) {
-  x_saved_.swap(x_), u_saved_.swap(u_);
-  problem.copy_multipliers_to(multipliers_saved_);
-}
-
-void Newton::move(Problem& problem, const Stage& stage, double t) {
+void Newton::take_step(Problem& problem, const Stage& stage) {
+  u_saved_.swap(u_);
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    u_[i] = u_saved_[i] + t * assembly_.step_of(static_cast<std::uint32_t>(i));
+    u_[i] = u_saved_[i] - assembly_.step_of(static_cast<std::uint32_t>(i));
     x_[i] = problem.position[i] + stage.h * problem.velocity[i] + u_[i];
   }
   const std::span<const double> step = assembly_.step();
   std::size_t index = 0;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k)
-      for (int r = 0; r < C::rows; ++r)
-        pool.multiplier(k)[r] = multipliers_saved_[index++] + t * step[pool.slots[k].unknown + r];
+      for (int r = 0; r < C::rows; ++r, ++index) {
+        double& multiplier = pool.multiplier(k)[r];
+        multipliers_saved_[index] = multiplier;
+        multiplier -= step[pool.slots[k].unknown + r];
+      }
   });
+}
+
+void Newton::halve_step(Problem& problem, const Stage& stage) {
+  for (std::size_t i = 0; i < u_.size(); ++i) u_[i] = 0.5 * (u_saved_[i] + u_[i]);
+  place(problem, stage);
+  auto saved = multipliers_saved_.begin();
+  problem.for_each_constraint_pool([&](auto& pool) {
+    for (double& multiplier : pool.multipliers) multiplier = 0.5 * (*saved++ + multiplier);
+  });
+}
+
+void Newton::take_back_step(Problem& problem, const Stage& stage) {
+  u_.swap(u_saved_);
+  place(problem, stage);
+  problem.set_multipliers(multipliers_saved_);
 }
 
 bool Newton::is_balanced() const {
@@ -207,19 +228,18 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
   constexpr int most_steps = 3;
   if (!(residual_.worst <= stage.tolerance) || (residual_.violation <= round_off && is_balanced())) return;
   // A factor that has served on from further away leaves more: angular momentum of a loop drifted fifty times as far.
-  if (report.iterations == 0 || factor_is_old) {
-    ++report.iterations;
-    factorise<Midpoint>(problem, stage, Hessian::exact);
-  }
+  bool needs_factor = report.iterations == 0 || factor_is_old;
+  report.iterations += needs_factor;
   for (int step = 0; step < most_steps; ++step) {
     const Residual before = residual_;
-    assembly_.solve();
-    save(problem);
-    move(problem, stage, 1);
+    if (std::exchange(needs_factor, false))
+      find_step<Midpoint>(problem, stage, Hessian::exact);
+    else
+      assembly_.solve();
+    take_step(problem, stage);
     measure<Midpoint>(problem, stage);
     if (!(residual_.worst <= std::max(before.worst, round_off))) {
-      std::fill(assembly_.step().begin(), assembly_.step().end(), 0.0);
-      move(problem, stage, 0);
+      take_back_step(problem, stage);
       return measure<Midpoint>(problem, stage);
     }
     if (is_balanced() || residual_.imbalance > 0.1 * before.imbalance) return;

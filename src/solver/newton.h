@@ -35,15 +35,15 @@ class Newton {
   void relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
               std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched);
 
-  /// Solves for positions and multipliers, from `guess`, a displacement from free flight x0 + h v0, and the pools' multipliers. On success `solution()` and the
-  /// pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.
-  NewtonReport solve(Problem& problem, const Stage& stage, std::span<const Vec3> guess);
+  /// Solves for positions and multipliers, from `displacement()` and the pools' multipliers. On success `solution()` and
+  /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.
+  NewtonReport solve(Problem& problem, const Stage& stage);
   std::span<const Vec3> solution() const { return x_; }
   /// Where the next solution will be: scratch until then.
   std::span<Vec3> room() { return x_; }
-  /// Of the solution: x - x0 - h v0, m. The unknown itself, to its own relative precision: velocities taken from it keep
+  /// From free flight: x - x0 - h v0, m. The unknown itself, to its own relative precision: velocities taken from it keep
   /// momentum to round-off, whereas differences of positions lose 1e-16 |x| / h a step.
-  std::span<const Vec3> displacement() const { return u_; }
+  std::span<Vec3> displacement() { return u_; }
 
   /// Hands the equations of steps, not of projections, to another solver; null: solves them itself. What the other one
   /// finds no root of is solved here after all.
@@ -63,12 +63,13 @@ class Newton {
   template <bool Midpoint>
   NewtonReport solve_as(Problem&, const Stage&);
   NewtonReport solve_externally(Problem&, const Stage&);
-  void start_from(const Problem&, const Stage&, std::span<const Vec3> guess);
   void make_room(const Problem&);
+  /// x from u.
+  void place(const Problem&, const Stage&);
   template <bool Midpoint>
   void measure(const Problem&, const Stage&);
   template <bool Midpoint>
-  void factorise(const Problem&, const Stage&, Hessian);
+  void find_step(const Problem&, const Stage&, Hessian);
   template <bool Midpoint>
   int shorten(Problem&, const Stage&, double before);
   double merit(const Problem&, const Stage&, const Vec3* x) const;
@@ -76,9 +77,9 @@ class Newton {
   /// Takes a residual that is within tolerance to round-off.
   template <bool Midpoint>
   void polish(Problem&, const Stage&, NewtonReport&, bool factor_is_old);
-  void save(const Problem&);
-  /// u + t du and lambda + t d_lambda, from the saved iterate.
-  void move(Problem&, const Stage&, double t);
+  void take_step(Problem&, const Stage&);
+  void halve_step(Problem&, const Stage&);
+  void take_back_step(Problem&, const Stage&);
 
   bool project_onto_sides(Problem&, double h, bool as_solved, std::span<const Vec3> impulses);
   void project_once(Problem&, double h, std::span<const Vec3> impulses);
@@ -86,8 +87,8 @@ class Newton {
 
   Assembly assembly_;
   ActiveSet active_set_;
-  Residual residual_;  // of the iterate
-  std::vector<Vec3> x_, x_saved_, u_, u_saved_;
+  Residual residual_;                  // of the iterate
+  std::vector<Vec3> x_, u_, u_saved_;  // saved: where the latest step began, as its multipliers
   std::vector<double> impulses_, multipliers_saved_, merit_weights_;
   bool has_laws_ = false;
   Solver* external_ = nullptr;

@@ -45,7 +45,8 @@ bool Newton::project_onto_sides(Problem& problem, double h, bool as_solved, std:
   for (const double compliance : {1e-12, 1e-9, 1e-6, 1e-3}) {
     Stage stage = Stage::projection(compliance);
     stage.fraction = as_solved ? 1 : 0;
-    (void)assembly_.assemble_and_factor<false>(problem, stage, x_.data(), Hessian::none);
+    assembly_.assemble<false>(problem, stage, x_.data(), Hessian::none);
+    (void)assembly_.factor().factorise();
     std::fill(impulses_.begin(), impulses_.end(), 0.0);
     const double energy = problem.kinetic_energy();
     project_once(problem, h, impulses);
@@ -89,9 +90,9 @@ void Newton::project_once(Problem& problem, double h, std::span<const Vec3> impu
     }
   });
   assembly_.solve();
-  for (std::size_t i = 0; i < impulses_.size(); ++i) impulses_[i] += assembly_.step()[i];
+  for (std::size_t i = 0; i < impulses_.size(); ++i) impulses_[i] -= assembly_.step()[i];
   for (std::size_t i = 0; i < problem.size(); ++i)
-    problem.velocity[i] += assembly_.step_of(static_cast<std::uint32_t>(i));
+    problem.velocity[i] -= assembly_.step_of(static_cast<std::uint32_t>(i));
 }
 
 }  // namespace iota::solver

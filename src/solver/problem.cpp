@@ -10,8 +10,8 @@ namespace iota::solver {
 
 void Problem::add_nodes(std::size_t count) {
   const std::size_t n = size() + count;
-  for (auto* list : {&position, &velocity, &force}) resize_with_slack(*list, n);
-  resize_with_slack(mass, n);
+  resize_with_slack(position, n), resize_with_slack(velocity, n), resize_with_slack(mass, n);
+  force.clear(), reserve_with_slack(force, n);
 }
 
 void Problem::remove_nodes(std::span<const std::uint32_t> removed) {
@@ -24,7 +24,7 @@ void Problem::remove_nodes(std::span<const std::uint32_t> removed) {
         if (named == last) named = node;
       });
     const auto take_last = [&](auto& list) { list[node] = list.back(), list.pop_back(); };
-    take_last(position), take_last(velocity), take_last(force), take_last(mass);
+    take_last(position), take_last(velocity), take_last(mass);
   }
 }
 

@@ -65,7 +65,7 @@ struct ConstraintPool {
   };
   std::vector<C> items;
   std::vector<double> multipliers;  ///< C::rows each, N
-  std::vector<double> offsets;      ///< C::rows each: what cannot be closed and is held as it is, usually zero
+  std::vector<double> offsets;      ///< C::rows each: what cannot be closed and is held as it is; or empty: nothing
   std::vector<RowLaw> laws;         ///< C::rows each; or empty: all are equations, which costs nothing
   std::vector<RowState> states;     ///< beside laws
   std::vector<std::uint32_t> held;  ///< rows to which the integrator has lent a bound, see there
@@ -83,6 +83,7 @@ struct ConstraintPool {
   /// What the solver brings to zero: the constraint less its offset.
   void value(std::size_t i, const Vec3* x, double fraction, double* g) const {
     items[i].value(x, fraction, g);
+    if (offsets.empty()) return;
     for (int r = 0; r < C::rows; ++r) g[r] -= offsets[i * C::rows + r];
   }
 };
@@ -106,7 +107,7 @@ struct Problem {
   };
 
   std::vector<Vec3> position, velocity;  ///< m, m/s
-  std::vector<Vec3> force;               ///< explicit, held over the step, N
+  std::vector<Vec3> force;               ///< explicit, held over the step, N; or empty: none
   std::vector<double> mass;              ///< diagonal of the mass matrix, kg
   std::vector<MassCoupling> mass_couplings;
   ConstraintPools<ConstraintPool> constraints;
@@ -179,7 +180,7 @@ struct Problem {
     for_each_constraint_pool([](auto& pool) { std::fill(pool.multipliers.begin(), pool.multipliers.end(), 0.0); });
   }
   void clear_offsets() {
-    for_each_constraint_pool([](auto& pool) { std::fill(pool.offsets.begin(), pool.offsets.end(), 0.0); });
+    for_each_constraint_pool([](auto& pool) { pool.offsets.clear(); });
   }
 
   /// Whether no constraint holds on to the world: momentum stays.
@@ -191,14 +192,17 @@ struct Problem {
     return internal;
   }
 
-  /// u' M u.
-  double mass_norm2(const Vec3* u) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < size(); ++i) sum += mass[i] * dot(u[i], u[i]);
-    for (const auto& c : mass_couplings) sum += 2 * c.mass * dot(u[c.a], u[c.b]);
-    return sum;
+  /// v' M v / 2, where v(node) is the velocity of a node.
+  template <class Velocity>
+  double kinetic_energy(Velocity v) const {
+    double twice = 0;
+    for (std::size_t i = 0; i < size(); ++i) twice += mass[i] * dot(v(i), v(i));
+    for (const auto& c : mass_couplings) twice += 2 * c.mass * dot(v(c.a), v(c.b));
+    return 0.5 * twice;
   }
-  double kinetic_energy() const { return 0.5 * mass_norm2(velocity.data()); }
+  double kinetic_energy() const {
+    return kinetic_energy([&](std::size_t i) -> const Vec3& { return velocity[i]; });
+  }
   /// Gravity and implicit forces; external ones (hands) are no part of the world's energy, only of Newton's merit.
   double potential_energy(const Vec3* x, bool with_external = false) const;
   /// Stored in spring rows, with targets as at `fraction` of the step.

@@ -19,14 +19,14 @@ void StepEquations::for_each_row(Visit visit) const {
 StepEquations::StepEquations(Newton& newton, Problem& problem, const Stage& stage)
     : newton_(newton), problem_(problem), stage_(stage) {
   const std::size_t n = newton.assembly_.unknown_count();
-  const double length = newton.reference_length();
+  const double length = newton.reference_length(), force_scale = newton.assembly_.inverse_scale(stage);
   row_scale_.assign(n, 0), column_scale_.assign(n, 0);
   double mass = 0;
   for (const double m : problem.mass) mass += m / static_cast<double>(problem.size());
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const auto node = static_cast<std::uint32_t>(i);
     const std::uint32_t unknown = newton.assembly_.unknown_of(node);
-    std::fill_n(row_scale_.begin() + unknown, 3, newton.assembly_.inverse_scale(node));
+    std::fill_n(row_scale_.begin() + unknown, 3, force_scale / problem.mass[i]);
     std::fill_n(column_scale_.begin() + unknown, 3, length);
   }
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
@@ -76,7 +76,8 @@ bool StepEquations::jacobian(std::span<const double> x, std::span<double> jacobi
   const Vec3* const at = newton_.x_.data();
   stage_.midpoint ? assembly.assemble<true>(problem_, stage_, at, Hessian::exact)
                   : assembly.assemble<false>(problem_, stage_, at, Hessian::exact);
-  const double *const lower = assembly.factor().lower(), *const upper = assembly.factor().upper();
+  const double *const diagonals = assembly.factor().diagonals(), *const lower = assembly.factor().lower(),
+                      *const upper = assembly.factor().upper();
   std::fill(jacobian.begin(), jacobian.end(), 0.0);
   const auto put = [&](std::size_t i, std::size_t j, double value) {
     jacobian[i * size() + j] = row_scale_[i] * value * column_scale_[j];
@@ -86,7 +87,7 @@ bool StepEquations::jacobian(std::span<const double> x, std::span<double> jacobi
     for (std::uint32_t i = 0; i < v.pivot; ++i)
       for (std::uint32_t j = 0; j < v.pivot; ++j) {
         const bool mirrored = !stage_.midpoint && j > i;  // a symmetric matrix is filled below its diagonal only
-        put(v.unknown + i, v.unknown + j, lower[v.diagonal + (mirrored ? j * v.pivot + i : i * v.pivot + j)]);
+        put(v.unknown + i, v.unknown + j, diagonals[v.diagonal + (mirrored ? j * v.pivot + i : i * v.pivot + j)]);
       }
     for (const auto& entry : pattern.entries().subspan(v.first_entry, v.entry_count))
       for (std::uint32_t i = 0; i < entry.width; ++i)

@@ -239,9 +239,23 @@ void Island::add_joints(const Model& model, const std::vector<std::uint32_t>& no
   }
 }
 
+// Lists that grow by doubling leave holes in memory, a quarter of what they hold.
+void Island::make_room(const Model& model, std::span<const std::uint32_t> articulates) {
+  std::size_t bodies = 0, points = 0, rows = 0;
+  for (const std::uint32_t a : articulates)
+    model.for_each_body_of(a, [&](std::uint32_t body) {
+      ++bodies, points += model.bodies[body].count, rows += model.bodies[body].row_count;
+    });
+  bodies_.reserve(bodies);
+  rings_.reserve(points), pinned_.reserve(points);
+  rigid_rows_.reserve(rows);
+  std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints).items.reserve(rows);
+}
+
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
                       std::vector<std::uint32_t>& node_of_ring) {
   *this = Island{};
+  make_room(model, articulates);
   double total_mass = 0;
   for (const std::uint32_t articulate : articulates)
     model.for_each_body_of(articulate, [&](std::uint32_t body) {
@@ -260,18 +274,18 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
 
   const std::size_t n = rings_.size();
   problem_.add_nodes(n);
-  node_damping_.assign(n, 0);
   for (const std::uint32_t body : bodies_) {
     add_masses(model, body, node_of_ring);
     add_constraints(model, body, node_of_ring);
     if (const double k = model.bodies[body].damping; k > 0)
       model.for_each_particle_of(body, [&](std::uint32_t p) {
         const std::uint32_t node = node_of_ring[model.particles[p].ring];
-        if (node != none) node_damping_[node] += k * model.particles[p].mass, damped_ = true;
+        if (node == none) return;
+        node_damping_.resize(n);
+        node_damping_[node] += k * model.particles[p].mass;
       });
   }
-  if (damped_)
-    for (std::size_t i = 0; i < n; ++i) node_damping_[i] /= problem_.mass[i];
+  for (std::size_t i = 0; i < node_damping_.size(); ++i) node_damping_[i] /= problem_.mass[i];
 
   auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints).items;
   if (model.closings.size() > 0) {
@@ -349,14 +363,8 @@ void Island::load(const Model& model, double h) {
     const Ring& r = model.rings[rings_[i]];
     problem_.position[i] = r.position;
     problem_.velocity[i] = r.velocity;
-    problem_.force[i] = model.pushes[rings_[i]].force;
   }
-  for (std::size_t i = 0; i < slaves_.size(); ++i) {  // forces on carried particles act through the basis
-    const Vec3& f = model.pushes[model.particles[slaves_[i]].ring].force;
-    if (f == Vec3{}) continue;
-    for (const auto& [node, weight] : slave_nodes_[i])
-      if (weight != 0) problem_.force[node] += weight * f;
-  }
+  load_pushes(model);
   load_bonds(model, h);
   auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints);
   for (std::size_t i = 0; i < rigid_rows_.size(); ++i)
@@ -389,6 +397,22 @@ void Island::load(const Model& model, double h) {
     const double distance = norm(grips[i].arm.value(problem_.position.data()));
     grips[i].stiffness = mass * std::min(omega * omega, g.max_acceleration / (distance + 1e-12));
     grips[i].damping = 2 * mass * omega;
+  }
+}
+
+void Island::load_pushes(const Model& model) {
+  problem_.force.clear();
+  if (model.pushes.is_empty()) return;
+  const auto add = [&](std::uint32_t node, const Vec3& force) {
+    if (force == Vec3{}) return;
+    if (problem_.force.empty()) problem_.force.resize(problem_.size());
+    problem_.force[node] += force;
+  };
+  for (std::uint32_t node = 0; node < rings_.size(); ++node) add(node, model.pushes[rings_[node]].force);
+  for (std::size_t i = 0; i < slaves_.size(); ++i) {  // forces on carried particles act through the basis
+    const Vec3& f = model.pushes[model.particles[slaves_[i]].ring].force;
+    for (const auto& [node, weight] : slave_nodes_[i])
+      if (weight != 0) add(node, weight * f);
   }
 }
 
@@ -505,10 +529,10 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     given += problem_.kinetic_energy();
   }
   report.external_work += given;
-  if (damped_ || model.damping > 0) {
+  if (!node_damping_.empty() || model.damping > 0) {
     const double before = problem_.kinetic_energy();
     for (std::size_t i = 0; i < rings_.size(); ++i)
-      problem_.velocity[i] *= std::exp(-(model.damping + node_damping_[i]) * h);
+      problem_.velocity[i] *= std::exp(-(model.damping + (node_damping_.empty() ? 0 : node_damping_[i])) * h);
     report.dissipated += before - problem_.kinetic_energy();
   }
   store(model, h);

@@ -68,11 +68,13 @@ class Island {
   void store_carried(model::Model&) const;
   using Weighted = std::array<std::pair<std::uint32_t, double>, 4>;  // nodes and weights; weight 0 ends the list
   Weighted nodes_of(const model::Model&, std::uint32_t particle, const std::vector<std::uint32_t>& node_of_ring) const;
+  void make_room(const model::Model&, std::span<const std::uint32_t> articulates);
   void add_masses(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
   void add_virtual_mass(const model::Model&, std::uint32_t marker, const std::vector<std::uint32_t>& node_of_ring);
   void add_mass_outer(const Weighted& a, double mass);
   void add_constraints(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
   void add_bonds(const model::Model&, const std::vector<std::uint32_t>& node_of_ring);
+  void load_pushes(const model::Model&);
   void load_bonds(const model::Model&, double h);
   void add_joints(const model::Model&, const std::vector<std::uint32_t>& node_of_ring);
 
@@ -81,10 +83,9 @@ class Island {
   std::array<char, 32> solver_name_{};
   std::unique_ptr<Solver> solver_;  // who is asked instead of the integrator's own
   bool idle_ = false, disturbed_ = false;
-  bool damped_ = false;
   std::vector<std::uint32_t> rings_;  // of each node
   std::vector<std::uint8_t> pinned_;  // of each node
-  std::vector<double> node_damping_;  // 1/s, without the system's
+  std::vector<double> node_damping_;  // 1/s, without the system's; empty: none
   struct RigidRow {
     std::uint32_t body;
     std::uint8_t row;

@@ -31,7 +31,7 @@ void add_once(std::vector<std::uint32_t>& list, std::uint32_t value) {
 }  // namespace
 
 bool Island::relink(const Model& model, std::span<const std::uint32_t> bodies) {
-  if (idle_ || damped_ || solver_ || !closings_.empty() || !grips_.empty()) return false;
+  if (idle_ || !node_damping_.empty() || solver_ || !closings_.empty() || !grips_.empty()) return false;
   if (!std::all_of(bodies.begin(), bodies.end(), [&](std::uint32_t b) { return is_plain(model, b); })) return false;
   auto& rows = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints).items;
 
@@ -124,7 +124,7 @@ bool Island::relink(const Model& model, std::span<const std::uint32_t> bodies) {
 
   // 5. Room for new nodes, and masses where points came or went.
   problem_.add_nodes(added.size());
-  for (const std::uint32_t ring : new_rings) rings_.push_back(ring), pinned_.push_back(0), node_damping_.push_back(0);
+  for (const std::uint32_t ring : new_rings) rings_.push_back(ring), pinned_.push_back(0);
   for (const Point& changed : points) {
     if (changed.now == changed.before && !is_left(changed.now)) continue;
     double mass = 0;
@@ -147,8 +147,8 @@ bool Island::relink(const Model& model, std::span<const std::uint32_t> bodies) {
     for (auto& carriers : slave_nodes_)
       for (auto& carrier : carriers)
         if (carrier.first == last) carrier.first = node;
-    rings_[node] = rings_.back(), pinned_[node] = pinned_.back(), node_damping_[node] = node_damping_.back();
-    rings_.pop_back(), pinned_.pop_back(), node_damping_.pop_back();
+    rings_[node] = rings_.back(), pinned_[node] = pinned_.back();
+    rings_.pop_back(), pinned_.pop_back();
   }
   return true;
 }

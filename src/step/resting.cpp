@@ -44,7 +44,8 @@ void Island::tire(Model& model, double h, solver::AdvanceReport& report) const {
   const double limit = model.rest_speed * model.rest_speed;
   bool slow = grips_.empty();
   for (std::size_t i = 0; i < rings_.size() && slow; ++i)
-    slow = dot(problem_.velocity[i], problem_.velocity[i]) < limit && problem_.force[i] == Vec3{};
+    slow = dot(problem_.velocity[i], problem_.velocity[i]) < limit &&
+           (problem_.force.empty() || problem_.force[i] == Vec3{});
   slow_time(model) = slow ? slow_time(model) + h : 0;
   if (slow_time(model) < model.rest_after) return;
   report.dissipated += problem_.kinetic_energy();

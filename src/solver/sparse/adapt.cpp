@@ -16,7 +16,7 @@ constexpr int max_rows_a_node = BlockPattern::max_pivot - 3;
 // A cut in a chain of 10 000 links: 0.1 ms here, 3.7 ms to build and analyse the halves. All loops over the whole are
 // plain passes over arrays; everything else happens for the few vertices that change.
 bool BlockPattern::adapt(const GraphChange& change) {
-  if (given_up_ > value_count_ / 4) return false;
+  if (given_up_ > (diagonal_count_ + lower_count_) / 4) return false;
   const auto old_nodes = static_cast<std::uint32_t>(node_vertex_.size());
   const auto nodes = static_cast<std::uint32_t>(old_nodes + change.added.size());
 
@@ -167,12 +167,12 @@ bool BlockPattern::adapt(const GraphChange& change) {
       given_up_ += entries_[e].width * vertex.pivot;
     vertex.first_entry = static_cast<std::uint32_t>(entries_.size());
     vertex.entry_count = static_cast<std::uint32_t>(list.size());
-    vertex.diagonal = value_count_;
-    value_count_ += vertex.pivot * vertex.pivot;
+    vertex.diagonal = diagonal_count_;
+    diagonal_count_ += vertex.pivot * vertex.pivot;
     for (const std::uint32_t w : list) {
       if (node_of[w] == none) return false;
-      entries_.push_back({w, value_count_, vertices_[w].unknown, 3});
-      value_count_ += 3 * vertex.pivot;
+      entries_.push_back({w, lower_count_, vertices_[w].unknown, 3});
+      lower_count_ += 3 * vertex.pivot;
     }
     widest_front_ = std::max(widest_front_, 3 * vertex.entry_count);
   }

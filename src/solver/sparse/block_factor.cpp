@@ -51,26 +51,29 @@ auto with_pivot(int pivot, Function f) {
 
 void BlockFactor::reset(const BlockPattern& pattern) {
   pattern_ = &pattern;
-  lower_.clear(), upper_.clear();
-  resize_with_slack(lower_, pattern.value_count());
+  diagonals_.clear(), lower_.clear(), upper_.clear();
+  resize_with_slack(diagonals_, pattern.diagonal_count());
+  resize_with_slack(lower_, pattern.lower_count());
   upper_.reserve(lower_.capacity());
   unscaled_.assign(static_cast<std::size_t>(pattern.widest_front()) * BlockPattern::max_pivot, 0);
 }
 
 void BlockFactor::grow() {
-  resize_with_slack(lower_, pattern_->value_count());
+  resize_with_slack(diagonals_, pattern_->diagonal_count());
+  resize_with_slack(lower_, pattern_->lower_count());
   unscaled_.resize(static_cast<std::size_t>(pattern_->widest_front()) * BlockPattern::max_pivot, 0);
 }
 
 void BlockFactor::clear(bool symmetric) {
   symmetric_ = symmetric;
+  std::fill(diagonals_.begin(), diagonals_.end(), 0.0);
   std::fill(lower_.begin(), lower_.end(), 0.0);
   if (!symmetric) upper_.assign(lower_.size(), 0.0);
 }
 
 template <int Pivot, bool Symmetric>
 int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
-  double* const diagonal = lower_.data() + v.diagonal;
+  double* const diagonal = diagonals_.data() + v.diagonal;
   int wrong = 0;
 
   // The pivot block: unit lower L11 below the diagonal, reciprocal pivots on it, and for LU the rest of U11 above it.
@@ -135,7 +138,7 @@ int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
   for (std::size_t a = 0; a < entries.size(); ++a) {
     const int stride = vertices[entries[a].vertex].pivot;
     const int width_a = entries[a].width;
-    double* const own = lower_.data() + *target++;
+    double* const own = diagonals_.data() + *target++;
     if (width_a == 3)
       subtract_product_3x3<Pivot, Symmetric>(own, stride, la, ua);
     else
@@ -160,17 +163,19 @@ int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
   return wrong;
 }
 
-int BlockFactor::factorise() {
+int BlockFactor::factorise(std::span<double> unknowns) {
   int wrong = 0;
   for (const auto& v : pattern_->vertices())
-    wrong += with_pivot(v.pivot,
-                        [&]<int Pivot> { return symmetric_ ? eliminate<Pivot, true>(v) : eliminate<Pivot, false>(v); });
+    with_pivot(v.pivot, [&]<int Pivot> {
+      wrong += symmetric_ ? eliminate<Pivot, true>(v) : eliminate<Pivot, false>(v);
+      if (!unknowns.empty()) forward<Pivot>(v, unknowns.data());
+    });
   return wrong;
 }
 
 template <int Pivot>
 void BlockFactor::forward(const BlockPattern::Vertex& v, double* b) const {
-  const double* const d = lower_.data() + v.diagonal;
+  const double* const d = diagonals_.data() + v.diagonal;
   double* const y = b + v.unknown;
   for (int k = 1; k < Pivot; ++k)
     for (int j = 0; j < k; ++j) y[k] -= d[k * Pivot + j] * y[j];
@@ -186,7 +191,7 @@ void BlockFactor::forward(const BlockPattern::Vertex& v, double* b) const {
 
 template <int Pivot, bool Symmetric>
 void BlockFactor::backward(const BlockPattern::Vertex& v, double* b) const {
-  const double* const d = lower_.data() + v.diagonal;
+  const double* const d = diagonals_.data() + v.diagonal;
   double* const x = b + v.unknown;
   if constexpr (Symmetric)
     for (int k = 0; k < Pivot; ++k) x[k] *= d[k * Pivot + k];
@@ -207,9 +212,14 @@ void BlockFactor::backward(const BlockPattern::Vertex& v, double* b) const {
 }
 
 void BlockFactor::solve(std::span<double> unknowns) const {
+  for (const auto& v : pattern_->vertices())
+    with_pivot(v.pivot, [&]<int Pivot> { forward<Pivot>(v, unknowns.data()); });
+  finish(unknowns);
+}
+
+void BlockFactor::finish(std::span<double> unknowns) const {
   double* const b = unknowns.data();
   const auto vertices = pattern_->vertices();
-  for (const auto& v : vertices) with_pivot(v.pivot, [&]<int Pivot> { forward<Pivot>(v, b); });
   for (auto v = vertices.rbegin(); v != vertices.rend(); ++v)
     with_pivot(v->pivot, [&]<int Pivot> { symmetric_ ? backward<Pivot, true>(*v, b) : backward<Pivot, false>(*v, b); });
 }

@@ -16,24 +16,29 @@ class BlockFactor {
   void reset(const BlockPattern& pattern);
   /// Whether a factorisation costs several times what a solution does: not on chains, but in nets and among many-point
   /// bodies.
-  bool is_dear() const { return lower_.size() > 10 * std::size_t{pattern_->unknown_count()}; }
+  bool is_dear() const { return diagonals_.size() + lower_.size() > 10 * std::size_t{pattern_->unknown_count()}; }
   /// Follows a pattern that has grown by `adapt`.
   void grow();
 
   /// Sets all values to zero; `symmetric` tells which triangles are going to be filled.
   void clear(bool symmetric);
 
-  /// Lower triangle: diagonal blocks and the blocks below them, at the offsets that the pattern gives.
+  /// Diagonal blocks, and those below them, at the offsets that the pattern gives.
+  double* diagonals() { return diagonals_.data(); }
   double* lower() { return lower_.data(); }
-  /// Upper triangle of an unsymmetric matrix: element (i, j) above the diagonal blocks lies where (j, i) does in `lower`.
+  /// Blocks above the diagonal of an unsymmetric matrix: element (i, j) lies where (j, i) does in `lower`.
   double* upper() { return upper_.data(); }
 
   /// Factors in place; returns how many pivots have the wrong sign (not finite counts as wrong). Zero means that the
   /// matrix has as many positive and negative pivots as a minimum under constraints should.
-  int factorise();
+  int factorise() { return factorise({}); }
 
   /// Solves in place: right-hand side in, solution out, both in the pattern's unknowns.
   void solve(std::span<double> unknowns) const;
+  /// The same along with `factorise`, for one pass over the factors less: substitution forward while they are made, and
+  /// then backward.
+  int factorise(std::span<double> unknowns);
+  void finish(std::span<double> unknowns) const;
 
  private:
   template <int Pivot, bool Symmetric>
@@ -45,7 +50,7 @@ class BlockFactor {
 
   const BlockPattern* pattern_ = nullptr;
   bool symmetric_ = true;
-  std::vector<double> lower_, upper_;
+  std::vector<double> diagonals_, lower_, upper_;
   std::vector<double> unscaled_;  // L D of the front at hand, symmetric case
 };
 

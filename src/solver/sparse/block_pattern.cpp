@@ -70,7 +70,7 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
   vertices_.clear();
   node_vertex_.assign(n, 0);
   std::vector<std::uint32_t> own_vertex(graph.constraints.size(), 0);
-  value_count_ = unknown_count_ = widest_front_ = 0;
+  diagonal_count_ = lower_count_ = unknown_count_ = widest_front_ = 0;
   const auto add_vertex = [&](std::uint8_t pivot, std::uint8_t positives) {
     vertices_.push_back({.pivot = pivot, .positives = positives, .unknown = unknown_count_});
     unknown_count_ += pivot;
@@ -136,14 +136,14 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
     Vertex& vertex = vertices_[v];
     vertex.first_entry = static_cast<std::uint32_t>(entries_.size());
     vertex.entry_count = static_cast<std::uint32_t>(list.size());
-    vertex.diagonal = value_count_;
-    value_count_ += vertex.pivot * vertex.pivot;
+    vertex.diagonal = diagonal_count_;
+    diagonal_count_ += vertex.pivot * vertex.pivot;
     std::uint32_t front = 0;
     for (const std::uint32_t w : list) {
       const std::uint8_t width = width_of[w];
       width_of[w] = 0;
-      entries_.push_back({w, value_count_, vertices_[w].unknown, width});
-      value_count_ += width * vertex.pivot;
+      entries_.push_back({w, lower_count_, vertices_[w].unknown, width});
+      lower_count_ += width * vertex.pivot;
       front += width;
     }
     widest_front_ = std::max(widest_front_, front);
@@ -189,12 +189,12 @@ BlockPattern::ConstraintSlot BlockPattern::calc_slot(std::span<const std::uint32
     const std::uint32_t node = node_vertex_[nodes[i]];
     GradientSlot& g = slot.gradients[i];
     if (node == home) {
-      g = {vertex.diagonal + row * pivot, pivot, 1, true, true, vertex.diagonal + row, pivot};
+      g = {vertex.diagonal + row * pivot, pivot, 1, static_cast<std::int8_t>(row - row * pivot), true, true};
     } else if (node > home) {
-      g = {entries_[find_entry(home, node)].offset + row, 1, pivot, false, false, 0, pivot};
+      g = {entries_[find_entry(home, node)].offset + row, 1, pivot, 0, false, false};
     } else {
       const std::uint8_t node_pivot = vertices_[node].pivot;
-      g = {entries_[find_entry(node, home)].offset + row * node_pivot, node_pivot, 1, false, true, 0, node_pivot};
+      g = {entries_[find_entry(node, home)].offset + row * node_pivot, node_pivot, 1, 0, false, true};
     }
   }
   return slot;

@@ -58,11 +58,12 @@ class BlockPattern {
     std::uint8_t pivot = 3;      ///< unknowns eliminated here
     std::uint8_t positives = 3;  ///< of which the first so many should have positive pivots, the others negative
     std::uint32_t first_entry = 0, entry_count = 0;
-    std::uint32_t diagonal = 0;    ///< offset of the pivot x pivot block
+    std::uint32_t diagonal = 0;    ///< offset of the pivot x pivot block, among the diagonal ones
     std::uint32_t unknown = 0;     ///< offset in right-hand side and solution
     std::uint32_t first_pair = 0;  ///< see pair_targets
   };
   /// An off-diagonal block: the first `width` unknowns of a later vertex by the pivot columns of this one, row-major.
+  /// Offsets of diagonal and off-diagonal blocks count separately: both triangles have the former in common.
   struct Entry {
     std::uint32_t vertex = 0;
     std::uint32_t offset = 0;
@@ -80,12 +81,11 @@ class BlockPattern {
   struct GradientSlot {
     std::uint32_t offset = 0;
     std::uint8_t row_stride = 1, column_stride = 1;
-    bool in_diagonal = false;
-    bool lower_is_row = true;  ///< the lower triangle holds (row, node); otherwise (node, row)
-    std::uint32_t mirror =
-        0;  ///< in_diagonal: offset of the upper-triangle twin, strides exchanged with the pivot size
-    std::uint8_t pivot = 3;
+    std::int8_t mirror = 0;        ///< in_diagonal: how much further the upper-triangle twin begins, strides exchanged
+    bool in_diagonal : 1 = false;  ///< in a diagonal block, else in an off-diagonal one
+    bool lower_is_row : 1 = true;  ///< the lower triangle holds (row, node); otherwise (node, row)
   };
+  static_assert(sizeof(GradientSlot) == 8, "there are two for each link");
   struct ConstraintSlot {
     std::uint32_t unknown = 0;   ///< of its first multiplier
     std::uint32_t diagonal = 0;  ///< of its first multiplier's diagonal entry
@@ -112,7 +112,8 @@ class BlockPattern {
   std::span<const Vertex> vertices() const { return vertices_; }
   std::span<const Entry> entries() const { return entries_; }
   std::span<const std::uint32_t> pair_targets() const { return pair_targets_; }
-  std::uint32_t value_count() const { return value_count_; }
+  std::uint32_t diagonal_count() const { return diagonal_count_; }  ///< values in diagonal blocks
+  std::uint32_t lower_count() const { return lower_count_; }        ///< values in off-diagonal blocks, of one triangle
   std::uint32_t unknown_count() const { return unknown_count_; }
   std::uint32_t node_count() const { return static_cast<std::uint32_t>(node_vertex_.size()); }
   std::uint32_t widest_front() const { return widest_front_; }
@@ -136,7 +137,7 @@ class BlockPattern {
   std::vector<std::uint32_t> pair_targets_;
   std::vector<std::uint32_t> node_vertex_;
   std::vector<ConstraintSlot> constraint_slots_;
-  std::uint32_t value_count_ = 0, unknown_count_ = 0, widest_front_ = 0;
+  std::uint32_t diagonal_count_ = 0, lower_count_ = 0, unknown_count_ = 0, widest_front_ = 0;
   std::uint32_t given_up_ = 0;  // values that `adapt` no longer uses
   std::vector<std::uint8_t> moved_;
 };

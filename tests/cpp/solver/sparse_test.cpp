@@ -53,7 +53,7 @@ struct Twin {
     };
     for (std::uint32_t i = 0; i < graph.node_count; ++i)
       for (int r = 0; r < 3; ++r) {
-        factor.lower()[pattern.node_diagonal(i) + r * (pattern.node_stride(i) + 1)] += 40;
+        factor.diagonals()[pattern.node_diagonal(i) + r * (pattern.node_stride(i) + 1)] += 40;
         dense[pattern.node_unknown(i) + r][pattern.node_unknown(i) + r] += 40;
       }
     for (auto [a, b] : graph.couplings) add_block(a, b);
@@ -61,16 +61,16 @@ struct Twin {
       const auto& constraint = graph.constraints[k];
       const auto& slot = slots[k];
       for (int r = 0; r < constraint.rows; ++r) {
-        factor.lower()[slot.diagonal + r * (slot.stride + 1)] = -0.01;
+        factor.diagonals()[slot.diagonal + r * (slot.stride + 1)] = -0.01;
         dense[slot.unknown + r][slot.unknown + r] = -0.01;
         for (int i = 0; i < constraint.node_count; ++i)
           for (int c = 0; c < 3; ++c) {
             const double in_row = number(random), in_column = symmetric ? in_row : number(random);
             const auto& g = slot.gradients[i];
             const std::uint32_t at = g.offset + r * g.row_stride + c * g.column_stride;
-            factor.lower()[at] = g.lower_is_row ? in_row : in_column;
+            (g.in_diagonal ? factor.diagonals() : factor.lower())[at] = g.lower_is_row ? in_row : in_column;
             if (!symmetric)
-              (g.in_diagonal ? factor.lower()[g.mirror + r + c * g.pivot] : factor.upper()[at]) =
+              (g.in_diagonal ? factor.diagonals()[g.offset + g.mirror + r + c * g.row_stride] : factor.upper()[at]) =
                   g.lower_is_row ? in_column : in_row;
             dense[slot.unknown + r][pattern.node_unknown(constraint.nodes[i]) + c] = in_row;
             dense[pattern.node_unknown(constraint.nodes[i]) + c][slot.unknown + r] = in_column;
@@ -107,10 +107,13 @@ struct Twin {
 
   void expect_equal_solutions() {
     const std::vector<double> expected = solve_densely();
-    EXPECT_EQ(factor.factorise(), 0) << "positive pivots for nodes, negative ones for constraints";
+    std::vector<double> along = right_side;
+    EXPECT_EQ(factor.factorise(along), 0) << "positive pivots for nodes, negative ones for constraints";
+    factor.finish(along);
     std::vector<double> x = right_side;
     factor.solve(x);
     for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i], expected[i], 1e-10);
+    EXPECT_EQ(along, x) << "the same, whichever way";
   }
 };
 
