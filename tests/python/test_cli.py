@@ -99,7 +99,11 @@ def test_headless_runs_ten_seconds_by_itself_and_takes_links() -> None:
     ("arguments", "text", "code"),
     [
         (["run", "chian"], "iota: there is no study 'chian'. Did you mean chain?", 1),
-        (["run", "zzz"], "iota: there is no study 'zzz'. There is: chain, mechanisms; or a file that ends in .py", 1),
+        (
+            ["run", "zzz"],
+            "iota: there is no study 'zzz'. There is: chain, mechanisms, weather; or a file that ends in .py",
+            1,
+        ),
         (["run", "missing.py"], "iota: there is no file missing.py", 1),
         (["run", "chain", "--links", "0"], "argument --links: must be 1 or more, not 0. Try: iota run --help", 2),
         (["run", "chain", "--seconds", "-1"], "argument --seconds: must be above 0, not -1", 2),

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Particles in a wind: a flag of springs, a fountain of sparks, beads in a bowl. Everything here is forces."""
+
+from __future__ import annotations
+
+import math
+
+import iota
+from iota import looks
+
+COLUMNS, ROWS, SPACING = 13, 8, 0.065  # of the flag; m
+BEADS, BEAD = 80, 0.035  # radius, m
+BOWL = 0.26  # radius, m
+MIDDLE = iota.Vec3(0.95, 1.25, 0)  # of the bowl, m
+WIND = iota.Vec3(4.0, 0.6, 0.6)  # m/s
+
+
+def build() -> iota.World:
+    """The world of the study."""
+    world = iota.World(iota.System(mode="robust", damping=0.05), title="weather")
+    world.classes["spring"] = {"*": looks.cylinder(0.003, "rope")}
+    flag(world, iota.Vec3(-0.75, 1.9, 0))
+    fountain(world, iota.Vec3(0.35, 0.75, 0.1))
+    beads(world, MIDDLE)
+    world.camera = iota.Camera(position=(0.18, 1.6, 2.1), target=(0.18, 1.3, 0))
+    return world
+
+
+def point(system: iota.System, place: iota.Vec3, mass: float, radius: float) -> iota.Particle:
+    """A body of one particle."""
+    particle = iota.Particle(iota.Body(system), place, mass)
+    particle.radius = radius
+    return particle
+
+
+def flag(world: iota.World, corner: iota.Vec3) -> None:
+    """A cloth of springs on a pole, in a turbulent wind that is a field; springs and wind are both implicit or exact."""
+    system = world.system
+    cloth = iota.Group(system, "cloth")
+    knots = [
+        [
+            point(system, corner + (SPACING * column, -SPACING * row, 0), mass=0.004, radius=0.006)
+            for column in range(COLUMNS)
+        ]
+        for row in range(ROWS)
+    ]
+    for row in range(ROWS):
+        cloth.add(*knots[row])
+        knots[row][0].nail()
+        for column in range(COLUMNS):
+            for other in ((row, column + 1), (row + 1, column)):
+                if other[0] < ROWS and other[1] < COLUMNS:
+                    iota.Bond(knots[row][column], knots[other[0]][other[1]], "spring", stiffness=60, damping=0.02)
+    wind = iota.Field(
+        system, "current", group=cloth, velocity=WIND, drag=0.025, speed=1.6, size=0.5, octaves=3, evolution=1.5
+    )
+    world.add_strut(
+        tuple(corner + (-0.012, 0.06, 0)), (corner.x - 0.012, 0.0, corner.z), looks.cylinder(0.012, "steel")
+    )
+
+    @world.action("calm", key="g", help="the wind drops, or comes back")
+    def calm() -> None:
+        wind.active = not wind.active
+
+    @world.action("tear", key="t", help="tears what you hold out of its threads", on="body")
+    def tear(event: iota.Event) -> None:
+        for bond in list(system.bonds):
+            if event.body in (end.body for end in bond.ends):
+                bond.destroy()
+
+
+def fountain(world: iota.World, nozzle: iota.Vec3) -> None:
+    """Sparks that are born, age, change their color and die."""
+    spout = iota.Emitter(
+        world.system,
+        rate=70, source=iota.Sphere(0.01), position=nozzle, velocity=(0, 4.2, 0), velocity_spread=0.45,
+        lifetime=1.0, lifetime_spread=0.15, mass=0.002,
+        curve=[(0, 0.007, (1, 0.95, 0.6)), (0.5, 0.012, (1, 0.5, 0.1)), (1, 0.004, (0.35, 0.05, 0.1))],
+    )  # fmt: skip
+    world.add_strut((nozzle.x, 0, nozzle.z), (nozzle.x, nozzle.y - 0.02, nozzle.z), looks.cylinder(0.03, "brass"))
+
+    @world.action("fountain", key="f", help="turns the fountain off and on")
+    def turn() -> None:
+        spout.active = not spout.active
+
+
+def beads(world: iota.World, middle: iota.Vec3) -> None:
+    """Beads that push each other away, in a bowl that they cannot leave: a pairwise law and an inequality each."""
+    system = world.system
+    group = iota.Group(system, "beads")
+    golden = math.pi * (3 - math.sqrt(5))
+    for i in range(BEADS):
+        height, turn = 1 - 2 * (i + 0.5) / BEADS, i * golden
+        around = math.sqrt(1 - height**2)
+        place = middle + iota.Vec3(around * math.cos(turn), height, around * math.sin(turn)) * (0.7 * BOWL)
+        bead = point(system, place, mass=0.05, radius=BEAD)
+        system.inside(bead, iota.Sphere(BOWL - BEAD), at=middle)
+        group.add(bead)
+        bead.color = (0.15, 0.45 + 0.4 * i / BEADS, 0.75)
+    iota.Pairs(system, "soft_repulsion", cutoff=2 * BEAD, group=group, stiffness=250, length=2 * BEAD)
+    iota.Field(system, "wind", group=group, drag=0.1)
+    for angle in (0.0, 0.4, 0.8, 1.2):
+        ring = looks.torus(BOWL * math.cos(angle), 0.004, "steel")
+        world.add_static(ring, (middle.x, middle.y - BOWL * math.sin(angle), middle.z), (0.5**0.5, 0, 0, 0.5**0.5))
+    world.add_strut((middle.x, 0, middle.z), (middle.x, middle.y - BOWL, middle.z), looks.cylinder(0.02, "steel"))

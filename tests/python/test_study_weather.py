@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import numpy as np
+
+import iota
+from iota.studies import weather
+
+
+def run(system: iota.System, seconds: float) -> None:
+    for _ in range(round(120 * seconds)):
+        report = system.step(1 / 120)
+        assert report.unconverged == 0 and report.fallbacks == 0
+
+
+def group(system: iota.System, name: str) -> list[iota.Particle]:
+    return next(g for g in system.groups if g.name == name).particles
+
+
+def test_the_flag_flies_in_the_wind_and_hangs_in_a_calm() -> None:
+    world = weather.build()
+    system = world.system
+    flag = group(system, "cloth")
+    pole = min(p.position.x for p in flag)
+    run(system, 3)
+    flying = max(p.position.x for p in flag) - pole
+    assert flying > 0.6 * weather.COLUMNS * weather.SPACING
+    world._actions["calm"].hook.function()
+    run(system, 3)
+    assert max(p.position.x for p in flag) - pole < 0.7 * flying
+
+
+def test_the_beads_stay_in_their_bowl_and_apart() -> None:
+    system = weather.build().system
+    beads = group(system, "beads")
+    run(system, 2)
+    places = np.array([p.position for p in beads])
+    assert np.linalg.norm(places - np.array(weather.MIDDLE), axis=1).max() < weather.BOWL - weather.BEAD + 1e-6
+    apart = np.linalg.norm(places[:, None] - places[None], axis=2) + 10 * np.eye(len(places))
+    assert apart.min() > weather.BEAD  # a law that pushes gives way, by less than half a bead here
+
+
+def test_sparks_are_born_and_die_at_the_same_rate() -> None:
+    system = weather.build().system
+    run(system, 1.5)
+    count = len(system.bodies)
+    run(system, 1)
+    assert abs(len(system.bodies) - count) < 25
+    assert len(system.bodies) > weather.COLUMNS * weather.ROWS + weather.BEADS + 40
