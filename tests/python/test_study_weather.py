@@ -47,3 +47,13 @@ def test_sparks_are_born_and_die_at_the_same_rate() -> None:
     run(system, 1)
     assert abs(len(system.bodies) - count) < 25
     assert len(system.bodies) > weather.COLUMNS * weather.ROWS + weather.BEADS + 40
+
+
+def test_a_knot_that_is_torn_out_goes_with_the_wind() -> None:
+    world = weather.build()
+    knot = group(world.system, "cloth")[-1]
+    bonds = len(world.system.bonds)
+    world._actions["tear"].hook.function(iota.world.Event(world, "tear", target=knot.body))
+    assert len(world.system.bonds) == bonds - 2  # a corner
+    run(world.system, 1)
+    assert knot.position.x > 1  # gone with the wind
