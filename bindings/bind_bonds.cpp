@@ -5,6 +5,7 @@
 #include "restructure_result.h"
 
 #include <cmath>
+#include <limits>
 
 namespace iota::bindings {
 
@@ -27,7 +28,7 @@ constexpr const char* state_doc =
     "step, half a step ahead as velocities go; see docs/forces.md.";
 
 void make_bond(BondHandle* self, const ParticleHandle& p, const ParticleHandle& q, nb::object law,
-               std::optional<bool> implicit, const nb::kwargs& keywords) {
+               std::optional<bool> implicit, double break_force, const nb::kwargs& keywords) {
   check_one_system(p, q, "Bond");
   p.use();
   q.use();
@@ -56,6 +57,7 @@ void make_bond(BondHandle* self, const ParticleHandle& p, const ParticleHandle& 
   }
   const BondId id = engine.create_bond(p.id, q.id, std::move(engine_law));
   if (function) function->bond = id;
+  if (std::isfinite(break_force)) engine.set_break_force(id, break_force);
   new (self) BondHandle{p.system_object, p.system, id};
 }
 
@@ -85,11 +87,12 @@ std::string repr(const BondHandle& self) {
 void bind_bond(nb::module_& module) {
   nb::class_<BondHandle> type(module, "Bond", bond_doc, nb::type_slots(handle_slots<BondHandle>),
                               nb::is_weak_referenceable());
-  type.def("__init__", &make_bond, "p"_a, "q"_a, "law"_a, nb::kw_only(), "implicit"_a = nb::none(), "parameters"_a,
+  type.def("__init__", &make_bond, "p"_a, "q"_a, "law"_a, nb::kw_only(), "implicit"_a = nb::none(),
+           "break_force"_a = std::numeric_limits<double>::infinity(), "parameters"_a,
            nb::sig("def __init__(self, p: Particle, q: Particle, law: str | Law | "
                    "collections.abc.Callable[[BondState], Vec3 | collections.abc.Sequence[float] | "
                    "numpy.typing.NDArray[numpy.float64]], *, implicit: bool | None = None, "
-                   "**parameters: float | None) -> None"));
+                   "break_force: float = inf, **parameters: float | None) -> None"));
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const BondHandle& self) { return self.is_alive(); },
@@ -107,7 +110,21 @@ void bind_bond(nb::module_& module) {
             self.use();
             self.system->use_between_steps("active = ...").set_active(self.id, active);
           },
-          "False while it is switched off.")
+          "False while it is switched off or broken; True repairs it.")
+      .def_prop_ro(
+          "force", [](const BondHandle& self) { return self.use().force(self.id); },
+          "On its first particle, N (the second gets the opposite): of an implicit bond here and now, of a held one in the "
+          "last step.")
+      .def_prop_rw(
+          "break_force", [](const BondHandle& self) { return self.use().break_force(self.id); },
+          [](const BondHandle& self, double force) {
+            self.use();
+            self.system->use_between_steps("break_force = ...").set_break_force(self.id, force);
+          },
+          "N; beyond it the bond is switched off at the end of a step: see `System.broken`. inf: never.")
+      .def_prop_ro(
+          "broken", [](const BondHandle& self) { return self.use().is_broken(self.id); },
+          "By a load beyond break_force.")
       .def_prop_ro(
           "law", [](const BondHandle& self) { return sibling(self, self.use().law(self.id)); }, "Its Law.")
       .def_prop_ro(

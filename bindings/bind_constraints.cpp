@@ -379,20 +379,26 @@ struct BrokenView {
 };
 
 void bind_broken(nb::module_& module) {
-  nb::class_<BrokenView>(module, "Broken", "A constraint, hinge or nail that a load beyond its limit broke.")
+  nb::class_<BrokenView>(module, "Broken", "A constraint, bond, hinge or nail that a load beyond its limit broke.")
       .def_prop_ro(
           "constraint",
           [](const BrokenView& self) {
             return self.broken.constraint ? nb::cast(sibling(self, self.broken.constraint)) : nb::none();
           },
-          nb::sig("def constraint(self) -> Constraint | None"), "Now inactive; None where a hinge or nail broke.")
+          nb::sig("def constraint(self) -> Constraint | None"), "Now inactive; None where something else broke.")
+      .def_prop_ro(
+          "bond",
+          [](const BrokenView& self) {
+            return self.broken.bond ? nb::cast(sibling(self, self.broken.bond)) : nb::none();
+          },
+          nb::sig("def bond(self) -> Bond | None"), "Now inactive; None where something else broke.")
       .def_prop_ro(
           "particle",
           [](const BrokenView& self) {
             return self.broken.particle ? nb::cast(sibling(self, self.broken.particle)) : nb::none();
           },
           nb::sig("def particle(self) -> Particle | None"),
-          "That left its hinge or lost its nail; None where a constraint broke.")
+          "That left its hinge or lost its nail; None where something else broke.")
       .def_prop_ro(
           "position", [](const BrokenView& self) { return self.broken.position; }, "m")
       .def_prop_ro(
@@ -400,8 +406,9 @@ void bind_broken(nb::module_& module) {
       .def_prop_ro(
           "torque", [](const BrokenView& self) { return self.broken.torque; }, "N m")
       .def("__repr__", [](const BrokenView& self) {
-        const std::string what =
-            self.broken.constraint ? name_of(self.broken.constraint) : name_of(self.broken.particle);
+        const std::string what = self.broken.constraint ? name_of(self.broken.constraint)
+                                 : self.broken.bond     ? name_of(self.broken.bond)
+                                                        : name_of(self.broken.particle);
         return "<Broken: " + what + " at " + std::to_string(self.broken.force) + " N, " +
                std::to_string(self.broken.torque) + " N m>";
       });

@@ -22,10 +22,11 @@ struct Energy {
   double total() const { return kinetic + potential; }
 };
 
-/// A constraint, hinge or nail that a load beyond its limit broke at the end of a step.
+/// A constraint, bond, hinge or nail that a load beyond its limit broke at the end of a step.
 struct Broken {
-  ConstraintId constraint;  ///< now inactive; null where a particle's hinge or nail broke
-  ParticleId particle;      ///< that left its ring or lost its nail; null where a constraint broke
+  ConstraintId constraint;  ///< now inactive; else null
+  BondId bond;              ///< now inactive; else null
+  ParticleId particle;      ///< that left its ring or lost its nail; else null
   Vec3 position;            ///< m
   double force = 0;         ///< N
   double torque = 0;        ///< N m

@@ -311,7 +311,12 @@ class System {
   std::pair<ParticleId, ParticleId> ends(BondId) const;
   std::pair<ParticleId, ParticleId> ends(CosmeticBondId) const;
   bool is_active(BondId) const;
-  void set_active(BondId, bool);
+  void set_active(BondId, bool);  ///< true repairs a broken one
+  /// On the first particle, N (the second gets the opposite): of an implicit bond here and now, of a held one in the last step.
+  Vec3 force(BondId) const;
+  void set_break_force(BondId, double newtons);  ///< beyond it the bond is switched off at the end of a step
+  double break_force(BondId) const;              ///< N; infinite: never
+  bool is_broken(BondId) const;
   LawId law(BondId) const;
   std::string_view kind(LawId) const;   ///< predefined, expression, function (of one bond each), compiled, arrays
   std::string expression(LawId) const;  ///< its expression, empty for code

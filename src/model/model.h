@@ -192,9 +192,11 @@ struct Bond : Ends {
   std::uint32_t law = spring_law;
   std::uint8_t active = 1;
   std::uint8_t implicit = 1;
-  std::uint8_t muted = 0;  ///< one of its ends does not act
-  std::uint8_t padding = 0;
+  std::uint8_t muted = 0;   ///< one of its ends does not act
+  std::uint8_t broken = 0;  ///< by more than `break_force`
   std::array<double, laws::max_parameters> parameters{};
+  double break_force = std::numeric_limits<double>::infinity();  ///< N
+  Vec3 held_force;           ///< on p in the last step, N; of bonds that are not implicit
   std::uint64_t script = 0;  ///< key of its own function, which lives outside the tables
 
   /// Whether it is solved implicitly, so that its two ends belong to one problem.

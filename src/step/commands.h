@@ -191,6 +191,10 @@ struct SetBreakForce {
   ParticleId particle;
   double force;
 };
+struct SetBondBreakForce {
+  BondId bond;
+  double force;
+};
 struct SetConstraintActive {
   ConstraintId constraint;
   bool active;
@@ -339,7 +343,7 @@ using Command = std::variant<
     SetConstraintActive,
     SetCoordinate,
     SetLength,
-    SetBreakLimits, SetBreakForce, Destroy<ConstraintId>>;
+    SetBreakLimits, SetBreakForce, SetBondBreakForce, Destroy<ConstraintId>>;
 // clang-format on
 
 template <class C>

@@ -232,6 +232,13 @@ void System::Implementation::apply(const step::SetBreakForce& c) {
   model.set_fuse(particle, c.force);
 }
 
+void System::Implementation::apply(const step::SetBondBreakForce& c) {
+  const std::uint32_t bond = require(c.bond);
+  require_limits({.force = c.force});
+  model.bonds[bond].break_force = c.force;
+  ++model.bonds_revision;
+}
+
 void System::Implementation::apply(const step::Destroy<ConstraintId>& c) {
   const std::uint32_t slot = require(c.id);
   model.edit_energy -= model.constraint_energy(slot);
@@ -265,14 +272,27 @@ void System::Implementation::break_overloaded(StepReport& report) {
     const Reaction reaction = calc_reaction(model, slot);
     const double force = norm(reaction.force), torque = norm(reaction.torque);
     if (!(force > c.breaks.force || torque > c.breaks.torque)) continue;
-    report.broken.push_back({model.constraints.id(slot), {}, reaction.position, force, torque});
+    report.broken.push_back(
+        {.constraint = model.constraints.id(slot), .position = reaction.position, .force = force, .torque = torque});
     apply(SetConstraintActive{model.constraints.id(slot), false});
     model.constraints[slot].broken = 1;
+  }
+  held_forces.update(model);
+  for (const std::uint32_t slot : held_forces.breakable) {
+    model::Bond& bond = model.bonds[slot];
+    const double force = norm(bond_force(slot));
+    if (!(force > bond.break_force)) continue;
+    const Vec3 middle = 0.5 * (model.position(bond.p) + model.position(bond.q));
+    report.broken.push_back({.bond = model.bonds.id(slot), .position = middle, .force = force});
+    apply(SetActive{model.bonds.id(slot), false});
+    bond.broken = 1;
   }
   std::vector<Broken> overloaded;
   model.fuses.for_each([&](std::uint32_t particle, double most) {
     const double force = norm(calc_hinge_force(model, particle));
-    if (force > most) overloaded.push_back({{}, model.particles.id(particle), model.position(particle), force, 0});
+    if (force > most)
+      overloaded.push_back(
+          {.particle = model.particles.id(particle), .position = model.position(particle), .force = force});
   });
   for (const Broken& broken : overloaded) {
     const model::Ring& ring = model.rings[model.particles[broken.particle.slot].ring];
@@ -353,6 +373,11 @@ const CoordinateOptions& System::coordinate(ConstraintId id, JointCoordinate coo
   return c.options[static_cast<std::size_t>(coordinate)];
 }
 void System::set_break_force(ParticleId id, double force) { implementation_->execute(SetBreakForce{id, force}); }
+void System::set_break_force(BondId id, double force) { implementation_->execute(SetBondBreakForce{id, force}); }
+double System::break_force(BondId id) const {
+  return implementation_->model.bonds[implementation_->require(id)].break_force;
+}
+bool System::is_broken(BondId id) const { return implementation_->model.bonds[implementation_->require(id)].broken; }
 double System::break_force(ParticleId id) const {
   const model::Model& m = implementation_->model;
   const double* const force = m.fuses.find(implementation_->require(id));

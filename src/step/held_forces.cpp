@@ -32,7 +32,7 @@ void put(double* out, std::size_t row, const Vec3& v) {
 void HeldForces::update(const model::Model& model) {
   if (seen_revision == model.bonds_revision) return;
   seen_revision = model.bonds_revision;
-  held.clear(), watched.clear();
+  held.clear(), watched.clear(), breakable.clear();
   std::vector<std::uint32_t> place_held(model.laws.slot_count(), model::none), place_watched = place_held;
   const auto put = [&](std::vector<LawBatch>& batches, std::uint32_t& place, std::uint32_t slot, std::uint32_t law) {
     if (place == model::none) {
@@ -43,7 +43,9 @@ void HeldForces::update(const model::Model& model) {
     batches[place].ids.push_back(model.bonds.id(slot));
   };
   model.bonds.for_each([&](std::uint32_t slot, const model::Bond& bond) {
-    if (bond.law == model::scripted_law || !bond.acts()) return;
+    if (!bond.acts()) return;
+    if (std::isfinite(bond.break_force)) breakable.push_back(slot);
+    if (bond.law == model::scripted_law) return;
     if (!bond.implicit)
       put(held, place_held[bond.law], slot, bond.law);
     else if (!is_tame(model.laws[bond.law]))
@@ -98,7 +100,9 @@ void System::Implementation::switch_off(std::uint32_t slot, const std::string& w
       text("bond ", slot, law.empty() ? "" : " (" + law + ")", why, "; the bond is switched off"));
 }
 
-void System::Implementation::add_force(const model::Bond& bond, const Vec3& on_p) {
+void System::Implementation::add_force(std::uint32_t slot, const Vec3& on_p) {
+  model::Bond& bond = model.bonds[slot];
+  bond.held_force = on_p;
   model.pushes.make(model.particles[bond.p].ring).force += on_p;
   model.pushes.make(model.particles[bond.q].ring).force -= on_p;
 }
@@ -155,7 +159,7 @@ void System::Implementation::run_held_law(LawBatch& batch, double ahead, StepRep
     Vec3 on_p = -batch.force[i] * batch.direction[i];
     if (has_drag) on_p += batch.drag[i] * batch.rate[i];
     if (is_finite(on_p))
-      add_force(model.bonds[batch.bonds[i]], on_p);
+      add_force(batch.bonds[i], on_p);
     else
       switch_off(batch.bonds[i], not_finite(batch, i), report);
   }
@@ -216,7 +220,7 @@ void System::Implementation::run_batch_function(LawBatch& batch, double ahead, S
     const double* const f = batch.force_rows.data() + 3 * i;
     const Vec3 on_p{f[0], f[1], f[2]};
     if (is_finite(on_p))
-      add_force(model.bonds[batch.bonds[i]], on_p);
+      add_force(batch.bonds[i], on_p);
     else
       switch_off(batch.bonds[i], text(": its function gave the force ", text_of(on_p)), report);
   }
@@ -240,7 +244,7 @@ void System::Implementation::run_scripts(StepReport& report) {
       const Vec3 force = script->second.force({model.bonds.id(slot), p.position + ahead * p.velocity,
                                                q.position + ahead * q.velocity, p.velocity, q.velocity, model.time});
       if (is_finite(force))
-        add_force(bond, force);
+        add_force(slot, force);
       else
         switch_off(slot, name() + " returned a force that is not finite", report);
     } catch (const std::exception& error) {
@@ -250,6 +254,20 @@ void System::Implementation::run_scripts(StepReport& report) {
     }
   }
 }
+
+// --- what bonds carry ---------------------------------------------------------------------------------------------------
+
+Vec3 System::Implementation::bond_force(std::uint32_t slot) {
+  const model::Bond& bond = model.bonds[slot];
+  if (!bond.acts()) return {};
+  if (!bond.implicit) return bond.held_force;
+  bond_alone.law = bond.law, bond_alone.bonds.assign(1, slot);
+  bond_alone.load(model, 0);
+  evaluate(bond_alone, model.time);
+  return -bond_alone.force[0] * bond_alone.direction[0] + bond_alone.drag[0] * bond_alone.rate[0];
+}
+
+Vec3 System::force(BondId id) const { return implementation_->bond_force(implementation_->require(id)); }
 
 // --- what forces cost -------------------------------------------------------------------------------------------------
 

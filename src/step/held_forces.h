@@ -29,6 +29,7 @@ struct HeldForces {
   void forget() { seen_revision = ~0ull; }
 
   std::vector<LawBatch> held, watched;
+  std::vector<std::uint32_t> breakable;  ///< bonds that act and break beyond some force
   std::uint64_t seen_revision = ~0ull;
 };
 

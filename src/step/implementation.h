@@ -27,6 +27,7 @@ struct System::Implementation {
   model::Model model;
   step::Islands islands;
   step::HeldForces held_forces;
+  step::LawBatch bond_alone;  ///< room for `bond_force`
   step::ParticleSets particle_sets;
   Parallel parallel;
   std::vector<solver::AdvanceReport> advanced;   // of each island, in the step at hand
@@ -104,6 +105,7 @@ struct System::Implementation {
   void apply(const step::SetLength&);
   void apply(const step::SetBreakLimits&);
   void apply(const step::SetBreakForce&);
+  void apply(const step::SetBondBreakForce&);
   void apply(const step::Destroy<ConstraintId>&);
   void apply(const step::SetParticleActive&);
   void apply(const step::SetRest&);
@@ -211,7 +213,8 @@ struct System::Implementation {
   std::size_t rehearse_pairs(std::uint32_t pairs, double h);
   void evaluate(step::LawBatch&, double time);
   bool has_function(const step::LawBatch&, StepReport&);
-  void add_force(const model::Bond&, const Vec3& on_p);
+  void add_force(std::uint32_t bond, const Vec3& on_p);
+  Vec3 bond_force(std::uint32_t bond);  ///< on its first particle, N
   void switch_off(std::uint32_t bond, const std::string& why, StepReport&);
   ///@}
   void live(StepReport&);  ///< particles age, turn, die and are born

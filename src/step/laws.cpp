@@ -110,9 +110,11 @@ void System::Implementation::apply(const step::SetActive& c) {
   if (bond.active == static_cast<std::uint8_t>(c.active)) return;
   const double before = model.bond_energy(slot);
   bond.active = c.active;
+  bond.broken = 0;
   ++model.bonds_revision;
   for (const std::uint32_t end : {bond.p, bond.q}) model.touch_particle(end);
   model.edit_energy += model.bond_energy(slot) - before;
+  structure_changed();
 }
 
 void System::Implementation::apply(const step::Destroy<BondId>& c) {

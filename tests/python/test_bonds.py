@@ -220,3 +220,25 @@ def test_methods_partials_and_objects_serve_as_functions(space: iota.System, pai
     iota.Bond(*pair, Pull().__call__)
     space.step(0.1)
     assert pair[0].velocity.x == pytest.approx(0.2)
+
+
+def test_a_bond_tells_its_force_breaks_and_is_mended() -> None:
+    system = iota.System(mode="robust")
+    hook = iota.Particle(iota.Body(system))
+    weight = iota.Particle(iota.Body(system), position=(0, -1, 0), mass=2)
+    hook.nail()
+    thread = iota.Bond(hook, weight, "spring", stiffness=1000, damping=40, length=1, break_force=25)
+    for _ in range(240):
+        system.step(1 / 120)
+    assert abs(thread.force.y + 2 * 9.81) < 1e-3 and not thread.broken
+    weight.apply_force((0, -100, 0))
+    system.step(1 / 120)
+    (broken,) = system.broken
+    assert broken.bond == thread and broken.constraint is None and broken.particle is None and broken.force > 25
+    assert thread.broken and not thread.active and abs(thread.force) == 0
+    assert "bond" in repr(broken)
+    thread.break_force = math.inf
+    thread.active = True
+    assert thread.active and not thread.broken
+    with pytest.raises(ValueError, match="break_force"):
+        thread.break_force = -1

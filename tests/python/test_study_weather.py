@@ -57,3 +57,19 @@ def test_a_knot_that_is_torn_out_goes_with_the_wind() -> None:
     assert len(world.system.bonds) == bonds - 2  # a corner
     run(world.system, 1)
     assert knot.position.x > 1  # gone with the wind
+
+
+def test_the_flag_tears_where_it_is_pulled_too_hard_but_not_in_the_wind() -> None:
+    system = weather.build().system
+    flag = group(system, "cloth")
+    run(system, 3)
+    assert not any(bond.broken for bond in system.bonds)
+    held = flag[-1]
+    grip = iota.Grip(held.body, target=held.position)
+    start, torn = held.position, []
+    for step in range(120):
+        grip.move(start + (0.02 * step, 0, 0))
+        assert system.step(1 / 120).unconverged == 0
+        torn += system.broken
+    assert torn and all(broken.bond.broken and broken.force > 6 for broken in torn)
+    assert len(torn) < 20  # and the rest goes on flying

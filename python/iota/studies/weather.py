@@ -34,7 +34,7 @@ def point(system: iota.System, place: iota.Vec3, mass: float, radius: float) -> 
 
 
 def flag(world: iota.World, corner: iota.Vec3) -> None:
-    """A cloth of springs on a pole, in a turbulent wind that is a field; springs and wind are both implicit or exact."""
+    """A cloth of springs on a pole, in a turbulent wind that is a field. It tears where somebody pulls too hard."""
     system = world.system
     cloth = iota.Group(system, "cloth")
     knots = [
@@ -50,7 +50,14 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
         for column in range(COLUMNS):
             for other in ((row, column + 1), (row + 1, column)):
                 if other[0] < ROWS and other[1] < COLUMNS:
-                    iota.Bond(knots[row][column], knots[other[0]][other[1]], "spring", stiffness=60, damping=0.02)
+                    iota.Bond(
+                        knots[row][column],
+                        knots[other[0]][other[1]],
+                        "spring",
+                        stiffness=60,
+                        damping=0.02,
+                        break_force=6,
+                    )
     wind = iota.Field(
         system, "current", group=cloth, velocity=WIND, drag=0.025, speed=1.6, size=0.5, octaves=3, evolution=1.5
     )

@@ -320,5 +320,60 @@ TEST(Law, BadOnesAreRefusedBeforeAnythingChanges) {
   EXPECT_THROW(system.create_bond(p, q, SharedLaw{code}), StaleIdError);
 }
 
+TEST(Bonds, TellWhatTheyCarryWhicheverWayTheyAreWritten) {
+  const std::vector<LawParameter> parameters{{"k", 20}, {"r0", 0.5}};
+  const double weight = 0.3 * 9.81;
+  for (const int way : {0, 1, 2, 3, 4}) {
+    System system(SystemOptions{.mode = IntegrationMode::robust, .damping = 2});
+    const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}, 1);
+    const ParticleId q = system.create_particle(system.create_body(), {0, -0.5 - weight / 20, 0}, 0.3);
+    system.nail(p);
+    const BondLaw laws[] = {SpringLaw{20, 0.1, 0.5},
+                            SharedLaw{system.create_law("energy = 0.5*k*(r - r0)^2; drag = 0.1", {"", parameters})},
+                            SharedLaw{system.create_law(&compiled_spring, {"", parameters})},
+                            SharedLaw{system.create_law(batch_spring(), {"", parameters})},
+                            ScriptedLaw{[](const BondState& b) {
+                              const Vec3 d = b.position_q - b.position_p;
+                              return 20 * (norm(d) - 0.5) / norm(d) * d;
+                            }}};
+    const BondId bond = system.create_bond(p, q, laws[way]);
+    for (int i = 0; i < 240; ++i) (void)system.step(1.0 / 120);
+    EXPECT_NEAR(system.force(bond).y, -weight, 1e-6) << way;
+    EXPECT_NEAR(norm(system.force(bond)), norm(system.nail_force(p)) - 9.81, 1e-6) << way;  // and the weight of p
+    system.set_active(bond, false);
+    EXPECT_EQ(norm(system.force(bond)), 0);
+  }
+}
+
+TEST(Bonds, BreakBeyondTheirForceAndAreMended) {
+  System system(SystemOptions{.mode = IntegrationMode::robust, .damping = 2});
+  const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}, 1);
+  const ParticleId q = system.create_particle(system.create_body(), {0, -0.6, 0}, 0.3);
+  system.nail(p);
+  const double weight = 0.3 * 9.81;
+  const BondId bond = system.create_bond(p, q, SpringLaw{weight / 0.1, 0, 0.5});
+  system.set_break_force(bond, 1.5 * weight);
+  for (int i = 0; i < 60; ++i) EXPECT_TRUE(system.step(1.0 / 120).broken.empty());
+  const auto ticket = system.snapshot();
+  for (const bool again : {false, true}) {  // limits are part of a snapshot
+    if (again) system.restore(ticket);
+    system.apply_force(q, {0, -40 * weight, 0});
+    int steps = 0;
+    StepReport report = system.step(1.0 / 120);
+    for (; report.broken.empty() && steps < 100; ++steps) report = system.step(1.0 / 120);
+    ASSERT_EQ(report.broken.size(), 1u);
+    EXPECT_EQ(report.broken[0].bond, bond);
+    EXPECT_FALSE(report.broken[0].constraint);
+    EXPECT_GT(report.broken[0].force, 1.5 * weight);
+    EXPECT_TRUE(system.is_broken(bond));
+    EXPECT_FALSE(system.is_active(bond));
+    EXPECT_TRUE(system.validate().empty());
+  }
+  system.set_active(bond, true);
+  EXPECT_FALSE(system.is_broken(bond));
+  EXPECT_THROW(system.set_break_force(bond, -1), std::invalid_argument);
+  EXPECT_THROW(system.set_break_force(bond, std::nan("")), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace iota
