@@ -300,6 +300,8 @@ class Model {
   std::uint64_t step = 0;
   std::uint32_t structure_version = 1;
   double dissipated = 0, external_work = 0, edit_energy = 0;
+  double booked_energy = 0;        ///< kinetic and potential energy when edits were last booked, J
+  std::uint64_t has_edits = 0;     ///< since then
   std::vector<std::string> notes;  ///< of edits that have no report, for the next step's; not saved
 
   /// @name Membership: cheap links only, no physics
@@ -494,7 +496,8 @@ class Model {
 
   /// @name Quantities
   ///@{
-  double kinetic_energy() const;                 ///< J
+  double kinetic_energy() const;  ///< J
+  double energy() const { return kinetic_energy() + potential_energy(); }
   double potential_energy() const;               ///< gravity and springs, J
   double bond_energy(std::uint32_t bond) const;  ///< J; of implicit bonds, at `time`
   /// Of its springs at the coordinates it was last seen at, J.
@@ -502,9 +505,14 @@ class Model {
   Vec3 bond_force(std::uint32_t bond) const;  ///< on its second particle, as things stand, N
   /// The two ends of a bond for its law: distance and its rate (positions `ahead` seconds on), time, masses.
   laws::PairState bond_state(const Bond& bond, double ahead = 0) const;
-  Vec3 momentum() const;          ///< kg m/s
-  Vec3 angular_momentum() const;  ///< about the origin, kg m^2/s
-  double worst_gap() const;       ///< over rigid distances, tied points, nails and constraints, m
+  /// What edits change is the difference of the energy before the first and after the last of them: one sum for all,
+  /// whatever they did. Between steps `booked_energy` is that of the end of the last step.
+  void begin_edits();
+  void book_edits(double energy_now);
+  double energy_of_edits() const;  ///< those not booked yet included, J
+  Vec3 momentum() const;           ///< kg m/s
+  Vec3 angular_momentum() const;   ///< about the origin, kg m^2/s
+  double worst_gap() const;        ///< over rigid distances, tied points, nails and constraints, m
   ///@}
 
   std::vector<std::string> validate() const;
@@ -601,7 +609,7 @@ void Model::archive(Archive& ar) {
   more_rows.archive(ar, bodies.slot_count());
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version);
-  ar.value(dissipated), ar.value(external_work), ar.value(edit_energy);
+  ar.value(dissipated), ar.value(external_work), ar.value(edit_energy), ar.value(booked_energy), ar.value(has_edits);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
   if constexpr (std::is_same_v<Archive, Reader>) compile_laws();
 }

@@ -104,6 +104,18 @@ double Model::constraint_energy(std::uint32_t slot) const {
   return energy;
 }
 
+void Model::begin_edits() {
+  if (!has_edits) booked_energy = energy();
+  has_edits = 1;
+}
+
+void Model::book_edits(double energy_now) {
+  if (has_edits) edit_energy += energy_now - booked_energy;
+  booked_energy = energy_now, has_edits = 0;
+}
+
+double Model::energy_of_edits() const { return edit_energy + (has_edits ? energy() - booked_energy : 0); }
+
 Vec3 Model::momentum() const {
   Vec3 sum;
   particles.for_each([&](std::uint32_t, const Particle& p) {

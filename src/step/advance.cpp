@@ -42,9 +42,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
     if (a.disturbed) disturbed.push_back(slot);
     a.jolted = a.disturbed = 0;
   });
-  const bool unsettled = !jolted.empty() || model.is_touched();
-  const double before = unsettled ? model.kinetic_energy() + model.potential_energy() : 0;
-  islands.update(model, parallel);
+  if (islands.update(model, parallel) || !jolted.empty()) model.has_edits = 1;
   for (const std::uint32_t articulate : disturbed) {
     if (step::Island* const island = islands.of_articulate(articulate))
       island->disturb();
@@ -53,7 +51,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
   }
   for (const std::uint32_t articulate : jolted)
     if (step::Island* const island = islands.of_articulate(articulate)) (void)island->settle(model, false);
-  if (unsettled) model.edit_energy += model.kinetic_energy() + model.potential_energy() - before;
+  if (model.has_edits) model.book_edits(model.energy());
 
   // 3. Every island by itself, on as many threads as pay; reports are added up in a fixed order.
   const auto all = islands.all();
@@ -97,8 +95,9 @@ StepReport System::Implementation::apply(const step::Step& command) {
   report.step = model.step;
   report.time = model.time;
   report.worst_gap = model.worst_gap();
-  report.energy = {model.kinetic_energy(), model.potential_energy(), model.dissipated, model.external_work,
-                   model.edit_energy};
+  const double kinetic = model.kinetic_energy(), potential = model.potential_energy();
+  model.book_edits(kinetic + potential);
+  report.energy = {kinetic, potential, model.dissipated, model.external_work, model.edit_energy};
   report.articulates = model.articulates.size();
   report.structure_version = model.structure_version;
   if (recording) recording->hashes.push_back(model.hash());
@@ -114,6 +113,7 @@ void System::Implementation::finish_closings(StepReport& report) {
   });
   for (const auto& [closing, combine] : met) {
     if (!model.closings.contains(closing)) continue;  // an earlier one has settled it
+    model.begin_edits();
     try {
       const RestructureReport met_now = apply(combine);
       report.unconverged += met_now.remaining_gap > 0;
@@ -129,7 +129,8 @@ void System::Implementation::apply_queue(StepReport& report) {
   if (queue.empty()) return;
   report.edits.emplace();
   report.edits->articulates_before = model.articulates.size();
-  const double energy = model.edit_energy;
+  model.begin_edits();
+  const double energy = model.energy_of_edits();
   const std::uint32_t version = model.structure_version;
   std::vector<step::Command> edits;
   edits.swap(queue);
@@ -150,7 +151,7 @@ void System::Implementation::apply_queue(StepReport& report) {
   report.edits->changed = model.structure_version != version;
   report.edits->articulates_after = model.articulates.size();
   report.edits->structure_version = model.structure_version;
-  report.edits->energy_change = model.edit_energy - energy;
+  report.edits->energy_change = model.energy_of_edits() - energy;
 }
 
 }  // namespace iota

@@ -134,7 +134,6 @@ void System::Implementation::apply(const step::AddCurvePoints& c) {
 
 ConstraintId System::Implementation::made(std::uint32_t slot) {
   step::start_contact(model, slot);
-  model.edit_energy += model.constraint_energy(slot);
   constraint_changed(slot);
   return model.constraints.id(slot);
 }
@@ -181,11 +180,9 @@ void System::Implementation::apply(const step::SetConstraintActive& c) {
   model::Constraint& constraint = model.constraints[slot];
   constraint.broken = 0;
   if (constraint.active == static_cast<std::uint8_t>(c.active)) return;
-  model.edit_energy -= model.constraint_energy(slot);
   constraint.active = c.active;
   if (c.active) model.make_geometry_anew(slot);  // a surface that has failed gets another chance
   step::refresh_coordinates(model, slot);
-  model.edit_energy += model.constraint_energy(slot);
   constraint.multipliers.fill(0), constraint.efforts = {}, constraint.gap = 0;
   constraint_changed(slot);
 }
@@ -200,9 +197,7 @@ void System::Implementation::apply(const step::SetCoordinate& c) {
   require_options(angle ? "angle" : "slide", c.options);
   CoordinateOptions& options = constraint.options[static_cast<std::size_t>(c.coordinate)];
   const bool same_rows = rows_of(options) == rows_of(c.options);
-  model.edit_energy -= model.constraint_energy(slot);
   options = c.options;
-  model.edit_energy += model.constraint_energy(slot);
   if (same_rows) return wake(slot);
   const RowsOf rows = rows_of(options);
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -241,7 +236,6 @@ void System::Implementation::apply(const step::SetBondBreakForce& c) {
 
 void System::Implementation::apply(const step::Destroy<ConstraintId>& c) {
   const std::uint32_t slot = require(c.id);
-  model.edit_energy -= model.constraint_energy(slot);
   if (!recording)
     for (const model::SurfaceData& surface : model.constraints[slot].surfaces)
       if (surface.function >= scripts_saved_below) model.surface_functions.erase(surface.function);
@@ -274,6 +268,7 @@ void System::Implementation::break_overloaded(StepReport& report) {
     if (!(force > c.breaks.force || torque > c.breaks.torque)) continue;
     report.broken.push_back(
         {.constraint = model.constraints.id(slot), .position = reaction.position, .force = force, .torque = torque});
+    model.begin_edits();
     apply(SetConstraintActive{model.constraints.id(slot), false});
     model.constraints[slot].broken = 1;
   }
@@ -294,6 +289,7 @@ void System::Implementation::break_overloaded(StepReport& report) {
       overloaded.push_back(
           {.particle = model.particles.id(particle), .position = model.position(particle), .force = force});
   });
+  if (!overloaded.empty()) model.begin_edits();
   for (const Broken& broken : overloaded) {
     const model::Ring& ring = model.rings[model.particles[broken.particle.slot].ring];
     if (ring.count > 1)

@@ -59,7 +59,7 @@ EditBatch::EditBatch(const model::Model& model, Snapshot start)
       bodies_(alive_in<BodyId>(model.bodies)),
       particles_(alive_in<ParticleId>(model.particles)),
       version_(model.structure_version),
-      edit_energy_(model.edit_energy) {
+      edit_energy_(model.energy_of_edits()) {
   report_.articulates_before = model.articulates.size();
 }
 
@@ -78,7 +78,7 @@ RestructureReport EditBatch::finish(const model::Model& model) {
   forget_absorbed(report_.destroyed_particles, report_.absorbed_particles);
   report_.articulates_after = model.articulates.size();
   report_.structure_version = model.structure_version;
-  report_.energy_change = model.edit_energy - edit_energy_;
+  report_.energy_change = model.energy_of_edits() - edit_energy_;
   return std::move(report_);
 }
 

@@ -255,15 +255,13 @@ ParticleId System::Implementation::apply(const CreateAttachment& c) {
         text("create_attachment: something is hinged, nailed or bonded to the own four points of "
              "body ",
              body, ", which therefore cannot give; use attachments for that"));
-  // Velocities of the mid-point rule are rigid on the average only, so a new basis may carry the others differently.
-  const double before = conserved(std::array{body}).energy();
   const std::uint32_t particle = attach(model, solid, c.position);
+  // Velocities of the mid-point rule are rigid on the average only, so a new basis may carry the others differently.
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     if (model.is_unknown(model.particles[p])) return;
     model::Ring& ring = model.rings[model.particles[p].ring];
     std::tie(ring.position, ring.velocity) = model.carried(p);
   });
-  model.edit_energy += conserved(std::array{body}).energy() - before;
   jolt(particle);
   structure_changed();
   return model.particles.id(particle);
@@ -291,8 +289,6 @@ void System::Implementation::apply(const SetPose& c) {
         body, [&](std::uint32_t p) { apply(Nail{model.particles.id(p), false, moved(model.position(p))}); });
     return;
   }
-  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
-  const Conserved before = conserved(affected);
   std::vector<std::uint32_t> rings;
   double mass = 0;
   Vec3 momentum;
@@ -317,19 +313,16 @@ void System::Implementation::apply(const SetPose& c) {
   model.bodies[body].orientation = wanted;
   oriented_step = ~0ull;
   jolt(model.bodies[body].first);
-  model.edit_energy += conserved(affected).energy() - before.energy();
 }
 
 void System::Implementation::put_to_rest(std::uint32_t body) {
   islands.update(model, parallel);
   const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
-  const double energy = conserved(affected).energy();
   const std::uint32_t articulate = model.bodies[body].articulate;
   if (const step::Island* const island = islands.of_articulate(articulate))
     island->put_to_rest(model);
   else
     step::FreeParticles::put_to_rest(model, articulate);
-  model.edit_energy += conserved(affected).energy() - energy;
   for (const std::uint32_t b : affected) {
     model::Articulate& a = model.articulates[model.bodies[b].articulate];
     a.disturbed = a.jolted = 0;
@@ -340,8 +333,6 @@ void System::Implementation::apply(const SetParticleActive& c) {
   const std::uint32_t slot = require(c.particle);
   model::Particle& p = model.particles[slot];
   if (p.inactive != static_cast<std::uint8_t>(c.active)) return;
-  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{p.body});
-  const double energy = conserved(affected).energy();
   p.inactive = !c.active;
   p.mass *= c.active ? 1 / model::inactive_share : model::inactive_share;
   model.mute_bonds_of(slot);
@@ -349,7 +340,6 @@ void System::Implementation::apply(const SetParticleActive& c) {
     for (const std::uint32_t end : {model.bonds[b].p, model.bonds[b].q}) model.touch_particle(end);
   });
   model.touch_particle(slot);
-  model.edit_energy += conserved(affected).energy() - energy;
   structure_changed();
 }
 
@@ -361,19 +351,10 @@ void System::Implementation::apply(const SetRest& c) {
 
 template <class Motion>
 void System::Implementation::add_motion(std::uint32_t body, Motion motion) {
-  std::vector<std::uint32_t> touched;
-  model.for_each_particle_of(body, [&](std::uint32_t p) {
-    model.for_each_in_ring(model.particles[p].ring,
-                           [&](std::uint32_t q) { touched.push_back(model.particles[q].body); });
-  });
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  const double before = conserved(touched).kinetic;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     model::Ring& ring = model.rings[model.particles[p].ring];
     ring.velocity += motion(ring.position);
   });
-  model.edit_energy += conserved(touched).kinetic - before;
   jolt(model.bodies[body].first);
 }
 

@@ -168,51 +168,11 @@ void System::Implementation::apply(const step::SetBodyDamping& c) {
   model.touch(model.bodies[body].articulate);
 }
 
-double System::Implementation::ring_potential(std::uint32_t ring) const {
-  double energy = 0;
-  bool bonded = false;
-  model.for_each_in_ring(ring, [&](std::uint32_t p) {
-    energy -= model.particles[p].mass * dot(model.acting_gravity(), model.rings[ring].position);
-    bonded = bonded || model.particles[p].uses > 0;
-  });
-  if (!bonded) return energy;
-  model.for_each_in_ring(ring, [&](std::uint32_t p) {
-    model.for_each_bond_of(p, [&](std::uint32_t b) { energy += model.bond_energy(b); });
-  });
-  return energy;
-}
-
-double System::Implementation::joint_springs_of(std::uint32_t ring) const {
-  double energy = 0;
-  if (model.constraints.size() == 0) return energy;
-  model.for_each_in_ring(ring, [&](std::uint32_t in_ring) {
-    model.for_each_particle_of(model.particles[in_ring].body, [&](std::uint32_t p) {
-      model.for_each_constraint_of(p, [&](std::uint32_t c, int place) {
-        if (place == model::a_origin || place == model::b_origin) energy += model.constraint_energy(c);
-      });
-    });
-  });
-  return energy;
-}
-
 void System::Implementation::refresh_coordinates(std::uint32_t body) {
   if (model.constraints.size() == 0) return;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     model.for_each_constraint_of(p, [&](std::uint32_t c, int) { step::refresh_coordinates(model, c); });
   });
-}
-
-double System::Implementation::ring_kinetic(std::uint32_t ring) const {
-  double twice = 0;
-  const auto add = [&](double mass, const Vec3& v) { twice += mass * dot(v, v); };
-  model.for_each_in_ring(ring, [&](std::uint32_t p) {
-    add(model.particles[p].mass, model.rings[ring].velocity);
-    model.for_each_inertia_of(model.particles[p].body, [&](std::uint32_t i) {
-      const model::InertiaPair& pair = model.inertia_pairs[i];
-      add(pair.inertia, model.velocity(pair.p) - model.velocity(pair.q));
-    });
-  });
-  return twice / 2;
 }
 
 void System::Implementation::apply(const step::SetPosition& c) {
@@ -227,7 +187,6 @@ void System::Implementation::apply(const step::SetPosition& c) {
                                        text_of(c.value), "; move those"));
   });
   model::Ring& r = model.rings[ring];
-  const double before = ring_potential(ring) + joint_springs_of(ring);
   r.position = c.value;
   if (r.nailed) model.nails.at(ring).position = model.nails.at(ring).position_before = c.value;
   model.for_each_in_ring(ring, [&](std::uint32_t moved) {
@@ -241,29 +200,23 @@ void System::Implementation::apply(const step::SetPosition& c) {
     model.touch_body(body);
   });
   model.for_each_in_ring(ring, [&](std::uint32_t p) { refresh_coordinates(model.particles[p].body); });
-  model.edit_energy += ring_potential(ring) + joint_springs_of(ring) - before;
   jolt(particle);
 }
 
 void System::Implementation::apply(const step::SetVelocity& c) {
   const std::uint32_t particle = require(c.particle);
   require_finite("velocity", c.value);
-  const std::uint32_t ring = model.particles[particle].ring;
-  const double before = ring_kinetic(ring);
-  model.rings[ring].velocity = c.value;
-  model.edit_energy += ring_kinetic(ring) - before;
+  model.rings[model.particles[particle].ring].velocity = c.value;
   jolt(particle);
 }
 
 void System::Implementation::apply(const step::SetMass& c) {
   const std::uint32_t particle = require(c.particle);
   require_mass("mass", c.value);
-  const std::array body{model.particles[particle].body};
-  const double before = conserved(body).energy();
+  const std::uint32_t body = model.particles[particle].body;
   model.particles[particle].mass = model.particles[particle].inactive ? c.value * model::inactive_share : c.value;
-  model.keep_inertia_positive(body.front());
-  model.edit_energy += conserved(body).energy() - before;
-  model.touch(model.bodies[body.front()].articulate);
+  model.keep_inertia_positive(body);
+  model.touch_body(body);
 }
 
 void System::Implementation::apply(const step::ApplyForce& c) {
@@ -308,7 +261,6 @@ RestructureReport System::Implementation::restructure(std::span<const std::uint3
   }
   const Conserved after = conserved(affected);
   report.energy_change = after.kinetic + after.potential - before.kinetic - before.potential;
-  model.edit_energy += report.energy_change;
   report.momentum_change = after.momentum - before.momentum;
   report.angular_momentum_change = after.angular_momentum - before.angular_momentum;
   const double spin_change = norm(report.angular_momentum_change);
@@ -465,10 +417,7 @@ void System::Implementation::apply(const SetKind& c) {
     });
     return;
   }
-  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{slot});
-  const double energy = conserved(affected).energy();
   change();
-  model.edit_energy += conserved(affected).energy() - energy;
   structure_changed();
 }
 
@@ -563,23 +512,16 @@ void System::Implementation::apply(const step::Release& c) {
   structure_changed();
 }
 
-// Destroying takes what there was: mass, momentum and energy go with it, and the energy book says so.
+// Destroying takes what there was: mass, momentum and energy go with it.
 void System::Implementation::apply(const step::Destroy<BodyId>& c) {
-  const std::uint32_t body = require(c.id);
-  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
-  const double before = conserved(affected).energy();
-  destroy_body(model, body);
-  model.edit_energy += conserved(affected).energy() - before;
+  destroy_body(model, require(c.id));
   structure_changed();
 }
 void System::Implementation::apply(const step::Destroy<ParticleId>& c) {
   const std::uint32_t particle = require(c.id);
-  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{model.particles[particle].body});
-  const double before = conserved(affected).energy();
   const std::vector<HeldPoint> held = held_points(std::array{model.particles[particle].body});
   destroy_particle(model, particle);
   hold_again(held);
-  model.edit_energy += conserved(affected).energy() - before;
   structure_changed();
 }
 RestructureReport System::Implementation::apply(const step::Destroy<CosmeticBondId>& c) {

@@ -45,6 +45,7 @@ auto System::Implementation::execute(const C& command) {
     writer.value(index);
     writer.value(copy);
   };
+  model.has_edits |= !std::is_same_v<C, step::Step>;
   if constexpr (std::is_void_v<Result>) {
     apply(command);
     record();

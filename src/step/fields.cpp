@@ -121,10 +121,7 @@ FieldId System::Implementation::apply(const step::CreateField& c) {
   for (std::uint32_t i = 0; i < field.parameter_count; ++i)
     require_in_range(field.names[i].data(), range_of(field, i), field.parameters[i]);
   field.group = c.group ? require(c.group) : model::none;
-  const double before = model.potential_energy();
-  const std::uint32_t slot = model.make_field(field);
-  model.edit_energy += model.potential_energy() - before;  // it may have replaced gravity
-  return model.fields.id(slot);
+  return model.fields.id(model.make_field(field));
 }
 
 void System::Implementation::apply(const step::SetFieldParameter& c) {
@@ -134,20 +131,13 @@ void System::Implementation::apply(const step::SetFieldParameter& c) {
   field.parameters[c.index] = c.value;
 }
 
-void System::Implementation::apply(const step::SetFieldActive& c) {
-  model::Field& field = model.fields[require(c.field)];
-  const double before = model.potential_energy();
-  field.active = c.active;
-  model.edit_energy += model.potential_energy() - before;
-}
+void System::Implementation::apply(const step::SetFieldActive& c) { model.fields[require(c.field)].active = c.active; }
 
 void System::Implementation::apply(const step::Destroy<FieldId>& c) {
   const std::uint32_t slot = require(c.id);
-  const double before = model.potential_energy();
   const std::uint64_t function = model.fields[slot].function;
   if (!recording && function >= scripts_saved_below) field_functions.erase(function);
   model.fields.destroy(slot);
-  model.edit_energy += model.potential_energy() - before;
 }
 
 // --- pairs ------------------------------------------------------------------------------------------------------------

@@ -167,20 +167,16 @@ struct System::Implementation {
   /// back without disturbing any constraint; `affected` is what `before` was taken of. False where something is pinned: the rest of the world has taken them.
   bool give_back_momenta(std::span<const std::uint32_t> bodies, std::span<const std::uint32_t> affected,
                          const Conserved& before);
-  /// Energies that change with a ring's position or velocity, up to a constant: assigning costs what it touches.
-  double ring_potential(std::uint32_t ring) const;
-  double ring_kinetic(std::uint32_t ring) const;
   void put_to_rest(std::uint32_t body);  ///< with all that hangs together with it
   struct Rates {
     Vec3 force, torque;
   };
   /// Net force and torque (about the centre of mass) of a body or, where it is not null, of one part.
   Rates rates(std::uint32_t body, BodyId part) const;
-  /// Adds motion(position) to the velocities of a body's particles, and books the energy.
+  /// Adds motion(position) to the velocities of a body's particles.
   template <class Motion>
   void add_motion(std::uint32_t body, Motion motion);
-  double joint_springs_of(std::uint32_t ring) const;  ///< of joints of its bodies, at the coordinates last seen
-  void refresh_coordinates(std::uint32_t body);       ///< of its joints
+  void refresh_coordinates(std::uint32_t body);  ///< of its joints
   /// What comes after making or changing a constraint: its island is made anew, its velocities are projected before the
   /// next step, and what is apart closes there.
   void constraint_changed(std::uint32_t constraint);

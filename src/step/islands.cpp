@@ -88,7 +88,7 @@ void Islands::make_ready(Model& model, std::uint32_t articulate) {
   });
 }
 
-void Islands::update(Model& model, const Parallel& parallel) {
+bool Islands::update(Model& model, const Parallel& parallel) {
   model.take_touched(touched_);
   if (!knows_all_) {
     touched_.articulates.clear();
@@ -102,7 +102,7 @@ void Islands::update(Model& model, const Parallel& parallel) {
     return renew_ || (f.step + calm <= model.step && next_member_[f.leader] != none);
   };
   const bool renews = std::any_of(followed_.begin(), followed_.end(), is_due);
-  if (touched_.articulates.empty() && !renews) return;
+  if (touched_.articulates.empty() && !renews) return false;
   order_is_old_ = true;
   const std::size_t slots = model.articulates.slot_count();
   island_of_leader_.resize(slots), leader_of_.resize(slots, none), next_member_.resize(slots, none);
@@ -180,6 +180,7 @@ void Islands::update(Model& model, const Parallel& parallel) {
     island.assemble(model, members, node_of_ring_);
     island.carry_along(model);
   });
+  return !fresh_.empty();
 }
 
 std::span<Island* const> Islands::all() {

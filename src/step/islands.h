@@ -10,7 +10,8 @@ namespace iota::step {
 /// All islands of a model, re-made only where articulates or what ties them changed: an edit costs what it touches.
 class Islands {
  public:
-  void update(model::Model&, const Parallel&);
+  /// True where any was made, which may put carried particles a little otherwise.
+  bool update(model::Model&, const Parallel&);
   void forget();
   /// From the next update on every island is as if it had just been built from the model.
   void renew() { renew_ = true; }

@@ -99,31 +99,25 @@ void System::Implementation::apply(const step::SetParameter& c) {
   const model::Law& law = model.laws[bond.law];
   if (c.index >= law.parameter_count) throw std::invalid_argument("set_parameter: no such parameter");
   require_parameter_value(law, c.index, c.value);
-  const double before = model.bond_energy(slot);
   bond.parameters[c.index] = c.value;
-  model.edit_energy += model.bond_energy(slot) - before;
 }
 
 void System::Implementation::apply(const step::SetActive& c) {
   const std::uint32_t slot = require(c.bond);
   model::Bond& bond = model.bonds[slot];
   if (bond.active == static_cast<std::uint8_t>(c.active)) return;
-  const double before = model.bond_energy(slot);
   bond.active = c.active;
   bond.broken = 0;
   ++model.bonds_revision;
   for (const std::uint32_t end : {bond.p, bond.q}) model.touch_particle(end);
-  model.edit_energy += model.bond_energy(slot) - before;
   structure_changed();
 }
 
 void System::Implementation::apply(const step::Destroy<BondId>& c) {
   const std::uint32_t bond = require(c.id);
-  const double before = model.bond_energy(bond);
   // A restore or a replay may bring the bond back, if it was made before the latest snapshot.
   if (!recording && model.bonds[bond].script >= scripts_saved_below) scripts.erase(model.bonds[bond].script);
   model.remove_bond(bond);
-  model.edit_energy -= before;
   structure_changed();
 }
 

@@ -90,6 +90,7 @@ void System::Implementation::live(StepReport& report) {
     a.age += h;
     if (a.age >= a.lifetime) dead.push_back(model.particles.id(a.particle));
   });
+  if (!dead.empty()) model.begin_edits();
   for (const ParticleId particle : dead) {
     if (!model.particles.contains(particle)) continue;  // went with another one
     apply(Destroy<ParticleId>{particle});
@@ -106,6 +107,7 @@ void System::Implementation::emit(std::uint32_t slot, StepReport& report) {
   const double rate = model.emitters[slot].rate, owed = model.emitters[slot].due + rate * h;
   const auto count = static_cast<std::uint64_t>(owed);
   model.emitters[slot].due = owed - static_cast<double>(count);
+  if (count > 0) model.begin_edits();
   for (std::uint64_t i = 0; i < count; ++i) {
     model::Emitter& e = model.emitters[slot];
     if (e.alive >= e.max_count) return;
@@ -124,7 +126,6 @@ void System::Implementation::emit(std::uint32_t slot, StepReport& report) {
     a.particle = particle, a.emitter = slot, a.age = since, a.lifetime = lifetime;
     model.particles[particle].attributes = model.attributes.create(a).slot;
     ++e.alive, ++e.born;
-    model.edit_energy += e.mass * (0.5 * dot(velocity, velocity) - dot(gravity, position));
     report.born.push_back(model.particles.id(particle));
     structure_changed();
   }
@@ -239,8 +240,6 @@ void System::Implementation::apply(const SetTurn& c) {
     }
     case SetTurn::What::spin: {
       require_oriented("spin");
-      model::Attributes& a = attributes_of(particle);
-      model.edit_energy += 0.5 * a.moment * (dot(c.vector, c.vector) - dot(a.spin, a.spin));
       return set(&model::Attributes::spin, c.vector);
     }
     case SetTurn::What::torque: {
@@ -251,8 +250,6 @@ void System::Implementation::apply(const SetTurn& c) {
     case SetTurn::What::moment: {
       require_oriented("moment");
       require_positive("moment", c.number);
-      model::Attributes& a = attributes_of(particle);
-      model.edit_energy += 0.5 * (c.number - a.moment) * dot(a.spin, a.spin);
       return set(&model::Attributes::moment, c.number);
     }
     case SetTurn::What::damping: {

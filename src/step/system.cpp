@@ -142,7 +142,7 @@ std::uint64_t System::state_hash() const { return implementation_->model.hash();
 
 Energy System::energy() const {
   const model::Model& m = implementation_->model;
-  return {m.kinetic_energy(), m.potential_energy(), m.dissipated, m.external_work, m.edit_energy};
+  return {m.kinetic_energy(), m.potential_energy(), m.dissipated, m.external_work, m.energy_of_edits()};
 }
 
 bool System::contains(BodyId id) const { return implementation_->model.bodies.contains(id); }
@@ -365,6 +365,7 @@ std::optional<std::uint64_t> System::replay(const Recording& recording) {
       known = true;
       reader.value(command);
       if (!reader.ok()) return;
+      implementation_->model.has_edits |= !std::is_same_v<C, step::Step>;
       (void)implementation_->apply(command);
       if constexpr (std::is_same_v<C, step::Step>)
         if (steps >= recording.hashes.size() || state_hash() != recording.hashes[steps++])
