@@ -10,7 +10,8 @@ constexpr const char* mesh_doc =
     "What a closed surface of triangles encloses. vertices: (n, 3), m. triangles: (k, 3) numbers of vertices, from outside\n"
     "counter-clockwise. Raises ValueError where the surface is open, inside out, flat, inconsistently wound or names\n"
     "vertices that are not there; the text says which triangle or edge.\n\n"
-    "    iota.Mesh.load('part.stl')   # any format that trimesh reads, where it is installed";
+    "    iota.Mesh.load('part.stl')         # any format that trimesh reads, where it is installed\n"
+    "    iota.Mesh.convex_hull(points)      # the skin round loose points";
 
 std::string text_of(const char* format, auto... values) {
   char buffer[256];
@@ -161,6 +162,17 @@ void bind_shapes(nb::module_& module) {
           },
           "path"_a, nb::sig("def load(path: str | os.PathLike[str]) -> Mesh"),
           "Reads a file of any format that trimesh knows. Raises ImportError without trimesh.")
+      .def_static(
+          "convex_hull",
+          [](nb::handle points) {
+            const nb::object places = array_of(points, "float64", "points");
+            const auto x = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(places);
+            static_assert(sizeof(Vec3) == 3 * sizeof(double));
+            return convex_hull({reinterpret_cast<const Vec3*>(x.data()), x.shape(0)});
+          },
+          "points"_a, nb::sig("def convex_hull(points: numpy.typing.ArrayLike) -> Mesh"),
+          "The skin round loose points, (n, 3), m: points within it, on its faces and given twice do no harm. Raises\n"
+          "ValueError for fewer than four, for what is not finite, and where all are in one plane or on one line.")
       .def_prop_ro(
           "vertices",
           [](const Mesh& m) {

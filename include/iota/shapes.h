@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -49,5 +50,11 @@ struct MassProperties {
 /// surface, convex or not. Throws std::invalid_argument for sizes that are not positive, and for meshes that are open,
 /// inside out, flat, inconsistently wound or name vertices that are not there: the text says which triangle or edge.
 MassProperties mass_properties(const Shape& shape);
+
+/// What a rubber skin round the points encloses: a closed mesh whose vertices are some of them, in their order. Points
+/// within, on faces and given twice do no harm; what is flatter than 1e-9 of its extent is no solid. O(n log n).
+/// Throws std::invalid_argument for fewer than four points, for points that are not finite, and where all are at one
+/// place, on one line or in one plane. Quickhull: Barber, Dobkin, Huhdanpaa 1996.
+Mesh convex_hull(std::span<const Vec3> points);
 
 }  // namespace iota

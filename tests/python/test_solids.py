@@ -95,6 +95,17 @@ def test_what_makes_no_shape_is_refused(system: iota.System) -> None:
     assert system.bodies and system.validate() == []
 
 
+def test_the_skin_round_loose_points_is_a_shape(system: iota.System) -> None:
+    points = np.vstack([cube(2).vertices, cube(1).vertices, cube(2).vertices])
+    hull = iota.Mesh.convex_hull(points)
+    assert len(hull.vertices) == 8 and len(hull.triangles) == 12
+    assert iota.Body(system, shape=hull, density=100).mass == pytest.approx(800)
+    with pytest.raises(ValueError, match="in one plane"):
+        iota.Mesh.convex_hull([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)])
+    with pytest.raises(ValueError, match=r"points must have the shape \(n, 3\)"):
+        iota.Mesh.convex_hull([1, 2, 3, 4])
+
+
 def test_the_page_draws_the_shapes(system: iota.System) -> None:
     a = iota.Body(system, shape=iota.Box((1, 1, 1)))
     b = iota.Body(system, shape=iota.Box((1, 1, 1)), position=(3, 0, 0), orientation=(0, 1, 0, 1))
