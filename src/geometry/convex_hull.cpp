@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -61,14 +61,22 @@ class Hull {
   double height(const Facet& f, std::uint32_t point) const { return dot(f.normal, points_[point]) - f.offset; }
   bool sees(std::uint32_t point, const Facet& f) const { return height(f, point) > thickness * extent_; }
 
+  /// The point of the largest measure. Among equals the one farthest from the first point, which is no mere point of an
+  /// edge or face: a convex function is largest at a corner.
   template <class Measure>
-  std::uint32_t farthest(Measure measure, const char* otherwise) const {
-    std::uint32_t best = 0;
-    double most = 0;
-    for (std::uint32_t i = 0; i < points_.size(); ++i)
-      if (const double m = measure(points_[i]); m > most) most = m, best = i;
-    if (!(most > 1e-9 * extent_)) throw std::invalid_argument(otherwise);
+  std::uint32_t farthest(std::span<const std::uint32_t> among, Measure measure) const {
+    double most = 0, reach = -1;
+    for (const std::uint32_t i : among) most = std::max(most, measure(points_[i]));
+    std::uint32_t best = among.front();
+    for (const std::uint32_t i : among) {
+      if (measure(points_[i]) < most - thickness * extent_) continue;
+      if (const double r = norm(points_[i] - points_[0]); r > reach) reach = r, best = i;
+    }
     return best;
+  }
+  void require_extent(double measure, const char* what) const {
+    if (measure > 1e-9 * extent_) return;
+    throw std::invalid_argument(std::string("convex_hull: all points are ") + what + ", which encloses no volume");
   }
 
   std::uint32_t add_facet(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -82,17 +90,21 @@ class Hull {
   }
 
   void make_simplex() {
-    const std::uint32_t a = farthest([&](const Vec3& p) { return norm(p - points_[0]); },
-                                     "convex_hull: all points are at one place, which encloses no volume");
+    std::vector<std::uint32_t> all(points_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    if (!(extent_ > 0)) require_extent(0, "at one place");
+    const std::uint32_t a = farthest(all, [&](const Vec3& p) { return norm(p - points_[0]); });
     const Vec3 origin = points_[a];
-    const std::uint32_t b = farthest([&](const Vec3& p) { return norm(p - origin); }, "");
+    const std::uint32_t b = farthest(all, [&](const Vec3& p) { return norm(p - origin); });
     const Vec3 along = (1 / norm(points_[b] - origin)) * (points_[b] - origin);
-    std::uint32_t c = farthest([&](const Vec3& p) { return norm(cross(along, p - origin)); },
-                               "convex_hull: all points are on one line, which encloses no volume");
+    const auto off_line = [&](const Vec3& p) { return norm(cross(along, p - origin)); };
+    const std::uint32_t c = farthest(all, off_line);
+    require_extent(off_line(points_[c]), "on one line");
     Vec3 normal = cross(along, points_[c] - origin);
     normal = (1 / norm(normal)) * normal;
-    const std::uint32_t d = farthest([&](const Vec3& p) { return std::abs(dot(normal, p - origin)); },
-                                     "convex_hull: all points are in one plane, which encloses no volume");
+    const auto off_plane = [&](const Vec3& p) { return std::abs(dot(normal, p - origin)); };
+    const std::uint32_t d = farthest(all, off_plane);
+    require_extent(off_plane(points_[d]), "in one plane");
     std::uint32_t first = a, second = b;
     if (dot(normal, points_[d] - origin) > 0) std::swap(first, second);  // d below the first facet
     add_facet(first, second, c);
@@ -104,8 +116,6 @@ class Hull {
                                   static_cast<std::uint32_t>(1 + (i + 1) % 3)};
       facets_[0].neighbours[i] = side;
     }
-    std::vector<std::uint32_t> all(points_.size());
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
     hand_out(all, 0);
   }
 
@@ -120,9 +130,8 @@ class Hull {
   }
 
   void grow(std::uint32_t start) {
-    const std::uint32_t apex = *std::max_element(
-        facets_[start].outside.begin(), facets_[start].outside.end(),
-        [&](std::uint32_t p, std::uint32_t q) { return height(facets_[start], p) < height(facets_[start], q); });
+    const Facet& base = facets_[start];
+    const std::uint32_t apex = farthest(base.outside, [&](const Vec3& p) { return dot(base.normal, p) - base.offset; });
     std::vector<HorizonEdge> horizon;
     std::vector<std::uint32_t> orphans;
     cut_away(start, apex, horizon, orphans);

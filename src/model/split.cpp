@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 namespace iota::model {
@@ -125,9 +126,18 @@ Edit separate_part(Model& model, std::uint32_t body, BodyId part, RestructureRep
   const std::vector<BodyId> parts = parts_of(model, body);
   if (parts.size() < 2 || std::find(parts.begin(), parts.end(), part) == parts.end()) return {};
   std::vector<std::uint32_t> leaving;
+  bool goes = false, stays = false;  // something with mass
   model.for_each_particle_of(body, [&](std::uint32_t p) {
-    if (model.particles[p].part == part) leaving.push_back(p);
+    const bool leaves = model.particles[p].part == part;
+    if (leaves) leaving.push_back(p);
+    if (!model.particles[p].is_marker()) (leaves ? goes : stays) = true;
   });
+  model.twins.for_each([&](std::uint32_t, const Twin& t) {
+    if (model.particles[t.particle].body == body) (t.part == part ? goes : stays) = true;
+  });
+  if (!goes || !stays)
+    throw std::invalid_argument("separate: part " + std::to_string(part.slot) + " of body " + std::to_string(body) +
+                                (goes ? " has all of its mass" : " has no mass of its own"));
   bool torn = false;
   const std::uint32_t own = split_off(model, body, leaving, report, torn);
   for (const std::uint32_t p : leaving) model.particles[p].part = model.bodies.id(own);

@@ -29,15 +29,18 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     hold_offsets(problem, report);
     return;
   }
-  const double kinetic = problem.kinetic_energy();
-  const double before = kinetic + problem.potential_energy(problem.position.data());
+  const auto energy = [&] {
+    return problem.kinetic_energy() + problem.potential_energy(problem.position.data()) +
+           problem.row_energy(problem.position.data(), 0);
+  };
+  const double before = energy();
   problem.standing_gap = 0, problem.standing_steps = 0;
   if (!project_positions(problem)) {
     hold_offsets(problem, report);
     problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
   }
   project_velocities(problem);
-  const double closed = problem.kinetic_energy() + problem.potential_energy(problem.position.data());
+  const double closed = energy();
   report.closing_energy += closed - before;
   if (holds_offsets_ && conservative_ &&
       closed > before) {  // pulling for ever on what cannot meet must not heat the world

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <type_traits>
 
 namespace iota::step {
@@ -263,7 +264,8 @@ struct Places {
         arms[place].constant = position[place];
       } else {
         arms[place].nodes[0] = {static_cast<std::uint32_t>(place), 1.0};
-        velocity[place] = model.velocity(c.particles[place]);
+        // As the solver's rows do: in a conflict a particle may be elsewhere than its body has it.
+        std::tie(position[place], velocity[place]) = model.carried(c.particles[place]);
       }
     }
   }

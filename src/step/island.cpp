@@ -35,6 +35,11 @@ solver::Care care_of(IntegrationMode mode) {
   return {};
 }
 
+/// Of a marker that is an unknown of its own, kg.
+double virtual_mass(const Model& model, std::uint32_t marker) {
+  return 0.1 * model.body_mass(model.particles[marker].body);
+}
+
 }  // namespace
 
 Island::Weighted Island::nodes_of(const Model& model, std::uint32_t particle,
@@ -72,13 +77,23 @@ void Island::add_virtual_mass(const Model& model, std::uint32_t marker,
   int used = 1;
   for (int i = 0; i < body.rank; ++i)
     if (weights[i] != 0) difference[used++] = {node_of_ring[model.particles[body.basis[i]].ring], -weights[i]};
-  const double mass = 0.1 * model.body_mass(p.body);
+  const double mass = virtual_mass(model, marker);
+  virtual_.push_back(marker);
   for (int a = 0; a < used; ++a) {
     problem_.mass[difference[a].first] += mass * difference[a].second * difference[a].second;
     for (int b = a + 1; b < used; ++b)
       problem_.mass_couplings.push_back(
           {difference[a].first, difference[b].first, mass * difference[a].second * difference[b].second});
   }
+}
+
+double Island::virtual_energy(const Model& model) const {
+  double twice = 0;
+  for (const std::uint32_t marker : virtual_) {
+    const Vec3 off = model.velocity(marker) - model.carried(marker).second;
+    twice += virtual_mass(model, marker) * dot(off, off);
+  }
+  return twice / 2;
 }
 
 void Island::add_masses(const Model& model, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring) {
@@ -513,6 +528,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     return report;
   }
   use_solver(model.solver);
+  const double virtual_before = virtual_energy(model);
   if (jolt() > 1e-9) {
     given -= problem_.kinetic_energy();
     take_nails_along();
@@ -536,6 +552,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     report.dissipated += before - problem_.kinetic_energy();
   }
   store(model, h);
+  report.dissipated += virtual_energy(model) - virtual_before;
   report.converged = report.converged && meets_pinned_rows(model);
   tire(model, h, report);
   return report;

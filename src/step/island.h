@@ -71,6 +71,8 @@ class Island {
   void make_room(const model::Model&, std::span<const std::uint32_t> articulates);
   void add_masses(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
   void add_virtual_mass(const model::Model&, std::uint32_t marker, const std::vector<std::uint32_t>& node_of_ring);
+  /// Of the virtual masses, J: nothing, except in a conflict. It is none of the model's.
+  double virtual_energy(const model::Model&) const;
   void add_mass_outer(const Weighted& a, double mass);
   void add_constraints(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
   void add_bonds(const model::Model&, const std::vector<std::uint32_t>& node_of_ring);
@@ -94,6 +96,7 @@ class Island {
   // Rows and tied particles none of whose points can move: nails decide whether they are met.
   std::vector<RigidRow> pinned_rows_;
   std::vector<std::uint32_t> pinned_ties_;
+  std::vector<std::uint32_t> virtual_;   // markers with a virtual mass
   std::vector<std::uint32_t> closings_;  // of the distance constraints after them
   std::vector<std::uint32_t> tied_;      // particles of the first affine constraints
   std::vector<std::uint32_t> nails_;     // nodes of the affine constraints after them

@@ -227,6 +227,18 @@ TEST(Split, ABondWhoseEndsWereSeparatedJustGoes) {
   EXPECT_TRUE(m.system.validate().empty());
 }
 
+TEST(Split, APartOfMasslessPlacesAloneCannotBeLeftBehind) {
+  System system;
+  const BodyId plate = system.create_body(), other = system.create_body();
+  const ParticleId own = system.create_particle(plate, {0, 0, 0});
+  for (const Vec3& x : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{1, 1, 1}}) system.create_particle(other, x);
+  (void)system.combine(plate, other);
+  system.create_particle(plate, {0.2, 0.2, 0.2}, 0);
+  system.destroy(own);
+  EXPECT_THROW((void)system.separate(plate, other), std::invalid_argument);
+  EXPECT_EQ(system.particles(plate).size(), 5u);
+}
+
 TEST(Split, SplitsAreRecordedAndReplayed) {
   Molecule m(zigzag);
   System& system = m.system;
