@@ -279,6 +279,7 @@ void System::Implementation::break_overloaded(StepReport& report) {
     if (!(force > bond.break_force)) continue;
     const Vec3 middle = 0.5 * (model.position(bond.p) + model.position(bond.q));
     report.broken.push_back({.bond = model.bonds.id(slot), .position = middle, .force = force});
+    model.begin_edits();
     apply(SetActive{model.bonds.id(slot), false});
     bond.broken = 1;
   }
