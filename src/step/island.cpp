@@ -139,7 +139,7 @@ void Island::add_constraints(const Model& model, std::uint32_t slot, const std::
     const auto [i, j] = model::basis_pairs[row];
     const std::uint32_t a = node_of(body.basis[i]), b = node_of(body.basis[j]);
     if (pinned_[a] && pinned_[b]) {
-      if (body.kind == BodyKind::dynamic) pinned_rows_.push_back({slot, static_cast<std::uint8_t>(row)});
+      if (is_free(body.kind)) pinned_rows_.push_back({slot, static_cast<std::uint8_t>(row)});
       continue;
     }
     const double length = model.row(slot, row).length;
@@ -162,7 +162,7 @@ void Island::add_constraints(const Model& model, std::uint32_t slot, const std::
       tie.weights[tie.count++] = -weights[i];
     }
     if (!movable) {
-      if (body.kind == BodyKind::dynamic) pinned_ties_.push_back(p);
+      if (is_free(body.kind)) pinned_ties_.push_back(p);
       return;
     }
     affines.push_back(tie);

@@ -135,6 +135,24 @@ TEST(Forces, OnWhatDoesNotMoveByThemAreOverWithTheStep) {
   }
 }
 
+TEST(Resting, WhatSleepsInAConflictSaysSoWhenItWakes) {
+  // A link a tenth too short for the two places of a static body to which it is hinged: no step can do anything about it.
+  System system;
+  const BodyId wall = system.create_body(), link = system.create_body();
+  const ParticleId left = system.create_particle(wall, {0, 0, 0}, 1),
+                   right = system.create_particle(wall, {1, 0, 0}, 1);
+  const ParticleId a = system.create_particle(link, {0, 0, 0}, 1), b = system.create_particle(link, {0.9, 0, 0}, 1);
+  (void)system.combine(left, a);
+  (void)system.combine(right, b);
+  system.set_kind(wall, BodyKind::static_);
+  system.set_kind(link, BodyKind::resting);
+  system.set_mass(right, 2);
+  const StepReport report = system.step(0.01);
+  ASSERT_EQ(system.kind(link), BodyKind::dynamic);
+  EXPECT_GT(report.worst_gap, 1e-3);
+  EXPECT_EQ(report.unconverged, 1);
+}
+
 TEST(Active, AnInactiveBodyIsOutOfTheWorldUntilItIsBack) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 4});
