@@ -15,6 +15,7 @@ namespace iota::solver {
 namespace {
 
 constexpr int max_halvings = 12;
+constexpr double near_by = 1e-2;            // a residual below which Newton's own direction is better than a safe one
 constexpr double largest_violation = 1e-6;  // that still counts as met
 constexpr double round_off_floor = 1e-8;    // a residual below it that no step lessens is as good as zero
 constexpr double round_off = 4e-15;         // relative
@@ -65,13 +66,17 @@ void Newton::measure(const Problem& problem, const Stage& stage) {
   residual_ = assembly_.residual<Midpoint>(problem, stage, x_.data(), u_.data());
 }
 
-// By a new factor.
+// By a new factor. Pivots of the wrong sign far from a solution lead to some saddle, so the Hessian is clamped. Near one
+// they may be its own (a chain that is pushed together in a whip), and a clamped Hessian would converge linearly, or turn
+// round at 1e-5. Then returns true: the step is to be tried, no more.
 template <bool Midpoint>
-void Newton::find_step(const Problem& problem, const Stage& stage, Hessian hessian) {
+bool Newton::find_step(const Problem& problem, const Stage& stage, Hessian hessian) {
   const bool good = assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), hessian);
-  if (good || hessian != Hessian::exact) return;
+  if (good || hessian != Hessian::exact) return false;
+  if (residual_.worst <= near_by) return true;
   measure<Midpoint>(problem, stage);  // the step has taken the residuals' place
   (void)assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), Hessian::clamped);
+  return false;
 }
 
 template <bool Midpoint>
@@ -95,19 +100,27 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     ++report.iterations;
     served_on = factor_will_do;
     const double before = residual_.worst;
+    bool on_trial = false;
     if (factor_will_do)
       assembly_.solve();
     else
-      find_step<Midpoint>(problem, stage, hessian);
+      on_trial = find_step<Midpoint>(problem, stage, hessian);
     take_step(problem, stage);
     measure<Midpoint>(problem, stage);
-    hessian = Hessian::exact;
+    const bool own_direction = std::exchange(hessian, Hessian::exact) == Hessian::exact && !served_on;
     if (!(residual_.worst <= 0.5 * before)) {
-      const int halvings = shorten<Midpoint>(problem, stage, before);
-      stuck = halvings == max_halvings && !(residual_.worst < before);  // at the bottom of round-off, or lost
+      // What Newton's own step from close by does not lessen is round-off: heavy loads on small links leave 1e-9 of it.
+      stuck = own_direction && before <= round_off_floor;
+      if ((stuck || on_trial) && !(residual_.worst < before)) {
+        take_back_step<Midpoint>(problem, stage);
+        hessian = Hessian::clamped;
+      } else if (!stuck) {
+        const int halvings = shorten<Midpoint>(problem, stage, before);
+        stuck = halvings == max_halvings && !(residual_.worst < before);  // lost
+        // A full step that merely helped is no reason to give up quadratic convergence: wrong pivots would tell.
+        if (halvings > 0 || !(residual_.worst < before)) hessian = Hessian::clamped;
+      }
       if (stuck) break;
-      // A full step that merely helped is no reason to give up quadratic convergence: wrong pivots would tell.
-      if (halvings > 0 || !(residual_.worst < before)) hessian = Hessian::clamped;
     }
     // Near the solution the factor at hand serves on, where making another costs much more than an iteration.
     factor_will_do = assembly_.is_dear() && residual_.worst <= (factor_will_do ? 0.1 : 0.03) * before;
@@ -207,10 +220,12 @@ void Newton::halve_step(Problem& problem, const Stage& stage) {
   });
 }
 
+template <bool Midpoint>
 void Newton::take_back_step(Problem& problem, const Stage& stage) {
   u_.swap(u_saved_);
   place(problem, stage);
   problem.set_multipliers(multipliers_saved_);
+  measure<Midpoint>(problem, stage);
 }
 
 bool Newton::is_balanced() const {
@@ -233,15 +248,12 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
   for (int step = 0; step < most_steps; ++step) {
     const Residual before = residual_;
     if (std::exchange(needs_factor, false))
-      find_step<Midpoint>(problem, stage, Hessian::exact);
+      (void)find_step<Midpoint>(problem, stage, Hessian::exact);
     else
       assembly_.solve();
     take_step(problem, stage);
     measure<Midpoint>(problem, stage);
-    if (!(residual_.worst <= std::max(before.worst, round_off))) {
-      take_back_step(problem, stage);
-      return measure<Midpoint>(problem, stage);
-    }
+    if (!(residual_.worst <= std::max(before.worst, round_off))) return take_back_step<Midpoint>(problem, stage);
     if (is_balanced() || residual_.imbalance > 0.1 * before.imbalance) return;
   }
 }

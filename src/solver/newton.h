@@ -69,7 +69,7 @@ class Newton {
   template <bool Midpoint>
   void measure(const Problem&, const Stage&);
   template <bool Midpoint>
-  void find_step(const Problem&, const Stage&, Hessian);
+  bool find_step(const Problem&, const Stage&, Hessian);
   template <bool Midpoint>
   int shorten(Problem&, const Stage&, double before);
   double merit(const Problem&, const Stage&, const Vec3* x) const;
@@ -79,6 +79,7 @@ class Newton {
   void polish(Problem&, const Stage&, NewtonReport&, bool factor_is_old);
   void take_step(Problem&, const Stage&);
   void halve_step(Problem&, const Stage&);
+  template <bool Midpoint>
   void take_back_step(Problem&, const Stage&);
 
   bool project_onto_sides(Problem&, double h, bool as_solved, std::span<const Vec3> impulses);
