@@ -78,6 +78,8 @@ class Player {
       ++tally_.refused;
       if (compare && system_.state_hash() != hash)
         return std::string("changed something and then refused: ") + refusal.what();
+    } catch (const std::exception& error) {
+      return std::string("an error of our own: ") + error.what();
     }
     const std::vector<std::string> complaints = system_.validate();
     if (!complaints.empty()) return complaints.front();
