@@ -379,6 +379,17 @@ std::uint32_t body_of_side(const Model& model, const Constraint& c, int side) {
   return origin == none ? none : model.particles[origin].body;
 }
 
+bool is_in_force(const Model& model, const Constraint& c) {
+  bool complete = c.active, moves = false;
+  for (const int side : {0, 1}) {
+    const std::uint32_t body = body_of_side(model, c, side);
+    if (body == none) continue;
+    complete = complete && model.bodies[body].kind != BodyKind::inactive;
+    moves = moves || is_free(model.bodies[body].kind);
+  }
+  return complete && moves;
+}
+
 Vec3 position_of(const Model& model, const Constraint& c, int place) {
   return c.particles[place] == none ? c.fixed[place - b_origin] : model.position(c.particles[place]);
 }
@@ -387,8 +398,10 @@ void end_settled_constraints(Model& model, std::span<const std::uint32_t> bodies
   std::vector<std::uint32_t> candidates;
   for (const std::uint32_t body : bodies)
     if (model.bodies.is_alive(body))
-      model.for_each_particle_of(body, [&](std::uint32_t p) {
-        model.for_each_constraint_of(p, [&](std::uint32_t c, int) { candidates.push_back(c); });
+      model.for_each_particle_of(body, [&](std::uint32_t p) {  // a hinge also joins what was in its particles' rings
+        model.for_each_in_ring(model.particles[p].ring, [&](std::uint32_t r) {
+          model.for_each_constraint_of(r, [&](std::uint32_t c, int) { candidates.push_back(c); });
+        });
       });
   std::sort(candidates.begin(), candidates.end());
   candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());

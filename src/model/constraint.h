@@ -158,6 +158,8 @@ void end_settled_constraints(Model&, std::span<const std::uint32_t> bodies, std:
 
 /// The body of a side (0: a, 1: b), `none` for the world.
 std::uint32_t body_of_side(const Model&, const Constraint&, int side);
+/// Whether it does anything: it is active, neither of its bodies is inactive, and one of them can move.
+bool is_in_force(const Model&, const Constraint&);
 Vec3 position_of(const Model&, const Constraint&, int place);
 
 }  // namespace iota::model

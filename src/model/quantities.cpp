@@ -146,8 +146,7 @@ double Model::worst_gap() const {
     if (!(gap <= worst)) worst = gap;
   };
   bodies.for_each([&](std::uint32_t slot, const Body& b) {
-    if (b.kind != BodyKind::dynamic && b.kind != BodyKind::resting)
-      return;  // nothing holds them, they are where they were put
+    if (!is_free(b.kind)) return;  // nothing holds them, they are where they were put
     for (int row = 0; row < b.row_count; ++row) {
       const auto [i, j] = basis_pairs[row];
       add(std::abs(norm(position(b.basis[j]) - position(b.basis[i])) - this->row(slot, row).length));
@@ -159,10 +158,13 @@ double Model::worst_gap() const {
     });
   });
   nails.for_each([&](std::uint32_t ring, const Nail& nail) {
-    if (rings[ring].nailed) add(norm(rings[ring].position - nail.position_before));
+    if (!rings[ring].nailed) return;
+    bool moves = false;
+    for_each_in_ring(ring, [&](std::uint32_t p) { moves = moves || is_free(bodies[particles[p].body].kind); });
+    if (moves) add(norm(rings[ring].position - nail.position_before));
   });
   constraints.for_each([&](std::uint32_t, const Constraint& c) {
-    if (c.active) add(c.gap);
+    if (is_in_force(*this, c)) add(c.gap);
   });
   return worst;
 }

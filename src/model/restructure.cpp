@@ -176,20 +176,30 @@ void destroy_uses(Model& model, std::uint32_t particle) {
   model.for_each_cosmetic_bond_of(particle, [&](std::uint32_t b) { model.remove_cosmetic_bond(b); });
 }
 
-}  // namespace
-
-void destroy_stray_markers(Model& model, std::uint32_t body, std::vector<std::string>& notes) {
-  std::vector<std::uint32_t> strays;
+/// The markers of a body that its massive particles do not reach any more.
+std::vector<ParticleId> stray_markers(const Model& model, std::uint32_t body) {
+  std::vector<ParticleId> strays;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
-    if (model.particles[p].is_marker() && !model.spans(body, model.position(p))) strays.push_back(p);
+    if (model.particles[p].is_marker() && !model.spans(body, model.position(p)))
+      strays.push_back(model.particles.id(p));
   });
-  std::vector<ParticleId> ids;
-  for (const std::uint32_t p : strays) ids.push_back(model.particles.id(p));
-  for (const ParticleId id : ids)
+  return strays;
+}
+
+/// Only once everything else is hinged again: articulates are split here as they are.
+void destroy_strays(Model& model, std::uint32_t body, const std::vector<ParticleId>& strays,
+                    std::vector<std::string>& notes) {
+  for (const ParticleId id : strays)
     if (model.particles.contains(id)) destroy_particle(model, id.slot);
   if (!strays.empty())
     notes.push_back("body " + std::to_string(body) + " is too flat now to carry " + std::to_string(strays.size()) +
                     " massless particles: they are gone with what was joined to them");
+}
+
+}  // namespace
+
+void destroy_stray_markers(Model& model, std::uint32_t body, std::vector<std::string>& notes) {
+  destroy_strays(model, body, stray_markers(model, body), notes);
 }
 
 std::uint32_t closing_between(const Model& model, std::uint32_t p, std::uint32_t q) {
@@ -243,9 +253,10 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
     }
     absorb_particle(model, p, q, report);
     model.rebuild_basis(body_p);
-    destroy_stray_markers(model, body_p, report.notes);
+    const std::vector<ParticleId> strays = stray_markers(model, body_p);  // by its shape before anything is moved
     if (q_was_hinged && ring_p != ring_q) edit = merge_rings(model, ring_p, ring_q);
     model.touch(model.bodies[body_p].articulate);
+    destroy_strays(model, body_p, strays, report.notes);
     return edit;
   }
 
@@ -293,7 +304,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     model.take_from_ring(q);
     model.take_from_body(q);
     model.rebuild_basis(body);
-    destroy_stray_markers(model, body, report.notes);
+    const std::vector<ParticleId> strays = stray_markers(model, body);
     const std::uint32_t own = model.make_body(model.bodies[body].kind, model.bodies[body].damping);
     model.particles[q].part = model.bodies.id(own);
     Ring ring;
@@ -305,6 +316,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     model.join_articulates(model.bodies[body].articulate, model.bodies[own].articulate);
     model.touch(model.bodies[body].articulate);
     split_where_apart(model, neighbours);
+    destroy_strays(model, body, strays, report.notes);
     report.created_bodies.push_back(model.bodies.id(own));
     return {edit.moved, true};
   }

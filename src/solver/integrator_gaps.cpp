@@ -29,24 +29,20 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     hold_offsets(problem, report);
     return;
   }
-  const auto energy = [&] {
-    return problem.kinetic_energy() + problem.potential_energy(problem.position.data()) +
-           problem.row_energy(problem.position.data(), 0);
-  };
-  const double before = energy();
+  take_stock(problem, 0);
+  const double before = energy_;
   problem.standing_gap = 0, problem.standing_steps = 0;
   if (!project_positions(problem)) {
     hold_offsets(problem, report);
     problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
   }
   project_velocities(problem);
-  const double closed = energy();
-  report.closing_energy += closed - before;
-  if (holds_offsets_ && conservative_ &&
-      closed > before) {  // pulling for ever on what cannot meet must not heat the world
-    take_stock(problem, 0);
+  take_stock(problem, 0);
+  const double added = energy_ - before;
+  report.closing_energy += added;
+  if (holds_offsets_ && conservative_ && added > 0) {  // pulling for ever on what cannot meet must not heat the world
     const double dissipated = report.dissipated;
-    shed(problem, closed - before, 0, report);
+    shed(problem, added, 0, report);
     report.closing_energy -= report.dissipated - dissipated, report.dissipated = dissipated;
   }
 }

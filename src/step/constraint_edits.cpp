@@ -404,7 +404,7 @@ ConstraintState System::state(ConstraintId id) const {
     state.axis = (1 / norm(d)) * d;
     break;
   }
-  state.gap = c.gap, state.length = c.length;
+  state.gap = is_in_force(m, c) ? c.gap : 0, state.length = c.length;
   for (const JointCoordinate which : {JointCoordinate::angle, JointCoordinate::slide}) {
     const auto i = static_cast<std::size_t>(which);
     if (!has_coordinate(c.kind, which)) continue;

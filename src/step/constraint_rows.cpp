@@ -329,7 +329,10 @@ void ConstraintRows::add(const Model& model, std::uint32_t slot, const PlaceArms
   constraints_.push_back(slot);
   auto sink = [&]<class Row>(const Row& row, RowUse use) {
     const auto end = row.nodes.begin() + row.node_count();
-    if (std::all_of(row.nodes.begin(), end, [&](std::uint32_t node) { return pinned[node]; })) return;
+    if (std::all_of(row.nodes.begin(), end, [&](std::uint32_t node) { return pinned[node]; })) {
+      if (use.role == Role::hold && (pinned_.empty() || pinned_.back() != slot)) pinned_.push_back(slot);
+      return;
+    }
     auto& pool = std::get<solver::ConstraintPool<Row>>(problem.constraints);
     const auto item = static_cast<std::uint32_t>(pool.items.size());
     std::get<Uses<Row>>(uses_).list.push_back({slot, item, use});
@@ -392,6 +395,17 @@ void ConstraintRows::store(Model& model, const solver::Problem& problem) const {
       }
     }
   });
+  for (const std::uint32_t slot : pinned_) {
+    Constraint& c = model.constraints[slot];
+    c.gap = std::max(c.gap, calc_violation(model, slot).absolute);
+  }
+}
+
+bool ConstraintRows::meets_pinned(const Model& model) const {
+  constexpr double met = 1e-6;
+  return std::all_of(pinned_.begin(), pinned_.end(), [&](std::uint32_t slot) {
+    return !is_in_force(model, model.constraints[slot]) || calc_violation(model, slot).relative <= met;
+  });
 }
 
 std::uint32_t ConstraintRows::constraint_of(std::size_t pool, std::size_t item) const {
@@ -427,7 +441,7 @@ namespace {
 std::array<Vec3, place_count> forces_at(const Model& model, std::uint32_t slot, const Places& places) {
   const Constraint& c = model.constraints[slot];
   std::array<Vec3, place_count> forces{};
-  if (!c.active) return forces;
+  if (!is_in_force(model, c)) return forces;
   auto sink = [&]<class Row>(const Row& row, RowUse use) {
     Row loaded = row;
     double multipliers[Row::rows];
@@ -462,6 +476,28 @@ Reaction calc_reaction(const Model& model, std::uint32_t slot) {
     reaction.torque += cross(places.position[place] - reaction.position, forces[place]);
   }
   return reaction;
+}
+
+Violation calc_violation(const Model& model, std::uint32_t slot) {
+  const Constraint& c = model.constraints[slot];
+  const ConstraintKindInfo& kind = info(c.kind);
+  const Places places(model, c);
+  Violation worst;
+  auto sink = [&]<class Row>(const Row& row, RowUse use) {
+    if (use.role != Role::hold) return;
+    Row loaded = row;
+    double multipliers[Row::rows], g[Row::rows];
+    load_held(loaded, c, use, multipliers);
+    if (kind.form == ConstraintKindInfo::Form::distance) set_length(loaded, c.length);
+    loaded.value(places.position.data(), 1, g);
+    for (const double value : g) {
+      const double off = kind.sign == 0 ? std::abs(value) : std::max(0.0, kind.sign * value);
+      worst.absolute = std::max(worst.absolute, off);
+      worst.relative = std::max(worst.relative, off / loaded.reference_length());
+    }
+  };
+  Expansion<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
+  return worst;
 }
 
 std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot, JointCoordinate which) {

@@ -28,13 +28,16 @@ struct RowUse {
 /// The rows of an island's constraints: made with the island, loaded from the model before a step, stored back after it.
 class ConstraintRows {
  public:
-  /// Adds the rows of a constraint to a problem that is being built. Rows whose nodes are all pinned are left out.
+  /// Adds the rows of a constraint to a problem that is being built. Rows whose nodes are all pinned are left out: a step
+  /// can do nothing about them, but to see whether they are met.
   void add(const model::Model&, std::uint32_t constraint, const PlaceArms&, const std::vector<std::uint8_t>& pinned,
            solver::Problem&);
   void load(const model::Model&, solver::Problem&) const;
   /// Multipliers, gaps and coordinates; particles must be where they are at the end of the step.
   void store(model::Model&, const solver::Problem&) const;
   void refresh_coordinates(model::Model&) const;
+  /// Whether the rows that were left out are met, as far as anybody holds them; after `store`.
+  bool meets_pinned(const model::Model&) const;
   /// The constraint that a row of the problem is of: `pool` is the place of its type in the list of types. `none` if it is
   /// of no constraint.
   std::uint32_t constraint_of(std::size_t pool, std::size_t item) const;
@@ -50,6 +53,7 @@ class ConstraintRows {
   };
   solver::ConstraintPools<Uses> uses_;
   std::vector<std::uint32_t> constraints_;
+  std::vector<std::uint32_t> pinned_;  // those with rows that were left out
 };
 
 /// Which of limit, motor, friction and spring a coordinate has rows for.
@@ -71,6 +75,13 @@ Reaction calc_reaction(const model::Model&, std::uint32_t constraint);
 
 /// Force of a constraint on one of its places, N, as `calc_reaction` has it.
 Vec3 calc_force_at(const model::Model&, std::uint32_t constraint, int place);
+
+/// The largest violation of what a constraint holds, limits apart, at the present places: absolute (m; rad where it is
+/// about directions), and over the reference length of its row.
+struct Violation {
+  double absolute = 0, relative = 0;
+};
+Violation calc_violation(const model::Model&, std::uint32_t constraint);
 
 /// Value and speed of a coordinate at the present places; the angle is unwrapped near the last one.
 std::pair<double, double> calc_coordinate(const model::Model&, std::uint32_t constraint, JointCoordinate);

@@ -241,7 +241,11 @@ RestructureReport System::Implementation::restructure(std::span<const std::uint3
   const model::Edit owed = edit(report);
   if (report.changed) {
     if (model.closings.size() > 0) end_settled_closings(model, report.notes);
-    if (model.constraints.size() > 0) end_settled_constraints(model, edited, report.notes);
+    if (model.constraints.size() > 0) {
+      std::vector<std::uint32_t> bodies(edited.begin(), edited.end());
+      for (const BodyId body : report.created_bodies) bodies.push_back(body.slot);
+      end_settled_constraints(model, bodies, report.notes);
+    }
     hold_again(held);
     structure_changed();
   }

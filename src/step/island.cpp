@@ -567,7 +567,8 @@ bool Island::meets_pinned_rows(const Model& model) const {
     const double wanted = model.row(r.body, r.row).length;
     return std::abs(length - wanted) <= met * wanted;
   });
-  return rows && std::all_of(pinned_ties_.begin(), pinned_ties_.end(), [&](std::uint32_t p) {
+  return rows && constraint_rows_.meets_pinned(model) &&
+         std::all_of(pinned_ties_.begin(), pinned_ties_.end(), [&](std::uint32_t p) {
            const double extent = model.extent(model.particles[p].body);
            return norm(model.carried(p).first - model.position(p)) <= met * (extent > 0 ? extent : 1);
          });
@@ -584,6 +585,11 @@ bool Island::settle(Model& model, bool positions) {
     integrator_.project_velocities(problem_);
   }
   store(model, 0);
+  if (positions && !idle_)
+    for (const std::uint32_t node : nails_) {
+      model::Nail& nail = model.nails.at(rings_[node]);
+      nail.position_before = nail.position;
+    }
   return met;
 }
 

@@ -152,6 +152,40 @@ TEST(Rod, ends_when_its_two_ends_are_hinged_together_and_a_rope_hangs_on) {
     }
 }
 
+TEST(Rod, ends_when_others_hinge_its_two_ends_together) {
+  // The rod's ends are of the second links; who is combined are the first ones, which hang at the same points.
+  System system;
+  const auto a = scenes::make_chain(system, {.links = 2, .top = {0, 0, 0}});
+  const auto b = scenes::make_chain(system, {.links = 2, .top = {0, -0.1, 0}, .direction = {0.8, 0.6, 0}});
+  (void)system.create_constraint(DistanceSpec{.kind = ConstraintKind::rod, .p = a.upper[1], .q = b.upper[1]});
+  const RestructureReport report = system.combine(a.lower[0], b.lower[0]);
+  EXPECT_TRUE(system.constraints().empty());
+  EXPECT_EQ(report.notes.size(), 1u);
+  EXPECT_LT(system.step(1.0 / 60).worst_gap, 1e-6);
+}
+
+TEST(Gap, between_two_nails_is_told_and_is_nobodys_where_nobody_can_move_or_is_there) {
+  System system;
+  const BodyId still = system.create_body(), other = system.create_body();
+  const ParticleId p = system.create_particle(still, {0, 0, 0}), q = system.create_particle(other, {1, 0, 0});
+  const ConstraintId rod = system.create_constraint(DistanceSpec{.kind = ConstraintKind::rod, .p = p, .q = q});
+  system.nail(p), system.nail(q);
+  EXPECT_EQ(system.step(0.01).unconverged, 0);
+  system.nail(q, {1.5, 0, 0});
+  EXPECT_EQ(system.step(0.01).unconverged, 1);
+  EXPECT_GT(system.worst_gap(), 0.4);
+  EXPECT_GT(system.state(rod).gap, 0.4);
+  for (const BodyKind kind : {BodyKind::inactive, BodyKind::scripted}) {
+    system.set_kind(other, kind);
+    if (kind == BodyKind::scripted) system.set_kind(still, BodyKind::static_);
+    const StepReport report = system.step(0.01);
+    EXPECT_EQ(report.unconverged, 0);
+    EXPECT_LT(report.worst_gap, 1e-12);
+    EXPECT_EQ(system.state(rod).gap, 0);
+    EXPECT_EQ(system.state(rod).force, Vec3{});
+  }
+}
+
 TEST(Law, that_is_infinite_where_its_ends_meet_leaves_the_energy_book_finite) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 3});
