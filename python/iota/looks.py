@@ -65,6 +65,22 @@ def box(size: Sequence[float], material: str = "wood", **more: Any) -> Shape:
     return {"type": "box", "material": material, "size": [x, y, z], **more}
 
 
+MOST_TRIANGLES = 50_000
+
+
+def mesh(vertices: Any, triangles: Any, material: str = "paint", **more: Any) -> Shape:
+    """A closed surface: vertices (n, 3) in m, triangles (k, 3), from outside counter-clockwise, as in `iota.Mesh`.
+    Raises ValueError above 50 000 triangles."""
+    if len(triangles) > MOST_TRIANGLES:
+        raise ValueError(
+            f"the page draws meshes of at most {MOST_TRIANGLES} triangles, this one has {len(triangles)}: make it coarser, "
+            "or give its body a class with another look"
+        )
+    shape = _shape("mesh", material, more)
+    places = [float(f"{x:.6g}") for vertex in vertices for x in vertex]
+    return {**shape, "vertices": places, "triangles": [int(v) for triangle in triangles for v in triangle]}
+
+
 def chain_link(length: float, material: str = "steel") -> Shape:
     """A link of a real chain for a body of `length` m: neighbours touch where they are hinged, turned by 90 degrees."""
     tube, radius = 0.085 * length, 0.26 * length

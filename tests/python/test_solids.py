@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import iota
+from iota import looks
 from iota.world.scene import Scene
 
 
@@ -116,14 +117,29 @@ def test_the_page_draws_the_shapes(system: iota.System) -> None:
     assert names[0] == names[1] != names[2]  # one shape, one class
     (shape,) = classes[names[0]]["*"]
     assert shape["type"] == "box" and shape["size"] == [1, 1, 1] and shape["offset"] == [0, 0, 0]
-    edges = classes[names[2]]["*"]
-    assert len(edges) == 18 and np.allclose(np.mean([e["offset"] for e in edges], axis=0), 0, atol=1e-6)
+    (skin,) = classes[names[2]]["*"]
+    assert skin["type"] == "mesh" and len(skin["vertices"]) == 24 and len(skin["triangles"]) == 36
+    corners = np.reshape(skin["vertices"], (8, 3)) + skin["offset"]
+    assert np.allclose(corners.mean(axis=0), 0, atol=1e-6), "about the centre of mass"
     iota.combine(a, b)
     classes, bodies = (json.loads(text) for text in scene.describe())
     shapes = classes[bodies[0]["class"]]["*"]
     assert [s["offset"][0] for s in shapes] == pytest.approx([-1.5, 1.5])
     assert shapes[1]["rotation"] == pytest.approx([0, math.sqrt(0.5), 0, math.sqrt(0.5)], abs=1e-5)
     assert c.alive
+
+
+def test_a_mesh_too_large_to_draw_is_drawn_as_its_box(system: iota.System) -> None:
+    turns = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    ring = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
+    points = np.concatenate([ring * np.cos(a) + (0, 0, np.sin(a)) for a in np.linspace(-1.5, 1.5, 80)])
+    ball = iota.Mesh.convex_hull(points)
+    assert len(ball.triangles) > looks.MOST_TRIANGLES
+    iota.Body(system, shape=ball)
+    with pytest.warns(UserWarning, match="at most 50000 triangles, this one has"):
+        classes, bodies = (json.loads(text) for text in Scene(system).describe())
+    (shape,) = classes[bodies[0]["class"]]["*"]
+    assert shape["type"] == "box" and shape["size"] == pytest.approx([2, 2, 2], abs=0.01)
 
 
 def test_a_pose_is_assigned(system: iota.System) -> None:

@@ -2,12 +2,20 @@
 import { describe, expect, it } from "vitest";
 import { bodyDistance, bodyReach, parseShape, placeShape, shapeDistance, shapeReach } from "../src/scene/shape.ts";
 
+/** A box as a closed mesh: corners by the bits of their numbers. */
+function boxMesh(x: number, y: number, z: number): { vertices: number[]; triangles: number[] } {
+  const vertices = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [(i & 1 ? x : -x) / 2, (i & 2 ? y : -y) / 2, (i & 4 ? z : -z) / 2]);
+  const faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  return { vertices, triangles: faces.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]) };
+}
+
 const shapes = [
   parseShape({ type: "sphere", radius: 0.3 }),
   parseShape({ type: "capsule", radius: 0.1, length: 0.5 }),
   parseShape({ type: "cylinder", radius: 0.1, length: 0.5 }),
   parseShape({ type: "torus", radius: 0.2, tube: 0.05, stretch: 0.3 }),
   parseShape({ type: "box", size: [0.2, 0.3, 0.4] }),
+  parseShape({ type: "mesh", ...boxMesh(0.2, 0.3, 0.4) }),
 ];
 
 describe("a shape of the scene description", () => {
@@ -20,6 +28,9 @@ describe("a shape of the scene description", () => {
     [null, /object/], [{ type: "cone" }, /unknown shape type "cone"/], [{ type: "sphere", radius: -1 }, /radius must be positive/],
     [{ type: "sphere", radius: "1" }, /radius must be a finite number/], [{ type: "box", size: [1, 2] }, /size must be 3 numbers/],
     [{ type: "sphere", rotation: [0, 0, 0, 0] }, /rotation must not be zero/],
+    [{ type: "mesh", vertices: [0, 0], triangles: [] }, /vertices of a mesh must be a list of numbers in threes/],
+    [{ type: "mesh", vertices: [0, 0, 0], triangles: [0, 0, 7] }, /names vertex 7, but there are 1/],
+    [{ type: "mesh", vertices: [0, 0, 0], triangles: Array(3 * 50_001).fill(0) }, /may have 50000 triangles/],
   ])("is refused with the name of the wrong field: %j", (json, reason) => {
     expect(() => parseShape(json)).toThrow(reason);
   });
@@ -34,6 +45,13 @@ describe("the distance function", () => {
     expect(shapeDistance(shapes[3], 0.4, 0, 0)).toBeCloseTo(0, 9);
     expect(shapeDistance(shapes[3], 0, 0, 0)).toBeCloseTo(0.15, 9);
     expect(shapeDistance(shapes[4], 0, 0, 0)).toBeCloseTo(-0.1, 9);
+  });
+
+  it("of a mesh is that of the solid it encloses", () => {
+    for (const [x, y, z] of [[0, 0, 0], [0.05, -0.1, 0.12], [0.3, 0, 0], [0.3, 0.3, 0.3], [0, 0.15, 0.5], [0.1, 0.1, 0]]) {
+      expect(shapeDistance(shapes[5], x, y, z)).toBeCloseTo(shapeDistance(shapes[4], x, y, z), 6);
+    }
+    expect(shapeReach(shapes[5])).toBeCloseTo(shapeReach(shapes[4]), 6);
   });
 
   it("never grows faster than the way walked, so that marching along a ray cannot jump through", () => {

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from iota._core import Body, Box, Capsule, Cylinder, Mesh, Particle, Solid, Sphere, System, Torus, Vec3
-from iota.looks import Looks, Shape, box, capsule, cylinder, sphere, torus
+from iota.looks import Looks, Shape, box, capsule, cylinder, mesh, sphere, torus
 from iota.world import ties
 from iota.world.frames import Quaternion, into_frame, relative_turn, turn_from_x, turned
 
@@ -46,7 +47,7 @@ def listed(style: Shape | list[Shape]) -> list[Shape]:
 
 
 def solid_shapes(solid: object, material: str, **more: Any) -> list[Shape]:
-    """What the page draws for a solid: a primitive, or for a mesh its edges (at most 400 of them)."""
+    """What the page draws for a solid: a primitive or a mesh; of a mesh that is too large, its box, with a warning."""
     if isinstance(solid, Sphere):
         return [sphere(solid.radius, material, **more)]
     if isinstance(solid, Box):
@@ -58,19 +59,15 @@ def solid_shapes(solid: object, material: str, **more: Any) -> list[Shape]:
     if isinstance(solid, Torus):
         return [torus(solid.radius, solid.tube, material, **more)]
     assert isinstance(solid, Mesh)
-    corners, edges = (
-        solid.vertices,
-        {tuple(sorted((int(t[i]), int(t[i - 1])))) for t in solid.triangles for i in range(3)},
-    )
-    origin, turn = Vec3(*more.pop("offset")), more.pop("rotation")
-    thickness = 0.01 * float(np.linalg.norm(np.ptp(corners, axis=0))) if len(corners) else 0.0
-    shapes: list[Shape] = []
-    for a, b in sorted(edges)[:400]:
-        start, end = (origin + turned(turn, Vec3(*corners[i])) for i in (a, b))
-        length = abs(end - start)
-        place, along = (start + end) * 0.5, turn_from_x((end - start).unit())
-        shapes.append(capsule(thickness, material, length=length, offset=list(place), rotation=along, **more))
-    return shapes
+    if not len(solid.triangles):  # its triangles are with the system that it was made in
+        return []
+    try:
+        return [mesh(solid.vertices, solid.triangles, material, **more)]
+    except ValueError as error:
+        warnings.warn(f"{error}; its box is drawn instead", stacklevel=2)
+        low, high = solid.vertices.min(axis=0), solid.vertices.max(axis=0)
+        offset = Vec3(*more.pop("offset")) + turned(more["rotation"], Vec3(*(low + high) / 2))
+        return [box(tuple(high - low), material, offset=list(offset), **more)]
 
 
 class Scene:
@@ -128,10 +125,7 @@ class Scene:
         shapes = {look: self._solids(centre, orientation, solids, style) for look, style in styles.items()}
         # Bodies of one shape share a class, so that the page draws them together.
         text = json.dumps(shapes)
-        name = next((n for n, known in self._solid_names.items() if known == text), None)
-        if name is None:
-            name = f"(solid {len(self._solid_names) + 1})"
-            self._solid_names[name] = text
+        name = self._solid_names.setdefault(text, f"(solid {len(self._solid_names) + 1})")
         classes[name] = shapes
         return name
 

@@ -4,6 +4,8 @@
 
 import { BufferAttribute, BufferGeometry, SphereGeometry } from "three";
 import { RoundedBoxGeometry } from "three/examples/jsm/geometries/RoundedBoxGeometry.js";
+import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
+import type { MeshData } from "./mesh.ts";
 import type { Shape } from "./shape.ts";
 
 /** fine: a few bodies seen near; coarse: hundreds, where vertices are what costs. */
@@ -162,6 +164,30 @@ function layAlong(geometry: BufferGeometry, size: readonly number[]): void {
   }
 }
 
+/** Edges sharper than this are seen as edges, others as a smooth surface, rad. */
+const creaseAngle = 0.6;
+
+/** Faces as they are given; texture coordinates by metres on the side that a face looks to. */
+function makeMesh(mesh: MeshData): BufferGeometry {
+  const indexed = new BufferGeometry();
+  indexed.setAttribute("position", new BufferAttribute(mesh.positions, 3));
+  indexed.setIndex(new BufferAttribute(mesh.triangles, 1));
+  const geometry = toCreasedNormals(indexed, creaseAngle);
+  indexed.dispose();
+  const position = geometry.getAttribute("position");
+  const normal = geometry.getAttribute("normal");
+  const uvs = new Float32Array(2 * position.count);
+  for (let index = 0; index < position.count; index++) {
+    const at = [position.getX(index), position.getY(index), position.getZ(index)];
+    const facing = [normal.getX(index), normal.getY(index), normal.getZ(index)].map(Math.abs);
+    const side = facing.indexOf(Math.max(...facing));
+    const [along, across] = [0, 1, 2].filter((axis) => axis !== side);
+    uvs.set([at[along] / 0.9, at[across] / 0.22], 2 * index);
+  }
+  geometry.setAttribute("uv", new BufferAttribute(uvs, 2));
+  return geometry;
+}
+
 /** Geometry of a shape in its own frame; the caller disposes of it. */
 export function makeGeometry(shape: Shape, detail: Detail): BufferGeometry {
   switch (shape.type) {
@@ -178,6 +204,8 @@ export function makeGeometry(shape: Shape, detail: Detail): BufferGeometry {
       layAlong(geometry, shape.size);
       return geometry;
     }
+    case "mesh":
+      return shape.mesh === null ? new BufferGeometry() : makeMesh(shape.mesh);
   }
 }
 

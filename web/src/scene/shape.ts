@@ -2,7 +2,9 @@
 // Shapes as the script describes them, their distance functions and their place on a body.
 // Pure arithmetic: drawing (geometry.ts) and picking (interact/picking.ts) both rest on it.
 
-export type ShapeType = "cylinder" | "capsule" | "sphere" | "torus" | "box";
+import { meshDistance, meshReach, parseMesh, type MeshData } from "./mesh.ts";
+
+export type ShapeType = "cylinder" | "capsule" | "sphere" | "torus" | "box" | "mesh";
 export type Vec3 = readonly [number, number, number];
 /** x, y, z, w. */
 export type Quat = readonly [number, number, number, number];
@@ -18,6 +20,8 @@ export interface Shape {
   /** Extra straight length of a torus along x: a real chain link. */
   readonly stretch: number;
   readonly size: Vec3;
+  /** Of a mesh alone. */
+  readonly mesh: MeshData | null;
   readonly material: string;
   readonly color: string | null;
   readonly offset: Vec3;
@@ -26,7 +30,7 @@ export interface Shape {
   readonly turn: number;
 }
 
-const shapeTypes: readonly string[] = ["cylinder", "capsule", "sphere", "torus", "box"];
+const shapeTypes: readonly string[] = ["cylinder", "capsule", "sphere", "torus", "box", "mesh"];
 
 function number(value: unknown, name: string, fallback: number): number {
   if (value === undefined || value === null) return fallback;
@@ -78,6 +82,7 @@ export function parseShape(value: unknown): Shape {
     tube: positive(json["tube"], "tube", radius * 0.3),
     stretch: Math.max(0, number(json["stretch"], "stretch", 0)),
     size: [size[0], size[1], size[2]],
+    mesh: type === "mesh" ? parseMesh(json["vertices"], json["triangles"]) : null,
     material: typeof json["material"] === "string" ? json["material"] : "paint",
     color: typeof json["color"] === "string" ? json["color"] : null,
     offset: [offset[0], offset[1], offset[2]],
@@ -112,6 +117,8 @@ export function shapeDistance(shape: Shape, x: number, y: number, z: number): nu
       const outside = Math.hypot(Math.max(dx, 0), Math.max(dy, 0), Math.max(dz, 0));
       return outside + Math.min(Math.max(dx, dy, dz), 0);
     }
+    case "mesh":
+      return shape.mesh === null ? Infinity : meshDistance(shape.mesh, x, y, z);
   }
 }
 
@@ -128,6 +135,8 @@ export function shapeReach(shape: Shape): number {
       return shape.stretch / 2 + shape.radius + shape.tube;
     case "box":
       return Math.hypot(shape.size[0], shape.size[1], shape.size[2]) / 2;
+    case "mesh":
+      return shape.mesh === null ? 0 : meshReach(shape.mesh);
   }
 }
 
