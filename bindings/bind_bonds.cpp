@@ -183,31 +183,37 @@ void bind_cosmetic_bond(nb::module_& module) {
         p.use();
         q.use();
         const CosmeticBondId id = p.system->use_between_steps("CBond(...)").create_cosmetic_bond(p.id, q.id);
-        p.system->cosmetic_bonds.push_back({id, p.id, q.id});
-        new (self) CosmeticBondHandle{{p.system_object, p.system, id}, p.id, q.id};
+        new (self) CosmeticBondHandle{p.system_object, p.system, id};
       },
       "p"_a, "q"_a);
   def_identity(type);
   type.def_prop_ro(
+          "alive", [](const CosmeticBondHandle& self) { return self.is_alive(); },
+          "False once it or one of its ends was destroyed.")
+      .def_prop_ro(
           "ends",
-          [](const CosmeticBondHandle& self) { return std::make_pair(sibling(self, self.p), sibling(self, self.q)); },
+          [](const CosmeticBondHandle& self) {
+            const auto [p, q] = self.use().ends(self.id);
+            return std::make_pair(sibling(self, p), sibling(self, q));
+          },
           "The two particles.")
       .def(
           "destroy",
           [](const CosmeticBondHandle& self) {
-            System& engine = self.system->use();
-            const std::optional<ParticleId> end = engine.survivor_of(self.p);
+            System& engine = self.use();
+            const ParticleId end = engine.ends(self.id).first;
             RestructureResult result{self.system_object, self.system, engine.destroy(self.id)};
-            std::erase_if(self.system->cosmetic_bonds, [&](const auto& bond) { return bond.id == self.id; });
-            if (end && !result.report.created_bodies.empty()) self.system->note_edit("break", engine.position(*end));
+            if (!result.report.created_bodies.empty()) self.system->note_edit("break", engine.position(end));
             return result;
           },
           "Removes it. Where that disconnects its body's cosmetic bonds the rigid body falls into two pieces: one with the\n"
           "bond's first end, which stays this body, and one with the second. Particles that hang on neither end go with the\n"
           "nearer piece; a solid and its attachments are one piece. Velocities stay.")
       .def("__repr__", [](const CosmeticBondHandle& self) {
-        return "<CBond " + std::to_string(self.id.slot) + " between particles " + std::to_string(self.p.slot) +
-               " and " + std::to_string(self.q.slot) + ">";
+        if (!self.is_alive()) return "<CBond " + std::to_string(self.id.slot) + ", gone>";
+        const auto [p, q] = self.use().ends(self.id);
+        return "<CBond " + std::to_string(self.id.slot) + " between particles " + std::to_string(p.slot) + " and " +
+               std::to_string(q.slot) + ">";
       });
 }
 

@@ -77,14 +77,14 @@ std::vector<std::vector<BodyHandle>> articulates(nb::handle_t<SystemObject> self
   return out;
 }
 
-/// Cosmetic bonds of which both ends are alive, as pairs of particles.
+/// The ends of all cosmetic bonds.
 std::vector<std::pair<ParticleHandle, ParticleHandle>> cosmetic_lines(nb::handle_t<SystemObject> self) {
   SystemObject* object = nb::inst_ptr<SystemObject>(self);
   System& engine = object->use();
   std::vector<std::pair<ParticleHandle, ParticleHandle>> out;
-  for (const auto& bond : object->cosmetic_bonds) {
-    const auto p = engine.survivor_of(bond.p), q = engine.survivor_of(bond.q);
-    if (p && q) out.push_back({{nb::borrow(self), object, *p}, {nb::borrow(self), object, *q}});
+  for (const CosmeticBondId bond : engine.cosmetic_bonds()) {
+    const auto [p, q] = engine.ends(bond);
+    out.push_back({{nb::borrow(self), object, p}, {nb::borrow(self), object, q}});
   }
   return out;
 }
@@ -116,6 +116,8 @@ void bind_restructuring(nb::module_& module) {
                    "In order of slots: the order of the rows of `positions`.")
       .def_prop_ro("bonds", all_of<BondHandle>([](System& engine) { return engine.bonds(); }), "In order of slots.")
       .def_prop_ro("articulates", &articulates, "The groups of bodies that hang together.")
+      .def_prop_ro("cosmetic_bonds", all_of<CosmeticBondHandle>([](System& engine) { return engine.cosmetic_bonds(); }),
+                   "In order of slots.")
       .def_prop_ro("cosmetic_lines", &cosmetic_lines, "The ends of all cosmetic bonds.")
       .def("body_at", &body_at, "slot"_a, nb::sig("def body_at(self, slot: int) -> Body | None"),
            "The living body with this slot, or None.")

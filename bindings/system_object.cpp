@@ -76,6 +76,7 @@ void raise_stale(const BondHandle& handle) {
 }
 
 void raise_stale(const LawHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
+void raise_stale(const CosmeticBondHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
 void raise_stale(const GroupHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
 void raise_stale(const FieldHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
 void raise_stale(const PairsHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }

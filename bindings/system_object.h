@@ -101,14 +101,9 @@ class SystemObject {
   std::vector<std::shared_ptr<ScriptFunction>> functions;
   std::vector<std::shared_ptr<ScriptFunction>> new_surfaces;  ///< of a constraint that is about to be made
   std::vector<nb::object> code;                               ///< compiled functions that laws point at
-  std::vector<ForceFailure> failures;         ///< of the step under way; of surfaces, since the last one
-  bool warn_of_forces = false;                ///< where forces fail: a warning instead of an exception
-  std::map<std::string, LawId> written_laws;  ///< of expressions given to bonds: by text and parameters
-  struct CosmeticBond {
-    CosmeticBondId id;
-    ParticleId p, q;
-  };
-  std::vector<CosmeticBond> cosmetic_bonds;
+  std::vector<ForceFailure> failures;           ///< of the step under way; of surfaces, since the last one
+  bool warn_of_forces = false;                  ///< where forces fail: a warning instead of an exception
+  std::map<std::string, LawId> written_laws;    ///< of expressions given to bonds: by text and parameters
   std::optional<RestructureReport> step_edits;  ///< asked for during the last step
   bool watch_edits = false;
   std::vector<VisibleEdit> edits;
@@ -144,9 +139,7 @@ using PairsHandle = Handle<PairsId>;
 using GripHandle = Handle<GripId>;
 using EmitterHandle = Handle<EmitterId>;
 using ConstraintHandle = Handle<ConstraintId>;
-struct CosmeticBondHandle : Handle<CosmeticBondId> {
-  ParticleId p, q;
-};
+using CosmeticBondHandle = Handle<CosmeticBondId>;
 
 constexpr const char* kind_name(BodyId) { return "body"; }
 constexpr const char* kind_name(ParticleId) { return "particle"; }
@@ -189,7 +182,7 @@ Handle<IdType> sibling(const Other& handle, IdType id) {
 [[noreturn]] void raise_stale(const PairsHandle&);
 [[noreturn]] void raise_stale(const GripHandle&);
 [[noreturn]] void raise_stale(const EmitterHandle&);
-[[noreturn]] void raise_stale(const Handle<CosmeticBondId>&);
+[[noreturn]] void raise_stale(const CosmeticBondHandle&);
 [[noreturn]] void raise_stale(const ConstraintHandle&);
 
 template <class Spec>

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 import iota
@@ -52,3 +54,16 @@ def test_a_world_goes_back(system: iota.System, chain: list[iota.Body]) -> None:
     with system.edit():
         chain[0].destroy()
     assert world.undo() and chain[0].alive and world.redo() and not world.redo()
+
+
+def test_a_cosmetic_bond_that_broke_is_back_after_undo(system: iota.System) -> None:
+    body = iota.Body(system)
+    atoms = [iota.Particle(body, (i, 0, 0)) for i in range(3)]
+    bonds = [iota.CBond(p, q) for p, q in pairwise(atoms)]
+    with system.edit():
+        bonds[1].destroy()
+    assert [bond.alive for bond in bonds] == [True, False]
+    assert system.cosmetic_lines == [(atoms[0], atoms[1])] and system.cosmetic_bonds == bonds[:1]
+    system.undo()
+    assert system.cosmetic_bonds == bonds and bonds[1].ends == (atoms[1], atoms[2])
+    assert len(system.cosmetic_lines) == 2 and len(system.bodies) == 1
