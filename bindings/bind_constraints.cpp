@@ -275,8 +275,8 @@ CoordinateView coordinate_of(const ConstraintHandle& self, JointCoordinate which
   (void)self.use();
   const ConstraintKind kind = self.system->engine.state(self.id).kind;
   if (!has_coordinate(kind, which)) {
-    const std::string text =
-        "a " + to_word(constraint_words, kind) + " has no " + (which == JointCoordinate::angle ? "angle" : "slide");
+    const std::string text = "a " + to_word(constraint_words, kind) + " has no " +
+                             std::array{"angle", "slide", "second_angle"}[static_cast<std::size_t>(which)];
     PyErr_SetString(PyExc_AttributeError, text.c_str());
     throw nb::python_error();
   }
@@ -350,6 +350,10 @@ void bind_handle(nb::module_& module) {
           "Of a rod or rope, m.")
       .def_prop_ro("angle", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::angle); })
       .def_prop_ro("slide", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::slide); })
+      .def_prop_ro(
+          "second_angle",
+          [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::second_angle); },
+          "Of a universal joint, about b's axis.")
       .def_prop_rw(
           "break_force", [](const ConstraintHandle& self) { return self.use().break_limits(self.id).force; },
           [](const ConstraintHandle& self, double force) {
@@ -479,19 +483,21 @@ void bind_makers(nb::class_<SystemObject>& type) {
       "universal",
       [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
          std::optional<VectorArgument> second_axis, std::optional<Pair> limits, std::optional<Pair> motor,
-         double friction, nb::object spring, double break_force, double break_torque) {
+         double friction, nb::object spring, nb::object second_angle, double break_force, double break_torque) {
         JointSpec spec;
         spec.kind = ConstraintKind::universal, spec.breaks = to_limits(break_force, break_torque);
         spec.axis = to_vec3(axis, "axis");
         if (second_axis) spec.second_axis = to_vec3(*second_axis, "second_axis");
         spec.angle = to_options({limits, motor, friction, spring});
+        spec.second_angle = to_options(to_arguments(second_angle, "second_angle"));
         return make_joint(self, spec, a, b, at);
       },
       "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "axis"_a, "second_axis"_a.none() = nb::none(),
       "limits"_a.none() = nb::none(), "motor"_a.none() = nb::none(), "friction"_a = 0.0, "spring"_a.none() = nb::none(),
-      "break_force"_a = infinity, "break_torque"_a = infinity,
+      "second_angle"_a.none() = nb::none(), "break_force"_a = infinity, "break_torque"_a = infinity,
       "A ball joint where `axis` of a stays at right angles to `second_axis` of b (None: the world): a shaft's cross. The\n"
-      "angle is about a's axis.");
+      "angle is about a's axis, the second angle about b's: second_angle, a dict of limits, motor, friction, spring, acts\n"
+      "on that.");
   type.def(
       "orientation",
       [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, double break_torque) {

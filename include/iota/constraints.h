@@ -35,10 +35,12 @@ enum class ConstraintKind : std::uint8_t {
   apart,        ///< two surfaces do not overlap
 };
 
-/// The two coordinates that joints have: the angle about the axis (revolute, cylindrical, and the first axis of a
-/// universal joint) and the slide along it (prismatic, cylindrical) or along a path. Both are zero where the joint is made; b moves in
-/// the positive sense of the axis against a.
-enum class JointCoordinate : std::uint8_t { angle, slide };
+/// The coordinates that joints have: the angle about the axis (revolute, cylindrical; of a universal joint about a's axis),
+/// the slide along it (prismatic, cylindrical) or along a path, and the second angle of a universal joint, about b's axis.
+/// All are of a against b, in the positive sense of the axis, and zero where the joint is made.
+enum class JointCoordinate : std::uint8_t { angle, slide, second_angle };
+inline constexpr std::array joint_coordinates{JointCoordinate::angle, JointCoordinate::slide,
+                                              JointCoordinate::second_angle};
 
 bool has_coordinate(ConstraintKind, JointCoordinate);
 
@@ -68,7 +70,7 @@ struct JointSpec {
   Vec3 at;             ///< world frame, m
   Vec3 axis{0, 0, 1};  ///< world frame, any length; of a in a universal joint
   Vec3 second_axis;    ///< of b in a universal joint, at right angles to `axis`; zero: any
-  CoordinateOptions angle, slide;
+  CoordinateOptions angle, slide, second_angle;
   BreakLimits breaks;
 };
 
@@ -149,9 +151,11 @@ struct ConstraintState {
   Vec3 force, torque;   ///< by the constraint on a in the last step, N and N m (about `position`); b has the opposite
   double gap = 0;       ///< largest violation after the last step, m
   double length = 0;    ///< rod, rope: m
-  std::array<double, 2> coordinate{};  ///< angle (rad, counted through full turns) and slide (m)
-  std::array<double, 2> speed{};       ///< rad/s, m/s
-  std::array<double, 2> effort{};      ///< by limits, motor, friction and spring along the coordinate on b, N m, N
+  /// Angle (rad, counted through full turns), slide (m), second angle (rad).
+  std::array<double, joint_coordinates.size()> coordinate{};
+  std::array<double, joint_coordinates.size()> speed{};  ///< rad/s, m/s, rad/s
+  /// By limits, motor, friction and spring along the coordinate on a, N m, N, N m.
+  std::array<double, joint_coordinates.size()> effort{};
 };
 
 }  // namespace iota

@@ -130,6 +130,7 @@ Frames plan(const ConstraintKindInfo& kind, const JointSpec& spec, const Side& a
                             " and does not hold the axis that it should; give it a particle off its line or plane");
     frames.need(a_axis, z), frames.need(b_axis, second);
     if (a.holds(second)) frames.need(a_side, second);
+    if (b.holds(z)) frames.need(b_side, z);
     return frames;
   }
 
@@ -204,7 +205,7 @@ std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
 
   Constraint c;
   c.kind = spec.kind;
-  c.options = {spec.angle, spec.slide};
+  c.options = {spec.angle, spec.slide, spec.second_angle};
   c.breaks = spec.breaks;
   c.cosines = frames.cosines;
   c.alignment = frames.alignment, c.aligned = frames.aligned, c.lock = frames.lock, c.line_side = frames.line_side;
@@ -218,6 +219,9 @@ std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
     if (!frames.has(place)) continue;
     const Side& side = place < b_origin ? a : b;
     add_place(model, c, place, side.body, origin_of(side) + c.scale[place >= b_origin] * frames.direction[place]);
+    // The ends of directions belong where their origin does, not where they reach.
+    const std::uint32_t own = c.particles[place], origin = c.particles[place < b_origin ? a_origin : b_origin];
+    if (own != none) model.particles[own].part = model.particles[origin].part;
   }
   return model.add_constraint(c);
 }
@@ -431,7 +435,8 @@ void end_settled_constraints(Model& model, std::span<const std::uint32_t> bodies
 namespace iota {
 
 bool has_coordinate(ConstraintKind kind, JointCoordinate coordinate) {
-  return coordinate == JointCoordinate::angle ? model::info(kind).angle : model::info(kind).slide;
+  const model::ConstraintKindInfo& i = model::info(kind);
+  return std::array{i.angle, i.slide, i.second_angle}[static_cast<std::size_t>(coordinate)];
 }
 
 }  // namespace iota

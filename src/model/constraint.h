@@ -35,13 +35,14 @@ struct ConstraintKindInfo {
   bool cross = false;  ///< 1 row: a's axis at right angles to b's
   bool angle = false;  ///< has the coordinate
   bool slide = false;
+  bool second_angle = false;
   /// One-sided: the multiplier of its row is never negative (1, pulls), never positive (-1, pushes).
   int sign = 0;
 };
 
 inline constexpr std::array<ConstraintKindInfo, 15> constraint_kinds{{
     {.name = "ball", .meet = true},
-    {.name = "universal", .meet = true, .cross = true, .angle = true},
+    {.name = "universal", .meet = true, .cross = true, .angle = true, .second_angle = true},
     {.name = "revolute", .meet = true, .align = true, .angle = true},
     {.name = "cylindrical", .line = true, .align = true, .angle = true, .slide = true},
     {.name = "prismatic", .line = true, .align = true, .lock = true, .slide = true},
@@ -97,12 +98,14 @@ struct Constraint {
   CurveData curve;                        ///< of b
   std::array<SurfaceData, 2> surfaces{};  ///< of a and b
   Vec3 contact;                           ///< of two surfaces, in a's frame, m
-  std::array<CoordinateOptions, 2> options{};
-  std::array<double, 2> coordinate{};  ///< after the last step, rad (counted on through full turns) and m
+  std::array<CoordinateOptions, joint_coordinates.size()> options{};
+  /// After the last step, rad (counted on through full turns) and m.
+  std::array<double, joint_coordinates.size()> coordinate{};
   BreakLimits breaks;
-  std::array<double, 8> multipliers{};             ///< of the rows that hold it, N; warm start and reaction
-  std::array<std::array<double, 4>, 2> efforts{};  ///< multipliers of limit, motor, friction and spring
-  double gap = 0;                                  ///< after the last step, m
+  std::array<double, 8> multipliers{};  ///< of the rows that hold it, N; warm start and reaction
+  /// Multipliers of limit, motor, friction and spring.
+  std::array<std::array<double, 4>, joint_coordinates.size()> efforts{};
+  double gap = 0;  ///< after the last step, m
 
   bool has(int place) const { return particles[place] != 0xffffffff || (in_world >> place & 1); }
 };

@@ -18,6 +18,10 @@ void require_number(std::string_view name, double v) {
   if (!std::isfinite(v)) throw std::invalid_argument(text(name, " must be finite, got ", v));
 }
 
+const char* name_of(JointCoordinate which) {
+  return std::array{"angle", "slide", "second angle"}[static_cast<std::size_t>(which)];
+}
+
 void require_options(std::string_view name, const CoordinateOptions& o) {
   if (!(o.lower <= o.upper))
     throw std::invalid_argument(text(name, " limits: lower must not be above upper, got ", o.lower, " and ", o.upper));
@@ -108,12 +112,14 @@ ConstraintId System::Implementation::apply(const step::CreateJoint& c) {
   require_finite("at", c.spec.at);
   for (const Vec3& axis : {c.spec.axis, c.spec.second_axis}) require_finite("axis", axis);
   if (!(norm(c.spec.axis) > 0)) throw std::invalid_argument("axis must have a direction, got zero length");
-  require_options("angle", c.spec.angle);
-  require_options("slide", c.spec.slide);
-  if ((!kind.angle && rows_of(c.spec.angle) != RowsOf{}) || (!kind.slide && rows_of(c.spec.slide) != RowsOf{}))
-    throw std::invalid_argument(text("a ", kind.name, " joint has no ",
-                                     kind.angle || rows_of(c.spec.angle) == RowsOf{} ? "slide" : "angle",
-                                     " for limits, motors, friction or springs to act on"));
+  const std::array options{&c.spec.angle, &c.spec.slide, &c.spec.second_angle};
+  for (const JointCoordinate which : joint_coordinates) {
+    const CoordinateOptions& o = *options[static_cast<std::size_t>(which)];
+    require_options(name_of(which), o);
+    if (!has_coordinate(c.spec.kind, which) && rows_of(o) != RowsOf{})
+      throw std::invalid_argument(text("a ", kind.name, " joint has no ", name_of(which),
+                                       " for limits, motors, friction or springs to act on"));
+  }
   require_limits(c.spec.breaks);
   return made(make_constraint(model, c.spec));
 }
@@ -191,10 +197,10 @@ void System::Implementation::apply(const step::SetCoordinate& c) {
   const std::uint32_t slot = require(c.constraint);
   model::Constraint& constraint = model.constraints[slot];
   const model::ConstraintKindInfo& kind = model::info(constraint.kind);
-  const bool angle = c.coordinate == JointCoordinate::angle;
+  const char* const name = name_of(c.coordinate);
   if (!has_coordinate(constraint.kind, c.coordinate))
-    throw std::invalid_argument(text("a ", kind.name, " has no ", angle ? "angle" : "slide"));
-  require_options(angle ? "angle" : "slide", c.options);
+    throw std::invalid_argument(text("a ", kind.name, " has no ", name));
+  require_options(name, c.options);
   CoordinateOptions& options = constraint.options[static_cast<std::size_t>(c.coordinate)];
   const bool same_rows = rows_of(options) == rows_of(c.options);
   options = c.options;
@@ -405,7 +411,7 @@ ConstraintState System::state(ConstraintId id) const {
     break;
   }
   state.gap = is_in_force(m, c) ? c.gap : 0, state.length = c.length;
-  for (const JointCoordinate which : {JointCoordinate::angle, JointCoordinate::slide}) {
+  for (const JointCoordinate which : joint_coordinates) {
     const auto i = static_cast<std::size_t>(which);
     if (!has_coordinate(c.kind, which)) continue;
     std::tie(state.coordinate[i], state.speed[i]) = calc_coordinate(m, slot, which);

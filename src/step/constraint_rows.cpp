@@ -14,7 +14,8 @@ using Role = RowUse::Role;
 
 namespace {
 
-constexpr int angle = static_cast<int>(JointCoordinate::angle), slide = static_cast<int>(JointCoordinate::slide);
+constexpr int angle = static_cast<int>(JointCoordinate::angle), slide = static_cast<int>(JointCoordinate::slide),
+              second_angle = static_cast<int>(JointCoordinate::second_angle);
 
 /// Builds the rows of a constraint and hands each to sink(row, use). One function for the problem, where places are
 /// combinations of nodes, and for reactions, where each place is a node of its own.
@@ -45,11 +46,14 @@ class Expansion {
     if (kind.cross) product(a_axis, b_axis, 0);
     if (kind.angle && has_angle(c_)) coordinate(angle, angle_row());
     if (kind.slide) coordinate(slide, slide_row());
+    if (has_second_angle(c_)) coordinate(second_angle, second_angle_row());
   }
 
   static bool has_angle(const Constraint& c) {
     return c.has(a_side) && (info(c.kind).cross || (c.has(b_side) && (c.has(a_axis) || c.has(b_axis))));
   }
+
+  static bool has_second_angle(const Constraint& c) { return info(c.kind).second_angle && c.has(b_side); }
 
   /// From b's reference to a's, about the axis.
   solver::AngleConstraint angle_row() const {
@@ -59,6 +63,14 @@ class Expansion {
     direction(row, 0, c_.has(a_axis) ? a_axis : b_axis);
     direction(row, 1, cross ? b_axis : b_side);
     direction(row, 2, a_side);
+    return row;
+  }
+
+  /// From b's reference to a's axis, about b's.
+  solver::AngleConstraint second_angle_row() const {
+    solver::AngleConstraint row;
+    sides(row, {a_origin, a_axis}, {b_origin, b_axis, b_side});
+    direction(row, 0, b_axis), direction(row, 1, b_side), direction(row, 2, a_axis);
     return row;
   }
 
@@ -271,17 +283,18 @@ struct Places {
   }
 };
 
-void set_target(solver::AngleConstraint& row, const Constraint& c, double target) {
+/// `now` is the coordinate as it was last seen.
+void set_target(solver::AngleConstraint& row, double now, double target) {
   row.target_start = row.target = target;
-  row.near = c.coordinate[angle];
+  row.near = now;
 }
-void set_target(solver::BilinearConstraint& row, const Constraint&, double target) { row.product = target * row.scale; }
+void set_target(solver::BilinearConstraint& row, double, double target) { row.product = target * row.scale; }
 template <class Row>
-void set_target(Row&, const Constraint&, double) {}
+void set_target(Row&, double, double) {}
 
-void set_target(solver::StationConstraint& row, const Constraint& c, double target) {
+void set_target(solver::StationConstraint& row, double now, double target) {
   row.target_start = row.target = target;
-  row.parameter = c.coordinate[slide];
+  row.parameter = now;
 }
 
 /// What a constraint keeps of the rows that hold it: multipliers, and where it is on a curve or between surfaces. Those on
@@ -310,10 +323,10 @@ void set_length(Row&, double) {}
 
 /// The nearer of the two limits, as a one-sided row.
 template <class Row>
-void load_limit(Row& row, const Constraint& c, const CoordinateOptions& o, double now, solver::RowLaw& law) {
-  if (o.lower == o.upper) return set_target(row, c, o.lower);
+void load_limit(Row& row, const CoordinateOptions& o, double now, solver::RowLaw& law) {
+  if (o.lower == o.upper) return set_target(row, now, o.lower);
   const bool at_lower = now - o.lower < o.upper - now;
-  set_target(row, c, at_lower ? o.lower : o.upper);
+  set_target(row, now, at_lower ? o.lower : o.upper);
   (at_lower ? law.upper : law.lower) = 0;
 }
 
@@ -358,9 +371,10 @@ void ConstraintRows::load(const Model& model, solver::Problem& problem) const {
       const CoordinateOptions& o = c.options[use.coordinate];
       *pool.multiplier(item) = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
       solver::RowLaw& law = *pool.law(item) = {};
-      set_target(row, c, 0);
+      const double now = c.coordinate[use.coordinate];
+      set_target(row, now, 0);
       switch (use.role) {
-        case Role::limit: load_limit(row, c, o, c.coordinate[use.coordinate], law); break;
+        case Role::limit: load_limit(row, o, now, law); break;
         case Role::motor:
           law = {.lower = -o.motor_max, .upper = o.motor_max, .rate = o.motor_speed, .hold = true};
           break;
@@ -368,7 +382,7 @@ void ConstraintRows::load(const Model& model, solver::Problem& problem) const {
         default:
           law.compliance = 1 / o.stiffness;  // infinite for a pure dashpot
           law.damping = o.damping;
-          set_target(row, c, o.rest);
+          set_target(row, now, o.rest);
       }
     }
   });
@@ -430,7 +444,7 @@ void ConstraintRows::refresh_coordinates(Model& model) const {
 
 void refresh_coordinates(Model& model, std::uint32_t slot) {
   Constraint& c = model.constraints[slot];
-  for (const JointCoordinate which : {JointCoordinate::angle, JointCoordinate::slide})
+  for (const JointCoordinate which : joint_coordinates)
     if (has_coordinate(c.kind, which))
       c.coordinate[static_cast<std::size_t>(which)] = calc_coordinate(model, slot, which).first;
 }
@@ -520,9 +534,10 @@ std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot
   if (which == JointCoordinate::slide)
     return info(c.kind).form == ConstraintKindInfo::Form::path ? read(expansion.station_row())
                                                                : read(expansion.slide_row());
-  if (!Expansion<decltype(ignore)>::has_angle(c)) return {0, 0};
-  solver::AngleConstraint row = expansion.angle_row();
-  set_target(row, c, 0);
+  const bool second = which == JointCoordinate::second_angle;
+  if (second ? !expansion.has_second_angle(c) : !expansion.has_angle(c)) return {0, 0};
+  solver::AngleConstraint row = second ? expansion.second_angle_row() : expansion.angle_row();
+  set_target(row, c.coordinate[static_cast<std::size_t>(which)], 0);
   return read(row);
 }
 

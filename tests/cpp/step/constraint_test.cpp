@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every kind of constraint against what a textbook says of it.
+#include "math/mat3.h"
 #include "scenes/chain.h"
 
 #include <gtest/gtest.h>
@@ -178,6 +179,43 @@ TEST(Universal, keeps_its_axes_perpendicular_and_transmits_the_known_ratio) {
     EXPECT_NEAR(std::sin(output) * std::cos(input), std::sin(input) * std::cos(output) * std::cos(beta), 1e-6);
   });
   EXPECT_NEAR(system.state(in_bearing).coordinate[0], 8, 0.05);
+}
+
+TEST(Universal, both_its_angles_are_those_that_its_two_axes_have_turned_by) {
+  const Vec3 first{1, 0, 0}, second{0, 0.6, 0.8};
+  for (const double phi : {-1.2, 0.0, 0.4, 3.0})
+    for (const double psi : {-0.9, 0.0, 0.7, 2.5}) {
+      System system{SystemOptions{.gravity = {}}};
+      const BodyId block = system.create_body(Box{{1, 2, 3}});
+      const ConstraintId joint = system.create_constraint(
+          JointSpec{.kind = ConstraintKind::universal, .a = block, .axis = first, .second_axis = second});
+      system.set_pose(block, {}, multiply(axis_angle(second, psi), axis_angle(first, phi)));
+      const auto angles = system.state(joint).coordinate;
+      EXPECT_NEAR(std::remainder(angles[0] - phi, 2 * std::numbers::pi), 0, 1e-12);
+      EXPECT_NEAR(std::remainder(angles[2] - psi, 2 * std::numbers::pi), 0, 1e-12);
+    }
+}
+
+TEST(Universal, each_angle_has_its_own_motor_and_stops) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId block = system.create_body(Box{{1, 0.2, 0.3}}, {.mass = 1});
+  const ConstraintId joint = system.create_constraint(JointSpec{.kind = ConstraintKind::universal,
+                                                                .a = block,
+                                                                .axis = {1, 0, 0},
+                                                                .second_axis = {0, 1, 0},
+                                                                .angle = {.motor_speed = 2, .motor_max = 50},
+                                                                .second_angle = {.upper = 0.5}});
+  system.set_angular_velocity(block, {0, 1, 0});
+  double largest = 0;
+  run(system, 1.5, 1.0 / 240,
+      [&](const StepReport&) { largest = std::max(largest, system.state(joint).coordinate[2]); });
+  const ConstraintState state = system.state(joint);
+  EXPECT_NEAR(state.coordinate[0], 3, 0.02);
+  EXPECT_NEAR(state.speed[0], 2, 1e-4);
+  EXPECT_NEAR(largest, 0.5, 1e-3) << "it swings to its stop, and no further";
+  system.set_coordinate(joint, JointCoordinate::second_angle, {.motor_speed = -0.5, .motor_max = 50});
+  run(system, 1, 1.0 / 240, [](const StepReport&) {});
+  EXPECT_NEAR(system.state(joint).speed[2], -0.5, 1e-6);
 }
 
 TEST(Orientation, a_block_falls_freely_without_turning) {
