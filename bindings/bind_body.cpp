@@ -164,8 +164,8 @@ void bind_body(nb::module_& module) {
           [](const BodyHandle& self, VectorArgument v) {
             between_steps(self, "angular_velocity = ...").set_angular_velocity(self.id, to_vec3(v, "angular_velocity"));
           },
-          "rad/s, world axes. It has no part along what has no inertia: one point, or the line that all points are on.\n"
-          "Assigning keeps the velocity of the centre; what joints do not allow of it is projected out by the next step.")
+          "rad/s, world axes. It has no part along what has no inertia, and assigning one raises ValueError: one point, or\n"
+          "points on a line that are no rod (`set_rod`). Assigning keeps the velocity of the centre; what joints do not allow of it is projected out by the next step.")
       .def_prop_ro(
           "angular_momentum", [](const BodyHandle& self) { return self.use().angular_momentum(self.id); },
           "About its centre of mass, kg m^2/s.")
@@ -200,7 +200,8 @@ void bind_body(nb::module_& module) {
           },
           "mass"_a, "radius"_a,
           "Gives a body of exactly two particles the mass (kg) and inertia of a solid cylinder (radius in m) between them.\n"
-          "It has no spin about its axis. Raises ValueError for any other number of particles.")
+          "What `angular_velocity` gives it about its axis it keeps: nothing on the axis can turn it. Raises ValueError for\n"
+          "any other number of particles.")
       .def(
           "destroy", [](const BodyHandle& self) { self.use().destroy(self.id); },
           "Removes it with its particles and their bonds. In a bond's function: right after the step.")

@@ -43,6 +43,13 @@ void bind_parts(nb::module_& module) {
       .def_prop_ro(
           "net_torque", [](const PartView& self) { return self.use().net_torque(self.body.id, self.part); },
           "About its own centre of mass, N m.")
+      .def_prop_ro(
+          "outside_force", [](const PartView& self) { return self.use().outside_force(self.body.id, self.part); },
+          "What acted on it from outside of the whole body in the last step, N. net_force less this is what the other\n"
+          "parts do to it: the load on the lock.")
+      .def_prop_ro(
+          "outside_torque", [](const PartView& self) { return self.use().outside_torque(self.body.id, self.part); },
+          "Of those forces, about its own centre of mass, N m.")
       .def(
           "separate",
           [](const PartView& self) {

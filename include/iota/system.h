@@ -120,8 +120,9 @@ class System {
   /// where the massive ones carry it: anywhere on a body with four of them off one plane, in the plane of a flat one, on
   /// the line of a thin one. Its velocity is then the body's.
   ParticleId create_particle(BodyId body, const Vec3& position, double mass = 1, const Vec3& velocity = {});
-  /// Gives a body of exactly two particles the mass and inertia of a solid cylinder between them (no spin about its
-  /// axis: exact for hinges on the axis). Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
+  /// Gives a body of exactly two particles the mass and inertia of a solid cylinder between them, exact for
+  /// whatever acts on its axis. What set_angular_velocity gives it about the axis it keeps: nothing there can turn it.
+  /// Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
   void set_rod(BodyId body, double mass, double radius);
   /// A body of four equal point masses that have exactly the mass, centre and inertia of a solid, and one particle for
   /// each attachment. particles(): the four, then the attachments.
@@ -269,8 +270,10 @@ class System {
   Matrix3 inertia(BodyId) const;  ///< about the centre of mass, world axes, kg m^2 (thesis, Eq. 2.28)
   Vec3 velocity(BodyId) const;    ///< of the centre of mass, m/s
   void set_velocity(BodyId, const Vec3&);
-  /// rad/s, world axes; no part of it along what has no inertia (one point, or the line that all points are on).
+  /// rad/s, world axes; no part of it along what has no inertia (one point, or the line that all points are on and that is
+  /// no rod).
   Vec3 angular_velocity(BodyId) const;
+  /// Throws std::invalid_argument for such a part.
   void set_angular_velocity(BodyId, const Vec3&);
   Vec3 angular_momentum(BodyId) const;  ///< about its centre of mass, kg m^2/s
   /// What a body was combined from: ids of bodies, itself and those it absorbed.
@@ -282,6 +285,10 @@ class System {
   Vec3 net_torque(BodyId) const;
   Vec3 net_force(BodyId body, BodyId part) const;
   Vec3 net_torque(BodyId body, BodyId part) const;
+  /// Of a part: what acted on it from outside of the whole body in the last step, N, and its moments about the part's
+  /// centre of mass, N m. `net` minus `outside` is what the other parts do to it: the load on the lock.
+  Vec3 outside_force(BodyId body, BodyId part) const;
+  Vec3 outside_torque(BodyId body, BodyId part) const;
   std::vector<SolidView> solids(BodyId) const;        ///< empty for bodies of particles alone
   std::vector<ParticleId> attachments(BodyId) const;  ///< its particles with mass that are no solid's own points
 

@@ -130,6 +130,7 @@ void Model::keep_inertia_positive(std::uint32_t body_slot) {
     for (; i < taken.size() && taken[i].first == particle; ++i) sum += taken[i].second;
     if (!(particles[particle].mass > 2.001 * sum)) remove_inertia_of(body_slot, particle);
   }
+  if (spins.has(body_slot) && !(axial_inertia(body_slot) > 0)) spins.erase(body_slot);  // it is no rod any more
 }
 
 void Model::prefer_unknowns(std::uint32_t body_slot) {
@@ -164,7 +165,9 @@ void Model::prefer_unknowns(std::uint32_t body_slot) {
 }
 
 std::uint32_t Model::make_marker(std::uint32_t body, const Vec3& position) {
+  const BodyId part = part_at(body, position);
   const std::uint32_t marker = make_particle(body, position, 0, {});
+  particles[marker].part = part;
   ties.make(marker).weights = BasisWeights(*this, body).of(position);
   Ring& ring = rings[particles[marker].ring];
   std::tie(ring.position, ring.velocity) = carried(marker);
@@ -184,6 +187,17 @@ std::array<double, 4> Model::weights(std::uint32_t particle) const {
   std::array<double, 4> weights{};
   weights[static_cast<std::size_t>(own)] = 1;
   return weights;
+}
+
+BodyId Model::part_at(std::uint32_t body, const Vec3& place) const {
+  BodyId part = bodies.id(body);
+  double least = -1;
+  for_each_particle_of(body, [&](std::uint32_t p) {
+    const double distance = norm(position(p) - place);
+    if (particles[p].is_marker() || (least >= 0 && distance >= least)) return;
+    least = distance, part = particles[p].part;
+  });
+  return part;
 }
 
 bool Model::spans(std::uint32_t body_slot, const Vec3& place) const {

@@ -115,7 +115,7 @@ void Model::remove_body(std::uint32_t body) {
   remove_inertia_of(body, none);
   remove_solids_of(body, none);
   take_from_articulate(body);
-  more_rows.erase(body);
+  more_rows.erase(body), spins.erase(body);
   bodies.destroy(body);
 }
 

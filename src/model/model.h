@@ -120,6 +120,14 @@ struct InertiaPair {
   double inertia = 0;  ///< kg, may be negative
 };
 
+/// The turning of a rod about itself, of which its two points know nothing.
+struct RodSpin {
+  double momentum =
+      0;             ///< about the line from the first to the second particle of its inertia pair, kg m^2/s; constant
+  double angle = 0;  ///< turned by since it began, rad
+  double drawn = 0;  ///< of that, what the drawn frame shows
+};
+
 enum class SolidKind : std::uint32_t { sphere, box, cylinder, capsule, torus, mesh };
 
 /// A homogeneous solid that a body, or a part of it, was given as. Four ordinary, equal point masses stand for it, at
@@ -245,7 +253,7 @@ struct Grip {
   Vec3 target;
   std::uint32_t client = 0, hold = 0;
   double frequency = 0, max_acceleration = 0;
-  double force = 0;  ///< in the last step, N
+  Vec3 force;  ///< in the last step, N
 };
 
 /// Two particles on their way to each other.
@@ -269,6 +277,7 @@ class Model {
   SideTable<Push> pushes;  ///< of rings
   SlotTable<Body, BodyId> bodies;
   SideTable<MoreRows> more_rows;  ///< of bodies
+  SideTable<RodSpin> spins;       ///< of bodies that are rods
   SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
   SlotTable<Solid, Id<Solid>> solids;
   SlotTable<Twin, Id<Twin>> twins;
@@ -400,8 +409,17 @@ class Model {
   /// A body made of solids has more points than a basis needs: makes those its basis that are unknowns anyway (hinged,
   /// nailed, bonded), where there are new ones and they span it well. Saves unknowns and ties.
   void prefer_unknowns(std::uint32_t body);
-  /// A new massless particle; the body's basis stays as it is.
+  /// A new massless particle, of the part that it is nearest to; the body's basis stays as it is.
   std::uint32_t make_marker(std::uint32_t body, const Vec3& position);
+  /// Moment of inertia of a rod about itself, kg m^2; 0 of a body that is no rod: two points with an inertia pair.
+  double axial_inertia(std::uint32_t body) const;
+  Vec3 rod_axis(std::uint32_t body) const;                     ///< of a rod, unit vector
+  Vec3 spin_momentum(std::uint32_t body) const;                ///< of a rod's turning about itself, kg m^2/s
+  double spin_energy(std::uint32_t body) const;                ///< J
+  void set_spin(std::uint32_t body, double angular_velocity);  ///< of a rod about itself, rad/s
+
+  /// Of the massive particle nearest to a place.
+  BodyId part_at(std::uint32_t body, const Vec3& place) const;
   /// Whether the body's massive particles span a place: only there can they carry a marker.
   bool spans(std::uint32_t body, const Vec3& place) const;
 
@@ -606,6 +624,7 @@ void Model::archive(Archive& ar) {
   ties.archive(ar, particles.slot_count()), references.archive(ar, particles.slot_count()),
       fuses.archive(ar, particles.slot_count());
   nails.archive(ar, rings.slot_count()), pushes.archive(ar, rings.slot_count());
+  spins.archive(ar, bodies.slot_count());
   more_rows.archive(ar, bodies.slot_count());
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version);

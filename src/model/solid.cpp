@@ -114,6 +114,8 @@ Mat3 body_inertia(const Model& model, std::uint32_t body) {
     const InertiaPair& pair = model.inertia_pairs[i];
     inertia += point_inertia(pair.inertia, model.position(pair.p) - model.position(pair.q));
   });
+  if (const double axial = model.axial_inertia(body); axial > 0)
+    inertia += axial * Mat3::outer(model.rod_axis(body), model.rod_axis(body));
   return inertia;
 }
 
@@ -138,7 +140,7 @@ Vec3 body_angular_momentum(const Model& model, std::uint32_t body) {
     sum += pair.inertia *
            cross(model.position(pair.p) - model.position(pair.q), model.velocity(pair.p) - model.velocity(pair.q));
   });
-  return sum;
+  return sum + model.spin_momentum(body);
 }
 
 Vec3 body_angular_velocity(const Model& model, std::uint32_t body) {

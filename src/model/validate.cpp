@@ -69,6 +69,12 @@ std::vector<std::string> Model::validate() const {
   };
   require_owners("a tie", ties, particles), require_owners("lists", references, particles);
   require_owners("a fuse", fuses, particles), require_owners("rows", more_rows, bodies);
+  require_owners("a spin", spins, bodies);
+  spins.for_each([&](std::uint32_t slot, const RodSpin& spin) {
+    complaints.require(!bodies.is_alive(slot) || axial_inertia(slot) > 0, "body ", slot, " spins, but is no rod");
+    complaints.require(std::isfinite(spin.momentum) && std::isfinite(spin.angle), "the spin of ", slot,
+                       " is not finite");
+  });
   require_owners("a nail", nails, rings), require_owners("a push", pushes, rings);
   rings.for_each([&](std::uint32_t slot, const Ring& r) {
     complaints.require(!r.nailed || nails.has(slot), "ring ", slot, " is nailed nowhere");

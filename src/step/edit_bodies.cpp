@@ -3,8 +3,10 @@
 #include "model/solid.h"
 #include "step/checks.h"
 #include "step/execute.h"
+#include "step/outside_load.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace iota {
@@ -155,6 +157,13 @@ Vec3 System::net_torque(BodyId id, BodyId part) const {
   return implementation_->rates(implementation_->require(id), part).torque;
 }
 
+Vec3 System::outside_force(BodyId id, BodyId part) const {
+  return calc_outside_load(implementation_->model, implementation_->require(id), part).force;
+}
+Vec3 System::outside_torque(BodyId id, BodyId part) const {
+  return calc_outside_load(implementation_->model, implementation_->require(id), part).torque;
+}
+
 // Forces act where the scheme takes them: at the end of the step, or half way, where x = x1 - h (v0 + v1) / 4. There the
 // moments of all forces within a body cancel, so that the sum of m x cross a is the torque from outside.
 System::Implementation::Rates System::Implementation::rates(std::uint32_t body, BodyId part) const {
@@ -186,6 +195,11 @@ System::Implementation::Rates System::Implementation::rates(std::uint32_t body, 
     add(pair.inertia, model.position(pair.p) - model.position(pair.q), model.velocity(pair.p) - model.velocity(pair.q),
         model.rings[model.particles[pair.p].ring].acceleration -
             model.rings[model.particles[pair.q].ring].acceleration);
+    if (!model.spins.has(body)) return;  // whose momentum turns with the axis
+    const Vec3 turning = model.velocity(pair.q) - model.velocity(pair.p) -
+                         back * (model.rings[model.particles[pair.q].ring].acceleration -
+                                 model.rings[model.particles[pair.p].ring].acceleration);
+    torque += (model.spins.at(body).momentum / norm(model.position(pair.q) - model.position(pair.p))) * turning;
   });
   return {force, torque};
 }
@@ -366,12 +380,30 @@ void System::Implementation::apply(const SetBodyVelocity& c) {
   add_motion(body, [&](const Vec3&) { return change; });
 }
 
+/// Points on a line have no inertia about it: there is nothing that could keep such a spin. A rod has.
+static void require_can_spin(const model::Model& model, std::uint32_t slot, const Vec3& spin) {
+  constexpr double along = 1e-6;  // of the spin: round-off
+  const model::Body& body = model.bodies[slot];
+  if (body.rank > 2 || spin == Vec3{} || model.axial_inertia(slot) > 0) return;
+  const Vec3 axis = model.position(body.basis[body.rank - 1]) - model.position(body.basis[0]);
+  if (body.rank == 2 && std::abs(dot(spin, axis)) <= along * norm(spin) * norm(axis)) return;
+  throw std::invalid_argument(
+      text("set_angular_velocity: the particles of body ", slot,
+           body.rank == 2 ? " are on one line, about which they have no inertia and cannot spin" : " are at one place",
+           "; a body given by shape can, or a rod (set_rod)"));
+}
+
 void System::Implementation::apply(const SetAngularVelocity& c) {
   const std::uint32_t body = require(c.body);
   require_finite("angular velocity", c.value);
   require_particles(model, body);
+  require_can_spin(model, body, c.value);
   const Vec3 change = c.value - body_angular_velocity(model, body), centre = model.centre_of_mass(body);
   add_motion(body, [&](const Vec3& x) { return cross(change, x - centre); });
+  if (!(model.axial_inertia(body) > 0)) return;
+  constexpr double round_off = 1e-12;
+  const double spin = dot(c.value, model.rod_axis(body));
+  model.set_spin(body, std::abs(spin) > round_off * norm(c.value) ? spin : 0);
 }
 
 }  // namespace iota

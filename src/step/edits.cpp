@@ -305,6 +305,8 @@ System::Implementation::Conserved System::Implementation::conserved(std::span<co
       sum.kinetic += 0.5 * pair.inertia * dot(v, v);
       sum.angular_momentum += pair.inertia * cross(x, v);
     });
+    sum.kinetic += model.spin_energy(body);
+    sum.angular_momentum += model.spin_momentum(body);
   }
   return sum;
 }
@@ -403,6 +405,7 @@ void System::Implementation::apply(const SetKind& c) {
     model::Body& body = model.bodies[slot];
     if (c.kind == BodyKind::inactive) body.kind_before = body.kind;
     body.kind = c.kind;
+    if (c.kind != BodyKind::dynamic) model.spins.erase(slot);
     if (c.kind == BodyKind::dynamic && before != BodyKind::inactive) model.rebuild_basis(slot);  // rigid as it was put
     model.for_each_particle_of(slot, [&](std::uint32_t p) {
       model.mute_bonds_of(p);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step/hinge_force.h"
 
-#include "model/restructure.h"
 #include "step/constraint_rows.h"
 
 #include <tuple>
@@ -35,7 +34,7 @@ class PointBalance {
   /// Where the scheme takes gradients: at the end of the step, or half way, x = x1 - h (v0 + v1) / 4.
   Vec3 place(std::uint32_t p) const {
     const Ring& r = model_.rings[model_.particles[p].ring];
-    return r.position - back_ * (r.velocity - back_ / 2 * r.acceleration);
+    return r.position - back_ * (r.velocity - back_ * r.acceleration);
   }
   /// Weight of the particle at the point; those that are unknowns of their own and no basis points have none.
   double weight(std::uint32_t p) const {
@@ -71,6 +70,7 @@ class PointBalance {
       if (w != 0)
         sum_ += (w * pair.inertia) * (model_.rings[model_.particles[pair.p].ring].acceleration -
                                       model_.rings[model_.particles[pair.q].ring].acceleration);
+      if (w != 0 && model_.spins.has(particle_.body)) sum_ += w * gyroscopic(pair);
     });
     for (int row = 0; row < body_.row_count; ++row) {
       const auto [i, j] = basis_pairs[row];
@@ -82,10 +82,19 @@ class PointBalance {
     model_.grips.for_each([&](std::uint32_t, const Grip& g) {
       for (std::uint32_t i = 0; i < g.count; ++i) {
         if (g.body != particle_.body || g.points[i] != slot_) continue;
-        const Vec3 pull = g.target - grip_point(model_, g);
-        if (norm(pull) > 0) sum_ -= (g.weights[i] * g.force / norm(pull)) * pull;
+        sum_ -= g.weights[i] * g.force;
       }
     });
+  }
+
+  /// On the first point of a spinning rod, as in solver/forces/gyroscopic.h.
+  Vec3 gyroscopic(const InertiaPair& pair) const {
+    const Ring &p = model_.rings[model_.particles[pair.p].ring], &q = model_.rings[model_.particles[pair.q].ring];
+    const double h = model_.last_dt;
+    const Vec3 e = q.position - p.position,
+               turning = q.velocity - p.velocity - back_ * (q.acceleration - p.acceleration);
+    const Vec3 em = e - 0.5 * h * turning;
+    return (model_.spins.at(particle_.body).momentum / (norm(e) * dot(em, em))) * cross(em, turning);
   }
 
   void tied() {

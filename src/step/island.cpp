@@ -129,6 +129,22 @@ void Island::add_masses(const Model& model, std::uint32_t body, const std::vecto
   });
 }
 
+/// A node is damped by its bodies in the proportion in which they weigh on it.
+void Island::add_damped_masses(const Model& model, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring) {
+  const double k = model.bodies[body].damping;
+  if (!(k > 0)) return add_masses(model, body, node_of_ring);
+  node_damping_.resize(rings_.size());
+  const auto for_each_node = [&](auto visit) {
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      const std::uint32_t node = node_of_ring[model.particles[p].ring];
+      if (model.is_unknown(model.particles[p]) && node != none) visit(node);
+    });
+  };
+  for_each_node([&](std::uint32_t node) { node_damping_[node] -= k * problem_.mass[node]; });
+  add_masses(model, body, node_of_ring);
+  for_each_node([&](std::uint32_t node) { node_damping_[node] += k * problem_.mass[node]; });
+}
+
 void Island::add_constraints(const Model& model, std::uint32_t slot, const std::vector<std::uint32_t>& node_of_ring) {
   const Body& body = model.bodies[slot];
   auto& distances = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints).items;
@@ -205,7 +221,37 @@ void Island::add_bonds(const Model& model, const std::vector<std::uint32_t>& nod
   }
 }
 
+void Island::add_spin(const Model& model, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring) {
+  const model::InertiaPair& pair = model.inertia_pairs[model.bodies[body].first_inertia];
+  solver::GyroscopicForce force;
+  force.arm.nodes = {node_of_ring[model.particles[pair.p].ring], node_of_ring[model.particles[pair.q].ring]};
+  force.arm.weights = {-1, 1};
+  force.arm.count = 2;
+  std::get<solver::ForcePool<solver::GyroscopicForce>>(problem_.forces).items.push_back(force);
+  spinning_.push_back(body);
+}
+
+void Island::store_spins(Model& model, double h) const {
+  for (const std::uint32_t body : spinning_) {
+    model::RodSpin& spin = model.spins.at(body);
+    spin.angle += h * spin.momentum / model.axial_inertia(body);
+  }
+}
+
+double Island::damp_spins(Model& model, double h) const {
+  double lost = 0;
+  for (const std::uint32_t body : spinning_) {
+    lost += model.spin_energy(body);
+    model.spins.at(body).momentum *= std::exp(-(model.damping + model.bodies[body].damping) * h);
+    lost -= model.spin_energy(body);
+  }
+  return lost;
+}
+
 void Island::load_bonds(const Model& model, double h) {
+  auto& gyroscopic = std::get<solver::ForcePool<solver::GyroscopicForce>>(problem_.forces).items;
+  for (std::size_t i = 0; i < spinning_.size(); ++i)
+    gyroscopic[i].spin = model.spins[spinning_[i]].momentum / model.bodies[spinning_[i]].first_row.length;
   auto& springs = std::get<solver::ForcePool<solver::SpringForce>>(problem_.forces).items;
   for (std::size_t i = 0; i < springs_.size(); ++i) {
     const auto& p = model.bonds[springs_[i]].parameters;
@@ -290,15 +336,9 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   const std::size_t n = rings_.size();
   problem_.add_nodes(n);
   for (const std::uint32_t body : bodies_) {
-    add_masses(model, body, node_of_ring);
+    add_damped_masses(model, body, node_of_ring);
     add_constraints(model, body, node_of_ring);
-    if (const double k = model.bodies[body].damping; k > 0)
-      model.for_each_particle_of(body, [&](std::uint32_t p) {
-        const std::uint32_t node = node_of_ring[model.particles[p].ring];
-        if (node == none) return;
-        node_damping_.resize(n);
-        node_damping_[node] += k * model.particles[p].mass;
-      });
+    if (model.spins.has(body)) add_spin(model, body, node_of_ring);
   }
   for (std::size_t i = 0; i < node_damping_.size(); ++i) node_damping_[i] /= problem_.mass[i];
 
@@ -438,8 +478,22 @@ void Island::store_carried(Model& model) const {
   }
 }
 
+// Means over the step, taken where the scheme takes forces, at its end or half way, and before velocities are damped.
+void Island::store_hands(Model& model, double h) const {
+  const auto& hands = std::get<solver::ForcePool<solver::GripForce>>(problem_.forces).items;
+  for (std::size_t i = 0; i < hands.size(); ++i) {
+    const solver::ForceArm& arm = hands[i].arm;
+    Vec3 moved;
+    for (std::uint32_t k = 0; k < arm.count; ++k)
+      moved += arm.weights[k] * (problem_.position[arm.nodes[k]] - model.rings[rings_[arm.nodes[k]]].position);
+    const Vec3 at = arm.value(problem_.position.data()) - (model.steps_to_end_point() ? 0 : 0.5) * moved;
+    model.grips[grips_[i]].force = -hands[i].stiffness * at - (hands[i].damping / h) * moved;
+  }
+}
+
 void Island::store(Model& model, double h) {
   const bool stepped = h > 0;
+  if (stepped) store_hands(model, h);
   const bool any_pushed = stepped && !model.pushes.is_empty();
   const auto put = [&](std::uint32_t ring, const Vec3& position, const Vec3& velocity) {
     Ring& r = model.rings[ring];
@@ -469,9 +523,6 @@ void Island::store(Model& model, double h) {
     nail.position_before = nail.position;
   }
   constraint_rows_.store(model, problem_);
-  const auto& grips = std::get<solver::ForcePool<solver::GripForce>>(problem_.forces).items;
-  for (std::size_t i = 0; i < grips_.size(); ++i)
-    model.grips[grips_[i]].force = grips[i].stiffness * norm(grips[i].arm.value(problem_.position.data()));
 }
 
 bool Island::nails_move(const Model& model) const {
@@ -549,8 +600,9 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     const double before = problem_.kinetic_energy();
     for (std::size_t i = 0; i < rings_.size(); ++i)
       problem_.velocity[i] *= std::exp(-(model.damping + (node_damping_.empty() ? 0 : node_damping_[i])) * h);
-    report.dissipated += before - problem_.kinetic_energy();
+    report.dissipated += before - problem_.kinetic_energy() + damp_spins(model, h);
   }
+  store_spins(model, h);
   store(model, h);
   report.dissipated += virtual_energy(model) - virtual_before;
   report.converged = report.converged && meets_pinned_rows(model);

@@ -74,10 +74,15 @@ class Island {
   /// Of the virtual masses, J: nothing, except in a conflict. It is none of the model's.
   double virtual_energy(const model::Model&) const;
   void add_mass_outer(const Weighted& a, double mass);
+  void add_damped_masses(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
   void add_constraints(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
+  void store_hands(model::Model&, double h) const;
   void add_bonds(const model::Model&, const std::vector<std::uint32_t>& node_of_ring);
   void load_pushes(const model::Model&);
   void load_bonds(const model::Model&, double h);
+  void add_spin(const model::Model&, std::uint32_t body, const std::vector<std::uint32_t>& node_of_ring);
+  void store_spins(model::Model&, double h) const;
+  double damp_spins(model::Model&, double h) const;  ///< returns what that costs, J
   void add_joints(const model::Model&, const std::vector<std::uint32_t>& node_of_ring);
 
   solver::Problem problem_;
@@ -103,6 +108,7 @@ class Island {
   std::vector<std::uint32_t> slaves_;    // particles carried by their basis
   std::vector<Weighted> slave_nodes_;    // of each, by which it is carried
   std::vector<std::uint32_t> springs_, drags_, radials_, grips_;
+  std::vector<std::uint32_t> spinning_;  // bodies of the gyroscopic forces
   ConstraintRows constraint_rows_;
   std::vector<double> grip_masses_;  // kg, what a hand can feel
   std::vector<std::uint32_t> bodies_;

@@ -25,7 +25,7 @@ void System::Implementation::refresh_orientations() {
   if (now == oriented_step) return;
   oriented_step = now;
 
-  model.bodies.for_each([&](std::uint32_t, model::Body& b) {
+  model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
     if (b.first_solid != none) {
       b.orientation = solid_pose(model, b.first_solid).orientation;
       return;
@@ -38,8 +38,13 @@ void System::Implementation::refresh_orientations() {
     const Vec3 x0 = model.position(b.basis[0]);
     const Vec3 old_x = rotate(b.orientation, {1, 0, 0});
     const Vec3 x = unit_or(model.position(b.basis[1]) - x0, old_x);
-    if (b.rank == 2) {  // no spin is known: carry the frame along by the smallest turn
+    if (b.rank == 2) {  // carry the frame along by the smallest turn, and about itself by what it has spun
       b.orientation = normalised(multiply(shortest_turn(old_x, x), b.orientation));
+      if (model::RodSpin* const spin = model.spins.find(slot)) {
+        const double sign = dot(x, model.rod_axis(slot)) < 0 ? -1 : 1;
+        b.orientation = normalised(multiply(axis_angle(x, sign * (spin->angle - spin->drawn)), b.orientation));
+        spin->drawn = spin->angle;
+      }
       return;
     }
     const Vec3 in_plane = model.position(b.basis[2]) - x0;
@@ -51,7 +56,7 @@ void System::Implementation::refresh_orientations() {
   // rod they hang on, a little each time and never near a fold, so that chain links neither drift nor flip.
   constexpr double share = 0.15, largest_turn = 0.15;
   model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
-    if (b.rank != 2) return;
+    if (b.rank != 2 || model.spins.has(slot)) return;
     std::uint32_t upper = slot;
     model.for_each_in_ring(model.particles[b.basis[0]].ring, [&](std::uint32_t p) {
       const std::uint32_t other = model.particles[p].body;

@@ -42,7 +42,7 @@ double& Island::slow_time(Model& model) const {
 void Island::tire(Model& model, double h, solver::AdvanceReport& report) const {
   if (!(model.rest_after > 0) || idle_) return;
   const double limit = model.rest_speed * model.rest_speed;
-  bool slow = grips_.empty();
+  bool slow = grips_.empty() && spinning_.empty();
   for (std::size_t i = 0; i < rings_.size() && slow; ++i)
     slow = dot(problem_.velocity[i], problem_.velocity[i]) < limit &&
            (problem_.force.empty() || problem_.force[i] == Vec3{});
@@ -55,6 +55,7 @@ void Island::tire(Model& model, double h, solver::AdvanceReport& report) const {
 void Island::put_to_rest(Model& model) const {
   for (const std::uint32_t b : bodies_)
     if (is_free(model.bodies[b].kind)) model.bodies[b].kind = BodyKind::resting;
+  for (const std::uint32_t b : spinning_) model.spins.at(b).momentum = 0;
   const auto stop = [&](Ring& r) { r.velocity = r.acceleration = {}; };
   for (const std::uint32_t ring : rings_) stop(model.rings[ring]);
   for (const std::uint32_t p : slaves_) stop(model.rings[model.particles[p].ring]);

@@ -277,7 +277,7 @@ PoseSnapshot System::poses() const {
     hold.client = g.client, hold.hold = g.hold, hold.body = g.body;
     put(hold.point, grip_point(m, g));
     put(hold.target, g.target);
-    hold.force = static_cast<float>(g.force);
+    hold.force = static_cast<float>(norm(g.force));
   });
   return snapshot;
 }

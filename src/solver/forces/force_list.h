@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/forces/force_arm.h"
+#include "solver/forces/gyroscopic.h"
 #include "solver/forces/radial.h"
 
 #include <array>
@@ -89,9 +90,10 @@ concept ImplicitForce = requires(const F& f, const Vec3& e, const ForceStage& st
 
 /// The one list of implicit forces.
 template <template <class> class Pool>
-using ForcePools = std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>, Pool<RadialForce>>;
+using ForcePools =
+    std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>, Pool<RadialForce>, Pool<GyroscopicForce>>;
 
 static_assert(ImplicitForce<SpringForce> && ImplicitForce<DragForce> && ImplicitForce<GripForce> &&
-              ImplicitForce<RadialForce>);
+              ImplicitForce<RadialForce> && ImplicitForce<GyroscopicForce>);
 
 }  // namespace iota::solver

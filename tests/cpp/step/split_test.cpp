@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace iota {
@@ -217,6 +218,73 @@ TEST(Split, NetForcesOfPartsAddUpToTheBodys) {
   Vec3 sum;
   for (const ParticleId p : system.particles(a)) sum += system.net_force(p);
   expect_near(sum, system.net_force(a), 1e-9);
+}
+
+/// Two boxes that touch at x = 0.5, as one rigid body.
+struct LockedPair {
+  System system;
+  BodyId a, b;
+
+  explicit LockedPair(IntegrationMode mode, const Vec3& gravity = {}) : system({.gravity = gravity, .mode = mode}) {
+    a = system.create_body(Box{{1, 0.4, 0.2}}, {.mass = 3, .attachments = {{-0.5, 0.2, 0.1}}});
+    b = system.create_body(Box{{1, 0.4, 0.2}}, {.mass = 2, .position = {1, 0, 0}, .attachments = {{0.5, 0.2, -0.1}}});
+    (void)system.combine(a, b);
+  }
+  ParticleId corner(BodyId part) const { return system.particles(a, part).back(); }
+};
+
+constexpr std::array both_schemes{IntegrationMode::robust, IntegrationMode::energy_keeping};
+
+TEST(Outside, APushOnOneOfTwoLockedBlocksIsForceAndTorqueOnThatOneAlone) {
+  for (const IntegrationMode mode : both_schemes) {
+    LockedPair pair(mode);
+    System& system = pair.system;
+    const double h = 1e-3;
+    const Vec3 push{0, 1, 5}, arm{0.5, 0.2, -0.1};
+    system.apply_force(pair.corner(pair.b), push);
+    (void)system.step(h);
+    expect_near(system.outside_force(pair.a, pair.b), push, 1e-12);
+    expect_near(system.outside_torque(pair.a, pair.b), cross(arm, push), 1e-4);  // turned by 1e-5 within the step
+    expect_near(system.outside_force(pair.a, pair.a), {}, 1e-12);
+    expect_near(system.outside_torque(pair.a, pair.a), {}, 1e-12);
+    // What the lock carries is what moves the other block, by the motion of the two as one.
+    const Vec3 centre{0.4, 0, 0}, spin_up = (1 / h) * system.angular_velocity(pair.a);
+    const Vec3 of_a = 3 * ((1 / 5.0) * push + cross(spin_up, Vec3{0, 0, 0} - centre));
+    expect_near(system.net_force(pair.a, pair.a), of_a, 1e-3);
+    expect_near(system.outside_force(pair.a, pair.b) - system.net_force(pair.a, pair.b), of_a, 1e-3);
+  }
+}
+
+TEST(Outside, WhateverHoldsABodyItsPartsForcesAddUpToItsNetForce) {
+  for (const bool damped : {false, true}) {
+    LockedPair pair(IntegrationMode::robust, {0, -9.81, 0});
+    System& system = pair.system;
+    if (damped) system.set_damping(0.7), system.set_damping(pair.a, 2);
+    system.nail(pair.corner(pair.a));
+    const BodyId wheel = system.create_body(Sphere{0.2}, {.mass = 1, .position = {1, 0.5, 0}});
+    system.create_constraint(JointSpec{.a = pair.a, .b = wheel, .at = {1, 0.3, 0}, .angle = {.stiffness = 2}});
+    const BodyId ball = system.create_body();
+    const ParticleId weight = system.create_particle(ball, {2, -1, 0});
+    system.create_bond(pair.corner(pair.b), weight, SpringLaw{40, 0, 0.3});
+    (void)system.create_grip(pair.a, {0.3, 0, 0}, {1, 2, 1});
+    for (int i = 0; i < 20; ++i) {
+      system.apply_force(pair.corner(pair.b), {1, 2, 3});
+      (void)system.step(0.005);
+      Vec3 force, moments;
+      for (const BodyId part : system.parts(pair.a)) {
+        const Vec3 f = system.outside_force(pair.a, part);
+        double mass = 0;
+        Vec3 centre;
+        for (const ParticleId p : system.particles(pair.a, part))
+          mass += system.mass(p), centre += system.mass(p) * system.position(p);
+        force += f;
+        moments += system.outside_torque(pair.a, part) + cross((1 / mass) * centre - system.centre_of_mass(pair.a), f);
+      }
+      expect_near(force, system.net_force(pair.a), 1e-4);
+      expect_near(moments, system.net_torque(pair.a), 1e-4);
+    }
+    EXPECT_GT(norm(system.net_force(pair.a)), 1);
+  }
 }
 
 TEST(Split, ABondWhoseEndsWereSeparatedJustGoes) {
