@@ -257,14 +257,10 @@ void System::Implementation::run_scripts(StepReport& report) {
 
 // --- what bonds carry ---------------------------------------------------------------------------------------------------
 
-Vec3 System::Implementation::bond_force(std::uint32_t slot) {
+Vec3 System::Implementation::bond_force(std::uint32_t slot) const {
   const model::Bond& bond = model.bonds[slot];
   if (!bond.acts()) return {};
-  if (!bond.implicit) return bond.held_force;
-  bond_alone.law = bond.law, bond_alone.bonds.assign(1, slot);
-  bond_alone.load(model, 0);
-  evaluate(bond_alone, model.time);
-  return -bond_alone.force[0] * bond_alone.direction[0] + bond_alone.drag[0] * bond_alone.rate[0];
+  return bond.implicit ? -model.bond_force(slot) : bond.held_force;
 }
 
 Vec3 System::force(BondId id) const { return implementation_->bond_force(implementation_->require(id)); }

@@ -27,7 +27,6 @@ struct System::Implementation {
   model::Model model;
   step::Islands islands;
   step::HeldForces held_forces;
-  step::LawBatch bond_alone;  ///< room for `bond_force`
   step::ParticleSets particle_sets;
   Parallel parallel;
   std::vector<solver::AdvanceReport> advanced;   // of each island, in the step at hand
@@ -210,7 +209,7 @@ struct System::Implementation {
   void evaluate(step::LawBatch&, double time);
   bool has_function(const step::LawBatch&, StepReport&);
   void add_force(std::uint32_t bond, const Vec3& on_p);
-  Vec3 bond_force(std::uint32_t bond);  ///< on its first particle, N
+  Vec3 bond_force(std::uint32_t bond) const;  ///< on its first particle, N
   void switch_off(std::uint32_t bond, const std::string& why, StepReport&);
   ///@}
   void live(StepReport&);  ///< particles age, turn, die and are born
