@@ -105,6 +105,9 @@ void bind_body(nb::module_& module) {
             return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().particles(self.id));
           },
           nb::sig("def particles(self) -> list[Particle]"), "In the order in which they were made.")
+      .def_prop_ro(
+          "is_spark", [](const BodyHandle& self) { return self.use().is_spark(self.id); },
+          "A particle that an emitter bore and that nothing ties: viewers see a dot that they cannot hold.")
       .def_prop_rw(
           "kind", [](const BodyHandle& self) { return KindWord{to_word(kind_words, self.use().kind(self.id))}; },
           [](const BodyHandle& self, const KindWord& kind) {

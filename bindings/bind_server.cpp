@@ -179,7 +179,7 @@ void bind_server(nb::module_& module) {
           "publish_structure",
           [](Server& self, SystemObject& system) {
             const auto articulates = system.use().body_articulates();
-            self.publish_structure(system.use().structure_version(), articulates);
+            self.publish_structure(system.use().scene_version(), articulates);
           },
           "system"_a, "Which articulate each body belongs to.")
       .def(

@@ -110,6 +110,9 @@ void bind_readings(nb::class_<SystemObject>& type) {
           "time", [](SystemObject& self) { return self.use().time(); }, "Simulated time, s.")
       .def_prop_ro("step_count", [](SystemObject& self) { return self.use().step_count(); })
       .def_prop_ro(
+          "scene_version", [](SystemObject& self) { return self.use().scene_version(); },
+          "As structure_version, but births and deaths of sparks do not count: what a page's list of bodies depends on.")
+      .def_prop_ro(
           "structure_version", [](SystemObject& self) { return self.use().structure_version(); },
           "Rises with each batch of structural edits.")
       .def_prop_ro("energy", [](SystemObject& self) { return self.use().energy(); })

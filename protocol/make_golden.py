@@ -123,6 +123,9 @@ SERVER: list[Vector] = [
         + pack("<I", 1)
         + pack("<I3fI", 70000, 0.0, -4096.5, 8.0, 0xC0000001)
         + pack("<I", 1)
+        + vec3([0.25, 0.5, -0.75])
+        + pack("<fI", 0.0625, 0xFF8000)
+        + pack("<I", 1)
         + pack("<III", 2, 7, 12)
         + vec3([0.5, 1.0, 1.5])
         + vec3([0.5, 1.25, 1.5])
@@ -142,13 +145,14 @@ SERVER: list[Vector] = [
             "box_max": [1.0, 2.0, 4.0],
             "bodies": BODIES,
             "far_bodies": FAR,
+            "sparks": [{"position": [0.25, 0.5, -0.75], "radius": 0.0625, "color": 0xFF8000}],
             "holds": HOLDS,
         },
     ),
     (
         "poses_nothing_moved",
         "poses",
-        b"\x44" + pack("<QdIBB", 5, 0.5, 1, 0, 1) + bytes(5 * 4) + bytes(6 * 4) + bytes(3 * 4),
+        b"\x44" + pack("<QdIBB", 5, 0.5, 1, 0, 1) + bytes(5 * 4) + bytes(6 * 4) + bytes(4 * 4),
         {
             "step": 5,
             "time": 0.5,
@@ -164,6 +168,7 @@ SERVER: list[Vector] = [
             "box_max": [0.0, 0.0, 0.0],
             "bodies": [],
             "far_bodies": [],
+            "sparks": [],
             "holds": [],
         },
     ),
@@ -218,8 +223,8 @@ BAD: list[tuple[str, str, bytes, str]] = [
     ("bad_surrogate", "client", b"\x06" + pack("<I", 3) + b"\xed\xa0\x80" + bytes(4), "action.name is not UTF-8"),
     ("bad_count", "server", b"\x43" + pack("<II", 1, 1000000) + bytes(8), "structure.articulates ends early"),
     ("bad_count_huge", "server", b"\x43" + pack("<II", 1, 0xFFFFFFFF), "structure.articulates has 4294967295"),
-    ("bad_bool", "server", b"\x44" + pack("<QdIBB", 5, 0.5, 1, 2, 1) + bytes(56), "poses.keyframe is neither 0 nor 1"),
-    ("bad_poses_short", "server", b"\x44" + pack("<QdIBB", 5, 0.5, 1, 0, 1) + bytes(55), "poses.holds ends early"),
+    ("bad_bool", "server", b"\x44" + pack("<QdIBB", 5, 0.5, 1, 2, 1) + bytes(60), "poses.keyframe is neither 0 nor 1"),
+    ("bad_poses_short", "server", b"\x44" + pack("<QdIBB", 5, 0.5, 1, 0, 1) + bytes(59), "poses.holds ends early"),
 ]
 
 

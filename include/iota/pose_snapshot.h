@@ -14,6 +14,13 @@ struct BodyPose {
   float orientation[4];  ///< unit quaternion x y z w
 };
 
+/// An emitter's particle that nothing ties: drawn as a dot.
+struct SparkPose {
+  float position[3];    ///< world frame, m
+  float radius;         ///< m
+  std::uint32_t color;  ///< 0xRRGGBB
+};
+
 /// A user's hand on a body: the spring from `point` to `target`.
 struct HoldPose {
   std::uint32_t client, hold, body;
@@ -28,14 +35,15 @@ struct BodyArticulate {
 /// All that a viewer needs of one instant: an immutable copy, safe to hand to another thread.
 struct PoseSnapshot {
   std::uint64_t step = 0;
-  double time = 0;  ///< s
-  std::uint32_t structure_version = 0;
+  double time = 0;                      ///< s
+  std::uint32_t structure_version = 0;  ///< System::scene_version
   bool paused = false;
   float speed = 1;                   ///< simulated seconds per real second that the user asked for
   float step_ms = 0;                 ///< mean time of the latest steps
   float kinetic = 0, potential = 0;  ///< J
   float gap = 0;                     ///< worst hinge separation or rigidity error, m
   std::vector<BodyPose> bodies;
+  std::vector<SparkPose> sparks;
   std::vector<HoldPose> holds;
 };
 

@@ -226,6 +226,10 @@ class System {
   double time() const;
   std::uint64_t step_count() const;
   std::uint32_t structure_version() const;
+  /// As `structure_version`, but births and deaths of sparks do not count: what a viewer's list of bodies depends on.
+  std::uint32_t scene_version() const;
+  /// A body of one particle that an emitter bore and that nothing ties: viewers see a dot that they cannot hold.
+  bool is_spark(BodyId) const;
   Energy energy() const;
   Vec3 momentum() const;
   Vec3 angular_momentum() const;  ///< about the origin

@@ -34,6 +34,7 @@ class SimulatedBody:
     """Something that is drawn and can be held. slot: its number on the page, never used for another while it is there."""
 
     kind = "dynamic"  # or "static", "inactive"
+    is_spark = False  # see `Body.is_spark`
     solids: Sequence[Solid] = ()  # shapes that it is drawn as; without them it is drawn by its particles
 
     def __init__(self, system: Simulator, slot: int) -> None:

@@ -184,6 +184,15 @@ std::optional<BodyId> Model::survivor_of(BodyId id) const {
   return std::nullopt;
 }
 
+bool Model::is_spark(std::uint32_t particle) const {
+  const Particle& p = particles[particle];
+  if (p.attributes == none || attributes[p.attributes].emitter == none) return false;
+  const References& r = references[particle];
+  const Ring& ring = rings[p.ring];
+  return bodies[p.body].count == 1 && ring.count == 1 && !ring.nailed && r.first_bond == none &&
+         r.first_closing == none && r.first_constraint == none;
+}
+
 std::uint64_t Model::hash() const {
   Hasher h;
   h.value(step), h.value(time), h.value(structure_version);

@@ -308,6 +308,7 @@ class Model {
   double time = 0, last_dt = 0;
   std::uint64_t step = 0;
   std::uint32_t structure_version = 1;
+  std::uint32_t spark_changes = 0;  ///< how often `structure_version` has risen for births and deaths of sparks
   double dissipated = 0, external_work = 0, edit_energy = 0;
   double booked_energy = 0;        ///< kinetic and potential energy when edits were last booked, J
   std::uint64_t has_edits = 0;     ///< since then
@@ -510,6 +511,8 @@ class Model {
   void record_survivor(ParticleId retired, ParticleId survivor);
   void record_survivor(BodyId retired, BodyId survivor);
   std::optional<ParticleId> survivor_of(ParticleId) const;
+  /// An emitter's particle that nothing ties: it comes and goes, and no viewer can hold it.
+  bool is_spark(std::uint32_t particle) const;
   std::optional<BodyId> survivor_of(BodyId) const;
 
   /// @name Quantities
@@ -627,7 +630,7 @@ void Model::archive(Archive& ar) {
   spins.archive(ar, bodies.slot_count());
   more_rows.archive(ar, bodies.slot_count());
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
-  ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version);
+  ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version), ar.value(spark_changes);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy), ar.value(booked_energy), ar.value(has_edits);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
   if constexpr (std::is_same_v<Archive, Reader>) compile_laws();

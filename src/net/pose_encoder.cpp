@@ -195,6 +195,12 @@ void PoseQuantiser::update(const PoseSnapshot& snapshot) {
   poses_.bodies.clear();
   poses_.far_bodies.clear();
   for (const BodyPose& body : snapshot.bodies) add_body(body);
+  poses_.sparks.clear();
+  for (const SparkPose& spark : snapshot.sparks) {
+    if (poses_.sparks.size() == 65536) break;  // the protocol's limit
+    if (!is_finite(spark.position) || !std::isfinite(spark.radius)) continue;
+    poses_.sparks.push_back({to_vec3(spark.position), spark.radius, spark.color});
+  }
   poses_.holds.clear();
   for (const HoldPose& hold : snapshot.holds) {
     if (poses_.holds.size() == 4096) break;  // the protocol's limit
@@ -245,6 +251,7 @@ void PoseDelta::encode(const PoseQuantiser& latest, bool wants_keyframe, std::ve
   frame_.gap = all.gap;
   frame_.box_min = all.box_min;
   frame_.box_max = all.box_max;
+  frame_.sparks = all.sparks;
   frame_.holds = all.holds;
   frame_.bodies.clear();
   frame_.far_bodies.clear();

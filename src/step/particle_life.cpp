@@ -93,7 +93,9 @@ void System::Implementation::live(StepReport& report) {
   if (!dead.empty()) model.begin_edits();
   for (const ParticleId particle : dead) {
     if (!model.particles.contains(particle)) continue;  // went with another one
+    const std::uint32_t before = model.structure_version, is_spark = model.is_spark(particle.slot);
     apply(Destroy<ParticleId>{particle});
+    if (is_spark) model.spark_changes += model.structure_version - before;
     report.died.push_back(particle);
   }
   for (std::uint32_t e = 0; e < model.emitters.slot_count(); ++e)
@@ -128,6 +130,7 @@ void System::Implementation::emit(std::uint32_t slot, StepReport& report) {
     ++e.alive, ++e.born;
     report.born.push_back(model.particles.id(particle));
     structure_changed();
+    ++model.spark_changes;
   }
 }
 
@@ -205,6 +208,7 @@ void System::Implementation::apply(const Destroy<EmitterId>& c) {
     a.radius = look.radius, a.colour = look.colour, a.emitter = none;
   });
   model.emitters.destroy(slot);
+  structure_changed();
 }
 
 void System::Implementation::apply(const SetAttributes& c) {

@@ -131,6 +131,14 @@ double System::damping() const { return implementation_->model.damping; }
 double System::time() const { return implementation_->model.time; }
 std::uint64_t System::step_count() const { return implementation_->model.step; }
 std::uint32_t System::structure_version() const { return implementation_->model.structure_version; }
+std::uint32_t System::scene_version() const {
+  return implementation_->model.structure_version - implementation_->model.spark_changes;
+}
+bool System::is_spark(BodyId id) const {
+  const model::Model& m = implementation_->model;
+  const std::uint32_t first = m.bodies[implementation_->require(id)].first;
+  return first != model::none && m.is_spark(first);
+}
 Vec3 System::momentum() const { return implementation_->model.momentum(); }
 Vec3 System::angular_momentum() const { return implementation_->model.angular_momentum(); }
 double System::worst_gap() const { return implementation_->model.worst_gap(); }
@@ -255,7 +263,7 @@ PoseSnapshot System::poses() const {
   implementation_->refresh_orientations();
   const model::Model& m = implementation_->model;
   PoseSnapshot snapshot;
-  snapshot.step = m.step, snapshot.time = m.time, snapshot.structure_version = m.structure_version;
+  snapshot.step = m.step, snapshot.time = m.time, snapshot.structure_version = scene_version();
   snapshot.kinetic = static_cast<float>(m.kinetic_energy());
   snapshot.potential = static_cast<float>(m.potential_energy());
   snapshot.gap = static_cast<float>(m.worst_gap());
@@ -265,6 +273,16 @@ PoseSnapshot System::poses() const {
   snapshot.bodies.reserve(m.bodies.size());
   m.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
     if (b.kind == BodyKind::inactive || b.count == 0) return;
+    if (m.is_spark(b.first)) {
+      const ParticleAttributes look = attributes(m.particles.id(b.first));
+      SparkPose& spark = snapshot.sparks.emplace_back();
+      put(spark.position, m.position(b.first));
+      spark.radius = static_cast<float>(look.radius);
+      for (int i = 0; i < 3; ++i)
+        spark.color =
+            spark.color << 8 | static_cast<std::uint32_t>(std::clamp(look.colour[i], 0.0f, 1.0f) * 255 + 0.5f);
+      return;
+    }
     BodyPose& pose = snapshot.bodies.emplace_back();
     pose.body = slot;
     put(pose.position, m.centre_of_mass(slot));
@@ -285,7 +303,8 @@ PoseSnapshot System::poses() const {
 std::vector<BodyArticulate> System::body_articulates() const {
   std::vector<BodyArticulate> list;
   implementation_->model.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
-    if (b.kind != BodyKind::inactive && b.count > 0) list.push_back({slot, b.articulate});
+    if (b.kind != BodyKind::inactive && b.count > 0 && !implementation_->model.is_spark(b.first))
+      list.push_back({slot, b.articulate});
   });
   return list;
 }

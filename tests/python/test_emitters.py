@@ -32,13 +32,32 @@ def test_an_emitter_bears_and_its_particles_die(system: iota.System) -> None:
     fire.rate = 5
     fire.move((1, 0, 0))
     assert not fire.active and fire.rate == 5
-    classes, bodies = (json.loads(text) for text in Scene(system).describe())
-    assert all(classes[body["class"]]["*"]["type"] == "sphere" for body in bodies)
-    assert len({body["class"] for body in bodies}) > 3  # they are drawn as old as they are
     fire.destroy()
     assert not fire.alive and particle.alive and system.validate() == []
     with pytest.raises(iota.StaleIdError):
         _ = fire.rate
+
+
+def test_sparks_are_dots_until_something_ties_them(system: iota.System) -> None:
+    fire = iota.Emitter(system, rate=100, lifetime=10, velocity=(0, 1, 0))
+    scene, version = Scene(system), system.scene_version
+    for _ in range(20):
+        system.step(0.01)
+    assert fire.count == 20 and system.structure_version > 20
+    assert system.scene_version == version  # nothing to tell a page
+    assert json.loads(scene.describe()[1]) == [] and len(system.poses()[0]) == 0
+    first, second = fire.particles[:2]
+    assert first.body.is_spark
+    bond = iota.Bond(first, second, "spring", stiffness=1)
+    assert not first.body.is_spark and system.scene_version != version
+    classes, bodies = (json.loads(text) for text in scene.describe())
+    assert {body["body"] for body in bodies} == {first.body.slot, second.body.slot} == set(system.poses()[0])
+    assert all(classes[body["class"]]["*"]["type"] == "sphere" for body in bodies)
+    version = system.scene_version
+    first.destroy()  # takes the bond with it
+    assert not bond.alive and second.body.is_spark and system.scene_version != version
+    fire.destroy()  # from now on they are particles like others
+    assert not second.body.is_spark
 
 
 def test_thousands_of_particles_are_no_matter(system: iota.System) -> None:

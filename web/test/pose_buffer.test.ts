@@ -19,7 +19,7 @@ function packRotation(q: readonly number[]): number {
 function frame(step: number, bodies: PoseBody[], extra: Partial<Poses> = {}): PosesBuffer {
   const poses: Poses = {
     type: "poses", step, time: step / 60, structureVersion: 1, keyframe: false, paused: false, speed: 1, stepMs: 0, kinetic: 0,
-    potential: 0, gap: 0, boxMin: [0, 0, 0], boxMax: [span, span, span], bodies, farBodies: [], holds: [], ...extra,
+    potential: 0, gap: 0, boxMin: [0, 0, 0], boxMax: [span, span, span], bodies, farBodies: [], sparks: [], holds: [], ...extra,
   };
   const buffer = new PosesBuffer();
   decodePosesInto(encodePoses(poses), buffer);

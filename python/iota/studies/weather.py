@@ -80,7 +80,7 @@ def fountain(world: iota.World, nozzle: iota.Vec3) -> None:
     """Sparks that are born, age, change their color and die."""
     spout = iota.Emitter(
         world.system,
-        rate=70, source=iota.Sphere(0.01), position=nozzle, velocity=(0, 4.2, 0), velocity_spread=0.45,
+        rate=400, source=iota.Sphere(0.01), position=nozzle, velocity=(0, 4.2, 0), velocity_spread=0.45,
         lifetime=1.0, lifetime_spread=0.15, mass=0.002,
         curve=[(0, 0.007, (1, 0.95, 0.6)), (0.5, 0.012, (1, 0.5, 0.1)), (1, 0.004, (0.35, 0.05, 0.1))],
     )  # fmt: skip

@@ -50,6 +50,10 @@ class Effect:
         return self.particle.position if self.particle is not None and self.particle.alive else self.place
 
 
+def _scene_version(system: System | Simulator) -> int:
+    return system.scene_version if isinstance(system, System) else system.structure_version
+
+
 @dataclass
 class Publisher:
     """A server and what it was told already: only what changed is sent again."""
@@ -57,7 +61,7 @@ class Publisher:
     world: World
     server: Server
     sent: dict[str, str] = field(default_factory=dict)
-    structure_version: int = -1
+    scene_version: int = -1
     effects: list[Effect] = field(default_factory=list)
 
     @classmethod
@@ -87,13 +91,13 @@ class Publisher:
             self.server.publish_structure(system)
         else:
             self.server.publish_structure(system.structure_version, list(system.body_articulates()))
-        self.structure_version = system.structure_version
+        self.scene_version = _scene_version(system)
 
     def frame(self, dirty: bool) -> None:
         """One frame: poses, and before them what changed in the structure."""
         world = self.world
         system: System | Simulator = world.system
-        if dirty or system.structure_version != self.structure_version:
+        if dirty or _scene_version(system) != self.scene_version:
             self.scene()
         self._send_effects(system)
         if isinstance(system, System):

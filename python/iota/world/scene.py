@@ -87,7 +87,7 @@ class Scene:
     def describe(self) -> tuple[str, str]:
         """JSON texts of "classes" and "bodies"."""
         classes: dict[str, Any] = {**ties.default_looks(self._scale()), **self.classes}
-        bodies = [self._describe_body(body, classes) for body in self._system.bodies]
+        bodies = [self._describe_body(body, classes) for body in self._system.bodies if not body.is_spark]
         drawable = {name: looks for name, looks in classes.items() if not is_solid(looks)}
         return json.dumps(drawable, separators=(",", ":")), json.dumps(bodies, separators=(",", ":"))
 

@@ -296,10 +296,12 @@ TEST_F(ServerTest, RefusesAWrongVersionWorldOrFirstFrameWithAReason) {
     return refused ? refused->reason : std::string("(none)");
   };
   const auto magic = protocol::protocol_magic;
-  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{magic, 2, "", ""})),
-            "the page speaks protocol version 2, the server version 1: reload the page");
-  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{magic, 1, "moon", ""})), "there is no world 'moon' here");
-  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{7, 1, "", ""})), "this is not Iota's protocol");
+  constexpr std::uint16_t version = protocol::protocol_version;
+  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{magic, std::uint16_t{version + 1}, "", ""})),
+            "the page speaks protocol version " + std::to_string(version + 1) + ", the server version " +
+                std::to_string(version) + ": reload the page");
+  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{magic, version, "moon", ""})), "there is no world 'moon' here");
+  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{7, version, "", ""})), "this is not Iota's protocol");
   EXPECT_EQ(refusal(protocol::encode(protocol::Ping{0})), "the first frame has to be hello");
   EXPECT_EQ(refusal(test::golden("bad_type")).rfind("the first frame has to be hello: ", 0), 0U);
   EXPECT_TRUE(server_->take_input().empty());

@@ -15,6 +15,7 @@ import { Flashes } from "../scene/flashes.ts";
 import { makeGeometry } from "../scene/geometry.ts";
 import { HoldLines } from "../scene/hold_lines.ts";
 import { materialOf, palette } from "../scene/materials.ts";
+import { SparkView } from "../scene/spark_view.ts";
 import { Stage } from "../scene/stage.ts";
 import { allowAnisotropy } from "../scene/textures.ts";
 import { TieView } from "../scene/tie_view.ts";
@@ -77,6 +78,7 @@ export class Page implements ConnectionListener, GestureListener {
   readonly model = new WorldModel((change) => this.modelChanged_(change));
   readonly view = new BodyView(this.model);
   readonly ties = new TieView(this.model, this.view.poses);
+  readonly sparks = new SparkView();
   readonly stage: Stage;
   readonly gestures = new Gestures(this.view, this);
   readonly navigation = new Navigation(this.camera);
@@ -116,7 +118,7 @@ export class Page implements ConnectionListener, GestureListener {
     allowAnisotropy(this.renderer);
     this.stage = new Stage(this.scene, this.renderer);
     this.rig.add(this.camera);
-    this.scene.add(this.rig, this.statics_, this.view.root, this.ties.root, this.holdLines_.root, this.flashes_.root);
+    this.scene.add(this.rig, this.statics_, this.view.root, this.ties.root, this.sparks.root, this.holdLines_.root, this.flashes_.root);
     this.selectedOutline_.material.thickness.value = 0.0026;
     this.hoverOutline_.material.thickness.value = 0.0022;
     this.view.addOutline(this.selectedOutline_);
@@ -224,6 +226,7 @@ export class Page implements ConnectionListener, GestureListener {
     if (poses.step !== this.model.step || poses.holds.count > 0) this.stir();
     this.model.setState(poses);
     this.view.poses.push(poses, now);
+    this.sparks.take(poses.sparks);
     const { boxMin, boxMax } = poses;
     if (poses.keyframe) this.stage.fit(boxMin[0], boxMin[1], boxMin[2], boxMax[0], boxMax[1], boxMax[2]);
     this.timing.decodeMs += (performance.now() - started - this.timing.decodeMs) * 0.05;
