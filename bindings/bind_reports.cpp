@@ -32,11 +32,14 @@ void bind_energy(nb::module_& module) {
           nb::kw_only(), "kinetic"_a = 0.0, "potential"_a = 0.0, "dissipated"_a = 0.0, "external_work"_a = 0.0,
           "edits"_a = 0.0)
       .def_ro("kinetic", &Energy::kinetic)
-      .def_ro("potential", &Energy::potential, "Of gravity and springs.")
+      .def_ro("potential", &Energy::potential,
+              "Of gravity, springs, and all bonds, fields and pairs whose law has an energy.")
       .def_ro("dissipated", &Energy::dissipated,
               "Since the start, by damping, dashpots and the integrator; negative would be made-up energy.")
-      .def_ro("external_work", &Energy::external_work,
-              "Since the start, by grips, scripted bonds, moved nails and applied forces.")
+      .def_ro(
+          "external_work", &Energy::external_work,
+          "Since the start, by grips, scripted bonds, moved nails and applied forces; also what holding a force that has\n"
+          "an energy costs, see docs/forces.md.")
       .def_ro("edits", &Energy::edits, "Since the start, gained (+) or lost (-) by edits.")
       .def_prop_ro("total", &Energy::total, "kinetic + potential.")
       .def("__repr__", [](const Energy& e) {

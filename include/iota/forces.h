@@ -110,7 +110,7 @@ struct ParticleBatch {
 /// May throw: the field is then switched off, and the step says so.
 using FieldFunction = std::function<void(const ParticleBatch&)>;
 
-/// A predefined field (uniform, wind, current, well, attractor), an expression that defines fx, fy, fz (N) of x, y, z, vx, vy,
+/// A predefined field (uniform, wind, current, well, attractor), an expression that defines energy (J), or fx, fy, fz (N), of x, y, z, vx, vy,
 /// vz, m, t and its parameters, or a function.
 using FieldBody = std::variant<std::string, FieldFunction>;
 

@@ -14,11 +14,12 @@ namespace iota {
 /// Energy book-keeping, J. `kinetic + potential + dissipated - external_work - edits` is constant up to round-off.
 struct Energy {
   double kinetic = 0;
-  double potential = 0;  ///< gravity and springs
+  double potential = 0;  ///< gravity, springs, and all bonds, fields and pairs whose law has an energy
   double dissipated =
       0;  ///< since the start, by damping, dashpots and the integrator; negative would be made-up energy
-  double external_work = 0;  ///< since the start, by grips, scripted bonds, moved nails and applied forces
-  double edits = 0;          ///< since the start, gained (+) or lost (-) by edits
+  double external_work =
+      0;  ///< since the start, by grips, scripted bonds, moved nails and applied forces, and what holding forces costs
+  double edits = 0;  ///< since the start, gained (+) or lost (-) by edits
   double total() const { return kinetic + potential; }
 };
 

@@ -357,7 +357,7 @@ class System {
   std::vector<PairsId> all_pairs() const;
   LawId law(PairsId) const;
   double cutoff(PairsId) const;  ///< m
-  double energy(PairsId) const;  ///< of all pairs within the cut-off, now, J; no part of energy()
+  double energy(PairsId) const;  ///< of all pairs within the cut-off, now, J; a part of energy().potential
   bool is_active(PairsId) const;
   void set_active(PairsId, bool);
   std::vector<LawParameter> parameters(PairsId) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace iota::laws {
 
@@ -23,56 +24,98 @@ void visit_list(std::uint32_t number, Visit visit) {
   visit_list(number, visit, std::make_index_sequence<field_law_count>{});
 }
 
+FieldState state_of(const ParticleArrays& a, std::size_t i, double t, double h) {
+  return {{a.x[i], a.y[i], a.z[i]}, {a.vx[i], a.vy[i], a.vz[i]}, a.m[i], t, h};
+}
+
 }  // namespace
 
-FieldLaw::FieldLaw(std::uint32_t number) : number_(number), parameter_count_(field_law_parameters(number).size()) {}
+FieldLaw::FieldLaw(std::uint32_t number) : number_(number), parameter_count_(field_law_parameters(number).size()) {
+  visit_list(number_, [&]<class Law>() { has_energy_ = Law::has_energy; });
+}
 
 FieldLaw::FieldLaw(std::string_view text, std::vector<std::string> parameters) : parameter_count_(parameters.size()) {
   std::vector<std::string> inputs(std::begin(variables), std::end(variables));
   inputs.insert(inputs.end(), parameters.begin(), parameters.end());
   Formula formula(std::move(inputs));
   const auto definitions = expression::parse(text, formula);
+  const Node zero = formula.constant(0);
   std::array<Node, 3> force;
-  force.fill(formula.constant(0));
+  force.fill(zero);
+  Node energy = zero;
   bool any = false;
-  for (const auto& d : definitions)
-    for (std::size_t k = 0; k < 3; ++k)
+  for (const auto& d : definitions) {
+    for (std::uint32_t k = 0; k < 3; ++k)
       if (d.name == std::array{"fx", "fy", "fz"}[k]) force[k] = d.node, any = true;
+    if (d.name != "energy") continue;
+    energy = d.node, any = true;
+    for (std::uint32_t k = 3; k < 6; ++k)
+      if (formula.depends_on(energy, k))
+        throw expression::ExpressionError("an energy cannot depend on a velocity; put damping into 'fx = ...'", text,
+                                          d.position);
+  }
   if (!any)
-    throw expression::ExpressionError("a field defines 'fx', 'fy' or 'fz' (N)", text, definitions.back().position);
+    throw expression::ExpressionError("a field defines 'energy' (J), or 'fx', 'fy' or 'fz' (N)", text,
+                                      definitions.back().position);
+  has_energy_ = energy != zero;
+  for (std::uint32_t k = 0; k < 3; ++k)
+    force[k] = formula.make(expression::Op::subtract, force[k], formula.derivative(energy, k));
   std::vector<bool> uniform(formula.inputs().size(), true);
   std::fill_n(uniform.begin(), variable_count - 1, false);  // all but t
-  program_ = Program(formula, force, uniform);
+  force_ = Program(formula, force, uniform);
+  energy_ = Program(formula, std::array{energy}, uniform);
 }
 
-void FieldLaw::evaluate(const ParticleArrays& a, std::size_t first, std::size_t count, double t, double h,
-                        const double* parameters, double* out) const {
-  if (number_ < field_law_count) {
-    visit_list(number_, [&]<class Law>() {
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t j = first + i;
-        const Vec3 f = Law::force({{a.x[j], a.y[j], a.z[j]}, {a.vx[j], a.vy[j], a.vz[j]}, a.m[j], t, h}, parameters);
-        out[3 * i] = f.x, out[3 * i + 1] = f.y, out[3 * i + 2] = f.z;
-      }
-    });
-    return;
-  }
+template <class Take>
+void FieldLaw::run(const Program& program, const ParticleArrays& a, std::size_t first, std::size_t count, double t,
+                   const double* parameters, Take take) const {
   static thread_local Program::Workspace workspace;
   std::array<double, variable_count + max_field_parameters> uniforms{};
   uniforms[variable_count - 1] = t;
   std::copy_n(parameters, parameter_count_, uniforms.begin() + variable_count);
   constexpr std::size_t block = Program::block;
-  std::array<std::array<double, block>, 3> forces;
-  double* const outputs[3] = {forces[0].data(), forces[1].data(), forces[2].data()};
+  std::array<std::array<double, block>, 3> results;
+  double* const outputs[3] = {results[0].data(), results[1].data(), results[2].data()};
   for (std::size_t start = 0; start < count; start += block) {
     const std::size_t n = std::min(block, count - start), j = first + start;
     const double* const lanes[variable_count + max_field_parameters] = {
         a.x.data() + j,  a.y.data() + j,  a.z.data() + j, a.vx.data() + j,
         a.vy.data() + j, a.vz.data() + j, a.m.data() + j};
-    program_.run(n, lanes, uniforms.data(), outputs, workspace);
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t k = 0; k < 3; ++k) out[3 * (start + i) + k] = forces[k][i];
+    program.run(n, lanes, uniforms.data(), outputs, workspace);
+    take(start, n, outputs);
   }
+}
+
+void FieldLaw::evaluate(const ParticleArrays& a, std::size_t first, std::size_t count, double t, double h,
+                        const double* parameters, double* out) const {
+  if (number_ == field_law_count)
+    return run(force_, a, first, count, t, parameters, [&](std::size_t start, std::size_t n, double* const* forces) {
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < 3; ++k) out[3 * (start + i) + k] = forces[k][i];
+    });
+  visit_list(number_, [&]<class Law>() {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 f = Law::force(state_of(a, first + i, t, h), parameters);
+      out[3 * i] = f.x, out[3 * i + 1] = f.y, out[3 * i + 2] = f.z;
+    }
+  });
+}
+
+double FieldLaw::energy(const ParticleArrays& a, double t, const double* parameters) const {
+  double sum = 0;
+  const auto add = [&](double energy) {
+    if (std::isfinite(energy)) sum += energy;
+  };
+  if (!has_energy_) return sum;
+  if (number_ == field_law_count)
+    run(energy_, a, 0, a.size(), t, parameters, [&](std::size_t, std::size_t n, double* const* energies) {
+      for (std::size_t i = 0; i < n; ++i) add(energies[0][i]);
+    });
+  else
+    visit_list(number_, [&]<class Law>() {
+      for (std::size_t i = 0; i < a.size(); ++i) add(Law::energy(state_of(a, i, t, 0), parameters));
+    });
+  return sum;
 }
 
 std::uint32_t find_field_law(std::string_view name) {

@@ -12,24 +12,35 @@
 
 namespace iota::laws {
 
-/// A force on each of many particles by itself: one of the list, or an expression that defines fx, fy, fz (N; those it
-/// leaves out are zero) of x, y, z, vx, vy, vz, m, t and its parameters: "fx = -k*x; fy = -m*9.81".
+/// A force on each of many particles by itself: one of the list, or an expression of x, y, z, vx, vy, vz, m, t and its
+/// parameters that defines `energy` (J; the force is its negative gradient), or fx, fy, fz (N; those it leaves out are
+/// zero), or both, which add up: "energy = 0.5*k*x^2 + m*9.81*y; fx = -c*vx".
 class FieldLaw {
  public:
   explicit FieldLaw(std::uint32_t number);
   /// Throws expression::ExpressionError.
   FieldLaw(std::string_view text, std::vector<std::string> parameters);
 
+  bool has_energy() const { return has_energy_; }
+
   /// Forces of particles [first, first + count) into out, which has that many rows (count, 3).
   void evaluate(const ParticleArrays&, std::size_t first, std::size_t count, double t, double h,
                 const double* parameters, double* out) const;
+  /// Energy of all particles, J; 0 for fields without one. Particles that have no finite one count for nothing.
+  double energy(const ParticleArrays&, double t, const double* parameters) const;
 
   static constexpr const char* variables[] = {"x", "y", "z", "vx", "vy", "vz", "m", "t"};
 
  private:
   std::uint32_t number_ = field_law_count;  // of the list; else an expression
+  /// Runs a program over blocks of particles, and calls take(first, count, outputs) for each; outputs[k][i].
+  template <class Take>
+  void run(const expression::Program&, const ParticleArrays&, std::size_t first, std::size_t count, double t,
+           const double* parameters, Take take) const;
+
+  bool has_energy_ = false;
   std::size_t parameter_count_ = 0;
-  expression::Program program_;
+  expression::Program force_, energy_;
 };
 
 std::uint32_t find_field_law(std::string_view name);  ///< field_law_count for an unknown name

@@ -27,15 +27,25 @@ inline Vec3 drag_towards(const Vec3& u, double drag, const FieldState& s) {
   return (drag * share) * (u - s.velocity);
 }
 
+/// What all fields have unless they say otherwise: no energy stands behind them.
+struct NoEnergy {
+  static constexpr bool has_energy = false;
+  static double energy(const FieldState&, const double*) { return 0; }  ///< J; the force is its negative gradient
+};
+
 /// Acceleration (m/s^2): another gravity.
-struct Uniform {
+struct Uniform : NoEnergy {
+  static constexpr bool has_energy = true;
   static constexpr const char* name = "uniform";
   static constexpr Parameter parameters[] = {{"acceleration_x", 0}, {"acceleration_y", 0}, {"acceleration_z", 0}};
   static Vec3 force(const FieldState& s, const double* p) { return s.mass * Vec3{p[0], p[1], p[2]}; }
+  static double energy(const FieldState& s, const double* p) {
+    return -s.mass * dot(s.position, Vec3{p[0], p[1], p[2]});
+  }
 };
 
 /// Drag (N s/m) relative to moving air.
-struct Wind {
+struct Wind : NoEnergy {
   static constexpr const char* name = "wind";
   static constexpr Parameter parameters[] = {
       {"velocity_x", 0}, {"velocity_y", 0}, {"velocity_z", 0}, {"drag", 0.1, Range::not_negative}};
@@ -43,7 +53,7 @@ struct Wind {
 };
 
 /// Drag (N s/m) relative to a turbulent current; see Turbulence.
-struct Current {
+struct Current : NoEnergy {
   static constexpr const char* name = "current";
   static constexpr Parameter parameters[] = {{"velocity_x", 0},
                                              {"velocity_y", 0},
@@ -66,7 +76,8 @@ struct Current {
 };
 
 /// A heavy point: acceleration strength/d^2 towards the centre (strength in m^3/s^2), Plummer-softened. Negative repels.
-struct Well {
+struct Well : NoEnergy {
+  static constexpr bool has_energy = true;
   static constexpr const char* name = "well";
   static constexpr Parameter parameters[] = {
       {"centre_x", 0}, {"centre_y", 0}, {"centre_z", 0}, {"strength", 1}, {"softening", 0.1, Range::not_negative}};
@@ -75,10 +86,15 @@ struct Well {
     const double inverse = 1 / (dot(d, d) + p[4] * p[4]);
     return (s.mass * p[3] * inverse * std::sqrt(inverse)) * d;
   }
+  static double energy(const FieldState& s, const double* p) {
+    const Vec3 d = Vec3{p[0], p[1], p[2]} - s.position;
+    return -s.mass * p[3] * std::sqrt(1 / (dot(d, d) + p[4] * p[4]));
+  }
 };
 
 /// Pulls with `strength` (N) towards the centre, less so beyond `range` (m): strength exp(-d/range). Negative repels.
-struct Attractor {
+struct Attractor : NoEnergy {
+  static constexpr bool has_energy = true;
   static constexpr const char* name = "attractor";
   static constexpr Parameter parameters[] = {
       {"centre_x", 0}, {"centre_y", 0}, {"centre_z", 0}, {"strength", 1}, {"range", 1, Range::positive}};
@@ -86,6 +102,9 @@ struct Attractor {
     const Vec3 d = Vec3{p[0], p[1], p[2]} - s.position;
     const double r = norm(d);
     return (p[3] * expression::exp(-r / p[4]) / (r + 1e-300)) * d;
+  }
+  static double energy(const FieldState& s, const double* p) {
+    return -p[3] * p[4] * expression::exp(-norm(Vec3{p[0], p[1], p[2]} - s.position) / p[4]);
   }
 };
 

@@ -113,6 +113,8 @@ PairLaw::PairLaw(std::string_view text, std::vector<std::string> parameters) : p
   const auto wanted = std::span(total).first(has_drag_ ? 2 : 1);
   bonds_ = Program(formula, wanted, each);
   pairs_ = Program(formula, wanted, shared);
+  bond_energies_ = Program(formula, std::array{energy}, each);
+  pair_energies_ = Program(formula, std::array{energy}, shared);
 }
 
 Elastic PairLaw::elastic(const PairState& state, const double* parameters) const {
@@ -172,20 +174,27 @@ IOTA_ALWAYS_INLINE void fill(const PairBatch& b, const auto& parameters_of) {
 }
 
 template <class Law>
-IOTA_WIDER void evaluate_list(const PairBatch& b) {
+IOTA_ALWAYS_INLINE void fill_energies(const PairBatch& b, const auto& parameters_of) {
+  for (std::size_t i = 0; i < b.count; ++i)
+    b.energy[i] = Law::elastic({b.r[i], 0, b.t, b.m_p[i], b.m_q[i]}, parameters_of(i).data()).energy;
+}
+
+template <class Law>
+IOTA_WIDER void evaluate_list(const PairBatch& b, bool energies) {
   constexpr std::size_t n = parameter_count<Law>;
   std::array<double, n> same;
   std::array<const double*, n> each;
   for (std::size_t k = 0; k < n; ++k) same[k] = *b.parameters[k], each[k] = b.parameters[k];
-  if (b.same_parameters) {
-    fill<Law>(b, [&](std::size_t) { return same; });
-  } else {
-    fill<Law>(b, [&](std::size_t i) {
-      std::array<double, n> p;
-      for (std::size_t k = 0; k < n; ++k) p[k] = each[k][i];
-      return p;
-    });
-  }
+  const auto same_of = [&](std::size_t) { return same; };
+  const auto each_of = [&](std::size_t i) {
+    std::array<double, n> p;
+    for (std::size_t k = 0; k < n; ++k) p[k] = each[k][i];
+    return p;
+  };
+  if (energies)
+    b.same_parameters ? fill_energies<Law>(b, same_of) : fill_energies<Law>(b, each_of);
+  else
+    b.same_parameters ? fill<Law>(b, same_of) : fill<Law>(b, each_of);
 }
 
 }  // namespace
@@ -193,9 +202,22 @@ IOTA_WIDER void evaluate_list(const PairBatch& b) {
 void PairLaw::evaluate(const PairBatch& b) const {
   if (b.count == 0) return;
   if (number_ < pair_law_count) {
-    with_list([&]<class Law>() { evaluate_list<Law>(b); });
-    return;
+    with_list([&]<class Law>() { evaluate_list<Law>(b, false); });
+  } else {
+    double* const outputs[] = {b.force, b.drag};
+    run(bonds_, pairs_, b, outputs);
   }
+}
+
+void PairLaw::energies(const PairBatch& b) const {
+  if (b.count == 0) return;
+  if (number_ < pair_law_count)
+    with_list([&]<class Law>() { evaluate_list<Law>(b, true); });
+  else
+    run(bond_energies_, pair_energies_, b, &b.energy);
+}
+
+void PairLaw::run(const Program& of_bonds, const Program& of_pairs, const PairBatch& b, double* const* outputs) const {
   std::array<const double*, variable_count + max_parameters> lanes{b.r, b.v, nullptr, b.m_p, b.m_q};
   std::array<double, variable_count + max_parameters> uniforms{};
   uniforms[var_t] = b.t;
@@ -203,8 +225,7 @@ void PairLaw::evaluate(const PairBatch& b) const {
     lanes[variable_count + k] = b.parameters[k];
     uniforms[variable_count + k] = *b.parameters[k];
   }
-  double* const outputs[] = {b.force, b.drag};
-  (b.same_parameters ? pairs_ : bonds_).run(b.count, lanes.data(), uniforms.data(), outputs, workspace());
+  (b.same_parameters ? of_pairs : of_bonds).run(b.count, lanes.data(), uniforms.data(), outputs, workspace());
 }
 
 std::uint32_t find_pair_law(std::string_view name) {

@@ -20,6 +20,7 @@ struct PairBatch {
   bool same_parameters = false;               ///< one number each
   double* force = nullptr;                    ///< out: along the line, positive pushes apart, N
   double* drag = nullptr;                     ///< out: of the velocity difference, N s/m; only where `has_drag()`
+  double* energy = nullptr;                   ///< out, of `energies`: J
 };
 
 /// A law between two points: one of the list, or an expression. Its force on the second point is f n - c (v_q - v_p), with n
@@ -57,6 +58,8 @@ class PairLaw {
 
   /// Many pairs, force and drag only.
   void evaluate(const PairBatch&) const;
+  /// Many pairs, energy only; only where `has_energy()`.
+  void energies(const PairBatch&) const;
 
   /// Variables of an expression law before its parameters.
   static constexpr const char* variables[] = {"r", "v", "t", "m_p", "m_q"};
@@ -64,13 +67,16 @@ class PairLaw {
  private:
   template <class Visit>
   void with_list(Visit visit) const;
+  void run(const expression::Program& of_bonds, const expression::Program& of_pairs, const PairBatch&,
+           double* const* outputs) const;
 
   std::uint32_t number_ = pair_law_count;  // of the list; else an expression
   bool has_energy_ = false, has_push_ = false, has_damping_ = false, has_drag_ = false, depends_on_time_ = false,
        depends_on_mass_ = false;
   std::size_t parameter_count_ = 0;
   expression::Program elastic_, push_, damping_, drag_;
-  expression::Program bonds_, pairs_;  // force and drag of batches: parameters of each, or the same for all
+  // Of batches, with parameters of each, or the same for all: force and drag, energy.
+  expression::Program bonds_, pairs_, bond_energies_, pair_energies_;
 };
 
 /// Number in the list, `pair_law_count` for an unknown name.

@@ -312,6 +312,7 @@ class Model {
   double dissipated = 0, external_work = 0, edit_energy = 0;
   double booked_energy = 0;        ///< kinetic and potential energy when edits were last booked, J
   std::uint64_t has_edits = 0;     ///< since then
+  double held_energy = 0;          ///< of forces that are held, which `energy` leaves out, when it was last booked, J
   std::vector<std::string> notes;  ///< of edits that have no report, for the next step's; not saved
 
   /// @name Membership: cheap links only, no physics
@@ -632,6 +633,7 @@ void Model::archive(Archive& ar) {
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version), ar.value(spark_changes);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy), ar.value(booked_energy), ar.value(has_edits);
+  ar.value(held_energy);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
   if constexpr (std::is_same_v<Archive, Reader>) compile_laws();
 }

@@ -92,9 +92,10 @@ void Model::set_spin(std::uint32_t body, double angular_velocity) {
 double Model::potential_energy() const {
   double energy = 0;
   const Vec3 g = acting_gravity();
-  particles.for_each([&](std::uint32_t, const Particle& p) {
-    if (bodies[p.body].kind != BodyKind::inactive) energy -= p.mass * dot(g, rings[p.ring].position);
-  });
+  if (g != Vec3{})
+    particles.for_each([&](std::uint32_t, const Particle& p) {
+      if (bodies[p.body].kind != BodyKind::inactive) energy -= p.mass * dot(g, rings[p.ring].position);
+    });
   bonds.for_each([&](std::uint32_t slot, const Bond&) { energy += bond_energy(slot); });
   constraints.for_each([&](std::uint32_t slot, const Constraint&) { energy += constraint_energy(slot); });
   return energy;

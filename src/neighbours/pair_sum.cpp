@@ -13,6 +13,13 @@ constexpr double skin = 0.1;
 constexpr std::size_t block = 512;  // pairs; a law's arrays of one block stay in the nearest cache
 constexpr std::size_t many = 4096;  // particles, from which on threads pay
 
+IOTA_WIDER void take_roots(std::size_t count, double* r) {
+  for (std::size_t k = 0; k < count; ++k) r[k] = std::sqrt(r[k]);
+}
+IOTA_WIDER void divide(std::size_t count, double* values, const double* by) {
+  for (std::size_t k = 0; k < count; ++k) values[k] /= by[k];
+}
+
 }  // namespace
 
 void PairSum::update(const laws::ParticleArrays& p, const std::vector<std::uint32_t>& family, double cutoff) {
@@ -32,20 +39,34 @@ void PairSum::update(const laws::ParticleArrays& p, const std::vector<std::uint3
   ++builds_;
 }
 
+PairSum::Task PairSum::make_task(const laws::ParticleArrays& p, const laws::PairLaw& law, const double* parameters,
+                                 double cutoff, double t) {
+  Task task{p, law, {}, cutoff, t};
+  for (std::size_t k = 0; k < task.parameters.size(); ++k) task.parameters[k] = parameters + k;
+  return task;
+}
+
+template <class Work>
+std::size_t PairSum::in_parts(const Parallel& parallel, Work work) {
+  const std::size_t n = list_.row_count(), count = n < many ? 1 : parts_.size();
+  parallel.for_each(count, 1, [&](std::size_t k) { work(parts_[k], k * n / count, (k + 1) * n / count); });
+  return count;
+}
+
 PairSum::Bad PairSum::add_forces(laws::ParticleArrays& p, const std::vector<std::uint32_t>& family,
                                  const laws::PairLaw& law, const double* parameters, double cutoff, double t,
                                  const Parallel& parallel) {
   update(p, family, cutoff);
-  Task task{p, law, {}, cutoff, t};
-  for (std::size_t k = 0; k < task.parameters.size(); ++k) task.parameters[k] = parameters + k;
-  const std::size_t n = list_.row_count(), count = n < many ? 1 : parts_.size();
-  parallel.for_each(count, 1, [&](std::size_t k) {
-    Part& part = parts_[k];
-    if (k > 0)
+  const Task task = make_task(p, law, parameters, cutoff, t);
+  const std::size_t n = list_.row_count();
+  const std::size_t count = in_parts(parallel, [&](Part& part, std::size_t first, std::size_t last) {
+    const bool has_own = &part != parts_.data();
+    if (has_own)
       for (auto* const f : {&part.fx, &part.fy, &part.fz}) f->assign(n, 0.0);
-    double *const fx = k > 0 ? part.fx.data() : p.fx.data(), *const fy = k > 0 ? part.fy.data() : p.fy.data(),
-                  *const fz = k > 0 ? part.fz.data() : p.fz.data();
-    sum(part, task, k * n / count, (k + 1) * n / count, fx, fy, fz);
+    double *const fx = has_own ? part.fx.data() : p.fx.data(), *const fy = has_own ? part.fy.data() : p.fy.data(),
+                  *const fz = has_own ? part.fz.data() : p.fz.data();
+    part.bad = {};
+    gather<true>(part, task, first, last, [&](std::size_t pairs) { add_block(part, task, pairs, fx, fy, fz); });
   });
   Bad bad;
   for (std::size_t k = 0; k < count; ++k) {
@@ -60,11 +81,27 @@ PairSum::Bad PairSum::add_forces(laws::ParticleArrays& p, const std::vector<std:
   return bad;
 }
 
-void PairSum::sum(Part& b, const Task& task, std::size_t first, std::size_t last, double* fx, double* fy,
-                  double* fz) const {
+double PairSum::energy(const laws::ParticleArrays& p, const std::vector<std::uint32_t>& family,
+                       const laws::PairLaw& law, const double* parameters, double cutoff, double t,
+                       const Parallel& parallel) {
+  if (!law.has_energy()) return 0;
+  update(p, family, cutoff);
+  const Task task = make_task(p, law, parameters, cutoff, t);
+  const std::size_t count = in_parts(parallel, [&](Part& part, std::size_t first, std::size_t last) {
+    part.energy = {};
+    const auto add = [&](std::size_t pairs) { add_energies(part, task, pairs); };
+    law.depends_on_mass() ? gather<true>(part, task, first, last, add) : gather<false>(part, task, first, last, add);
+  });
+  double sum = 0;
+  for (std::size_t k = 0; k < count; ++k)
+    for (const double energy : parts_[k].energy) sum += energy;
+  return sum;
+}
+
+template <bool WithPartners, class Take>
+void PairSum::gather(Part& b, const Task& task, std::size_t first, std::size_t last, Take take) const {
   for (auto* const a : {&b.dx, &b.dy, &b.dz, &b.r, &b.v, &b.m_p, &b.m_q, &b.force, &b.drag}) a->resize(2 * block);
   b.i.resize(2 * block), b.j.resize(2 * block);
-  b.bad = {};
   const double cutoff2 = task.cutoff * task.cutoff;
   const double *const x = task.particles.x.data(), *const y = task.particles.y.data(),
                       *const z = task.particles.z.data();
@@ -78,63 +115,97 @@ void PairSum::sum(Part& b, const Task& task, std::size_t first, std::size_t last
       for (std::size_t k = start; k < stop; ++k) {  // no branch: what is too far is overwritten by the next
         const std::uint32_t j = row[k];
         const double dx = x[j] - xi, dy = y[j] - yi, dz = z[j] - zi, r2 = dx * dx + dy * dy + dz * dz;
-        b.i[count] = static_cast<std::uint32_t>(i), b.j[count] = j;
-        b.dx[count] = dx, b.dy[count] = dy, b.dz[count] = dz, b.r[count] = r2;
+        if constexpr (WithPartners) {
+          b.i[count] = static_cast<std::uint32_t>(i), b.j[count] = j;
+          b.dx[count] = dx, b.dy[count] = dy, b.dz[count] = dz;
+        }
+        b.r[count] = r2;
         count += r2 < cutoff2;
       }
       if (count < block) continue;
-      evaluate(b, task, block, fx, fy, fz);
+      take(block);
       count -= block;  // fewer than a block: they move to the front
       for (auto* const a : {&b.dx, &b.dy, &b.dz, &b.r}) std::copy_n(a->data() + block, count, a->data());
       for (auto* const a : {&b.i, &b.j}) std::copy_n(a->data() + block, count, a->data());
     }
   }
-  evaluate(b, task, count, fx, fy, fz);
+  take(count);
 }
 
-void PairSum::evaluate(Part& b, const Task& task, std::size_t count, double* fx, double* fy, double* fz) {
+/// What a law may ask for, but for the rate.
+void PairSum::prepare(Part& b, const Task& task, std::size_t count) {
   const laws::ParticleArrays& p = task.particles;
-  for (std::size_t k = 0; k < count; ++k) b.r[k] = std::sqrt(b.r[k]);
+  take_roots(count, b.r.data());
+  if (task.law.depends_on_mass())
+    for (std::size_t k = 0; k < count; ++k) b.m_p[k] = p.m[b.i[k]], b.m_q[k] = p.m[b.j[k]];
+}
+
+void PairSum::add_energies(Part& b, const Task& task, std::size_t count) {
+  constexpr std::size_t lanes = std::tuple_size_v<decltype(b.energy)>;
+  prepare(b, task, count);
+  double* const energy = b.force.data();
+  task.law.energies({.count = count,
+                     .r = b.r.data(),
+                     .v = b.v.data(),
+                     .m_p = b.m_p.data(),
+                     .m_q = b.m_q.data(),
+                     .t = task.t,
+                     .parameters = task.parameters.data(),
+                     .same_parameters = true,
+                     .energy = energy});
+  std::fill(energy + count, energy + (count + lanes - 1) / lanes * lanes, 0.0);
+  const auto add = [&](auto value) {
+    auto sum = b.energy;
+    for (std::size_t k = 0; k < count; k += lanes)
+      for (std::size_t lane = 0; lane < lanes; ++lane) sum[lane] += value(energy[k + lane]);
+    return sum;
+  };
+  auto sum = add([](double e) { return e; });
+  if (!std::isfinite(sum[0] + sum[1] + sum[2] + sum[3])) [[unlikely]]
+    sum = add([](double e) { return std::isfinite(e) ? e : 0; });
+  b.energy = sum;
+}
+
+void PairSum::add_block(Part& b, const Task& task, std::size_t count, double* fx, double* fy, double* fz) {
+  const laws::ParticleArrays& p = task.particles;
+  prepare(b, task, count);
   if (task.law.has_damping())
     for (std::size_t k = 0; k < count; ++k) {
       const std::uint32_t i = b.i[k], j = b.j[k];
       b.v[k] = (b.dx[k] * (p.vx[j] - p.vx[i]) + b.dy[k] * (p.vy[j] - p.vy[i]) + b.dz[k] * (p.vz[j] - p.vz[i])) / b.r[k];
     }
-  if (task.law.depends_on_mass())
-    for (std::size_t k = 0; k < count; ++k) b.m_p[k] = p.m[b.i[k]], b.m_q[k] = p.m[b.j[k]];
-  task.law.evaluate({count, b.r.data(), b.v.data(), b.m_p.data(), b.m_q.data(), task.t, task.parameters.data(), true,
-                     b.force.data(), b.drag.data()});
-  for (std::size_t k = 0; k < count; ++k) b.force[k] /= b.r[k];
+  task.law.evaluate({.count = count,
+                     .r = b.r.data(),
+                     .v = b.v.data(),
+                     .m_p = b.m_p.data(),
+                     .m_q = b.m_q.data(),
+                     .t = task.t,
+                     .parameters = task.parameters.data(),
+                     .same_parameters = true,
+                     .force = b.force.data(),
+                     .drag = b.drag.data()});
+  divide(count, b.force.data(), b.r.data());
 
   const bool has_drag = task.law.has_drag();
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t i = b.i[k], j = b.j[k];
-    double x = b.force[k] * b.dx[k], y = b.force[k] * b.dy[k], z = b.force[k] * b.dz[k];
-    if (has_drag) {
-      const double c = b.drag[k];
-      x -= c * (p.vx[j] - p.vx[i]), y -= c * (p.vy[j] - p.vy[i]), z -= c * (p.vz[j] - p.vz[i]);
+  for (std::size_t k = 0; k < count;) {  // rows: what the first of a pair feels is summed before it goes to memory
+    const std::uint32_t i = b.i[k];
+    double sx = 0, sy = 0, sz = 0;
+    for (; k < count && b.i[k] == i; ++k) {
+      const std::uint32_t j = b.j[k];
+      double x = b.force[k] * b.dx[k], y = b.force[k] * b.dy[k], z = b.force[k] * b.dz[k];
+      if (has_drag) {
+        const double c = b.drag[k];
+        x -= c * (p.vx[j] - p.vx[i]), y -= c * (p.vy[j] - p.vy[i]), z -= c * (p.vz[j] - p.vz[i]);
+      }
+      if (!std::isfinite(x + y + z)) [[unlikely]] {
+        if (b.bad.count++ == 0) b.bad.i = i, b.bad.j = j;
+        continue;
+      }
+      sx += x, sy += y, sz += z;
+      fx[j] += x, fy[j] += y, fz[j] += z;
     }
-    if (!std::isfinite(x + y + z)) [[unlikely]] {
-      if (b.bad.count++ == 0) b.bad.i = i, b.bad.j = j;
-      continue;
-    }
-    fx[i] -= x, fy[i] -= y, fz[i] -= z;
-    fx[j] += x, fy[j] += y, fz[j] += z;
+    fx[i] -= sx, fy[i] -= sy, fz[i] -= sz;
   }
-}
-
-double PairSum::energy(const laws::ParticleArrays& p, const std::vector<std::uint32_t>& family,
-                       const laws::PairLaw& law, const double* parameters, double cutoff, double t) {
-  if (!law.has_energy()) return 0;
-  update(p, family, cutoff);
-  double sum = 0;
-  for (std::size_t i = 0; i < list_.row_count(); ++i)
-    for (std::size_t k = 0; k < list_.row_size(i); ++k) {
-      const std::uint32_t j = list_.row(i)[k];
-      const double dx = p.x[j] - p.x[i], dy = p.y[j] - p.y[i], dz = p.z[j] - p.z[i], r2 = dx * dx + dy * dy + dz * dz;
-      if (r2 < cutoff * cutoff) sum += law.elastic({std::sqrt(r2), 0, t, p.m[i], p.m[j]}, parameters).energy;
-    }
-  return sum;
 }
 
 }  // namespace iota::neighbours

@@ -25,9 +25,9 @@ class PairSum {
   Bad add_forces(laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family, const laws::PairLaw& law,
                  const double* parameters, double cutoff, double t, const Parallel& parallel);
 
-  /// Energy of all pairs within the cut-off, J; 0 for laws without one.
+  /// Energy of all pairs within the cut-off, J; 0 for laws without one. Pairs that have no finite one count for nothing.
   double energy(const laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family,
-                const laws::PairLaw& law, const double* parameters, double cutoff, double t);
+                const laws::PairLaw& law, const double* parameters, double cutoff, double t, const Parallel& parallel);
 
   std::size_t build_count() const { return builds_; }  ///< for reports
 
@@ -37,6 +37,7 @@ class PairSum {
     std::vector<std::uint32_t> i, j;
     std::vector<double> dx, dy, dz, r, v, m_p, m_q, force, drag;
     std::vector<double> fx, fy, fz;
+    std::array<double, 4> energy;  // in turn, so that no addition waits for the one before
     Bad bad;
   };
   struct Task {
@@ -45,9 +46,19 @@ class PairSum {
     std::array<const double*, laws::max_parameters> parameters;
     double cutoff, t;
   };
+  static Task make_task(const laws::ParticleArrays&, const laws::PairLaw&, const double* parameters, double cutoff,
+                        double t);
   void update(const laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family, double cutoff);
-  void sum(Part&, const Task&, std::size_t first, std::size_t last, double* fx, double* fy, double* fz) const;
-  static void evaluate(Part&, const Task&, std::size_t count, double* fx, double* fy, double* fz);
+  /// Calls work(part, first row, last row) for each part; returns how many those are.
+  template <class Work>
+  std::size_t in_parts(const Parallel& parallel, Work work);
+  /// Gathers the pairs of these rows that are within the cut-off, and calls `take(count)` for each block of them. Energies
+  /// need no more than the distances of most laws.
+  template <bool WithPartners, class Take>
+  void gather(Part&, const Task&, std::size_t first, std::size_t last, Take take) const;
+  static void prepare(Part&, const Task&, std::size_t count);
+  static void add_block(Part&, const Task&, std::size_t count, double* fx, double* fy, double* fz);
+  static void add_energies(Part&, const Task&, std::size_t count);
 
   PairList list_;
   std::vector<double> built_at_x_, built_at_y_, built_at_z_;

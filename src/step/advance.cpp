@@ -28,6 +28,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
   if (!(h > 0 && h <= 1)) throw std::invalid_argument(step::text("step: dt must be above 0 and at most 1 s, got ", h));
   StepReport report;
   report.dt = h;
+  book_held_edits();
   stepping = true;
 
   // 1. Forces of the script, at the state at the start of the step.
@@ -82,6 +83,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
   ++model.step;
   stepping = false;
   forget_unheeded_forces(model);
+  book_held_work();
 
   // 4. Edits: what failed or broke, particles that have met, then what was asked for during the step, in order.
   switch_off_failed_surfaces(report);
@@ -89,6 +91,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
   break_overloaded(report);
   finish_closings(report);
   apply_queue(report);
+  if (model.has_edits) held_energy_is_known = false, book_held_edits();
 
   report.warnings.insert(report.warnings.end(), model.notes.begin(), model.notes.end());
   model.notes.clear();
@@ -97,7 +100,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
   report.worst_gap = model.worst_gap();
   const double kinetic = model.kinetic_energy(), potential = model.potential_energy();
   model.book_edits(kinetic + potential);
-  report.energy = {kinetic, potential, model.dissipated, model.external_work, model.edit_energy};
+  report.energy = {kinetic, potential + held_energy(), model.dissipated, model.external_work, model.edit_energy};
   report.articulates = model.articulates.size();
   report.structure_version = model.structure_version;
   if (recording) recording->hashes.push_back(model.hash());
@@ -130,7 +133,7 @@ void System::Implementation::apply_queue(StepReport& report) {
   report.edits.emplace();
   report.edits->articulates_before = model.articulates.size();
   model.begin_edits();
-  const double energy = model.energy_of_edits();
+  const double before = energy().edits;
   const std::uint32_t version = model.structure_version;
   std::vector<step::Command> edits;
   edits.swap(queue);
@@ -151,7 +154,8 @@ void System::Implementation::apply_queue(StepReport& report) {
   report.edits->changed = model.structure_version != version;
   report.edits->articulates_after = model.articulates.size();
   report.edits->structure_version = model.structure_version;
-  report.edits->energy_change = model.energy_of_edits() - energy;
+  held_energy_is_known = false;
+  report.edits->energy_change = energy().edits - before;
 }
 
 }  // namespace iota

@@ -111,15 +111,18 @@ std::size_t System::undo_count() const { return implementation_->done.size(); }
 std::size_t System::redo_count() const { return implementation_->undone.size(); }
 
 void System::Implementation::apply(const step::BeginEdit&) {
-  if (batch)
+  if (batch) {
     ++batch->depth;
-  else
-    batch.emplace(model, snapshot());
+    return;
+  }
+  book_held_edits();
+  batch.emplace(model, snapshot());
 }
 
 RestructureReport System::Implementation::apply(const step::EndEdit&) {
   if (!batch) throw std::logic_error("end_edit: no edit has been begun");
   if (--batch->depth > 0) return {};
+  book_held_edits();
   RestructureReport report = batch->finish(model);
   done.push(std::move(batch->before));
   undone.clear();

@@ -37,6 +37,7 @@ auto System::Implementation::execute(const C& command) {
           "the system steps; they are applied right after the step");
     }
   }
+  held_energy_is_known = held_energy_is_known && std::is_same_v<C, step::Step>;
   const auto record = [&] {
     if (!recording) return;
     Writer writer(recording->commands);

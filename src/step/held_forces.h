@@ -21,6 +21,8 @@ struct LawBatch {
   /// Numbers of all its bonds, with positions `ahead` seconds on.
   void load(const model::Model&, double ahead);
   void load_rows(const model::Model&, double ahead);
+  /// Of all its bonds now, J; only for laws with a derivative. Uses the arrays.
+  double energy(const model::Model&);
 };
 
 /// Which bonds are taken once a step and held, and which implicit ones have to be watched; by law.

@@ -43,6 +43,8 @@ struct System::Implementation {
   std::map<std::uint64_t, Mesh> meshes;   // for drawing, by content; not part of the saved state either
   std::vector<Vec3> path_points;          // of a path that is about to be made
   bool stepping = false;
+  bool held_energy_is_known = false;  // since the last command
+  double held_energy_now = 0;
   std::vector<step::Command> queue;  // edits asked for during a step
   std::optional<Recording> recording;
   std::optional<step::EditBatch> batch;
@@ -202,6 +204,14 @@ struct System::Implementation {
   bool run_field_function(std::uint32_t field, step::ParticleSet&, StepReport&);
   void run_pairs(std::uint32_t pairs, step::ParticleSet&, StepReport&);
   double pairs_energy(std::uint32_t pairs);
+  /// @name Their energy, J (held_energy.cpp)
+  ///@{
+  double held_energy();  ///< now; within a step, at its start
+  double calc_held_energy();
+  void book_held_edits();
+  void book_held_work();
+  Energy energy();
+  ///@}
   /// Evaluates without applying; returns for how many.
   std::size_t rehearse(std::uint32_t law, double h);
   std::size_t rehearse_field(std::uint32_t field, double h);

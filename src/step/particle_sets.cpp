@@ -177,13 +177,4 @@ void System::Implementation::run_pairs(std::uint32_t slot, ParticleSet& set, Ste
                                    "; there it gives none"));
 }
 
-double System::Implementation::pairs_energy(std::uint32_t slot) {
-  particle_sets.update(model);
-  const model::Pairs& pairs = model.pairs[slot];
-  ParticleSet& set = particle_sets.of(model, pairs.group);
-  set.load(model, 0, parallel);
-  return particle_sets.sum(slot).energy(set.arrays, set.family, model.compiled(pairs.law), pairs.parameters.data(),
-                                        pairs.cutoff, model.time);
-}
-
 }  // namespace iota

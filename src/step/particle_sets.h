@@ -23,6 +23,8 @@ struct ParticleSet {
   void find(const model::Model&);
   /// The state with positions `ahead` seconds on, and no forces.
   void load(const model::Model&, double ahead, const Parallel&);
+  /// Positions of now; the rest stays as it was loaded.
+  void follow(const model::Model&);
   /// Adds the forces to what acts on the rings during the next step.
   void unload(model::Model&, const Parallel&) const;
 };

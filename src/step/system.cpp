@@ -148,10 +148,7 @@ bool System::is_stepping() const { return implementation_->stepping; }
 std::vector<std::string> System::validate() const { return implementation_->model.validate(); }
 std::uint64_t System::state_hash() const { return implementation_->model.hash(); }
 
-Energy System::energy() const {
-  const model::Model& m = implementation_->model;
-  return {m.kinetic_energy(), m.potential_energy(), m.dissipated, m.external_work, m.energy_of_edits()};
-}
+Energy System::energy() const { return implementation_->energy(); }
 
 bool System::contains(BodyId id) const { return implementation_->model.bodies.contains(id); }
 bool System::contains(ParticleId id) const { return implementation_->model.particles.contains(id); }
@@ -265,7 +262,7 @@ PoseSnapshot System::poses() const {
   PoseSnapshot snapshot;
   snapshot.step = m.step, snapshot.time = m.time, snapshot.structure_version = scene_version();
   snapshot.kinetic = static_cast<float>(m.kinetic_energy());
-  snapshot.potential = static_cast<float>(m.potential_energy());
+  snapshot.potential = static_cast<float>(m.potential_energy() + implementation_->held_energy());
   snapshot.gap = static_cast<float>(m.worst_gap());
   const auto put = [](float (&out)[3], const Vec3& v) {
     out[0] = static_cast<float>(v.x), out[1] = static_cast<float>(v.y), out[2] = static_cast<float>(v.z);
@@ -349,6 +346,7 @@ void System::Implementation::restore(const Snapshot& snapshot) {
   islands.forget();
   held_forces.forget();
   particle_sets.forget();
+  held_energy_is_known = false;
   oriented_step = ~0ull;
 }
 
@@ -385,6 +383,7 @@ std::optional<std::uint64_t> System::replay(const Recording& recording) {
       reader.value(command);
       if (!reader.ok()) return;
       implementation_->model.has_edits |= !std::is_same_v<C, step::Step>;
+      implementation_->held_energy_is_known = false;
       (void)implementation_->apply(command);
       if constexpr (std::is_same_v<C, step::Step>)
         if (steps >= recording.hashes.size() || state_hash() != recording.hashes[steps++])

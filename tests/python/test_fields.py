@@ -106,6 +106,26 @@ def test_a_function_sees_arrays_in_the_order_of_its_particles(space: iota.System
         len(seen[5])
 
 
+def test_a_field_may_be_the_gradient_of_an_energy_which_is_then_kept(space: iota.System) -> None:
+    particle = iota.Particle(iota.Body(space), (1, 0.5, -0.3), mass=2, velocity=(0, 1, 0))
+    spring = iota.Field(space, "energy = 0.5*k*(x^2 + y^2) + m*g*z; fz = -c*vz", k=8, g=3, c=0)
+    assert space.energy.potential == pytest.approx(4 * (1 + 0.25) - 2 * 3 * 0.3)
+    start = space.energy
+    for _ in range(round(2 * math.pi / 2 / 0.005)):  # omega = 2: one turn
+        report = space.step(0.005)
+        assert report.energy.total == pytest.approx(start.total, rel=1e-4)
+        assert report.energy.total - report.energy.external_work == pytest.approx(start.total, abs=1e-10)
+    assert particle.position.x == pytest.approx(1, abs=1e-3)
+    assert particle.position.z == pytest.approx(-0.3 - 3 * space.time**2 / 2, abs=1e-9)
+    spring.set(c=1)
+    space.step(0.005)
+    assert space.energy.external_work < -0.01, "what the rest of the field takes"
+    with pytest.raises(ValueError, match="an energy cannot depend on a velocity"):
+        iota.Field(space, "energy = x*vy")
+    with pytest.raises(ValueError, match="a field defines 'energy'"):
+        iota.Field(space, "force = x")
+
+
 def test_a_field_can_be_compiled_code(space: iota.System) -> None:
     scatter(space, 3)
     doubles = ctypes.POINTER(ctypes.c_double)

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Forces that are held have potential energy like those that are solved for, and the energy book closes with them.
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace iota {
+namespace {
+
+double book(const Energy& e) { return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits; }
+
+void expect_same(const Energy& a, const Energy& b) {
+  EXPECT_EQ(a.kinetic, b.kinetic);
+  EXPECT_EQ(a.potential, b.potential);
+  EXPECT_NEAR(a.external_work, b.external_work, 1e-12);
+  EXPECT_NEAR(a.edits, b.edits, 1e-12);
+}
+
+/// Some particles and a rod, each of which is drawn and pushed by everything that has an energy.
+struct Swarm {
+  System system;
+  std::vector<ParticleId> points;
+  PairsId pairs;
+  FieldId well;
+  BondId bond;
+
+  explicit Swarm(IntegrationMode mode = IntegrationMode::energy_keeping) : system({.gravity = {}, .mode = mode}) {
+    std::mt19937 random(3);
+    const auto number = [&] { return static_cast<double>(random() >> 8) * 0x1p-24 - 0.5; };
+    for (int i = 0; i < 27; ++i) {
+      const Vec3 place{i % 3 + 0.1 * number(), i / 3 % 3 + 0.1 * number(), i / 9 + 0.1 * number()};
+      points.push_back(
+          system.create_particle(system.create_body(), place, 1 + number(), {number(), number(), number()}));
+    }
+    const BodyId rod = system.create_body();
+    points.push_back(system.create_particle(rod, {5, 0, 0}));
+    points.push_back(system.create_particle(rod, {6, 0, 0}));
+    pairs =
+        system.create_pairs({system.find_law("coulomb"), {{"strength", 0.3}, {"softening", 0.2}}, {}}, {.cutoff = 50});
+    well = system.create_field("well", {.parameters = {{"centre_x", 1}, {"strength", 3}, {"softening", 1}}});
+    system.create_field("attractor", {.parameters = {{"strength", 0.7}, {"range", 3}}});
+    system.create_field("energy = 0.5*k*(x^2 + 2*y^2) + m*g*z; fx = -0*vx", {.parameters = {{"k", 0.4}, {"g", 0.3}}});
+    bond = system.create_bond(points[0], points[27],
+                              SharedLaw{system.find_law("spring"), {{"stiffness", 2}, {"length", 1}}, false});
+  }
+  Energy step(double h) {
+    const StepReport report = system.step(h);
+    EXPECT_TRUE(report.warnings.empty());
+    expect_same(report.energy, system.energy());
+    return report.energy;
+  }
+};
+
+TEST(HeldEnergy, IsPotentialAndIsKept) {
+  Swarm swarm;
+  const Energy start = swarm.system.energy();
+  EXPECT_EQ(start.external_work, 0);
+  double most = 0, least_potential = start.potential, drift = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Energy e = swarm.step(0.002);
+    most = std::max(most, std::abs(e.potential - start.potential));
+    least_potential = std::min(least_potential, e.potential);
+    drift = std::max(drift, std::abs(e.total() - start.total()));
+    ASSERT_NEAR(book(e), book(start), 1e-10 * std::abs(start.total()));
+    ASSERT_NEAR(e.external_work, e.total() - start.total(), 1e-9) << "what is left there is the error of holding";
+  }
+  EXPECT_GT(most, 5) << "a lot goes to and fro";
+  EXPECT_LT(drift, 2e-4 * most) << "and next to nothing is lost";
+}
+
+TEST(HeldEnergy, ErrorsAreOfSecondOrder) {
+  double errors[2];
+  for (const int half : {0, 1}) {
+    Swarm swarm;
+    const double start = swarm.system.energy().total(), h = 0.008 / (1 + half);
+    for (int i = 0; i < 100 * (1 + half); ++i) (void)swarm.step(h);
+    errors[half] = std::abs(swarm.system.energy().total() - start);
+  }
+  EXPECT_NEAR(errors[0] / errors[1], 4, 0.8);
+}
+
+TEST(HeldEnergy, OfWhatIsKnownInClosedForm) {
+  System system{{.gravity = {0, -2, 0}}};
+  const ParticleId p = system.create_particle(system.create_body(), {3, 4, 0}, 2);
+  const ParticleId q = system.create_particle(system.create_body(), {0, 0, 12}, 3);
+  const double gravity = 2 * 2 * 4.0;
+  EXPECT_DOUBLE_EQ(system.energy().potential, gravity);
+  const FieldId uniform =
+      system.create_field("uniform", {.parameters = {{"acceleration_x", -5}}, .replaces_gravity = true});
+  EXPECT_DOUBLE_EQ(system.energy().potential, 2 * 5 * 3) << "it replaces gravity";
+  system.set_active(uniform, false);
+  EXPECT_DOUBLE_EQ(system.energy().potential, gravity);
+  const FieldId well = system.create_field("well", {.parameters = {{"strength", 7}, {"softening", 0}}});
+  EXPECT_DOUBLE_EQ(system.energy().potential, gravity - 7 * (2 / 5.0 + 3 / 12.0));
+  system.destroy(well);
+  system.create_pairs({system.find_law("gravity"), {{"strength", 11}}, {}}, {.cutoff = 20});
+  EXPECT_DOUBLE_EQ(system.energy().potential, gravity - 11 * 2 * 3 / 13.0);
+  system.create_bond(p, q, SharedLaw{system.find_law("spring"), {{"stiffness", 4}, {"length", 10}}, false});
+  EXPECT_DOUBLE_EQ(system.energy().potential, gravity - 11 * 2 * 3 / 13.0 + 0.5 * 4 * 9);
+  EXPECT_NEAR(book(system.energy()), 0, 1e-12) << "all this was made by edits";
+}
+
+TEST(HeldEnergy, WhatEditsChangeIsBookedAsTheirs) {
+  for (const auto mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
+    Swarm swarm(mode);
+    System& s = swarm.system;
+    const double start = book(s.energy());
+    const auto check = [&](const char* what) {
+      ASSERT_NEAR(book(s.energy()), start, 1e-9) << what;
+      ASSERT_NEAR(book(swarm.step(0.002)), start, 1e-9) << what << ", and a step";
+      ASSERT_TRUE(s.validate().empty());
+    };
+    check("nothing");
+    s.set_position(swarm.points[0], {9, 9, 9}), check("moved");
+    s.set_mass(swarm.points[1], 4), check("heavier");
+    s.set_parameter(swarm.well, "strength", 5), check("another parameter of a field");
+    s.set_parameter(swarm.pairs, "strength", 0.1), check("another parameter of a pair");
+    s.set_parameter(swarm.bond, "stiffness", 20), check("another parameter of a bond");
+    s.set_active(swarm.well, false), check("a field switched off");
+    s.set_active(swarm.bond, false), check("a bond switched off");
+    s.set_active(swarm.bond, true), check("and on");
+    s.create_particle(s.create_body(), {2, -3, 0}), check("born");
+    s.destroy(swarm.points[3]), check("destroyed");
+    (void)s.combine(swarm.points[5], swarm.points[6]), check("combined");
+    s.nail(swarm.points[8]), check("nailed");
+    s.set_gravity({1, -2, 3}), check("another gravity");
+    s.set_kind(s.body(swarm.points[9]), BodyKind::static_), check("static");
+    s.set_kind(s.body(swarm.points[10]), BodyKind::inactive), check("inactive");
+    s.create_emitter({.rate = 400, .lifetime = 0.1, .mass = 0.1});
+    for (int i = 0; i < 100; ++i) check("births and deaths");
+    s.destroy(swarm.pairs), check("no pairs");
+  }
+}
+
+TEST(HeldEnergy, IsPartOfWhatABatchOfEditsChanges) {
+  Swarm swarm;
+  const double before = swarm.system.energy().total();
+  swarm.system.begin_edit();
+  swarm.system.set_position(swarm.points[0], {9, 9, 9});
+  const RestructureReport report = swarm.system.end_edit();
+  EXPECT_NEAR(report.energy_change, swarm.system.energy().total() - before, 1e-12);
+  EXPECT_GT(std::abs(report.energy_change), 1);
+  EXPECT_TRUE(swarm.system.undo());
+  EXPECT_EQ(swarm.system.energy().total(), before);
+}
+
+TEST(HeldEnergy, IsTheSameToTheBitInReplayAndAfterRestore) {
+  Swarm swarm;
+  swarm.system.start_recording();
+  for (int i = 0; i < 20; ++i) (void)swarm.step(0.002);
+  swarm.system.set_position(swarm.points[0], {4, 4, 4});
+  for (int i = 0; i < 20; ++i) {
+    (void)swarm.system.step(0.002);
+    if (i % 3 == 0) (void)swarm.system.energy();  // looking changes nothing
+    if (i == 7) swarm.system.set_parameter(swarm.well, "strength", 2);
+  }
+  const Recording recording = swarm.system.stop_recording();
+  System other;
+  EXPECT_EQ(other.replay(recording), std::nullopt);
+  Swarm restored;
+  restored.system.restore(swarm.system.snapshot());
+  EXPECT_EQ(restored.system.energy().total(), swarm.system.energy().total());
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(restored.system.step(0.002).energy.external_work, swarm.system.step(0.002).energy.external_work);
+    EXPECT_EQ(restored.system.state_hash(), swarm.system.state_hash());
+  }
+}
+
+TEST(HeldEnergy, MayBeLookedAtFromAForceAndIsThenThatOfTheStart) {
+  Swarm looked, plain;
+  double seen = 0, of_pairs = 0;
+  for (Swarm* s : {&looked, &plain})
+    s->system.create_field(FieldFunction([&, s](const ParticleBatch& batch) {
+      std::fill_n(batch.force, 3 * batch.count, 0.0);
+      if (s == &looked) seen = s->system.energy().potential, of_pairs = s->system.energy(s->pairs);
+    }));
+  for (int i = 0; i < 5; ++i) {
+    const double start = looked.system.energy().potential, pairs = looked.system.energy(looked.pairs);
+    (void)looked.system.step(0.002), (void)plain.system.step(0.002);
+    EXPECT_EQ(seen, start);
+    EXPECT_EQ(of_pairs, pairs);
+    EXPECT_EQ(looked.system.state_hash(), plain.system.state_hash());
+  }
+}
+
+}  // namespace
+}  // namespace iota
