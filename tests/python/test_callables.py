@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import iota
+from iota.world.options import RunOptions, use
 
 Surface = Callable[[float, float, float], Any]
 
@@ -76,7 +77,8 @@ def test_a_surface_that_fails_can_be_a_warning() -> None:
 def test_a_world_reports_a_failed_surface_and_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
     marble = Marble()
     marble.phi = lambda x, y, z: 1 / 0
-    iota.World(marble.system).run(seconds=0.1)
+    with use(RunOptions(headless=True, seconds=0.1)):
+        iota.World(marble.system).run()
     assert marble.system.step_count >= 5 and "constraint 0 was switched off" in capsys.readouterr().err
 
 
