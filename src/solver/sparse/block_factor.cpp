@@ -163,13 +163,53 @@ int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
   return wrong;
 }
 
-int BlockFactor::factorise(std::span<double> unknowns) {
+int BlockFactor::leaves_from(std::size_t vertex) const {
+  const auto vertices = pattern_->vertices();
+  const auto entries = pattern_->entries();
+  const auto is_leaf = [&](const BlockPattern::Vertex& v) {
+    return v.entry_count == 1 && entries[v.first_entry].width == 3;
+  };
+  const BlockPattern::Vertex& v = vertices[vertex];
+  if (!is_leaf(v)) return 0;
+  if (vertex + 1 == vertices.size() || entries[v.first_entry].vertex == vertex + 1) return 1;
+  const BlockPattern::Vertex& w = vertices[vertex + 1];
+  return is_leaf(w) && w.pivot == v.pivot && w.positives == v.positives ? 2 : 1;
+}
+
+template <int Pivot, int N>
+Leaves<Pivot, N> BlockFactor::leaves(std::size_t first, double* unknowns) {
+  Leaves<Pivot, N> leaves{};
+  for (int lane = 0; lane < N; ++lane) {
+    const BlockPattern::Vertex& v = pattern_->vertices()[first + static_cast<std::size_t>(lane)];
+    const BlockPattern::Entry& e = pattern_->entries()[v.first_entry];
+    leaves.diagonal[lane] = diagonals_.data() + v.diagonal;
+    leaves.lower[lane] = lower_.data() + e.offset;
+    if (!symmetric_) leaves.upper[lane] = upper_.data() + e.offset;
+    leaves.target[lane] = diagonals_.data() + pattern_->pair_targets()[v.first_pair];
+    leaves.target_stride[lane] = pattern_->vertices()[e.vertex].pivot;
+    if (unknowns) leaves.own[lane] = unknowns + v.unknown, leaves.later[lane] = unknowns + e.unknown;
+  }
+  return leaves;
+}
+
+int BlockFactor::factorise(std::size_t first, std::size_t end, std::span<double> unknowns) {
   int wrong = 0;
-  for (const auto& v : pattern_->vertices())
+  double* const b = unknowns.data();
+  for (std::size_t i = first; i < end;) {
+    const BlockPattern::Vertex& v = pattern_->vertices()[i];
+    const int alike = std::min(leaves_from(i), static_cast<int>(end - i));
     with_pivot(v.pivot, [&]<int Pivot> {
+      const auto eliminate_all = [&](const auto& leaves) {
+        wrong +=
+            symmetric_ ? leaves.template eliminate<true>(v.positives) : leaves.template eliminate<false>(v.positives);
+      };
+      if (alike == 2) return eliminate_all(leaves<Pivot, 2>(i, b));
+      if (alike == 1) return eliminate_all(leaves<Pivot, 1>(i, b));
       wrong += symmetric_ ? eliminate<Pivot, true>(v) : eliminate<Pivot, false>(v);
-      if (!unknowns.empty()) forward<Pivot>(v, unknowns.data());
+      if (b) forward<Pivot>(v, b);
     });
+    i += static_cast<std::size_t>(std::max(alike, 1));
+  }
   return wrong;
 }
 
@@ -211,17 +251,27 @@ void BlockFactor::backward(const BlockPattern::Vertex& v, double* b) const {
   }
 }
 
-void BlockFactor::solve(std::span<double> unknowns) const {
+void BlockFactor::solve(std::span<double> unknowns) {
   for (const auto& v : pattern_->vertices())
     with_pivot(v.pivot, [&]<int Pivot> { forward<Pivot>(v, unknowns.data()); });
   finish(unknowns);
 }
 
-void BlockFactor::finish(std::span<double> unknowns) const {
+void BlockFactor::finish(std::span<double> unknowns) {
   double* const b = unknowns.data();
-  const auto vertices = pattern_->vertices();
-  for (auto v = vertices.rbegin(); v != vertices.rend(); ++v)
-    with_pivot(v->pivot, [&]<int Pivot> { symmetric_ ? backward<Pivot, true>(*v, b) : backward<Pivot, false>(*v, b); });
+  for (std::size_t end = pattern_->vertices().size(); end > 0;) {
+    const int alike = end > 1 && leaves_from(end - 2) == 2 ? 2 : leaves_from(end - 1) > 0 ? 1 : 0;
+    const BlockPattern::Vertex& v = pattern_->vertices()[end - 1];
+    with_pivot(v.pivot, [&]<int Pivot> {
+      const auto finish_all = [&](const auto& leaves) {
+        symmetric_ ? leaves.template finish<true>() : leaves.template finish<false>();
+      };
+      if (alike == 2) return finish_all(leaves<Pivot, 2>(end - 2, b));
+      if (alike == 1) return finish_all(leaves<Pivot, 1>(end - 1, b));
+      symmetric_ ? backward<Pivot, true>(v, b) : backward<Pivot, false>(v, b);
+    });
+    end -= static_cast<std::size_t>(std::max(alike, 1));
+  }
 }
 
 }  // namespace iota::solver

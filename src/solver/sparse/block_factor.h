@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/sparse/block_pattern.h"
+#include "solver/sparse/leaves.h"
 
 #include <span>
 #include <vector>
@@ -34,13 +35,19 @@ class BlockFactor {
   int factorise() { return factorise({}); }
 
   /// Solves in place: right-hand side in, solution out, both in the pattern's unknowns.
-  void solve(std::span<double> unknowns) const;
+  void solve(std::span<double> unknowns);
   /// The same along with `factorise`, for one pass over the factors less: substitution forward while they are made, and
   /// then backward.
-  int factorise(std::span<double> unknowns);
-  void finish(std::span<double> unknowns) const;
+  int factorise(std::span<double> unknowns) { return factorise(0, pattern_->vertices().size(), unknowns); }
+  /// The same vertex by vertex: [first, end) after all before.
+  int factorise(std::size_t first, std::size_t end, std::span<double> unknowns);
+  void finish(std::span<double> unknowns);
 
  private:
+  /// How many of the vertices from one on are alike and do not couple: 2, or 1; 0: it couples with more than one node.
+  int leaves_from(std::size_t vertex) const;
+  template <int Pivot, int N>
+  Leaves<Pivot, N> leaves(std::size_t first, double* unknowns);
   template <int Pivot, bool Symmetric>
   int eliminate(const BlockPattern::Vertex&);
   template <int Pivot>
