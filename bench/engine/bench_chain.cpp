@@ -12,7 +12,7 @@ namespace iota::bench {
 namespace {
 
 /// Long chains are cut short so that the run stays short; the counter simulated_s says how short.
-int steps_of(int links, int hz) { return links > 16384 ? 24 : hz * (links <= 2000 ? 10 : links <= 4096 ? 2 : 1); }
+int steps_of(int links, int hz) { return hz * (links <= 2000 ? 10 : links <= 4096 ? 2 : 1); }
 
 void fall(benchmark::State& state, bool rods, IntegrationMode mode, int hz) {
   const int links = static_cast<int>(state.range(0));

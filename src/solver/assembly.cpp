@@ -200,57 +200,28 @@ void Assembly::assemble_forces(const Problem& problem, const ForceStage& stage, 
   }
 }
 
-Assembly::Part Assembly::whole(const Problem& problem) {
-  const auto all = [](std::size_t count) { return Part::Items{nullptr, static_cast<std::uint32_t>(count)}; };
-  const auto& rows = std::get<ConstraintPool<DistanceConstraint>>(problem.constraints);
-  return {all(problem.size()), all(problem.mass_couplings.size()), all(rows.items.size())};
-}
-
 template <bool Midpoint>
 void Assembly::assemble(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
-  begin<Midpoint>(problem, stage, x, hessian);
-  add_bodies<Midpoint>(problem, stage, x, hessian, whole(problem));
-}
-
-// All but bodies: what does not come in hundreds of thousands.
-template <bool Midpoint>
-void Assembly::begin(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
   factor_.clear(!Midpoint);
-  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    if constexpr (!std::is_same_v<C, DistanceConstraint>) {
-      const Part::Items all{nullptr, static_cast<std::uint32_t>(pool.items.size())};
-      pool.has_laws() ? assemble_rows<Midpoint, true>(problem, stage, pool, x, hessian, all)
-                      : assemble_rows<Midpoint, false>(problem, stage, pool, x, hessian, all);
-    }
+  for (std::uint32_t i = 0; i < problem.size(); ++i) add_to_node(i, stage.inertia * problem.mass[i]);
+  for (const auto& c : problem.mass_couplings) add_to_pair<Midpoint>(c.slot, stage.inertia * c.mass);
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    pool.has_laws() ? assemble_rows<Midpoint, true>(problem, stage, pool, x, hessian)
+                    : assemble_rows<Midpoint, false>(problem, stage, pool, x, hessian);
   });
   if (stage.is_projection()) return;
   const ForceStage force_stage{stage.h, Midpoint, hessian == Hessian::clamped};
   problem.for_each_force_pool([&](const auto& pool) { assemble_forces<Midpoint>(problem, force_stage, pool, x); });
 }
 
-template <bool Midpoint>
-void Assembly::add_bodies(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian,
-                          const Part& part) {
-  for (std::uint32_t i = 0; i < part.nodes.count; ++i)
-    add_to_node(part.nodes[i], stage.inertia * problem.mass[part.nodes[i]]);
-  for (std::uint32_t i = 0; i < part.couplings.count; ++i) {
-    const auto& c = problem.mass_couplings[part.couplings[i]];
-    add_to_pair<Midpoint>(c.slot, stage.inertia * c.mass);
-  }
-  const auto& rows = std::get<ConstraintPool<DistanceConstraint>>(problem.constraints);
-  rows.has_laws() ? assemble_rows<Midpoint, true>(problem, stage, rows, x, hessian, part.rows)
-                  : assemble_rows<Midpoint, false>(problem, stage, rows, x, hessian, part.rows);
-}
-
 template <bool Midpoint, bool Laws, class C>
 void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x,
-                             Hessian hessian, Part::Items items) {
+                             Hessian hessian) {
   const Vec3* const x0 = problem.position.data();
   const bool clamp = hessian == Hessian::clamped;
   double *const diagonals = factor_.diagonals(), *const lower = factor_.lower();
   [[maybe_unused]] double* const upper = factor_.upper();
-  for (std::uint32_t item = 0; item < items.count; ++item) {
-    const std::uint32_t k = items[item];
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
     const C& c = pool.items[k];
     const auto& slots = pool.slots[k];
     if constexpr (Laws)
@@ -321,23 +292,10 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
 
 template <bool Midpoint>
 bool Assembly::factor_and_solve(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
-  begin<Midpoint>(problem, stage, x, hessian);
-  int wrong = 0;
-  if (lots_.empty()) {
-    add_bodies<Midpoint>(problem, stage, x, hessian, whole(problem));
-    wrong = factor_.factorise(unknowns_);
-  }
-  Lot at;
-  for (const Lot& lot : lots_) {
-    add_bodies<Midpoint>(problem, stage, x, hessian,
-                         {{lot_nodes_.data() + at.nodes, lot.nodes},
-                          {lot_couplings_.data() + at.couplings, lot.couplings},
-                          {lot_rows_.data() + at.rows, lot.rows}});
-    wrong += factor_.factorise(at.vertices, at.vertices + lot.vertices, unknowns_);
-    at.vertices += lot.vertices, at.nodes += lot.nodes, at.couplings += lot.couplings, at.rows += lot.rows;
-  }
+  assemble<Midpoint>(problem, stage, x, hessian);
+  const bool good = factor_.factorise(unknowns_) == 0;
   factor_.finish(unknowns_);
-  return wrong == 0;
+  return good;
 }
 
 template Residual Assembly::residual<false>(const Problem&, const Stage&, const Vec3*, const Vec3*);

@@ -63,16 +63,6 @@ class Assembly {
   BlockFactor& factor() { return factor_; }
 
  private:
-  /// What a part of the matrix is put together from: masses of nodes, coupled masses, rows of bodies; by number, or all.
-  struct Part {
-    struct Items {
-      const std::uint32_t* numbers;  // null: all from the first one on
-      std::uint32_t count;
-      std::uint32_t operator[](std::uint32_t i) const { return numbers ? numbers[i] : i; }
-    };
-    Items nodes, couplings, rows;
-  };
-
   bool try_relink(Problem&, std::span<const std::array<std::uint32_t, 2>> added, std::span<const std::uint32_t> removed,
                   std::span<const std::uint32_t> touched);
   template <class C>
@@ -97,26 +87,12 @@ class Assembly {
   void add_curvature(const C&, const typename ConstraintPool<C>::Slots&, const Stage&, const Vec3* x,
                      const double* lambda, bool clamp);
   template <bool Midpoint, bool Laws, class C>
-  void assemble_rows(const Problem&, const Stage&, const ConstraintPool<C>&, const Vec3* x, Hessian, Part::Items);
+  void assemble_rows(const Problem&, const Stage&, const ConstraintPool<C>&, const Vec3* x, Hessian);
   template <bool Midpoint, class F>
   void assemble_forces(const Problem&, const ForceStage&, const ForcePool<F>&, const Vec3* x);
 
-  static Part whole(const Problem&);
-  template <bool Midpoint>
-  void begin(const Problem&, const Stage&, const Vec3* x, Hessian);
-  template <bool Midpoint>
-  void add_bodies(const Problem&, const Stage&, const Vec3* x, Hessian, const Part&);
-  void make_lots(const Problem&);
-
   BlockPattern pattern_;
   BlockFactor factor_;
-  // Of problems that outgrow the caches: what each stretch of the elimination needs first, so that blocks are put together
-  // just before they are eliminated. 100 000 rods: 0.60 -> 0.45 us a link and step.
-  struct Lot {
-    std::uint32_t vertices = 0, nodes = 0, couplings = 0, rows = 0;  // how many
-  };
-  std::vector<Lot> lots_;
-  std::vector<std::uint32_t> lot_nodes_, lot_couplings_, lot_rows_;
   std::vector<std::uint32_t> node_unknown_, node_diagonal_;
   std::vector<std::uint8_t> node_stride_;
   std::vector<double> unknowns_;  // residuals, and then the step

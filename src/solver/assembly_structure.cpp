@@ -32,6 +32,10 @@ namespace {
 CouplingGraph graph_of(const Problem& problem) {
   CouplingGraph graph;
   graph.node_count = static_cast<std::uint32_t>(problem.size());
+  graph.couplings.reserve(problem.mass_couplings.size());
+  std::size_t constraints = 0;
+  problem.for_each_constraint_pool([&](const auto& pool) { constraints += pool.items.size(); });
+  graph.constraints.reserve(constraints);
   for (const auto& c : problem.mass_couplings) graph.couplings.push_back({c.a, c.b});
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items)
@@ -89,35 +93,6 @@ void Assembly::compile(Problem& problem) {
   });
   pattern_.forget_slots();
   set_node_places(problem);
-  make_lots(problem);
-}
-
-void Assembly::make_lots(const Problem& problem) {
-  constexpr std::size_t large = 8192;  // nodes, about ten megabytes
-  constexpr std::uint32_t size = 512;  // vertices, about half of one
-  lots_.clear();
-  if (problem.size() <= large) return;
-  const auto vertices = static_cast<std::uint32_t>(pattern_.vertices().size());
-  lots_.resize((vertices + size - 1) / size);
-  for (std::uint32_t i = 0; i < lots_.size(); ++i) lots_[i].vertices = std::min(size, vertices - i * size);
-  // Numbers of items by the lot of who among their nodes is eliminated first.
-  std::vector<std::uint32_t> cursor;
-  const auto sort = [&](std::vector<std::uint32_t>& numbers, std::size_t count, std::uint32_t Lot::* items,
-                        auto first_vertex) {
-    for (std::uint32_t k = 0; k < count; ++k) ++(lots_[first_vertex(k) / size].*items);
-    cursor.assign(1, 0);
-    for (const Lot& lot : lots_) cursor.push_back(cursor.back() + lot.*items);
-    numbers.resize(count);
-    for (std::uint32_t k = 0; k < count; ++k) numbers[cursor[first_vertex(k) / size]++] = k;
-  };
-  const auto vertex = [&](std::uint32_t node) { return pattern_.node_vertex(node); };
-  const auto& rows = std::get<ConstraintPool<DistanceConstraint>>(problem.constraints).items;
-  sort(lot_nodes_, problem.size(), &Lot::nodes, vertex);
-  sort(lot_couplings_, problem.mass_couplings.size(), &Lot::couplings, [&](std::uint32_t k) {
-    return std::min(vertex(problem.mass_couplings[k].a), vertex(problem.mass_couplings[k].b));
-  });
-  sort(lot_rows_, rows.size(), &Lot::rows,
-       [&](std::uint32_t k) { return std::min(vertex(rows[k].nodes[0]), vertex(rows[k].nodes[1])); });
 }
 
 void Assembly::set_node_places(const Problem& problem) {
@@ -140,7 +115,6 @@ void Assembly::relink(Problem& problem, std::span<const std::array<std::uint32_t
   pattern_.renumber(removed);
   factor_.grow();
   set_node_places(problem);
-  lots_.clear();  // until the next analysis: making them anew would take as long as the edit
 }
 
 bool Assembly::try_relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,

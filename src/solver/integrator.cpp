@@ -30,10 +30,17 @@ void Integrator::relink(Problem& problem, std::span<const std::array<std::uint32
 
 void Integrator::make_room(const Problem& problem) {
   for (auto* list : {&start_position_, &start_velocity_}) reserve_with_slack(*list, problem.size());
-  resize_with_slack(lumped_mass_, problem.size());
-  std::copy(problem.mass.begin(), problem.mass.end(), lumped_mass_.begin());
-  for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
+  lumped_mass_.clear(), reserve_with_slack(lumped_mass_, problem.size());
   multipliers_saved_.resize(problem.multiplier_count());
+}
+
+// Summed when they are first asked for: the mid-point scheme does without.
+std::span<const double> Integrator::lumped_masses(const Problem& problem) {
+  if (lumped_mass_.empty()) {
+    lumped_mass_.assign(problem.mass.begin(), problem.mass.end());
+    for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
+  }
+  return lumped_mass_;
 }
 
 // End point: where the forces of the last step would carry the points, x0 + h v0 + (f - G0' lambda) / (inertia m), which
@@ -45,10 +52,11 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   std::fill(guess.begin(), guess.end(), Vec3{});
   if (stage.midpoint || stage.is_projection()) return;
 
+  const std::span<const double> mass = lumped_masses(problem);
   const std::span<Vec3> flight = newton_.room();
   for (std::size_t i = 0; i < n; ++i) {
     flight[i] = problem.position[i] + stage.h * problem.velocity[i];
-    guess[i] = lumped_mass_[i] * problem.gravity;
+    guess[i] = mass[i] * problem.gravity;
   }
   for (std::size_t i = 0; i < problem.force.size(); ++i) guess[i] += problem.force[i];
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
@@ -73,7 +81,7 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   const double limit = newton_.reference_length() * newton_.reference_length();
   double farthest = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    guess[i] *= 1 / (stage.inertia * lumped_mass_[i]);
+    guess[i] *= 1 / (stage.inertia * mass[i]);
     farthest = std::max(farthest, dot(guess[i], guess[i]));
   }
   if (!(farthest < limit)) std::fill(guess.begin(), guess.end(), Vec3{});
@@ -346,9 +354,9 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
 void Integrator::shed(Problem& problem, double excess, double fraction, AdvanceReport& report) {
   Vec3 drift;
   if (problem.is_isolated()) {
+    const std::span<const double> lumped = lumped_masses(problem);
     double mass = 0;
-    for (std::size_t i = 0; i < problem.size(); ++i)
-      mass += lumped_mass_[i], drift += lumped_mass_[i] * problem.velocity[i];
+    for (std::size_t i = 0; i < problem.size(); ++i) mass += lumped[i], drift += lumped[i] * problem.velocity[i];
     drift *= 1 / mass;
     for (Vec3& v : problem.velocity) v -= drift;
   }

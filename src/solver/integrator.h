@@ -70,6 +70,7 @@ class Integrator {
 
  private:
   void make_room(const Problem&);
+  std::span<const double> lumped_masses(const Problem&);
   void make_guess(const Problem&, const Stage&);
   bool try_step(Problem&, const Stage&, AdvanceReport&);
   bool solve(Problem&, const Stage&, AdvanceReport&);

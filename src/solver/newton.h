@@ -83,7 +83,8 @@ class Newton {
   void take_back_step(Problem&, const Stage&);
 
   bool project_onto_sides(Problem&, double h, bool as_solved, std::span<const Vec3> impulses);
-  void project_once(Problem&, double h, std::span<const Vec3> impulses);
+  double find_rates(const Problem&, double h, std::span<const Vec3> impulses);
+  void add_step_to_velocities(Problem&);
   void give_back_momentum(Problem&, std::span<const Vec3> impulses) const;
 
   Assembly assembly_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Velocities that constraints allow.
+#include "solver/largest.h"
 #include "solver/newton.h"
 
 #include <algorithm>
@@ -45,12 +46,15 @@ bool Newton::project_onto_sides(Problem& problem, double h, bool as_solved, std:
   for (const double compliance : {1e-12, 1e-9, 1e-6, 1e-3}) {
     Stage stage = Stage::projection(compliance);
     stage.fraction = as_solved ? 1 : 0;
-    assembly_.assemble<false>(problem, stage, x_.data(), Hessian::none);
-    (void)assembly_.factor().factorise();
     std::fill(impulses_.begin(), impulses_.end(), 0.0);
     const double energy = problem.kinetic_energy();
-    project_once(problem, h, impulses);
-    for (int again = 0; again < 2; ++again) project_once(problem, h, {});  // compliance and round-off leave a little
+    (void)find_rates(problem, h, impulses);
+    (void)assembly_.factor_and_solve<false>(problem, stage, x_.data(), Hessian::none);
+    add_step_to_velocities(problem);
+    for (int again = 0; again < 2 && find_rates(problem, h, {}) > 0; ++again) {  // compliance and round-off
+      assembly_.solve();
+      add_step_to_velocities(problem);
+    }
     const double projected = problem.kinetic_energy();
     const bool given = h > 0 || !impulses.empty();  // then energy may come in
     if (std::isfinite(projected) && (given || projected <= energy * (1 + 1e-9))) return true;
@@ -59,8 +63,11 @@ bool Newton::project_onto_sides(Problem& problem, double h, bool as_solved, std:
   return false;
 }
 
-void Newton::project_once(Problem& problem, double h, std::span<const Vec3> impulses) {
+// What the velocities miss in each row goes into the residuals. Returns the largest; zero where it is round-off.
+double Newton::find_rates(const Problem& problem, double h, std::span<const Vec3> impulses) {
+  constexpr double round_off = 2e-15;  // of the largest velocity
   const std::span<double> residuals = assembly_.residuals();
+  Largest worst;
   std::fill(residuals.begin(), residuals.end(), 0.0);
   for (std::size_t i = 0; i < impulses.size(); ++i) {
     double* const r = residuals.data() + assembly_.unknown_of(static_cast<std::uint32_t>(i));
@@ -87,9 +94,15 @@ void Newton::project_once(Problem& problem, double h, std::span<const Vec3> impu
           if (pool.law(k)[r].hold) row[r] -= pool.law(k)[r].rate;
           if (pool.states[k * C::rows + r].side != 0) row[r] = 0;
         }
+      for (int r = 0; r < C::rows; ++r) worst.add(std::abs(row[r]));
     }
   });
-  assembly_.solve();
+  Largest speed;
+  for (const Vec3& v : problem.velocity) speed.add(largest_component(v));
+  return worst.value <= round_off * speed.value ? 0 : worst.value;
+}
+
+void Newton::add_step_to_velocities(Problem& problem) {
   for (std::size_t i = 0; i < impulses_.size(); ++i) impulses_[i] -= assembly_.step()[i];
   for (std::size_t i = 0; i < problem.size(); ++i)
     problem.velocity[i] -= assembly_.step_of(static_cast<std::uint32_t>(i));

@@ -277,13 +277,14 @@ RestructureReport System::Implementation::restructure(std::span<const std::uint3
 
 System::Implementation::Conserved System::Implementation::conserved(std::span<const std::uint32_t> bodies) const {
   Conserved sum;
+  const Vec3 gravity = model.acting_gravity();
   for (const std::uint32_t body : bodies) {
     if (!model.bodies.is_alive(body) || model.bodies[body].kind == BodyKind::inactive) continue;
     model.for_each_particle_of(body, [&](std::uint32_t p) {
       const double mass = model.particles[p].mass;
       const Vec3 x = model.position(p), v = model.velocity(p);
       sum.kinetic += 0.5 * mass * dot(v, v);
-      sum.potential -= mass * dot(model.acting_gravity(), x);
+      sum.potential -= mass * dot(gravity, x);
       sum.momentum += mass * v;
       sum.angular_momentum += mass * cross(x, v);
       if (const std::uint32_t a = model.particles[p].attributes; a != none && model.attributes[a].oriented) {
@@ -347,17 +348,21 @@ bool System::Implementation::give_back_momenta(std::span<const std::uint32_t> bo
                                                std::span<const std::uint32_t> affected, const Conserved& before) {
   std::vector<std::uint32_t> members = model.tied_bodies(bodies, model::Model::Ties::constraints), rings;
   std::erase_if(members, [&](std::uint32_t b) { return model.bodies[b].kind == BodyKind::inactive; });
+  for (const std::uint32_t b : members) {
+    bool pinned = model.is_tied_to_world(b);
+    model.for_each_particle_of(b,
+                               [&](std::uint32_t p) { pinned = pinned || model.is_pinned(model.particles[p].ring); });
+    if (pinned) return false;
+  }
   double mass = 0;
   Vec3 first_moment;
-  bool pinned = std::any_of(members.begin(), members.end(), [&](std::uint32_t b) { return model.is_tied_to_world(b); });
   for (const std::uint32_t b : members)
     model.for_each_particle_of(b, [&](std::uint32_t p) {
       rings.push_back(model.particles[p].ring);
-      pinned = pinned || model.is_pinned(model.particles[p].ring);
       mass += model.particles[p].mass;
       first_moment += model.particles[p].mass * model.position(p);
     });
-  if (pinned || !(mass > 0)) return false;
+  if (!(mass > 0)) return false;
   sort_unique(rings);
 
   const Vec3 centre = (1 / mass) * first_moment;

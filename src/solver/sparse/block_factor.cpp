@@ -192,12 +192,12 @@ Leaves<Pivot, N> BlockFactor::leaves(std::size_t first, double* unknowns) {
   return leaves;
 }
 
-int BlockFactor::factorise(std::size_t first, std::size_t end, std::span<double> unknowns) {
+int BlockFactor::factorise(std::span<double> unknowns) {
   int wrong = 0;
   double* const b = unknowns.data();
-  for (std::size_t i = first; i < end;) {
+  for (std::size_t i = 0; i < pattern_->vertices().size();) {
     const BlockPattern::Vertex& v = pattern_->vertices()[i];
-    const int alike = std::min(leaves_from(i), static_cast<int>(end - i));
+    const int alike = leaves_from(i);
     with_pivot(v.pivot, [&]<int Pivot> {
       const auto eliminate_all = [&](const auto& leaves) {
         wrong +=

@@ -38,9 +38,7 @@ class BlockFactor {
   void solve(std::span<double> unknowns);
   /// The same along with `factorise`, for one pass over the factors less: substitution forward while they are made, and
   /// then backward.
-  int factorise(std::span<double> unknowns) { return factorise(0, pattern_->vertices().size(), unknowns); }
-  /// The same vertex by vertex: [first, end) after all before.
-  int factorise(std::size_t first, std::size_t end, std::span<double> unknowns);
+  int factorise(std::span<double> unknowns);
   void finish(std::span<double> unknowns);
 
  private:

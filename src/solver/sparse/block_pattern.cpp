@@ -68,6 +68,7 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
 
   // 3. Vertices in order of elimination.
   vertices_.clear();
+  vertices_.reserve(n);
   node_vertex_.assign(n, 0);
   std::vector<std::uint32_t> own_vertex(graph.constraints.size(), 0);
   diagonal_count_ = lower_count_ = unknown_count_ = widest_front_ = 0;
@@ -116,8 +117,8 @@ void BlockPattern::analyse(const CouplingGraph& graph) {
   std::vector<std::uint32_t> first_child(vertex_count, no_vertex), next_child(vertex_count, no_vertex);
   std::vector<std::uint8_t> width_of(vertex_count, 0);
   std::vector<std::uint32_t> list;
-  entries_.clear();
-  pair_targets_.clear();
+  entries_.clear(), entries_.reserve(n);
+  pair_targets_.clear(), pair_targets_.reserve(n);
   given_up_ = 0;
   for (std::uint32_t v = 0; v < vertex_count; ++v) {
     list.clear();

@@ -118,7 +118,6 @@ class BlockPattern {
   std::uint32_t node_count() const { return static_cast<std::uint32_t>(node_vertex_.size()); }
   std::uint32_t widest_front() const { return widest_front_; }
 
-  std::uint32_t node_vertex(std::uint32_t node) const { return node_vertex_[node]; }
   std::uint32_t node_unknown(std::uint32_t node) const { return vertices_[node_vertex_[node]].unknown; }
   std::uint32_t node_diagonal(std::uint32_t node) const { return vertices_[node_vertex_[node]].diagonal; }
   std::uint8_t node_stride(std::uint32_t node) const { return vertices_[node_vertex_[node]].pivot; }

@@ -16,8 +16,8 @@ struct LanesOf<1> {
 };
 
 /// Vertices of one shape that do not couple with each other and with one later node each: the links of chains and trees.
-/// Waiting for divisions is most of what one of them costs, so N of them go hand in hand: 512 rods, a factorisation and
-/// solution from 55 to 40 % of a step.
+/// Waiting for divisions is most of what one of them costs, so N of them go hand in hand: a step of 512 rods takes 0.18
+/// instead of 0.22 us a link.
 template <int Pivot, int N>
 struct Leaves {
   using Lanes = typename LanesOf<N>::Type;
