@@ -5,19 +5,27 @@
 #include "bench/engine/chain.h"
 
 #include <benchmark/benchmark.h>
-#include <unistd.h>
 
 #include <fstream>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#include <string>
 
 namespace iota::bench {
 namespace {
 
-/// Resident bytes of this process (Linux; 0 elsewhere).
+/// Resident bytes of this process that are no file's, less what the allocator holds in reserve (Linux with glibc; 0
+/// elsewhere).
 double resident() {
-  std::ifstream file("/proc/self/statm");
-  double pages = 0, resident_pages = 0;
-  file >> pages >> resident_pages;
-  return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+  std::ifstream file("/proc/self/status");
+  double kilobytes = 0;
+  for (std::string word; file >> word;)
+    if (word == "RssAnon:") file >> kilobytes;
+  return 1024 * kilobytes;
 }
 
 void chain_in_memory(benchmark::State& state, IntegrationMode mode) {

@@ -81,7 +81,7 @@ void Assembly::compile(Problem& problem) {
   std::size_t index = 0;
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     pool.multipliers.resize(pool.items.size() * C::rows, 0.0);
-    pool.offsets.clear(), pool.offsets.reserve(pool.multipliers.size());
+    pool.offsets.clear();
     if (pool.has_laws()) pool.laws.resize(pool.multipliers.size());
     pool.states.assign(pool.laws.size(), {});
     pool.slots.assign(pool.items.size(), {});

@@ -29,8 +29,8 @@ void Integrator::relink(Problem& problem, std::span<const std::array<std::uint32
 }
 
 void Integrator::make_room(const Problem& problem) {
-  for (auto* list : {&start_position_, &start_velocity_}) reserve_with_slack(*list, problem.size());
-  lumped_mass_.clear(), reserve_with_slack(lumped_mass_, problem.size());
+  for (auto* list : {&start_position_, &start_velocity_}) reserve_for_rare_use(*list, problem.size());
+  lumped_mass_.clear();
   multipliers_saved_.resize(problem.multiplier_count());
 }
 

@@ -37,7 +37,7 @@ void Newton::make_room(const Problem& problem) {
   for (auto* list : {&x_, &u_, &u_saved_}) resize_with_slack(*list, problem.size());
   if (problem.has_laws()) resize_with_slack(impulses_, assembly_.unknown_count());
   multipliers_saved_.resize(problem.multiplier_count());
-  merit_weights_.reserve(problem.multiplier_count());
+  reserve_for_rare_use(merit_weights_, problem.multiplier_count());
 }
 
 void Newton::place(const Problem& problem, const Stage& stage) {

@@ -11,7 +11,7 @@ namespace iota::solver {
 void Problem::add_nodes(std::size_t count) {
   const std::size_t n = size() + count;
   resize_with_slack(position, n), resize_with_slack(velocity, n), resize_with_slack(mass, n);
-  force.clear(), reserve_with_slack(force, n);
+  force.clear();
 }
 
 void Problem::remove_nodes(std::span<const std::uint32_t> removed) {

@@ -54,7 +54,6 @@ void BlockFactor::reset(const BlockPattern& pattern) {
   diagonals_.clear(), lower_.clear(), upper_.clear();
   resize_with_slack(diagonals_, pattern.diagonal_count());
   resize_with_slack(lower_, pattern.lower_count());
-  upper_.reserve(lower_.capacity());
   unscaled_.assign(static_cast<std::size_t>(pattern.widest_front()) * BlockPattern::max_pivot, 0);
 }
 
@@ -68,7 +67,9 @@ void BlockFactor::clear(bool symmetric) {
   symmetric_ = symmetric;
   std::fill(diagonals_.begin(), diagonals_.end(), 0.0);
   std::fill(lower_.begin(), lower_.end(), 0.0);
-  if (!symmetric) upper_.assign(lower_.size(), 0.0);
+  if (symmetric) return;
+  reserve_with_slack(upper_, lower_.size());
+  upper_.assign(lower_.size(), 0.0);
 }
 
 template <int Pivot, bool Symmetric>
