@@ -201,8 +201,10 @@ struct CoordinateView {
   void set(const CoordinateOptions& options) const { joint.use().set_coordinate(joint.id, which, options); }
 };
 
+ConstraintHandle& holder_of(CoordinateView& coordinate) { return coordinate.joint; }
+
 void bind_coordinate(nb::module_& module) {
-  nb::class_<CoordinateView>(module, "JointCoordinate", coordinate_doc)
+  nb::class_<CoordinateView>(module, "JointCoordinate", coordinate_doc, nb::type_slots(handle_slots<CoordinateView>))
       .def_prop_ro(
           "value",
           [](const CoordinateView& self) { return self.joint.use().state(self.joint.id).coordinate[self.index()]; },
@@ -383,7 +385,8 @@ struct BrokenView {
 };
 
 void bind_broken(nb::module_& module) {
-  nb::class_<BrokenView>(module, "Broken", "A constraint, bond, hinge or nail that a load beyond its limit broke.")
+  nb::class_<BrokenView>(module, "Broken", "A constraint, bond, hinge or nail that a load beyond its limit broke.",
+                         nb::type_slots(handle_slots<BrokenView>))
       .def_prop_ro(
           "constraint",
           [](const BrokenView& self) {

@@ -20,7 +20,7 @@ constexpr const char* scope_doc =
 }  // namespace
 
 void bind_edits(nb::module_& module) {
-  nb::class_<EditScope>(module, "Edit", scope_doc)
+  nb::class_<EditScope>(module, "Edit", scope_doc, nb::type_slots(handle_slots<EditScope>))
       .def(
           "__enter__",
           [](nb::handle_t<EditScope> self) {

@@ -17,10 +17,13 @@ struct PartView {
   }
 };
 
+BodyHandle& holder_of(PartView& part) { return part.body; }
+
 }  // namespace
 
 void bind_parts(nb::module_& module) {
-  nb::class_<PartView> type(module, "Part", "One of the bodies that a body was combined from.");
+  nb::class_<PartView> type(module, "Part", "One of the bodies that a body was combined from.",
+                            nb::type_slots(handle_slots<PartView>));
   type.def_prop_ro(
           "origin", [](const PartView& self) { return sibling(self.body, self.part); },
           nb::sig("def origin(self) -> Body"),

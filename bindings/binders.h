@@ -45,17 +45,23 @@ void bind_solvers(nb::module_&);
 
 // --- handles --------------------------------------------------------------------------------------------------------
 
+/// Where an object keeps its system: in itself, unless it says otherwise.
+template <class HandleType>
+HandleType& holder_of(HandleType& handle) {
+  return handle;
+}
+
 /// A scripted function may refer to handles and the system, and the system holds the function: the garbage collector
 /// has to see these references to free such a ring.
 template <class HandleType>
 inline PyType_Slot handle_slots[] = {
     {Py_tp_traverse, reinterpret_cast<void*>(+[](PyObject* self, visitproc visit, void* arg) -> int {
        Py_VISIT(Py_TYPE(self));
-       if (nb::inst_ready(self)) Py_VISIT(nb::inst_ptr<HandleType>(self)->system_object.ptr());
+       if (nb::inst_ready(self)) Py_VISIT(holder_of(*nb::inst_ptr<HandleType>(self)).system_object.ptr());
        return 0;
      })},
     {Py_tp_clear, reinterpret_cast<void*>(+[](PyObject* self) -> int {
-       HandleType& handle = *nb::inst_ptr<HandleType>(self);
+       auto& handle = holder_of(*nb::inst_ptr<HandleType>(self));
        handle.system = nullptr;
        handle.system_object.reset();
        return 0;

@@ -82,11 +82,11 @@ double Model::spin_energy(std::uint32_t body) const {
 }
 
 void Model::set_spin(std::uint32_t body, double angular_velocity) {
+  if (spins.has(body) != (angular_velocity != 0)) touch_body(body);
   if (angular_velocity == 0)
     spins.erase(body);
   else
     spins.make(body).momentum = axial_inertia(body) * angular_velocity;
-  touch_body(body);
 }
 
 double Model::potential_energy() const {

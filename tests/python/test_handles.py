@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import gc
+import subprocess
 import sys
 import weakref
 from typing import Any
@@ -184,3 +185,24 @@ def test_handles_show_what_they_are(system: iota.System, chain: list[iota.Body])
     assert repr(chain[0].particles[0]) == "<Particle 0 of body 0 at (0, 2, 0)>"
     assert "6 bodies in 1 articulates" in repr(system)
     assert "1 articulates" in repr(system.step())
+
+
+def test_what_a_script_still_has_at_its_end_is_let_go_quietly() -> None:
+    """A function that the system holds sees the script's names, which hold the system: a ring that must come free."""
+    script = """
+import iota
+system = iota.System()
+a, b = (iota.Body(system, shape=iota.Box((1, 1, 1)), position=(x, 0, 0), attachments=[(0.5 - x, 0, 0)]) for x in (0, 1))
+bond = iota.Bond(a.particles[0], b.particles[0], lambda bond: a.velocity)
+joint = system.revolute(a, at=(0, 0, 0), axis=(0, 0, 1), break_force=1e-9)
+angle = joint.angle
+report = system.step(0.01)
+broken = system.broken
+combined = iota.combine(a, b)
+part = a.parts[0]
+with system.edit() as edit:
+    ball = iota.Body(system, shape=iota.Sphere(0.1))
+assert broken and part and angle
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60)
+    assert "leaked" not in done.stderr, done.stderr
