@@ -68,7 +68,7 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
     lightest = std::min(lightest, mass);
   }
   const double scale = inverse_scale(stage);
-  Residual found{.violation = violation_, .imbalance = worst_force * scale / mass_there};
+  Residual found{.rows = worst_, .violation = violation_, .imbalance = worst_force * scale / mass_there};
   // Forces that cancel leave round-off; do not chase it. Enormous multipliers mean a conflict, not noise.
   found.noise = std::min(round_off * largest_multiplier_ * scale / lightest, largest_noise);
   Largest worst{worst_};

@@ -13,6 +13,7 @@ namespace iota::solver {
 /// By how much the equations of a step are missed; all scaled, dimensionless.
 struct Residual {
   double worst = 0;      ///< of all equations; forces that are round-off do not count
+  double rows = 0;       ///< of the constraints' equations
   double violation = 0;  ///< of the constraints alone, as a fraction of their reference lengths: compliance lets
                          ///< conflicting ones "converge" without being met
   double imbalance = 0;  ///< of the forces

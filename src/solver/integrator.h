@@ -72,6 +72,7 @@ class Integrator {
   void make_room(const Problem&);
   std::span<const double> lumped_masses(const Problem&);
   void make_guess(const Problem&, const Stage&);
+  void sweep_lengths(const Problem&, const Stage&);
   bool try_step(Problem&, const Stage&, AdvanceReport&);
   bool solve(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);
