@@ -140,7 +140,7 @@ std::vector<LawParameter> to_field_parameters(const nb::kwargs& keywords) {
 
 void make_field(FieldHandle* self, nb::object system_object, nb::object field, nb::handle group, bool replaces_gravity,
                 const std::string& name, const nb::kwargs& keywords) {
-  SystemObject* system = nb::cast<SystemObject*>(system_object);
+  SystemObject* system = to_system(system_object);
   System& engine = system->use_between_steps("Field(...)");
   FieldOptions options{name, to_field_parameters(keywords), to_group(group, system), replaces_gravity};
   FieldId id;
@@ -170,7 +170,7 @@ void make_field(FieldHandle* self, nb::object system_object, nb::object field, n
 
 void make_pairs(PairsHandle* self, nb::object system_object, nb::object law, double cutoff, nb::handle group,
                 const nb::kwargs& keywords) {
-  SystemObject* system = nb::cast<SystemObject*>(system_object);
+  SystemObject* system = to_system(system_object);
   System& engine = system->use_between_steps("Pairs(...)");
   finite_positive(cutoff, "cutoff", "m");
   SharedLaw shared;
@@ -251,7 +251,7 @@ void bind_group(nb::module_& module) {
   type.def(
       "__init__",
       [](GroupHandle* self, nb::object system_object, const std::string& name) {
-        SystemObject* system = nb::cast<SystemObject*>(system_object);
+        SystemObject* system = to_system(system_object);
         const GroupId id = system->use_between_steps("Group(...)").create_group(name);
         new (self) GroupHandle{system_object, system, id};
       },

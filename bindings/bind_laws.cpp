@@ -160,7 +160,7 @@ LawBody code_at(std::uintptr_t address, const std::string& signature) {
 
 void make_law(LawHandle* self, nb::object system_object, nb::object law, const std::string& name,
               const std::string& signature, const nb::kwargs& parameters) {
-  SystemObject* system = nb::cast<SystemObject*>(system_object);
+  SystemObject* system = to_system(system_object);
   System& engine = system->use_between_steps("Law(...)");
   LawOptions options{name, to_parameters(parameters)};
   LawId id;

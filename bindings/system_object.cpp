@@ -97,6 +97,13 @@ void raise_runtime(const std::string& text) {
   throw nb::python_error();
 }
 
+SystemObject* to_system(nb::handle system) {
+  SystemObject* object = nullptr;
+  if (!nb::try_cast(system, object) || !object)
+    throw nb::type_error(("system must be a System, not " + describe(system)).c_str());
+  return object;
+}
+
 void SystemObject::raise_mid_step() {
   raise_runtime(
       "the function of a surface or a solver is called in the middle of a step, on any thread: it cannot use the system. "

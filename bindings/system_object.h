@@ -167,6 +167,9 @@ nb::object take_solver_failure();
 /// Throws Python's RuntimeError.
 [[noreturn]] void raise_runtime(const std::string& text);
 
+/// Throws TypeError for anything but a System.
+SystemObject* to_system(nb::handle system);
+
 /// Another object of the same system.
 template <class Other, class IdType>
 Handle<IdType> sibling(const Other& handle, IdType id) {

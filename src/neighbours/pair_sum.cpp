@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "neighbours/pair_sum.h"
 
+#include "laws/force_limit.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -197,7 +199,7 @@ void PairSum::add_block(Part& b, const Task& task, std::size_t count, double* fx
         const double c = b.drag[k];
         x -= c * (p.vx[j] - p.vx[i]), y -= c * (p.vy[j] - p.vy[i]), z -= c * (p.vz[j] - p.vz[i]);
       }
-      if (!std::isfinite(x + y + z)) [[unlikely]] {
+      if (!laws::is_force(x, y, z)) [[unlikely]] {
         if (b.bad.count++ == 0) b.bad.i = i, b.bad.j = j;
         continue;
       }

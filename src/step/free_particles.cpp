@@ -91,7 +91,8 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
       const Vec3 before = ring.velocity;
       const Vec3 gained = h * ((1 / mass) * force + gravity);
       const Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
-      if (!is_finite(moved + after))
+      constexpr double absurd = 1e12;  // m/s: squares of more are no energies any more
+      if (!(dot(after, after) < absurd * absurd) || !is_finite(moved))
           [[unlikely]] {  // an absurd force: the particle stays where it is, and that is told
         share.lost = true;
         continue;

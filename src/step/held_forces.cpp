@@ -2,6 +2,7 @@
 // Forces that are taken once a step and held: scripted bonds, laws that are code, and any law on request.
 #include "step/held_forces.h"
 
+#include "laws/force_limit.h"
 #include "step/checks.h"
 #include "step/implementation.h"
 
@@ -158,7 +159,7 @@ void System::Implementation::run_held_law(LawBatch& batch, double ahead, StepRep
   for (std::size_t i = 0; i < batch.bonds.size(); ++i) {
     Vec3 on_p = -batch.force[i] * batch.direction[i];
     if (has_drag) on_p += batch.drag[i] * batch.rate[i];
-    if (is_finite(on_p))
+    if (laws::is_force(on_p))
       add_force(batch.bonds[i], on_p);
     else
       switch_off(batch.bonds[i], not_finite(batch, i), report);
@@ -171,7 +172,7 @@ void System::Implementation::watch_implicit_law(LawBatch& batch, StepReport& rep
   batch.load(model, 0);
   evaluate(batch, model.time + report.dt);
   for (std::size_t i = 0; i < batch.bonds.size(); ++i) {
-    if (!std::isfinite(batch.force[i]) || (law.has_drag() && !std::isfinite(batch.drag[i]))) {
+    if (!laws::is_force(batch.force[i], 0, 0) || (law.has_drag() && !std::isfinite(batch.drag[i]))) {
       switch_off(batch.bonds[i], not_finite(batch, i), report);
     } else if (law.depends_on_time()) {
       // The law changes under the bond: work from outside.
@@ -219,7 +220,7 @@ void System::Implementation::run_batch_function(LawBatch& batch, double ahead, S
   for (std::size_t i = 0; i < batch.bonds.size(); ++i) {
     const double* const f = batch.force_rows.data() + 3 * i;
     const Vec3 on_p{f[0], f[1], f[2]};
-    if (is_finite(on_p))
+    if (laws::is_force(on_p))
       add_force(batch.bonds[i], on_p);
     else
       switch_off(batch.bonds[i], text(": its function gave the force ", text_of(on_p)), report);
@@ -243,7 +244,7 @@ void System::Implementation::run_scripts(StepReport& report) {
       const model::Ring &p = model.rings[model.particles[bond.p].ring], &q = model.rings[model.particles[bond.q].ring];
       const Vec3 force = script->second.force({model.bonds.id(slot), p.position + ahead * p.velocity,
                                                q.position + ahead * q.velocity, p.velocity, q.velocity, model.time});
-      if (is_finite(force))
+      if (laws::is_force(force))
         add_force(slot, force);
       else
         switch_off(slot, name() + " returned a force that is not finite", report);

@@ -179,6 +179,7 @@ EmitterId System::Implementation::apply(const CreateEmitter& c) {
   require_finite("position", e.position);
   require_finite("velocity", e.velocity);
   require_not_negative("velocity_spread", e.velocity_spread);
+  require_finite("velocity_spread", {e.velocity_spread, 0, 0});
   require_positive("lifetime", e.lifetime);
   require_not_negative("lifetime_spread", e.lifetime_spread);
   if (!(e.lifetime_spread < e.lifetime))

@@ -2,6 +2,7 @@
 // Fields and pairwise forces, taken once a step and held.
 #include "step/particle_sets.h"
 
+#include "laws/force_limit.h"
 #include "step/checks.h"
 #include "step/implementation.h"
 
@@ -125,7 +126,7 @@ void System::Implementation::run_field(std::uint32_t slot, ParticleSet& set, Ste
   std::size_t bad = 0, first_bad = 0;
   const double* f = set.force_rows.data();
   for (std::size_t i = 0; i < n; ++i, f += 3) {
-    if (!std::isfinite(f[0] + f[1] + f[2])) [[unlikely]] {
+    if (!laws::is_force(f[0], f[1], f[2])) [[unlikely]] {
       if (bad++ == 0) first_bad = i;
       continue;
     }

@@ -42,6 +42,17 @@ class Scene:
         self.hinge = s.revolute(self.box, self.ball, at=(0.5, 0, 3), axis=(0, 0, 1), limits=(-1, 1))
         self.slider = s.prismatic(self.plate, None, at=(0, 0, -3), axis=(0, 1, 0), motor=(0.1, 5))
         self.rope = s.rope(self.point, self.plate.particles[3], 12)
+        self.crowd = iota.Group(s, "crowd")
+        self.crowd.add(self.plate, self.box)
+        self.well = iota.Field(s, "well", group=self.crowd, strength=0.1)
+        self.swell = iota.Field(s, "energy = k*x^2; fy = -c*vy", k=0.1, c=0.1)
+        self.pairs = iota.Pairs(s, "coulomb", cutoff=2.0, group=self.crowd, strength=0.1, softening=0.1)
+        self.law = iota.Law(s, "energy = 0.5*k*(r - r0)^2; force = -c*v", k=5, r0=None, c=0.1)
+        self.unused_law, self.nobody = iota.Law(s, "energy = r"), iota.Group(s, "nobody")
+        self.written = iota.Bond(self.p, self.point, self.law)
+        self.fountain = iota.Emitter(s, rate=60, position=(8, 8, 8), lifetime=0.2)
+        self.surfel = iota.Particle(iota.Body(s), (7, 7, 7))
+        self.surfel.orientation = (0, 0, 0, 1)
         self.grip = iota.Grip(self.rods[3], target=(1, 1, 1))
         self.gone = iota.Body(s)
         self.gone_particle = iota.Particle(self.gone, (9, 9, 9))
@@ -178,6 +189,58 @@ def calls(c: Scene) -> dict[str, Call]:
         "break_force": (lambda value: assign(c.hinge, "break_force", value), {"value": 10.0}),
         "break_torque": (lambda value: assign(c.hinge, "break_torque", value), {"value": 10.0}),
         "rope.length": (lambda value: assign(c.rope, "length", value), {"value": 5.0}),
+        "Law": (iota.Law, {"system": s, "law": "energy = k*r^2", "name": "law", "k": 1.0}),
+        "Law of arrays": (
+            lambda law, k: iota.Bond(c.point, c.corner, iota.Law(s, law, k=k)),
+            {"law": lambda bonds: np.zeros((len(bonds), 3)), "k": 1.0},
+        ),
+        "bond of an expression": (
+            lambda law, k: iota.Bond(c.point, c.corner, law, k=k),
+            {"law": "energy = 0.5*k*r^2", "k": 1.0},
+        ),
+        "bond of a law": (iota.Bond, {"p": c.point, "q": c.corner, "law": c.law, "k": 3.0, "implicit": True}),
+        "bond.set": (c.written.set, {"k": 2.0, "r0": 1.0, "c": 0.1}),
+        "lennard_jones": (
+            lambda depth, size: iota.Bond(c.point, c.corner, "lennard_jones", depth=depth, size=size),
+            {"depth": 1.0, "size": 1.0},
+        ),
+        "morse": (
+            lambda depth, width, length: iota.Bond(
+                c.point, c.corner, "morse", depth=depth, width=width, length=length
+            ),
+            {"depth": 1.0, "width": 1.0, "length": 1.0},
+        ),
+        "Group": (iota.Group, {"system": s, "name": "few"}),
+        "group.add": (lambda member: c.crowd.add(member), {"member": c.point}),
+        "group.remove": (lambda member: c.crowd.remove(member), {"member": c.box}),
+        "uniform": (
+            iota.Field,
+            {"system": s, "field": "uniform", "group": c.crowd, "replaces_gravity": True, "acceleration": V},
+        ),
+        "wind": (iota.Field, {"system": s, "field": "wind", "velocity": V, "drag": 0.1}),
+        "current": (
+            iota.Field,
+            {"system": s, "field": "current", "velocity": V, "drag": 0.1, "speed": 1.0, "size": 2.0, "octaves": 3.0,
+             "evolution": 0.1, "seed": 1.0},
+        ),
+        "attractor": (iota.Field, {"system": s, "field": "attractor", "centre": V, "strength": 1.0, "range": 2.0}),
+        "field of an expression": (
+            lambda field, k: iota.Field(s, field, k=k),
+            {"field": "energy = 0.5*k*y^2", "k": 0.1},
+        ),
+        "field of arrays": (iota.Field, {"system": s, "field": lambda batch: np.zeros((len(batch), 3))}),
+        "well.set": (c.well.set, {"centre": V, "strength": 0.2, "softening": 0.1}),
+        "Pairs": (iota.Pairs, {"system": s, "law": "soft_repulsion", "cutoff": 1.5, "group": c.crowd, "length": 1.0}),
+        "pairs.set": (c.pairs.set, {"strength": 0.1, "softening": 0.2}),
+        "Emitter": (
+            iota.Emitter,
+            {"system": s, "rate": 50.0, "source": SPHERE, "position": V, "orientation": (0, 0, 0, 1), "velocity": V,
+             "velocity_spread": 0.1, "lifetime": 1.0, "lifetime_spread": 0.1, "mass": 0.1, "damping": 0.1,
+             "max_count": 50, "curve": [(0.0, 0.1, (1, 1, 1)), (1.0, 0.2, (1, 0, 0, 0))], "seed": 3},
+        ),
+        "emitter.move": (c.fountain.move, {"position": V, "orientation": (0, 0, 0, 1)}),
+        "align": (c.surfel.align, {"direction": V, "stiffness": 2.0, "damping": 0.1}),
+        "apply_torque": (c.surfel.apply_torque, {"torque": V}),
         "chain": (
             iota.builder.chain,
             {"system": s, "links": 3, "length": 1.0, "top": V, "direction": (1, 0, 0)},
@@ -193,16 +256,29 @@ def calls(c: Scene) -> dict[str, Call]:
         table[f"Body.{name}"] = (set_member(name), {"of": c.plate, "value": value})
     for name, value in (("position", V), ("velocity", V), ("mass", 2.0)):
         table[f"Particle.{name}"] = (set_member(name), {"of": c.point, "value": value})
+    for name, value in (("lifetime", 2.0), ("radius", 0.1), ("color", (1, 0.5, 0)), ("spin", V),
+                        ("orientation", (0, 0, 0, 1)), ("moment", 0.1), ("break_force", 100.0)):  # fmt: skip
+        table[f"surfel.{name}"] = (set_member(name), {"of": c.surfel, "value": value})
+    for name, value in (("rest_after", 1.0), ("rest_speed", 0.01)):
+        table[f"System.{name}"] = (set_member(name), {"of": s, "value": value})
+    table["emitter.rate"] = (set_member("rate"), {"of": c.fountain, "value": 20.0})
+    table["spring.break_force"] = (set_member("break_force"), {"of": c.spring, "value": 100.0})
+    for name, thing in (("field", c.well), ("pairs", c.pairs), ("emitter", c.fountain), ("bond", c.written)):
+        table[f"{name}.active"] = (set_member("active"), {"of": thing, "value": False})
     table["Bond.active"] = (set_member("active"), {"of": c.spring, "value": False})
     table["Constraint.active"] = (set_member("active"), {"of": c.hinge, "value": False})
-    for name in ("body", "particle", "bond", "cbond", "grip", "constraint"):
-        things = {
-            "body": c.box, "particle": c.p, "bond": c.spring, "cbond": c.cbond, "grip": c.grip, "constraint": c.hinge
-        }  # fmt: skip
+    things = {
+        "body": c.box, "particle": c.p, "bond": c.spring, "cbond": c.cbond, "grip": c.grip, "constraint": c.hinge,
+        "field": c.well, "pairs": c.pairs, "emitter": c.fountain, "law": c.unused_law, "group": c.nobody,
+    }  # fmt: skip
+    for name in things:
         table[f"destroy {name}"] = (lambda thing: thing.destroy(), {"thing": things[name]})
     return table
 
 
+OTHERS = (
+    iota.Bond, iota.Grip, iota.CBond, iota.Constraint, iota.Field, iota.Pairs, iota.Emitter, iota.Law, iota.Group
+)  # fmt: skip
 HUGE = [1e300, -1e300, 1e12, 1e-12, 1e-300]
 
 
@@ -226,7 +302,7 @@ def bad_values(c: Scene, good: Any) -> list[Any]:
         return [c.gone_particle, c.foreign_particle, None, c.plate, c.p, c.q, c.plate.particles[1], "particle"]
     if isinstance(good, iota.System):
         return [c.other, None, "system"]
-    if isinstance(good, iota.Bond | iota.Grip | iota.CBond | iota.Constraint):
+    if isinstance(good, OTHERS):
         return [c.gone_bond, None]
     if callable(good) and not isinstance(good, type):
         return [None, 7, raising, shapeless, not_finite, lambda: 1, lambda *a: (1e300, 0, 0)]
