@@ -165,9 +165,7 @@ void Model::prefer_unknowns(std::uint32_t body_slot) {
 }
 
 std::uint32_t Model::make_marker(std::uint32_t body, const Vec3& position) {
-  const BodyId part = part_at(body, position);
   const std::uint32_t marker = make_particle(body, position, 0, {});
-  particles[marker].part = part;
   ties.make(marker).weights = BasisWeights(*this, body).of(position);
   Ring& ring = rings[particles[marker].ring];
   std::tie(ring.position, ring.velocity) = carried(marker);

@@ -185,8 +185,11 @@ void add_place(Model& model, Constraint& c, int place, std::uint32_t body, const
     c.fixed[place - b_origin] = at;
     c.in_world |= bit;
   } else {
-    c.particles[place] = model.make_marker(body, at);
+    const std::uint32_t marker = c.particles[place] = model.make_marker(body, at);
     c.owned |= bit;
+    // The ends of directions belong where their origin does, not where they reach.
+    const std::uint32_t origin = c.particles[place < b_origin ? a_origin : b_origin];
+    model.particles[marker].part = origin == marker ? model.part_at(body, at) : model.particles[origin].part;
   }
 }
 
@@ -219,9 +222,6 @@ std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
     if (!frames.has(place)) continue;
     const Side& side = place < b_origin ? a : b;
     add_place(model, c, place, side.body, origin_of(side) + c.scale[place >= b_origin] * frames.direction[place]);
-    // The ends of directions belong where their origin does, not where they reach.
-    const std::uint32_t own = c.particles[place], origin = c.particles[place < b_origin ? a_origin : b_origin];
-    if (own != none) model.particles[own].part = model.particles[origin].part;
   }
   return model.add_constraint(c);
 }

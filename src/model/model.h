@@ -411,7 +411,7 @@ class Model {
   /// A body made of solids has more points than a basis needs: makes those its basis that are unknowns anyway (hinged,
   /// nailed, bonded), where there are new ones and they span it well. Saves unknowns and ties.
   void prefer_unknowns(std::uint32_t body);
-  /// A new massless particle, of the part that it is nearest to; the body's basis stays as it is.
+  /// A new massless particle; the body's basis stays as it is.
   std::uint32_t make_marker(std::uint32_t body, const Vec3& position);
   /// Moment of inertia of a rod about itself, kg m^2; 0 of a body that is no rod: two points with an inertia pair.
   double axial_inertia(std::uint32_t body) const;

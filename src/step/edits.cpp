@@ -97,6 +97,7 @@ ParticleId System::Implementation::make_marker(std::uint32_t body, const Vec3& p
                                      body, model.bodies[body].rank == 0 ? " are yet to be made" : " do not reach ",
                                      model.bodies[body].rank == 0 ? "" : text_of(position)));
   const std::uint32_t marker = model.make_marker(body, position);
+  model.particles[marker].part = model.part_at(body, position);
   structure_changed();
   return model.particles.id(marker);
 }

@@ -255,6 +255,17 @@ TEST(Outside, APushOnOneOfTwoLockedBlocksIsForceAndTorqueOnThatOneAlone) {
   }
 }
 
+TEST(Outside, AJointMadeAtOneOfTwoLockedBlocksGoesWithThatOne) {
+  LockedPair pair(IntegrationMode::energy_keeping);
+  System& system = pair.system;
+  const ConstraintId joint = system.create_constraint(JointSpec{.a = pair.a, .at = {1.4, 0, 0}, .axis = {0, 1, 0}});
+  const RestructureReport report = system.separate(pair.a, pair.b);
+  ASSERT_EQ(report.created_bodies.size(), 1u);
+  ASSERT_TRUE(system.contains(joint));
+  EXPECT_EQ(system.state(joint).a, report.created_bodies[0]);
+  EXPECT_TRUE(system.validate().empty());
+}
+
 TEST(Outside, WhateverHoldsABodyItsPartsForcesAddUpToItsNetForce) {
   for (const bool damped : {false, true}) {
     LockedPair pair(IntegrationMode::robust, {0, -9.81, 0});
