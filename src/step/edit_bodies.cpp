@@ -319,11 +319,11 @@ void System::Implementation::apply(const SetPose& c) {
     model::Ring& ring = model.rings[slot];
     ring.position = moved(ring.position);
     ring.velocity = mean + rotate(turn, ring.velocity - mean);
-    if (ring.nailed) {
-      model::Nail& nail = model.nails.at(slot);
-      nail.position = nail.position_before = moved(nail.position);
-    }
+    // Of a static body's rings too, or what is tied to it would bring it back.
+    if (model::Nail* const nail = model.nails.find(slot))
+      nail->position = nail->position_before = moved(nail->position);
   }
+  model.for_each_body_of(articulate, [&](std::uint32_t b) { refresh_coordinates(b); });
   model.bodies[body].orientation = wanted;
   oriented_step = ~0ull;
   jolt(model.bodies[body].first);

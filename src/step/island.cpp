@@ -406,7 +406,10 @@ void Island::carry_along(Model& model) {
     for (const auto& [node, weight] : slave_nodes_[i])
       if (weight != 0) impulses[node] += (weight * model.particles[slaves_[i]].mass) * ahead;
   }
-  if (!differs || idle_) return store_carried(model);
+  if (!differs || idle_) {
+    store_carried(model);
+    return constraint_rows_.refresh_coordinates(model);  // a new basis may have its places a little elsewhere
+  }
   load(model, 0);
   integrator_.project_velocities(problem_, 0, impulses);
   store(model, 0);

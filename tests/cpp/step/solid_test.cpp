@@ -331,6 +331,19 @@ TEST(Solid, AngularVelocityHasNoPartWhereThereIsNoInertia) {
   expect_near(system.angular_velocity(rod), {0, 0, 1}, 1e-14);
 }
 
+TEST(Solid, AStaticBodyStaysWhereItsPosePutsItWhateverIsJointedToIt) {
+  System system({.gravity = {}});
+  const BodyId post = system.create_body(Box{{1, 1, 1}}, {.kind = BodyKind::static_});
+  const BodyId door = system.create_body(Box{{1, 1, 1}}, {.position = {1, 0, 0}});
+  const ConstraintId hinge = system.create_constraint(JointSpec{.a = door, .b = post, .at = {0.5, 0, 0}});
+  (void)system.step(0.01);
+  system.set_pose(post, {0, 2, 0}, {});
+  (void)system.step(0.01);
+  expect_near(system.centre_of_mass(post), {0, 2, 0}, 1e-12);
+  EXPECT_LT(system.state(hinge).gap, 1e-9);
+  EXPECT_GT(system.centre_of_mass(door).y, 1);
+}
+
 TEST(Solid, IsDampedAsOneWhateverPointsCarryIt) {
   for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     System system({.gravity = {}, .mode = mode});
