@@ -117,6 +117,61 @@ struct Twin {
   }
 };
 
+/// What two leaves hold, one after the other, before or after elimination.
+template <int Pivot>
+struct TwoLeaves {
+  std::array<std::array<double, Pivot * Pivot>, 2> diagonal;
+  std::array<std::array<double, 3 * Pivot>, 2> lower, upper;
+  std::array<double, 9> target;  // of both
+  std::array<std::array<double, Pivot>, 2> own;
+  std::array<double, 3> later;
+
+  template <int N>
+  Leaves<Pivot, N> from(std::size_t first) {
+    Leaves<Pivot, N> leaves;
+    for (std::size_t lane = 0; lane < N; ++lane) {
+      leaves.diagonal[lane] = diagonal[first + lane].data();
+      leaves.lower[lane] = lower[first + lane].data(), leaves.upper[lane] = upper[first + lane].data();
+      leaves.target[lane] = target.data(), leaves.target_stride[lane] = 3;
+      leaves.own[lane] = own[first + lane].data(), leaves.later[lane] = later.data();
+    }
+    return leaves;
+  }
+  bool operator==(const TwoLeaves&) const = default;
+};
+
+template <int Pivot, bool Symmetric>
+void expect_equal_bits_in_lanes(std::mt19937& random) {
+  std::uniform_real_distribution<double> number(-1, 1);
+  TwoLeaves<Pivot> together;
+  for (std::size_t leaf = 0; leaf < 2; ++leaf) {
+    for (double& v : together.diagonal[leaf]) v = number(random);
+    for (std::size_t k = 0; k < Pivot; ++k) together.diagonal[leaf][k * (Pivot + 1)] += k < 3 ? 5 : -5;
+    for (auto* list : {&together.lower[leaf], &together.upper[leaf]})
+      for (double& v : *list) v = number(random);
+    for (double& v : together.own[leaf]) v = number(random);
+  }
+  for (double& v : together.target) v = number(random);
+  for (double& v : together.later) v = number(random);
+  TwoLeaves<Pivot> alone = together;
+  const auto pair = together.template from<2>(0);
+  EXPECT_EQ(pair.template eliminate<Symmetric>(3), 0);
+  pair.template finish<Symmetric>();
+  const auto first = alone.template from<1>(0), second = alone.template from<1>(1);
+  EXPECT_EQ(first.template eliminate<Symmetric>(3) + second.template eliminate<Symmetric>(3), 0);
+  first.template finish<Symmetric>(), second.template finish<Symmetric>();
+  EXPECT_TRUE(together == alone);
+}
+
+TEST(Leaves, get_the_same_bits_in_lanes_as_alone) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 200; ++i) {
+    expect_equal_bits_in_lanes<3, true>(random), expect_equal_bits_in_lanes<3, false>(random);
+    expect_equal_bits_in_lanes<4, true>(random), expect_equal_bits_in_lanes<4, false>(random);
+    expect_equal_bits_in_lanes<6, true>(random), expect_equal_bits_in_lanes<6, false>(random);
+  }
+}
+
 CouplingGraph random_graph(std::mt19937& random) {
   std::uniform_int_distribution<std::uint32_t> size(2, 25);
   CouplingGraph graph;
