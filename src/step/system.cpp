@@ -25,7 +25,7 @@ void with_command_type(std::size_t index, Visit visit) {
   }
 }
 
-constexpr std::uint64_t snapshot_magic = 0x31'70616e'73'61746full;  // says what the bytes are, and their version
+constexpr std::uint64_t snapshot_magic = 0x32'70616e'73'61746full;  // says what the bytes are, and their version
 
 std::uint64_t check_sum(const std::vector<std::byte>& bytes) {
   Hasher hasher;
