@@ -8,6 +8,7 @@ namespace iota::model {
 void Model::touch(std::uint32_t articulate, Touch what) {
   ++articulates[articulate].version;
   articulates[articulate].disturbed = 1;
+  articulates[articulate].standing_gap = 0;  // what could not meet may do so now
   if (touch_of_.size() <= articulate) touch_of_.resize(articulates.slot_count(), untouched);
   if (touch_of_[articulate] == untouched) touched_.push_back(articulate);
   touch_of_[articulate] = std::max(touch_of_[articulate], what);

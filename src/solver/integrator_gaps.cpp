@@ -9,10 +9,15 @@ namespace iota::solver {
 
 namespace {
 
-constexpr double standing_gap = 1e-6;        // relative start gap beyond which positions are projected before the step
-constexpr std::uint64_t standing_steps = 8;  // a conflict that stands is tried again after so many
-constexpr double ample = 1.1;                // of a gap that moves: leave some play, a straight arm has none
-constexpr double soft_compliance = 1e-3;     // relative: shares what cannot be closed
+constexpr double standing_gap = 1e-6;  // relative start gap beyond which positions are projected before the step
+constexpr std::uint64_t shortest_wait = 8, longest_wait = 256;  // steps until a conflict that stands is tried again
+constexpr double ample = 1.1;             // of a gap that moves: leave some play, a straight arm has none
+constexpr double soft_compliance = 1e-3;  // relative: shares what cannot be closed
+
+/// Whether a conflict that has stood for so many steps is tried again: each time after twice as many.
+bool is_due(std::uint64_t steps) {
+  return steps % longest_wait == 0 || (steps >= shortest_wait && (steps & (steps - 1)) == 0);
+}
 
 }  // namespace
 
@@ -25,13 +30,15 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     return;
   }
   // A conflict that nothing has changed is left in peace for a while: trying costs tens of iterations.
-  if (conservative_ && gap <= 1.001 * problem.standing_gap && ++problem.standing_steps < standing_steps) {
+  const bool stands = conservative_ && gap <= 1.001 * problem.standing_gap;
+  problem.standing_steps = stands ? problem.standing_steps + 1 : 0;
+  if (stands && !is_due(problem.standing_steps)) {
     hold_offsets(problem, report);
     return;
   }
   take_stock(problem, 0);
   const double before = energy_;
-  problem.standing_gap = 0, problem.standing_steps = 0;
+  problem.standing_gap = 0;
   if (!project_positions(problem)) {
     hold_offsets(problem, report);
     problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace iota::solver {
 
@@ -41,14 +42,19 @@ void Newton::give_back_momentum(Problem& problem, std::span<const Vec3> impulses
 }
 
 // min |v - velocity|_M with G v = rate: one linear solve with the matrix of a projection without curvature. Redundant
-// rows (a closed loop in a plane) can leave no pivot at the usual compliance, so it may have to rise.
+// rows (a closed loop in a plane) can leave no pivot at the usual compliance, so it may have to rise. So it may for an arm that
+// is straight but for a hair while its end is driven inwards: its elbow would have to leave at any speed.
 bool Newton::project_onto_sides(Problem& problem, double h, bool as_solved, std::span<const Vec3> impulses) {
+  constexpr double leverage = 10;  // of speeds over those that drive them
+  const double mass = std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0);
+  double fastest = 0;
+  for (const Vec3& v : problem.velocity) fastest = std::max(fastest, norm(v));
   for (const double compliance : {1e-12, 1e-9, 1e-6, 1e-3}) {
     Stage stage = Stage::projection(compliance);
     stage.fraction = as_solved ? 1 : 0;
     std::fill(impulses_.begin(), impulses_.end(), 0.0);
     const double energy = problem.kinetic_energy();
-    (void)find_rates(problem, h, impulses);
+    const double drive = std::max(find_rates(problem, h, impulses), fastest);
     (void)assembly_.factor_and_solve<false>(problem, stage, x_.data(), Hessian::none);
     add_step_to_velocities(problem);
     for (int again = 0; again < 2 && find_rates(problem, h, {}) > 0; ++again) {  // compliance and round-off
@@ -56,8 +62,9 @@ bool Newton::project_onto_sides(Problem& problem, double h, bool as_solved, std:
       add_step_to_velocities(problem);
     }
     const double projected = problem.kinetic_energy();
-    const bool given = h > 0 || !impulses.empty();  // then energy may come in
-    if (std::isfinite(projected) && (given || projected <= energy * (1 + 1e-9))) return true;
+    double most = energy * (1 + 1e-9);
+    if (h > 0) most += 0.5 * mass * (leverage * drive) * (leverage * drive);  // energy may come in
+    if (std::isfinite(projected) && (projected <= most || !impulses.empty())) return true;
     std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
   }
   return false;

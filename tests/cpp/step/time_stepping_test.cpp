@@ -206,6 +206,29 @@ TEST(Singular, chain_stretched_between_two_nails_stays_and_can_be_let_go) {
   }
 }
 
+TEST(Singular, conflict_that_has_stood_for_long_ends_at_once_when_a_nail_comes_back) {
+  // Two links between nails 2.5 m apart, straight but for a hair, and a pendulum that goes on swinging from their elbow.
+  System system;
+  const auto arm = scenes::make_chain(system, {.links = 2, .link_length = 1});
+  const auto tail = scenes::make_chain(system, {.links = 1, .link_length = 1, .nailed = false, .top = {1, 0, 0}});
+  (void)system.combine(arm.lower[0], tail.upper[0]);
+  (void)system.step(1.0 / 60);
+  system.nail(arm.lower[1], {2.5, 0, 0});
+  for (int i = 0; i < 300; ++i) {
+    const StepReport report = system.step(1.0 / 60);
+    ASSERT_EQ(report.unconverged, 1);
+    ASSERT_LT(report.energy.kinetic, 30);
+  }
+  system.nail(arm.lower[1], {1.9, 0, 0});
+  (void)system.step(1.0 / 60);
+  EXPECT_LT(norm(system.position(arm.lower[0])), 10)
+      << "the elbow once went 11 km, to meet a nail that comes at 36 m/s";
+  const StepReport report = system.step(1.0 / 60);
+  EXPECT_EQ(report.unconverged, 0);
+  EXPECT_LT(report.worst_gap, 1e-9);
+  EXPECT_LT(report.energy.kinetic, 100);
+}
+
 /// Thesis Fig. 4.14: an arm of two links reaches its full extension while it is pulled further.
 TEST(Singular, arm_pulled_beyond_its_reach_gives_without_a_hiccup) {
   System system{SystemOptions{.gravity = {}}};
