@@ -34,7 +34,6 @@ struct [[nodiscard]] AdvanceReport {
   int substeps = 0;
   int handed_back = 0;  ///< solves in which the solver that was asked found no root
   int fallbacks = 0;    ///< mid-point sub-steps that had to be taken by the end-point scheme
-  int impacts = 0;      ///< mid-point sub-steps in which bounded rows met: inelastic, their energy is dissipated
   bool converged = true;
   double external_work = 0;   ///< of explicit forces, grips and moving targets, J
   double dissipated = 0;      ///< J
@@ -77,7 +76,7 @@ class Integrator {
   bool solve(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);
   void take_stock(const Problem&, double fraction);
-  bool settle_velocities(Problem&, double to, AdvanceReport&);
+  void settle_velocities(Problem&, double to, AdvanceReport&);
   double work_of_drives(const Problem&, const Stage&) const;
   double work_of_gaps(const Problem&, const Stage&) const;
   void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);

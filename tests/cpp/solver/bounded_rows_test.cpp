@@ -61,7 +61,7 @@ class Rows : public testing::TestWithParam<Scheme> {
     const AdvanceReport report = integrator.advance(problem, h, Care{.scheme = GetParam()});
     ASSERT_TRUE(report.converged);
     EXPECT_EQ(report.fallbacks, 0);
-    total.impacts += report.impacts, total.dissipated += report.dissipated;
+    total.dissipated += report.dissipated;
     total.external_work += report.external_work, total.closing_energy += report.closing_energy;
     total.iterations += report.iterations;
   }
@@ -149,7 +149,7 @@ TEST_P(Rows, leave_a_slack_rope_alone_and_stop_it_without_a_bounce) {
     ASSERT_GE(pool<BilinearConstraint>(problem).multiplier(rope)[0], -1e-9);
   }
   EXPECT_LE(longest, 1 + 1e-9);
-  EXPECT_GE(total.impacts, exact() ? 1 : 0);
+  EXPECT_GT(total.dissipated, 0.1) << "impacts are inelastic";
   EXPECT_LE(energy(), 0.0);
 }
 
