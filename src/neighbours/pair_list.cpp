@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace iota::neighbours {
 
@@ -47,23 +48,25 @@ void PairList::build(const laws::ParticleArrays& p, double radius, const std::ve
   while (!placed_.empty() && placed_.back().cell == nowhere) placed_.pop_back();
 
   const std::size_t m = placed_.size();
-  x_.resize(m), y_.resize(m), z_.resize(m), family_.resize(family.empty() ? 0 : m);
+  x_.resize(m), y_.resize(m), z_.resize(m), particle_.resize(m), family_.resize(m);
   for (std::size_t a = 0; a < m; ++a) {
     const std::uint32_t i = placed_[a].particle;
     x_[a] = p.x[i], y_[a] = p.y[i], z_[a] = p.z[i];
-    if (!family.empty()) family_[a] = family[i];
+    particle_[a] = i, family_[a] = family.empty() ? i : family[i];
   }
 
   // Each pair of cells once: the rest of the own cell and the next in its row, then three cells of each of four rows ahead.
-  found_.clear();
+  std::size_t count = 0;
   const double radius2 = radius * radius;
   const auto look = [&](std::size_t a, std::size_t from, std::size_t to) {
-    for (std::size_t b = from; b < to; ++b) {
-      const double dx = x_[b] - x_[a], dy = y_[b] - y_[a], dz = z_[b] - z_[a];
-      if (!(dx * dx + dy * dy + dz * dz < radius2)) continue;
-      if (!family_.empty() && family_[a] == family_[b]) continue;
-      const std::uint32_t i = placed_[a].particle, j = placed_[b].particle;
-      found_.push_back(i < j ? Pair{i, j} : Pair{j, i});
+    if (found_.size() < count + (to - from)) found_.resize(2 * found_.size() + (to - from));
+    const double x = x_[a], y = y_[a], z = z_[a];
+    const std::uint32_t i = particle_[a], own = family_[a];
+    for (std::size_t b = from; b < to; ++b) {  // no branch: one candidate in six is near, which nobody can predict
+      const double dx = x_[b] - x, dy = y_[b] - y, dz = z_[b] - z;
+      const std::uint32_t j = particle_[b];
+      found_[count] = {std::min(i, j), std::max(i, j)};
+      count += (dx * dx + dy * dy + dz * dz < radius2) & (family_[b] != own);
     }
   };
   constexpr std::uint64_t row = axis_cells, layer = axis_cells * axis_cells;
@@ -87,15 +90,17 @@ void PairList::build(const laws::ParticleArrays& p, double radius, const std::ve
   }
 
   // Two counting sorts, by the second and then by the first, leave every row in rising order.
-  const auto sort_by = [&](const std::vector<Pair>& from, auto key, auto place) {
+  const auto sort_by = [&](std::span<const Pair> from, auto key, auto place) {
     count_.assign(n + 1, 0);
     for (const Pair& pair : from) ++count_[key(pair) + 1];
     for (std::size_t i = 0; i < n; ++i) count_[i + 1] += count_[i];
     start_ = count_;
     for (const Pair& pair : from) place(count_[key(pair)]++, pair);
   };
-  by_second_.resize(found_.size()), partners_.resize(found_.size());
-  sort_by(found_, [](const Pair& q) { return q.j; }, [&](std::size_t at, const Pair& q) { by_second_[at] = q; });
+  by_second_.resize(count), partners_.resize(count);
+  sort_by(
+      std::span(found_).first(count), [](const Pair& q) { return q.j; },
+      [&](std::size_t at, const Pair& q) { by_second_[at] = q; });
   sort_by(by_second_, [](const Pair& q) { return q.i; }, [&](std::size_t at, const Pair& q) { partners_[at] = q.j; });
 }
 

@@ -34,8 +34,8 @@ class PairList {
   // Scratch.
   std::vector<Placed> placed_;
   std::vector<double> x_, y_, z_;
-  std::vector<std::uint32_t> family_;
-  std::vector<Pair> found_, by_second_;
+  std::vector<std::uint32_t> particle_, family_;
+  std::vector<Pair> found_, by_second_;  // found_ keeps its room, and old pairs behind the new ones
   std::vector<std::size_t> count_;
 };
 
