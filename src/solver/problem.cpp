@@ -34,7 +34,11 @@ double Problem::potential_energy(const Vec3* x, bool with_external) const {
   for (const auto& c : mass_couplings) energy -= c.mass * dot(gravity, x[c.a] + x[c.b]);
   for_each_force_pool([&]<class F>(const ForcePool<F>& pool) {
     if (F::is_external && !with_external) return;
-    for (const auto& f : pool.items) energy += f.energy(f.arm.value(x));
+    for (const auto& f : pool.items) {
+      const double stored = f.energy(f.arm.value(x));
+      // Infinite where ends have met: nothing in the book, as the model has it; a barrier to a search.
+      if (with_external || std::isfinite(stored)) energy += stored;
+    }
   });
   return energy;
 }
