@@ -11,7 +11,6 @@ namespace iota::solver {
 
 namespace {
 
-constexpr int patience = 400;               // iterations after which sub-steps are no longer halved
 constexpr double round_off = 1e-14;         // of energies
 constexpr double largest_violation = 1e-2;  // relative: a step that opens wider gaps is no answer
 
@@ -277,7 +276,7 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
   stage.tolerance *= care_.tolerance;
   if (try_step(problem, stage, report) && !turns_too_far(problem) &&
       !(depth < care_.max_depth && shoots(problem, stage))) {
-    const bool last = depth == care_.max_depth || report.iterations > patience;
+    const bool last = depth == care_.max_depth || report.iterations > care_.patience;
     if (care_.max_error == 0 || last || is_accurate(problem, stage, report)) {
       const bool met = met_ > 0;
       commit(problem, stage, report);
@@ -289,7 +288,7 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
     return halve();
   }
   problem.set_multipliers(multipliers_saved_);
-  if (depth == care_.max_depth || report.iterations > patience) {
+  if (depth == care_.max_depth || report.iterations > care_.patience) {
     ++report.fallbacks;
     keep_start(problem);
     return advance_end_point(problem, h, from, to, depth, report);
@@ -359,7 +358,7 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
   }
   problem.set_multipliers(multipliers_saved_);
   keep_start(problem);
-  if (depth < care_.max_depth && report.iterations <= patience) {
+  if (depth < care_.max_depth && report.iterations <= care_.patience) {
     const double middle = (from + to) / 2;
     advance_end_point(problem, h / 2, from, middle, depth + 1, report);
     advance_end_point(problem, h / 2, middle, to, depth + 1, report);

@@ -16,13 +16,19 @@ struct Care {
   double tolerance = 1;  ///< of Newton's method, as a multiple of the usual 1e-9 (end point) and 1e-10 (mid-point)
   double max_turn = 1.1, max_turn_cosine = 0.4536;  ///< rad: a mid-point (sub-)step that turns a link further is halved
   int max_depth = 6;                                ///< sub-steps down to a 64th: a whip needs them, for a few steps
+  int patience = 400;                               ///< Newton iterations after which sub-steps are no longer halved
   double max_error = 0;  ///< estimated, of mid-point (sub-)steps, in link lengths per second; 0: not asked
 
   static Care plausible() { return {.scheme = Scheme::end_point, .tolerance = 100, .max_depth = 4}; }
   static Care robust() { return {.scheme = Scheme::end_point}; }
   static Care energy_keeping() { return {}; }
   static Care accurate() {
-    return {.tolerance = 0.1, .max_turn = 0.35, .max_turn_cosine = 0.9394, .max_depth = 10, .max_error = 1e-4};
+    return {.tolerance = 0.1,
+            .max_turn = 0.35,
+            .max_turn_cosine = 0.9394,
+            .max_depth = 10,
+            .patience = 10000,
+            .max_error = 1e-4};
   }
 };
 
