@@ -245,7 +245,7 @@ bool Newton::is_balanced() const {
 template <bool Midpoint>
 void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, bool factor_is_old) {
   constexpr int most_steps = 4;
-  constexpr double clean = 3e-13;
+  constexpr double clean = 3e-13, comes_and_goes = 1e-12, helps = 0.3;
   if (!(residual_.worst <= stage.tolerance)) return;
   bool needs_factor = report.iterations == 0;
   for (int step = 0; step < most_steps; ++step) {
@@ -259,10 +259,12 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
       assembly_.solve();
     take_step(problem, stage);
     measure<Midpoint>(problem, stage);
-    const bool worse = !(residual_.worst <= std::max(before.worst, round_off));
+    // So near to round-off a residual comes and goes, but the step takes out of it what all points have in common, and that is what
+    // momentum and angular momentum are made of: taken back, a tumbling mixture's drifted twenty times as far.
+    const bool worse = !(residual_.worst <= std::max(before.worst, comes_and_goes));
     if (worse) take_back_step<Midpoint>(problem, stage);
-    if (!worse &&
-        ((!met && residual_.rows <= 0.1 * before.rows) || (!balanced && residual_.imbalance <= 0.1 * before.imbalance)))
+    if (!worse && ((!met && residual_.rows <= helps * before.rows) ||
+                   (!balanced && residual_.imbalance <= helps * before.imbalance)))
       continue;  // it helps
     if (!factor_is_old || residual_.worst <= clean) return;
     factor_is_old = false, needs_factor = true;
