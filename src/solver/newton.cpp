@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace iota::solver {
@@ -66,6 +67,14 @@ void Newton::measure(const Problem& problem, const Stage& stage) {
   residual_ = assembly_.residual<Midpoint>(problem, stage, x_.data(), u_.data());
 }
 
+// Far from the origin places have fewer digits than directions need, and the forces along those are off by as much: 1e-11 of
+// what a link of 0.1 m carries, 10 km out.
+double Newton::blur_of_places(const Problem& problem) const {
+  Largest place;
+  for (const Vec3& x : problem.position) place.add(largest_component(x));
+  return std::max(1.0, std::numeric_limits<double>::epsilon() / round_off * place.value / reference_length());
+}
+
 // By a new factor. Pivots of the wrong sign far from a solution lead to some saddle, so the Hessian is clamped. Near one
 // they may be its own (a chain that is pushed together in a whip), and a clamped Hessian would converge linearly, or turn
 // round at 1e-5. Then returns true: the step is to be tried, no more.
@@ -87,6 +96,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   Hessian hessian = Hessian::exact;
   bool stuck = false, settled = true, factor_will_do = false, served_on = false;
   int most_iterations = stage.max_iterations;
+  const double blur = blur_of_places(problem);
   while (true) {
     if (has_laws_ && report.iterations > 0) {
       settled = !active_set_.choose(problem, stage, x_.data());
@@ -111,7 +121,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     if (!(residual_.worst <= 0.5 * before)) {
       // What Newton's own step does not lessen, and what round-off may leave, is round-off: heavy loads on small links leave
       // 1e-9 of it, ten times what was reckoned.
-      stuck = own_direction && before <= std::min(10 * residual_.noise, round_off_floor);
+      stuck = own_direction && before <= std::min(10 * blur * residual_.noise, round_off_floor);
       if ((stuck || on_trial) && !(residual_.worst < before)) {
         take_back_step<Midpoint>(problem, stage);
         hessian = Hessian::clamped;

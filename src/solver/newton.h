@@ -74,6 +74,8 @@ class Newton {
   int shorten(Problem&, const Stage&, double before);
   double merit(const Problem&, const Stage&, const Vec3* x) const;
   bool is_balanced() const;
+  /// How much coarser than usual round-off is, for links far from the origin; at least 1.
+  double blur_of_places(const Problem& problem) const;
   /// Takes a residual that is within tolerance to round-off.
   template <bool Midpoint>
   void polish(Problem&, const Stage&, NewtonReport&, bool factor_is_old);

@@ -267,5 +267,17 @@ TEST(Mode, accurate_goes_through_a_whip_without_falling_back) {
   EXPECT_NEAR(system.energy().total(), start, 1e-7 * system.energy().kinetic);
 }
 
+TEST(FarFromTheOrigin, round_off_of_places_is_not_chased) {
+  for (const auto mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
+    System system({.mode = mode});
+    (void)scenes::make_chain(system, {.links = 1000, .rods = true, .top = {2e5, 0, 0}});  // 3e-11 m apart there
+    for (int i = 0; i < 30; ++i) {
+      const StepReport report = system.step(1.0 / 120);
+      ASSERT_EQ(report.fallbacks + report.unconverged, 0);
+      ASSERT_LE(report.iterations_max, 12);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace iota
