@@ -92,7 +92,7 @@ void bind_bond(nb::module_& module) {
            nb::sig("def __init__(self, p: Particle, q: Particle, law: str | Law | "
                    "collections.abc.Callable[[BondState], Vec3 | collections.abc.Sequence[float] | "
                    "numpy.typing.NDArray[numpy.float64]], *, implicit: bool | None = None, "
-                   "break_force: float = inf, **parameters: float | None) -> None"));
+                   "break_force: float = float('inf'), **parameters: float | None) -> None"));
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const BondHandle& self) { return self.is_alive(); },
