@@ -11,7 +11,7 @@ constexpr const char* doc =
     "A rigid set of particles in a system. Make its particles with `Particle(body, ...)`, or give the body as a solid:\n\n"
     "shape: Sphere, Box, Cylinder, Capsule, Torus or Mesh, of density (kg/m^3) or mass (kg), with its origin at position\n"
     "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses then stand for it, with exactly\n"
-    "its mass, centre and inertia. velocity: of the centre of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
+    "its mass, center and inertia. velocity: of the center of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
     "shape's frame (m) for particles to hinge, nail or bond, see `attachments` and `attach`.\n\n"
     "kind: 'dynamic', 'static' (never moves), 'scripted' (moved by the script, infinite mass), 'inactive' (kept, neither\n"
     "stepped nor drawn) or 'resting' (dynamic but asleep, see System.rest_after). damping: 1/s, adds to the system's.\n\n"
@@ -133,7 +133,7 @@ void bind_body(nb::module_& module) {
       .def_prop_ro(
           "mass", [](const BodyHandle& self) { return self.use().mass(self.id); }, "kg")
       .def_prop_ro(
-          "centre_of_mass", [](const BodyHandle& self) { return self.use().centre_of_mass(self.id); }, "m")
+          "center_of_mass", [](const BodyHandle& self) { return self.use().center_of_mass(self.id); }, "m")
       .def_prop_ro(
           "orientation", [](const BodyHandle& self) { return to_tuple(self.use().orientation(self.id)); },
           nb::sig("def orientation(self) -> tuple[float, float, float, float]"),
@@ -151,27 +151,27 @@ void bind_body(nb::module_& module) {
           nb::sig("def set_pose(self, position: Vec3 | collections.abc.Sequence[float], orientation: "
                   "collections.abc.Sequence[float] | None = None) -> None"),
           "Moves it, and rigidly with it all that hangs on it, nails included. A scripted body arrives at the end of the\n"
-          "next step. position: of the centre of mass, m. orientation: quaternion x y z w, None for the present one.")
+          "next step. position: of the center of mass, m. orientation: quaternion x y z w, None for the present one.")
       .def_prop_ro(
           "inertia", [](const BodyHandle& self) { return to_array(self.use().inertia(self.id)); },
           nb::sig("def inertia(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "(3, 3), about the centre of mass, world axes, kg m^2.")
+          "(3, 3), about the center of mass, world axes, kg m^2.")
       .def_prop_rw(
           "velocity", [](const BodyHandle& self) { return self.use().velocity(self.id); },
           [](const BodyHandle& self, VectorArgument v) {
             between_steps(self, "velocity = ...").set_velocity(self.id, to_vec3(v, "velocity"));
           },
-          "Of the centre of mass, m/s.")
+          "Of the center of mass, m/s.")
       .def_prop_rw(
           "angular_velocity", [](const BodyHandle& self) { return self.use().angular_velocity(self.id); },
           [](const BodyHandle& self, VectorArgument v) {
             between_steps(self, "angular_velocity = ...").set_angular_velocity(self.id, to_vec3(v, "angular_velocity"));
           },
           "rad/s, world axes. It has no part along what has no inertia, and assigning one raises ValueError: one point, or\n"
-          "points on a line that are no rod (`set_rod`). Assigning keeps the velocity of the centre; what joints do not allow of it is projected out by the next step.")
+          "points on a line that are no rod (`set_rod`). Assigning keeps the velocity of the center; what joints do not allow of it is projected out by the next step.")
       .def_prop_ro(
           "angular_momentum", [](const BodyHandle& self) { return self.use().angular_momentum(self.id); },
-          "About its centre of mass, kg m^2/s.")
+          "About its center of mass, kg m^2/s.")
       .def_prop_ro(
           "solids", [](const BodyHandle& self) { return self.use().solids(self.id); },
           "What it was given as; several once bodies were combined, none for a body of particles alone.")
@@ -189,7 +189,7 @@ void bind_body(nb::module_& module) {
                            between_steps(self, "attach").create_attachment(self.id, to_vec3(position, "position")));
           },
           "position"_a, nb::sig("def attach(self, position: Vec3 | collections.abc.Sequence[float]) -> Particle"),
-          "A further particle of a body given by shape, anywhere (world, m). Mass, centre, inertia and motion of the body\n"
+          "A further particle of a body given by shape, anywhere (world, m). Mass, center, inertia and motion of the body\n"
           "stay exactly what they are. Raises ValueError for bodies without a shape.")
       .def_prop_ro(
           "articulate", [](const BodyHandle& self) { return self.use().articulate(self.id); },

@@ -182,7 +182,7 @@ Surface to_surface(SystemObject& self, nb::handle shape, nb::handle at, nb::hand
   if (!at.is_none())
     surface.position = to_vec3({at}, "at");
   else if (body)
-    surface.position = body->use().centre_of_mass(body->id);
+    surface.position = body->use().center_of_mass(body->id);
   if (!orientation.is_none())
     surface.orientation = to_quaternion(orientation);
   else if (body)

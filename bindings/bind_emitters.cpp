@@ -18,24 +18,24 @@ constexpr const char* doc =
     "    fire = iota.Emitter(system, rate=300, velocity=(0, 2, 0), velocity_spread=0.4, lifetime=0.8,\n"
     "                        curve=[(0, 0.02, (1, 0.9, 0.3)), (1, 0.06, (0.3, 0, 0, 0))])";
 
-Colour to_colour(nb::handle value, const char* name) {
-  Colour colour{1, 1, 1, 1};
+Color to_color(nb::handle value, const char* name) {
+  Color color{1, 1, 1, 1};
   try {
     const auto numbers = nb::cast<std::vector<double>>(value);
     if (numbers.size() == 3 || numbers.size() == 4) {
       bool good = true;
       for (std::size_t i = 0; i < numbers.size(); ++i) {
         good = good && numbers[i] >= 0 && numbers[i] <= 1;
-        colour[i] = static_cast<float>(numbers[i]);
+        color[i] = static_cast<float>(numbers[i]);
       }
-      if (good) return colour;
+      if (good) return color;
     }
   } catch (const nb::cast_error&) {
   }
   throw nb::value_error((std::string(name) + " must be 3 or 4 numbers from 0 to 1, not " + describe(value)).c_str());
 }
 
-nb::tuple from_colour(const Colour& c) { return nb::make_tuple(c[0], c[1], c[2], c[3]); }
+nb::tuple from_color(const Color& c) { return nb::make_tuple(c[0], c[1], c[2], c[3]); }
 nb::tuple from_quaternion(const Quaternion& q) { return nb::make_tuple(q.x, q.y, q.z, q.w); }
 
 std::vector<AttributeKey> to_curve(nb::iterable curve) {
@@ -50,7 +50,7 @@ std::vector<AttributeKey> to_curve(nb::iterable curve) {
     key.life = finite(nb::cast<double>(nb::handle(PySequence_Fast_GET_ITEM(parts.ptr(), 0))), "life");
     key.radius =
         finite_not_negative(nb::cast<double>(nb::handle(PySequence_Fast_GET_ITEM(parts.ptr(), 1))), "radius", "m");
-    key.colour = to_colour(PySequence_Fast_GET_ITEM(parts.ptr(), 2), "color");
+    key.color = to_color(PySequence_Fast_GET_ITEM(parts.ptr(), 2), "color");
     keys.push_back(key);
   }
   return keys;
@@ -172,11 +172,11 @@ void bind_attributes(nb::class_<ParticleHandle>& type) {
           "m, for drawing and for forces that ask for it; 0 where nobody said. An emitted particle's is on its emitter's\n"
           "curve.")
       .def_prop_rw(
-          "color", [](const ParticleHandle& self) { return from_colour(self.use().attributes(self.id).colour); },
+          "color", [](const ParticleHandle& self) { return from_color(self.use().attributes(self.id).color); },
           [](const ParticleHandle& self, nb::object value) {
             System& engine = between_steps(self, "color = ...");
             ParticleAttributes attributes = engine.attributes(self.id);
-            attributes.colour = to_colour(value, "color");
+            attributes.color = to_color(value, "color");
             engine.set_attributes(self.id, attributes);
           },
           nb::for_getter(nb::sig("def color(self) -> tuple[float, float, float, float]")),
@@ -265,7 +265,7 @@ void bind_emitters(nb::module_& module) {
           "colors",
           [](SystemObject& self) {
             return array_of(self, 4, [](const ParticleAttributes& a, double* out) {
-              std::copy(a.colour.begin(), a.colour.end(), out);
+              std::copy(a.color.begin(), a.color.end(), out);
             });
           },
           nb::sig("def colors(self) -> numpy.typing.NDArray[numpy.float64]"),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Groups of particles, and the forces on all of a group: fields and pairwise forces.
-#include "array_argument.h"
-#include "binders.h"
+#include "batch_view.h"
 #include "law_argument.h"
 
 #include <algorithm>
@@ -20,7 +19,7 @@ constexpr const char* field_doc =
     "together count as one, with all their mass.\n\n"
     "field is one of\n"
     "- a predefined one: 'uniform' (acceleration), 'wind' (velocity, drag), 'current' (turbulent: velocity, drag, speed, size,\n"
-    "  octaves, evolution, seed), 'well' (centre, strength, softening: a heavy point), 'attractor' (centre, strength, range);\n"
+    "  octaves, evolution, seed), 'well' (center, strength, softening: a heavy point), 'attractor' (center, strength, range);\n"
     "- an expression of x, y, z, vx, vy, vz, m, t and parameters that defines energy (J; the force is its negative\n"
     "  gradient), or fx, fy, fz (N), or both;\n"
     "- a function of NumPy arrays, called once a step with a ParticleBatch; it returns the forces, shape (n, 3), N;\n"
@@ -40,20 +39,9 @@ constexpr const char* batch_doc =
     "The particles of a field, as its function sees them: arrays with a row a particle, in the order of `particles`. Good\n"
     "only until the function returns; the arrays are copies and may be kept.";
 
-struct ParticlesView {
-  nb::object system_object;
-  SystemObject* system = nullptr;
-  const ParticleBatch* batch = nullptr;
-
-  const ParticleBatch& use() const {
-    if (!batch) raise_runtime("a ParticleBatch is good only until the function that was given it returns");
-    return *batch;
-  }
+struct ParticlesView : BatchView<ParticleBatch> {
+  const ParticleBatch& use() const { return BatchView::use("ParticleBatch"); }
 };
-
-nb::object copy_rows(const double* rows, std::size_t count) {
-  return nb::cast(make_vector3_array(std::vector<double>(rows, rows + 3 * count)));
-}
 
 void bind_batch(nb::module_& module) {
   nb::class_<ParticlesView>(module, "ParticleBatch", batch_doc)
@@ -68,9 +56,8 @@ void bind_batch(nb::module_& module) {
       .def_prop_ro(
           "mass",
           [](const ParticlesView& self) {
-            auto* const kept = new std::vector<double>(self.use().mass, self.use().mass + self.use().count);
-            nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-            return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(kept->data(), {kept->size()}, owner));
+            const ParticleBatch& b = self.use();
+            return make_array(std::vector<double>(b.mass, b.mass + b.count));
           },
           nb::sig("def mass(self) -> numpy.typing.NDArray[numpy.float64]"), "(n,), kg.")
       .def_prop_ro(
@@ -88,22 +75,7 @@ void bind_batch(nb::module_& module) {
 
 FieldFunction make_field_function(SystemObject* system, std::shared_ptr<ScriptFunction> function) {
   return [system, function = std::move(function)](const ParticleBatch& batch) {
-    std::fill_n(batch.force, 3 * batch.count, 0.0);
-    system->guard(function, BondId{}, [&] {
-      nb::object view = nb::cast(ParticlesView{nb::find(system), system, &batch});
-      struct Expire {
-        nb::object view;
-        ~Expire() {  // a view that is kept must not keep the system
-          ParticlesView& it = *nb::inst_ptr<ParticlesView>(view);
-          it.batch = nullptr;
-          it.system_object.reset();
-        }
-      } expire{view};
-      nb::object array;
-      const nb::object result = function->function(view);
-      const auto rows = view_rows(result, batch.count, ("the forces of " + function->what).c_str(), "particle", array);
-      std::copy(rows.begin(), rows.end(), batch.force);
-    });
+    ask_for_forces(function, ParticlesView{{{}, system, &batch}}, "particle");
   };
 }
 

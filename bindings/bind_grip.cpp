@@ -25,7 +25,7 @@ void bind_grip(nb::module_& module) {
                             finite_positive(max_acceleration, "max_acceleration", "m/s^2")};
         System& checked = body.use();
         System& engine = body.system->use_between_steps("Grip(...)");
-        const Vec3 goal = target ? to_vec3(*target, "target") : checked.centre_of_mass(body.id);
+        const Vec3 goal = target ? to_vec3(*target, "target") : checked.center_of_mass(body.id);
         new (self) GripHandle{body.system_object, body.system, engine.create_grip(body.id, point, goal, options)};
       },
       "body"_a, "local_point"_a = nb::make_tuple(0.0, 0.0, 0.0), "target"_a = nb::none(), nb::kw_only(), "client"_a = 0,

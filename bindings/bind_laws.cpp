@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "array_argument.h"
-#include "binders.h"
+#include "batch_view.h"
 #include "law_argument.h"
 
 #include <algorithm>
@@ -30,31 +29,11 @@ constexpr const char* batch_doc =
     "All bonds of one law, as its function sees them: arrays with a row a bond, in the order of `bonds`. Good only until\n"
     "the function returns; the arrays are copies and may be kept.";
 
-/// A batch while its function runs; afterwards `batch` is null.
-struct BatchView {
-  nb::object system_object;
-  SystemObject* system = nullptr;
+struct BondsView : BatchView<BondBatch> {
   LawId law;
-  const BondBatch* batch = nullptr;
 
-  const BondBatch& use() const {
-    if (!batch) raise_runtime("a BondBatch is good only until the function that was given it returns");
-    return *batch;
-  }
+  const BondBatch& use() const { return BatchView::use("BondBatch"); }
 };
-using BatchPointer = std::shared_ptr<BatchView>;
-
-using Array1 = nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig>;
-
-nb::object make_array(std::vector<double> numbers) {
-  auto* const kept = new std::vector<double>(std::move(numbers));
-  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-  return nb::cast(Array1(kept->data(), {kept->size()}, owner));
-}
-
-nb::object copy_rows(const double* rows, std::size_t count) {
-  return nb::cast(make_vector3_array(std::vector<double>(rows, rows + 3 * count)));
-}
 
 double distance_of(const BondBatch& b, std::size_t i) {
   const double *p = b.position_p + 3 * i, *q = b.position_q + 3 * i;
@@ -62,22 +41,22 @@ double distance_of(const BondBatch& b, std::size_t i) {
 }
 
 void bind_batch(nb::module_& module) {
-  nb::class_<BatchView> type(module, "BondBatch", batch_doc);
+  nb::class_<BondsView> type(module, "BondBatch", batch_doc);
   const auto def_rows = [&](const char* name, const double* BondBatch::* rows, const char* text) {
     type.def_prop_ro(
-        name, [rows](const BatchView& self) { return copy_rows(self.use().*rows, self.use().count); },
+        name, [rows](const BondsView& self) { return copy_rows(self.use().*rows, self.use().count); },
         nb::sig((std::string("def ") + name + "(self) -> numpy.typing.NDArray[numpy.float64]").c_str()), text);
   };
   def_rows("position_p", &BondBatch::position_p, "(n, 3), m, in the middle of the step in the energy-keeping mode.");
   def_rows("position_q", &BondBatch::position_q, "(n, 3), m.");
   def_rows("velocity_p", &BondBatch::velocity_p, "(n, 3), m/s, at the start of the step.");
   def_rows("velocity_q", &BondBatch::velocity_q, "(n, 3), m/s.");
-  type.def("__len__", [](const BatchView& self) { return self.use().count; })
+  type.def("__len__", [](const BondsView& self) { return self.use().count; })
       .def_prop_ro(
-          "time", [](const BatchView& self) { return self.use().time; }, "At the start of the step, s.")
+          "time", [](const BondsView& self) { return self.use().time; }, "At the start of the step, s.")
       .def_prop_ro(
           "distance",
-          [](const BatchView& self) {
+          [](const BondsView& self) {
             const BondBatch& b = self.use();
             std::vector<double> numbers(b.count);
             for (std::size_t i = 0; i < b.count; ++i) numbers[i] = distance_of(b, i);
@@ -86,7 +65,7 @@ void bind_batch(nb::module_& module) {
           nb::sig("def distance(self) -> numpy.typing.NDArray[numpy.float64]"), "(n,), m.")
       .def_prop_ro(
           "direction",
-          [](const BatchView& self) {
+          [](const BondsView& self) {
             const BondBatch& b = self.use();
             std::vector<double> numbers(3 * b.count);
             for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -99,7 +78,7 @@ void bind_batch(nb::module_& module) {
           "(n, 3), unit vectors from p to q; zero where they are at one place.")
       .def_prop_ro(
           "parameters",
-          [](const BatchView& self) {
+          [](const BondsView& self) {
             const BondBatch& b = self.use();
             const auto names = self.system->engine.parameters(self.law);
             nb::dict all;
@@ -114,7 +93,7 @@ void bind_batch(nb::module_& module) {
           "By name, an array (n,) each.")
       .def_prop_ro(
           "bonds",
-          [](const BatchView& self) {
+          [](const BondsView& self) {
             const BondBatch& b = self.use();
             return wrap_all<BondHandle>(self.system_object, self.system, std::span(b.bonds, b.count));
           },
@@ -124,22 +103,7 @@ void bind_batch(nb::module_& module) {
 BatchFunction make_batch_function(SystemObject* system, std::shared_ptr<ScriptFunction> function,
                                   std::shared_ptr<LawId> law) {
   return [system, function = std::move(function), law = std::move(law)](const BondBatch& batch) {
-    std::fill_n(batch.force, 3 * batch.count, 0.0);
-    system->guard(function, BondId{}, [&] {
-      nb::object view = nb::cast(BatchView{nb::find(system), system, *law, &batch});
-      struct Expire {
-        nb::object view;
-        ~Expire() {  // a view that is kept must not keep the system
-          BatchView& it = *nb::inst_ptr<BatchView>(view);
-          it.batch = nullptr;
-          it.system_object.reset();
-        }
-      } expire{view};
-      nb::object array;
-      const nb::object result = function->function(view);
-      const auto rows = view_rows(result, batch.count, ("the forces of " + function->what).c_str(), "bond", array);
-      std::copy(rows.begin(), rows.end(), batch.force);
-    });
+    ask_for_forces(function, BondsView{{{}, system, &batch}, *law}, "bond");
   };
 }
 

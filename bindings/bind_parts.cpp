@@ -45,14 +45,14 @@ void bind_parts(nb::module_& module) {
           "In the last step, what holds it to the rest of the body included, N.")
       .def_prop_ro(
           "net_torque", [](const PartView& self) { return self.use().net_torque(self.body.id, self.part); },
-          "About its own centre of mass, N m.")
+          "About its own center of mass, N m.")
       .def_prop_ro(
           "outside_force", [](const PartView& self) { return self.use().outside_force(self.body.id, self.part); },
           "What acted on it from outside of the whole body in the last step, N. net_force less this is what the other\n"
           "parts do to it: the load on the lock.")
       .def_prop_ro(
           "outside_torque", [](const PartView& self) { return self.use().outside_torque(self.body.id, self.part); },
-          "Of those forces, about its own centre of mass, N m.")
+          "Of those forces, about its own center of mass, N m.")
       .def(
           "separate",
           [](const PartView& self) {
@@ -92,7 +92,7 @@ void bind_parts(nb::module_& module) {
           "Sum of all forces from outside in the last step, N: mass times acceleration.")
       .def_prop_ro(
           "net_torque", [](const BodyHandle& self) { return self.use().net_torque(self.id); },
-          "Sum of their moments about the centre of mass, N m.");
+          "Sum of their moments about the center of mass, N m.");
   auto particle = nb::borrow<nb::class_<ParticleHandle>>(module.attr("Particle"));
   particle.def_prop_ro(
       "net_force", [](const ParticleHandle& self) { return self.use().net_force(self.id); },

@@ -37,7 +37,7 @@ RestructureResult combine_bodies(const BodyHandle& a, const BodyHandle& b) {
   check_one_system(a, b, "combine");
   b.use();
   System& engine = a.use();
-  const Vec3 place = 0.5 * (engine.centre_of_mass(a.id) + engine.centre_of_mass(b.id));
+  const Vec3 place = 0.5 * (engine.center_of_mass(a.id) + engine.center_of_mass(b.id));
   RestructureResult result{a.system_object, a.system, engine.combine(a.id, b.id)};
   if (result.report.changed || result.report.queued) a.system->note_edit("join", place);
   return result;

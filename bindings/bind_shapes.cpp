@@ -58,7 +58,7 @@ template <class S>
 void def_common(nb::class_<S>& type) {
   type.def_prop_ro(
       "mass_properties", [](const S& s) { return mass_properties(s); },
-      "Volume, centre and second moments. Raises ValueError for sizes that are not positive.");
+      "Volume, center and second moments. Raises ValueError for sizes that are not positive.");
 }
 
 }  // namespace
@@ -84,11 +84,11 @@ nb::object from_shape(const Shape& shape) {
 void bind_shapes(nb::module_& module) {
   nb::class_<MassProperties>(module, "MassProperties", "Of a homogeneous solid, in its own frame.")
       .def_ro("volume", &MassProperties::volume, "m^3")
-      .def_ro("centre", &MassProperties::centre, "Of mass, m.")
+      .def_ro("center", &MassProperties::center, "Of mass, m.")
       .def_prop_ro(
           "mean_squares", [](const MassProperties& p) { return matrix(p.mean_squares); },
           nb::sig("def mean_squares(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "Mean of r r' over the volume, r from the centre, m^2: inertia = mass (trace I - this).");
+          "Mean of r r' over the volume, r from the center, m^2: inertia = mass (trace I - this).");
 
   nb::class_<Sphere> sphere(module, "Sphere", "A ball. radius: m.");
   sphere
@@ -129,7 +129,7 @@ void bind_shapes(nb::module_& module) {
   bind_rod(static_cast<Capsule*>(nullptr), "Capsule",
            "A cylinder along x with half spheres at its ends; `length` is that of the cylinder, m.");
 
-  nb::class_<Torus> torus(module, "Torus", "A ring in the x-y plane: centre line `radius`, wire radius `tube`, m.");
+  nb::class_<Torus> torus(module, "Torus", "A ring in the x-y plane: center line `radius`, wire radius `tube`, m.");
   torus
       .def(
           "__init__",

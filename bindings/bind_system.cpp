@@ -168,7 +168,7 @@ void bind_poses(nb::class_<SystemObject>& type) {
                               nb::ndarray<nb::numpy, float, nb::shape<-1, 7>>(places, {count, 7}, place_owner));
       },
       nb::sig("def poses(self) -> tuple[numpy.typing.NDArray[numpy.uint32], numpy.typing.NDArray[numpy.float32]]"),
-      "Where each body is drawn: slots, uint32 (n,), and float32 (n, 7): centre of mass (m) and unit quaternion\n"
+      "Where each body is drawn: slots, uint32 (n,), and float32 (n, 7): center of mass (m) and unit quaternion\n"
       "x y z w. A body whose particles lie on one line has its local +x from its first particle to its last.");
 }
 

@@ -18,7 +18,7 @@ function(iota_compile target)
     # Leaving the rest of an options struct to its defaults is how this interface is meant to be called.
     -Wno-missing-field-initializers
     # A fused multiply-add rounds once where a product and a sum round twice. Whether the compiler fuses depends on
-    # optimisation level and on what it inlines, so replays and hashes would differ between builds.
+    # optimization level and on what it inlines, so replays and hashes would differ between builds.
     -ffp-contract=off
     # Nothing here reads errno; without this a square root is a call instead of one instruction. Results are the same.
     -fno-math-errno)

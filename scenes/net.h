@@ -21,7 +21,7 @@ struct Net {
   std::vector<ParticleId> knots;  ///< one particle of each knot's ring, row by row
 };
 
-/// A square net of hinged links, all loops closed, held at two neighbouring corners: side * side knots and
+/// A square net of hinged links, all loops closed, held at two neighboring corners: side * side knots and
 /// 2 side (side - 1) links.
 inline Net make_net(System& system, const NetOptions& o) {
   Net net;

@@ -144,10 +144,10 @@ class Player {
     switch (deed.kind) {
       case DeedKind::make_body: {
         const BodyId body = system_.create_body();
-        const Vec3 centre = dice.point(1), velocity = dice.point(2);
+        const Vec3 center = dice.point(1), velocity = dice.point(2);
         const std::uint32_t count = 1 + dice.below(5);
         for (std::uint32_t i = 0; i < count; ++i)
-          system_.create_particle(body, centre + dice.point(0.4), dice.mass(), velocity + dice.point(1));
+          system_.create_particle(body, center + dice.point(0.4), dice.mass(), velocity + dice.point(1));
         break;
       }
       case DeedKind::make_solid: make_solid(p, dice); break;

@@ -118,7 +118,7 @@ struct Twin {
   }
 };
 
-/// Whether two labellings sort the same things into the same groups.
+/// Whether two labelings sort the same things into the same groups.
 class SameGroups {
  public:
   bool add(std::uint32_t mine, int theirs) {
@@ -193,7 +193,7 @@ class Pair {
       return twin_.combine(p, q) != refused;
     }
     if (lot < 78) {  // more often of particles that have something in common
-      const std::uint32_t other = lot < 68 ? neighbour(p) : q;
+      const std::uint32_t other = lot < 68 ? neighbor(p) : q;
       if (p == other && twin_.points.size() > 24) return true;
       say("separate", p, other);
       attempt([&] { (void)separate_particles(model_, p, other, report); });
@@ -236,7 +236,7 @@ class Pair {
   }
 
   /// A particle of the same ring or body, if there is one.
-  std::uint32_t neighbour(std::uint32_t p) {
+  std::uint32_t neighbor(std::uint32_t p) {
     const Twin::Point own = twin_.at(p);
     const std::size_t n = twin_.points.size(), start = below(n);
     for (std::size_t i = 0; i < n; ++i) {

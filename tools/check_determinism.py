@@ -68,7 +68,7 @@ def differences(first: dict[str, list[str]], other: dict[str, list[str]]) -> lis
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description="Same bits from every compiler and optimisation level.")
+    parser = argparse.ArgumentParser(description="Same bits from every compiler and optimization level.")
     parser.add_argument("--compilers", nargs="+", default=["g++", "clang++"])
     parser.add_argument("--levels", nargs="+", default=["1", "3"])
     options = parser.parse_args()

@@ -580,7 +580,7 @@ TS_HEAD = """\
 // UTF-8, enumerators, finite floats and trailing bytes.
 /* eslint-disable */
 
-/** Three numbers; metres wherever it is a place. */
+/** Three numbers; meters wherever it is a place. */
 export type Vec3 = [number, number, number];
 
 /** Why a frame cannot be read or written. */

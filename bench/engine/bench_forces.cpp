@@ -11,13 +11,13 @@ namespace {
 
 using namespace iota;
 
-/// A fluid whose particles have about 30 neighbours within the cut-off.
+/// A fluid whose particles have about 30 neighbors within the cut-off.
 void particles(benchmark::State& state, bool written) {
   System system(SystemOptions{.gravity = {}});
   system.set_threads(1);
   const int side = static_cast<int>(state.range(0)), n = side * side * side;
-  constexpr double cutoff = 2.5, neighbours = 30;
-  const double spacing = cutoff * std::cbrt(4.18879 / neighbours);
+  constexpr double cutoff = 2.5, neighbors = 30;
+  const double spacing = cutoff * std::cbrt(4.18879 / neighbors);
   std::mt19937 random(1);
   const auto number = [&] { return std::uniform_real_distribution(-1.0, 1.0)(random); };
   for (int i = 0; i < n; ++i)

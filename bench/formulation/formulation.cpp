@@ -4,7 +4,7 @@
 //
 //   natural   the hinge points are the unknowns, one distance constraint per link: 3 + 1 unknowns per link
 //   natural4  the same with four points and six distances per link, as a body without symmetry needs: 9 + 6
-//   body      one position and one rotation per link, three ball-joint rows between neighbours: 6 + 3
+//   body      one position and one rotation per link, three ball-joint rows between neighbors: 6 + 3
 //
 // Backward Euler as a minimum:  min over x of  a/2 |x - (x0 + h v0)|_M^2 - f.x  subject to g(x) = 0,  a = 1/h^2,
 // v1 = (x1 - x0)/h. A rotation R is inertial the same way: a/2 tr((R - R0 - h R0') J (R - R0 - h R0')^T) with the body's
@@ -12,7 +12,7 @@
 // coordinates' kinetic energy for a rod without spin. So all three must follow the same motion, and do (see "check").
 //
 // Newton: the KKT system [K G'; G -eps] with exact second derivatives (inertia, geometric stiffness). Links are
-// eliminated from the free end: each link is one front [own unknowns | multipliers | neighbour's unknowns].
+// eliminated from the free end: each link is one front [own unknowns | multipliers | neighbor's unknowns].
 //
 // Build:  g++ -O3 -std=c++20 -ffp-contract=off formulation.cpp -o formulation && ./formulation
 #include <algorithm>
@@ -47,7 +47,7 @@ struct Rotation {  // columns: the body's axes in world coordinates
 struct Quaternion {
   double w = 1, x = 0, y = 0, z = 0;
 };
-Quaternion turned(Quaternion q, Vec3 t) {  // exp(t) q, normalised
+Quaternion turned(Quaternion q, Vec3 t) {  // exp(t) q, normalized
   const double angle = norm(t);
   const double s = angle > 1e-8 ? std::sin(angle / 2) / angle : 0.5 - angle * angle / 48, c = std::cos(angle / 2);
   const Vec3 u = s * t, v{q.x, q.y, q.z}, w = c * v + q.w * u + cross(u, v);
@@ -66,8 +66,8 @@ constexpr double compliance = 1e-12;  // of each constraint, in units of 1/(a m)
 enum class Link { two_point, rod };   // two equal masses at the ends; a solid cylinder
 
 /// Upper triangle of one link's symmetric front with the right-hand side as last column. P own unknowns, C
-/// multipliers, B unknowns of the neighbour. LDL^T without pivoting: the order makes P positive and C negative.
-template <int P, int C, int B, bool coupled>  // coupled: own unknowns also touch the neighbour's directly
+/// multipliers, B unknowns of the neighbor. LDL^T without pivoting: the order makes P positive and C negative.
+template <int P, int C, int B, bool coupled>  // coupled: own unknowns also touch the neighbor's directly
 struct Front {
   static constexpr int own = P + C, n = P + C + B;
   double a[n][n + 1];
@@ -93,12 +93,12 @@ struct Front {
     }
     return right_signs;
   }
-  static void solve(const Eliminated& kept, const double* neighbour, double* x) {  // x: own unknowns, multipliers
+  static void solve(const Eliminated& kept, const double* neighbor, double* x) {  // x: own unknowns, multipliers
 #pragma GCC unroll 9
     for (int k = own - 1; k >= 0; --k) {
       double s = kept.row[k][n];
       if (coupled || k >= P)
-        for (int j = 0; j < B; ++j) s -= kept.row[k][own + j] * neighbour[j];
+        for (int j = 0; j < B; ++j) s -= kept.row[k][own + j] * neighbor[j];
       for (int j = own - 1; j > k; --j) s -= kept.row[k][j] * x[j];  // the newest last: shortest chain of waits
       x[k] = s * kept.row[k][k];
     }
@@ -122,7 +122,7 @@ void add_block(F& f, int row, int column, double diagonal) {
 }
 
 struct Residual {
-  double worst = 0, squares = 0, energy = 0, violation = 0;  // scaled to metres; l1 of the constraints
+  double worst = 0, squares = 0, energy = 0, violation = 0;  // scaled to meters; l1 of the constraints
   void add(double r) {
     if (!(std::abs(r) <= worst)) worst = std::abs(r);  // written so that a NaN is kept
     squares += r * r;
@@ -335,7 +335,7 @@ class NaturalChain {
 };
 
 // ------------------------------------------------------------------------------------- six-degree-of-freedom bodies
-/// Unknowns of link i: its centre and a rotation exp(t) R about the current iterate; joint i (three rows) ties its left
+/// Unknowns of link i: its center and a rotation exp(t) R about the current iterate; joint i (three rows) ties its left
 /// end to the right end of link i - 1, or to the nail. J = diag(m L^2/12, m r^2/4, m r^2/4) are a cylinder's second
 /// moments. A two-point link has J = diag(m L^2/4, 0, 0): nothing resists its spin and the matrix is singular; `spin`
 /// times the transverse inertia is added to that pivot of the matrix only, so the answer is untouched.
@@ -467,7 +467,7 @@ class BodyChain {
         for (int k = 0; k < 3; ++k) H[j][k] += a_ * spin_ * (J_[0] + J_[1]) * s.R.column[0][j] * s.R.column[0][k];
       for (int j = 0; j < 3; ++j)
         for (int k = j; k < 3; ++k) f.a[3 + j][3 + k] += H[j][k];
-      // Rows of joint i: left neighbour's end (I, -[r]x) minus our left end (I, +[r]x), since our arm is -r.
+      // Rows of joint i: left neighbor's end (I, -[r]x) minus our left end (I, +[r]x), since our arm is -r.
       const auto cross_matrix = [](Vec3 v, int j, int k) {  // [v]x
         return j == k ? 0.0 : (k - j + 3) % 3 == 1 ? -v[3 - j - k] : v[3 - j - k];
       };

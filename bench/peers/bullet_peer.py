@@ -21,7 +21,7 @@ class BulletPeer:
         world = self.add(0, shape, [0, 0, 0], [0, 0, 0, 1])
         turns = quaternions_of(scene.rotation)
         self.bodies = [
-            self.add(scene.mass[k], shape, scene.centre[k], turns[k], scene.inertia[k]) for k in range(len(scene.mass))
+            self.add(scene.mass[k], shape, scene.center[k], turns[k], scene.inertia[k]) for k in range(len(scene.mass))
         ]
         for (first, second), one, other in zip(scene.joints, *scene.anchors(), strict=True):
             parent = world if first == WORLD else self.bodies[first]
@@ -30,8 +30,8 @@ class BulletPeer:
             )
 
     @staticmethod
-    def add(mass, shape, centre, turn, inertia=None) -> int:  # type: ignore[no-untyped-def]
-        body: int = bullet.createMultiBody(mass, shape, -1, list(centre), list(turn), useMaximalCoordinates=1)
+    def add(mass, shape, center, turn, inertia=None) -> int:  # type: ignore[no-untyped-def]
+        body: int = bullet.createMultiBody(mass, shape, -1, list(center), list(turn), useMaximalCoordinates=1)
         bullet.setCollisionFilterGroupMask(body, -1, 0, 0)
         if inertia is not None:
             # The mass again: without it the inertia is taken for that of a body of no mass.

@@ -20,10 +20,10 @@ const world = new Jolt.JoltInterface(settings);
 const physics = world.GetPhysicsSystem(), bodyInterface = physics.GetBodyInterface();
 physics.SetGravity(new Jolt.Vec3(0, -gravity, 0));
 
-function addBody(centre, turn, mass, inertia) {
+function addBody(center, turn, mass, inertia) {
   const motion = mass ? Jolt.EMotionType_Dynamic : Jolt.EMotionType_Static;
   const creation = new Jolt.BodyCreationSettings(
-    new Jolt.SphereShape(0.005), new Jolt.RVec3(...centre), new Jolt.Quat(...turn), motion, 0);
+    new Jolt.SphereShape(0.005), new Jolt.RVec3(...center), new Jolt.Quat(...turn), motion, 0);
   if (mass) {
     creation.mOverrideMassProperties = Jolt.EOverrideMassProperties_MassAndInertiaProvided;
     creation.mMassPropertiesOverride.mMass = mass;
@@ -37,7 +37,7 @@ function addBody(centre, turn, mass, inertia) {
 }
 
 const ground = addBody([0, 0, 0], [0, 0, 0, 1], 0);
-const bodies = scene.mass.map((mass, k) => addBody(scene.centre[k], scene.turn[k], mass, scene.inertia[k]));
+const bodies = scene.mass.map((mass, k) => addBody(scene.center[k], scene.turn[k], mass, scene.inertia[k]));
 scene.joints.forEach(([first, second], k) => {
   const joint = new Jolt.PointConstraintSettings();
   joint.mSpace = Jolt.EConstraintSpace_WorldSpace;
@@ -56,15 +56,15 @@ function observe() {
   let twice = 0, potential = 0, gap = 0;
   const poses = bodies.map((body, k) => {
     const p = body.GetPosition(), q = body.GetRotation();
-    const centre = [p.GetX(), p.GetY(), p.GetZ()], turn = [q.GetX(), q.GetY(), q.GetZ(), q.GetW()];
+    const center = [p.GetX(), p.GetY(), p.GetZ()], turn = [q.GetX(), q.GetY(), q.GetZ(), q.GetW()];
     const v = body.GetLinearVelocity(), speed = v.GetX() ** 2 + v.GetY() ** 2 + v.GetZ() ** 2;
     const w = body.GetAngularVelocity(), spin = turned(turn, [w.GetX(), w.GetY(), w.GetZ()], true);
     twice += scene.mass[k] * speed + spin.reduce((sum, s, axis) => sum + scene.inertia[k][axis] * s * s, 0);
-    potential += scene.mass[k] * gravity * centre[1];
-    return { centre, turn };
+    potential += scene.mass[k] * gravity * center[1];
+    return { center, turn };
   });
   const end = (body, anchor) =>
-    body < 0 ? anchor : turned(poses[body].turn, anchor).map((value, axis) => value + poses[body].centre[axis]);
+    body < 0 ? anchor : turned(poses[body].turn, anchor).map((value, axis) => value + poses[body].center[axis]);
   scene.joints.forEach(([first, second], k) => {
     const a = end(first, scene.anchors[0][k]), b = end(second, scene.anchors[1][k]);
     gap = Math.max(gap, Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));

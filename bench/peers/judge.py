@@ -14,9 +14,9 @@ from scene import GRAVITY, LENGTH, WORLD, Array, Scene
 
 @dataclass
 class State:
-    """Centres (n, 3) m, rotations (n, 3, 3), velocities (n, 3) m/s, spins (n, 3) rad/s in the world's axes."""
+    """Centers (n, 3) m, rotations (n, 3, 3), velocities (n, 3) m/s, spins (n, 3) rad/s in the world's axes."""
 
-    centre: Array
+    center: Array
     rotation: Array
     velocity: Array
     spin: Array
@@ -69,7 +69,7 @@ class Gaps:
 
     def worst(self, state: State) -> float:
         ends = [
-            state.centre[body] + np.einsum("nij,nj->ni", state.rotation[body], anchor)
+            state.center[body] + np.einsum("nij,nj->ni", state.rotation[body], anchor)
             for body, anchor in zip((self.first, self.second), self.anchors, strict=True)
         ]
         ends[0][self.first == WORLD] = self.anchors[0][self.first == WORLD]
@@ -80,7 +80,7 @@ def energies_of(scene: Scene, state: State) -> tuple[float, float]:
     """Kinetic and potential energy, J."""
     spin = np.einsum("nji,nj->ni", state.rotation, state.spin)
     twice = np.sum(scene.mass * np.sum(state.velocity**2, axis=1)) + np.sum(scene.inertia * spin**2)
-    return float(twice / 2), float(GRAVITY * np.sum(scene.mass * state.centre[:, 1]))
+    return float(twice / 2), float(GRAVITY * np.sum(scene.mass * state.center[:, 1]))
 
 
 def measure(scene: Scene, peer: Peer, row: Row, seconds: float, cap: float) -> None:

@@ -20,7 +20,7 @@ def make_model(scene: Scene, hz: float, tied: bool) -> mujoco.MjModel:
         for k in range(len(scene.mass)):
             body = spec.worldbody.add_body(name=f"body{k}")
             body.mass, body.inertia, body.explicitinertial = scene.mass[k], scene.inertia[k], True
-            body.pos, body.quat, body.ipos = scene.centre[k], turn[k], [0, 0, 0]
+            body.pos, body.quat, body.ipos = scene.center[k], turn[k], [0, 0, 0]
             body.add_freejoint()
         anchors = scene.anchors()[1]
         for (first, second), anchor in zip(scene.joints, anchors, strict=True):
@@ -34,7 +34,7 @@ def make_model(scene: Scene, hz: float, tied: bool) -> mujoco.MjModel:
         parent, origin = made[first]
         body = parent.add_body(name=f"body{second}")
         body.pos, body.mass, body.explicitinertial = at - origin, scene.mass[second], True
-        body.ipos, body.iquat, body.inertia = scene.centre[second] - at, turn[second], scene.inertia[second]
+        body.ipos, body.iquat, body.inertia = scene.center[second] - at, turn[second], scene.inertia[second]
         body.add_joint(type=mujoco.mjtJoint.mjJNT_BALL)
         made[second] = body, at
     return spec.compile()
@@ -58,10 +58,10 @@ class MujocoPeer:
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_comVel(model, data)
-        spin, centre = data.cvel[order, :3], data.xipos[order]
-        # cvel is taken at the centre of mass of the whole tree that a body belongs to.
-        velocity = data.cvel[order, 3:] + np.cross(spin, centre - data.subtree_com[model.body_rootid[order]])
-        return State(centre, data.ximat[order].reshape(-1, 3, 3), velocity, spin)
+        spin, center = data.cvel[order, :3], data.xipos[order]
+        # cvel is taken at the center of mass of the whole tree that a body belongs to.
+        velocity = data.cvel[order, 3:] + np.cross(spin, center - data.subtree_com[model.body_rootid[order]])
+        return State(center, data.ximat[order].reshape(-1, 3, 3), velocity, spin)
 
     def trouble(self) -> str:
         bad = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)

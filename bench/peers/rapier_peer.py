@@ -18,13 +18,13 @@ class RapierPeer:
         self.world.set_num_threads(1)
         self.world.integration_parameters.dt = 1 / (hz * substeps)
         self.bodies: list[rapier.RigidBodyHandle] = []
-        for mass, inertia, centre, turn in zip(
-            scene.mass, scene.inertia, scene.centre, quaternions_of(scene.rotation), strict=True
+        for mass, inertia, center, turn in zip(
+            scene.mass, scene.inertia, scene.center, quaternions_of(scene.rotation), strict=True
         ):
             turn = turn if turn[3] >= 0 else -turn
             sine = np.linalg.norm(turn[:3])
             vector = turn[:3] * (2 * np.arctan2(sine, turn[3]) / sine if sine > 0 else 2)
-            body = rapier.RigidBodyBuilder(rapier.RigidBodyType.DYNAMIC).translation(tuple(centre))
+            body = rapier.RigidBodyBuilder(rapier.RigidBodyType.DYNAMIC).translation(tuple(center))
             body = body.rotation(tuple(vector)).can_sleep(False).gyroscopic_forces(True)
             body = body.additional_mass_properties(rapier.MassProperties((0, 0, 0), mass, tuple(inertia)))
             self.bodies.append(self.world.add_body(body))
@@ -40,14 +40,14 @@ class RapierPeer:
             self.world.step()
 
     def read(self) -> State:
-        centre, velocity, spin = (np.empty((len(self.bodies), 3)) for _ in range(3))
+        center, velocity, spin = (np.empty((len(self.bodies), 3)) for _ in range(3))
         turn = np.empty((len(self.bodies), 4))
         for i, handle in enumerate(self.bodies):
             body = self.world.rigid_bodies[handle]
-            for into, vector in ((centre, body.translation), (velocity, body.linvel), (spin, body.angvel)):
+            for into, vector in ((center, body.translation), (velocity, body.linvel), (spin, body.angvel)):
                 into[i] = vector.x, vector.y, vector.z
             turn[i] = body.rotation.i, body.rotation.j, body.rotation.k, body.rotation.w
-        return State(centre, rotations_from(turn), velocity, spin)
+        return State(center, rotations_from(turn), velocity, spin)
 
     def trouble(self) -> str:
         return ""

@@ -98,7 +98,7 @@ def run_here(job: Job) -> None:
     scene = SCENES[name](size)
     if job.engine == "jolt":
         scene_json = {
-            "mass": scene.mass, "inertia": scene.inertia, "centre": scene.centre, "turn": quaternions_of(scene.rotation),
+            "mass": scene.mass, "inertia": scene.inertia, "center": scene.center, "turn": quaternions_of(scene.rotation),
             "joints": scene.joints, "joint_at": scene.joint_at, "anchors": scene.anchors(),
         }  # fmt: skip
         work = {

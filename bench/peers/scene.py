@@ -24,11 +24,11 @@ Array = NDArray[np.float64]
 
 @dataclass
 class Scene:
-    """n bodies and their joints. A body's frame has its origin at the centre of mass and the principal axes for axes."""
+    """n bodies and their joints. A body's frame has its origin at the center of mass and the principal axes for axes."""
 
     mass: Array  # (n,) kg
     inertia: Array  # (n, 3) kg m^2, about the body's axes
-    centre: Array  # (n, 3) m
+    center: Array  # (n, 3) m
     rotation: Array  # (n, 3, 3), columns: the body's axes
     joints: list[tuple[int, int]]  # (WORLD or a body, a body); a tree's joints lead away from the world
     joint_at: Array  # (number of joints, 3) m
@@ -37,7 +37,7 @@ class Scene:
         """Where each joint sits in the frames of its two bodies, (number of joints, 3) m; in the world's for WORLD."""
         first, second = np.array(self.joints, dtype=np.intp).T
         local = [
-            np.einsum("nji,nj->ni", self.rotation[body], self.joint_at - self.centre[body]) for body in (first, second)
+            np.einsum("nji,nj->ni", self.rotation[body], self.joint_at - self.center[body]) for body in (first, second)
         ]
         local[0][first == WORLD] = self.joint_at[first == WORLD]
         return local[0], local[1]
@@ -59,13 +59,13 @@ class Scene:
             for body in self.joints[k]:
                 if body == WORLD:
                     continue
-                arm = float(np.linalg.norm(self.centre[body] - self.joint_at[k]))
+                arm = float(np.linalg.norm(self.center[body] - self.joint_at[k]))
                 lowest[body] = min(lowest[body], height - reach - arm)
                 for other in ways[body]:
                     if other not in reached:
                         step = float(np.linalg.norm(self.joint_at[other] - self.joint_at[k]))
                         heapq.heappush(heap, (reach + step, height, other))
-        return float(np.sum(self.mass * GRAVITY * (self.centre[:, 1] - lowest)))
+        return float(np.sum(self.mass * GRAVITY * (self.center[:, 1] - lowest)))
 
 
 class Builder:
@@ -97,8 +97,8 @@ class Builder:
         moments = moments + [1e-9 * moments[2], 0, 0]
         return self.body(mass, moments, places.mean(axis=0), axes)
 
-    def body(self, mass: float, inertia: Array, centre: Array, rotation: Array) -> int:
-        self.bodies.append((mass, inertia, centre, rotation))
+    def body(self, mass: float, inertia: Array, center: Array, rotation: Array) -> int:
+        self.bodies.append((mass, inertia, center, rotation))
         return len(self.bodies) - 1
 
     def join(self, first: int, second: int, at: Array) -> None:
@@ -106,8 +106,8 @@ class Builder:
         self.joint_at.append(at)
 
     def scene(self) -> Scene:
-        mass, inertia, centre, rotation = map(np.array, zip(*self.bodies, strict=True))
-        return Scene(mass, inertia, centre, rotation, self.joints, np.array(self.joint_at))
+        mass, inertia, center, rotation = map(np.array, zip(*self.bodies, strict=True))
+        return Scene(mass, inertia, center, rotation, self.joints, np.array(self.joint_at))
 
 
 def chain(links: int, heavy_end: float = 1) -> Scene:
@@ -122,7 +122,7 @@ def chain(links: int, heavy_end: float = 1) -> Scene:
 
 
 def net(side: int) -> Scene:
-    """A square net of side x side knots in the x-z plane, held at two neighbouring corners; all loops are closed."""
+    """A square net of side x side knots in the x-z plane, held at two neighboring corners; all loops are closed."""
     build = Builder()
     knots: dict[tuple[int, int], int] = {(0, 0): WORLD, (0, side - 1): WORLD}
     for row in range(side):

@@ -39,7 +39,7 @@ def tilted(p: Point) -> tuple[float, float]:
 
 
 class Picture:
-    """Lines and outlines in metres; fitted into the frame when written."""
+    """Lines and outlines in meters; fitted into the frame when written."""
 
     def __init__(self, view: Callable[[Point], tuple[float, float]] = flat) -> None:
         self.view = view
@@ -58,10 +58,10 @@ class Picture:
     def dot(self, p: Point, size: float = 3.2, color: str = INK, opacity: float = 1) -> None:
         self.items.append(("circle", [self.view(p)], f'r="{size}" fill="{color}" fill-opacity="{opacity:.2f}"'))
 
-    def ring(self, centre: Point, radius: float, color: str = INK, opacity: float = 1, width: float = 1.5) -> None:
+    def ring(self, center: Point, radius: float, color: str = INK, opacity: float = 1, width: float = 1.5) -> None:
         """A circle facing the viewer."""
         steps = [(math.cos(math.tau * i / 48), math.sin(math.tau * i / 48)) for i in range(49)]
-        x, y = self.view(centre)
+        x, y = self.view(center)
         style = f'fill="none" stroke="{color}" stroke-width="{width}" stroke-opacity="{opacity:.2f}"'
         self.items.append(("polyline", [(x + radius * c, y + radius * s) for c, s in steps], style))
 
@@ -112,12 +112,12 @@ class Picture:
 # --- simulating -------------------------------------------------------------------------------------------------------
 
 
-def box(system: iota.System, centre: Point, size: Point, mass: float = 1) -> tuple[iota.Body, list[iota.Particle]]:
+def box(system: iota.System, center: Point, size: Point, mass: float = 1) -> tuple[iota.Body, list[iota.Particle]]:
     """A solid box and its corners as markers, to draw it by."""
-    body = iota.Body(system, shape=iota.Box(size), mass=mass, position=centre)
+    body = iota.Body(system, shape=iota.Box(size), mass=mass, position=center)
     signs = [((i & 1) - 0.5, (i >> 1 & 1) - 0.5, (i >> 2) - 0.5) for i in range(8)]
     return body, [
-        iota.Particle(body, tuple(c + s * e for c, s, e in zip(centre, sign, size, strict=True)), mass=0)
+        iota.Particle(body, tuple(c + s * e for c, s, e in zip(center, sign, size, strict=True)), mass=0)
         for sign in signs
     ]
 
@@ -206,7 +206,7 @@ def ball(picture: Picture) -> None:
 
     def draw(o: float) -> None:
         picture.box([p.position for p in corners], o)
-        picture.line([arm.position, body.centre_of_mass], INK, 1, o, 'stroke-dasharray="3 3"')
+        picture.line([arm.position, body.center_of_mass], INK, 1, o, 'stroke-dasharray="3 3"')
 
     strobe(system, 2.2, 4, draw, [corners[7]], picture)
     picture.dot((0, 0, 0), 5, WORLD)
@@ -467,7 +467,7 @@ def surfaces(picture: Picture) -> None:
 
     def draw(o: float) -> None:
         for (body, radius), color in zip(balls, colors, strict=True):
-            picture.ring(body.centre_of_mass, radius, color, o, 1.8)
+            picture.ring(body.center_of_mass, radius, color, o, 1.8)
 
     strobe(system, 0.9, 5, draw)
     hatch(picture, (-0.5, 0.5 * math.tan(slope)), (3.4, -3.4 * math.tan(slope)))

@@ -15,7 +15,7 @@ class Knot(iota.SimulatedBody):
     """One particle."""
 
     @property
-    def centre_of_mass(self):
+    def center_of_mass(self):
         return iota.Vec3(*self.system.x[self.slot])
 
     @property

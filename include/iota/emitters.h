@@ -12,13 +12,13 @@
 namespace iota {
 
 /// Red, green, blue, opacity; 0 to 1.
-using Colour = std::array<float, 4>;
+using Color = std::array<float, 4>;
 
 /// How an emitted particle looks at one point of its life.
 struct AttributeKey {
   double life = 0;    ///< 0 birth, 1 death
   double radius = 0;  ///< m
-  Colour colour{1, 1, 1, 1};
+  Color color{1, 1, 1, 1};
 };
 
 /// A source of particles (Reeves 1983): each is a dynamic body of its own, with an age and a lifetime, and dies at its end.
@@ -44,7 +44,7 @@ struct ParticleAttributes {
   double age = 0;                                             ///< s
   double lifetime = std::numeric_limits<double>::infinity();  ///< s
   double radius = 0;                                          ///< m; 0: nobody said
-  Colour colour{1, 1, 1, 1};
+  Color color{1, 1, 1, 1};
 };
 
 }  // namespace iota

@@ -6,7 +6,7 @@
 
 namespace iota {
 
-/// Where a body is drawn. The local frame has its origin at the centre of mass; for a body whose particles lie on one
+/// Where a body is drawn. The local frame has its origin at the center of mass; for a body whose particles lie on one
 /// line, local +x runs from its first particle to its last.
 struct BodyPose {
   std::uint32_t body;    ///< slot of the BodyId

@@ -26,7 +26,7 @@ struct Cylinder {
 struct Capsule {
   double radius = 0.5, length = 1;
 };
-/// A ring in the x-y plane: its centre line has `radius`, its wire `tube`.
+/// A ring in the x-y plane: its center line has `radius`, its wire `tube`.
 struct Torus {
   double radius = 0.5, tube = 0.1;
 };
@@ -42,8 +42,8 @@ using Matrix3 = std::array<Vec3, 3>;  ///< three rows
 
 struct MassProperties {
   double volume = 0;     ///< m^3
-  Vec3 centre;           ///< of mass, in the shape's frame, m
-  Matrix3 mean_squares;  ///< mean of r r' over the volume, r from the centre, m^2; inertia = mass (trace I - this)
+  Vec3 center;           ///< of mass, in the shape's frame, m
+  Matrix3 mean_squares;  ///< mean of r r' over the volume, r from the center, m^2; inertia = mass (trace I - this)
 };
 
 /// Closed forms; for meshes the divergence theorem (Eberly, Polyhedral Mass Properties, 2002), exact for any closed

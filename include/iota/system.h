@@ -73,7 +73,7 @@ struct SolidOptions {
   double mass = std::numeric_limits<double>::quiet_NaN();  ///< kg; NaN: density times volume
   Vec3 position;                                           ///< of the shape's origin, m
   Quaternion orientation;                                  ///< of the shape's frame
-  Vec3 velocity;                                           ///< of the centre of mass, m/s
+  Vec3 velocity;                                           ///< of the center of mass, m/s
   Vec3 spin;                                               ///< angular velocity, world axes, rad/s
   std::vector<Vec3> attachments;                           ///< particles to hinge, nail or bond at; shape's frame, m
   BodyKind kind = BodyKind::dynamic;
@@ -124,10 +124,10 @@ class System {
   /// whatever acts on its axis. What set_angular_velocity gives it about the axis it keeps: nothing there can turn it.
   /// Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
   void set_rod(BodyId body, double mass, double radius);
-  /// A body of four equal point masses that have exactly the mass, centre and inertia of a solid, and one particle for
+  /// A body of four equal point masses that have exactly the mass, center and inertia of a solid, and one particle for
   /// each attachment. particles(): the four, then the attachments.
   BodyId create_body(const Shape& shape, const SolidOptions& options = {});
-  /// A further particle of a body made of solids, anywhere (world, m); the body's mass, centre, inertia and motion stay
+  /// A further particle of a body made of solids, anywhere (world, m); the body's mass, center, inertia and motion stay
   /// exactly what they are. Throws std::invalid_argument for bodies without a solid, and where something is hinged to
   /// the solid's own four points, which have to give.
   ParticleId create_attachment(BodyId body, const Vec3& position);
@@ -266,31 +266,31 @@ class System {
   double damping(BodyId) const;
   void set_damping(BodyId, double per_second);
   double mass(BodyId) const;
-  Vec3 centre_of_mass(BodyId) const;
+  Vec3 center_of_mass(BodyId) const;
   Quaternion orientation(BodyId) const;  ///< of the drawn frame: that of its first solid, or of its basis
   /// Moves the body, and rigidly with it all that hangs on it, nails and velocities included. A scripted body arrives at the end of the
-  /// next step. position: of the centre of mass.
+  /// next step. position: of the center of mass.
   void set_pose(BodyId, const Vec3& position, const Quaternion& orientation);
-  Matrix3 inertia(BodyId) const;  ///< about the centre of mass, world axes, kg m^2 (thesis, Eq. 2.28)
-  Vec3 velocity(BodyId) const;    ///< of the centre of mass, m/s
+  Matrix3 inertia(BodyId) const;  ///< about the center of mass, world axes, kg m^2 (thesis, Eq. 2.28)
+  Vec3 velocity(BodyId) const;    ///< of the center of mass, m/s
   void set_velocity(BodyId, const Vec3&);
   /// rad/s, world axes; no part of it along what has no inertia (one point, or the line that all points are on and that is
   /// no rod).
   Vec3 angular_velocity(BodyId) const;
   /// Throws std::invalid_argument for such a part.
   void set_angular_velocity(BodyId, const Vec3&);
-  Vec3 angular_momentum(BodyId) const;  ///< about its centre of mass, kg m^2/s
+  Vec3 angular_momentum(BodyId) const;  ///< about its center of mass, kg m^2/s
   /// What a body was combined from: ids of bodies, itself and those it absorbed.
   std::vector<BodyId> parts(BodyId) const;
   std::vector<ParticleId> particles(BodyId body, BodyId part) const;
-  /// Sum of all forces from outside in the last step, and of their moments about the centre of mass, N and N m: mass times
+  /// Sum of all forces from outside in the last step, and of their moments about the center of mass, N and N m: mass times
   /// acceleration. Of a part of a combined body: those that hold it to the rest included.
   Vec3 net_force(BodyId) const;
   Vec3 net_torque(BodyId) const;
   Vec3 net_force(BodyId body, BodyId part) const;
   Vec3 net_torque(BodyId body, BodyId part) const;
   /// Of a part: what acted on it from outside of the whole body in the last step, N, and its moments about the part's
-  /// centre of mass, N m. `net` minus `outside` is what the other parts do to it: the load on the lock.
+  /// center of mass, N m. `net` minus `outside` is what the other parts do to it: the load on the lock.
   Vec3 outside_force(BodyId body, BodyId part) const;
   Vec3 outside_torque(BodyId body, BodyId part) const;
   std::vector<SolidView> solids(BodyId) const;        ///< empty for bodies of particles alone
@@ -383,7 +383,7 @@ class System {
   std::uint32_t count(EmitterId) const;  ///< alive now
   std::uint64_t born(EmitterId) const;   ///< so far
   std::vector<ParticleId> particles(EmitterId) const;
-  /// Age, lifetime, radius and colour; radius and colour of an emitted particle are those of its emitter's curve.
+  /// Age, lifetime, radius and color; radius and color of an emitted particle are those of its emitter's curve.
   ParticleAttributes attributes(ParticleId) const;
   bool has_attributes(ParticleId) const;
   /// Any particle may get a lifetime: it is destroyed, with its bonds, in the step in which its age reaches it.

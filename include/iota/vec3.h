@@ -5,7 +5,7 @@
 
 namespace iota {
 
-/// A vector or point in the world frame (metres, m/s, newtons ... as the context says).
+/// A vector or point in the world frame (meters, m/s, newtons ... as the context says).
 struct Vec3 {
   double x = 0, y = 0, z = 0;
 

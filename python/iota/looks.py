@@ -7,7 +7,7 @@ A *class* of bodies has a shape, or a list of shapes, per look; users switch loo
     world.classes["link"] = {"rope": looks.cylinder(0.012, "rope"), "chain": looks.chain_link(0.1)}
     world.look(links, "link")
 
-Lengths in m, colours as "#rrggbb", materials one of `MATERIALS`. The body's frame has its origin at the centre of mass
+Lengths in m, colors as "#rrggbb", materials one of `MATERIALS`. The body's frame has its origin at the center of mass
 and +x from its first particle to its last.
 """
 
@@ -53,7 +53,7 @@ def capsule(radius: float, material: str = "steel", length: float | None = None,
 
 
 def torus(radius: float, tube: float, material: str = "steel", stretch: float = 0.0, **more: Any) -> Shape:
-    """A ring in the local x-y plane: centre line `radius`, wire radius `tube`, both halves pulled apart along x by
+    """A ring in the local x-y plane: center line `radius`, wire radius `tube`, both halves pulled apart along x by
     `stretch`. `turn`: radians about local x for every other body of the class."""
     return _shape("torus", material, more, radius=radius, tube=tube, stretch=stretch)
 
@@ -82,7 +82,7 @@ def mesh(vertices: Any, triangles: Any, material: str = "paint", **more: Any) ->
 
 
 def chain_link(length: float, material: str = "steel") -> Shape:
-    """A link of a real chain for a body of `length` m: neighbours touch where they are hinged, turned by 90 degrees."""
+    """A link of a real chain for a body of `length` m: neighbors touch where they are hinged, turned by 90 degrees."""
     tube, radius = 0.085 * length, 0.26 * length
     return torus(radius, tube, material, stretch=length + 2 * (tube - radius), turn=math.pi / 2)
 

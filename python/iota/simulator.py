@@ -42,12 +42,12 @@ class SimulatedBody:
 
     @property
     def pose(self) -> list[float]:
-        """Centre of mass (m) and unit quaternion x y z w: 7 numbers."""
+        """Center of mass (m) and unit quaternion x y z w: 7 numbers."""
         slots, places = self.system.poses()
         return [float(number) for number in places[list(slots).index(self.slot)]]
 
     @property
-    def centre_of_mass(self) -> Vec3:
+    def center_of_mass(self) -> Vec3:
         return Vec3(*self.pose[:3])
 
     @property
@@ -57,7 +57,7 @@ class SimulatedBody:
     @property
     def particles(self) -> list[SimulatedParticle]:
         """One is drawn as a sphere, two as a rod from the first to the second, more as rods from each to the next."""
-        return [SimulatedParticle(self, self.centre_of_mass)]
+        return [SimulatedParticle(self, self.center_of_mass)]
 
     @property
     def survivor(self) -> SimulatedBody | None:
@@ -101,7 +101,7 @@ class Simulator(ABC):
 
     @abstractmethod
     def poses(self) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Where bodies are drawn: slots (n,), and (n, 7): centre of mass (m) and unit quaternion x y z w."""
+        """Where bodies are drawn: slots (n,), and (n, 7): center of mass (m) and unit quaternion x y z w."""
 
     @abstractmethod
     def snapshot(self) -> Any:
@@ -117,6 +117,11 @@ class Simulator(ABC):
     def energy(self) -> Energy:
         """Shown on the page."""
         return Energy()
+
+    @property
+    def scene_version(self) -> int:
+        """What a page's list of bodies depends on: see `System.scene_version`."""
+        return self.structure_version
 
     @property
     def worst_gap(self) -> float:

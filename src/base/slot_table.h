@@ -59,6 +59,14 @@ class SlotTable {
       if (is_alive(slot)) visit(slot, items_[slot]);
   }
 
+  /// Of all that are alive, in the order of slots.
+  std::vector<IdType> ids() const {
+    std::vector<IdType> list;
+    list.reserve(size());
+    for_each([&](std::uint32_t slot, const T&) { list.push_back(id(slot)); });
+    return list;
+  }
+
   template <class Archive>
   void archive(Archive& ar) {
     ar.vector(items_);

@@ -16,7 +16,7 @@
 #endif
 
 /// Elementary functions made of +, -, *, / and bit operations only: the same bits from every compiler and at every
-/// optimisation level (those of libm differ), and branch-free, so that loops over them are vectorised.
+/// optimization level (those of libm differ), and branch-free, so that loops over them are vectorized.
 /// Relative errors stay below 4e-16, unless said otherwise.
 namespace iota::expression {
 

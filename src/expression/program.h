@@ -10,7 +10,7 @@
 namespace iota::expression {
 
 /// Outputs of a formula as a short list of operations over blocks of lanes: each operation is one loop that the compiler
-/// vectorises, so that the cost of interpreting is shared by a block. What does not vary from lane to lane is computed
+/// vectorizes, so that the cost of interpreting is shared by a block. What does not vary from lane to lane is computed
 /// once. Plain data after `compile`; may be run from several threads, each with a workspace of its own.
 class Program {
  public:

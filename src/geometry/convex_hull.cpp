@@ -21,7 +21,7 @@ constexpr double thickness = 1e-11;
 
 struct Facet {
   std::array<std::uint32_t, 3> vertices{};
-  std::array<std::uint32_t, 3> neighbours{none, none, none};  ///< across the edge from vertex i to vertex i + 1
+  std::array<std::uint32_t, 3> neighbors{none, none, none};  ///< across the edge from vertex i to vertex i + 1
   Vec3 normal;
   double offset = 0;
   std::vector<std::uint32_t> outside;  ///< points above it; each outer point is with one facet
@@ -112,9 +112,9 @@ class Hull {
     for (int i = 0; i < 3; ++i) {
       const auto [from, to] = std::pair{facets_[0].vertices[i], facets_[0].vertices[(i + 1) % 3]};
       const std::uint32_t side = add_facet(to, from, d);
-      facets_[side].neighbours = {0, static_cast<std::uint32_t>(1 + (i + 2) % 3),
-                                  static_cast<std::uint32_t>(1 + (i + 1) % 3)};
-      facets_[0].neighbours[i] = side;
+      facets_[side].neighbors = {0, static_cast<std::uint32_t>(1 + (i + 2) % 3),
+                                 static_cast<std::uint32_t>(1 + (i + 1) % 3)};
+      facets_[0].neighbors[i] = side;
     }
     hand_out(all, 0);
   }
@@ -139,16 +139,16 @@ class Hull {
     const std::size_t first = facets_.size();
     for (const HorizonEdge& edge : horizon) {
       const std::uint32_t made = add_facet(edge.from, edge.to, apex);
-      facets_[made].neighbours[0] = edge.beyond;
+      facets_[made].neighbors[0] = edge.beyond;
       Facet& beyond = facets_[edge.beyond];
       for (int i = 0; i < 3; ++i)
-        if (beyond.vertices[i] == edge.to && beyond.vertices[(i + 1) % 3] == edge.from) beyond.neighbours[i] = made;
+        if (beyond.vertices[i] == edge.to && beyond.vertices[(i + 1) % 3] == edge.from) beyond.neighbors[i] = made;
     }
     for (std::size_t f = first; f < facets_.size(); ++f)  // the horizon is one closed loop
       for (std::size_t g = first; g < facets_.size(); ++g)
         if (facets_[g].vertices[0] == facets_[f].vertices[1]) {
-          facets_[f].neighbours[1] = static_cast<std::uint32_t>(g);
-          facets_[g].neighbours[2] = static_cast<std::uint32_t>(f);
+          facets_[f].neighbors[1] = static_cast<std::uint32_t>(g);
+          facets_[g].neighbors[2] = static_cast<std::uint32_t>(f);
         }
     hand_out(orphans, first);
   }
@@ -163,7 +163,7 @@ class Hull {
       orphans.insert(orphans.end(), f.outside.begin(), f.outside.end());
       std::vector<std::uint32_t>().swap(f.outside);
       for (int i = 0; i < 3; ++i) {
-        const std::uint32_t across = f.neighbours[i];
+        const std::uint32_t across = f.neighbors[i];
         if (facets_[across].gone) continue;
         if (sees(apex, facets_[across])) {
           facets_[across].gone = true;
@@ -173,7 +173,7 @@ class Hull {
     }
     for (const std::uint32_t s : seen)
       for (int i = 0; i < 3; ++i)
-        if (const std::uint32_t across = facets_[s].neighbours[i]; !facets_[across].gone)
+        if (const std::uint32_t across = facets_[s].neighbors[i]; !facets_[across].gone)
           horizon.push_back({facets_[s].vertices[i], facets_[s].vertices[(i + 1) % 3], across});
   }
 

@@ -83,7 +83,7 @@ Polyline::Polyline(std::span<const Vec3> given, bool closed, double rounding) {
     extent[i] = norm(d);
     direction[i] = (1 / extent[i]) * d;
   }
-  // The corner at point i + 1: how much of either neighbour its arc takes, and its radius.
+  // The corner at point i + 1: how much of either neighbor its arc takes, and its radius.
   std::vector<double> cut(segments, 0), radius(segments, 0);
   for (std::size_t i = 0; i < segments; ++i) {
     if (!closed && i + 1 == segments) continue;

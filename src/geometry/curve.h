@@ -40,7 +40,7 @@ class Curve {
 class Polyline final : public Curve {
  public:
   /// `rounding`: radius of the arcs, m; smaller where pieces are too short for it. Negative: arcs that begin a tenth of
-  /// the shorter neighbour before the corner. Throws std::invalid_argument for fewer than two distinct points (closed:
+  /// the shorter neighbor before the corner. Throws std::invalid_argument for fewer than two distinct points (closed:
   /// three), numbers that are not finite, and corners that turn back on themselves.
   explicit Polyline(std::span<const Vec3> points, bool closed = false, double rounding = -1);
   CurvePoint at(double s) const override;
@@ -48,9 +48,9 @@ class Polyline final : public Curve {
  private:
   struct Piece {
     double start;  // parameter
-    Vec3 origin;   // of a line, or centre of an arc
+    Vec3 origin;   // of a line, or center of an arc
     Vec3 direction,
-        inward;     // of a line (inward 0); of an arc at its start: tangent, and unit vector from centre to start
+        inward;     // of a line (inward 0); of an arc at its start: tangent, and unit vector from center to start
     double radius;  // 0: a line
   };
   std::vector<Piece> pieces_;

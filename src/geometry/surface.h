@@ -16,7 +16,7 @@ struct SurfacePoint {
   Mat3 hessian;
 };
 
-/// The surface phi(p) = 0 in a frame of its own: phi is negative inside, in metres, with a gradient near 1 at the surface,
+/// The surface phi(p) = 0 in a frame of its own: phi is negative inside, in meters, with a gradient near 1 at the surface,
 /// but not the distance elsewhere: where a quadratic does it is one, which the energy-keeping scheme then follows exactly.
 class Surface {
  public:

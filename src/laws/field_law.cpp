@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "laws/field_law.h"
 
+#include "laws/law_list.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,14 +17,7 @@ using expression::Program;
 
 constexpr std::size_t variable_count = std::size(FieldLaw::variables);
 
-template <class Visit, std::size_t... I>
-void visit_list(std::uint32_t number, Visit visit, std::index_sequence<I...>) {
-  ((number == I ? visit.template operator()<std::tuple_element_t<I, FieldLaws>>() : void()), ...);
-}
-template <class Visit>
-void visit_list(std::uint32_t number, Visit visit) {
-  visit_list(number, visit, std::make_index_sequence<field_law_count>{});
-}
+using List = LawList<FieldLaws>;
 
 FieldState state_of(const ParticleArrays& a, std::size_t i, double t, double h) {
   return {{a.x[i], a.y[i], a.z[i]}, {a.vx[i], a.vy[i], a.vz[i]}, a.m[i], t, h};
@@ -31,7 +26,7 @@ FieldState state_of(const ParticleArrays& a, std::size_t i, double t, double h) 
 }  // namespace
 
 FieldLaw::FieldLaw(std::uint32_t number) : number_(number), parameter_count_(field_law_parameters(number).size()) {
-  visit_list(number_, [&]<class Law>() { has_energy_ = Law::has_energy; });
+  List::visit(number_, [&]<class Law>() { has_energy_ = Law::has_energy; });
 }
 
 FieldLaw::FieldLaw(std::string_view text, std::vector<std::string> parameters) : parameter_count_(parameters.size()) {
@@ -93,7 +88,7 @@ void FieldLaw::evaluate(const ParticleArrays& a, std::size_t first, std::size_t 
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < 3; ++k) out[3 * (start + i) + k] = forces[k][i];
     });
-  visit_list(number_, [&]<class Law>() {
+  List::visit(number_, [&]<class Law>() {
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 f = Law::force(state_of(a, first + i, t, h), parameters);
       out[3 * i] = f.x, out[3 * i + 1] = f.y, out[3 * i + 2] = f.z;
@@ -112,26 +107,14 @@ double FieldLaw::energy(const ParticleArrays& a, double t, const double* paramet
       for (std::size_t i = 0; i < n; ++i) add(energies[0][i]);
     });
   else
-    visit_list(number_, [&]<class Law>() {
+    List::visit(number_, [&]<class Law>() {
       for (std::size_t i = 0; i < a.size(); ++i) add(Law::energy(state_of(a, i, t, 0), parameters));
     });
   return sum;
 }
 
-std::uint32_t find_field_law(std::string_view name) {
-  for (std::uint32_t i = 0; i < field_law_count; ++i)
-    if (name == field_law_name(i)) return i;
-  return field_law_count;
-}
-const char* field_law_name(std::uint32_t number) {
-  const char* name = "";
-  visit_list(number, [&]<class Law>() { name = Law::name; });
-  return name;
-}
-std::span<const Parameter> field_law_parameters(std::uint32_t number) {
-  std::span<const Parameter> list;
-  visit_list(number, [&]<class Law>() { list = Law::parameters; });
-  return list;
-}
+std::uint32_t find_field_law(std::string_view name) { return List::find(name); }
+const char* field_law_name(std::uint32_t number) { return List::name(number); }
+std::span<const Parameter> field_law_parameters(std::uint32_t number) { return List::parameters(number); }
 
 }  // namespace iota::laws

@@ -75,12 +75,12 @@ struct Current : NoEnergy {
   }
 };
 
-/// A heavy point: acceleration strength/d^2 towards the centre (strength in m^3/s^2), Plummer-softened. Negative repels.
+/// A heavy point: acceleration strength/d^2 towards the center (strength in m^3/s^2), Plummer-softened. Negative repels.
 struct Well : NoEnergy {
   static constexpr bool has_energy = true;
   static constexpr const char* name = "well";
   static constexpr Parameter parameters[] = {
-      {"centre_x", 0}, {"centre_y", 0}, {"centre_z", 0}, {"strength", 1}, {"softening", 0.1, Range::not_negative}};
+      {"center_x", 0}, {"center_y", 0}, {"center_z", 0}, {"strength", 1}, {"softening", 0.1, Range::not_negative}};
   static Vec3 force(const FieldState& s, const double* p) {
     const Vec3 d = Vec3{p[0], p[1], p[2]} - s.position;
     const double inverse = 1 / (dot(d, d) + p[4] * p[4]);
@@ -92,12 +92,12 @@ struct Well : NoEnergy {
   }
 };
 
-/// Pulls with `strength` (N) towards the centre, less so beyond `range` (m): strength exp(-d/range). Negative repels.
+/// Pulls with `strength` (N) towards the center, less so beyond `range` (m): strength exp(-d/range). Negative repels.
 struct Attractor : NoEnergy {
   static constexpr bool has_energy = true;
   static constexpr const char* name = "attractor";
   static constexpr Parameter parameters[] = {
-      {"centre_x", 0}, {"centre_y", 0}, {"centre_z", 0}, {"strength", 1}, {"range", 1, Range::positive}};
+      {"center_x", 0}, {"center_y", 0}, {"center_z", 0}, {"strength", 1}, {"range", 1, Range::positive}};
   static Vec3 force(const FieldState& s, const double* p) {
     const Vec3 d = Vec3{p[0], p[1], p[2]} - s.position;
     const double r = norm(d);

@@ -7,7 +7,7 @@ namespace iota::laws {
 
 namespace {
 
-/// Mixes the bits of a lattice point; the constants are odd numbers without pattern, the shifts those of murmur's finaliser.
+/// Mixes the bits of a lattice point; the constants are odd numbers without pattern, the shifts those of murmur's finalizer.
 std::uint32_t mix(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t seed) {
   std::uint32_t h = seed * 0x9e3779b9u ^ x * 0x85ebca6bu ^ y * 0xc2b2ae35u ^ z * 0x27d4eb2fu;
   h ^= h >> 16, h *= 0x85ebca6bu, h ^= h >> 13, h *= 0xc2b2ae35u, h ^= h >> 16;
@@ -60,7 +60,7 @@ Vec3 turbulent_velocity(const Turbulence& t, const Vec3& position, double time) 
   constexpr double fall = 0.79370052598409974;  // 2^(-1/3)
   Vec3 u = t.mean;
   double frequency = 1 / t.size, speed = t.speed;
-  Vec3 drift{0.61, 0.54, 0.58};  // each octave is carried another way, so that patterns change instead of travelling
+  Vec3 drift{0.61, 0.54, 0.58};  // each octave is carried another way, so that patterns change instead of traveling
   for (int octave = 0; octave < t.octaves; ++octave) {
     const Vec3 x = frequency * position + (t.evolution * time * frequency * t.size) * drift;
     const std::uint32_t seed = t.seed + 3 * static_cast<std::uint32_t>(octave);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "laws/pair_law.h"
 
+#include "laws/law_list.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,14 +25,7 @@ Program::Workspace& workspace() {
   return space;
 }
 
-template <class Visit, std::size_t... I>
-void visit_list(std::uint32_t number, Visit visit, std::index_sequence<I...>) {
-  ((number == I ? visit.template operator()<std::tuple_element_t<I, PairLaws>>() : void()), ...);
-}
-template <class Visit>
-void visit_list(std::uint32_t number, Visit visit) {
-  visit_list(number, visit, std::make_index_sequence<pair_law_count>{});
-}
+using List = LawList<PairLaws>;
 
 std::array<double, variable_count + max_parameters> inputs_of(const PairState& s, const double* parameters,
                                                               std::size_t count) {
@@ -44,13 +39,8 @@ constexpr std::size_t parameter_count = std::size(Law::parameters);
 
 }  // namespace
 
-template <class Visit>
-void PairLaw::with_list(Visit visit) const {
-  visit_list(number_, visit);
-}
-
 PairLaw::PairLaw(std::uint32_t number) : number_(number) {
-  with_list([&]<class Law>() {
+  List::visit(number_, [&]<class Law>() {
     has_energy_ = Law::has_energy, has_damping_ = Law::has_dashpot, has_drag_ = Law::has_drag;
     depends_on_mass_ = Law::needs_mass;
     parameter_count_ = parameter_count<Law>;
@@ -121,7 +111,7 @@ Elastic PairLaw::elastic(const PairState& state, const double* parameters) const
   Elastic result;
   if (!has_energy_) return result;
   if (number_ < pair_law_count) {
-    with_list([&]<class Law>() { result = Law::elastic(state, parameters); });
+    List::visit(number_, [&]<class Law>() { result = Law::elastic(state, parameters); });
     return result;
   }
   double out[3];
@@ -140,7 +130,7 @@ PairLaw::Slope PairLaw::damping(const PairState& state, const double* parameters
   if (!has_damping_) return {};
   if (number_ < pair_law_count) {
     double c = 0;
-    with_list([&]<class Law>() { c = Law::dashpot(parameters); });
+    List::visit(number_, [&]<class Law>() { c = Law::dashpot(parameters); });
     return {-c * state.v, -c};
   }
   double out[2];
@@ -152,7 +142,7 @@ double PairLaw::drag(const PairState& state, const double* parameters) const {
   double result = 0;
   if (!has_drag_) return result;
   if (number_ < pair_law_count)
-    with_list([&]<class Law>() { result = Law::drag(parameters); });
+    List::visit(number_, [&]<class Law>() { result = Law::drag(parameters); });
   else
     drag_.run_one(inputs_of(state, parameters, parameter_count_).data(), &result, workspace());
   return result;
@@ -202,7 +192,7 @@ IOTA_WIDER void evaluate_list(const PairBatch& b, bool energies) {
 void PairLaw::evaluate(const PairBatch& b) const {
   if (b.count == 0) return;
   if (number_ < pair_law_count) {
-    with_list([&]<class Law>() { evaluate_list<Law>(b, false); });
+    List::visit(number_, [&]<class Law>() { evaluate_list<Law>(b, false); });
   } else {
     double* const outputs[] = {b.force, b.drag};
     run(bonds_, pairs_, b, outputs);
@@ -212,7 +202,7 @@ void PairLaw::evaluate(const PairBatch& b) const {
 void PairLaw::energies(const PairBatch& b) const {
   if (b.count == 0) return;
   if (number_ < pair_law_count)
-    with_list([&]<class Law>() { evaluate_list<Law>(b, true); });
+    List::visit(number_, [&]<class Law>() { evaluate_list<Law>(b, true); });
   else
     run(bond_energies_, pair_energies_, b, &b.energy);
 }
@@ -228,25 +218,13 @@ void PairLaw::run(const Program& of_bonds, const Program& of_pairs, const PairBa
   (b.same_parameters ? of_pairs : of_bonds).run(b.count, lanes.data(), uniforms.data(), outputs, workspace());
 }
 
-std::uint32_t find_pair_law(std::string_view name) {
-  for (std::uint32_t i = 0; i < pair_law_count; ++i)
-    if (name == pair_law_name(i)) return i;
-  return pair_law_count;
-}
-const char* pair_law_name(std::uint32_t number) {
-  const char* name = "";
-  visit_list(number, [&]<class Law>() { name = Law::name; });
-  return name;
-}
+std::uint32_t find_pair_law(std::string_view name) { return List::find(name); }
+const char* pair_law_name(std::uint32_t number) { return List::name(number); }
+std::span<const Parameter> pair_law_parameters(std::uint32_t number) { return List::parameters(number); }
 const char* pair_law_text(std::uint32_t number) {
   const char* text = "";
-  visit_list(number, [&]<class Law>() { text = Law::text; });
+  List::visit(number, [&]<class Law>() { text = Law::text; });
   return text;
-}
-std::span<const Parameter> pair_law_parameters(std::uint32_t number) {
-  std::span<const Parameter> list;
-  visit_list(number, [&]<class Law>() { list = Law::parameters; });
-  return list;
 }
 
 }  // namespace iota::laws

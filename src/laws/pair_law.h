@@ -65,8 +65,6 @@ class PairLaw {
   static constexpr const char* variables[] = {"r", "v", "t", "m_p", "m_q"};
 
  private:
-  template <class Visit>
-  void with_list(Visit visit) const;
   void run(const expression::Program& of_bonds, const expression::Program& of_pairs, const PairBatch&,
            double* const* outputs) const;
 

@@ -6,7 +6,7 @@
 
 namespace iota::laws {
 
-/// Many particles as plain arrays, one for each component, so that loops over them are vectorised.
+/// Many particles as plain arrays, one for each component, so that loops over them are vectorized.
 struct ParticleArrays {
   std::vector<double> x, y, z, vx, vy, vz, m;  ///< m, m/s, kg
   std::vector<double> fx, fy, fz;              ///< N

@@ -51,7 +51,7 @@ Quaternion multiply(const Quaternion& a, const Quaternion& b) {
           a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 
-Quaternion normalised(const Quaternion& q) {
+Quaternion normalized(const Quaternion& q) {
   const double n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   if (!(n > 0)) return {};
   return {q.x / n, q.y / n, q.z / n, q.w / n};
@@ -75,15 +75,15 @@ Quaternion shortest_turn(const Vec3& from, const Vec3& to) {
     return {axis.x, axis.y, axis.z, 0};
   }
   const Vec3 c = cross(from, to);
-  return normalised({c.x, c.y, c.z, 1 + cosine});
+  return normalized({c.x, c.y, c.z, 1 + cosine});
 }
 
 Quaternion from_axes(const Vec3& x, const Vec3& y, const Vec3& z) {
   const double trace = x.x + y.y + z.z;
-  if (trace > 0) return normalised({y.z - z.y, z.x - x.z, x.y - y.x, 1 + trace});
-  if (x.x > y.y && x.x > z.z) return normalised({1 + x.x - y.y - z.z, y.x + x.y, z.x + x.z, y.z - z.y});
-  if (y.y > z.z) return normalised({y.x + x.y, 1 + y.y - x.x - z.z, z.y + y.z, z.x - x.z});
-  return normalised({z.x + x.z, z.y + y.z, 1 + z.z - x.x - y.y, x.y - y.x});
+  if (trace > 0) return normalized({y.z - z.y, z.x - x.z, x.y - y.x, 1 + trace});
+  if (x.x > y.y && x.x > z.z) return normalized({1 + x.x - y.y - z.z, y.x + x.y, z.x + x.z, y.z - z.y});
+  if (y.y > z.z) return normalized({y.x + x.y, 1 + y.y - x.x - z.z, z.y + y.z, z.x - x.z});
+  return normalized({z.x + x.z, z.y + y.z, 1 + z.z - x.x - y.y, x.y - y.x});
 }
 
 Vec3 any_perpendicular(const Vec3& v) {

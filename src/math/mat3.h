@@ -58,7 +58,7 @@ Vec3 solve_semidefinite(const SymmetricEigen& a, const Vec3& b, double tolerance
 
 // Quaternions.
 Quaternion multiply(const Quaternion& a, const Quaternion& b);
-Quaternion normalised(const Quaternion& q);
+Quaternion normalized(const Quaternion& q);
 Vec3 rotate(const Quaternion& q, const Vec3& v);
 Quaternion axis_angle(const Vec3& unit_axis, double angle);
 /// The smallest turn that carries unit vector `from` onto unit vector `to`.

@@ -13,7 +13,7 @@ struct Attributes {
   std::uint32_t particle = 0xffffffff, emitter = 0xffffffff;
   double age = 0, lifetime = std::numeric_limits<double>::infinity();  ///< s
   double radius = 0;                                                   ///< m
-  Colour colour{1, 1, 1, 1};
+  Color color{1, 1, 1, 1};
 
   // An oriented particle turns like a ball: its moment of inertia is the same about every axis.
   std::uint32_t oriented = 0, padding = 0;

@@ -201,7 +201,7 @@ std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
   const Side b = spec.b ? Side(model, spec.b.slot) : Side();
   const Frames frames = plan(kind, spec, a, b);
   const auto origin_of = [&](const Side& s) {
-    return kind.meet || kind.line || s.is_world() ? spec.at : model.centre_of_mass(s.body);
+    return kind.meet || kind.line || s.is_world() ? spec.at : model.center_of_mass(s.body);
   };
   require_span(model, kind.name, a, origin_of(a));
   require_span(model, kind.name, b, origin_of(b));
@@ -319,7 +319,7 @@ std::uint32_t make_constraint(Model& model, const PathData& spec, std::span<cons
   c.particles.fill(none);
   c.particles[a_origin] = spec.particle.slot;
   c.curve.kind = spec.kind, c.curve.closed = spec.closed, c.curve.rounding = spec.rounding;
-  const Vec3 origin = b.is_world() ? Vec3{} : model.centre_of_mass(b.body);
+  const Vec3 origin = b.is_world() ? Vec3{} : model.center_of_mass(b.body);
   std::vector<Vec3> local(points.begin(), points.end());
   for (Vec3& p : local) p -= origin;
   const auto curve = make_curve(c.curve, local);  // refuses bad points before anything changes

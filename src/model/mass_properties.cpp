@@ -88,7 +88,7 @@ void require_closed(const Mesh& mesh) {
   for (const Edge& e : edges) {
     const auto opposite = std::lower_bound(edges.begin(), edges.end(), Edge{e.to, e.from, 0});
     if (opposite == edges.end() || opposite->from != e.to || opposite->to != e.from)
-      refuse("the mesh is not closed: triangle ", e.triangle, " has no neighbour at the edge ", e.from, " - ", e.to,
+      refuse("the mesh is not closed: triangle ", e.triangle, " has no neighbor at the edge ", e.from, " - ", e.to,
              "; close the hole, or join vertices that are at one place");
   }
 }
@@ -131,10 +131,10 @@ MassProperties properties(const Mesh& mesh) {
     refuse("the mesh is inside out (its volume is ", volume, " m^3): turn all triangles round");
   if (!(volume > 1e-9 * extent * extent * extent))
     refuse("the mesh encloses no volume (", volume, " m^3 at ", extent, " m): it is flat, or folds back on itself");
-  const Vec3 centre = (1 / volume) * first;
-  const Mat3 about_centre = (1 / volume) * second + -1.0 * Mat3::outer(centre, centre);
-  MassProperties p{volume, mean + centre, {}};
-  for (int i = 0; i < 3; ++i) p.mean_squares[i] = {about_centre.m[i][0], about_centre.m[i][1], about_centre.m[i][2]};
+  const Vec3 center = (1 / volume) * first;
+  const Mat3 about_center = (1 / volume) * second + -1.0 * Mat3::outer(center, center);
+  MassProperties p{volume, mean + center, {}};
+  for (int i = 0; i < 3; ++i) p.mean_squares[i] = {about_center.m[i][0], about_center.m[i][1], about_center.m[i][2]};
   return p;
 }
 

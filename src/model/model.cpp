@@ -159,7 +159,7 @@ double Model::ring_mass(std::uint32_t ring) const {
   return mass;
 }
 
-Vec3 Model::centre_of_mass(std::uint32_t body) const {
+Vec3 Model::center_of_mass(std::uint32_t body) const {
   double mass = 0;
   Vec3 sum;
   for_each_particle_of(body, [&](std::uint32_t p) {

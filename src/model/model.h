@@ -131,8 +131,8 @@ struct RodSpin {
 enum class SolidKind : std::uint32_t { sphere, box, cylinder, capsule, torus, mesh };
 
 /// A homogeneous solid that a body, or a part of it, was given as. Four ordinary, equal point masses stand for it, at
-///   x_k = centre + R diag(half) t_k,   t_k the corners of a cube with an even number of minus signs,
-/// whose mass, centre and second moments are those of the solid: half_i^2 = second moment i / mass. So a solid is nothing
+///   x_k = center + R diag(half) t_k,   t_k the corners of a cube with an even number of minus signs,
+/// whose mass, center and second moments are those of the solid: half_i^2 = second moment i / mass. So a solid is nothing
 /// new to the physics; the rest of the record is for drawing and for the body's frame.
 struct Solid {
   std::array<std::uint32_t, 4> points{none, none, none, none};
@@ -142,7 +142,7 @@ struct Solid {
   std::array<double, 3> sizes{};  ///< of a primitive, as in iota/shapes.h, m
   std::uint64_t mesh = 0;         ///< key of the triangles, which live outside the tables
   Vec3 half;                      ///< m
-  Vec3 centre;                    ///< of the four, in the shape's frame, m
+  Vec3 center;                    ///< of the four, in the shape's frame, m
   Quaternion principal;           ///< turns vectors of the frame of `half` into the shape's frame
 };
 
@@ -333,7 +333,7 @@ class Model {
 
   /// @name Articulates (Algorithms 1 and 2 of the thesis, without the recursion)
   ///@{
-  void join_articulates(std::uint32_t a, std::uint32_t b);  ///< the smaller is relabelled
+  void join_articulates(std::uint32_t a, std::uint32_t b);  ///< the smaller is relabeled
   /// After a cut between two bodies of one articulate: searches from both at once and, when the smaller side is
   /// exhausted without meeting the other, gives it an articulate of its own. O(smaller side). True if split.
   bool split_articulate(std::uint32_t body_a, std::uint32_t body_b);
@@ -453,7 +453,7 @@ class Model {
   Vec3 velocity(std::uint32_t particle) const { return rings[particles[particle].ring].velocity; }
   double body_mass(std::uint32_t body) const;
   double ring_mass(std::uint32_t ring) const;
-  Vec3 centre_of_mass(std::uint32_t body) const;
+  Vec3 center_of_mass(std::uint32_t body) const;
 
   template <class Visit>
   void for_each_particle_of(std::uint32_t body, Visit visit) const {

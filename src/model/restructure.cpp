@@ -151,7 +151,7 @@ void require_mass_on_its_own(const Model& model, std::uint32_t p, std::uint32_t 
 }
 
 /// The bodies at the other members of a particle's ring.
-std::vector<std::uint32_t> ring_neighbours(const Model& model, std::uint32_t particle) {
+std::vector<std::uint32_t> ring_neighbors(const Model& model, std::uint32_t particle) {
   std::vector<std::uint32_t> bodies;
   model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t other) {
     if (other != particle) bodies.push_back(model.particles[other].body);
@@ -298,8 +298,8 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     require_mass_on_its_own(model, p, q);
     report.changed = true;
     report.closed_distance = norm(model.position(q) - model.position(p));
-    std::vector<std::uint32_t> neighbours = ring_neighbours(model, q);
-    neighbours.push_back(body);
+    std::vector<std::uint32_t> neighbors = ring_neighbors(model, q);
+    neighbors.push_back(body);
     const Vec3 position = model.position(q), velocity = model.velocity(q);
     model.take_from_ring(q);
     model.take_from_body(q);
@@ -315,7 +315,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     const Edit edit = merge_rings(model, model.particles[p].ring, model.particles[q].ring);
     model.join_articulates(model.bodies[body].articulate, model.bodies[own].articulate);
     model.touch(model.bodies[body].articulate);
-    split_where_apart(model, neighbours);
+    split_where_apart(model, neighbors);
     destroy_strays(model, body, strays, report.notes);
     report.created_bodies.push_back(model.bodies.id(own));
     return {edit.moved, true};
@@ -370,7 +370,7 @@ void destroy_particle(Model& model, std::uint32_t particle) {
     if (massive && g.body == body) held.push_back({slot, grip_point(model, g)});
   });
   destroy_uses(model, particle);
-  std::vector<std::uint32_t> apart = ring_neighbours(model, particle);
+  std::vector<std::uint32_t> apart = ring_neighbors(model, particle);
   model.remove_particle(particle);
   model.touch(model.bodies[body].articulate);
   apart.push_back(body);
@@ -385,7 +385,7 @@ void destroy_body(Model& model, std::uint32_t body) {
   while (model.bodies[body].first != none) {
     const std::uint32_t particle = model.bodies[body].first;
     destroy_uses(model, particle);
-    std::vector<std::uint32_t> apart = ring_neighbours(model, particle);
+    std::vector<std::uint32_t> apart = ring_neighbors(model, particle);
     model.remove_particle(particle);
     apart.push_back(body);
     split_where_apart(model, apart);

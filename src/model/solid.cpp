@@ -13,17 +13,17 @@ constexpr std::array<Vec3, 4> corners{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1,
 
 Quaternion conjugate(const Quaternion& q) { return {-q.x, -q.y, -q.z, q.w}; }
 
-/// Puts the four points where they have these principal mean squares about their centre; axes in the world frame.
-void place_points(Model& model, Solid& solid, const Vec3& centre, const SymmetricEigen& e, const SolidPose& pose) {
+/// Puts the four points where they have these principal mean squares about their center; axes in the world frame.
+void place_points(Model& model, Solid& solid, const Vec3& center, const SymmetricEigen& e, const SolidPose& pose) {
   const auto root = [](double value) { return std::sqrt(std::max(value, 0.0)); };
   solid.half = {root(e.values[0]), root(e.values[1]), root(e.values[2])};
   const Quaternion inverse = conjugate(pose.orientation);
   solid.principal = multiply(inverse, from_axes(e.axes[0], e.axes[1], e.axes[2]));
-  solid.centre = rotate(inverse, centre - pose.position);
+  solid.center = rotate(inverse, center - pose.position);
   for (int k = 0; k < 4; ++k) {
     const Vec3& t = corners[k];
     model.rings[model.particles[solid.points[k]].ring].position =
-        centre + (t.x * solid.half.x) * e.axes[0] + (t.y * solid.half.y) * e.axes[1] + (t.z * solid.half.z) * e.axes[2];
+        center + (t.x * solid.half.x) * e.axes[0] + (t.y * solid.half.y) * e.axes[1] + (t.z * solid.half.z) * e.axes[2];
   }
 }
 
@@ -31,26 +31,26 @@ void place_points(Model& model, Solid& solid, const Vec3& centre, const Symmetri
 
 SolidPose solid_pose(const Model& model, std::uint32_t slot) {
   const Solid& solid = model.solids[slot];
-  Vec3 centre, axes[3];
+  Vec3 center, axes[3];
   for (int k = 0; k < 4; ++k) {
     const Vec3 x = model.position(solid.points[k]);
-    centre += 0.25 * x;
+    center += 0.25 * x;
     axes[0] += (corners[k].x / (4 * solid.half.x)) * x;
     axes[1] += (corners[k].y / (4 * solid.half.y)) * x;
     axes[2] += (corners[k].z / (4 * solid.half.z)) * x;
   }
   const Quaternion q = multiply(from_axes(axes[0], axes[1], axes[2]), conjugate(solid.principal));
-  return {centre - rotate(q, solid.centre), q};
+  return {center - rotate(q, solid.center), q};
 }
 
-std::uint32_t add_solid(Model& model, std::uint32_t body, Solid solid, double mass, const Vec3& centre,
+std::uint32_t add_solid(Model& model, std::uint32_t body, Solid solid, double mass, const Vec3& center,
                         const Mat3& mean_squares, const SolidPose& pose) {
   solid.body = body;
-  const Vec3 world_centre = pose.position + rotate(pose.orientation, centre);
-  for (std::uint32_t& point : solid.points) point = model.make_particle(body, world_centre, mass / 4, {});
+  const Vec3 world_center = pose.position + rotate(pose.orientation, center);
+  for (std::uint32_t& point : solid.points) point = model.make_particle(body, world_center, mass / 4, {});
   SymmetricEigen principal = symmetric_eigen(mean_squares);
   for (Vec3& axis : principal.axes) axis = rotate(pose.orientation, axis);
-  place_points(model, solid, world_centre, principal, pose);
+  place_points(model, solid, world_center, principal, pose);
   const std::uint32_t slot = model.solids.create(solid).slot;
   std::uint32_t* last = &model.bodies[body].first_solid;
   while (*last != none) last = &model.solids[*last].next;
@@ -72,28 +72,28 @@ std::uint32_t attach(Model& model, std::uint32_t slot, const Vec3& position) {
   const SolidPose pose = solid_pose(model, slot);
   Solid& solid = model.solids[slot];
   const Vec3 spin = body_angular_velocity(model, solid.body);
-  const Vec3 velocity = body_velocity(model, solid.body), body_centre = model.centre_of_mass(solid.body);
+  const Vec3 velocity = body_velocity(model, solid.body), body_center = model.center_of_mass(solid.body);
 
   double mass = 0;
-  Vec3 centre;
+  Vec3 center;
   Mat3 squares;
-  for (const std::uint32_t p : solid.points) mass += model.particles[p].mass, centre += 0.25 * model.position(p);
+  for (const std::uint32_t p : solid.points) mass += model.particles[p].mass, center += 0.25 * model.position(p);
   for (const std::uint32_t p : solid.points) {
-    const Vec3 r = model.position(p) - centre;
+    const Vec3 r = model.position(p) - center;
     squares += 0.25 * Mat3::outer(r, r);
   }
   // A share so small that what remains is positive however far away the place is: at most a ten thousandth of the mass,
   // and a fiftieth of the second moment along the arm.
-  const Vec3 arm = position - centre;
+  const Vec3 arm = position - center;
   const double reach = dot(arm, solve_semidefinite(squares, arm, 1e-14));
   const double share = std::min(1e-4, 0.02 / (reach + 1e-300)), rest = 1 - share;
-  const Vec3 shift = (-share / rest) * arm;  // of the four points' centre
+  const Vec3 shift = (-share / rest) * arm;  // of the four points' center
   Mat3 remaining = squares + -share * Mat3::outer(arm, arm);
   remaining = (1 / rest) * remaining + -1.0 * Mat3::outer(shift, shift);
 
   for (const std::uint32_t p : solid.points) model.particles[p].mass = rest * mass / 4;
-  place_points(model, solid, centre + shift, symmetric_eigen(remaining), pose);
-  const auto motion = [&](const Vec3& x) { return velocity + cross(spin, x - body_centre); };
+  place_points(model, solid, center + shift, symmetric_eigen(remaining), pose);
+  const auto motion = [&](const Vec3& x) { return velocity + cross(spin, x - body_center); };
   for (const std::uint32_t p : solid.points) {
     Ring& ring = model.rings[model.particles[p].ring];
     ring.velocity = motion(ring.position);
@@ -106,10 +106,10 @@ std::uint32_t attach(Model& model, std::uint32_t slot, const Vec3& position) {
 }
 
 Mat3 body_inertia(const Model& model, std::uint32_t body) {
-  const Vec3 centre = model.centre_of_mass(body);
+  const Vec3 center = model.center_of_mass(body);
   Mat3 inertia;
   model.for_each_particle_of(
-      body, [&](std::uint32_t p) { inertia += point_inertia(model.particles[p].mass, model.position(p) - centre); });
+      body, [&](std::uint32_t p) { inertia += point_inertia(model.particles[p].mass, model.position(p) - center); });
   model.for_each_inertia_of(body, [&](std::uint32_t i) {
     const InertiaPair& pair = model.inertia_pairs[i];
     inertia += point_inertia(pair.inertia, model.position(pair.p) - model.position(pair.q));
@@ -130,10 +130,10 @@ Vec3 body_velocity(const Model& model, std::uint32_t body) {
 }
 
 Vec3 body_angular_momentum(const Model& model, std::uint32_t body) {
-  const Vec3 centre = model.centre_of_mass(body);
+  const Vec3 center = model.center_of_mass(body);
   Vec3 sum;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
-    sum += model.particles[p].mass * cross(model.position(p) - centre, model.velocity(p));
+    sum += model.particles[p].mass * cross(model.position(p) - center, model.velocity(p));
   });
   model.for_each_inertia_of(body, [&](std::uint32_t i) {
     const InertiaPair& pair = model.inertia_pairs[i];

@@ -14,21 +14,21 @@ struct SolidPose {
 SolidPose solid_pose(const Model&, std::uint32_t solid);
 
 /// Gives an empty body the four point masses of a solid, at rest. `solid` comes with kind, sizes and mesh; the rest is
-/// filled in. mean_squares and centre as in MassProperties.
-std::uint32_t add_solid(Model&, std::uint32_t body, Solid solid, double mass, const Vec3& centre,
+/// filled in. mean_squares and center as in MassProperties.
+std::uint32_t add_solid(Model&, std::uint32_t body, Solid solid, double mass, const Vec3& center,
                         const Mat3& mean_squares, const SolidPose& pose);
 
 /// Whether the four points of a solid may still be moved: no hinge, nail or bond holds on to them, and they are equal.
 bool is_untouched(const Model&, std::uint32_t solid);
 
 /// A further particle of a body at a place (world). It takes a small share of mass from a solid, whose four points are
-/// set anew so that the body's mass, centre of mass, inertia and motion stay what they are, to round-off.
+/// set anew so that the body's mass, center of mass, inertia and motion stay what they are, to round-off.
 std::uint32_t attach(Model&, std::uint32_t solid, const Vec3& position);
 
-/// Inertia about the centre of mass, world axes, kg m^2 (thesis, Eq. 2.28; inertia pairs included).
+/// Inertia about the center of mass, world axes, kg m^2 (thesis, Eq. 2.28; inertia pairs included).
 Mat3 body_inertia(const Model&, std::uint32_t body);
-Vec3 body_velocity(const Model&, std::uint32_t body);          ///< of the centre of mass, m/s
-Vec3 body_angular_momentum(const Model&, std::uint32_t body);  ///< about the centre of mass, kg m^2/s
+Vec3 body_velocity(const Model&, std::uint32_t body);          ///< of the center of mass, m/s
+Vec3 body_angular_momentum(const Model&, std::uint32_t body);  ///< about the center of mass, kg m^2/s
 /// rad/s; no part of it along what has no inertia: one point, or the line that all points are on.
 Vec3 body_angular_velocity(const Model&, std::uint32_t body);
 

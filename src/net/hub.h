@@ -65,7 +65,7 @@ class Hub {
   /// One frame of a welcomed client. What is not understood is answered by a notice.
   void receive(std::uint32_t client, std::span<const std::uint8_t> bytes);
   void refuse_frame(std::uint32_t client, std::string_view reason);
-  const PoseQuantiser& poses() const { return poses_; }
+  const PoseQuantizer& poses() const { return poses_; }
   /// Number of the newest poses, 0 before the first.
   std::uint64_t pose_number() const { return pose_number_; }
 
@@ -116,7 +116,7 @@ class Hub {
   Frame structure_;
   std::vector<Edit> delivering_;
   PoseSnapshot delivered_;
-  PoseQuantiser poses_;
+  PoseQuantizer poses_;
   std::uint64_t pose_number_ = 0;
 };
 

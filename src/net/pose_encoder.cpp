@@ -13,7 +13,7 @@ constexpr double steps = 65535;
 constexpr double half_range = 1 / std::numbers::sqrt2;  // no component but the largest can be beyond it
 constexpr double rotation_steps = 1023;
 
-/// Bodies that lie together within this are quantised together, whatever the spread at the start was, m.
+/// Bodies that lie together within this are quantized together, whatever the spread at the start was, m.
 constexpr double least_limit = 64;
 
 /// A float has no useful grid beyond this, and the box would leave its range, m.
@@ -25,13 +25,13 @@ bool is_finite(const float (&v)[3]) {
 float finite_or_zero(float value) { return std::isfinite(value) ? value : 0.0F; }
 protocol::Vec3 to_vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-std::uint16_t quantise(float value, float low, float high) {
+std::uint16_t quantize(float value, float low, float high) {
   const double edge = static_cast<double>(high) - low;
   const double step = std::round((static_cast<double>(value) - low) / edge * steps);
   return static_cast<std::uint16_t>(std::clamp(step, 0.0, steps));
 }
 
-float unquantise(std::uint16_t step, float low, float high) {
+float unquantize(std::uint16_t step, float low, float high) {
   return static_cast<float>(low + step / steps * (static_cast<double>(high) - low));
 }
 
@@ -73,18 +73,18 @@ std::array<float, 4> unpack_rotation(std::uint32_t packed) {
 }
 
 std::array<float, 3> unpack_position(const protocol::Poses& poses, const protocol::PoseBody& body) {
-  return {unquantise(body.x, poses.box_min[0], poses.box_max[0]),
-          unquantise(body.y, poses.box_min[1], poses.box_max[1]),
-          unquantise(body.z, poses.box_min[2], poses.box_max[2])};
+  return {unquantize(body.x, poses.box_min[0], poses.box_max[0]),
+          unquantize(body.y, poses.box_min[1], poses.box_max[1]),
+          unquantize(body.z, poses.box_min[2], poses.box_max[2])};
 }
 
-// ----------------------------------------------------------------------------------------------------------- quantiser
+// ----------------------------------------------------------------------------------------------------------- quantizer
 
-double PoseQuantiser::Bounds::longest_edge() const {
+double PoseQuantizer::Bounds::longest_edge() const {
   return std::max({max[0] - min[0], max[1] - min[1], max[2] - min[2]});
 }
 
-PoseQuantiser::Bounds PoseQuantiser::Bounds::with(const float (&position)[3]) const {
+PoseQuantizer::Bounds PoseQuantizer::Bounds::with(const float (&position)[3]) const {
   Bounds out = *this;
   for (std::size_t i = 0; i < 3; ++i) {
     out.min[i] = std::min<double>(out.min[i], position[i]);
@@ -93,7 +93,7 @@ PoseQuantiser::Bounds PoseQuantiser::Bounds::with(const float (&position)[3]) co
   return out;
 }
 
-bool PoseQuantiser::Bounds::contains(const float (&position)[3]) const {
+bool PoseQuantizer::Bounds::contains(const float (&position)[3]) const {
   for (std::size_t i = 0; i < 3; ++i) {
     if (!(position[i] >= min[i] && position[i] <= max[i])) return false;  // also for NaN
   }
@@ -101,7 +101,7 @@ bool PoseQuantiser::Bounds::contains(const float (&position)[3]) const {
 }
 
 /// From the 10th to the 90th of a hundred bodies on each axis: a few that are far off do not count.
-PoseQuantiser::Bounds PoseQuantiser::bulk_of(std::span<const BodyPose> bodies) {
+PoseQuantizer::Bounds PoseQuantizer::bulk_of(std::span<const BodyPose> bodies) {
   Bounds out{};
   for (std::size_t i = 0; i < 3; ++i) {
     sorted_.clear();
@@ -119,7 +119,7 @@ PoseQuantiser::Bounds PoseQuantiser::bulk_of(std::span<const BodyPose> bodies) {
   return out;
 }
 
-void PoseQuantiser::set_box(const Bounds& bulk) {
+void PoseQuantizer::set_box(const Bounds& bulk) {
   // Room to swing without another box soon; the error stays a small part of what is seen.
   const double margin = std::max(0.5, bulk.longest_edge() / 2);
   Bounds box = bulk;
@@ -137,7 +137,7 @@ void PoseQuantiser::set_box(const Bounds& bulk) {
   ++box_version_;
 }
 
-void PoseQuantiser::fit_box(std::span<const BodyPose> bodies) {
+void PoseQuantizer::fit_box(std::span<const BodyPose> bodies) {
   std::optional<Bounds> inside;
   if (box_) {
     for (const BodyPose& body : bodies) {
@@ -164,7 +164,7 @@ void PoseQuantiser::fit_box(std::span<const BodyPose> bodies) {
   if (is_new || has_grown || is_too_wide) set_box(*inside);
 }
 
-void PoseQuantiser::add_body(const BodyPose& body) {
+void PoseQuantizer::add_body(const BodyPose& body) {
   const auto rotation = pack_rotation(body.orientation);
   if (!is_finite(body.position) || !rotation) return;
   if (body.body > 0xFFFF || !box_->contains(body.position)) {
@@ -172,12 +172,12 @@ void PoseQuantiser::add_body(const BodyPose& body) {
     return;
   }
   poses_.bodies.push_back({static_cast<std::uint16_t>(body.body),
-                           quantise(body.position[0], poses_.box_min[0], poses_.box_max[0]),
-                           quantise(body.position[1], poses_.box_min[1], poses_.box_max[1]),
-                           quantise(body.position[2], poses_.box_min[2], poses_.box_max[2]), *rotation});
+                           quantize(body.position[0], poses_.box_min[0], poses_.box_max[0]),
+                           quantize(body.position[1], poses_.box_min[1], poses_.box_max[1]),
+                           quantize(body.position[2], poses_.box_min[2], poses_.box_max[2]), *rotation});
 }
 
-void PoseQuantiser::update(const PoseSnapshot& snapshot) {
+void PoseQuantizer::update(const PoseSnapshot& snapshot) {
   poses_.step = snapshot.step;
   poses_.time = std::isfinite(snapshot.time) ? snapshot.time : 0;
   poses_.structure_version = snapshot.structure_version;
@@ -229,7 +229,7 @@ bool PoseDelta::note_far(const protocol::PoseFarBody& body) {
   return true;
 }
 
-void PoseDelta::encode(const PoseQuantiser& latest, bool wants_keyframe, std::vector<std::uint8_t>& out) {
+void PoseDelta::encode(const PoseQuantizer& latest, bool wants_keyframe, std::vector<std::uint8_t>& out) {
   const protocol::Poses& all = latest.poses();
   const bool is_keyframe =
       wants_keyframe || box_version_ != latest.box_version() || structure_version_ != all.structure_version;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From snapshots to poses frames: quantisation once per snapshot, then per client only what moved.
+// From snapshots to poses frames: quantization once per snapshot, then per client only what moved.
 //
 // A position takes 3 x 16 bits within a box around the bodies, a rotation 2 + 3 x 10 bits ("smallest three"): 12 bytes
 // a body with its slot. A body far from all others (a piece that fell off and falls on) would blow up the box and with
@@ -19,7 +19,7 @@
 
 namespace iota::net {
 
-/// The packed rotation of a quaternion (x y z w), normalised first; nothing when it is not finite or about zero.
+/// The packed rotation of a quaternion (x y z w), normalized first; nothing when it is not finite or about zero.
 std::optional<std::uint32_t> pack_rotation(const float (&orientation)[4]);
 
 /// The unit quaternion (x y z w) of a packed rotation.
@@ -29,7 +29,7 @@ std::array<float, 4> unpack_rotation(std::uint32_t packed);
 std::array<float, 3> unpack_position(const protocol::Poses& poses, const protocol::PoseBody& body);
 
 /// Keeps the box and turns snapshots into frames that list every body.
-class PoseQuantiser {
+class PoseQuantizer {
  public:
   /// Bodies and holds that are not finite are left out. No allocation once the sizes have settled.
   void update(const PoseSnapshot& snapshot);
@@ -63,7 +63,7 @@ class PoseDelta {
  public:
   /// Replaces `out` by the next frame for this client. A keyframe when asked for, at first, and after a change of box
   /// or structure.
-  void encode(const PoseQuantiser& latest, bool wants_keyframe, std::vector<std::uint8_t>& out);
+  void encode(const PoseQuantizer& latest, bool wants_keyframe, std::vector<std::uint8_t>& out);
   bool last_was_keyframe() const { return frame_.keyframe; }
 
  private:

@@ -293,7 +293,7 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
 template <bool Midpoint>
 bool Assembly::factor_and_solve(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
   assemble<Midpoint>(problem, stage, x, hessian);
-  const bool good = factor_.factorise(unknowns_) == 0;
+  const bool good = factor_.factorize(unknowns_) == 0;
   factor_.finish(unknowns_);
   return good;
 }

@@ -27,10 +27,10 @@ enum class Hessian { exact, clamped, none };
 /// row and coupling lies in the matrix.
 class Assembly {
  public:
-  /// Analyses the structure of the problem; call again whenever nodes, constraints or forces were added or removed.
+  /// Analyzes the structure of the problem; call again whenever nodes, constraints or forces were added or removed.
   void compile(Problem&);
   /// Does as `compile` after nodes were added at the end and rows between them rewired, for a fraction of the time where
-  /// that is possible. `added`: the new nodes and an old neighbour in the order each; `removed`: nodes that nothing
+  /// that is possible. `added`: the new nodes and an old neighbor in the order each; `removed`: nodes that nothing
   /// refers to any more, which go; `touched`: all nodes that gained or lost a coupling, those included.
   void relink(Problem&, std::span<const std::array<std::uint32_t, 2>> added, std::span<const std::uint32_t> removed,
               std::span<const std::uint32_t> touched);

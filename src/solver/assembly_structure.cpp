@@ -74,7 +74,7 @@ double mean_reference_length(const Problem& problem) {
 
 void Assembly::compile(Problem& problem) {
   reference_length_ = mean_reference_length(problem);
-  pattern_.analyse(graph_of(problem));
+  pattern_.analyze(graph_of(problem));
   factor_.reset(pattern_);
 
   for (auto& c : problem.mass_couplings) c.slot = pattern_.pair_slot(c.a, c.b);
@@ -124,14 +124,14 @@ bool Assembly::try_relink(Problem& problem, std::span<const std::array<std::uint
   change.removed.assign(removed.begin(), removed.end());
   change.touched.assign(touched.begin(), touched.end());
 
-  // Rows of bodies on the touched nodes and on their neighbours may find another home; nothing else may be there.
+  // Rows of bodies on the touched nodes and on their neighbors may find another home; nothing else may be there.
   std::vector<std::uint8_t> near(problem.size(), 0);
   for (const std::uint32_t node : touched) near[node] = 1;
   auto& distances = std::get<ConstraintPool<DistanceConstraint>>(problem.constraints);
-  std::vector<std::uint32_t> neighbours;
+  std::vector<std::uint32_t> neighbors;
   for (const DistanceConstraint& c : distances.items)
-    if (near[c.nodes[0]] || near[c.nodes[1]]) neighbours.insert(neighbours.end(), c.nodes.begin(), c.nodes.end());
-  for (const std::uint32_t node : neighbours) near[node] = 1;
+    if (near[c.nodes[0]] || near[c.nodes[1]]) neighbors.insert(neighbors.end(), c.nodes.begin(), c.nodes.end());
+  for (const std::uint32_t node : neighbors) near[node] = 1;
   std::vector<std::uint32_t> items;
   for (std::uint32_t i = 0; i < distances.items.size(); ++i) {
     const auto& nodes = distances.items[i].nodes;
@@ -147,7 +147,7 @@ bool Assembly::try_relink(Problem& problem, std::span<const std::array<std::uint
   });
   if (strangers) return false;
 
-  change.neighbours = [&](std::uint32_t node, std::vector<std::uint32_t>& with) {
+  change.neighbors = [&](std::uint32_t node, std::vector<std::uint32_t>& with) {
     for (const auto& c : problem.mass_couplings)
       if (c.a == node || c.b == node) with.push_back(c.a == node ? c.b : c.a);
     const auto add_all = [&](const auto& nodes, int count) {

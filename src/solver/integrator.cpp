@@ -43,7 +43,7 @@ std::span<const double> Integrator::lumped_masses(const Problem& problem) {
 }
 
 // End point: where the forces of the last step would carry the points, x0 + h v0 + (f - G0' lambda) / (inertia m), which
-// saves half an iteration to one over x0 + h v0. Coupled masses are lumped: exact for neighbours that accelerate alike.
+// saves half an iteration to one over x0 + h v0. Coupled masses are lumped: exact for neighbors that accelerate alike.
 // Mid-point: the same would take up to twice the iterations, since multipliers ring from step to step; from x0 + h v0 two
 // sweeps bring lengths back.
 void Integrator::make_guess(const Problem& problem, const Stage& stage) {
@@ -372,7 +372,7 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
   }
 }
 
-// Takes made-up energy out of the motion: all velocities get smaller alike, relative to the centre of mass where nothing
+// Takes made-up energy out of the motion: all velocities get smaller alike, relative to the center of mass where nothing
 // outside holds on, which no constraint notices.
 void Integrator::shed(Problem& problem, double excess, double fraction, AdvanceReport& report) {
   Vec3 drift;

@@ -129,7 +129,7 @@ bool Integrator::project_positions(Problem& problem) {
 }
 
 // Many links away from a solution Newton gets lost, but a part of the way it finds (a fine chain pulled together over
-// centimetres). What remains is held as offsets meanwhile.
+// centimeters). What remains is held as offsets meanwhile.
 template <class Attempt>
 bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
   double remaining = 1, part = 0.25;

@@ -24,13 +24,13 @@ struct [[nodiscard]] NewtonReport {
           ///< ones "converge" without being met
 };
 
-/// Newton's method with exact geometric stiffness, globalised: a step is taken when the scaled residual or an l1 merit
+/// Newton's method with exact geometric stiffness, globalized: a step is taken when the scaled residual or an l1 merit
 /// falls; the Hessian is clamped to positive semi-definite once full steps stop halving the residual or a pivot has the
 /// wrong sign. `docs/solver.md` gives the measurements behind each rule. Between iterations an ActiveSet moves bounded rows;
 /// at a bound a row keeps its place in the matrix, as an identity.
 class Newton {
  public:
-  /// Makes room and analyses the structure of the problem: see Assembly.
+  /// Makes room and analyzes the structure of the problem: see Assembly.
   void compile(Problem& problem);
   void relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
               std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched);

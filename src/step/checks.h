@@ -26,7 +26,7 @@ inline std::string text_of(const Vec3& v) { return text("(", v.x, ", ", v.y, ", 
 
 inline void require_finite(std::string_view name, const Vec3& v) {
   if (!is_finite(v)) throw std::invalid_argument(text(name, " must be finite, got ", text_of(v)));
-  constexpr double limit = 1e9;  // metres or m/s: beyond it a double no longer resolves micrometres
+  constexpr double limit = 1e9;  // meters or m/s: beyond it a double no longer resolves micrometers
   if (std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) > limit)
     throw std::invalid_argument(text(name, " must have no component above 1e9, got ", text_of(v)));
 }

@@ -45,7 +45,7 @@ struct CreateSolid {
   double damping, mass;
   std::array<double, 3> sizes;
   std::uint64_t mesh;
-  Vec3 centre;
+  Vec3 center;
   Matrix3 mean_squares;
   Vec3 position, velocity, spin;
   Quaternion orientation;

@@ -429,12 +429,7 @@ std::vector<ParticleId> System::particles(ConstraintId id) const {
     if (p != none) ids.push_back(m.particles.id(p));
   return ids;
 }
-std::vector<ConstraintId> System::constraints() const {
-  const model::Model& m = implementation_->model;
-  std::vector<ConstraintId> ids;
-  m.constraints.for_each([&](std::uint32_t slot, const model::Constraint&) { ids.push_back(m.constraints.id(slot)); });
-  return ids;
-}
+std::vector<ConstraintId> System::constraints() const { return implementation_->model.constraints.ids(); }
 bool System::contains(ConstraintId id) const { return implementation_->model.constraints.contains(id); }
 
 }  // namespace iota

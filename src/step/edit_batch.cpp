@@ -12,14 +12,6 @@ namespace step {
 
 namespace {
 
-template <class IdType, class Table>
-std::vector<IdType> alive_in(const Table& table) {
-  std::vector<IdType> ids;
-  ids.reserve(table.size());
-  table.for_each([&](std::uint32_t slot, const auto&) { ids.push_back(table.id(slot)); });
-  return ids;
-}
-
 template <class IdType>
 void note_changes(const std::vector<IdType>& before, const std::vector<IdType>& after, std::vector<IdType>& created,
                   std::vector<IdType>& gone) {
@@ -56,8 +48,8 @@ void add_report(RestructureReport& sum, const RestructureReport& report) {
 
 EditBatch::EditBatch(const model::Model& model, Snapshot start)
     : before(std::move(start)),
-      bodies_(alive_in<BodyId>(model.bodies)),
-      particles_(alive_in<ParticleId>(model.particles)),
+      bodies_(model.bodies.ids()),
+      particles_(model.particles.ids()),
       version_(model.structure_version),
       edit_energy_(model.energy_of_edits()) {
   report_.articulates_before = model.articulates.size();
@@ -71,9 +63,8 @@ void EditBatch::add(const RestructureReport& report) {
 
 RestructureReport EditBatch::finish(const model::Model& model) {
   report_.changed = model.structure_version != version_;
-  note_changes(bodies_, alive_in<BodyId>(model.bodies), report_.created_bodies, report_.destroyed_bodies);
-  note_changes(particles_, alive_in<ParticleId>(model.particles), report_.created_particles,
-               report_.destroyed_particles);
+  note_changes(bodies_, model.bodies.ids(), report_.created_bodies, report_.destroyed_bodies);
+  note_changes(particles_, model.particles.ids(), report_.created_particles, report_.destroyed_particles);
   forget_absorbed(report_.destroyed_bodies, report_.absorbed_bodies);
   forget_absorbed(report_.destroyed_particles, report_.absorbed_particles);
   report_.articulates_after = model.articulates.size();

@@ -53,7 +53,7 @@ Quaternion unit(std::string_view name, const Quaternion& q) {
   if (!(length2 > 1e-12) || !std::isfinite(length2))
     throw std::invalid_argument(text(name, " must be a quaternion x y z w that is finite and not zero, got (", q.x,
                                      ", ", q.y, ", ", q.z, ", ", q.w, ")"));
-  return normalised(q);
+  return normalized(q);
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ BodyId System::create_body(const Shape& shape, const SolidOptions& o) {
   command.sizes = sizes_of(shape);
   if (std::isnan(o.mass)) require_positive("density", o.density);
   command.mass = std::isnan(o.mass) ? o.density * p.volume : o.mass;
-  command.centre = p.centre, command.mean_squares = p.mean_squares;
+  command.center = p.center, command.mean_squares = p.mean_squares;
   command.position = o.position, command.velocity = o.velocity, command.spin = o.spin;
   command.orientation = unit("orientation", o.orientation);
   for (const Vec3& a : o.attachments) require_finite("each attachment", a);
@@ -242,11 +242,11 @@ BodyId System::Implementation::apply(const CreateSolid& c) {
   model::Solid solid;
   solid.kind = static_cast<model::SolidKind>(c.shape), solid.sizes = c.sizes, solid.mesh = c.mesh;
   const model::SolidPose pose{c.position, c.orientation};
-  add_solid(model, body, solid, c.mass, c.centre, to_mat3(c.mean_squares), pose);
-  const Vec3 centre = model.centre_of_mass(body);
+  add_solid(model, body, solid, c.mass, c.center, to_mat3(c.mean_squares), pose);
+  const Vec3 center = model.center_of_mass(body);
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     model::Ring& ring = model.rings[model.particles[p].ring];
-    ring.velocity = c.velocity + cross(c.spin, ring.position - centre);
+    ring.velocity = c.velocity + cross(c.spin, ring.position - center);
   });
   structure_changed();
   return model.bodies.id(body);
@@ -295,8 +295,8 @@ void System::Implementation::apply(const SetPose& c) {
   refresh_orientations();
   const Quaternion& q = model.bodies[body].orientation;
   const Quaternion turn = multiply(wanted, {-q.x, -q.y, -q.z, q.w});
-  const Vec3 centre = model.centre_of_mass(body);
-  const auto moved = [&](const Vec3& x) { return c.position + rotate(turn, x - centre); };
+  const Vec3 center = model.center_of_mass(body);
+  const auto moved = [&](const Vec3& x) { return c.position + rotate(turn, x - center); };
   const std::uint32_t articulate = model.bodies[body].articulate;
   if (model.bodies[body].kind == BodyKind::scripted) {
     model.for_each_particle_of(
@@ -398,8 +398,8 @@ void System::Implementation::apply(const SetAngularVelocity& c) {
   require_finite("angular velocity", c.value);
   require_particles(model, body);
   require_can_spin(model, body, c.value);
-  const Vec3 change = c.value - body_angular_velocity(model, body), centre = model.centre_of_mass(body);
-  add_motion(body, [&](const Vec3& x) { return cross(change, x - centre); });
+  const Vec3 change = c.value - body_angular_velocity(model, body), center = model.center_of_mass(body);
+  add_motion(body, [&](const Vec3& x) { return cross(change, x - center); });
   if (!(model.axial_inertia(body) > 0)) return;
   constexpr double round_off = 1e-12;
   const double spin = dot(c.value, model.rod_axis(body));

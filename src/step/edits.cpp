@@ -150,7 +150,7 @@ GripId System::Implementation::apply(const step::CreateGrip& c) {
   grip.client = c.options.client, grip.hold = c.options.hold;
   grip.frequency = c.options.frequency, grip.max_acceleration = c.options.max_acceleration;
   grip.target = c.target;
-  model::anchor_grip(model, grip, model.centre_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point));
+  model::anchor_grip(model, grip, model.center_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point));
   model.touch(model.bodies[body].articulate);
   return model.grips.create(grip);
 }
@@ -366,27 +366,27 @@ bool System::Implementation::give_back_momenta(std::span<const std::uint32_t> bo
   if (!(mass > 0)) return false;
   sort_unique(rings);
 
-  const Vec3 centre = (1 / mass) * first_moment;
+  const Vec3 center = (1 / mass) * first_moment;
   Mat3 inertia;
   for (const std::uint32_t b : members) {
     model.for_each_particle_of(
-        b, [&](std::uint32_t p) { inertia += point_inertia(model.particles[p].mass, model.position(p) - centre); });
+        b, [&](std::uint32_t p) { inertia += point_inertia(model.particles[p].mass, model.position(p) - center); });
     model.for_each_inertia_of(b, [&](std::uint32_t i) {
       const model::InertiaPair& pair = model.inertia_pairs[i];
       inertia += point_inertia(pair.inertia, model.position(pair.p) - model.position(pair.q));
     });
   }
   const double trace = inertia.m[0][0] + inertia.m[1][1] + inertia.m[2][2];
-  const bool is_a_point = !(trace > 1e-24 * mass * dot(centre, centre));  // what there is of it is round-off
+  const bool is_a_point = !(trace > 1e-24 * mass * dot(center, center));  // what there is of it is round-off
   for (int pass = 0; pass < 2; ++pass) {  // the second takes away the round-off of the first
     const Conserved now = conserved(affected);
     const Vec3 lost = before.momentum - now.momentum;
-    const Vec3 lost_spin = before.angular_momentum - now.angular_momentum - cross(centre, lost);
+    const Vec3 lost_spin = before.angular_momentum - now.angular_momentum - cross(center, lost);
     Vec3 turn = solve_semidefinite(inertia, lost_spin);
     // Bodies that were pulled together to almost a point would have to spin absurdly to keep their angular momentum.
     if (is_a_point || 0.5 * dot(turn, lost_spin) > 3 * (before.kinetic + 1e-12)) turn = {};
     for (const std::uint32_t ring : rings)
-      model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - centre);
+      model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - center);
   }
   return true;
 }

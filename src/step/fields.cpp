@@ -162,10 +162,7 @@ PairsId System::Implementation::apply(const step::CreatePairs& c) {
 
 void System::Implementation::apply(const step::SetPairsParameter& c) {
   model::Pairs& pairs = model.pairs[require(c.pairs)];
-  const model::Law& law = model.laws[pairs.law];
-  if (c.index >= law.parameter_count) throw std::invalid_argument("set_parameter: no such parameter");
-  require_parameter_value(law, c.index, c.value);
-  pairs.parameters[c.index] = c.value;
+  step::set_parameter(model.laws[pairs.law], pairs.parameters, c.index, c.value);
 }
 
 void System::Implementation::apply(const step::SetPairsActive& c) { model.pairs[require(c.pairs)].active = c.active; }
@@ -199,12 +196,7 @@ bool System::contains(GroupId group, ParticleId particle) const {
 std::string System::name(GroupId id) const {
   return implementation_->model.groups[implementation_->require(id)].name.data();
 }
-std::vector<GroupId> System::groups() const {
-  std::vector<GroupId> list;
-  implementation_->model.groups.for_each(
-      [&](std::uint32_t slot, const model::Group&) { list.push_back(implementation_->model.groups.id(slot)); });
-  return list;
-}
+std::vector<GroupId> System::groups() const { return implementation_->model.groups.ids(); }
 std::vector<ParticleId> System::particles(GroupId group) const {
   const std::uint32_t bit = 1u << implementation_->require(group);
   std::vector<ParticleId> list;
@@ -241,20 +233,14 @@ void System::set_parameter(FieldId id, std::string_view name, double value) {
   const std::uint32_t index = require_parameter(field.name.data(), field.names, field.parameter_count, name);
   implementation_->execute(step::SetFieldParameter{id, index, value});
 }
-std::vector<FieldId> System::fields() const {
-  std::vector<FieldId> list;
-  implementation_->model.fields.for_each(
-      [&](std::uint32_t slot, const model::Field&) { list.push_back(implementation_->model.fields.id(slot)); });
-  return list;
-}
+std::vector<FieldId> System::fields() const { return implementation_->model.fields.ids(); }
 
 PairsId System::create_pairs(const SharedLaw& shared, const PairsOptions& options) {
   const model::Law& law = implementation_->model.laws[implementation_->require(shared.law)];
   if (shared.implicit.value_or(false))
     throw std::invalid_argument("pairwise forces are taken once a step and held: they cannot be implicit");
   step::CreatePairs command{shared.law, options.group.value_or(GroupId{}), options.cutoff, law.standard};
-  for (const LawParameter& p : shared.parameters)
-    command.parameters[require_parameter(law.name.data(), law.parameters, law.parameter_count, p.name)] = p.value;
+  for (const LawParameter& p : shared.parameters) command.parameters[require_parameter(law, p.name)] = p.value;
   return implementation_->execute(command);
 }
 void System::destroy(PairsId id) { implementation_->execute(step::Destroy<PairsId>{id}); }
@@ -269,21 +255,14 @@ double System::cutoff(PairsId id) const { return implementation_->model.pairs[im
 std::vector<LawParameter> System::parameters(PairsId id) const {
   const model::Model& m = implementation_->model;
   const model::Pairs& pairs = m.pairs[implementation_->require(id)];
-  const model::Law& law = m.laws[pairs.law];
-  return list_parameters(law.parameters, law.parameter_count, pairs.parameters.data());
+  return list_parameters(m.laws[pairs.law], pairs.parameters);
 }
 void System::set_parameter(PairsId id, std::string_view name, double value) {
   const model::Model& m = implementation_->model;
-  const model::Law& law = m.laws[m.pairs[implementation_->require(id)].law];
-  const std::uint32_t index = require_parameter(law.name.data(), law.parameters, law.parameter_count, name);
+  const std::uint32_t index = require_parameter(m.laws[m.pairs[implementation_->require(id)].law], name);
   implementation_->execute(step::SetPairsParameter{id, index, value});
 }
-std::vector<PairsId> System::all_pairs() const {
-  std::vector<PairsId> list;
-  implementation_->model.pairs.for_each(
-      [&](std::uint32_t slot, const model::Pairs&) { list.push_back(implementation_->model.pairs.id(slot)); });
-  return list;
-}
+std::vector<PairsId> System::all_pairs() const { return implementation_->model.pairs.ids(); }
 double System::energy(PairsId id) const { return implementation_->pairs_energy(implementation_->require(id)); }
 
 }  // namespace iota

@@ -18,16 +18,9 @@ double LawBatch::energy(const model::Model& model) {
   const laws::PairLaw& compiled = model.compiled(law);
   if (!compiled.has_energy()) return 0;
   load(model, 0);
-  std::array<const double*, laws::max_parameters> columns{};
-  for (std::size_t k = 0; k < columns.size(); ++k) columns[k] = parameters[k].data();
-  compiled.energies({.count = bonds.size(),
-                     .r = r.data(),
-                     .v = v.data(),
-                     .m_p = m_p.data(),
-                     .m_q = m_q.data(),
-                     .t = model.time,
-                     .parameters = columns.data(),
-                     .energy = force.data()});
+  laws::PairBatch numbers = loaded(model.time);
+  numbers.energy = force.data();
+  compiled.energies(numbers);
   double sum = 0;
   for (const double one : force)
     if (std::isfinite(one)) sum += one;
@@ -99,8 +92,8 @@ double System::Implementation::pairs_energy(std::uint32_t slot) {
   set.group = pairs.group;
   set.find(model);
   set.load(model, 0, parallel);
-  return neighbours::PairSum().energy(set.arrays, set.family, model.compiled(pairs.law), pairs.parameters.data(),
-                                      pairs.cutoff, model.time, parallel);
+  return neighbors::PairSum().energy(set.arrays, set.family, model.compiled(pairs.law), pairs.parameters.data(),
+                                     pairs.cutoff, model.time, parallel);
 }
 
 }  // namespace iota

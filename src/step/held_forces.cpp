@@ -77,6 +77,17 @@ void LawBatch::load(const model::Model& model, double ahead) {
   }
 }
 
+laws::PairBatch LawBatch::loaded(double time) {
+  for (std::size_t k = 0; k < columns.size(); ++k) columns[k] = parameters[k].data();
+  return {.count = bonds.size(),
+          .r = r.data(),
+          .v = v.data(),
+          .m_p = m_p.data(),
+          .m_q = m_q.data(),
+          .t = time,
+          .parameters = columns.data()};
+}
+
 void LawBatch::load_rows(const model::Model& model, double ahead) {
   const std::size_t n = bonds.size(), count = model.laws[law].parameter_count;
   for (auto* const rows : {&position_p, &position_q, &velocity_p, &velocity_q, &force_rows}) rows->resize(3 * n);
@@ -137,10 +148,9 @@ void System::Implementation::evaluate(LawBatch& batch, double time) {
     }
     return;
   }
-  std::array<const double*, max_law_parameters> parameters{};
-  for (std::uint32_t k = 0; k < law.parameter_count; ++k) parameters[k] = batch.parameters[k].data();
-  model.compiled(batch.law).evaluate({n, batch.r.data(), batch.v.data(), batch.m_p.data(), batch.m_q.data(), time,
-                                      parameters.data(), false, batch.force.data(), batch.drag.data()});
+  laws::PairBatch numbers = batch.loaded(time);
+  numbers.force = batch.force.data(), numbers.drag = batch.drag.data();
+  model.compiled(batch.law).evaluate(numbers);
 }
 
 namespace {
@@ -320,23 +330,14 @@ std::size_t System::Implementation::rehearse(std::uint32_t law, double h) {
   return count;
 }
 
-std::size_t System::Implementation::rehearse_field(std::uint32_t slot, double h) {
+template <class Run>
+std::size_t System::Implementation::rehearse_on(std::uint32_t group, double h, Run run) {
   StepReport report;
   report.dt = h;
   particle_sets.update(model);
-  ParticleSet& set = particle_sets.of(model, model.fields[slot].group);
+  ParticleSet& set = particle_sets.of(model, group);
   set.load(model, 0, parallel);
-  run_field(slot, set, report);
-  return set.rings.size();
-}
-
-std::size_t System::Implementation::rehearse_pairs(std::uint32_t slot, double h) {
-  StepReport report;
-  report.dt = h;
-  particle_sets.update(model);
-  ParticleSet& set = particle_sets.of(model, model.pairs[slot].group);
-  set.load(model, 0, parallel);
-  run_pairs(slot, set, report);
+  run(set, report);
   return set.rings.size();
 }
 
@@ -344,10 +345,16 @@ std::size_t System::rehearse(LawId id, double dt) {
   return implementation_->rehearse(implementation_->require(id), dt);
 }
 std::size_t System::rehearse(FieldId id, double dt) {
-  return implementation_->rehearse_field(implementation_->require(id), dt);
+  Implementation& i = *implementation_;
+  const std::uint32_t slot = i.require(id);
+  return i.rehearse_on(i.model.fields[slot].group, dt,
+                       [&](ParticleSet& set, StepReport& report) { i.run_field(slot, set, report); });
 }
 std::size_t System::rehearse(PairsId id, double dt) {
-  return implementation_->rehearse_pairs(implementation_->require(id), dt);
+  Implementation& i = *implementation_;
+  const std::uint32_t slot = i.require(id);
+  return i.rehearse_on(i.model.pairs[slot].group, dt,
+                       [&](ParticleSet& set, StepReport& report) { i.run_pairs(slot, set, report); });
 }
 
 }  // namespace iota

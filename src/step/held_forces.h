@@ -16,11 +16,14 @@ struct LawBatch {
   std::vector<double> r, v, m_p, m_q, force, drag;
   std::vector<Vec3> direction, rate;                                                               // from p to q
   std::array<std::vector<double>, laws::max_parameters> parameters;                                // one array each
+  std::array<const double*, laws::max_parameters> columns{};                                       // where those begin
   std::vector<double> position_p, position_q, velocity_p, velocity_q, parameter_rows, force_rows;  // of functions
 
   /// Numbers of all its bonds, with positions `ahead` seconds on.
   void load(const model::Model&, double ahead);
   void load_rows(const model::Model&, double ahead);
+  /// What `load` has loaded, at a time, with no place for results.
+  laws::PairBatch loaded(double time);
   /// Of all its bonds now, J; only for laws with a derivative. Uses the arrays.
   double energy(const model::Model&);
 };

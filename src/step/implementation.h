@@ -141,7 +141,6 @@ struct System::Implementation {
   std::uint32_t require(FieldId) const;
   std::uint32_t require(PairsId) const;
   void spell(const void* record, std::size_t size);  ///< executes the Spell commands of a record
-  void require_parameter_value(const model::Law&, std::uint32_t index, double value) const;
   std::uint32_t require(GripId) const;
   std::uint32_t require(EmitterId) const;
   std::uint32_t require(ConstraintId) const;
@@ -172,7 +171,7 @@ struct System::Implementation {
   struct Rates {
     Vec3 force, torque;
   };
-  /// Net force and torque (about the centre of mass) of a body or, where it is not null, of one part.
+  /// Net force and torque (about the center of mass) of a body or, where it is not null, of one part.
   Rates rates(std::uint32_t body, BodyId part) const;
   /// Adds motion(position) to the velocities of a body's particles.
   template <class Motion>
@@ -214,8 +213,8 @@ struct System::Implementation {
   ///@}
   /// Evaluates without applying; returns for how many.
   std::size_t rehearse(std::uint32_t law, double h);
-  std::size_t rehearse_field(std::uint32_t field, double h);
-  std::size_t rehearse_pairs(std::uint32_t pairs, double h);
+  template <class Run>
+  std::size_t rehearse_on(std::uint32_t group, double h, Run run);
   void evaluate(step::LawBatch&, double time);
   bool has_function(const step::LawBatch&, StepReport&);
   void add_force(std::uint32_t bond, const Vec3& on_p);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "laws/pair_laws.h"
+#include "model/model.h"
 #include "step/checks.h"
 
 #include <iota/forces.h>
@@ -18,6 +19,7 @@ namespace iota::step {
 
 template <std::size_t count>
 using Names = std::array<std::array<char, 24>, count>;
+using LawValues = std::array<double, laws::max_parameters>;
 
 template <std::size_t n>
 void put_text(std::array<char, n>& out, std::string_view from, const char* what) {
@@ -82,6 +84,24 @@ std::vector<LawParameter> list_parameters(const Names<count>& names, std::uint32
   std::vector<LawParameter> list;
   for (std::uint32_t i = 0; i < used; ++i) list.push_back({names[i].data(), values[i]});
   return list;
+}
+
+/// The same for a law, and for what has values for its parameters.
+inline std::uint32_t require_parameter(const model::Law& law, std::string_view name) {
+  return require_parameter(law.name.data(), law.parameters, law.parameter_count, name);
+}
+inline std::vector<LawParameter> list_parameters(const model::Law& law, const LawValues& values) {
+  return list_parameters(law.parameters, law.parameter_count, values.data());
+}
+inline void require_parameter_value(const model::Law& law, std::uint32_t index, double value) {
+  const bool listed = law.kind == model::LawKind::listed;
+  require_in_range(law.parameters[index].data(),
+                   listed ? laws::pair_law_parameters(law.number)[index].range : laws::Range::any, value);
+}
+inline void set_parameter(const model::Law& law, LawValues& values, std::uint32_t index, double value) {
+  if (index >= law.parameter_count) throw std::invalid_argument("set_parameter: no such parameter");
+  require_parameter_value(law, index, value);
+  values[index] = value;
 }
 
 }  // namespace iota::step

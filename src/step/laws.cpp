@@ -35,12 +35,6 @@ std::uint32_t System::Implementation::require(LawId id) const {
   return id.slot;
 }
 
-void System::Implementation::require_parameter_value(const model::Law& law, std::uint32_t index, double value) const {
-  const bool listed = law.kind == model::LawKind::listed;
-  require_in_range(law.parameters[index].data(),
-                   listed ? laws::pair_law_parameters(law.number)[index].range : laws::Range::any, value);
-}
-
 void System::Implementation::apply(const step::Spell& c) {
   constexpr std::size_t longest = 4096;
   if (spelled.size() >= longest) spelled.clear();
@@ -94,12 +88,8 @@ BondId System::Implementation::apply(const step::CreateBond& c) {
 }
 
 void System::Implementation::apply(const step::SetParameter& c) {
-  const std::uint32_t slot = require(c.bond);
-  model::Bond& bond = model.bonds[slot];
-  const model::Law& law = model.laws[bond.law];
-  if (c.index >= law.parameter_count) throw std::invalid_argument("set_parameter: no such parameter");
-  require_parameter_value(law, c.index, c.value);
-  bond.parameters[c.index] = c.value;
+  model::Bond& bond = model.bonds[require(c.bond)];
+  step::set_parameter(model.laws[bond.law], bond.parameters, c.index, c.value);
 }
 
 void System::Implementation::apply(const step::SetActive& c) {
@@ -189,8 +179,7 @@ BondId System::create_bond(ParticleId p, ParticleId q, BondLaw body) {
     command.law = shared.law, command.parameters = law.standard;
     command.implicit = shared.implicit.value_or(law.has_derivative());
     for (const LawParameter& parameter : shared.parameters)
-      command.parameters[require_parameter(law.name.data(), law.parameters, law.parameter_count, parameter.name)] =
-          parameter.value;
+      command.parameters[require_parameter(law, parameter.name)] = parameter.value;
   }
   return i.execute(command);
 }
@@ -220,19 +209,17 @@ std::string System::expression(LawId id) const {
 
 std::vector<LawParameter> System::parameters(LawId id) const {
   const model::Law& law = implementation_->model.laws[implementation_->require(id)];
-  return list_parameters(law.parameters, law.parameter_count, law.standard.data());
+  return list_parameters(law, law.standard);
 }
 std::vector<LawParameter> System::parameters(BondId id) const {
   const model::Model& m = implementation_->model;
   const model::Bond& bond = m.bonds[implementation_->require(id)];
-  const model::Law& law = m.laws[bond.law];
-  return list_parameters(law.parameters, law.parameter_count, bond.parameters.data());
+  return list_parameters(m.laws[bond.law], bond.parameters);
 }
 
 void System::set_parameter(BondId id, std::string_view name, double value) {
   const model::Model& m = implementation_->model;
-  const model::Law& law = m.laws[m.bonds[implementation_->require(id)].law];
-  const std::uint32_t index = require_parameter(law.name.data(), law.parameters, law.parameter_count, name);
+  const std::uint32_t index = require_parameter(m.laws[m.bonds[implementation_->require(id)].law], name);
   implementation_->execute(step::SetParameter{id, index, value});
 }
 

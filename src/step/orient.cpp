@@ -39,10 +39,10 @@ void System::Implementation::refresh_orientations() {
     const Vec3 old_x = rotate(b.orientation, {1, 0, 0});
     const Vec3 x = unit_or(model.position(b.basis[1]) - x0, old_x);
     if (b.rank == 2) {  // carry the frame along by the smallest turn, and about itself by what it has spun
-      b.orientation = normalised(multiply(shortest_turn(old_x, x), b.orientation));
+      b.orientation = normalized(multiply(shortest_turn(old_x, x), b.orientation));
       if (model::RodSpin* const spin = model.spins.find(slot)) {
         const double sign = dot(x, model.rod_axis(slot)) < 0 ? -1 : 1;
-        b.orientation = normalised(multiply(axis_angle(x, sign * (spin->angle - spin->drawn)), b.orientation));
+        b.orientation = normalized(multiply(axis_angle(x, sign * (spin->angle - spin->drawn)), b.orientation));
         spin->drawn = spin->angle;
       }
       return;
@@ -52,7 +52,7 @@ void System::Implementation::refresh_orientations() {
     b.orientation = from_axes(x, y, cross(x, y));
   });
 
-  // Smallest turns add up to a twist between neighbours after a round trip. Rods are let back towards the frame of the
+  // Smallest turns add up to a twist between neighbors after a round trip. Rods are let back towards the frame of the
   // rod they hang on, a little each time and never near a fold, so that chain links neither drift nor flip.
   constexpr double share = 0.15, largest_turn = 0.15;
   model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
@@ -69,7 +69,7 @@ void System::Implementation::refresh_orientations() {
     const Vec3 wanted = rotate(shortest_turn(ux, x), rotate(u, {0, 1, 0})), y = rotate(b.orientation, {0, 1, 0});
     const double twist = std::atan2(dot(cross(y, wanted), x), dot(y, wanted));
     b.orientation =
-        normalised(multiply(axis_angle(x, std::clamp(share * twist, -largest_turn, largest_turn)), b.orientation));
+        normalized(multiply(axis_angle(x, std::clamp(share * twist, -largest_turn, largest_turn)), b.orientation));
   });
 }
 

@@ -29,9 +29,9 @@ class PartBalance {
     model.for_each_particle_of(body, [&](std::uint32_t p) {
       if (model.particles[p].part != part) return;
       mass += model.particles[p].mass;
-      centre_ += model.particles[p].mass * place(p);
+      center_ += model.particles[p].mass * place(p);
     });
-    if (mass > 0) centre_ = (1 / mass) * centre_;
+    if (mass > 0) center_ = (1 / mass) * center_;
   }
 
   OutsideLoad load() {
@@ -50,7 +50,7 @@ class PartBalance {
   }
   void add(const Vec3& at, const Vec3& force) {
     load_.force += force;
-    load_.torque += cross(at - centre_, force);
+    load_.torque += cross(at - center_, force);
   }
 
   void add_forces_on(std::uint32_t p) {
@@ -79,7 +79,7 @@ class PartBalance {
   std::uint32_t body_;
   BodyId part_;
   double back_;
-  Vec3 centre_;
+  Vec3 center_;
   OutsideLoad load_;
 };
 

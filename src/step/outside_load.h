@@ -9,7 +9,7 @@ namespace iota::step {
 /// applied forces, damping. The net force of the part is this and what the other parts do to it.
 struct OutsideLoad {
   Vec3 force;   ///< N
-  Vec3 torque;  ///< about the part's centre of mass, N m
+  Vec3 torque;  ///< about the part's center of mass, N m
 };
 OutsideLoad calc_outside_load(const model::Model&, std::uint32_t body, BodyId part);
 

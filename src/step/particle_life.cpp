@@ -60,7 +60,7 @@ class Draw {
   model::Emitter& emitter_;
 };
 
-/// Radius and colour on an emitter's curve.
+/// Radius and color on an emitter's curve.
 void look_at(const model::Emitter& emitter, double life, ParticleAttributes& out) {
   if (emitter.key_count == 0) return;
   std::uint32_t next = 0;
@@ -69,7 +69,7 @@ void look_at(const model::Emitter& emitter, double life, ParticleAttributes& out
   const AttributeKey& a = emitter.keys[next > 0 ? next - 1 : 0];
   const double t = b.life > a.life ? std::clamp((life - a.life) / (b.life - a.life), 0.0, 1.0) : 1;
   out.radius = a.radius + t * (b.radius - a.radius);
-  for (std::size_t i = 0; i < 4; ++i) out.colour[i] = static_cast<float>(a.colour[i] + t * (b.colour[i] - a.colour[i]));
+  for (std::size_t i = 0; i < 4; ++i) out.color[i] = static_cast<float>(a.color[i] + t * (b.color[i] - a.color[i]));
 }
 
 /// The turn about a vector by its length.
@@ -150,7 +150,7 @@ void System::Implementation::turn(model::Attributes& a, double h) {
     divisor += h * (a.alignment_damping + h * a.stiffness) / a.moment;
   }
   a.spin = (1 / divisor) * (a.spin + (1 / a.moment) * impulse);
-  a.orientation = normalised(multiply(turn_by((h / 2) * (old + a.spin)), a.orientation));
+  a.orientation = normalized(multiply(turn_by((h / 2) * (old + a.spin)), a.orientation));
   a.torque = {};
   model.external_work += energy() - before;
   const double lost = model.damping + a.damping;
@@ -197,16 +197,16 @@ void System::Implementation::apply(const SetEmitter& c) {
   require_finite("velocity", c.velocity);
   model::Emitter& e = model.emitters[slot];
   e.active = c.active, e.rate = c.rate, e.position = c.position, e.velocity = c.velocity;
-  e.orientation = normalised(c.orientation);
+  e.orientation = normalized(c.orientation);
 }
 
 void System::Implementation::apply(const Destroy<EmitterId>& c) {
   const std::uint32_t slot = require(c.id);
   model.attributes.for_each([&](std::uint32_t, model::Attributes& a) {
     if (a.emitter != slot) return;
-    ParticleAttributes look{a.age, a.lifetime, a.radius, a.colour};
+    ParticleAttributes look{a.age, a.lifetime, a.radius, a.color};
     look_at(model.emitters[slot], a.age / a.lifetime, look);  // they keep the look of this moment
-    a.radius = look.radius, a.colour = look.colour, a.emitter = none;
+    a.radius = look.radius, a.color = look.color, a.emitter = none;
   });
   model.emitters.destroy(slot);
   structure_changed();
@@ -218,7 +218,7 @@ void System::Implementation::apply(const SetAttributes& c) {
   if (!(c.value.lifetime > 0)) throw std::invalid_argument(text("lifetime must be above 0 s, got ", c.value.lifetime));
   require_not_negative("radius", c.value.radius);
   model::Attributes& a = attributes_of(particle);
-  a.age = c.value.age, a.lifetime = c.value.lifetime, a.radius = c.value.radius, a.colour = c.value.colour;
+  a.age = c.value.age, a.lifetime = c.value.lifetime, a.radius = c.value.radius, a.color = c.value.color;
 }
 
 void System::Implementation::apply(const SetTurn& c) {
@@ -233,7 +233,7 @@ void System::Implementation::apply(const SetTurn& c) {
   require_finite("the value", c.vector);
   switch (c.what) {
     case SetTurn::What::orientation: {
-      const Quaternion q = normalised(c.quaternion);
+      const Quaternion q = normalized(c.quaternion);
       model::Attributes& a = attributes_of(particle);
       if (!a.oriented) {
         a.oriented = 1;
@@ -297,7 +297,7 @@ EmitterId System::create_emitter(const EmitterOptions& o) {
   }
   e.source = static_cast<std::uint32_t>(o.source.index());
   e.sizes = sizes_of(o.source);
-  e.rate = o.rate, e.position = o.position, e.velocity = o.velocity, e.orientation = normalised(o.orientation);
+  e.rate = o.rate, e.position = o.position, e.velocity = o.velocity, e.orientation = normalized(o.orientation);
   e.velocity_spread = o.velocity_spread, e.lifetime = o.lifetime, e.lifetime_spread = o.lifetime_spread;
   e.mass = o.mass, e.damping = o.damping, e.max_count = o.max_count, e.seed = o.seed;
   e.key_count = static_cast<std::uint32_t>(o.curve.size());
@@ -368,7 +368,7 @@ ParticleAttributes System::attributes(ParticleId id) const {
   const model::Model& m = implementation_->model;
   const model::Attributes* a = find_attributes(m, implementation_->require(id));
   if (!a) return {};
-  ParticleAttributes value{a->age, a->lifetime, a->radius, a->colour};
+  ParticleAttributes value{a->age, a->lifetime, a->radius, a->color};
   if (a->emitter != none) look_at(m.emitters[a->emitter], a->age / a->lifetime, value);
   return value;
 }

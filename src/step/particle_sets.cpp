@@ -83,9 +83,9 @@ ParticleSet& ParticleSets::of(const model::Model& model, std::uint32_t group) {
   return *sets.back();
 }
 
-neighbours::PairSum& ParticleSets::sum(std::uint32_t pairs) {
+neighbors::PairSum& ParticleSets::sum(std::uint32_t pairs) {
   if (sums.size() <= pairs) sums.resize(pairs + 1);
-  if (!sums[pairs]) sums[pairs] = std::make_unique<neighbours::PairSum>();
+  if (!sums[pairs]) sums[pairs] = std::make_unique<neighbors::PairSum>();
   return *sums[pairs];
 }
 

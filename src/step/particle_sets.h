@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "model/model.h"
-#include "neighbours/pair_sum.h"
+#include "neighbors/pair_sum.h"
 
 #include <memory>
 #include <vector>
@@ -34,10 +34,10 @@ struct ParticleSets {
   void update(const model::Model&);
   void forget() { sets.clear(), sums.clear(), seen_structure = seen_members = ~0ull; }
   ParticleSet& of(const model::Model&, std::uint32_t group);
-  neighbours::PairSum& sum(std::uint32_t pairs);
+  neighbors::PairSum& sum(std::uint32_t pairs);
 
   std::vector<std::unique_ptr<ParticleSet>> sets;
-  std::vector<std::unique_ptr<neighbours::PairSum>> sums;  // by slot of the pairwise force
+  std::vector<std::unique_ptr<neighbors::PairSum>> sums;  // by slot of the pairwise force
   std::uint64_t seen_structure = ~0ull, seen_members = ~0ull;
 };
 

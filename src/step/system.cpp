@@ -33,14 +33,6 @@ std::uint64_t check_sum(const std::vector<std::byte>& bytes) {
   return hasher.result();
 }
 
-template <class Id, class Table>
-std::vector<Id> ids_of(const Table& table) {
-  std::vector<Id> ids;
-  ids.reserve(table.size());
-  table.for_each([&](std::uint32_t slot, const auto&) { ids.push_back(table.id(slot)); });
-  return ids;
-}
-
 }  // namespace
 
 System::System(const SystemOptions& options) : implementation_(std::make_unique<Implementation>()) {
@@ -158,12 +150,10 @@ bool System::contains(GripId id) const { return implementation_->model.grips.con
 std::optional<ParticleId> System::survivor_of(ParticleId id) const { return implementation_->model.survivor_of(id); }
 std::optional<BodyId> System::survivor_of(BodyId id) const { return implementation_->model.survivor_of(id); }
 
-std::vector<BodyId> System::bodies() const { return ids_of<BodyId>(implementation_->model.bodies); }
-std::vector<ParticleId> System::particles() const { return ids_of<ParticleId>(implementation_->model.particles); }
-std::vector<CosmeticBondId> System::cosmetic_bonds() const {
-  return ids_of<CosmeticBondId>(implementation_->model.cosmetic_bonds);
-}
-std::vector<BondId> System::bonds() const { return ids_of<BondId>(implementation_->model.bonds); }
+std::vector<BodyId> System::bodies() const { return implementation_->model.bodies.ids(); }
+std::vector<ParticleId> System::particles() const { return implementation_->model.particles.ids(); }
+std::vector<CosmeticBondId> System::cosmetic_bonds() const { return implementation_->model.cosmetic_bonds.ids(); }
+std::vector<BondId> System::bonds() const { return implementation_->model.bonds.ids(); }
 
 std::vector<std::vector<BodyId>> System::articulates() const {
   const model::Model& m = implementation_->model;
@@ -187,8 +177,8 @@ std::uint32_t System::articulate(BodyId id) const {
 BodyKind System::kind(BodyId id) const { return implementation_->model.bodies[implementation_->require(id)].kind; }
 double System::damping(BodyId id) const { return implementation_->model.bodies[implementation_->require(id)].damping; }
 double System::mass(BodyId id) const { return implementation_->model.body_mass(implementation_->require(id)); }
-Vec3 System::centre_of_mass(BodyId id) const {
-  return implementation_->model.centre_of_mass(implementation_->require(id));
+Vec3 System::center_of_mass(BodyId id) const {
+  return implementation_->model.center_of_mass(implementation_->require(id));
 }
 Quaternion System::orientation(BodyId id) const {
   const std::uint32_t body = implementation_->require(id);
@@ -276,13 +266,12 @@ PoseSnapshot System::poses() const {
       put(spark.position, m.position(b.first));
       spark.radius = static_cast<float>(look.radius);
       for (int i = 0; i < 3; ++i)
-        spark.color =
-            spark.color << 8 | static_cast<std::uint32_t>(std::clamp(look.colour[i], 0.0f, 1.0f) * 255 + 0.5f);
+        spark.color = spark.color << 8 | static_cast<std::uint32_t>(std::clamp(look.color[i], 0.0f, 1.0f) * 255 + 0.5f);
       return;
     }
     BodyPose& pose = snapshot.bodies.emplace_back();
     pose.body = slot;
-    put(pose.position, m.centre_of_mass(slot));
+    put(pose.position, m.center_of_mass(slot));
     const Quaternion& q = b.orientation;
     const double values[4] = {q.x, q.y, q.z, q.w};
     for (int i = 0; i < 4; ++i) pose.orientation[i] = static_cast<float>(values[i]);

@@ -94,10 +94,10 @@ void print_bodies() {
   ParticleId end;
   for (int i = 0; i < 12; ++i) {
     const BodyId body = system.create_body();
-    const Vec3 centre{0.5 * i, 0.2 * random.uniform(-1, 1), 0};
+    const Vec3 center{0.5 * i, 0.2 * random.uniform(-1, 1), 0};
     ParticleId first;
     for (int k = 0; k < 5; ++k) {
-      const Vec3 place = centre + 0.3 * random.point(), velocity = random.point();
+      const Vec3 place = center + 0.3 * random.point(), velocity = random.point();
       const double mass = random.uniform(0.1, 2);
       const ParticleId p = system.create_particle(body, place, mass, velocity);
       if (k == 0) first = p;

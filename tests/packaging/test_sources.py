@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-LICENCE = re.compile(r"SPDX-License-Identifier: Apache-2\.0")
+LICENSE = re.compile(r"SPDX-License-Identifier: Apache-2\.0")
 SOURCES = {".h", ".cpp", ".py", ".ts", ".sh", ".cmake"}
 
 
@@ -26,13 +26,13 @@ def files() -> list[Path]:
     return [path for path in (ROOT / name for name in done.stdout.splitlines()) if path.is_file()]
 
 
-def test_every_source_file_names_the_licence_in_its_first_lines() -> None:
+def test_every_source_file_names_the_license_in_its_first_lines() -> None:
     without = []
     for path in files():
         if path.suffix in SOURCES:
             with path.open(encoding="utf-8") as text:
                 opening = "".join(line for line, _ in zip(text, range(2), strict=False))
-            if not LICENCE.search(opening):
+            if not LICENSE.search(opening):
                 without.append(path.relative_to(ROOT).as_posix())
     assert not without
 

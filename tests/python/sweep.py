@@ -223,13 +223,13 @@ def calls(c: Scene) -> dict[str, Call]:
             {"system": s, "field": "current", "velocity": V, "drag": 0.1, "speed": 1.0, "size": 2.0, "octaves": 3.0,
              "evolution": 0.1, "seed": 1.0},
         ),
-        "attractor": (iota.Field, {"system": s, "field": "attractor", "centre": V, "strength": 1.0, "range": 2.0}),
+        "attractor": (iota.Field, {"system": s, "field": "attractor", "center": V, "strength": 1.0, "range": 2.0}),
         "field of an expression": (
             lambda field, k: iota.Field(s, field, k=k),
             {"field": "energy = 0.5*k*y^2", "k": 0.1},
         ),
         "field of arrays": (iota.Field, {"system": s, "field": lambda batch: np.zeros((len(batch), 3))}),
-        "well.set": (c.well.set, {"centre": V, "strength": 0.2, "softening": 0.1}),
+        "well.set": (c.well.set, {"center": V, "strength": 0.2, "softening": 0.1}),
         "Pairs": (iota.Pairs, {"system": s, "law": "soft_repulsion", "cutoff": 1.5, "group": c.crowd, "length": 1.0}),
         "pairs.set": (c.pairs.set, {"strength": 0.1, "softening": 0.2}),
         "Emitter": (

@@ -55,6 +55,6 @@ def test_every_example_runs(path: Path) -> None:
 
 
 def test_the_script_in_the_readme_is_the_example_and_fits_twenty_lines() -> None:
-    script = (EXAMPLES / "pendulum.py").read_text().split("\n", 1)[1]  # without the licence line
+    script = (EXAMPLES / "pendulum.py").read_text().split("\n", 1)[1]  # without the license line
     assert len(script.splitlines()) <= 20
     assert f"```python\n{script}```" in (EXAMPLES.parents[1] / "README.md").read_text()

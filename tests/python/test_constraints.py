@@ -77,7 +77,7 @@ def test_switched_off_a_joint_lets_go_and_switched_on_it_brings_back() -> None:
     joint = system.ball(box, at=(0, -0.3, 0))
     joint.active = False
     run(system, 0.2)
-    assert box.centre_of_mass.y < -0.6
+    assert box.center_of_mass.y < -0.6
     joint.active = True
     run(system, 0.1)
     assert joint.gap < 1e-9
@@ -186,7 +186,7 @@ def test_points_stay_on_and_within_surfaces_and_surfaces_apart() -> None:
     saddle = iota.Particle(iota.Body(system), (0.1, 0.01, 20))
     valley = system.on_surface(saddle, lambda x, y, z: y - x * x, at=(0, 0, 20))
     run(system, 8)
-    assert ball.centre_of_mass.y == pytest.approx(0.2, abs=1e-6)
+    assert ball.center_of_mass.y == pytest.approx(0.2, abs=1e-6)
     assert floor.kind == "apart"
     assert floor.force.y == pytest.approx(9.81, abs=1e-2)
     assert inner.position.y == pytest.approx(-1, abs=1e-2)

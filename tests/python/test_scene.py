@@ -88,6 +88,6 @@ def test_shapes_refuse_what_they_do_not_know() -> None:
 
 def test_links_of_a_real_chain_touch_where_they_are_hinged() -> None:
     link = looks.chain_link(0.1)
-    end = link["stretch"] / 2 + link["radius"]  # centre line at the end of the link
+    end = link["stretch"] / 2 + link["radius"]  # center line at the end of the link
     assert end - 0.05 == pytest.approx(link["tube"]), "the wire goes once around the hinge"
-    assert link["radius"] - link["tube"] > link["tube"], "the neighbour fits inside"
+    assert link["radius"] - link["tube"] > link["tube"], "the neighbor fits inside"

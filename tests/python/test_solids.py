@@ -33,7 +33,7 @@ def cube(size: float = 1.0) -> iota.Mesh:
         (cube(2), 8),
     ],
 )
-def test_a_body_of_any_shape_has_its_mass_and_centre(system: iota.System, shape: object, volume: float) -> None:
+def test_a_body_of_any_shape_has_its_mass_and_center(system: iota.System, shape: object, volume: float) -> None:
     body = iota.Body(system, shape=shape, density=700, position=(1, 2, 3), orientation=(0, 0, 1, 1))
     assert body.mass == pytest.approx(700 * volume)
     assert shape.mass_properties.volume == pytest.approx(volume)
@@ -120,7 +120,7 @@ def test_the_page_draws_the_shapes(system: iota.System) -> None:
     (skin,) = classes[names[2]]["*"]
     assert skin["type"] == "mesh" and len(skin["vertices"]) == 24 and len(skin["triangles"]) == 36
     corners = np.reshape(skin["vertices"], (8, 3)) + skin["offset"]
-    assert np.allclose(corners.mean(axis=0), 0, atol=1e-6), "about the centre of mass"
+    assert np.allclose(corners.mean(axis=0), 0, atol=1e-6), "about the center of mass"
     iota.combine(a, b)
     classes, bodies = (json.loads(text) for text in scene.describe())
     shapes = classes[bodies[0]["class"]]["*"]
@@ -184,7 +184,7 @@ def test_a_mesh_too_large_to_draw_is_drawn_as_its_box(system: iota.System) -> No
 def test_a_pose_is_assigned(system: iota.System) -> None:
     body = iota.Body(system, shape=iota.Cylinder(0.1, 1), attachments=[(0.5, 0, 0)])
     body.set_pose((1, 2, 3), (0, 0, 1, 1))
-    assert body.centre_of_mass == pytest.approx((1, 2, 3))
+    assert body.center_of_mass == pytest.approx((1, 2, 3))
     assert body.attachments[0].position == pytest.approx((1, 2.5, 3))
 
 

@@ -63,7 +63,7 @@ def test_the_rope_breaks_when_it_is_pulled_and_can_be_mended() -> None:
         assert system.step(1 / 120).unconverged == 0
     assert len(system.broken) == 1 and system.structure_version > version
     assert "rope" not in [tie["kind"] for tie in json.loads(ties.describe(system))]
-    while weight.centre_of_mass.y > mechanisms.BENCH - 1:
+    while weight.center_of_mass.y > mechanisms.BENCH - 1:
         assert system.step(1 / 120).unconverged == 0
     rope.active = True
     for _ in range(240):

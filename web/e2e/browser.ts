@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import path from "node:path";
 import { chromium, type BrowserContext, type CDPSession, type Page } from "playwright-core";
 import type { IotaDebug } from "../src/app/debug.ts";
-import { artefacts } from "./server.ts";
+import { artifacts } from "./server.ts";
 
 declare global {
   // The same object as window.iota, as scripts of the page see it.
@@ -204,14 +204,14 @@ export class Tab {
   }
 
   async picture(name: string): Promise<void> {
-    mkdirSync(artefacts, { recursive: true });
-    const file = path.join(artefacts, `${name}.png`);
+    mkdirSync(artifacts, { recursive: true });
+    const file = path.join(artifacts, `${name}.png`);
     for (let trial = 0; trial < 3; trial++) {
       try {
         await this.page.screenshot({ path: file, timeout: 8000 });
         return;
       } catch (error) {
-        // A busy machine's software renderer may take seconds for a frame; a missing picture is no failed behaviour.
+        // A busy machine's software renderer may take seconds for a frame; a missing picture is no failed behavior.
         console.warn(`no picture ${name}: ${String(error).split("\n")[0]}`);
       }
     }

@@ -61,7 +61,7 @@ describe("the page of a chain", () => {
     expect(tab.complaints).toEqual([]);
   });
 
-  it("switches looks live and keeps links interlocked, each turned against its neighbours", async () => {
+  it("switches looks live and keeps links interlocked, each turned against its neighbors", async () => {
     const [first] = await tab.page.evaluate(() => iota.looks);
     const other = await tab.page.evaluate((look) => iota.looks.find((name) => name !== look), first);
     await tab.page.click("#look");
@@ -70,7 +70,7 @@ describe("the page of a chain", () => {
     expect(await tab.page.evaluate(() => iota.look)).toBe(first);
   });
 
-  it("turns no link suddenly and keeps neighbours untwisted, or links would not stay interlocked", async () => {
+  it("turns no link suddenly and keeps neighbors untwisted, or links would not stay interlocked", async () => {
     await tab.freeze();
     const rotations = () => tab.page.evaluate(() => iota.bodies().map((body) => iota.bodyRotation(body)));
     let before = await rotations();

@@ -4,7 +4,7 @@
 import { mkdirSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import type { Browser, Tab } from "./browser.ts";
-import { artefacts } from "./server.ts";
+import { artifacts } from "./server.ts";
 import type { IotaXR } from "../src/xr/debug.ts";
 
 declare global {
@@ -102,8 +102,8 @@ export class HeadsetTab {
     const address = await this.tab.page.evaluate(() => new Promise<string>((resolve) => {
       requestAnimationFrame(() => resolve(iota.page.renderer.domElement.toDataURL("image/png")));
     }));
-    mkdirSync(artefacts, { recursive: true });
-    writeFileSync(path.join(artefacts, `${name}.png`), Buffer.from(address.slice(address.indexOf(",") + 1), "base64"));
+    mkdirSync(artifacts, { recursive: true });
+    writeFileSync(path.join(artifacts, `${name}.png`), Buffer.from(address.slice(address.indexOf(",") + 1), "base64"));
   }
 
   /** Turns the head: rad to the left, rad up. */

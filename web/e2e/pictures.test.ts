@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures at full size, for people to look at: build/artefacts/page_*.png. Also what a grab costs in time.
+// Pictures at full size, for people to look at: build/artifacts/page_*.png. Also what a grab costs in time.
 
 import { writeFileSync } from "node:fs";
 import path from "node:path";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { Browser, type Tab } from "./browser.ts";
-import { artefacts, freePort, probe, WorldServer } from "./server.ts";
+import { artifacts, freePort, probe, WorldServer } from "./server.ts";
 
 let server: WorldServer;
 let browser: Browser;
@@ -77,7 +77,7 @@ describe("pictures", () => {
       const [navigation] = performance.getEntriesByType("navigation") as PerformanceNavigationTiming[];
       return { load_ms: navigation.loadEventEnd, grab_ms: delays.toSorted((a, b) => a - b)[2], round_trip_ms: iota.roundTripMs, frameMs, scriptMs, renderMs, decodeMs };
     });
-    writeFileSync(path.join(artefacts, "page_figures.json"), `${JSON.stringify(figures, null, 2)}\n`);
+    writeFileSync(path.join(artifacts, "page_figures.json"), `${JSON.stringify(figures, null, 2)}\n`);
     // Loose: software rendering on a busy machine. The figures themselves are for reading.
     expect(figures.grab_ms).toBeLessThan(2000);
     expect(figures.scriptMs).toBeLessThan(50);

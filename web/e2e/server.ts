@@ -11,7 +11,7 @@ const root = path.resolve(import.meta.dirname, "..", "..");
 const iota = path.join(root, ".venv", "bin", "iota");
 const startsWithinMs = 20_000;
 
-export const artefacts = path.join(root, "build", "artefacts");
+export const artifacts = path.join(root, "build", "artifacts");
 export const probe = path.join(import.meta.dirname, "chain_probe.py");
 
 export async function freePort(): Promise<number> {

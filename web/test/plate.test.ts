@@ -3,7 +3,7 @@ import { Matrix4, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import { buttonAt, pointOnPlate, Poke, rayOnPlate, Spot, type Plate } from "../src/xr/plate.ts";
 
-/** 0.2 m x 0.1 m, 1000 px a metre, at a place and turned about the vertical. */
+/** 0.2 m x 0.1 m, 1000 px a meter, at a place and turned about the vertical. */
 function makePlate(x: number, y: number, z: number, turn: number): Plate {
   return { matrix: new Matrix4().makeRotationY(turn).setPosition(x, y, z).elements, width: 0.2, height: 0.1, density: 1000 };
 }

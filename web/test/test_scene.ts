@@ -32,7 +32,7 @@ export class TestScene implements PickScene {
     this.rotation.set(rotation, 4 * body);
   }
 
-  /** First body along a ray from the origin by tenths of a millimetre, -1: none. The slow twin of pickRay. */
+  /** First body along a ray from the origin by tenths of a millimeter, -1: none. The slow twin of pickRay. */
   slowPick(direction: readonly number[], farthest: number): number {
     const local = new Float32Array(3);
     for (let t = 0; t < farthest; t += 2e-4) {

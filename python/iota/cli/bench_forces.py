@@ -62,7 +62,7 @@ def measure() -> list[ForceCost]:
         ("pairs, expression", "energy = 4*e*((s/r)^12 - (s/r)^6)", ("e", "s")),
     ):
         system = iota.System(gravity=(0, 0, 0))
-        for i in range(20**3):  # about 30 neighbours within the cut-off
+        for i in range(20**3):  # about 30 neighbors within the cut-off
             iota.Particle(iota.Body(system), (1.3 * (i % 20), 1.3 * (i // 20 % 20), 1.3 * (i // 400)))
         iota.Pairs(system, text, cutoff=2.5, group=None, **dict.fromkeys(names, 1.0))
         (row,) = profile(system)

@@ -62,10 +62,10 @@ def rigid_body(
     system: iota.System, points: Array, masses: Sequence[float] | Array, velocity: Sequence[float] | Array = (0, 0, 0),
     spin: Sequence[float] | Array = (0, 0, 0),
 ) -> list[iota.Particle]:  # fmt: skip
-    """One body of the points (n, 3); spin: angular velocity about the centre of mass, rad/s."""
-    centre = np.average(points, axis=0, weights=masses)
+    """One body of the points (n, 3); spin: angular velocity about the center of mass, rad/s."""
+    center = np.average(points, axis=0, weights=masses)
     body = iota.Body(system)
     return [
-        iota.Particle(body, point, mass=mass, velocity=np.asarray(velocity) + np.cross(spin, point - centre))
+        iota.Particle(body, point, mass=mass, velocity=np.asarray(velocity) + np.cross(spin, point - center))
         for point, mass in zip(points, masses, strict=True)
     ]

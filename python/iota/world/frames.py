@@ -10,10 +10,10 @@ from iota._core import Vec3
 Quaternion = Sequence[float]
 
 
-def into_frame(point: Vec3, centre: Vec3, orientation: Quaternion) -> Vec3:
+def into_frame(point: Vec3, center: Vec3, orientation: Quaternion) -> Vec3:
     """World place -> the body's drawn frame."""
     x, y, z, w = orientation
-    axis, arm = Vec3(-x, -y, -z), point - centre
+    axis, arm = Vec3(-x, -y, -z), point - center
     twice = axis.cross(arm) * 2.0
     return arm + twice * w + axis.cross(twice)
 

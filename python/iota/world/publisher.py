@@ -50,10 +50,6 @@ class Effect:
         return self.particle.position if self.particle is not None and self.particle.alive else self.place
 
 
-def _scene_version(system: System | Simulator) -> int:
-    return system.scene_version if isinstance(system, System) else system.structure_version
-
-
 @dataclass
 class Publisher:
     """A server and what it was told already: only what changed is sent again."""
@@ -91,13 +87,13 @@ class Publisher:
             self.server.publish_structure(system)
         else:
             self.server.publish_structure(system.structure_version, list(system.body_articulates()))
-        self.scene_version = _scene_version(system)
+        self.scene_version = system.scene_version
 
     def frame(self, dirty: bool) -> None:
         """One frame: poses, and before them what changed in the structure."""
         world = self.world
         system: System | Simulator = world.system
-        if dirty or _scene_version(system) != self.scene_version:
+        if dirty or system.scene_version != self.scene_version:
             self.scene()
         self._send_effects(system)
         if isinstance(system, System):

@@ -32,9 +32,9 @@ def fitting_camera(system: System) -> Camera:
     if not len(places):
         return Camera()
     low, high = places.min(axis=0), places.max(axis=0)
-    centre, size = (low + high) / 2, max(float(np.linalg.norm(high - low)), 1.0)
-    eye = centre + size * np.array([0.6, 0.25, 1.2])
-    return Camera(tuple(map(float, eye)), tuple(map(float, centre)))
+    center, size = (low + high) / 2, max(float(np.linalg.norm(high - low)), 1.0)
+    eye = center + size * np.array([0.6, 0.25, 1.2])
+    return Camera(tuple(map(float, eye)), tuple(map(float, center)))
 
 
 def is_solid(looks: Looks) -> bool:
@@ -121,8 +121,8 @@ class Scene:
     def _solid_class(self, body: Body, solids: list[Solid], classes: dict[str, Any], base: str | None) -> str:
         """A class for a body given by shape: its shapes where they are, in the materials of the class it had."""
         styles = classes.get(base or "", {"*": {"material": "paint"}})
-        centre, orientation = body.centre_of_mass, body.orientation
-        shapes = {look: self._solids(centre, orientation, solids, style) for look, style in styles.items()}
+        center, orientation = body.center_of_mass, body.orientation
+        shapes = {look: self._solids(center, orientation, solids, style) for look, style in styles.items()}
         # Bodies of one shape share a class, so that the page draws them together.
         text = json.dumps(shapes)
         name = self._solid_names.setdefault(text, f"(solid {len(self._solid_names) + 1})")
@@ -130,13 +130,13 @@ class Scene:
         return name
 
     def _solids(
-        self, centre: Vec3, orientation: Quaternion, solids: list[Solid], style: Shape | list[Shape]
+        self, center: Vec3, orientation: Quaternion, solids: list[Solid], style: Shape | list[Shape]
     ) -> list[Shape]:
         like = listed(style)[0]
         more = {"color": like["color"]} if "color" in like else {}
         shapes: list[Shape] = []
         for solid in solids:
-            offset = into_frame(solid.position, centre, orientation)
+            offset = into_frame(solid.position, center, orientation)
             turn = relative_turn(orientation, solid.orientation)
             place = {"offset": [round(v, 6) + 0.0 for v in offset], "rotation": [round(v, 6) + 0.0 for v in turn]}
             shapes += solid_shapes(solid.shape, like["material"], **place, **more)
@@ -162,10 +162,10 @@ class Scene:
         radius = float(like.get("tube") or like.get("radius") or self._scale())
         more = {"color": like["color"]} if "color" in like else {}
         lines = [(p, q) for p, q in self._system.cosmetic_lines if p.body == body and q.body == body]
-        centre, orientation = body.centre_of_mass, body.orientation
+        center, orientation = body.center_of_mass, body.orientation
         shapes: list[Shape] = []
         for p, q in lines or list(pairwise(particles)):
-            start, end = (into_frame(r.position, centre, orientation) for r in (p, q))
+            start, end = (into_frame(r.position, center, orientation) for r in (p, q))
             length = abs(end - start)
             if length > 0:
                 place, turn = (start + end) * 0.5, turn_from_x((end - start).unit())

@@ -46,6 +46,6 @@ def _tie(kind: str, length: float, p: Particle, q: Particle) -> dict[str, Any]:
 
 def _end(particle: Particle) -> dict[str, Any]:
     body = particle.body
-    point = into_frame(particle.position, body.centre_of_mass, body.orientation)
-    # To a micrometre: the same point of a body that has moved gives the same text, and is not sent again.
+    point = into_frame(particle.position, body.center_of_mass, body.orientation)
+    # To a micrometer: the same point of a body that has moved gives the same text, and is not sent again.
     return {"body": body.slot, "point": [round(v, 6) + 0.0 for v in point]}

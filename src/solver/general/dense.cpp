@@ -8,7 +8,7 @@
 
 namespace iota::solver {
 
-bool DenseLu::factorise(Dense a, double tolerance) {
+bool DenseLu::factorize(Dense a, double tolerance) {
   lu_ = std::move(a);
   const std::size_t n = lu_.rows;
   order_.resize(n), permuted_.resize(n);
@@ -84,7 +84,7 @@ void rotate(double* x, double* y, std::size_t n, double c, double s) {
 }
 
 /// Rotates pairs of rows of `work` until all are orthogonal; `turns` goes along.
-void orthogonalise(Dense& work, Dense& turns) {
+void orthogonalize(Dense& work, Dense& turns) {
   constexpr int max_sweeps = 40;
   constexpr double round_off = 1e-15;
   const std::size_t n = work.rows, m = work.columns;
@@ -120,7 +120,7 @@ Svd calc_svd(const Dense& a) {
   for (std::size_t i = 0; i < a.rows; ++i)
     for (std::size_t j = 0; j < a.columns; ++j) (wide ? work(i, j) : work(j, i)) = a(i, j);
   for (std::size_t i = 0; i < n; ++i) turns(i, i) = 1;
-  orthogonalise(work, turns);
+  orthogonalize(work, turns);
 
   std::vector<double> size(n, 0.0);
   for (std::size_t k = 0; k < n; ++k) {

@@ -25,7 +25,7 @@ struct Dense {
 class DenseLu {
  public:
   /// False where a pivot is below `tolerance` times the largest entry, or not finite: the matrix is as good as singular.
-  bool factorise(Dense a, double tolerance = 1e-13);
+  bool factorize(Dense a, double tolerance = 1e-13);
   /// b in, solution out.
   void solve(std::span<double> b) const;
 

@@ -40,7 +40,7 @@ class NewtonRaphson final : public Solver {
       calc_jacobian(problem, x, jacobian.values);
       if (!std::isfinite(largest(jacobian.values))) return {iteration, "the Jacobian is not finite"};
       for (std::size_t i = 0; i < n; ++i) direction[i] = -f[i];
-      if (lu.factorise(jacobian)) {
+      if (lu.factorize(jacobian)) {
         lu.solve(direction);
       } else {
         direction = calc_svd(jacobian).solve(direction, singular);

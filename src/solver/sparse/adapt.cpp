@@ -13,7 +13,7 @@ constexpr int most_fronts = 32;  // beyond it a new analysis is as good
 constexpr int max_rows_a_node = BlockPattern::max_pivot - 3;
 }  // namespace
 
-// A cut in a chain of 10 000 links: 0.1 ms here, 3.7 ms to build and analyse the halves. All loops over the whole are
+// A cut in a chain of 10 000 links: 0.1 ms here, 3.7 ms to build and analyze the halves. All loops over the whole are
 // plain passes over arrays; everything else happens for the few vertices that change.
 bool BlockPattern::adapt(const GraphChange& change) {
   if (given_up_ > (diagonal_count_ + lower_count_) / 4) return false;
@@ -38,7 +38,7 @@ bool BlockPattern::adapt(const GraphChange& change) {
     old_unknowns.push_back({v.unknown, v.unknown + v.pivot});
   }
 
-  // 2. The order with new vertices behind their neighbours and without the removed ones.
+  // 2. The order with new vertices behind their neighbors and without the removed ones.
   const auto old_count = static_cast<std::uint32_t>(vertices_.size());
   std::vector<std::uint32_t> now_at(old_count, 0), orphaned;  // old places; none: removed. Parents of the removed.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> insertions;  // old vertex, new node
@@ -134,7 +134,7 @@ bool BlockPattern::adapt(const GraphChange& change) {
     queue.pop();
     if (node_of[v] == none || ++fronts > most_fronts) return false;
     list.clear(), with.clear();
-    change.neighbours(node_of[v], with);
+    change.neighbors(node_of[v], with);
     for (const std::uint32_t n : with)
       if (node_vertex_[n] > v) list.push_back(node_vertex_[n]);
     for (std::uint32_t child = first_child[v]; child != none; child = next_child[child]) {

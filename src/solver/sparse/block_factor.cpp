@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/sparse/block_factor.h"
 
+#include "solver/sparse/pivot_block.h"
+
 #include "base/slack.h"
 
 #include <algorithm>
@@ -77,33 +79,15 @@ int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
   double* const diagonal = diagonals_.data() + v.diagonal;
   int wrong = 0;
 
-  // The pivot block: unit lower L11 below the diagonal, reciprocal pivots on it, and for LU the rest of U11 above it.
   double d[Pivot][Pivot];
   for (int i = 0; i < Pivot; ++i)
     for (int j = 0; j < (Symmetric ? i + 1 : Pivot); ++j) d[i][j] = diagonal[i * Pivot + j];
-  for (int k = 0; k < Pivot; ++k) {
-    wrong += k < v.positives ? !(d[k][k] > 0) : !(d[k][k] < 0);
-    const double inverse = 1 / d[k][k];
-    d[k][k] = inverse;
-    if constexpr (Symmetric) {
-      double column[Pivot];
-      for (int i = k + 1; i < Pivot; ++i) {
-        column[i] = d[i][k];
-        d[i][k] = column[i] * inverse;
-        for (int j = k + 1; j <= i; ++j) d[i][j] -= d[i][k] * column[j];
-      }
-    } else {
-      for (int i = k + 1; i < Pivot; ++i) {
-        d[i][k] *= inverse;
-        for (int j = k + 1; j < Pivot; ++j) d[i][j] -= d[i][k] * d[k][j];
-      }
-    }
-  }
+  factor_pivot_block<Symmetric>(d,
+                                [&](int k, double pivot) { wrong += k < v.positives ? !(pivot > 0) : !(pivot < 0); });
   for (int i = 0; i < Pivot; ++i)
     for (int j = 0; j < (Symmetric ? i + 1 : Pivot); ++j) diagonal[i * Pivot + j] = d[i][j];
   if (v.entry_count == 0) return wrong;
 
-  // The blocks below: L21 = A21 U11^-1, and the transposed U12 (symmetric: L21 D) beside it.
   const auto entries = pattern_->entries().subspan(v.first_entry, v.entry_count);
   int rows = 0;
   for (const auto& e : entries) rows += e.width;
@@ -115,19 +99,7 @@ int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
       l[k] = l21[r * Pivot + k];
       if constexpr (!Symmetric) u[k] = u12[r * Pivot + k];
     }
-    for (int k = 0; k < Pivot; ++k) {
-      if constexpr (Symmetric) {
-        u[k] = l[k];
-        for (int j = 0; j < k; ++j) u[k] -= u[j] * d[k][j];
-        l[k] = u[k] * d[k][k];
-      } else {
-        for (int j = 0; j < k; ++j) {
-          l[k] -= l[j] * d[j][k];
-          u[k] -= u[j] * d[k][j];
-        }
-        l[k] *= d[k][k];
-      }
-    }
+    factor_row_below<Symmetric>(d, l, u);
     for (int k = 0; k < Pivot; ++k) l21[r * Pivot + k] = l[k], u12[r * Pivot + k] = u[k];
   }
 
@@ -193,7 +165,7 @@ Leaves<Pivot, N> BlockFactor::leaves(std::size_t first, double* unknowns) {
   return leaves;
 }
 
-int BlockFactor::factorise(std::span<double> unknowns) {
+int BlockFactor::factorize(std::span<double> unknowns) {
   int wrong = 0;
   double* const b = unknowns.data();
   for (std::size_t i = 0; i < pattern_->vertices().size();) {

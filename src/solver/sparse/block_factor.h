@@ -15,7 +15,7 @@ class BlockFactor {
  public:
   /// Sizes the storage. The pattern must outlive the factor.
   void reset(const BlockPattern& pattern);
-  /// Whether a factorisation costs several times what a solution does: not on chains, but in nets and among many-point
+  /// Whether a factorization costs several times what a solution does: not on chains, but in nets and among many-point
   /// bodies.
   bool is_dear() const { return diagonals_.size() + lower_.size() > 10 * std::size_t{pattern_->unknown_count()}; }
   /// Follows a pattern that has grown by `adapt`.
@@ -32,13 +32,13 @@ class BlockFactor {
 
   /// Factors in place; returns how many pivots have the wrong sign (not finite counts as wrong). Zero means that the
   /// matrix has as many positive and negative pivots as a minimum under constraints should.
-  int factorise() { return factorise({}); }
+  int factorize() { return factorize({}); }
 
   /// Solves in place: right-hand side in, solution out, both in the pattern's unknowns.
   void solve(std::span<double> unknowns);
-  /// The same along with `factorise`, for one pass over the factors less: substitution forward while they are made, and
+  /// The same along with `factorize`, for one pass over the factors less: substitution forward while they are made, and
   /// then backward.
-  int factorise(std::span<double> unknowns);
+  int factorize(std::span<double> unknowns);
   void finish(std::span<double> unknowns);
 
  private:

@@ -7,7 +7,7 @@
 
 namespace iota::solver {
 
-void BlockPattern::analyse(const CouplingGraph& graph) {
+void BlockPattern::analyze(const CouplingGraph& graph) {
   constexpr int max_rows_a_node = max_pivot - 3;
   const std::uint32_t n = graph.node_count;
 

@@ -35,12 +35,12 @@ struct GraphChange {
     std::uint32_t unknown = 0;  ///< of its multiplier before the change
   };
   std::vector<std::array<std::uint32_t, 2>> added;  ///< new nodes, numbered on from the old ones, and an old one each
-                                                    ///< whose neighbour in the order it becomes
+                                                    ///< whose neighbor in the order it becomes
   std::vector<std::uint32_t> removed;               ///< nodes that nothing refers to any more
   std::vector<std::uint32_t> touched;               ///< all whose couplings changed, those included
   std::vector<Constraint> constraints;
   /// Lists the nodes that a node is coupled with now, in any order, twins allowed.
-  std::function<void(std::uint32_t node, std::vector<std::uint32_t>& with)> neighbours;
+  std::function<void(std::uint32_t node, std::vector<std::uint32_t>& with)> neighbors;
 };
 
 /// Elimination order and storage of a block-sparse matrix with the structure of
@@ -93,11 +93,11 @@ class BlockPattern {
     std::array<GradientSlot, CouplingGraph::max_constraint_nodes> gradients{};
   };
 
-  void analyse(const CouplingGraph&);
+  void analyze(const CouplingGraph&);
 
   /// Follows a small change of the graph without looking at the rest of it: the order stays, new nodes take their places
   /// beside others, and only fronts whose couplings changed are made anew. Costs a few nanoseconds a node. False where
-  /// that would not do (too much changes, rows without room); the pattern is then unusable until the next `analyse`.
+  /// that would not do (too much changes, rows without room); the pattern is then unusable until the next `analyze`.
   bool adapt(const GraphChange&);
   /// The nodes in whose vertex something moved in the latest `adapt`, by their numbers in the change: what touches
   /// one of them has new slots.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "solver/sparse/pivot_block.h"
+
 #include <array>
 
 namespace iota::solver {
@@ -58,46 +60,24 @@ int Leaves<Pivot, N>::eliminate(int positives) const {
   Lanes d[Pivot][Pivot];
   for (int i = 0; i < Pivot; ++i)
     for (int j = 0; j < (Symmetric ? i + 1 : Pivot); ++j) d[i][j] = get(diagonal, i * Pivot + j);
-  for (int k = 0; k < Pivot; ++k) {
-    for (int lane = 0; lane < N; ++lane) wrong += k < positives ? !(of(d[k][k], lane) > 0) : !(of(d[k][k], lane) < 0);
-    const Lanes inverse = 1.0 / d[k][k];
-    d[k][k] = inverse;
-    if constexpr (Symmetric) {
-      Lanes column[Pivot];
-      for (int i = k + 1; i < Pivot; ++i) {
-        column[i] = d[i][k];
-        d[i][k] = column[i] * inverse;
-        for (int j = k + 1; j <= i; ++j) d[i][j] -= d[i][k] * column[j];
-      }
-    } else {
-      for (int i = k + 1; i < Pivot; ++i) {
-        d[i][k] *= inverse;
-        for (int j = k + 1; j < Pivot; ++j) d[i][j] -= d[i][k] * d[k][j];
-      }
-    }
-  }
+  factor_pivot_block<Symmetric>(d, [&](int k, const Lanes& pivot) {
+    for (int lane = 0; lane < N; ++lane) wrong += k < positives ? !(of(pivot, lane) > 0) : !(of(pivot, lane) < 0);
+  });
   for (int i = 0; i < Pivot; ++i)
     for (int j = 0; j < (Symmetric ? i + 1 : Pivot); ++j) put(diagonal, i * Pivot + j, d[i][j]);
 
   Lanes l[3][Pivot], u[3][Pivot];
-  for (int r = 0; r < 3; ++r)
+  for (int r = 0; r < 3; ++r) {
     for (int k = 0; k < Pivot; ++k) {
       l[r][k] = get(lower, r * Pivot + k);
-      if constexpr (Symmetric) {
-        u[r][k] = l[r][k];
-        for (int j = 0; j < k; ++j) u[r][k] -= u[r][j] * d[k][j];
-        l[r][k] = u[r][k] * d[k][k];
-      } else {
-        u[r][k] = get(upper, r * Pivot + k);
-        for (int j = 0; j < k; ++j) {
-          l[r][k] -= l[r][j] * d[j][k];
-          u[r][k] -= u[r][j] * d[k][j];
-        }
-        l[r][k] *= d[k][k];
-        put(upper, r * Pivot + k, u[r][k]);
-      }
-      put(lower, r * Pivot + k, l[r][k]);
+      if constexpr (!Symmetric) u[r][k] = get(upper, r * Pivot + k);
     }
+    factor_row_below<Symmetric>(d, l[r], u[r]);
+    for (int k = 0; k < Pivot; ++k) {
+      put(lower, r * Pivot + k, l[r][k]);
+      if constexpr (!Symmetric) put(upper, r * Pivot + k, u[r][k]);
+    }
+  }
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < (Symmetric ? r + 1 : 3); ++c) {
       Lanes sum = l[r][0] * u[c][0];

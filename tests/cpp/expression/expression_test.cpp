@@ -42,7 +42,7 @@ std::string error_of(const std::string& text) {
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0 || (a != a && b != b); }
 
-TEST(Expression, FollowsTheUsualRulesOfPrecedence) {
+TEST(Expression, follows_the_usual_rules_of_precedence) {
   EXPECT_EQ(value_of("1 + 2*3 - 4/8"), 6.5);
   EXPECT_EQ(value_of("-r^2"), -4);
   EXPECT_EQ(value_of("2^-1 + 2**3"), 8.5);
@@ -55,7 +55,7 @@ TEST(Expression, FollowsTheUsualRulesOfPrecedence) {
   EXPECT_NEAR(value_of("sin(pi/6) + pow(r, 0.5) - sqrt(2)"), 0.5, 1e-15);
 }
 
-TEST(Expression, DefinitionsMayUseEarlierOnes) {
+TEST(Expression, definitions_may_use_earlier_ones) {
   Formula f(inputs);
   const auto all = parse("s = r - length;\n energy = 0.5*k*s^2\n\n force = -k*s;", f);
   ASSERT_EQ(all.size(), 3u);
@@ -63,7 +63,7 @@ TEST(Expression, DefinitionsMayUseEarlierOnes) {
   EXPECT_EQ(walk(f, all[1].node, {9, 0, 5, 7}), 10);
 }
 
-TEST(Expression, ErrorsPointAtThePlaceAndSuggest) {
+TEST(Expression, errors_point_at_the_place_and_suggest) {
   EXPECT_EQ(error_of("energy = 0.5*k*(r - lenght)^2"),
             "expression, at character 21: unknown name 'lenght'; did you mean 'length'? Known are r, v, k, length\n"
             "  energy = 0.5*k*(r - lenght)^2\n"
@@ -97,7 +97,7 @@ TEST(Expression, ErrorsPointAtThePlaceAndSuggest) {
     EXPECT_NE(error_of(text).find(wanted), std::string::npos) << text << "\n" << error_of(text);
 }
 
-TEST(Expression, DerivativesAgreeWithDifferences) {
+TEST(Expression, derivatives_agree_with_differences) {
   for (const std::string text :
        {"r^3 - 2/r", "exp(-r*k)*sin(v*r)", "sqrt(r^2 + v^2)", "log(r)*tanh(r - v)", "pow(r, v)", "pow(k, r)",
         "tan(r/3)", "where(r < 2.2, r^2, 5*r)", "min(r^2, 10*r) + max(r, -r) + abs(r - 9)", "cos(r)^-3",
@@ -115,14 +115,14 @@ TEST(Expression, DerivativesAgreeWithDifferences) {
   }
 }
 
-TEST(Expression, SecondDerivativesOfASpringAreItsStiffness) {
+TEST(Expression, second_derivatives_of_a_spring_are_its_stiffness) {
   Formula f(inputs);
   const Node y = parse("y = 0.5*k*(r - length)^2", f).front().node;
   const Node curvature = f.derivative(f.derivative(y, 0), 0);
   EXPECT_EQ(walk(f, curvature, {1.7, 0, 250, 1}), 250);
 }
 
-TEST(Expression, ElementaryFunctionsAreAccurate) {
+TEST(Expression, elementary_functions_are_accurate) {
   std::mt19937_64 random(1);
   const auto relative = [](double a, double b) { return std::abs(a - b) / std::abs(b); };
   for (int i = 0; i < 200000; ++i) {
@@ -141,7 +141,7 @@ TEST(Expression, ElementaryFunctionsAreAccurate) {
   EXPECT_LT(std::abs(sin(123456789.0) - std::sin(123456789.0)), 1e-15);
 }
 
-TEST(Expression, ElementaryFunctionsKnowTheirEnds) {
+TEST(Expression, elementary_functions_know_their_ends) {
   const double infinity = std::numeric_limits<double>::infinity(), nan = std::nan("");
   EXPECT_EQ(exp(-800), 0);
   EXPECT_EQ(exp(800), infinity);
@@ -185,7 +185,7 @@ std::string random_text(std::mt19937& random, int depth) {
   }
 }
 
-TEST(Expression, ProgramsAgreeBitByBitWithTheirSlowTwin) {
+TEST(Expression, programs_agree_bit_by_bit_with_their_slow_twin) {
   std::mt19937 random(7);
   Program::Workspace workspace;
   for (int round = 0; round < 400; ++round) {
@@ -217,7 +217,7 @@ TEST(Expression, ProgramsAgreeBitByBitWithTheirSlowTwin) {
   }
 }
 
-TEST(Expression, NoTextCrashesTheParser) {
+TEST(Expression, no_text_crashes_the_parser) {
   std::mt19937 random(3);
   const std::string alphabet = "rvk 0123456789.+-*/^()<>=,;\nesinqrtwhab$\xc3\xbc";
   int parsed = 0;

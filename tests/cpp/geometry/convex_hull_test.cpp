@@ -30,7 +30,7 @@ std::vector<Vec3> grid(int n) {
   return points;
 }
 
-TEST(ConvexHull, OfAGridIsACubeWhateverLiesWithinOnFacesOrOnEdges) {
+TEST(ConvexHull, of_a_grid_is_a_cube_whatever_lies_within_on_faces_or_on_edges) {
   std::vector<Vec3> points = grid(5);
   const std::vector<Vec3> once = points;
   points.insert(points.end(), once.begin(), once.end());
@@ -45,7 +45,7 @@ TEST(ConvexHull, OfAGridIsACubeWhateverLiesWithinOnFacesOrOnEdges) {
   }
 }
 
-TEST(ConvexHull, HoldsAllOfManyPointsAndObeysEulersFormula) {
+TEST(ConvexHull, holds_all_of_many_points_and_obeys_eulers_formula) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
   for (const double flatness : {1.0, 1e-3, 1e-6}) {
@@ -67,7 +67,7 @@ TEST(ConvexHull, HoldsAllOfManyPointsAndObeysEulersFormula) {
   }
 }
 
-TEST(ConvexHull, OfABallOfPointsWeighsWhatABallDoes) {
+TEST(ConvexHull, of_a_ball_of_points_weighs_what_a_ball_does) {
   std::vector<Vec3> points;
   for (int i = 0; i < 4000; ++i) {  // a Fibonacci lattice
     const double z = 1 - (2 * i + 1) / 4000.0, r = std::sqrt(1 - z * z), turn = 2.399963229728653 * i;
@@ -78,7 +78,7 @@ TEST(ConvexHull, OfABallOfPointsWeighsWhatABallDoes) {
   EXPECT_NEAR(hull.mean_squares[0].x, ball.mean_squares[0].x, 5e-4);
 }
 
-TEST(ConvexHull, SaysWhatEnclosesNoVolume) {
+TEST(ConvexHull, says_what_encloses_no_volume) {
   const auto refusal = [](std::vector<Vec3> points) -> std::string {
     try {
       (void)convex_hull(points);

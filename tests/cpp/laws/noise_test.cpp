@@ -9,7 +9,7 @@
 namespace iota::laws {
 namespace {
 
-TEST(Noise, IsSmoothAndHasTheGradientThatDifferencesGive) {
+TEST(Noise, is_smooth_and_has_the_gradient_that_differences_give) {
   std::mt19937 random(1);
   const auto number = [&] { return std::uniform_real_distribution(-5.0, 5.0)(random); };
   double largest = 0;
@@ -33,7 +33,7 @@ TEST(Noise, IsSmoothAndHasTheGradientThatDifferencesGive) {
   EXPECT_LE(largest, 1);
 }
 
-TEST(Noise, CurrentsNeitherGatherNorThinOut) {
+TEST(Noise, currents_neither_gather_nor_thin_out) {
   const Turbulence t{{0.5, 0, 0}, 1, 2, 4, 0.3, 7};
   std::mt19937 random(2);
   const auto number = [&] { return std::uniform_real_distribution(-5.0, 5.0)(random); };
@@ -59,7 +59,7 @@ TEST(Noise, CurrentsNeitherGatherNorThinOut) {
   EXPECT_GT(norm(later - now), 0.01);
 }
 
-TEST(Noise, AlwaysHasTheSameBits) {
+TEST(Noise, always_has_the_same_bits) {
   // These numbers were computed once; they guard worlds that people have saved.
   const Vec3 u = turbulent_velocity({{0, 0, 0}, 1, 1, 3, 0.1, 5}, {0.3, -1.7, 12.4}, 2.5);
   const Vec3 again = turbulent_velocity({{0, 0, 0}, 1, 1, 3, 0.1, 5}, {0.3, -1.7, 12.4}, 2.5);
@@ -68,7 +68,7 @@ TEST(Noise, AlwaysHasTheSameBits) {
   EXPECT_EQ(turbulent_velocity({{1, 0, 0}, 1, 1, 3, 0, 5}, {1e300, 0, 0}, 0), (Vec3{1, 0, 0})) << "far out";
 }
 
-TEST(Field, DragTowardsAWindIsExactForAFreeParticleAndNeverOvershoots) {
+TEST(Field, drag_towards_a_wind_is_exact_for_a_free_particle_and_never_overshoots) {
   for (const double drag : {1e-9, 0.1, 10.0, 1e6}) {
     FieldState s;
     s.velocity = {3, 0, 0}, s.mass = 0.2, s.h = 0.01;

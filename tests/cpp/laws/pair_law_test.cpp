@@ -19,7 +19,7 @@ void expect_near(double a, double b, const std::string& what) {
   EXPECT_NEAR(a, b, 1e-12 * (std::abs(a) + std::abs(b) + 1e-3)) << what;
 }
 
-TEST(PairLaw, EveryLawOfTheListIsWhatItsTextSays) {
+TEST(PairLaw, every_law_of_the_list_is_what_its_text_says) {
   std::mt19937 random(5);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
   for (std::uint32_t number = 0; number < pair_law_count; ++number) {
@@ -64,7 +64,7 @@ TEST(PairLaw, EveryLawOfTheListIsWhatItsTextSays) {
   }
 }
 
-TEST(PairLaw, AnExpressionIsSplitIntoEnergyPushDampingAndDrag) {
+TEST(PairLaw, an_expression_is_split_into_energy_push_damping_and_drag) {
   const PairLaw law("energy = k*r^2; force = t*r - c*v*r; drag = 3*r", {"k", "c"});
   const double p[] = {5, 7};
   const PairState s{2, 0.5, 11, 1, 1};
@@ -79,7 +79,7 @@ TEST(PairLaw, AnExpressionIsSplitIntoEnergyPushDampingAndDrag) {
   EXPECT_EQ(law.drag(s, p), 6);
 }
 
-TEST(PairLaw, TextsThatAreNoLawAreRefusedWithThePlace) {
+TEST(PairLaw, texts_that_are_no_law_are_refused_with_the_place) {
   const auto error_of = [](const char* text) -> std::string {
     try {
       (void)PairLaw(text, {"k"});

@@ -8,7 +8,7 @@ namespace {
 
 const Endpoint loopback{"127.0.0.1", "127.0.0.1", 8080};
 
-TEST(Access, TheNamesOfThisMachineWithOurPortAreTaken) {
+TEST(Access, the_names_of_this_machine_with_our_port_are_taken) {
   for (const char* host : {"localhost:8080", "LOCALHOST:8080", "127.0.0.1:8080", "[::1]:8080", "localhost.:8080"}) {
     EXPECT_FALSE(refuse_host(host, loopback)) << host;
   }
@@ -18,7 +18,7 @@ TEST(Access, TheNamesOfThisMachineWithOurPortAreTaken) {
   EXPECT_FALSE(refuse_host("localhost", {"127.0.0.1", "127.0.0.1", 80}));
 }
 
-TEST(Access, OtherHostsAndPortsAreRefused) {
+TEST(Access, other_hosts_and_ports_are_refused) {
   for (const char* host : {"", ":8080", "evil.example:8080", "localhost", "localhost:8081",
                            "localhost:", "localhost:8080x", "127.0.0.1.evil.example:8080", "localhost:808080",
                            "evil.example@localhost:8080", "127.0.0.1 :8080", "[::1]", "[::1", "::1:8080"}) {
@@ -26,7 +26,7 @@ TEST(Access, OtherHostsAndPortsAreRefused) {
   }
 }
 
-TEST(Access, OnlyOurOwnPageIsAnOrigin) {
+TEST(Access, only_our_own_page_is_an_origin) {
   EXPECT_FALSE(refuse_origin("http://localhost:8080", "localhost:8080"));
   EXPECT_FALSE(refuse_origin("HTTP://LocalHost:8080", "localhost:8080"));
   EXPECT_FALSE(refuse_origin("http://localhost", "localhost:80"));
@@ -37,7 +37,7 @@ TEST(Access, OnlyOurOwnPageIsAnOrigin) {
   }
 }
 
-TEST(Access, TargetsAreTakenApartAndUnescaped) {
+TEST(Access, targets_are_taken_apart_and_unescaped) {
   const auto target = parse_target("/a%20b/c.js?token=x%2By&z=1#part");
   ASSERT_TRUE(target);
   EXPECT_EQ(target->path, "/a b/c.js");
@@ -48,7 +48,7 @@ TEST(Access, TargetsAreTakenApartAndUnescaped) {
   EXPECT_EQ(query_value("&&token=&token=2", "token"), "");
 }
 
-TEST(Access, MalformedTargetsAreRefused) {
+TEST(Access, malformed_targets_are_refused) {
   for (const char* target : {"", "*", "a", "http://localhost/", "/%", "/%2", "/%zz", "/%-1"}) {
     EXPECT_FALSE(parse_target(target)) << target;
   }

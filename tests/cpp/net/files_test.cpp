@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::TemporaryFolder;
 
-TEST(Token, IsMadeOnceAndKept) {
+TEST(Token, is_made_once_and_kept) {
   const TemporaryFolder folder;
   const fs::path state = folder.path() / "state" / "iota";
   const std::string token = load_or_make_token(state);
@@ -28,7 +28,7 @@ TEST(Token, IsMadeOnceAndKept) {
   EXPECT_EQ(std::distance(fs::directory_iterator(state), fs::directory_iterator()), 1);
 }
 
-TEST(Token, IsReadableByItsOwnerOnly) {
+TEST(Token, is_readable_by_its_owner_only) {
   const TemporaryFolder folder;
   const auto mode_of = [&] { return fs::status(folder.path() / "token").permissions(); };
   load_or_make_token(folder.path());
@@ -38,7 +38,7 @@ TEST(Token, IsReadableByItsOwnerOnly) {
   EXPECT_EQ(mode_of(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
-TEST(Token, IsMadeAnewWhenItsFileIsDamaged) {
+TEST(Token, is_made_anew_when_its_file_is_damaged) {
   const TemporaryFolder folder;
   for (const char* contents : {"", "short", "zz345678901234567890123456789012", "0123456789abcdef0123456789abcdef00"}) {
     folder.write("token", contents);
@@ -48,7 +48,7 @@ TEST(Token, IsMadeAnewWhenItsFileIsDamaged) {
   }
 }
 
-TEST(Token, IsTheSameForAllThatStartAtOnce) {
+TEST(Token, is_the_same_for_all_that_start_at_once) {
   const TemporaryFolder folder;
   std::vector<std::string> tokens(8);
   std::vector<std::thread> threads;
@@ -57,13 +57,13 @@ TEST(Token, IsTheSameForAllThatStartAtOnce) {
   EXPECT_EQ(std::set<std::string>(tokens.begin(), tokens.end()).size(), 1U);
 }
 
-TEST(Token, SaysSoWhenItCannotBeKept) {
+TEST(Token, says_so_when_it_cannot_be_kept) {
   const TemporaryFolder folder;
   folder.write("file", "");
   EXPECT_THROW(load_or_make_token(folder.path() / "file" / "iota"), std::system_error);
 }
 
-TEST(Token, IsComparedWhole) {
+TEST(Token, is_compared_whole) {
   EXPECT_TRUE(equal_in_constant_time("abc", "abc"));
   EXPECT_FALSE(equal_in_constant_time("abd", "abc"));
   EXPECT_FALSE(equal_in_constant_time("ab", "abc"));
@@ -72,7 +72,7 @@ TEST(Token, IsComparedWhole) {
   EXPECT_FALSE(equal_in_constant_time("", ""));
 }
 
-TEST(StaticFiles, AreFoundWithTheirType) {
+TEST(StaticFiles, are_found_with_their_type) {
   const TemporaryFolder folder;
   folder.write("index.html", "<html>");
   folder.write("assets/main-1a2b.js", "x");
@@ -89,7 +89,7 @@ TEST(StaticFiles, AreFoundWithTheirType) {
   EXPECT_EQ(find_static_file(folder.path(), "/odd.xyz")->mime_type, "application/octet-stream");
 }
 
-TEST(StaticFiles, ChangeTheirTagWhenTheyChange) {
+TEST(StaticFiles, change_their_tag_when_they_change) {
   const TemporaryFolder folder;
   folder.write("index.html", "one");
   const std::string before = find_static_file(folder.path(), "/")->etag;
@@ -98,7 +98,7 @@ TEST(StaticFiles, ChangeTheirTagWhenTheyChange) {
   EXPECT_NE(find_static_file(folder.path(), "/")->etag, before);
 }
 
-TEST(StaticFiles, OutsideOfTheFolderAreNotFound) {
+TEST(StaticFiles, outside_of_the_folder_are_not_found) {
   const TemporaryFolder folder;
   folder.write("secret.txt", "x");
   folder.write("page/index.html", "x");
@@ -123,7 +123,7 @@ Frame frame_of(std::size_t size, std::uint8_t value) {
   return std::make_shared<const std::vector<std::uint8_t>>(size, value);
 }
 
-TEST(OutQueue, KeepsTheOrderAndTheNewestOfEachKey) {
+TEST(OutQueue, keeps_the_order_and_the_newest_of_each_key) {
   OutQueue queue(100);
   EXPECT_TRUE(queue.push(frame_of(1, 1)));
   EXPECT_TRUE(queue.push(frame_of(1, 2), "a"));
@@ -134,7 +134,7 @@ TEST(OutQueue, KeepsTheOrderAndTheNewestOfEachKey) {
   EXPECT_EQ(values, (std::vector<int>{1, 4, 3}));
 }
 
-TEST(OutQueue, CapsOnlyWhatAddsUp) {
+TEST(OutQueue, caps_only_what_adds_up) {
   OutQueue queue(100);
   EXPECT_TRUE(queue.push(frame_of(100000, 1), "scene"));
   EXPECT_TRUE(queue.push(frame_of(60, 2)));

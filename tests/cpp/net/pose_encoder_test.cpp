@@ -32,13 +32,13 @@ protocol::Poses decode(const std::vector<std::uint8_t>& bytes) {
 
 /// A client and what it is sent.
 struct Receiver {
-  PoseQuantiser quantiser;
+  PoseQuantizer quantizer;
   PoseDelta delta;
   std::vector<std::uint8_t> bytes;
 
   protocol::Poses next(const PoseSnapshot& snapshot, bool wants_keyframe = false) {
-    quantiser.update(snapshot);
-    delta.encode(quantiser, wants_keyframe, bytes);
+    quantizer.update(snapshot);
+    delta.encode(quantizer, wants_keyframe, bytes);
     return decode(bytes);
   }
 };
@@ -52,7 +52,7 @@ double angle_between(const float (&a)[4], const std::array<float, 4>& b) {
   return 4 * std::asin(std::min(1.0, std::sqrt(difference) / 2));
 }
 
-TEST(PoseEncoder, RotationsComeBackWithinFiveMilliradians) {
+TEST(PoseEncoder, rotations_come_back_within_five_milliradians) {
   std::mt19937 random(7);
   std::normal_distribution<float> normal;
   double worst = 0;
@@ -69,19 +69,19 @@ TEST(PoseEncoder, RotationsComeBackWithinFiveMilliradians) {
   RecordProperty("worst_angle_urad", static_cast<int>(worst * 1e6));
 }
 
-TEST(PoseEncoder, AQuaternionAndItsNegativeArePackedAlike) {
+TEST(PoseEncoder, a_quaternion_and_its_negative_are_packed_alike) {
   const float q[4] = {0.5F, -0.5F, 0.1F, 0.7F};
   const float minus[4] = {-0.5F, 0.5F, -0.1F, -0.7F};
   EXPECT_EQ(pack_rotation(q), pack_rotation(minus));
 }
 
-TEST(PoseEncoder, AQuaternionThatIsNoRotationIsRefused) {
+TEST(PoseEncoder, a_quaternion_that_is_no_rotation_is_refused) {
   EXPECT_FALSE(pack_rotation({0, 0, 0, 0}));
   EXPECT_FALSE(pack_rotation({nan_value, 0, 0, 1}));
   EXPECT_FALSE(pack_rotation({0, infinity, 0, 1}));
 }
 
-TEST(PoseEncoder, PositionsComeBackWithinHalfAStepOfTheBox) {
+TEST(PoseEncoder, positions_come_back_within_half_a_step_of_the_box) {
   std::mt19937 random(8);
   std::uniform_real_distribution<float> uniform(-3, 5);
   PoseSnapshot snapshot;
@@ -100,7 +100,7 @@ TEST(PoseEncoder, PositionsComeBackWithinHalfAStepOfTheBox) {
   }
 }
 
-TEST(PoseEncoder, ABodyTakesTwelveBytes) {
+TEST(PoseEncoder, a_body_takes_twelve_bytes) {
   Receiver receiver;
   PoseSnapshot snapshot = hanging_chain(500);
   receiver.next(snapshot);
@@ -110,7 +110,7 @@ TEST(PoseEncoder, ABodyTakesTwelveBytes) {
   EXPECT_EQ(receiver.bytes.size(), before - 1200);
 }
 
-TEST(PoseEncoder, OnlyWhatMovedIsListedAfterTheFirstFrame) {
+TEST(PoseEncoder, only_what_moved_is_listed_after_the_first_frame) {
   Receiver receiver;
   PoseSnapshot snapshot = hanging_chain(24);
   auto poses = receiver.next(snapshot);
@@ -130,7 +130,7 @@ TEST(PoseEncoder, OnlyWhatMovedIsListedAfterTheFirstFrame) {
   EXPECT_EQ(poses.bodies.size(), 24U);
 }
 
-TEST(PoseEncoder, AChangeOfStructureOrOfTheBoxGivesAKeyframe) {
+TEST(PoseEncoder, a_change_of_structure_or_of_the_box_gives_a_keyframe) {
   Receiver receiver;
   PoseSnapshot snapshot = hanging_chain(24);
   receiver.next(snapshot);
@@ -143,22 +143,22 @@ TEST(PoseEncoder, AChangeOfStructureOrOfTheBoxGivesAKeyframe) {
   EXPECT_EQ(poses.bodies.size(), 24U);
 }
 
-TEST(PoseEncoder, AClientThatSkippedFramesGetsAllThatMovedMeanwhile) {
-  PoseQuantiser quantiser;
+TEST(PoseEncoder, a_client_that_skipped_frames_gets_all_that_moved_meanwhile) {
+  PoseQuantizer quantizer;
   PoseDelta slow;
   std::vector<std::uint8_t> bytes;
   PoseSnapshot snapshot = hanging_chain(24);
-  quantiser.update(snapshot);
-  slow.encode(quantiser, false, bytes);
+  quantizer.update(snapshot);
+  slow.encode(quantizer, false, bytes);
   for (std::size_t i = 0; i < 10; ++i) {
     snapshot.bodies[i].position[0] += 0.01F;
-    quantiser.update(snapshot);
+    quantizer.update(snapshot);
   }
-  slow.encode(quantiser, false, bytes);
+  slow.encode(quantizer, false, bytes);
   EXPECT_EQ(decode(bytes).bodies.size(), 10U);
 }
 
-TEST(PoseEncoder, APieceThatFallsOnAndOnLeavesTheOthersExact) {
+TEST(PoseEncoder, a_piece_that_falls_on_and_on_leaves_the_others_exact) {
   Receiver receiver;
   PoseSnapshot snapshot = hanging_chain(24);
   std::size_t keyframes = 0;
@@ -180,7 +180,7 @@ TEST(PoseEncoder, APieceThatFallsOnAndOnLeavesTheOthersExact) {
   EXPECT_NEAR(unpack_position(poses, poses.bodies[1])[1], -0.1F, 1e-4);  // the box is small again
 }
 
-TEST(PoseEncoder, ABodyThatComesBackFromAfarIsListedAgain) {
+TEST(PoseEncoder, a_body_that_comes_back_from_afar_is_listed_again) {
   Receiver receiver;
   PoseSnapshot snapshot = hanging_chain(24);
   receiver.next(snapshot);
@@ -197,14 +197,14 @@ TEST(PoseEncoder, ABodyThatComesBackFromAfarIsListedAgain) {
   EXPECT_EQ(receiver.next(snapshot).far_bodies.size(), 1U);
 }
 
-TEST(PoseEncoder, ALongChainIsOneBox) {
+TEST(PoseEncoder, a_long_chain_is_one_box) {
   Receiver receiver;
   const auto poses = receiver.next(hanging_chain(4000));  // 400 m
   EXPECT_EQ(poses.bodies.size(), 4000U);
   EXPECT_TRUE(poses.far_bodies.empty());
 }
 
-TEST(PoseEncoder, SlotsAboveSixteenBitsTravelToo) {
+TEST(PoseEncoder, slots_above_sixteen_bits_travel_too) {
   Receiver receiver;
   PoseSnapshot snapshot = hanging_chain(2);
   snapshot.bodies.push_back(make_pose(70000, 0.1F, 0.2F, 0.3F));
@@ -213,7 +213,7 @@ TEST(PoseEncoder, SlotsAboveSixteenBitsTravelToo) {
   EXPECT_EQ(poses.far_bodies[0].body, 70000U);
 }
 
-TEST(PoseEncoder, WhatIsNotFiniteIsLeftOutAndTheRestIsSent) {
+TEST(PoseEncoder, what_is_not_finite_is_left_out_and_the_rest_is_sent) {
   Receiver receiver;
   PoseSnapshot snapshot = hanging_chain(6);
   snapshot.bodies[0].position[1] = nan_value;
@@ -234,7 +234,7 @@ TEST(PoseEncoder, WhatIsNotFiniteIsLeftOutAndTheRestIsSent) {
   EXPECT_TRUE(receiver.next(PoseSnapshot{}, true).bodies.empty());
 }
 
-TEST(PoseEncoder, AWorldThatIsReplacedElsewhereGetsANewBox) {
+TEST(PoseEncoder, a_world_that_is_replaced_elsewhere_gets_a_new_box) {
   Receiver receiver;
   receiver.next(hanging_chain(24));
   PoseSnapshot snapshot;

@@ -72,7 +72,7 @@ std::vector<std::uint8_t> encode_any(const Variant& message) {
   return std::visit([](const auto& m) { return encode(m); }, message);
 }
 
-TEST(Protocol, GoldenBytesAreDecodedToTheirValuesAndEncodedBack) {
+TEST(Protocol, golden_bytes_are_decoded_to_their_values_and_encoded_back) {
   for (const auto& [name, message] : client_vectors()) {
     const auto decoded = decode_client_message(golden(name));
     ASSERT_TRUE(decoded) << name << ": " << decoded.error;
@@ -87,7 +87,7 @@ TEST(Protocol, GoldenBytesAreDecodedToTheirValuesAndEncodedBack) {
   }
 }
 
-TEST(Protocol, EveryGoldenFileIsUsedAndEveryMessageHasOne) {
+TEST(Protocol, every_golden_file_is_used_and_every_message_has_one) {
   std::set<std::size_t> client_kinds;
   std::set<std::size_t> server_kinds;
   for (const auto& [name, message] : client_vectors()) client_kinds.insert(message.index());
@@ -101,7 +101,7 @@ TEST(Protocol, EveryGoldenFileIsUsedAndEveryMessageHasOne) {
   EXPECT_EQ(good, client_vectors().size() + server_vectors().size());
 }
 
-TEST(Protocol, BadGoldenBytesAreRefusedWithTheirReason) {
+TEST(Protocol, bad_golden_bytes_are_refused_with_their_reason) {
   const std::map<std::string, std::string> client_reasons{
       {"bad_empty", "the frame is empty"},
       {"bad_type", "has the type 9"},
@@ -136,7 +136,7 @@ TEST(Protocol, BadGoldenBytesAreRefusedWithTheirReason) {
   }
 }
 
-TEST(Protocol, FramesThatAreCutOrTooLongAreRefused) {
+TEST(Protocol, frames_that_are_cut_or_too_long_are_refused) {
   for (const auto& [name, message] : server_vectors()) {
     auto bytes = golden(name);
     for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -147,7 +147,7 @@ TEST(Protocol, FramesThatAreCutOrTooLongAreRefused) {
   }
 }
 
-TEST(Protocol, EncodingRefusesWhatADecoderWouldRefuse) {
+TEST(Protocol, encoding_refuses_what_a_decoder_would_refuse) {
   EXPECT_THROW(encode(Action{std::string(129, 'x'), 0}), std::length_error);
   EXPECT_THROW(encode(Action{"\xff", 0}), std::invalid_argument);
   EXPECT_THROW(encode(Effect{"break", {0, std::numeric_limits<float>::quiet_NaN(), 0}}), std::invalid_argument);
@@ -169,7 +169,7 @@ void expect_error_or_same(const std::vector<std::uint8_t>& bytes, Decode decode,
   ASSERT_EQ(encode_any(*decoded.value), bytes);
 }
 
-TEST(Protocol, TwoHundredThousandDamagedFramesGiveAnErrorOrAValidMessage) {
+TEST(Protocol, two_hundred_thousand_damaged_frames_give_an_error_or_a_valid_message) {
   std::mt19937 random(20240101);
   std::vector<std::vector<std::uint8_t>> seeds;
   for (const auto& entry : std::filesystem::directory_iterator(test::golden_folder())) {

@@ -131,12 +131,12 @@ class ServerTest : public testing::Test {
 
 // ------------------------------------------------------------------------------------------------------------ start
 
-TEST_F(ServerTest, PrintsAUrlThatHoldsPortAndToken) {
+TEST_F(ServerTest, prints_a_url_that_holds_port_and_token) {
   EXPECT_NE(server_->port(), 0);
   EXPECT_EQ(server_->url(), "http://127.0.0.1:" + std::to_string(server_->port()) + "/?token=" + token);
 }
 
-TEST_F(ServerTest, SaysClearlyThatThePortIsTaken) {
+TEST_F(ServerTest, says_clearly_that_the_port_is_taken) {
   try {
     const Server second(options(server_->port()));
     FAIL() << "two servers on one port";
@@ -148,7 +148,7 @@ TEST_F(ServerTest, SaysClearlyThatThePortIsTaken) {
   }
 }
 
-TEST_F(ServerTest, SaysClearlyThatTheHostIsUnknown) {
+TEST_F(ServerTest, says_clearly_that_the_host_is_unknown) {
   ServerOptions wrong = options(0);
   wrong.host = "no such host";
   EXPECT_THROW(Server{wrong}, std::system_error);
@@ -160,7 +160,7 @@ TEST_F(ServerTest, SaysClearlyThatTheHostIsUnknown) {
   EXPECT_THROW(Server{wrong}, std::invalid_argument);
 }
 
-TEST_F(ServerTest, StartsAgainOnItsPortAtOnceAndClientsComeBack) {
+TEST_F(ServerTest, starts_again_on_its_port_at_once_and_clients_come_back) {
   const std::uint16_t port = server_->port();
   for (int i = 0; i < 3; ++i) {
     const auto client = join();
@@ -172,7 +172,7 @@ TEST_F(ServerTest, StartsAgainOnItsPortAtOnceAndClientsComeBack) {
   }
 }
 
-TEST_F(ServerTest, DeliversAFarewellNoticeBeforeItCloses) {
+TEST_F(ServerTest, delivers_a_farewell_notice_before_it_closes) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   server_->notice(0, 2, "chain.py", "it raised an error");
@@ -186,7 +186,7 @@ TEST_F(ServerTest, DeliversAFarewellNoticeBeforeItCloses) {
 
 // ------------------------------------------------------------------------------------------------------------ files
 
-TEST_F(ServerTest, ServesThePageWithSafeHeaders) {
+TEST_F(ServerTest, serves_the_page_with_safe_headers) {
   const HttpAnswer answer = test::http_request(server_->port(), "GET", std::string("/?token=") + token);
   EXPECT_EQ(answer.status, 200U);
   EXPECT_EQ(answer.body, "<!doctype html><title>page</title>");
@@ -200,7 +200,7 @@ TEST_F(ServerTest, ServesThePageWithSafeHeaders) {
   EXPECT_EQ(policy.find("unsafe-inline"), std::string::npos);
 }
 
-TEST_F(ServerTest, ServesAssetsForEverAndOthersByTheirTag) {
+TEST_F(ServerTest, serves_assets_for_ever_and_others_by_their_tag) {
   const HttpAnswer asset = test::http_request(server_->port(), "GET", "/assets/main-1a2b.js");
   EXPECT_EQ(asset.status, 200U);
   EXPECT_EQ(asset.headers.at("Content-Type"), "text/javascript; charset=utf-8");
@@ -215,7 +215,7 @@ TEST_F(ServerTest, ServesAssetsForEverAndOthersByTheirTag) {
   EXPECT_EQ(head.headers.at("Content-Length"), std::to_string(page.body.size()));
 }
 
-TEST_F(ServerTest, AnswersOddRequestsWithTheRightStatus) {
+TEST_F(ServerTest, answers_odd_requests_with_the_right_status) {
   const auto status = [&](const char* method, const char* target) {
     return test::http_request(server_->port(), method, target).status;
   };
@@ -231,7 +231,7 @@ TEST_F(ServerTest, AnswersOddRequestsWithTheRightStatus) {
   EXPECT_EQ(test::http_request(server_->port(), "GET", "/", {{"Content-Length", "5"}}).status, 400U);
 }
 
-TEST_F(ServerTest, SurvivesWhatIsNotHttp) {
+TEST_F(ServerTest, survives_what_is_not_http) {
   std::mt19937 random(3);
   for (int i = 0; i < 20; ++i) {
     std::string noise(1 + random() % 2000, '\0');
@@ -248,7 +248,7 @@ TEST_F(ServerTest, SurvivesWhatIsNotHttp) {
 
 // -------------------------------------------------------------------------------------------------------- handshake
 
-TEST_F(ServerTest, WelcomesAClientThatSaysHello) {
+TEST_F(ServerTest, welcomes_a_client_that_says_hello) {
   const auto client = join("Ada");
   const auto welcome = hear<protocol::Welcome>(*client);
   ASSERT_TRUE(welcome);
@@ -263,7 +263,7 @@ TEST_F(ServerTest, WelcomesAClientThatSaysHello) {
   EXPECT_EQ(server_->statistics().clients, 1U);
 }
 
-TEST_F(ServerTest, RefusesAWrongTokenHostOrOriginWith403) {
+TEST_F(ServerTest, refuses_a_wrong_token_host_or_origin_with403) {
   const std::uint16_t port = server_->port();
   const std::string here = "localhost:" + std::to_string(port);
   const auto upgrade = [&](const std::string& where, const std::string& host, const std::string& origin) {
@@ -284,7 +284,7 @@ TEST_F(ServerTest, RefusesAWrongTokenHostOrOriginWith403) {
   EXPECT_EQ(upgrade(target(), "127.0.0.1:" + std::to_string(port), "http://127.0.0.1:" + std::to_string(port)), 101U);
 }
 
-TEST_F(ServerTest, RefusesAWrongVersionWorldOrFirstFrameWithAReason) {
+TEST_F(ServerTest, refuses_a_wrong_version_world_or_first_frame_with_a_reason) {
   const auto refusal = [&](std::span<const std::uint8_t> frame) {
     PageClient client;
     EXPECT_EQ(client.connect(server_->port(), target()), 101U);
@@ -307,7 +307,7 @@ TEST_F(ServerTest, RefusesAWrongVersionWorldOrFirstFrameWithAReason) {
   EXPECT_TRUE(server_->take_input().empty());
 }
 
-TEST_F(ServerTest, RefusesMoreClientsThanItIsMadeFor) {
+TEST_F(ServerTest, refuses_more_clients_than_it_is_made_for) {
   ServerOptions small = options(0);
   small.max_clients = 1;
   server_ = std::make_unique<Server>(small);
@@ -321,7 +321,7 @@ TEST_F(ServerTest, RefusesMoreClientsThanItIsMadeFor) {
 
 // -------------------------------------------------------------------------------------------------------- bad input
 
-TEST_F(ServerTest, AnswersABadFrameWithANoticeAndTheSessionLives) {
+TEST_F(ServerTest, answers_a_bad_frame_with_a_notice_and_the_session_lives) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   for (const char* name : {"bad_empty", "bad_type", "bad_direction", "bad_short_select", "bad_long_select", "bad_nan",
@@ -341,7 +341,7 @@ TEST_F(ServerTest, AnswersABadFrameWithANoticeAndTheSessionLives) {
   EXPECT_EQ(take(1).size(), 1U);
 }
 
-TEST_F(ServerTest, ClosesOnAnOversizedFrameAndLivesOn) {
+TEST_F(ServerTest, closes_on_an_oversized_frame_and_lives_on) {
   const auto client = join();
   const auto other = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
@@ -352,7 +352,7 @@ TEST_F(ServerTest, ClosesOnAnOversizedFrameAndLivesOn) {
   EXPECT_TRUE(soon([&] { return server_->statistics().clients == 1; }));
 }
 
-TEST_F(ServerTest, SurvivesThousandsOfRandomFrames) {
+TEST_F(ServerTest, survives_thousands_of_random_frames) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   std::mt19937 random(11);
@@ -368,7 +368,7 @@ TEST_F(ServerTest, SurvivesThousandsOfRandomFrames) {
   EXPECT_TRUE(is_alive(*client));
 }
 
-TEST_F(ServerTest, SurvivesConnectionsThatAreCut) {
+TEST_F(ServerTest, survives_connections_that_are_cut) {
   for (int i = 0; i < 50; ++i) {
     const auto client = join();
     if (i % 2 == 0) client->receive();
@@ -384,7 +384,7 @@ TEST_F(ServerTest, SurvivesConnectionsThatAreCut) {
   EXPECT_TRUE(is_alive(*join()));
 }
 
-TEST_F(ServerTest, RefusesPublishedThingsThatCannotTravel) {
+TEST_F(ServerTest, refuses_published_things_that_cannot_travel) {
   EXPECT_THROW(server_->set_scene(std::string(65, 'k'), "1"), std::length_error);
   EXPECT_THROW(server_->set_scene("world", "\xff"), std::invalid_argument);
   EXPECT_THROW(server_->effect("break", {std::numeric_limits<float>::infinity(), 0, 0}), std::invalid_argument);
@@ -399,7 +399,7 @@ TEST_F(ServerTest, RefusesPublishedThingsThatCannotTravel) {
 
 // ---------------------------------------------------------------------------------------------------- several clients
 
-TEST_F(ServerTest, TwoClientsHaveTheirOwnSelectionsAndSeeEachOther) {
+TEST_F(ServerTest, two_clients_have_their_own_selections_and_see_each_other) {
   const auto ada = join("Ada");
   const auto bob = join("Bob");
   const auto a = hear<protocol::Welcome>(*ada);
@@ -431,7 +431,7 @@ TEST_F(ServerTest, TwoClientsHaveTheirOwnSelectionsAndSeeEachOther) {
   EXPECT_EQ(leave[0].client, b->client);
 }
 
-TEST_F(ServerTest, NoticesGoToOneOrToAll) {
+TEST_F(ServerTest, notices_go_to_one_or_to_all) {
   const auto ada = join("Ada");
   const auto bob = join("Bob");
   const auto number = hear<protocol::Welcome>(*ada)->client;
@@ -446,7 +446,7 @@ TEST_F(ServerTest, NoticesGoToOneOrToAll) {
   EXPECT_EQ(hear<protocol::Effect>(*bob)->position, (protocol::Vec3{1, 2, 3}));
 }
 
-TEST_F(ServerTest, ALateJoinerGetsTheSceneStructureAndAllPoses) {
+TEST_F(ServerTest, a_late_joiner_gets_the_scene_structure_and_all_poses) {
   server_->set_scene("world", "{\"title\":\"old\"}");
   server_->set_scene("classes", "{}");
   server_->set_scene("statics", "[]");
@@ -474,7 +474,7 @@ TEST_F(ServerTest, ALateJoinerGetsTheSceneStructureAndAllPoses) {
   EXPECT_EQ(poses->bodies.size(), 3U);
 }
 
-TEST_F(ServerTest, OnlyWhatMovedIsSentAndEverythingOnceASecond) {
+TEST_F(ServerTest, only_what_moved_is_sent_and_everything_once_a_second) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   PoseSnapshot snapshot = make_snapshot(1, 50);
@@ -492,7 +492,7 @@ TEST_F(ServerTest, OnlyWhatMovedIsSentAndEverythingOnceASecond) {
   EXPECT_TRUE(hear<protocol::Poses>(*client)->keyframe);
 }
 
-TEST_F(ServerTest, ScenesComeBeforeThePosesThatWerePublishedAfterThem) {
+TEST_F(ServerTest, scenes_come_before_the_poses_that_were_published_after_them) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   for (std::uint64_t round = 1; round <= 50; ++round) {
@@ -515,7 +515,7 @@ TEST_F(ServerTest, ScenesComeBeforeThePosesThatWerePublishedAfterThem) {
 
 // ------------------------------------------------------------------------------------------------------------- input
 
-TEST_F(ServerTest, GesturesArriveInOrderAndMovesOfOneHandAsOne) {
+TEST_F(ServerTest, gestures_arrive_in_order_and_moves_of_one_hand_as_one) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   say(*client, protocol::GrabStart{1, 5, {0.1F, 0, 0}, {1, 1, 1}});
@@ -544,7 +544,7 @@ TEST_F(ServerTest, GesturesArriveInOrderAndMovesOfOneHandAsOne) {
   EXPECT_EQ(events[7].hold, 1U);
 }
 
-TEST_F(ServerTest, HoldsThatDoNotFitAreRefused) {
+TEST_F(ServerTest, holds_that_do_not_fit_are_refused) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   say(*client, protocol::GrabMove{1, {}});
@@ -559,7 +559,7 @@ TEST_F(ServerTest, HoldsThatDoNotFitAreRefused) {
   EXPECT_EQ(take(33).size(), 33U);
 }
 
-TEST_F(ServerTest, AClientThatFloodsTheScriptIsDroppedWithAReason) {
+TEST_F(ServerTest, a_client_that_floods_the_script_is_dropped_with_a_reason) {
   const auto client = join();
   const auto other = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
@@ -575,7 +575,7 @@ TEST_F(ServerTest, AClientThatFloodsTheScriptIsDroppedWithAReason) {
 
 // -------------------------------------------------------------------------------------------------------- slow clients
 
-TEST_F(ServerTest, AClientThatDoesNotReadHoldsUpNobodyAndSkipsToTheNewest) {
+TEST_F(ServerTest, a_client_that_does_not_read_holds_up_nobody_and_skips_to_the_newest) {
   const auto slow = join("slow", true);
   const auto fast = join("fast");
   ASSERT_TRUE(hear<protocol::Welcome>(*fast));
@@ -612,7 +612,7 @@ TEST_F(ServerTest, AClientThatDoesNotReadHoldsUpNobodyAndSkipsToTheNewest) {
   EXPECT_TRUE(is_alive(*slow));
 }
 
-TEST_F(ServerTest, AClientOverItsQueueIsDroppedWithAReason) {
+TEST_F(ServerTest, a_client_over_its_queue_is_dropped_with_a_reason) {
   const auto slow = join("slow", true);
   const auto other = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*other));

@@ -172,7 +172,7 @@ TEST_P(Rows, keep_a_taut_rope_swinging_like_a_rod) {
   EXPECT_NEAR(energy(), change, 1e-9);
 }
 
-/// A wheel: two points about a nailed centre in the plane z = 0. Its angle is that of the first point.
+/// A wheel: two points about a nailed center in the plane z = 0. Its angle is that of the first point.
 struct Wheel {
   std::uint32_t hub, rim;
   std::size_t angle;
@@ -349,7 +349,7 @@ TEST_P(Rows, let_a_ball_rest_on_the_floor) {
     c.set_constant(static_cast<int>(4 + k), {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0});
   }
   for (std::uint32_t k = 0; k < 4; ++k) c.add(0, corner[k], -0.25);
-  // The ball's centre is the first corner plus nothing: its frame has its origin at the mean of the points.
+  // The ball's center is the first corner plus nothing: its frame has its origin at the mean of the points.
   c.start(problem.position.data(), 0);
   const auto row = add(problem, c);
   pool<SurfacePairConstraint>(problem).law(row)->upper = 0;

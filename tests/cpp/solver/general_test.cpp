@@ -50,7 +50,7 @@ class AnySolver : public testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(ByName, AnySolver, testing::ValuesIn(solver_names()),
                          [](const auto& info) { return info.param; });
 
-TEST_P(AnySolver, FindsTheMinimumOfRosenbrocksValleyFromWhereNewtonAloneOvershoots) {
+TEST_P(AnySolver, finds_the_minimum_of_rosenbrocks_valley_from_where_newton_alone_overshoots) {
   Given problem = rosenbrock();
   std::vector<double> x{-1.2, 1};
   const SolverReport report = solve(problem, x);
@@ -61,7 +61,7 @@ TEST_P(AnySolver, FindsTheMinimumOfRosenbrocksValleyFromWhereNewtonAloneOvershoo
   EXPECT_GT(report.iterations, 0);
 }
 
-TEST_P(AnySolver, SolvesPowellsBadlyScaledEquations) {
+TEST_P(AnySolver, solves_powells_badly_scaled_equations) {
   Given problem{
       2, [](auto x, auto f) { f[0] = 1e4 * x[0] * x[1] - 1, f[1] = std::exp(-x[0]) + std::exp(-x[1]) - 1.0001; }};
   std::vector<double> x{0, 1};
@@ -71,7 +71,7 @@ TEST_P(AnySolver, SolvesPowellsBadlyScaledEquations) {
   EXPECT_NEAR(x[1] / 9.106146, 1, 1e-5);
 }
 
-TEST_P(AnySolver, FindsACubeRootOfOneFromNearlyEverywhere) {
+TEST_P(AnySolver, finds_a_cube_root_of_one_from_nearly_everywhere) {
   Given problem = cube_roots_of_one();
   int found = 0, tried = 0;
   for (int i = -6; i <= 6; ++i)
@@ -87,7 +87,7 @@ TEST_P(AnySolver, FindsACubeRootOfOneFromNearlyEverywhere) {
   EXPECT_GE(found, 0.97 * tried) << "the line search can end where |f| has a minimum on its way";
 }
 
-TEST_P(AnySolver, NeedsNoJacobian) {
+TEST_P(AnySolver, needs_no_jacobian) {
   Given exact = rosenbrock(), differences{2, exact.f};
   std::vector<double> x{-1.2, 1};
   const SolverReport report = solve(differences, x);
@@ -95,7 +95,7 @@ TEST_P(AnySolver, NeedsNoJacobian) {
   EXPECT_GT(report.evaluations, 2 * report.iterations) << "differences count as evaluations";
 }
 
-TEST_P(AnySolver, SolvesLinearEquationsAtOnce) {
+TEST_P(AnySolver, solves_linear_equations_at_once) {
   Given problem{
       3, [](auto x, auto f) { f[0] = 2 * x[0] + x[1] - 3, f[1] = x[0] - x[1] + x[2], f[2] = 4 * x[2] - x[0] - 2; }};
   std::vector<double> x{0, 0, 0};
@@ -104,7 +104,7 @@ TEST_P(AnySolver, SolvesLinearEquationsAtOnce) {
   EXPECT_LE(report.iterations, 3);
 }
 
-TEST_P(AnySolver, SaysSoWhereThereIsNoRoot) {
+TEST_P(AnySolver, says_so_where_there_is_no_root) {
   Given problem{1, [](auto x, auto f) { f[0] = x[0] * x[0] + 1; }};
   std::vector<double> x{3};
   const SolverReport report = solve(problem, x);
@@ -114,7 +114,7 @@ TEST_P(AnySolver, SaysSoWhereThereIsNoRoot) {
   EXPECT_TRUE(std::isfinite(x[0]));
 }
 
-TEST_P(AnySolver, LetsWhatTheEquationsThrowPassAndLeavesTheGuess) {
+TEST_P(AnySolver, lets_what_the_equations_throw_pass_and_leaves_the_guess) {
   int calls = 0;
   Given problem{1, [&](auto x, auto f) {
                   if (++calls == 3) throw std::runtime_error("no such ship");
@@ -125,7 +125,7 @@ TEST_P(AnySolver, LetsWhatTheEquationsThrowPassAndLeavesTheGuess) {
   EXPECT_EQ(x[0], 5);
 }
 
-TEST_P(AnySolver, StepsBackFromWhereTheEquationsAreNotFinite) {
+TEST_P(AnySolver, steps_back_from_where_the_equations_are_not_finite) {
   Given problem{1, [](auto x, auto f) { f[0] = x[0] > 0 ? std::log(x[0]) : std::numeric_limits<double>::quiet_NaN(); }};
   std::vector<double> x{3};  // Newton's first step leads to 3 - 3 log 3 < 0
   const SolverReport report = solve(problem, x);
@@ -133,7 +133,7 @@ TEST_P(AnySolver, StepsBackFromWhereTheEquationsAreNotFinite) {
   EXPECT_NEAR(x[0], 1, 1e-9);
 }
 
-TEST_P(AnySolver, ReportsEquationsThatAreNowhereFinite) {
+TEST_P(AnySolver, reports_equations_that_are_nowhere_finite) {
   Given problem{1, [](auto, auto f) { f[0] = std::numeric_limits<double>::quiet_NaN(); }};
   std::vector<double> x{1};
   const SolverReport report = solve(problem, x);
@@ -141,7 +141,7 @@ TEST_P(AnySolver, ReportsEquationsThatAreNowhereFinite) {
   EXPECT_EQ(report.residual, std::numeric_limits<double>::infinity());
 }
 
-TEST_P(AnySolver, RefusesBadGuessesAndOptions) {
+TEST_P(AnySolver, refuses_bad_guesses_and_options) {
   Given problem = rosenbrock();
   std::vector<double> short_one{1}, not_finite{1, std::numeric_limits<double>::quiet_NaN()}, good{1, 2};
   EXPECT_THROW((void)solve(problem, short_one), std::invalid_argument);
@@ -150,13 +150,13 @@ TEST_P(AnySolver, RefusesBadGuessesAndOptions) {
   EXPECT_THROW((void)solve(problem, good, {.max_iterations = 0}), std::invalid_argument);
 }
 
-TEST_P(AnySolver, HasNothingToDoForNoEquations) {
+TEST_P(AnySolver, has_nothing_to_do_for_no_equations) {
   Given problem{0, [](auto, auto) {}};
   std::vector<double> x;
   EXPECT_TRUE(solve(problem, x).converged);
 }
 
-TEST(NewtonRaphson, TakesTheShortestStepWhereTheJacobianIsSingular) {
+TEST(NewtonRaphson, takes_the_shortest_step_where_the_jacobian_is_singular) {
   // x + y = 2 twice: a line of roots; the nearest to (3, 0) is (2.5, -0.5).
   Given problem{2, [](auto x, auto f) { f[0] = x[0] + x[1] - 2, f[1] = 2 * f[0]; },
                 [](auto, auto j) { j[0] = j[1] = 1, j[2] = j[3] = 2; }};
@@ -166,7 +166,7 @@ TEST(NewtonRaphson, TakesTheShortestStepWhereTheJacobianIsSingular) {
   EXPECT_NEAR(x[1], -0.5, 1e-12);
 }
 
-TEST(NewtonRaphson, SaysThatItStandsAtAMinimumOfTheSizeAndNoRoot) {
+TEST(NewtonRaphson, says_that_it_stands_at_a_minimum_of_the_size_and_no_root) {
   Given problem = cube_roots_of_one();
   std::vector<double> x{0, 0};  // f' = 0
   const SolverReport report = make_solver("newton")->solve(problem, x);
@@ -174,7 +174,7 @@ TEST(NewtonRaphson, SaysThatItStandsAtAMinimumOfTheSizeAndNoRoot) {
   EXPECT_NE(report.reason.find("minimum"), std::string::npos) << report.reason;
 }
 
-TEST(Solvers, CanBeRegisteredUnderANameOfOnesOwn) {
+TEST(Solvers, can_be_registered_under_a_name_of_ones_own) {
   struct Bisection final : Solver {
     Ending search(NonlinearProblem& problem, std::span<double> x, const SolverOptions& options) override {
       double low = 0, high = 2, f = 0;
@@ -197,7 +197,7 @@ TEST(Solvers, CanBeRegisteredUnderANameOfOnesOwn) {
   EXPECT_FALSE(make_solver("bisection")->solve(rootless, x).converged) << "what a solver claims is checked";
 }
 
-TEST(Solvers, AreRefusedByNameWithTheNamesThatThereAre) {
+TEST(Solvers, are_refused_by_name_with_the_names_that_there_are) {
   try {
     (void)make_solver("nwton");
     FAIL();
@@ -211,7 +211,7 @@ TEST(Solvers, AreRefusedByNameWithTheNamesThatThereAre) {
   EXPECT_THROW(register_solver("none", nullptr), std::invalid_argument);
 }
 
-TEST(Svd, RebuildsRandomMatricesOfAnyShape) {
+TEST(Svd, rebuilds_random_matrices_of_any_shape) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> number(-1, 1);
   for (const auto& [rows, columns] : {std::pair{1, 1}, {4, 4}, {7, 3}, {3, 7}, {12, 12}}) {
@@ -228,7 +228,7 @@ TEST(Svd, RebuildsRandomMatricesOfAnyShape) {
   }
 }
 
-TEST(Svd, KnowsTheConditionOfAHilbertMatrix) {
+TEST(Svd, knows_the_condition_of_a_hilbert_matrix) {
   solver::Dense hilbert(8, 8);
   for (std::size_t i = 0; i < 8; ++i)
     for (std::size_t j = 0; j < 8; ++j) hilbert(i, j) = 1.0 / static_cast<double>(i + j + 1);
@@ -236,7 +236,7 @@ TEST(Svd, KnowsTheConditionOfAHilbertMatrix) {
   EXPECT_NEAR(svd.s.front() / svd.s.back() / 1.5257575e10, 1, 1e-5);  // e.g. Higham 2002, table 28.1
 }
 
-TEST(Svd, CountsTheRankOfRedundantRows) {
+TEST(Svd, counts_the_rank_of_redundant_rows) {
   solver::Dense a(4, 3);
   for (std::size_t j = 0; j < 3; ++j)
     a(0, j) = 1.0 + double(j), a(1, j) = double(j * j), a(2, j) = a(0, j) - 2 * a(1, j);
@@ -244,17 +244,17 @@ TEST(Svd, CountsTheRankOfRedundantRows) {
   EXPECT_EQ(svd.rank(1e-12), 2u);
 }
 
-TEST(DenseLu, RefusesSingularMatricesAndSolvesOthers) {
+TEST(DenseLu, refuses_singular_matrices_and_solves_others) {
   solver::Dense a(2, 2);
   a(0, 1) = 2, a(1, 0) = 3, a(1, 1) = 1;
   solver::DenseLu lu;
-  ASSERT_TRUE(lu.factorise(a));
+  ASSERT_TRUE(lu.factorize(a));
   std::vector<double> b{4, 5};
   lu.solve(b);
   EXPECT_NEAR(b[0], 1, 1e-15);
   EXPECT_NEAR(b[1], 2, 1e-15);
   a(0, 1) = 0;
-  EXPECT_FALSE(lu.factorise(a));
+  EXPECT_FALSE(lu.factorize(a));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct Turning {
   ForceStage stage{0.02, true, false};
 };
 
-TEST(GyroscopicForce, HasTheStiffnessThatDifferencesGive) {
+TEST(GyroscopicForce, has_the_stiffness_that_differences_give) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Turning t(seed);
     const Mat3 k = t.force.stiffness_matrix(t.e0, t.e1, t.stage);
@@ -37,7 +37,7 @@ TEST(GyroscopicForce, HasTheStiffnessThatDifferencesGive) {
   }
 }
 
-TEST(GyroscopicForce, DoesNoWorkAndItsMomentIsWhatTheSpinLoses) {
+TEST(GyroscopicForce, does_no_work_and_its_moment_is_what_the_spin_loses) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Turning t(seed);
     const Vec3 force = t.force.force(t.e0, t.e1, t.stage);

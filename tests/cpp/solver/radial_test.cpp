@@ -25,7 +25,7 @@ RadialForce force_of(const laws::PairLaw& law) {
   return f;
 }
 
-TEST(RadialForce, HasTheStiffnessThatDifferencesGive) {
+TEST(RadialForce, has_the_stiffness_that_differences_give) {
   for (const laws::PairLaw& law : all_laws()) {
     const RadialForce f = force_of(law);
     // Damping has its slope over v only, along the line at the start; so the rate is kept small beside the rest.
@@ -49,7 +49,7 @@ TEST(RadialForce, HasTheStiffnessThatDifferencesGive) {
   }
 }
 
-TEST(RadialForce, DoesAtMidPointExactlyTheWorkThatItsEnergyLoses) {
+TEST(RadialForce, does_at_mid_point_exactly_the_work_that_its_energy_loses) {
   std::mt19937 random(4);
   const auto number = [&] { return std::uniform_real_distribution(-1.0, 1.0)(random); };
   for (std::uint32_t i = 0; i < laws::pair_law_count; ++i) {
@@ -68,7 +68,7 @@ TEST(RadialForce, DoesAtMidPointExactlyTheWorkThatItsEnergyLoses) {
   }
 }
 
-TEST(RadialForce, OfASpringIsTheSpring) {
+TEST(RadialForce, of_a_spring_is_the_spring) {
   const laws::PairLaw law(laws::find_pair_law("spring"));
   RadialForce f = force_of(law);
   f.parameters = {50, 3, 0.8};

@@ -21,7 +21,7 @@ struct Twin {
   std::vector<double> right_side;
 
   Twin(const CouplingGraph& graph, bool symmetric, std::mt19937& random) {
-    pattern.analyse(graph);
+    pattern.analyze(graph);
     std::vector<BlockPattern::ConstraintSlot> slots;
     for (std::size_t k = 0; k < graph.constraints.size(); ++k) slots.push_back(pattern.constraint_slot(k));
     fill(graph, slots, symmetric, random);
@@ -108,7 +108,7 @@ struct Twin {
   void expect_equal_solutions() {
     const std::vector<double> expected = solve_densely();
     std::vector<double> along = right_side;
-    EXPECT_EQ(factor.factorise(along), 0) << "positive pivots for nodes, negative ones for constraints";
+    EXPECT_EQ(factor.factorize(along), 0) << "positive pivots for nodes, negative ones for constraints";
     factor.finish(along);
     std::vector<double> x = right_side;
     factor.solve(x);
@@ -204,7 +204,7 @@ TEST(BlockFactor, equals_a_dense_solve_on_random_unsymmetric_matrices) {
   for (int i = 0; i < 300; ++i) {
     Twin twin(random_graph(random), false, random);
     const std::vector<double> expected = twin.solve_densely();
-    (void)twin.factor.factorise();
+    (void)twin.factor.factorize();
     std::vector<double> x = twin.right_side;
     twin.factor.solve(x);
     double largest = 0;
@@ -219,7 +219,7 @@ TEST(Ordering, of_a_chain_makes_no_fill) {
   graph.node_count = n;
   for (std::uint32_t i = 0; i + 1 < n; ++i) graph.constraints.push_back({1, 2, {i, i + 1}});
   BlockPattern pattern;
-  pattern.analyse(graph);
+  pattern.analyze(graph);
   EXPECT_EQ(pattern.entries().size(), n - 1);
   EXPECT_EQ(pattern.widest_front(), 3u);
 }
@@ -256,10 +256,10 @@ struct ChangingTree {
       graph.constraints.push_back({1, 2, {to, n}});
       graph.couplings.push_back({to, n});
     }
-    analyse();
+    analyze();
   }
-  void analyse() {
-    pattern.analyse(graph);
+  void analyze() {
+    pattern.analyze(graph);
     slots.clear();
     for (std::size_t k = 0; k < graph.constraints.size(); ++k) slots.push_back(pattern.constraint_slot(k));
   }
@@ -286,7 +286,7 @@ struct ChangingTree {
       change.constraints.push_back({{a, b}, slots[k].unknown});
       numbers.push_back(k);
     }
-    change.neighbours = [&](std::uint32_t node, std::vector<std::uint32_t>& with) {
+    change.neighbors = [&](std::uint32_t node, std::vector<std::uint32_t>& with) {
       for (const auto [a, b] : graph.couplings)
         if (a == node || b == node) with.push_back(a == node ? b : a);
     };
@@ -306,7 +306,7 @@ struct ChangingTree {
       const std::uint32_t last = --graph.node_count;
       for (std::size_t k = 0; k < graph.couplings.size(); ++k) move(k, last, gone);
     }
-    if (!followed) analyse();
+    if (!followed) analyze();
   }
   void cut(std::mt19937& random) {
     const auto node = static_cast<std::uint32_t>(random() % graph.node_count);

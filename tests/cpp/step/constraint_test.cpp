@@ -15,13 +15,13 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double g = 9.81;
 
-/// A solid block as eight equal corner masses: inertia m (b^2 + c^2) / 4 about each axis through its centre.
-BodyId make_block(System& system, const Vec3& centre, const Vec3& size, double mass, const Vec3& velocity = {}) {
+/// A solid block as eight equal corner masses: inertia m (b^2 + c^2) / 4 about each axis through its center.
+BodyId make_block(System& system, const Vec3& center, const Vec3& size, double mass, const Vec3& velocity = {}) {
   const BodyId body = system.create_body();
   for (const double x : {-0.5, 0.5})
     for (const double y : {-0.5, 0.5})
       for (const double z : {-0.5, 0.5})
-        system.create_particle(body, centre + Vec3{x * size.x, y * size.y, z * size.z}, mass / 8, velocity);
+        system.create_particle(body, center + Vec3{x * size.x, y * size.y, z * size.z}, mass / 8, velocity);
   return body;
 }
 
@@ -48,9 +48,9 @@ void run(System& system, double seconds, double dt) {
 
 TEST(Revolute, a_block_on_an_axle_swings_as_a_physical_pendulum) {
   System system;
-  const double d = 0.5, angle = 0.1;  // centre below the axle by d
-  const Vec3 centre{d * std::sin(angle), -d * std::cos(angle), 0};
-  const BodyId block = make_block(system, centre, {0.2, 0.4, 0.3}, 2);
+  const double d = 0.5, angle = 0.1;  // center below the axle by d
+  const Vec3 center{d * std::sin(angle), -d * std::cos(angle), 0};
+  const BodyId block = make_block(system, center, {0.2, 0.4, 0.3}, 2);
   const ConstraintId joint =
       system.create_constraint(JointSpec{.kind = ConstraintKind::revolute, .a = block, .at = {}, .axis = {0, 0, 1}});
   const double inertia = 2 * ((0.2 * 0.2 + 0.4 * 0.4) / 4 + d * d);
@@ -64,7 +64,7 @@ TEST(Revolute, a_block_on_an_axle_swings_as_a_physical_pendulum) {
       if (++crossings == 1) first = latest;
     }
     last = now;
-    EXPECT_NEAR(system.centre_of_mass(block).z, 0, 1e-9);
+    EXPECT_NEAR(system.center_of_mass(block).z, 0, 1e-9);
     EXPECT_LT(state.gap, 1e-9);
   });
   ASSERT_GT(crossings, 2);
@@ -94,7 +94,7 @@ TEST(Weld, a_cantilever_carries_m_g_l) {
   EXPECT_NEAR(norm(system.state(weld).torque - Vec3{0, 0, 3 * g * 0.5}), 0, 1e-5);
   EXPECT_NEAR(norm(system.state(wall).force - Vec3{0, 4 * g, 0}), 0, 1e-5);
   EXPECT_NEAR(norm(system.state(wall).torque - Vec3{0, 0, 3 * g * 0.6}), 0, 1e-5);
-  EXPECT_NEAR(norm(system.centre_of_mass(beam) - Vec3{0.6, 0, 0}), 0, 1e-9);
+  EXPECT_NEAR(norm(system.center_of_mass(beam) - Vec3{0.6, 0, 0}), 0, 1e-9);
 }
 
 TEST(Ball, two_blocks_keep_a_common_point_and_their_momenta) {
@@ -119,7 +119,7 @@ TEST(Prismatic, a_block_on_an_incline_accelerates_by_g_sin) {
   const ConstraintState state = system.state(joint);
   EXPECT_NEAR(state.speed[1], g * std::sin(slope), 1e-6);
   EXPECT_NEAR(state.coordinate[1], g * std::sin(slope) / 2, 0.05);
-  EXPECT_NEAR(norm(system.centre_of_mass(block) - Vec3{0.1, 0.2, 0.3} - state.coordinate[1] * down), 0, 1e-8);
+  EXPECT_NEAR(norm(system.center_of_mass(block) - Vec3{0.1, 0.2, 0.3} - state.coordinate[1] * down), 0, 1e-8);
 }
 
 TEST(Prismatic, a_bead_of_one_particle_slides_on_a_straight_wire) {
@@ -506,8 +506,8 @@ TEST(SurfacePair, a_ball_rests_on_a_plane_and_another_on_it) {
                                                                         .surface_a = {Sphere{0.5}, {0, 1.7, 0}, {}},
                                                                         .surface_b = {Sphere{0.5}, {0, 0.6, 0}, {}}});
   run(system, 4, 1.0 / 120);
-  EXPECT_NEAR(system.centre_of_mass(lower).y, 0.5, 1e-6);
-  EXPECT_NEAR(system.centre_of_mass(upper).y, 1.5, 1e-6);
+  EXPECT_NEAR(system.center_of_mass(lower).y, 0.5, 1e-6);
+  EXPECT_NEAR(system.center_of_mass(upper).y, 1.5, 1e-6);
   EXPECT_NEAR(system.state(floor).force.y, 2 * g, 1e-4);
   EXPECT_NEAR(system.state(contact).force.y, g, 1e-4);
 }

@@ -35,7 +35,7 @@ bool mentions(const Diagnosis& d, const std::string& words) {
                      [&](const std::string& f) { return f.find(words) != std::string::npos; });
 }
 
-TEST(Diagnosis, CountsTheDegreesOfFreedomOfAHangingChain) {
+TEST(Diagnosis, counts_the_degrees_of_freedom_of_a_hanging_chain) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 5});
   const Diagnosis d = system.diagnose(chain.links[2]);
@@ -49,7 +49,7 @@ TEST(Diagnosis, CountsTheDegreesOfFreedomOfAHangingChain) {
   EXPECT_LT(d.condition, 20);
 }
 
-TEST(Diagnosis, OfAFreeBodyGivesItSixDegreesOfFreedom) {
+TEST(Diagnosis, of_a_free_body_gives_it_six_degrees_of_freedom) {
   System system;
   const BodyId body = system.create_body();
   for (int i = 0; i < 6; ++i) system.create_particle(body, {std::cos(i * 1.0), std::sin(2.0 * i), 0.3 * i * i});
@@ -62,7 +62,7 @@ TEST(Diagnosis, OfAFreeBodyGivesItSixDegreesOfFreedom) {
   EXPECT_EQ(d.condition, 1);
 }
 
-TEST(Diagnosis, SingularValuesAreThoseOfTheTwoRowsWorkedOutByHand) {
+TEST(Diagnosis, singular_values_are_those_of_the_two_rows_worked_out_by_hand) {
   // Two rods of unit masses in line: rows scaled to 1 share the middle point (mass 2) and meet there at 180 degrees.
   System system;
   const auto chain = scenes::make_chain(system, {.links = 2, .link_length = 1, .link_mass = 2, .nailed = false});
@@ -76,7 +76,7 @@ TEST(Diagnosis, SingularValuesAreThoseOfTheTwoRowsWorkedOutByHand) {
   EXPECT_NEAR(d.kkt_condition, high / -low, 1e-9);
 }
 
-TEST(Diagnosis, FindsTheCouplerThatIsSaidTwiceAndNamesIt) {
+TEST(Diagnosis, finds_the_coupler_that_is_said_twice_and_names_it) {
   System system;
   const auto bars = make_parallelogram(system, 2, 0.3);
   const Diagnosis d = system.diagnose(bars[0]);
@@ -87,7 +87,7 @@ TEST(Diagnosis, FindsTheCouplerThatIsSaidTwiceAndNamesIt) {
   EXPECT_GT(d.kkt_condition, 1e10);
 }
 
-TEST(Diagnosis, FindsAFullyExtendedLinkageNearlySingular) {
+TEST(Diagnosis, finds_a_fully_extended_linkage_nearly_singular) {
   // A chain between two nails, a millionth short of taut: the rows nearly repeat each other.
   System system;
   const auto chain = scenes::make_chain(system, {.links = 2, .link_length = 1});
@@ -105,7 +105,7 @@ TEST(Diagnosis, FindsAFullyExtendedLinkageNearlySingular) {
   EXPECT_EQ(taut.diagnose(straight.links[0]).redundancy, 1u);
 }
 
-TEST(Diagnosis, NamesJoints) {
+TEST(Diagnosis, names_joints) {
   System system;
   const BodyId a = system.create_body(), b = system.create_body();
   for (const BodyId body : {a, b})
@@ -121,7 +121,7 @@ TEST(Diagnosis, NamesJoints) {
   EXPECT_TRUE(mentions(d, "the ball constraint"));
 }
 
-TEST(Diagnosis, ChangesNothing) {
+TEST(Diagnosis, changes_nothing) {
   System system;
   const auto bars = make_parallelogram(system, 2, 0.3);
   for (int i = 0; i < 5; ++i) (void)system.step(0.01);
@@ -130,7 +130,7 @@ TEST(Diagnosis, ChangesNothing) {
   EXPECT_EQ(system.state_hash(), hash);
 }
 
-TEST(Diagnosis, RefusesWhatIsGoneOrTooLarge) {
+TEST(Diagnosis, refuses_what_is_gone_or_too_large) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 700});
   EXPECT_THROW((void)system.diagnose(chain.links[0]), std::invalid_argument);

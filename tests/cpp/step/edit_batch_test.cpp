@@ -8,7 +8,7 @@
 namespace iota {
 namespace {
 
-TEST(EditBatch, HasOneReportForAll) {
+TEST(EditBatch, has_one_report_for_all) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 6});
   (void)system.step(0.01);
@@ -36,7 +36,7 @@ TEST(EditBatch, HasOneReportForAll) {
   EXPECT_THROW((void)system.end_edit(), std::logic_error);
 }
 
-TEST(EditBatch, UndoAndRedoGiveTheSameHash) {
+TEST(EditBatch, undo_and_redo_give_the_same_hash) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 6});
   for (int i = 0; i < 10; ++i) (void)system.step(0.01);
@@ -62,7 +62,7 @@ TEST(EditBatch, UndoAndRedoGiveTheSameHash) {
   for (int i = 0; i < 5; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
 }
 
-TEST(EditBatch, ACancelledOneNeverWas) {
+TEST(EditBatch, a_canceled_one_never_was) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 3});
   const std::uint64_t before = system.state_hash();
@@ -74,7 +74,7 @@ TEST(EditBatch, ACancelledOneNeverWas) {
   EXPECT_EQ(system.undo_count(), 0u);
 }
 
-TEST(EditBatch, KeepsSoManyAndForgetsTheOldest) {
+TEST(EditBatch, keeps_so_many_and_forgets_the_oldest) {
   System system;
   for (int i = 0; i < 100; ++i) {
     system.begin_edit();
@@ -87,7 +87,7 @@ TEST(EditBatch, KeepsSoManyAndForgetsTheOldest) {
   EXPECT_EQ(system.bodies().size(), 36u);
 }
 
-TEST(EditBatch, EditsAskedForDuringAStepAreReportedAsOne) {
+TEST(EditBatch, edits_asked_for_during_a_step_are_reported_as_one) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 4});
   const BodyId ball = system.create_body();
@@ -109,7 +109,7 @@ TEST(EditBatch, EditsAskedForDuringAStepAreReportedAsOne) {
   EXPECT_FALSE(system.step(0.01).edits.has_value());
 }
 
-TEST(EditBatch, BatchesAndUndoAreRecordedAndReplayed) {
+TEST(EditBatch, batches_and_undo_are_recorded_and_replayed) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 4});
   system.start_recording();

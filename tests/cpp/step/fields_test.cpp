@@ -28,7 +28,7 @@ std::vector<double> positions(const System& system) {
 
 double book(const Energy& e) { return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits; }
 
-TEST(FreeParticles, MoveAsTheSolverMovesThem) {
+TEST(FreeParticles, move_as_the_solver_moves_them) {
   for (const IntegrationMode mode : {IntegrationMode::energy_keeping, IntegrationMode::robust}) {
     std::vector<std::vector<double>> ends;
     std::vector<Energy> energies;
@@ -55,7 +55,7 @@ TEST(FreeParticles, MoveAsTheSolverMovesThem) {
   }
 }
 
-TEST(FreeParticles, AreTakenIntoIslandsAndLetGoAgain) {
+TEST(FreeParticles, are_taken_into_islands_and_let_go_again) {
   System system;
   const auto particles = scatter(system, 6, 4);
   const double start = book(system.energy());
@@ -89,7 +89,7 @@ TEST(FreeParticles, AreTakenIntoIslandsAndLetGoAgain) {
   EXPECT_EQ(system.state_hash(), hash);
 }
 
-TEST(FreeParticles, PushedByAnAbsurdForceStayWhereTheyAre) {
+TEST(FreeParticles, pushed_by_an_absurd_force_stay_where_they_are) {
   System system;
   const auto particles = scatter(system, 2, 4);
   const Vec3 before = system.position(particles[0]);
@@ -106,7 +106,7 @@ TEST(FreeParticles, PushedByAnAbsurdForceStayWhereTheyAre) {
   EXPECT_TRUE(std::isfinite(report.energy.kinetic));
 }
 
-TEST(Field, UniformIsGravityAndCanReplaceIt) {
+TEST(Field, uniform_is_gravity_and_can_replace_it) {
   System plain, replaced(SystemOptions{.gravity = {0, 50, 0}});
   FieldOptions options;
   options.parameters = {{"acceleration_y", -9.81}};
@@ -125,7 +125,7 @@ TEST(Field, UniformIsGravityAndCanReplaceIt) {
   EXPECT_NEAR(replaced.velocity(replaced.particles()[0]).y - before, 0.5, 1e-9) << "gravity is back";
 }
 
-TEST(Field, ActsOnItsGroupOnly) {
+TEST(Field, acts_on_its_group_only) {
   System system(SystemOptions{.gravity = {}});
   const auto particles = scatter(system, 4, 6, 1, 0);
   const GroupId group = system.create_group("leaves");
@@ -151,7 +151,7 @@ TEST(Field, ActsOnItsGroupOnly) {
   EXPECT_EQ(system.validate(), std::vector<std::string>{});
 }
 
-TEST(Field, OfAWellKeepsAnOrbitClosed) {
+TEST(Field, of_a_well_keeps_an_orbit_closed) {
   for (const std::string text : {"well", "written"}) {
     System system(SystemOptions{.gravity = {}});
     const ParticleId p = system.create_particle(system.create_body(), {1, 0, 0}, 3, {0, 1, 0});
@@ -166,7 +166,7 @@ TEST(Field, OfAWellKeepsAnOrbitClosed) {
   }
 }
 
-TEST(Field, AFunctionSeesAllItsParticlesAndIsSwitchedOffWhenItThrows) {
+TEST(Field, a_function_sees_all_its_particles_and_is_switched_off_when_it_throws) {
   System system(SystemOptions{.gravity = {}});
   const auto particles = scatter(system, 3, 8, 1, 0);
   bool angry = false;
@@ -187,7 +187,7 @@ TEST(Field, AFunctionSeesAllItsParticlesAndIsSwitchedOffWhenItThrows) {
   EXPECT_TRUE(system.step(0.5).warnings.empty());
 }
 
-TEST(Field, WithoutAFiniteForceSaysWhere) {
+TEST(Field, without_a_finite_force_says_where) {
   System system(SystemOptions{.gravity = {}});
   const ParticleId good = system.create_particle(system.create_body(), {1, 0, 0});
   const ParticleId bad = system.create_particle(system.create_body(), {0, 0, 0});
@@ -199,7 +199,7 @@ TEST(Field, WithoutAFiniteForceSaysWhere) {
   EXPECT_EQ(system.velocity(bad), Vec3{});
 }
 
-TEST(Pairs, ALennardJonesFluidKeepsItsEnergy) {
+TEST(Pairs, a_lennard_jones_fluid_keeps_its_energy) {
   System system(SystemOptions{.gravity = {}});
   std::mt19937 random(9);
   for (int i = 0; i < 216; ++i) {
@@ -221,7 +221,7 @@ TEST(Pairs, ALennardJonesFluidKeepsItsEnergy) {
   EXPECT_LT(norm(system.momentum() - momentum), 1e-11);
 }
 
-TEST(Pairs, AreTheSameWrittenRestoredAndReplayed) {
+TEST(Pairs, are_the_same_written_restored_and_replayed) {
   std::vector<std::vector<double>> ends;
   for (const bool written : {false, true}) {
     System system(SystemOptions{.gravity = {}});
@@ -242,13 +242,13 @@ TEST(Pairs, AreTheSameWrittenRestoredAndReplayed) {
     System other;
     other.restore(middle);
     for (int i = 0; i < 50; ++i) (void)other.step(0.01);
-    EXPECT_EQ(other.state_hash(), hash) << "the list of neighbours is no hidden state";
+    EXPECT_EQ(other.state_hash(), hash) << "the list of neighbors is no hidden state";
     EXPECT_EQ(other.replay(recording), std::nullopt);
   }
   for (std::size_t i = 0; i < ends[0].size(); ++i) EXPECT_NEAR(ends[0][i], ends[1][i], 1e-10);
 }
 
-TEST(Pairs, LeaveOutPointsOfOneBodyAndPushNothingStatic) {
+TEST(Pairs, leave_out_points_of_one_body_and_push_nothing_static) {
   System system(SystemOptions{.gravity = {}});
   const BodyId rod = system.create_body(), wall = system.create_body({.kind = BodyKind::static_});
   const ParticleId a = system.create_particle(rod, {0, 0, 0}), b = system.create_particle(rod, {0.1, 0, 0});
@@ -261,7 +261,7 @@ TEST(Pairs, LeaveOutPointsOfOneBodyAndPushNothingStatic) {
   EXPECT_NEAR(norm(system.position(b) - system.position(a)), 0.1, 1e-12);
 }
 
-TEST(Groups, AndForcesRefuseBadInput) {
+TEST(Groups, and_forces_refuse_bad_input) {
   System system;
   const ParticleId p = system.create_particle(system.create_body(), {});
   const std::uint64_t hash = system.state_hash();

@@ -40,7 +40,7 @@ struct Swarm {
     points.push_back(system.create_particle(rod, {6, 0, 0}));
     pairs =
         system.create_pairs({system.find_law("coulomb"), {{"strength", 0.3}, {"softening", 0.2}}, {}}, {.cutoff = 50});
-    well = system.create_field("well", {.parameters = {{"centre_x", 1}, {"strength", 3}, {"softening", 1}}});
+    well = system.create_field("well", {.parameters = {{"center_x", 1}, {"strength", 3}, {"softening", 1}}});
     system.create_field("attractor", {.parameters = {{"strength", 0.7}, {"range", 3}}});
     system.create_field("energy = 0.5*k*(x^2 + 2*y^2) + m*g*z; fx = -0*vx", {.parameters = {{"k", 0.4}, {"g", 0.3}}});
     bond = system.create_bond(points[0], points[27],
@@ -54,7 +54,7 @@ struct Swarm {
   }
 };
 
-TEST(HeldEnergy, IsPotentialAndIsKept) {
+TEST(HeldEnergy, is_potential_and_is_kept) {
   Swarm swarm;
   const Energy start = swarm.system.energy();
   EXPECT_EQ(start.external_work, 0);
@@ -71,7 +71,7 @@ TEST(HeldEnergy, IsPotentialAndIsKept) {
   EXPECT_LT(drift, 2e-4 * most) << "and next to nothing is lost";
 }
 
-TEST(HeldEnergy, ErrorsAreOfSecondOrder) {
+TEST(HeldEnergy, errors_are_of_second_order) {
   double errors[2];
   for (const int half : {0, 1}) {
     Swarm swarm;
@@ -82,7 +82,7 @@ TEST(HeldEnergy, ErrorsAreOfSecondOrder) {
   EXPECT_NEAR(errors[0] / errors[1], 4, 0.8);
 }
 
-TEST(HeldEnergy, OfWhatIsKnownInClosedForm) {
+TEST(HeldEnergy, of_what_is_known_in_closed_form) {
   System system{{.gravity = {0, -2, 0}}};
   const ParticleId p = system.create_particle(system.create_body(), {3, 4, 0}, 2);
   const ParticleId q = system.create_particle(system.create_body(), {0, 0, 12}, 3);
@@ -103,7 +103,7 @@ TEST(HeldEnergy, OfWhatIsKnownInClosedForm) {
   EXPECT_NEAR(book(system.energy()), 0, 1e-12) << "all this was made by edits";
 }
 
-TEST(HeldEnergy, WhatEditsChangeIsBookedAsTheirs) {
+TEST(HeldEnergy, what_edits_change_is_booked_as_theirs) {
   for (const auto mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     Swarm swarm(mode);
     System& s = swarm.system;
@@ -135,7 +135,7 @@ TEST(HeldEnergy, WhatEditsChangeIsBookedAsTheirs) {
   }
 }
 
-TEST(HeldEnergy, IsPartOfWhatABatchOfEditsChanges) {
+TEST(HeldEnergy, is_part_of_what_a_batch_of_edits_changes) {
   Swarm swarm;
   const double before = swarm.system.energy().total();
   swarm.system.begin_edit();
@@ -147,7 +147,7 @@ TEST(HeldEnergy, IsPartOfWhatABatchOfEditsChanges) {
   EXPECT_EQ(swarm.system.energy().total(), before);
 }
 
-TEST(HeldEnergy, IsTheSameToTheBitInReplayAndAfterRestore) {
+TEST(HeldEnergy, is_the_same_to_the_bit_in_replay_and_after_restore) {
   Swarm swarm;
   swarm.system.start_recording();
   for (int i = 0; i < 20; ++i) (void)swarm.step(0.002);
@@ -169,7 +169,7 @@ TEST(HeldEnergy, IsTheSameToTheBitInReplayAndAfterRestore) {
   }
 }
 
-TEST(HeldEnergy, MayBeLookedAtFromAForceAndIsThenThatOfTheStart) {
+TEST(HeldEnergy, may_be_looked_at_from_a_force_and_is_then_that_of_the_start) {
   Swarm looked, plain;
   double seen = 0, of_pairs = 0;
   for (Swarm* s : {&looked, &plain})

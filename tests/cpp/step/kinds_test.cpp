@@ -31,7 +31,7 @@ struct Sleeper {
   }
 };
 
-TEST(Resting, WhatIsSlowForAWhileFallsAsleepAsAWhole) {
+TEST(Resting, what_is_slow_for_a_while_falls_asleep_as_a_whole) {
   Sleeper s;
   const double start = book(s.system);
   s.wait();
@@ -45,14 +45,14 @@ TEST(Resting, WhatIsSlowForAWhileFallsAsleepAsAWhole) {
   EXPECT_NEAR(book(s.system), start, 1e-9);
 }
 
-TEST(Resting, SleepIsForThoseWhoAskForIt) {
+TEST(Resting, sleep_is_for_those_who_ask_for_it) {
   System system({.damping = 4});
   const auto chain = scenes::make_chain(system, {.links = 2, .direction = {0, -1, 0}});
   for (int i = 0; i < 300; ++i) (void)system.step(0.01);
   EXPECT_EQ(system.kind(chain.links[0]), BodyKind::dynamic);
 }
 
-TEST(Resting, APendulumDoesNotFallAsleepWhereItTurnsBack) {
+TEST(Resting, a_pendulum_does_not_fall_asleep_where_it_turns_back) {
   System system({.rest = {.after = 0.1, .speed = 0.05}});
   const auto chain = scenes::make_chain(system, {.links = 1, .link_length = 1});
   for (int i = 0; i < 1000; ++i) {
@@ -61,7 +61,7 @@ TEST(Resting, APendulumDoesNotFallAsleepWhereItTurnsBack) {
   }
 }
 
-TEST(Resting, WhateverTouchesItWakesIt) {
+TEST(Resting, whatever_touches_it_wakes_it) {
   const auto wakes = [](auto touch) {
     Sleeper s;
     s.wait();
@@ -83,7 +83,7 @@ TEST(Resting, WhateverTouchesItWakesIt) {
   }));
 }
 
-TEST(Resting, BodiesArePutToRestByHandWithAllThatHangsOnThem) {
+TEST(Resting, bodies_are_put_to_rest_by_hand_with_all_that_hangs_on_them) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 3});
   (void)system.step(0.01);
@@ -100,7 +100,7 @@ TEST(Resting, BodiesArePutToRestByHandWithAllThatHangsOnThem) {
   EXPECT_THROW(system.set_kind(fixed, BodyKind::resting), std::invalid_argument);
 }
 
-TEST(Resting, ASleeperStaysAsleepThroughSnapshotAndReplay) {
+TEST(Resting, a_sleeper_stays_asleep_through_snapshot_and_replay) {
   Sleeper s;
   s.wait();
   s.system.start_recording();
@@ -111,7 +111,7 @@ TEST(Resting, ASleeperStaysAsleepThroughSnapshotAndReplay) {
   EXPECT_EQ(s.system.kind(s.chain.links[0]), BodyKind::resting);
 }
 
-TEST(Forces, OnWhatDoesNotMoveByThemAreOverWithTheStep) {
+TEST(Forces, on_what_does_not_move_by_them_are_over_with_the_step) {
   for (const BodyKind kind : {BodyKind::static_, BodyKind::scripted, BodyKind::inactive}) {
     System system{{.gravity = {}}};
     const BodyId body = system.create_body();
@@ -135,7 +135,7 @@ TEST(Forces, OnWhatDoesNotMoveByThemAreOverWithTheStep) {
   }
 }
 
-TEST(Resting, WhatSleepsInAConflictSaysSoWhenItWakes) {
+TEST(Resting, what_sleeps_in_a_conflict_says_so_when_it_wakes) {
   // A link a tenth too short for the two places of a static body to which it is hinged: no step can do anything about it.
   System system;
   const BodyId wall = system.create_body(), link = system.create_body();
@@ -153,7 +153,7 @@ TEST(Resting, WhatSleepsInAConflictSaysSoWhenItWakes) {
   EXPECT_EQ(report.unconverged, 1);
 }
 
-TEST(Active, AnInactiveBodyIsOutOfTheWorldUntilItIsBack) {
+TEST(Active, an_inactive_body_is_out_of_the_world_until_it_is_back) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 4});
   for (int i = 0; i < 20; ++i) (void)system.step(0.01);
@@ -176,7 +176,7 @@ TEST(Active, AnInactiveBodyIsOutOfTheWorldUntilItIsBack) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Active, ABodyComesBackAsWhatItWas) {
+TEST(Active, a_body_comes_back_as_what_it_was) {
   System system;
   const BodyId fixed = system.create_body({.kind = BodyKind::static_});
   (void)system.create_particle(fixed, {});
@@ -185,7 +185,7 @@ TEST(Active, ABodyComesBackAsWhatItWas) {
   EXPECT_EQ(system.kind(fixed), BodyKind::static_);
 }
 
-TEST(Active, AnArticulateGoesAndComesAsOne) {
+TEST(Active, an_articulate_goes_and_comes_as_one) {
   System system;
   const auto a = scenes::make_chain(system, {.links = 3}),
              b = scenes::make_chain(system, {.links = 3, .top = {0, 0, 1}});
@@ -200,7 +200,7 @@ TEST(Active, AnArticulateGoesAndComesAsOne) {
   EXPECT_LT(system.position(a.lower[2]).y, 0);
 }
 
-TEST(Active, BondsOfWhatIsInactiveDoNotAct) {
+TEST(Active, bonds_of_what_is_inactive_do_not_act) {
   System system({.gravity = {}});
   const BodyId a = system.create_body(), b = system.create_body();
   const ParticleId p = system.create_particle(a, {0, 0, 0}), q = system.create_particle(b, {1, 0, 0});
@@ -219,7 +219,7 @@ TEST(Active, BondsOfWhatIsInactiveDoNotAct) {
   EXPECT_GT(system.velocity(p).x, 0.01);
 }
 
-TEST(Active, AnInactiveParticleWeighsNextToNothing) {
+TEST(Active, an_inactive_particle_weighs_next_to_nothing) {
   System system;
   const BodyId rod = system.create_body();
   const ParticleId hinge = system.create_particle(rod, {0, 0, 0}, 1),

@@ -45,7 +45,7 @@ struct Mesh {
   }
 };
 
-TEST(Law, IsTheSameForceOnAllWaysOfWritingIt) {
+TEST(Law, is_the_same_force_on_all_ways_of_writing_it) {
   const std::vector<LawParameter> parameters{{"k", 20}, {"r0", 0.1}};
   const std::vector<std::function<LawId(System&)>> ways{
       [](System& s) { return s.find_law("spring"); },
@@ -85,7 +85,7 @@ TEST(Law, IsTheSameForceOnAllWaysOfWritingIt) {
   }
 }
 
-TEST(Law, WrittenAsAnEnergyIsSolvedLikeTheBuiltInSpring) {
+TEST(Law, written_as_an_energy_is_solved_like_the_built_in_spring) {
   for (const IntegrationMode mode : {IntegrationMode::energy_keeping, IntegrationMode::robust}) {
     std::vector<std::vector<double>> ends;
     for (const bool written : {false, true}) {
@@ -104,7 +104,7 @@ TEST(Law, WrittenAsAnEnergyIsSolvedLikeTheBuiltInSpring) {
   }
 }
 
-TEST(Law, StiffOnesAreSolvedTogetherWithTheJoints) {
+TEST(Law, stiff_ones_are_solved_together_with_the_joints) {
   for (const std::string text : {"energy = 0.5*k*(r - 0.2)^2", "energy = k*(r - 0.2)^4", "force = -k*(r - 0.2)^3"}) {
     System system;
     const auto a = scenes::make_chain(system, {.links = 5});
@@ -123,7 +123,7 @@ TEST(Law, StiffOnesAreSolvedTogetherWithTheJoints) {
   }
 }
 
-TEST(Law, KeepsTheEnergyOfAnOscillatorOfAnyShape) {
+TEST(Law, keeps_the_energy_of_an_oscillator_of_any_shape) {
   for (const std::string name : {"morse", "lennard_jones", "gravity"}) {
     System system{SystemOptions{.gravity = {}}};
     const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}, 1);
@@ -144,7 +144,7 @@ TEST(Law, KeepsTheEnergyOfAnOscillatorOfAnyShape) {
   }
 }
 
-TEST(Law, TwoBodiesUnderGravityFollowKepler) {
+TEST(Law, two_bodies_under_gravity_follow_kepler) {
   System system{SystemOptions{.gravity = {}}};
   const double semi_major = 1, eccentricity = 0.4, total = 4;  // G = 1
   const double far = semi_major * (1 + eccentricity);
@@ -165,7 +165,7 @@ TEST(Law, TwoBodiesUnderGravityFollowKepler) {
   EXPECT_NEAR(coarse / fine, 4, 0.1) << "second order";
 }
 
-TEST(Law, ThatIsHeldNeitherGainsNorLosesEnergyInTheLongRun) {
+TEST(Law, that_is_held_neither_gains_nor_loses_energy_in_the_long_run) {
   System system{SystemOptions{.gravity = {}}};
   const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}, 1);
   const ParticleId q = system.create_particle(system.create_body(), {1.1, 0, 0}, 1);
@@ -179,7 +179,7 @@ TEST(Law, ThatIsHeldNeitherGainsNorLosesEnergyInTheLongRun) {
   EXPECT_NEAR(late / early, 1, 0.01) << "3 Hz for 100 s";
 }
 
-TEST(Law, TheEnergyBookCountsWhatPushesAndWhatChangesWithTime) {
+TEST(Law, the_energy_book_counts_what_pushes_and_what_changes_with_time) {
   for (const std::string text :
        {"force = 3", "energy = 50*(r - 1 - 0.2*sin(5*t))^2", "force = -40*(r - 1) + 4*sin(7*t)", "force = 2*v"}) {
     System system;
@@ -204,7 +204,7 @@ TEST(Law, TheEnergyBookCountsWhatPushesAndWhatChangesWithTime) {
   }
 }
 
-TEST(Law, WithoutAFiniteForceSwitchesItsBondOff) {
+TEST(Law, without_a_finite_force_switches_its_bond_off) {
   for (const bool implicit : {true, false}) {
     System system{SystemOptions{.gravity = {}}};
     const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}, 1, {1, 0, 0});
@@ -225,7 +225,7 @@ TEST(Law, WithoutAFiniteForceSwitchesItsBondOff) {
   }
 }
 
-TEST(Law, AFunctionThatThrowsSwitchesOffTheBondsOfItsLaw) {
+TEST(Law, a_function_that_throws_switches_off_the_bonds_of_its_law) {
   System system{SystemOptions{.gravity = {}}};
   const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0});
   const ParticleId q = system.create_particle(system.create_body(), {1, 0, 0});
@@ -238,7 +238,7 @@ TEST(Law, AFunctionThatThrowsSwitchesOffTheBondsOfItsLaw) {
   EXPECT_EQ(report.step, 1u);
 }
 
-TEST(Law, ParametersChangeWhileItRuns) {
+TEST(Law, parameters_change_while_it_runs) {
   System system{SystemOptions{.gravity = {}}};
   const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0});
   const ParticleId q = system.create_particle(system.create_body(), {1.5, 0, 0}, 2);
@@ -258,7 +258,7 @@ TEST(Law, ParametersChangeWhileItRuns) {
   EXPECT_THROW(system.set_parameter(bond, "k", std::nan("")), std::invalid_argument);
 }
 
-TEST(Law, IsSavedRecordedAndReplayed) {
+TEST(Law, is_saved_recorded_and_replayed) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 4});
   const ParticleId p = system.create_particle(system.create_body(), {0.3, 0.2, 0}, 0.5);
@@ -283,7 +283,7 @@ TEST(Law, IsSavedRecordedAndReplayed) {
   EXPECT_EQ(third.parameters(bond).at(0).value, 250);
 }
 
-TEST(Law, BadOnesAreRefusedBeforeAnythingChanges) {
+TEST(Law, bad_ones_are_refused_before_anything_changes) {
   System system;
   const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0});
   const ParticleId q = system.create_particle(system.create_body(), {1, 0, 0});
@@ -320,7 +320,7 @@ TEST(Law, BadOnesAreRefusedBeforeAnythingChanges) {
   EXPECT_THROW(system.create_bond(p, q, SharedLaw{code}), StaleIdError);
 }
 
-TEST(Bonds, TellWhatTheyCarryWhicheverWayTheyAreWritten) {
+TEST(Bonds, tell_what_they_carry_whichever_way_they_are_written) {
   const std::vector<LawParameter> parameters{{"k", 20}, {"r0", 0.5}};
   const double weight = 0.3 * 9.81;
   for (const int way : {0, 1, 2, 3, 4}) {
@@ -345,7 +345,7 @@ TEST(Bonds, TellWhatTheyCarryWhicheverWayTheyAreWritten) {
   }
 }
 
-TEST(Bonds, BreakBeyondTheirForceAndAreMended) {
+TEST(Bonds, break_beyond_their_force_and_are_mended) {
   System system(SystemOptions{.mode = IntegrationMode::robust, .damping = 2});
   const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0}, 1);
   const ParticleId q = system.create_particle(system.create_body(), {0, -0.6, 0}, 0.3);

@@ -29,7 +29,7 @@ const EmitterOptions fountain{.rate = 200,
                               .lifetime_spread = 0.2,
                               .curve = {{0, 0.01, {1, 1, 0, 1}}, {0.5, 0.03, {1, 0, 0, 1}}, {1, 0, {0, 0, 0, 0}}}};
 
-TEST(Emitter, BearsAtItsRateAndLetsDieAfterTheLifetime) {
+TEST(Emitter, bears_at_its_rate_and_lets_die_after_the_lifetime) {
   System system;
   const EmitterId emitter = system.create_emitter(fountain);
   std::size_t born = 0, died = 0;
@@ -48,7 +48,7 @@ TEST(Emitter, BearsAtItsRateAndLetsDieAfterTheLifetime) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Emitter, ItsParticlesFlyAsTheyWereThrown) {
+TEST(Emitter, its_particles_fly_as_they_were_thrown) {
   System system;
   EmitterOptions options = fountain;
   options.velocity_spread = 0, options.source = Sphere{1e-6}, options.rate = 70, options.lifetime = 10;
@@ -61,7 +61,7 @@ TEST(Emitter, ItsParticlesFlyAsTheyWereThrown) {
   }
 }
 
-TEST(Emitter, ItsParticlesAreBornWithinItsSource) {
+TEST(Emitter, its_particles_are_born_within_its_source) {
   System system({.gravity = {}});
   for (const Shape& source :
        {Shape{Sphere{0.5}}, Shape{Box{{1, 2, 3}}}, Shape{Cylinder{0.3, 2}}, Shape{Capsule{0.3, 2}}}) {
@@ -82,7 +82,7 @@ TEST(Emitter, ItsParticlesAreBornWithinItsSource) {
   EXPECT_THROW((void)system.create_emitter({.source = Torus{}}), std::invalid_argument);
 }
 
-TEST(Emitter, NoMoreThanItsMostAreAlive) {
+TEST(Emitter, no_more_than_its_most_are_alive) {
   System system;
   const EmitterId emitter = system.create_emitter({.rate = 1000, .lifetime = 100, .max_count = 50});
   for (int i = 0; i < 20; ++i) (void)system.step(0.01);
@@ -94,7 +94,7 @@ TEST(Emitter, NoMoreThanItsMostAreAlive) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Emitter, EqualSeedsGiveEqualParticlesAndReplaysEqualHashes) {
+TEST(Emitter, equal_seeds_give_equal_particles_and_replays_equal_hashes) {
   const auto run = [](std::uint64_t seed) {
     System system;
     EmitterOptions options = fountain;
@@ -113,7 +113,7 @@ TEST(Emitter, EqualSeedsGiveEqualParticlesAndReplaysEqualHashes) {
   EXPECT_EQ(system.replay(system.stop_recording()), std::nullopt);
 }
 
-TEST(Emitter, AttributesFollowTheCurveOfLife) {
+TEST(Emitter, attributes_follow_the_curve_of_life) {
   System system;
   EmitterOptions options = fountain;
   options.lifetime = 1, options.lifetime_spread = 0;
@@ -122,7 +122,7 @@ TEST(Emitter, AttributesFollowTheCurveOfLife) {
   for (const ParticleId p : system.particles(emitter)) {
     const ParticleAttributes a = system.attributes(p);
     EXPECT_NEAR(a.radius, 0.01 + 0.04 * a.age, 1e-9);
-    EXPECT_NEAR(a.colour[1], 1 - 2 * a.age, 1e-6);
+    EXPECT_NEAR(a.color[1], 1 - 2 * a.age, 1e-6);
   }
   const ParticleId first = system.particles(emitter)[0];
   const double radius = system.attributes(first).radius;
@@ -133,14 +133,14 @@ TEST(Emitter, AttributesFollowTheCurveOfLife) {
   EXPECT_EQ(system.particles().size(), 0u);
 }
 
-TEST(Emitter, TheEnergyBookAddsUpThroughBirthsAndDeaths) {
+TEST(Emitter, the_energy_book_adds_up_through_births_and_deaths) {
   System system;
   (void)system.create_emitter(fountain);
   for (int i = 0; i < 200; ++i) (void)system.step(0.01);
   EXPECT_NEAR(book(system), 0, 1e-9);
 }
 
-TEST(Emitter, StopsAndMoves) {
+TEST(Emitter, stops_and_moves) {
   System system;
   const EmitterId emitter = system.create_emitter(fountain);
   system.set_active(emitter, false);
@@ -153,7 +153,7 @@ TEST(Emitter, StopsAndMoves) {
   EXPECT_NEAR(system.position(system.particles(emitter)[0]).x, 5, 0.2);
 }
 
-TEST(Lifetime, AnyParticleDiesAtItsTimeAndTakesItsBondsAlong) {
+TEST(Lifetime, any_particle_dies_at_its_time_and_takes_its_bonds_along) {
   System system({.gravity = {}});
   const BodyId a = system.create_body(), b = system.create_body();
   const ParticleId p = system.create_particle(a, {0, 0, 0}), q = system.create_particle(b, {1, 0, 0});
@@ -173,7 +173,7 @@ struct Surfel {
   Surfel() { system.set_orientation(p, {}); }
 };
 
-TEST(Oriented, FreeSpinIsExactWhateverTheStep) {
+TEST(Oriented, free_spin_is_exact_whatever_the_step) {
   for (const double h : {0.001, 0.1}) {
     Surfel s;
     const Vec3 spin{0.3, -0.4, 1.2};  // rad/s
@@ -191,7 +191,7 @@ TEST(Oriented, FreeSpinIsExactWhateverTheStep) {
   }
 }
 
-TEST(Oriented, ATorqueTurnsItAsNewtonSays) {
+TEST(Oriented, a_torque_turns_it_as_newton_says) {
   Surfel s;
   s.system.set_moment(s.p, 2);
   for (int i = 0; i < 100; ++i) {
@@ -207,7 +207,7 @@ TEST(Oriented, ATorqueTurnsItAsNewtonSays) {
   expect_near(s.system.spin(s.p), {0, 0, 2}, 1e-12);  // for one step only
 }
 
-TEST(Oriented, ItsNormalIsDrawnToItsPreferredDirection) {
+TEST(Oriented, its_normaliz_drawn_to_its_preferred_direction) {
   Surfel s;
   s.system.align(s.p, {1, 0, 1}, 1e4, 10);  // far stiffer than a step resolves
   for (int i = 0; i < 300; ++i) (void)s.system.step(0.05);
@@ -216,7 +216,7 @@ TEST(Oriented, ItsNormalIsDrawnToItsPreferredDirection) {
   EXPECT_NEAR(book(s.system), 0, 1e-12);
 }
 
-TEST(Oriented, SpinIsDampedAndBooked) {
+TEST(Oriented, spin_is_damped_and_booked) {
   Surfel s;
   s.system.set_spin(s.p, {0, 2, 0});
   s.system.set_spin_damping(s.p, 3);
@@ -225,14 +225,14 @@ TEST(Oriented, SpinIsDampedAndBooked) {
   EXPECT_NEAR(book(s.system), 0, 1e-15);
 }
 
-TEST(Oriented, ItIsDrawnAsItIsTurned) {
+TEST(Oriented, it_is_drawn_as_it_is_turned) {
   Surfel s;
   const Quaternion quarter{0, 0, std::sqrt(0.5), std::sqrt(0.5)};
   s.system.set_orientation(s.p, quarter);
   EXPECT_NEAR(s.system.orientation(s.system.body(s.p)).z, quarter.z, 1e-15);
 }
 
-TEST(Oriented, WhatHasNoOrientationSaysSo) {
+TEST(Oriented, what_has_no_orientation_says_so) {
   System system;
   const ParticleId p = system.create_particle(system.create_body(), {});
   EXPECT_FALSE(system.is_oriented(p));

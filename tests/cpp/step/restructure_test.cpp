@@ -263,7 +263,7 @@ TEST(Combine, over_a_time_closes_smoothly_and_then_makes_one_ring) {
   for (int i = 0; i < 3; ++i) (void)system.step(1.0 / 120);
   EXPECT_EQ(system.closing_count(), 0u);
   EXPECT_EQ(system.ring(p).size(), 2u);
-  EXPECT_NEAR(system.position(p).x, 0.75, 1e-6) << "they meet at their common centre of mass";
+  EXPECT_NEAR(system.position(p).x, 0.75, 1e-6) << "they meet at their common center of mass";
   EXPECT_WHOLE(system);
 }
 

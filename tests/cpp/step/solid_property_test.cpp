@@ -76,7 +76,7 @@ class Playground {
       case 4:
         if (system.bodies().size() < 12) add_solid();
         break;
-      case 5: (void)system.create_attachment(body, system.centre_of_mass(body) + vector(0.5)); break;
+      case 5: (void)system.create_attachment(body, system.center_of_mass(body) + vector(0.5)); break;
       case 6: {
         const ParticleId p = any(system.particles());
         if (system.is_nailed(p))
@@ -106,14 +106,14 @@ class Playground {
         system.set_kind(body, kinds[static_cast<std::size_t>(number(0, 3.99))]);
         break;
       }
-      default: system.set_pose(body, system.centre_of_mass(body) + vector(0.2), {number(-1, 1), 0.3, 0.1, 1});
+      default: system.set_pose(body, system.center_of_mass(body) + vector(0.2), {number(-1, 1), 0.3, 0.1, 1});
     }
   }
 
   void join(BodyId body) {
     constexpr std::array kinds{ConstraintKind::revolute, ConstraintKind::ball, ConstraintKind::weld,
                                ConstraintKind::cylindrical, ConstraintKind::universal};
-    JointSpec joint{.a = body, .b = any(system.bodies()), .at = system.centre_of_mass(body), .axis = vector(1)};
+    JointSpec joint{.a = body, .b = any(system.bodies()), .at = system.center_of_mass(body), .axis = vector(1)};
     joint.kind = kinds[static_cast<std::size_t>(number(0, 4.99))];
     joint.second_axis = cross(joint.axis, vector(1));
     if (joint.kind == ConstraintKind::revolute && number(0, 1) < 0.5) joint.angle.stiffness = 3;
@@ -132,7 +132,7 @@ double book(const System& system) {
   return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits;
 }
 
-TEST(SolidProperty, RandomEditsKeepTheStructureWholeAndMomentaWhereTheySaySo) {
+TEST(SolidProperty, random_edits_keep_the_structure_whole_and_momenta_where_they_say_so) {
   int kept = 0, edits = 0;
   for (unsigned seed = 0; seed < 40; ++seed) {
     Playground world(seed);
@@ -162,7 +162,7 @@ TEST(SolidProperty, RandomEditsKeepTheStructureWholeAndMomentaWhereTheySaySo) {
   EXPECT_GT(kept, edits * 95 / 100);
 }
 
-TEST(SolidProperty, TheEnergyBookAddsUpThroughAnyEdits) {
+TEST(SolidProperty, the_energy_book_adds_up_through_any_edits) {
   for (unsigned seed = 0; seed < 150; ++seed) {
     Playground world(seed, {0, seed % 2 ? -9.81 : 0, 0});
     System& system = world.system;

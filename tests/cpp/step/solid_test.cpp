@@ -68,7 +68,7 @@ Mesh box_mesh(const Vec3& low, const Vec3& size) {
   return mesh;
 }
 
-TEST(Solid, InertiaOfEveryShapeIsTheTextbooks) {
+TEST(Solid, inertia_of_every_shape_is_the_textbooks) {
   System system;
   const double m = 3;
   const auto inertia = [&](const Shape& shape) { return system.inertia(system.create_body(shape, {.mass = m})); };
@@ -86,7 +86,7 @@ TEST(Solid, InertiaOfEveryShapeIsTheTextbooks) {
   expect_diagonal(inertia(Capsule{r, l}), {axial, across, across}, 1e-14);
 }
 
-TEST(Solid, VolumesAreTheTextbooks) {
+TEST(Solid, volumes_are_the_textbooks) {
   EXPECT_DOUBLE_EQ(mass_properties(Sphere{2}).volume, 4 * pi / 3 * 8);
   EXPECT_DOUBLE_EQ(mass_properties(Box{{1, 2, 3}}).volume, 6);
   EXPECT_DOUBLE_EQ(mass_properties(Cylinder{2, 3}).volume, pi * 4 * 3);
@@ -96,15 +96,15 @@ TEST(Solid, VolumesAreTheTextbooks) {
   EXPECT_DOUBLE_EQ(system.mass(system.create_body(Box{{1, 2, 3}}, {.density = 7})), 42);
 }
 
-TEST(Solid, AMeshOfABoxAnywhereHasTheBoxsProperties) {
+TEST(Solid, a_mesh_of_a_box_anywhere_has_the_boxs_properties) {
   const MassProperties box = mass_properties(Box{{1, 2, 3}});
   const MassProperties mesh = mass_properties(box_mesh({10, -20, 30}, {1, 2, 3}));
   EXPECT_NEAR(mesh.volume, box.volume, 1e-13);
-  expect_near(mesh.centre, {10.5, -19, 31.5}, 1e-13);
+  expect_near(mesh.center, {10.5, -19, 31.5}, 1e-13);
   expect_diagonal(mesh.mean_squares, {1 / 12.0, 4 / 12.0, 9 / 12.0}, 1e-13);
 }
 
-TEST(Solid, AFineMeshTendsToItsShapeWithTheSquareOfItsEdges) {
+TEST(Solid, a_fine_mesh_tends_to_its_shape_with_the_square_of_its_edges) {
   const auto ring = [](int n) {
     std::vector<std::pair<double, double>> circle;
     for (int i = 0; i < n; ++i)
@@ -137,7 +137,7 @@ std::string refusal(const Shape& shape) {
   return "";
 }
 
-TEST(Solid, BadShapesAreRefusedWithTheReason) {
+TEST(Solid, bad_shapes_are_refused_with_the_reason) {
   const double nan = std::nan("");
   for (const Shape& bad : {Shape{Sphere{0}}, Shape{Sphere{nan}}, Shape{Box{{1, -1, 1}}}, Shape{Cylinder{1, 0}},
                            Shape{Capsule{INFINITY, 1}}, Shape{Torus{0.1, 0.2}}, Shape{Mesh{}}})
@@ -162,14 +162,14 @@ TEST(Solid, BadShapesAreRefusedWithTheReason) {
   EXPECT_NE(refusal(broken).find("vertex 2"), std::string::npos) << refusal(broken);
 }
 
-TEST(Solid, ATurnedBodyHasTheTurnedInertiaAndMoves) {
+TEST(Solid, a_turned_body_has_the_turned_inertia_and_moves) {
   System system({.gravity = {}});
   const Quaternion turn{0.1, -0.5, 0.3, std::sqrt(1 - 0.35)};
   const BodyId body = system.create_body(
       Box{{1, 2, 3}},
       {.mass = 5, .position = {7, 8, 9}, .orientation = turn, .velocity = {1, 2, 3}, .spin = {-2, 1, 0.5}});
   EXPECT_NEAR(system.mass(body), 5, 1e-14);
-  expect_near(system.centre_of_mass(body), {7, 8, 9}, 1e-13);
+  expect_near(system.center_of_mass(body), {7, 8, 9}, 1e-13);
   expect_near(system.velocity(body), {1, 2, 3}, 1e-13);
   expect_near(system.angular_velocity(body), {-2, 1, 0.5}, 1e-13);
   const Quaternion q = system.orientation(body);
@@ -185,7 +185,7 @@ TEST(Solid, ATurnedBodyHasTheTurnedInertiaAndMoves) {
 }
 
 // The promise that lets attachments be ordinary particles: nothing that the motion depends on changes.
-TEST(Solid, AttachmentsAnywhereKeepMassCentreInertiaAndMotion) {
+TEST(Solid, attachments_anywhere_keep_mass_center_inertia_and_motion) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> number(-1, 1);
   for (int trial = 0; trial < 50; ++trial) {
@@ -197,7 +197,7 @@ TEST(Solid, AttachmentsAnywhereKeepMassCentreInertiaAndMotion) {
                                        .velocity = {1, 0, 2},
                                        .spin = {number(random), number(random), number(random)}});
     const Matrix3 before = system.inertia(body);
-    const Vec3 momentum = system.momentum(), angular = system.angular_momentum(), centre = system.centre_of_mass(body);
+    const Vec3 momentum = system.momentum(), angular = system.angular_momentum(), center = system.center_of_mass(body);
     const Quaternion orientation = system.orientation(body);
     for (int i = 0; i < 6; ++i) {
       const double far = i == 5 ? 100 : 1;
@@ -211,7 +211,7 @@ TEST(Solid, AttachmentsAnywhereKeepMassCentreInertiaAndMotion) {
     const double scale = at(before, 0, 0) + at(before, 1, 1) + at(before, 2, 2);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) EXPECT_NEAR(at(system.inertia(body), i, j), at(before, i, j), 1e-12 * scale);
-    expect_near(system.centre_of_mass(body), centre, 1e-13);
+    expect_near(system.center_of_mass(body), center, 1e-13);
     expect_near(system.momentum(), momentum, 1e-12);
     expect_near(system.angular_momentum(), angular, 1e-12);
     const Quaternion& q = orientation;
@@ -222,7 +222,7 @@ TEST(Solid, AttachmentsAnywhereKeepMassCentreInertiaAndMotion) {
   }
 }
 
-TEST(Solid, AttachmentsNeedASolidWhosePointsAreFree) {
+TEST(Solid, attachments_need_a_solid_whose_points_are_free) {
   System system;
   const BodyId points = system.create_body();
   (void)system.create_particle(points, {0, 0, 0});
@@ -234,7 +234,7 @@ TEST(Solid, AttachmentsNeedASolidWhosePointsAreFree) {
 }
 
 // Dzhanibekov: about its middle axis a free body flips over and over; energy and angular momentum stay.
-TEST(Solid, AFreeTopFlipsAboutItsMiddleAxisAndOnlyThere) {
+TEST(Solid, a_free_top_flips_about_its_middle_axis_and_only_there) {
   const auto flips = [](const Vec3& spin) {
     System system({.gravity = {}});
     const BodyId top = system.create_body(Box{{0.1, 0.3, 0.6}}, {.mass = 1, .spin = spin});
@@ -261,7 +261,7 @@ TEST(Solid, AFreeTopFlipsAboutItsMiddleAxisAndOnlyThere) {
   EXPECT_EQ(flips({0.001, 0.001, 8}), 0);
 }
 
-TEST(Solid, AHingedLinkCostsFourPointsOfWhichTheHingesAreTwo) {
+TEST(Solid, a_hinged_link_costs_four_points_of_which_the_hinges_are_two) {
   System system;
   ParticleId last{};
   std::vector<BodyId> links;
@@ -286,9 +286,9 @@ TEST(Solid, AHingedLinkCostsFourPointsOfWhichTheHingesAreTwo) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Solid, APhysicalPendulumSwingsWithItsOwnPeriod) {
+TEST(Solid, a_physical_pendulum_swings_with_its_own_period) {
   System system;
-  const double a = 0.4, l = 1.0;  // a plate 0.1 x 0.4 x 1 hung half its length above its centre, swinging about z
+  const double a = 0.4, l = 1.0;  // a plate 0.1 x 0.4 x 1 hung half its length above its center, swinging about z
   const BodyId plate =
       system.create_body(Box{{a, l, 0.1}}, {.mass = 2, .attachments = {{0, l / 2, 0.05}, {0, l / 2, -0.05}}});
   for (const ParticleId p : system.attachments(plate)) system.nail(p);
@@ -298,14 +298,14 @@ TEST(Solid, APhysicalPendulumSwingsWithItsOwnPeriod) {
   const double h = 1.0 / 240;
   for (int step = 1; crossed == 0 && step < 1000; ++step) {
     (void)system.step(h);
-    const double x = system.centre_of_mass(plate).x;
+    const double x = system.center_of_mass(plate).x;
     if (before > 0 && x <= 0) crossed = h * (step - 1 + before / (before - x));
     before = x;
   }
   EXPECT_NEAR(crossed, pi / omega, 1e-4 * pi / omega);
 }
 
-TEST(Solid, VelocityAndSpinAreAssignedOneByOne) {
+TEST(Solid, velocity_and_spin_are_assigned_one_by_one) {
   System system({.gravity = {}});
   const BodyId body = system.create_body(Cylinder{0.1, 1}, {.mass = 2, .position = {1, 2, 3}});
   system.set_velocity(body, {1, 0, 0});
@@ -318,7 +318,7 @@ TEST(Solid, VelocityAndSpinAreAssignedOneByOne) {
   EXPECT_NEAR(system.energy().kinetic, system.energy().edits, 1e-9);
 }
 
-TEST(Solid, AngularVelocityHasNoPartWhereThereIsNoInertia) {
+TEST(Solid, angular_velocity_has_no_part_where_there_is_no_inertia) {
   System system({.gravity = {}});
   const BodyId point = system.create_body(), rod = system.create_body();
   (void)system.create_particle(point, {0, 0, 0});
@@ -331,7 +331,7 @@ TEST(Solid, AngularVelocityHasNoPartWhereThereIsNoInertia) {
   expect_near(system.angular_velocity(rod), {0, 0, 1}, 1e-14);
 }
 
-TEST(Solid, AStaticBodyStaysWhereItsPosePutsItWhateverIsJointedToIt) {
+TEST(Solid, a_static_body_stays_where_its_pose_puts_it_whatever_is_jointed_to_it) {
   System system({.gravity = {}});
   const BodyId post = system.create_body(Box{{1, 1, 1}}, {.kind = BodyKind::static_});
   const BodyId door = system.create_body(Box{{1, 1, 1}}, {.position = {1, 0, 0}});
@@ -339,12 +339,12 @@ TEST(Solid, AStaticBodyStaysWhereItsPosePutsItWhateverIsJointedToIt) {
   (void)system.step(0.01);
   system.set_pose(post, {0, 2, 0}, {});
   (void)system.step(0.01);
-  expect_near(system.centre_of_mass(post), {0, 2, 0}, 1e-12);
+  expect_near(system.center_of_mass(post), {0, 2, 0}, 1e-12);
   EXPECT_LT(system.state(hinge).gap, 1e-9);
-  EXPECT_GT(system.centre_of_mass(door).y, 1);
+  EXPECT_GT(system.center_of_mass(door).y, 1);
 }
 
-TEST(Solid, IsDampedAsOneWhateverPointsCarryIt) {
+TEST(Solid, is_damped_as_one_whatever_points_carry_it) {
   for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     System system({.gravity = {}, .mode = mode});
     const BodyId box = system.create_body(
@@ -361,20 +361,20 @@ TEST(Solid, IsDampedAsOneWhateverPointsCarryIt) {
   }
 }
 
-TEST(Solid, APoseMovesAllThatHangsOnIt) {
+TEST(Solid, a_pose_moves_all_that_hangs_on_it) {
   System system({.gravity = {}});
   const BodyId a = system.create_body(Box{}, {.attachments = {{0.5, 0, 0}}});
   const BodyId b = system.create_body(Box{}, {.position = {1, 0, 0}, .attachments = {{-0.5, 0, 0}}});
   (void)system.combine(system.attachments(a)[0], system.attachments(b)[0]);
   system.set_pose(a, {0, 5, 0}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)});  // a quarter turn about z
-  expect_near(system.centre_of_mass(a), {0, 5, 0}, 1e-13);
-  expect_near(system.centre_of_mass(b), {0, 6, 0}, 1e-13);
+  expect_near(system.center_of_mass(a), {0, 5, 0}, 1e-13);
+  expect_near(system.center_of_mass(b), {0, 6, 0}, 1e-13);
   EXPECT_LT(system.worst_gap(), 1e-12);
   EXPECT_NEAR(system.orientation(a).z, std::sqrt(0.5), 1e-13);
   EXPECT_THROW(system.set_pose(a, {}, {0, 0, 0, 0}), std::invalid_argument);
 }
 
-TEST(Solid, APoseTurnsTheMotionAlong) {
+TEST(Solid, a_pose_turns_the_motion_along) {
   System system({.gravity = {}});
   const BodyId body = system.create_body(Box{{1, 2, 3}}, {.velocity = {1, 2, 3}, .spin = {3, 0, 0}});
   const double energy = system.energy().kinetic;
@@ -384,7 +384,7 @@ TEST(Solid, APoseTurnsTheMotionAlong) {
   EXPECT_NEAR(system.energy().kinetic, energy, 1e-9 * energy);
 }
 
-TEST(Solid, CombiningSolidsAddsMassAndInertiaAndKeepsMomenta) {
+TEST(Solid, combining_solids_adds_mass_and_inertia_and_keeps_momenta) {
   System system({.gravity = {}});
   const BodyId a = system.create_body(Box{{1, 1, 1}}, {.mass = 2, .velocity = {1, 0, 0}, .spin = {0, 0, 1}});
   const BodyId b = system.create_body(Sphere{0.5}, {.mass = 3, .position = {2, 0, 0}, .velocity = {0, 1, 0}});
@@ -403,7 +403,7 @@ TEST(Solid, CombiningSolidsAddsMassAndInertiaAndKeepsMomenta) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Solid, SnapshotAndReplayKeepShapes) {
+TEST(Solid, snapshot_and_replay_keep_shapes) {
   System system;
   system.start_recording();
   const BodyId body =

@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(ByName, SolverOfTheStep,
                                   (std::get<2>(info.param) == IntegrationMode::robust ? "_robust" : "_energy_keeping");
                          });
 
-TEST_P(SolverOfTheStep, MovesTheWorldAsTheBuiltInOneDoes) {
+TEST_P(SolverOfTheStep, moves_the_world_as_the_built_in_one_does) {
   const auto& [solver, scene, mode] = GetParam();
   System direct({.mode = mode}), other({.mode = mode});
   scene.make(direct), scene.make(other);
@@ -114,7 +114,7 @@ TEST_P(SolverOfTheStep, MovesTheWorldAsTheBuiltInOneDoes) {
   EXPECT_GT(moved, 0.1);
 }
 
-TEST(SolverOfTheStep, IsShownEquationsWhoseJacobianIsTheirDerivative) {
+TEST(SolverOfTheStep, is_shown_equations_whose_jacobian_is_their_derivative) {
   register_solver("watched", [] { return std::make_unique<Watched>(); });
   for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping})
     for (const Scene& scene : scenes_to_solve) {
@@ -136,7 +136,7 @@ struct Hopeless final : Solver {
   }
 };
 
-TEST(SolverOfTheStep, ThatFailsOrThrowsIsReplacedAndNamed) {
+TEST(SolverOfTheStep, that_fails_or_throws_is_replaced_and_named) {
   register_solver("hopeless", [] { return std::make_unique<Hopeless>(); });
   for (const int links : {1, 8}) {
     System direct, other;
@@ -150,7 +150,7 @@ TEST(SolverOfTheStep, ThatFailsOrThrowsIsReplacedAndNamed) {
   }
 }
 
-TEST(SolverOfTheStep, IsRecordedSavedAndRefusedWhenUnknown) {
+TEST(SolverOfTheStep, is_recorded_saved_and_refused_when_unknown) {
   System system;
   scenes::make_chain(system, {.links = 3});
   system.start_recording();

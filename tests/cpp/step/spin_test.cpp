@@ -34,7 +34,7 @@ struct Rod {
   Vec3 axis() const { return (1 / length) * (system.position(q) - system.position(p)); }
 };
 
-TEST(Spin, ARodHasTheAngularVelocityInertiaAndMomentumOfACylinder) {
+TEST(Spin, a_rod_has_the_angular_velocity_inertia_and_momentum_of_a_cylinder) {
   Rod rod;
   const Vec3 w{30, 2, -1};
   rod.system.set_angular_velocity(rod.body, w);
@@ -47,7 +47,7 @@ TEST(Spin, ARodHasTheAngularVelocityInertiaAndMomentumOfACylinder) {
   EXPECT_TRUE(rod.system.validate().empty());
 }
 
-TEST(Spin, AFreeRodPrecessesAboutItsAngularMomentumAndKeepsIt) {
+TEST(Spin, a_free_rod_precesses_about_its_angular_momentum_and_keeps_it) {
   Rod rod;
   System& system = rod.system;
   system.set_angular_velocity(rod.body, {200, 0, 4});
@@ -64,7 +64,7 @@ TEST(Spin, AFreeRodPrecessesAboutItsAngularMomentumAndKeepsIt) {
   EXPECT_NEAR(system.energy().kinetic, energy, 1e-10 * energy);
 }
 
-TEST(Spin, AGyroscopeHeldAtOneEndGoesRoundAtTheRateThatItsWeightAsks) {
+TEST(Spin, a_gyroscope_held_at_one_end_goes_round_at_the_rate_that_its_weight_asks) {
   for (const IntegrationMode mode : {IntegrationMode::energy_keeping, IntegrationMode::robust}) {
     Rod rod({0, -9.81, 0}, mode);
     System& system = rod.system;
@@ -82,7 +82,7 @@ TEST(Spin, AGyroscopeHeldAtOneEndGoesRoundAtTheRateThatItsWeightAsks) {
   }
 }
 
-TEST(Spin, ARodMovesAsTheSolidCylinderDoes) {
+TEST(Spin, a_rod_moves_as_the_solid_cylinder_does) {
   Rod rod({0, -9.81, 0});
   System solid({.gravity = {0, -9.81, 0}});
   const BodyId body = solid.create_body(
@@ -98,7 +98,7 @@ TEST(Spin, ARodMovesAsTheSolidCylinderDoes) {
   expect_near(rod.system.position(rod.q), solid.position(ends[1]), 2e-3);
 }
 
-TEST(Spin, LockedToAnotherBodyItsMomentumGoesIntoTheWhole) {
+TEST(Spin, locked_to_another_body_its_momentum_goes_into_the_whole) {
   Rod rod;
   System& system = rod.system;
   const BodyId other = system.create_body();
@@ -115,7 +115,7 @@ TEST(Spin, LockedToAnotherBodyItsMomentumGoesIntoTheWhole) {
   expect_near(system.angular_momentum(), momentum, 1e-11);
 }
 
-TEST(Spin, IsDrawnDampedSavedAndLostWithItsShape) {
+TEST(Spin, is_drawn_damped_saved_and_lost_with_its_shape) {
   Rod rod;
   System& system = rod.system;
   system.set_angular_velocity(rod.body, {1, 0, 0});

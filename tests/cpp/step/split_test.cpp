@@ -33,7 +33,7 @@ struct Molecule {
 
 const std::vector<Vec3> zigzag{{0, 0, 0}, {1, 0.5, 0}, {2, 0, 0.5}, {3, 1, 0}, {4, 0, 0}, {5, 0.5, 1}};
 
-TEST(Split, BreakingTheOnlyBondBetweenTwoPiecesSplitsTheBodyAndKeepsMomenta) {
+TEST(Split, breaking_the_only_bond_between_two_pieces_splits_the_body_and_keeps_momenta) {
   Molecule m(zigzag);
   System& system = m.system;
   (void)system.step(0.01);
@@ -59,7 +59,7 @@ TEST(Split, BreakingTheOnlyBondBetweenTwoPiecesSplitsTheBodyAndKeepsMomenta) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Split, ABondOnARingOfBondsBreaksWithoutASplit) {
+TEST(Split, a_bond_on_a_ring_of_bonds_breaks_without_a_split) {
   Molecule m(zigzag);
   const CosmeticBondId closing = m.system.create_cosmetic_bond(m.atoms.back(), m.atoms.front());
   EXPECT_TRUE(m.system.destroy(m.bonds[1]).created_bodies.empty());
@@ -67,7 +67,7 @@ TEST(Split, ABondOnARingOfBondsBreaksWithoutASplit) {
   EXPECT_EQ(m.system.destroy(closing).created_bodies.size(), 1u);
 }
 
-TEST(Split, WhatHasNoBondGoesWithTheNearerPiece) {
+TEST(Split, what_has_no_bond_goes_with_the_nearer_piece) {
   Molecule m({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {6, 0, 0}});
   System& system = m.system;
   const ParticleId near_left = system.create_particle(m.body, {0, 1, 0}),
@@ -80,7 +80,7 @@ TEST(Split, WhatHasNoBondGoesWithTheNearerPiece) {
 }
 
 // Thesis, Fig. 5.2: a rigid molecule on a nail loses a part, which falls; the rest swings on.
-TEST(Split, APieceOffANailedBodyFallsFreely) {
+TEST(Split, a_piece_off_a_nailed_body_falls_freely) {
   Molecule m(zigzag);
   System& system = m.system;
   system.set_gravity({0, -9.81, 0});
@@ -88,15 +88,15 @@ TEST(Split, APieceOffANailedBodyFallsFreely) {
   system.set_angular_velocity(m.body, {});
   system.nail(m.atoms[0]);
   const BodyId piece = system.destroy(m.bonds[3]).created_bodies.at(0);
-  const Vec3 start = system.centre_of_mass(piece), v = system.velocity(piece);
+  const Vec3 start = system.center_of_mass(piece), v = system.velocity(piece);
   double t = 0;
   for (int i = 0; i < 50; ++i) (void)system.step(0.01), t += 0.01;
-  EXPECT_NEAR(system.centre_of_mass(piece).y, start.y + v.y * t - 9.81 * t * t / 2, 1e-9);
+  EXPECT_NEAR(system.center_of_mass(piece).y, start.y + v.y * t - 9.81 * t * t / 2, 1e-9);
   expect_near(system.position(m.atoms[0]), {0, 0, 0}, 1e-9);
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Split, HingesAndBondsOfThePiecesStay) {
+TEST(Split, hinges_and_bonds_of_the_pieces_stay) {
   Molecule m(zigzag);
   System& system = m.system;
   const BodyId other = system.create_body();
@@ -114,7 +114,7 @@ TEST(Split, HingesAndBondsOfThePiecesStay) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Split, SolidsAreNeverTornButTheirCompoundsAre) {
+TEST(Split, solids_are_never_torn_but_their_compounds_are) {
   System system({.gravity = {}});
   const BodyId a = system.create_body(Box{}, {.attachments = {{0.5, 0, 0}, {-0.5, 0, 0}}});
   const BodyId b =
@@ -137,7 +137,7 @@ TEST(Split, SolidsAreNeverTornButTheirCompoundsAre) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Split, PartsAreRememberedAndCanLeaveAgain) {
+TEST(Split, parts_are_remembered_and_can_leave_again) {
   System system({.gravity = {}});
   const BodyId a = system.create_body(Box{}), b = system.create_body(Box{}, {.position = {2, 0, 0}}),
                c = system.create_body(Sphere{}, {.position = {4, 0, 0}, .velocity = {0, 1, 0}});
@@ -158,7 +158,7 @@ TEST(Split, PartsAreRememberedAndCanLeaveAgain) {
 }
 
 // What Jacob's ladder does all the time: a hinge is locked by combining its two particles again, and unlocked.
-TEST(Split, UnlockingAHingeBringsTheHingeBack) {
+TEST(Split, unlocking_a_hinge_brings_the_hinge_back) {
   System system({.gravity = {}});
   const BodyId a = system.create_body(Box{{1, 1, 1}}, {.mass = 2, .attachments = {{0.5, 0.5, 0}}});
   const BodyId b =
@@ -183,7 +183,7 @@ TEST(Split, UnlockingAHingeBringsTheHingeBack) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Split, NetForceAndTorqueAreWhatActsFromOutside) {
+TEST(Split, net_force_and_torque_are_what_acts_from_outside) {
   for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     System system({.mode = mode});
     const double h = 0.001;
@@ -197,14 +197,14 @@ TEST(Split, NetForceAndTorqueAreWhatActsFromOutside) {
     system.apply_force(corner, force);
     (void)system.step(h);
     expect_near(system.net_force(plate), Vec3{0, -4 * 9.81, 0} + force, 1e-6);
-    const Vec3 arm = system.position(corner) - system.centre_of_mass(plate);
+    const Vec3 arm = system.position(corner) - system.center_of_mass(plate);
     expect_near(system.net_torque(plate), cross(arm, force), mode == IntegrationMode::robust ? 1e-6 : 0.02);
     if (mode == IntegrationMode::energy_keeping)  // the change of angular momentum, to the last digit
       expect_near(system.net_torque(plate), (1 / h) * (system.angular_momentum(plate) - before), 1e-6);
   }
 }
 
-TEST(Split, NetForcesOfPartsAddUpToTheBodys) {
+TEST(Split, net_forces_of_parts_add_up_to_the_bodys) {
   System system;
   const BodyId a = system.create_body(Box{}, {.mass = 1}),
                b = system.create_body(Box{}, {.mass = 2, .position = {2, 0, 0}});
@@ -212,7 +212,7 @@ TEST(Split, NetForcesOfPartsAddUpToTheBodys) {
   system.set_angular_velocity(a, {0, 0, 4});
   (void)system.step(0.001);
   expect_near(system.net_force(a, a) + system.net_force(a, b), system.net_force(a), 1e-9);
-  // Turning at omega about the common centre, each part is pulled towards it: m r omega^2.
+  // Turning at omega about the common center, each part is pulled towards it: m r omega^2.
   EXPECT_NEAR(system.net_force(a, b).x, -2 * (2.0 / 3) * 16, 0.01);
   EXPECT_NEAR(system.net_force(a, a).x, 1 * (4.0 / 3) * 16, 0.01);
   Vec3 sum;
@@ -235,7 +235,7 @@ struct LockedPair {
 
 constexpr std::array both_schemes{IntegrationMode::robust, IntegrationMode::energy_keeping};
 
-TEST(Outside, APushOnOneOfTwoLockedBlocksIsForceAndTorqueOnThatOneAlone) {
+TEST(Outside, a_push_on_one_of_two_locked_blocks_is_force_and_torque_on_that_one_alone) {
   for (const IntegrationMode mode : both_schemes) {
     LockedPair pair(mode);
     System& system = pair.system;
@@ -248,14 +248,14 @@ TEST(Outside, APushOnOneOfTwoLockedBlocksIsForceAndTorqueOnThatOneAlone) {
     expect_near(system.outside_force(pair.a, pair.a), {}, 1e-12);
     expect_near(system.outside_torque(pair.a, pair.a), {}, 1e-12);
     // What the lock carries is what moves the other block, by the motion of the two as one.
-    const Vec3 centre{0.4, 0, 0}, spin_up = (1 / h) * system.angular_velocity(pair.a);
-    const Vec3 of_a = 3 * ((1 / 5.0) * push + cross(spin_up, Vec3{0, 0, 0} - centre));
+    const Vec3 center{0.4, 0, 0}, spin_up = (1 / h) * system.angular_velocity(pair.a);
+    const Vec3 of_a = 3 * ((1 / 5.0) * push + cross(spin_up, Vec3{0, 0, 0} - center));
     expect_near(system.net_force(pair.a, pair.a), of_a, 1e-3);
     expect_near(system.outside_force(pair.a, pair.b) - system.net_force(pair.a, pair.b), of_a, 1e-3);
   }
 }
 
-TEST(Outside, AJointMadeAtOneOfTwoLockedBlocksGoesWithThatOne) {
+TEST(Outside, a_joint_made_at_one_of_two_locked_blocks_goes_with_that_one) {
   LockedPair pair(IntegrationMode::energy_keeping);
   System& system = pair.system;
   const ConstraintId joint = system.create_constraint(JointSpec{.a = pair.a, .at = {1.4, 0, 0}, .axis = {0, 1, 0}});
@@ -266,7 +266,7 @@ TEST(Outside, AJointMadeAtOneOfTwoLockedBlocksGoesWithThatOne) {
   EXPECT_TRUE(system.validate().empty());
 }
 
-TEST(Outside, WhateverHoldsABodyItsPartsForcesAddUpToItsNetForce) {
+TEST(Outside, whatever_holds_a_body_its_parts_forces_add_up_to_its_net_force) {
   for (const bool damped : {false, true}) {
     LockedPair pair(IntegrationMode::robust, {0, -9.81, 0});
     System& system = pair.system;
@@ -285,11 +285,11 @@ TEST(Outside, WhateverHoldsABodyItsPartsForcesAddUpToItsNetForce) {
       for (const BodyId part : system.parts(pair.a)) {
         const Vec3 f = system.outside_force(pair.a, part);
         double mass = 0;
-        Vec3 centre;
+        Vec3 center;
         for (const ParticleId p : system.particles(pair.a, part))
-          mass += system.mass(p), centre += system.mass(p) * system.position(p);
+          mass += system.mass(p), center += system.mass(p) * system.position(p);
         force += f;
-        moments += system.outside_torque(pair.a, part) + cross((1 / mass) * centre - system.centre_of_mass(pair.a), f);
+        moments += system.outside_torque(pair.a, part) + cross((1 / mass) * center - system.center_of_mass(pair.a), f);
       }
       expect_near(force, system.net_force(pair.a), 1e-4);
       expect_near(moments, system.net_torque(pair.a), 1e-4);
@@ -298,7 +298,7 @@ TEST(Outside, WhateverHoldsABodyItsPartsForcesAddUpToItsNetForce) {
   }
 }
 
-TEST(Split, ABondWhoseEndsWereSeparatedJustGoes) {
+TEST(Split, a_bond_whose_ends_were_separated_just_goes) {
   Molecule m(zigzag);
   (void)m.system.separate(m.atoms[1], m.atoms[2]);  // now of two bodies, its bonds with it
   for (const CosmeticBondId bond : m.bonds) (void)m.system.destroy(bond);
@@ -306,7 +306,7 @@ TEST(Split, ABondWhoseEndsWereSeparatedJustGoes) {
   EXPECT_TRUE(m.system.validate().empty());
 }
 
-TEST(Split, APartOfMasslessPlacesAloneCannotBeLeftBehind) {
+TEST(Split, a_part_of_massless_places_alone_cannot_be_left_behind) {
   System system;
   const BodyId plate = system.create_body(), other = system.create_body();
   const ParticleId own = system.create_particle(plate, {0, 0, 0});
@@ -318,7 +318,7 @@ TEST(Split, APartOfMasslessPlacesAloneCannotBeLeftBehind) {
   EXPECT_EQ(system.particles(plate).size(), 5u);
 }
 
-TEST(Split, SplitsAreRecordedAndReplayed) {
+TEST(Split, splits_are_recorded_and_replayed) {
   Molecule m(zigzag);
   System& system = m.system;
   system.start_recording();

@@ -80,13 +80,13 @@ TEST(SurfaceFailure, of_one_of_two_surfaces_in_touch_lets_both_go) {
     const ConstraintId held = system.create_constraint(SurfacePairSpec{
         .a = ball, .b = {}, .surface_a = {Sphere{0.5}, {0, 0.6, 0}, {}}, .surface_b = {floor.function, {}, {}}});
     for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 60);
-    EXPECT_NEAR(system.centre_of_mass(ball).y, 0.5, 1e-6);
+    EXPECT_NEAR(system.center_of_mass(ball).y, 0.5, 1e-6);
     floor.calls = after;
     int told = 0;
     for (int i = 0; i < 30; ++i) told += static_cast<int>(system.step(1.0 / 60).switched_off_constraints.size());
     EXPECT_EQ(told, 1);
     EXPECT_FALSE(system.state(held).active);
-    EXPECT_LT(system.centre_of_mass(ball).y, 0.4) << "it falls";
+    EXPECT_LT(system.center_of_mass(ball).y, 0.4) << "it falls";
     EXPECT_TRUE(system.validate().empty());
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One behaviour each: bodies of every rank, nails, bonds, grips, damping, conflicts, bad input.
+// One behavior each: bodies of every rank, nails, bonds, grips, damping, conflicts, bad input.
 #include "scenes/chain.h"
 
 #include <gtest/gtest.h>
@@ -141,7 +141,7 @@ TEST(Spring, oscillates_with_its_own_period) {
 }
 
 TEST(Spring, with_critical_damping_creeps_home_however_short_the_step) {
-  // A stopping test in metres let slow motion stop short of home, the farther the shorter the step.
+  // A stopping test in meters let slow motion stop short of home, the farther the shorter the step.
   const double mass = 2, omega = std::sqrt(20);
   for (const double dt : {1.0 / 240, 1.0 / 3840}) {
     System system{SystemOptions{.gravity = {}}};
@@ -252,13 +252,13 @@ TEST(Grip, pulls_a_link_towards_its_target_and_lets_go) {
   const Vec3 target{0.8, -1.2, 0.5};
   const GripId grip = system.create_grip(chain.links[20], {0, 0, 0}, target);
   run(system, 3);
-  EXPECT_LT(norm(system.centre_of_mass(chain.links[20]) - target), 0.1);
+  EXPECT_LT(norm(system.center_of_mass(chain.links[20]) - target), 0.1);
   const PoseSnapshot poses = system.poses();
   ASSERT_EQ(poses.holds.size(), 1u);
   EXPECT_GT(poses.holds[0].force, 1);
   system.destroy(grip);
   run(system, 5);
-  EXPECT_GT(norm(system.centre_of_mass(chain.links[20]) - target), 0.5) << "it swings back";
+  EXPECT_GT(norm(system.center_of_mass(chain.links[20]) - target), 0.5) << "it swings back";
 }
 
 TEST(Grip, of_two_holders_adds_up) {

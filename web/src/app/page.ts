@@ -55,7 +55,7 @@ export interface Timing {
   decodeMs: number;
 }
 
-/** Colours of other people, by client number. */
+/** Colors of other people, by client number. */
 const others = ["#8d6fd1", "#3f7fd0", "#c2863a", "#4c9a52", "#c0508e"].map((code) => new Color(code));
 const mostOthers = 6;
 /** After the last change the page goes on drawing for so long, until all easing has ended. */
@@ -65,7 +65,7 @@ const warmFrames = 3;
 /** A hold that the server has not confirmed by then was refused. */
 const confirmWithinMs = 1500;
 
-export function colourOfClient(client: number): Color {
+export function colorOfClient(client: number): Color {
   return others[client % others.length];
 }
 
@@ -352,7 +352,7 @@ export class Page implements ConnectionListener, GestureListener {
     for (const client of this.model.clients) {
       if (client.client === this.connection.clientId || client.selected === NO_BODY || used === mostOthers) continue;
       const outline = this.otherOutlines_[used++];
-      outline.material.color.copy(colourOfClient(client.client));
+      outline.material.color.copy(colorOfClient(client.client));
       this.view.outline(outline, client.selected);
     }
     for (; used < mostOthers; used++) this.view.outline(this.otherOutlines_[used], -1);
@@ -396,7 +396,7 @@ export class Page implements ConnectionListener, GestureListener {
     this.timing.renderMs += (performance.now() - scripted - this.timing.renderMs) * 0.05;
   }
 
-  /** What is held, and all that is jointed to it, is drawn without delay: alone it would tear off its neighbours. */
+  /** What is held, and all that is jointed to it, is drawn without delay: alone it would tear off its neighbors. */
   private hurryHeld_(): void {
     const goal = this.view.poses.lateness.goal;
     goal.fill(usualLateness);

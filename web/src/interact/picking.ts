@@ -85,7 +85,7 @@ function pullToSurface(scene: PickScene, body: number, point: Float32Array): voi
   point[2] -= (gz / norm) * distance;
 }
 
-/** Half a millimetre: closer than this to a surface is on it. */
+/** Half a millimeter: closer than this to a surface is on it. */
 const touching = 5e-4;
 
 /**
@@ -144,7 +144,7 @@ export function pickRay(
   return true;
 }
 
-/** The body whose surface is nearest to a point (a fingertip, a controller), within `reach` metres. */
+/** The body whose surface is nearest to a point (a fingertip, a controller), within `reach` meters. */
 export function pickPoint(scene: PickScene, point: ArrayLike<number>, reach: number, out: Hit): boolean {
   const x = point[0], y = point[1], z = point[2];
   let best = reach;

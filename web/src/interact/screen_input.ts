@@ -178,9 +178,9 @@ export class ScreenInput {
     }
   }
 
-  private up_(event: PointerEvent, cancelled: boolean): void {
+  private up_(event: PointerEvent, canceled: boolean): void {
     const finger = this.fingers_.get(event.pointerId);
-    if (finger === undefined || (!finger.touch && !cancelled && event.buttons !== 0)) return;
+    if (finger === undefined || (!finger.touch && !canceled && event.buttons !== 0)) return;
     this.fingers_.delete(event.pointerId);
     window.clearTimeout(finger.longPress);
     const { pointer } = finger;
@@ -192,7 +192,7 @@ export class ScreenInput {
     } else {
       this.gestures_.update(pointer);
     }
-    const tap = !cancelled && !finger.moved && performance.now() - finger.startedAt < tapMs;
+    const tap = !canceled && !finger.moved && performance.now() - finger.startedAt < tapMs;
     if (tap) this.tap_(finger, body);
   }
 

@@ -82,9 +82,9 @@ export class Navigation {
   /** Move sideways with the pointer: what lies at the pivot's depth stays under it. */
   pan(dx: number, dy: number, viewHeight: number): void {
     this.touch_();
-    const metres = (2 * this.goal_.distance * Math.tan(MathUtils.degToRad(this.camera_.fov / 2))) / viewHeight;
+    const meters = (2 * this.goal_.distance * Math.tan(MathUtils.degToRad(this.camera_.fov / 2))) / viewHeight;
     this.axes_(this.goal_);
-    this.goal_.pivot.addScaledVector(this.right_, -dx * metres).addScaledVector(this.up_, dy * metres);
+    this.goal_.pivot.addScaledVector(this.right_, -dx * meters).addScaledVector(this.up_, dy * meters);
   }
 
   /** Above 1: away. */

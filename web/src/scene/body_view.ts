@@ -38,8 +38,8 @@ export class Outline {
   readonly material: OutlineMaterial;
   readonly parts: OutlinePart[] = [];
 
-  constructor(colour: Color) {
-    this.material = makeOutlineMaterial(colour);
+  constructor(color: Color) {
+    this.material = makeOutlineMaterial(color);
   }
 }
 
@@ -152,12 +152,12 @@ export class BodyView implements PickScene {
     for (const outline of this.outlines_) this.attach_(outline);
   }
 
-  /** Tint of a body for this frame; amount 0..1. Without a call a body eases back to its own colour. */
-  setTint(body: number, colour: Color, amount: number): void {
+  /** Tint of a body for this frame; amount 0..1. Without a call a body eases back to its own color. */
+  setTint(body: number, color: Color, amount: number): void {
     if (4 * body + 3 >= this.tintGoal_.length) return;
-    this.tintGoal_[4 * body] = colour.r;
-    this.tintGoal_[4 * body + 1] = colour.g;
-    this.tintGoal_[4 * body + 2] = colour.b;
+    this.tintGoal_[4 * body] = color.r;
+    this.tintGoal_[4 * body + 1] = color.g;
+    this.tintGoal_[4 * body + 2] = color.b;
     this.tintGoal_[4 * body + 3] = amount;
   }
 
@@ -212,7 +212,7 @@ export class BodyView implements PickScene {
     const at = 4 * body;
     const goal = this.tintGoal_;
     const now = this.tintNow_;
-    // A tint that fades out keeps its colour; one that comes from nothing starts in its own.
+    // A tint that fades out keeps its color; one that comes from nothing starts in its own.
     if (goal[at + 3] > 0) {
       const jump = now[at + 3] < 0.02 ? 1 : ease;
       for (let channel = 0; channel < 3; channel++) now[at + channel] += (goal[at + channel] - now[at + channel]) * jump;

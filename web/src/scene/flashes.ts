@@ -13,7 +13,7 @@ interface Flash {
   size: number;
 }
 
-const colours: Record<string, Color> = { break: palette.aboutToBreak, join: palette.calm, grab: palette.hoverOnDark };
+const colors: Record<string, Color> = { break: palette.aboutToBreak, join: palette.calm, grab: palette.hoverOnDark };
 
 export class Flashes {
   readonly root = new Group();
@@ -38,7 +38,7 @@ export class Flashes {
     this.next_ = (this.next_ + 1) % most;
     flash.age = 0;
     flash.size = kind === "grab" ? 0.04 : 0.13;
-    flash.mesh.material.color.copy(colours[kind] ?? palette.hoverOnDark);
+    flash.mesh.material.color.copy(colors[kind] ?? palette.hoverOnDark);
     flash.mesh.position.set(position[0], position[1], position[2]);
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles for the shapes of the scene description. Rods and links carry a texture coordinate u in
-// tiles along their length (whole tiles, so that neighbours match) and v once around.
+// tiles along their length (whole tiles, so that neighbors match) and v once around.
 
 import { BufferAttribute, BufferGeometry, SphereGeometry } from "three";
 import { RoundedBoxGeometry } from "three/examples/jsm/geometries/RoundedBoxGeometry.js";
@@ -117,7 +117,7 @@ function makeRod(shape: Shape, detail: Detail): BufferGeometry {
 function makeLink(shape: Shape, detail: Detail): BufferGeometry {
   const bends = detail === "fine" ? 20 : 6;
   const columns = detail === "fine" ? 18 : 7;
-  const centre: { x: number; y: number; nx: number; ny: number; at: number }[] = [];
+  const center: { x: number; y: number; nx: number; ny: number; at: number }[] = [];
   const half = shape.stretch / 2;
   const bend = Math.PI * shape.radius;
   const around = 2 * (bend + shape.stretch);
@@ -127,13 +127,13 @@ function makeLink(shape: Shape, detail: Detail): BufferGeometry {
       const angle = -Math.PI / 2 + (Math.PI * step) / bends;
       const nx = side * Math.cos(angle);
       const ny = side * Math.sin(angle);
-      centre.push({ x: side * half + shape.radius * nx, y: shape.radius * ny, nx, ny, at: start + (bend * step) / bends });
+      center.push({ x: side * half + shape.radius * nx, y: shape.radius * ny, nx, ny, at: start + (bend * step) / bends });
     }
   }
-  centre.push({ ...centre[0], at: around });
+  center.push({ ...center[0], at: around });
   const tiles = Math.max(1, Math.round(around / (2 * Math.PI * shape.tube)));
-  return sweep(centre.length - 1, columns, (i, j, point, normal, uv) => {
-    const c = centre[i];
+  return sweep(center.length - 1, columns, (i, j, point, normal, uv) => {
+    const c = center[i];
     const angle = (2 * Math.PI * j) / columns;
     const out = Math.cos(angle);
     const up = Math.sin(angle);
@@ -148,7 +148,7 @@ function makeLink(shape: Shape, detail: Detail): BufferGeometry {
   });
 }
 
-/** Texture coordinates of a box by metres, u along its longest side: grain and brushing run along a beam. */
+/** Texture coordinates of a box by meters, u along its longest side: grain and brushing run along a beam. */
 function layAlong(geometry: BufferGeometry, size: readonly number[]): void {
   const position = geometry.getAttribute("position");
   const normal = geometry.getAttribute("normal");
@@ -167,7 +167,7 @@ function layAlong(geometry: BufferGeometry, size: readonly number[]): void {
 /** Edges sharper than this are seen as edges, others as a smooth surface, rad. */
 const creaseAngle = 0.6;
 
-/** Faces as they are given; texture coordinates by metres on the side that a face looks to. */
+/** Faces as they are given; texture coordinates by meters on the side that a face looks to. */
 function makeMesh(mesh: MeshData): BufferGeometry {
   const indexed = new BufferGeometry();
   indexed.setAttribute("position", new BufferAttribute(mesh.positions, 3));
@@ -214,7 +214,7 @@ export function makeCoil(radius: number, tube: number, length: number): BufferGe
   const turns = Math.max(4, Math.min(40, Math.round(length / (5 * tube))));
   const straight = 0.12;
   const rows = 14 * turns;
-  const centre = (t: number): [number, number, number] => {
+  const center = (t: number): [number, number, number] => {
     const wound = Math.min(1, Math.max(0, (t - straight) / (1 - 2 * straight)));
     // The wire comes in from the axis and leaves to it.
     const grown = Math.min(1, 6 * Math.min(t, 1 - t));
@@ -223,9 +223,9 @@ export function makeCoil(radius: number, tube: number, length: number): BufferGe
   };
   return sweep(rows, 6, (i, j, point, normal, uv) => {
     const t = i / rows;
-    const here = centre(t);
-    const ahead = centre(Math.min(1, t + 0.25 / rows));
-    const behind = centre(Math.max(0, t - 0.25 / rows));
+    const here = center(t);
+    const ahead = center(Math.min(1, t + 0.25 / rows));
+    const behind = center(Math.max(0, t - 0.25 / rows));
     const tangent = [ahead[0] - behind[0], ahead[1] - behind[1], ahead[2] - behind[2]];
     const size = Math.hypot(tangent[0], tangent[1], tangent[2]);
     // Away from the axis, made square to the wire.

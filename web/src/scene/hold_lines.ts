@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The spring between a held point and a hand: a thin line whose colour tells its force, with a small
+// The spring between a held point and a hand: a thin line whose color tells its force, with a small
 // bead at both ends. Thickness grows with distance, so that it is as thin far away and in a headset.
 
 import {
   Color, CylinderGeometry, Group, InstancedMesh, Matrix4, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
-import { forceColour } from "./materials.ts";
+import { forceColor } from "./materials.ts";
 
 const most = 64;
 const axis = new Vector3(0, 1, 0);
@@ -24,7 +24,7 @@ export class HoldLines {
   private readonly turn_ = new Quaternion();
   private readonly still_ = new Quaternion();
   private readonly matrix_ = new Matrix4();
-  private readonly colour_ = new Color();
+  private readonly color_ = new Color();
 
   constructor() {
     const material = new MeshBasicMaterial({ toneMapped: false, fog: false });
@@ -33,7 +33,7 @@ export class HoldLines {
     for (const mesh of [this.lines_, this.beads_]) {
       mesh.frustumCulled = false;
       mesh.count = 0;
-      mesh.setColorAt(0, this.colour_);
+      mesh.setColorAt(0, this.color_);
       this.root.add(mesh);
     }
   }
@@ -56,8 +56,8 @@ export class HoldLines {
     else this.turn_.identity();
     this.matrix_.compose(this.middle_, this.turn_, this.size_.set(thick, length, thick));
     this.lines_.setMatrixAt(index, this.matrix_);
-    forceColour(newtons, this.colour_);
-    this.lines_.setColorAt(index, this.colour_);
+    forceColor(newtons, this.color_);
+    this.lines_.setColorAt(index, this.color_);
     this.bead_(2 * index, this.from_, 0.0028 * strength * this.from_.distanceTo(eye));
     this.bead_(2 * index + 1, this.to_, 0.0045 * strength * this.to_.distanceTo(eye));
   }
@@ -75,6 +75,6 @@ export class HoldLines {
   private bead_(index: number, at: Vector3, radius: number): void {
     this.matrix_.compose(at, this.still_, this.size_.setScalar(radius));
     this.beads_.setMatrixAt(index, this.matrix_);
-    this.beads_.setColorAt(index, this.colour_);
+    this.beads_.setColorAt(index, this.color_);
   }
 }

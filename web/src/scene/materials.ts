@@ -2,9 +2,9 @@
 // The small palette that all worlds share, and the shader patches for tinted instances and outlines.
 
 import { BackSide, Color, MeshBasicMaterial, MeshStandardMaterial, type Material, type MeshStandardMaterialParameters, type Texture } from "three";
-import { makeBrushedRoughness, makePlain, makeRopeColour, makeRopeNormals, makeWoodColour } from "./textures.ts";
+import { makeBrushedRoughness, makePlain, makeRopeColor, makeRopeNormals, makeWoodColor } from "./textures.ts";
 
-/** Colours that mean something, the same everywhere (page, headset, bar). */
+/** Colors that mean something, the same everywhere (page, headset, bar). */
 export const palette = {
   held: new Color("#e8452c"),
   aboutToBreak: new Color("#f2a324"),
@@ -14,8 +14,8 @@ export const palette = {
   hoverOnDark: new Color("#f6f1e7"),
 } as const;
 
-/** Line colour for a force in N: sea glass when gentle, amber near 10 N, coral from 60 N. */
-export function forceColour(newtons: number, out: Color): Color {
+/** Line color for a force in N: sea glass when gentle, amber near 10 N, coral from 60 N. */
+export function forceColor(newtons: number, out: Color): Color {
   const strain = Math.min(Math.max(Math.log10(Math.max(newtons, 0.1) / 1) / 1.8, 0), 1);
   return strain < 0.5
     ? out.lerpColors(palette.calm, palette.aboutToBreak, strain * 2)
@@ -52,10 +52,10 @@ function makeBase(name: string): MeshStandardMaterial {
       set({ color: "#26282b", roughness: 0.86 });
       break;
     case "wood":
-      set({ roughness: 0.55, map: texture("wood", makeWoodColour) });
+      set({ roughness: 0.55, map: texture("wood", makeWoodColor) });
       break;
     case "rope":
-      set({ roughness: 0.9, map: texture("rope", makeRopeColour), normalMap: texture("rope_normals", makeRopeNormals) });
+      set({ roughness: 0.9, map: texture("rope", makeRopeColor), normalMap: texture("rope_normals", makeRopeNormals) });
       break;
     case "glass":
       set({ color: "#8fc9bd", roughness: 0.18, transparent: true, opacity: 0.72 });
@@ -87,7 +87,7 @@ const materials = new Map<string, MeshStandardMaterial>();
 
 /**
  * Material of a name in the scene description, for instanced meshes with a `tint` attribute an instance (rgb and amount),
- * which also dulls metal and glows a little. Unknown names are paint; `color` replaces the base colour. Shared: do not dispose of it.
+ * which also dulls metal and glows a little. Unknown names are paint; `color` replaces the base color. Shared: do not dispose of it.
  */
 export function materialOf(name: string, color: string | null): MeshStandardMaterial {
   const key = `${name} ${color ?? ""}`;

@@ -43,7 +43,7 @@ export function parseMesh(vertices: unknown, triangles: unknown): MeshData {
   return { positions, triangles: Uint32Array.from(numbers), low, high };
 }
 
-/** Radius in metres of the sphere about the mesh's origin that holds it. */
+/** Radius in meters of the sphere about the mesh's origin that holds it. */
 export function meshReach(mesh: MeshData): number {
   let reach = 0;
   for (let at = 0; at < mesh.positions.length; at += 3) {
@@ -92,7 +92,7 @@ function solidAngle([ax, ay, az, bx, by, bz, cx, cy, cz]: Triangle): number {
   return 2 * Math.atan2(volume, a * b * c + ab * c + bc * a + ca * b);
 }
 
-/** Distance in metres to the surface, negative inside; of a mesh of many triangles to its box. */
+/** Distance in meters to the surface, negative inside; of a mesh of many triangles to its box. */
 export function meshDistance(mesh: MeshData, x: number, y: number, z: number): number {
   const toBox = boxDistance(mesh, x, y, z);
   if (mesh.triangles.length > 3 * mostFelt) return toBox;

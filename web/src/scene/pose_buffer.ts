@@ -24,7 +24,7 @@ function grown(array: Float32Array, length: number): Float32Array<ArrayBuffer> {
   return larger;
 }
 
-/** a + (b - a) t for quaternions along the shorter way, normalised; exact enough between two frames. */
+/** a + (b - a) t for quaternions along the shorter way, normalized; exact enough between two frames. */
 export function mixRotation(
   a: Float32Array, b: Float32Array, at: number, t: number, out: Float32Array, outAt = at,
 ): void {

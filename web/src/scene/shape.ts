@@ -9,11 +9,11 @@ export type Vec3 = readonly [number, number, number];
 /** x, y, z, w. */
 export type Quat = readonly [number, number, number, number];
 
-/** One primitive; lengths in metres. Cylinder and capsule lie along +x, a torus in the x-y plane. */
+/** One primitive; lengths in meters. Cylinder and capsule lie along +x, a torus in the x-y plane. */
 export interface Shape {
   readonly type: ShapeType;
   readonly radius: number;
-  /** Cylinder: face to face. Capsule: between the centres of its hemispheres. */
+  /** Cylinder: face to face. Capsule: between the centers of its hemispheres. */
   readonly length: number;
   /** Radius of a torus' tube. */
   readonly tube: number;
@@ -91,7 +91,7 @@ export function parseShape(value: unknown): Shape {
   };
 }
 
-/** Distance in metres from a point in the shape's own frame to its surface, negative inside. */
+/** Distance in meters from a point in the shape's own frame to its surface, negative inside. */
 export function shapeDistance(shape: Shape, x: number, y: number, z: number): number {
   switch (shape.type) {
     case "sphere":
@@ -122,7 +122,7 @@ export function shapeDistance(shape: Shape, x: number, y: number, z: number): nu
   }
 }
 
-/** Radius in metres of the smallest sphere about the shape's own origin that holds it. */
+/** Radius in meters of the smallest sphere about the shape's own origin that holds it. */
 export function shapeReach(shape: Shape): number {
   switch (shape.type) {
     case "sphere":
@@ -174,7 +174,7 @@ export function placeShape(shape: Shape, odd: boolean, length: number | null): P
   };
 }
 
-/** Radius in metres of the sphere about the body's origin that holds all its shapes. */
+/** Radius in meters of the sphere about the body's origin that holds all its shapes. */
 export function bodyReach(shapes: readonly PlacedShape[]): number {
   let reach = 0;
   for (const placed of shapes) {
@@ -184,7 +184,7 @@ export function bodyReach(shapes: readonly PlacedShape[]): number {
   return reach;
 }
 
-/** Distance in metres from a point in the body's frame to the nearest of its shapes, negative inside. */
+/** Distance in meters from a point in the body's frame to the nearest of its shapes, negative inside. */
 export function bodyDistance(shapes: readonly PlacedShape[], x: number, y: number, z: number): number {
   let nearest = Infinity;
   for (let index = 0; index < shapes.length; index++) {

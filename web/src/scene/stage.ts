@@ -7,7 +7,7 @@ import {
   MeshBasicMaterial, MeshLambertMaterial, PlaneGeometry, PMREMGenerator, Scene, SphereGeometry, Vector3,
   type Texture, type WebGLRenderer,
 } from "three";
-import { makeFloorColour } from "./textures.ts";
+import { makeFloorColor } from "./textures.ts";
 
 interface Theme {
   readonly horizon: string;
@@ -25,18 +25,18 @@ const themes: Record<"light" | "dark", Theme> = {
 
 const groundRadius = 60;
 
-/** Colour of sky and ground by height, as vertex colours of a large sphere. */
+/** Color of sky and ground by height, as vertex colors of a large sphere. */
 function paintSky(geometry: SphereGeometry, theme: Theme): void {
   const position = geometry.getAttribute("position");
-  const colours = new Float32Array(position.count * 3);
+  const colors = new Float32Array(position.count * 3);
   const low = new Color(theme.horizon);
   const high = new Color(theme.zenith);
   const mixed = new Color();
   for (let index = 0; index < position.count; index++) {
     const height = Math.max(position.getY(index) / geometry.parameters.radius, 0);
-    mixed.lerpColors(low, high, Math.min(1, height * 1.6)).toArray(colours, index * 3);
+    mixed.lerpColors(low, high, Math.min(1, height * 1.6)).toArray(colors, index * 3);
   }
-  geometry.setAttribute("color", new BufferAttribute(colours, 3));
+  geometry.setAttribute("color", new BufferAttribute(colors, 3));
 }
 
 function makeStudio(renderer: WebGLRenderer): Texture {
@@ -123,7 +123,7 @@ export class Stage {
     this.scene_ = scene;
     scene.environment = makeStudio(renderer);
     scene.fog = new Fog("#ffffff", 7, 34);
-    const material = new MeshLambertMaterial({ map: makeFloorColour() });
+    const material = new MeshLambertMaterial({ map: makeFloorColor() });
     material.map?.repeat.set(40, 40);
     // Not a physical material: it fills most of the screen, and a matt floor needs no reflections.
     addGrid(material);

@@ -40,7 +40,7 @@ export function allowAnisotropy(renderer: WebGLRenderer): void {
 
 type Pixel = (u: number, v: number, out: number[]) => void;
 
-function makeTexture(width: number, height: number, colour: boolean, pixel: Pixel, anisotropy = finest): Texture {
+function makeTexture(width: number, height: number, color: boolean, pixel: Pixel, anisotropy = finest): Texture {
   const data = new Uint8Array(width * height * 4);
   const out = [0, 0, 0];
   for (let y = 0; y < height; y++) {
@@ -59,12 +59,12 @@ function makeTexture(width: number, height: number, colour: boolean, pixel: Pixe
   texture.minFilter = LinearMipmapLinearFilter;
   texture.generateMipmaps = true;
   texture.anisotropy = anisotropy;
-  if (colour) texture.colorSpace = SRGBColorSpace;
+  if (color) texture.colorSpace = SRGBColorSpace;
   texture.needsUpdate = true;
   return texture;
 }
 
-/** One colour all over. */
+/** One color all over. */
 export function makePlain(red: number, green: number, blue: number): Texture {
   const texture = new DataTexture(new Uint8Array([red, green, blue, 255]), 1, 1, RGBAFormat);
   texture.needsUpdate = true;
@@ -94,7 +94,7 @@ function ropeHeight(u: number, v: number): number {
   return strandHeight(u, v) * 0.8 + yarn(u, v) * 0.13 + noise(u * 24, v * 96, 24, 96) * 0.07;
 }
 
-export function makeRopeColour(): Texture {
+export function makeRopeColor(): Texture {
   return makeTexture(256, 256, true, (u, v, out) => {
     const shade = 0.42 + 0.46 * strandHeight(u, v) + 0.08 * yarn(u, v) + 0.1 * (noise(u * 16, v * 64, 16, 64) - 0.5);
     out[0] = 0.93 * shade;
@@ -116,7 +116,7 @@ export function makeBrushedRoughness(): Texture {
   });
 }
 
-export function makeWoodColour(): Texture {
+export function makeWoodColor(): Texture {
   return makeTexture(256, 256, true, (u, v, out) => {
     const bend = 0.035 * noise(u * 2, v * 3, 2, 3) + 0.012 * noise(u * 6, v * 8, 6, 8);
     const ring = Math.abs(Math.sin(Math.PI * 6 * (v + bend)));
@@ -129,7 +129,7 @@ export function makeWoodColour(): Texture {
 }
 
 /** A worn, even floor: barely more than nothing, so that the eye has something to measure by. */
-export function makeFloorColour(): Texture {
+export function makeFloorColor(): Texture {
   return makeTexture(256, 256, true, (u, v, out) => {
     const broad = noise(u * 5, v * 5, 5, 5) - 0.5;
     const fine = noise(u * 96, v * 96, 96, 96) - 0.5;

@@ -7,7 +7,7 @@ import type { Plate, Rect } from "./plate.ts";
 const flashSeconds = 0.16;
 const fadeSeconds = 0.15;
 
-export interface Colours {
+export interface Colors {
   readonly paper: string;
   readonly raised: string;
   readonly hover: string;
@@ -20,18 +20,18 @@ export interface Colours {
   readonly error: string;
 }
 
-const light: Colours = {
+const light: Colors = {
   paper: "#f7f5f1", raised: "#e9e6df", hover: "#cfe6e1", ink: "#22262a", faint: "#5d6368", line: "#d5d1c8",
   calm: "#16756b", onCalm: "#ffffff", warn: "#8a5200", error: "#b3261a",
 };
-const dark: Colours = {
+const dark: Colors = {
   paper: "#1e2125", raised: "#2d3136", hover: "#28524d", ink: "#eceae6", faint: "#b0b3b5", line: "#3a3f45",
   calm: "#6fd0c2", onCalm: "#10201e", warn: "#f5b95a", error: "#ff9080",
 };
 
 export const font = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
-export type Painter = (context: CanvasRenderingContext2D, colours: Colours) => void;
+export type Painter = (context: CanvasRenderingContext2D, colors: Colors) => void;
 
 export class Board implements Plate {
   readonly mesh: Mesh<PlaneGeometry, MeshBasicMaterial>;
@@ -56,7 +56,7 @@ export class Board implements Plate {
   private flash_ = 0;
   private fade_ = 0;
 
-  /** `density`: pixels a metre. */
+  /** `density`: pixels a meter. */
   constructor(density: number) {
     this.density = density;
     const context = this.canvas_.getContext("2d");
@@ -145,18 +145,18 @@ export class Board implements Plate {
     this.mesh.material.opacity = this.fade_;
     if (!this.dirty_ || !this.mesh.visible || this.mesh.material.map === null) return;
     this.dirty_ = false;
-    const colours = matchMedia("(prefers-color-scheme: dark)").matches ? dark : light;
-    this.wipe_(colours);
-    this.paint(this.context_, colours);
+    const colors = matchMedia("(prefers-color-scheme: dark)").matches ? dark : light;
+    this.wipe_(colors);
+    this.paint(this.context_, colors);
     this.mesh.material.map.needsUpdate = true;
   }
 
   /** Clears the picture, but leaves a trace of paper: corners filtered against transparent black would get dark rims. */
-  private wipe_(colours: Colours): void {
+  private wipe_(colors: Colors): void {
     const { context_: context } = this;
     context.clearRect(0, 0, this.canvas_.width, this.canvas_.height);
     context.globalAlpha = 2 / 255;
-    context.fillStyle = colours.paper;
+    context.fillStyle = colors.paper;
     context.fillRect(0, 0, this.canvas_.width, this.canvas_.height);
     context.globalAlpha = 1;
   }

@@ -11,7 +11,7 @@ import type { FaceButton, Input } from "./input.ts";
 const shell = new MeshStandardMaterial({ color: "#3b4046", roughness: 0.55 });
 const face = new MeshStandardMaterial({ color: "#23262a", roughness: 0.7 });
 const knob = new MeshStandardMaterial({ color: "#d9d4ca", roughness: 0.5 });
-/** Buttons that do something in this world carry its colour. */
+/** Buttons that do something in this world carry its color. */
 const joins = new MeshStandardMaterial({ color: palette.calm, roughness: 0.45, emissive: palette.calm, emissiveIntensity: 0.25 });
 const breaks = new MeshStandardMaterial({ color: palette.aboutToBreak, roughness: 0.45, emissive: palette.aboutToBreak, emissiveIntensity: 0.25 });
 
@@ -65,7 +65,7 @@ export class ControllerView {
     part(this.root, new SphereGeometry(0.0125, 20, 14), shell, 0, -0.009, 0.013);
   }
 
-  /** Colours the face buttons by whether an action of the script is on them. */
+  /** Colors the face buttons by whether an action of the script is on them. */
   mark(onA: boolean, onB: boolean): void {
     this.buttons_.a.material = onA ? joins : knob;
     this.buttons_.b.material = onB ? breaks : knob;

@@ -43,15 +43,15 @@ function restHands(device: XRDevice): void {
  * keeps the answer while it sets others.
  */
 function shadowClears(gl: WebGL2RenderingContext): void {
-  const colour = Float32Array.from(gl.getParameter(gl.COLOR_CLEAR_VALUE) as Float32Array);
+  const color = Float32Array.from(gl.getParameter(gl.COLOR_CLEAR_VALUE) as Float32Array);
   let depth = gl.getParameter(gl.DEPTH_CLEAR_VALUE) as number;
   let stencil = gl.getParameter(gl.STENCIL_CLEAR_VALUE) as number;
   const { clearColor, clearDepth, clearStencil, getParameter } = gl;
   gl.clearColor = (red, green, blue, alpha) => {
-    colour[0] = red;
-    colour[1] = green;
-    colour[2] = blue;
-    colour[3] = alpha;
+    color[0] = red;
+    color[1] = green;
+    color[2] = blue;
+    color[3] = alpha;
     clearColor.call(gl, red, green, blue, alpha);
   };
   gl.clearDepth = (value) => {
@@ -64,7 +64,7 @@ function shadowClears(gl: WebGL2RenderingContext): void {
   };
   gl.getParameter = (name: GLenum): unknown => {
     switch (name) {
-      case gl.COLOR_CLEAR_VALUE: return colour.slice();
+      case gl.COLOR_CLEAR_VALUE: return color.slice();
       case gl.DEPTH_CLEAR_VALUE: return depth;
       case gl.STENCIL_CLEAR_VALUE: return stencil;
       default: return getParameter.call(gl, name);

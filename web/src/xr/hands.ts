@@ -79,9 +79,9 @@ export class HandView {
   private tint_(state: number): void {
     if (state === this.pinched_) return;
     this.pinched_ = state;
-    const colour = state === 2 ? palette.held : state === 1 ? palette.calm : glove;
-    this.balls_.setColorAt(thumbTip, colour);
-    this.balls_.setColorAt(indexTip, colour);
+    const color = state === 2 ? palette.held : state === 1 ? palette.calm : glove;
+    this.balls_.setColorAt(thumbTip, color);
+    this.balls_.setColorAt(indexTip, color);
     if (this.balls_.instanceColor !== null) this.balls_.instanceColor.needsUpdate = true;
   }
 

@@ -39,16 +39,16 @@ export class Locomotion {
     this.rig_ = rig;
     this.ribbonPoints_.setUsage(DynamicDrawUsage);
     const geometry = new BufferGeometry();
-    const colours = new Float32Array(8 * arcPoints);
+    const colors = new Float32Array(8 * arcPoints);
     const indices: number[] = [];
     for (let index = 0; index < arcPoints; index++) {
       // Faint at the hand, so that it does not hide it.
       const alpha = Math.min(1, 0.08 + index / 8);
-      colours.set([1, 1, 1, alpha, 1, 1, 1, alpha], 8 * index);
+      colors.set([1, 1, 1, alpha, 1, 1, 1, alpha], 8 * index);
       if (index > 0) indices.push(2 * index - 2, 2 * index - 1, 2 * index, 2 * index, 2 * index - 1, 2 * index + 1);
     }
     geometry.setAttribute("position", this.ribbonPoints_);
-    geometry.setAttribute("color", new BufferAttribute(colours, 4));
+    geometry.setAttribute("color", new BufferAttribute(colors, 4));
     geometry.setIndex(indices);
     this.ribbon_ = new Mesh(geometry, new MeshBasicMaterial({
       transparent: true, vertexColors: true, side: DoubleSide, depthWrite: false, toneMapped: false, fog: false,
@@ -159,10 +159,10 @@ export class Locomotion {
       this.ribbonPoints_.setXYZ(2 * index + 1, px + sideX, py, pz + sideZ);
     }
     this.ribbonPoints_.needsUpdate = true;
-    const colour = valid ? palette.calm : palette.held;
-    this.ribbon_.material.color.copy(colour);
-    this.ringMaterial_.color.copy(colour);
-    this.discMaterial_.color.copy(colour);
+    const color = valid ? palette.calm : palette.held;
+    this.ribbon_.material.color.copy(color);
+    this.ringMaterial_.color.copy(color);
+    this.discMaterial_.color.copy(color);
     this.ring_.visible = valid;
     this.ring_.position.set(landing[0], landing[1] + 0.006, landing[2]);
   }

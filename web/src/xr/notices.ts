@@ -3,7 +3,7 @@
 // gaze, that stays where it is and comes along only when the user has turned away from it.
 
 import { Vector3, type Matrix4, type Object3D } from "three";
-import { Board, font, roundedBox, wrapText, type Colours } from "./board.ts";
+import { Board, font, roundedBox, wrapText, type Colors } from "./board.ts";
 import { faceReader } from "./wrist_panel.ts";
 
 export type NoticeLevel = 0 | 1 | 2;
@@ -48,7 +48,7 @@ export class Notices {
     const context = document.createElement("canvas").getContext("2d");
     if (context === null) throw new Error("no 2-D canvas");
     this.measure_ = context;
-    this.board.paint = (target, colours) => this.paint_(target, colours);
+    this.board.paint = (target, colors) => this.paint_(target, colors);
     this.board.press = () => this.dismiss_();
     rig.add(this.board.mesh);
   }
@@ -133,12 +133,12 @@ export class Notices {
     this.board.buttons = this.cards_.some((card) => card.level > 0 && !card.lasting) ? [{ x: 0, y: 0, width, height }] : [];
   }
 
-  private paint_(context: CanvasRenderingContext2D, colours: Colours): void {
-    this.lay_(context, colours);
+  private paint_(context: CanvasRenderingContext2D, colors: Colors): void {
+    this.lay_(context, colors);
   }
 
-  /** Measures (without colours) or paints; returns the height, px. */
-  private lay_(context: CanvasRenderingContext2D, colours: Colours | null): number {
+  /** Measures (without colors) or paints; returns the height, px. */
+  private lay_(context: CanvasRenderingContext2D, colors: Colors | null): number {
     let y = 0;
     context.textAlign = "left";
     context.textBaseline = "alphabetic";
@@ -149,24 +149,24 @@ export class Notices {
       const text = card.text === "" ? [] : wrapText(context, card.text, width - 2 * edge - 20);
       const hint = card.hint === "" ? [] : wrapText(context, card.hint, width - 2 * edge - 20);
       const height = 2 * edge - 4 + 50 * title.length + 44 * (text.length + hint.length) + (hint.length > 0 ? 8 : 0);
-      if (colours !== null) {
-        const accent = [colours.calm, colours.warn, colours.error][card.level] ?? colours.calm;
-        roundedBox(context, { x: 0, y, width, height }, 32, colours.line);
-        roundedBox(context, { x: 3, y: y + 3, width: width - 6, height: height - 6 }, 30, colours.paper);
+      if (colors !== null) {
+        const accent = [colors.calm, colors.warn, colors.error][card.level] ?? colors.calm;
+        roundedBox(context, { x: 0, y, width, height }, 32, colors.line);
+        roundedBox(context, { x: 3, y: y + 3, width: width - 6, height: height - 6 }, 30, colors.paper);
         roundedBox(context, { x: 18, y: y + 26, width: 8, height: height - 52 }, 4, accent);
         let line = y + edge + 34;
-        const write = (lines: string[], style: string, colour: string, pitch: number) => {
+        const write = (lines: string[], style: string, color: string, pitch: number) => {
           context.font = style;
-          context.fillStyle = colour;
+          context.fillStyle = color;
           for (const each of lines) {
             context.fillText(each, edge + 12, line);
             line += pitch;
           }
         };
-        write(title, `600 40px ${font}`, colours.ink, 50);
-        write(text, `34px ${font}`, colours.ink, 44);
+        write(title, `600 40px ${font}`, colors.ink, 50);
+        write(text, `34px ${font}`, colors.ink, 44);
         line += 8;
-        write(hint, `34px ${font}`, colours.faint, 44);
+        write(hint, `34px ${font}`, colors.faint, 44);
       }
       y += height + 16;
     }

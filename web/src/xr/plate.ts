@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays and fingertips on a flat panel with buttons. Pure numbers, no three.js.
 
-/** A rectangle in the world: centre at its origin, x right, y up, z towards the reader. */
+/** A rectangle in the world: center at its origin, x right, y up, z towards the reader. */
 export interface Plate {
   /** Rigid transform into the world, column by column, m. */
   matrix: ArrayLike<number>;
   /** m */
   width: number;
   height: number;
-  /** Of its picture: pixels a metre. */
+  /** Of its picture: pixels a meter. */
   density: number;
 }
 

@@ -17,11 +17,11 @@ function makeRayGeometry(): CylinderGeometry {
   geometry.translate(0, 0.5, 0);
   geometry.rotateX(-Math.PI / 2);
   const position = geometry.getAttribute("position");
-  const colours = new Float32Array(4 * position.count);
+  const colors = new Float32Array(4 * position.count);
   for (let index = 0; index < position.count; index++) {
-    colours.set([1, 1, 1, position.getZ(index) < -0.5 ? 0.2 : 1], 4 * index);
+    colors.set([1, 1, 1, position.getZ(index) < -0.5 ? 0.2 : 1], 4 * index);
   }
-  geometry.setAttribute("color", new BufferAttribute(colours, 4));
+  geometry.setAttribute("color", new BufferAttribute(colors, 4));
   return geometry;
 }
 

@@ -4,12 +4,12 @@
 
 import { Vector3, type Matrix4, type Object3D } from "three";
 import type { Page } from "../app/page.ts";
-import { Board, fitText, font, roundedBox, type Colours } from "./board.ts";
+import { Board, fitText, font, roundedBox, type Colors } from "./board.ts";
 import { middleKnuckle } from "./hand_joints.ts";
 import type { Input } from "./input.ts";
 import { headHeight, layoutPanel, panelWidth, type Layout, type PanelButton } from "./panel_layout.ts";
 
-/** px a metre: the panel is 25 cm wide. */
+/** px a meter: the panel is 25 cm wide. */
 const density = panelWidth / 0.25;
 const easeSeconds = 0.05;
 const readEverySeconds = 0.25;
@@ -60,7 +60,7 @@ export class WristPanel {
     this.page_ = page;
     this.host_ = host;
     this.layout_ = this.arrange();
-    this.board.paint = (context, colours) => this.paint_(context, colours);
+    this.board.paint = (context, colors) => this.paint_(context, colors);
     this.board.press = (button) => this.press_(this.layout_.buttons[button]);
     rig.add(this.board.mesh);
   }
@@ -176,24 +176,24 @@ export class WristPanel {
     return button.onBody && this.meant_() < 0;
   }
 
-  private paint_(context: CanvasRenderingContext2D, colours: Colours): void {
+  private paint_(context: CanvasRenderingContext2D, colors: Colors): void {
     const { height, buttons, speed } = this.layout_;
-    roundedBox(context, { x: 0, y: 0, width: panelWidth, height }, 44, colours.line);
-    roundedBox(context, { x: 3, y: 3, width: panelWidth - 6, height: height - 6 }, 42, colours.paper);
-    this.paintHead_(context, colours);
-    buttons.forEach((button, index) => this.paintButton_(context, colours, button, index));
-    context.fillStyle = colours.ink;
+    roundedBox(context, { x: 0, y: 0, width: panelWidth, height }, 44, colors.line);
+    roundedBox(context, { x: 3, y: 3, width: panelWidth - 6, height: height - 6 }, 42, colors.paper);
+    this.paintHead_(context, colors);
+    buttons.forEach((button, index) => this.paintButton_(context, colors, button, index));
+    context.fillStyle = colors.ink;
     context.font = `600 42px ${font}`;
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.fillText(`${Number(this.page_.model.speed.toPrecision(2))}×`, speed.x + speed.width / 2, speed.y + speed.height / 2);
   }
 
-  private paintHead_(context: CanvasRenderingContext2D, colours: Colours): void {
+  private paintHead_(context: CanvasRenderingContext2D, colors: Colors): void {
     const { model, gestures } = this.page_;
     context.textBaseline = "middle";
     context.textAlign = "left";
-    context.fillStyle = colours.ink;
+    context.fillStyle = colors.ink;
     context.font = `600 42px ${font}`;
     const middle = headHeight / 2 + 2;
     context.fillText(fitText(context, model.settings.title, 360), 36, middle);
@@ -205,17 +205,17 @@ export class WristPanel {
       : `${body} · ${this.newton_ < 0 ? "…" : (this.newton_ / 10).toFixed(this.newton_ < 100 ? 1 : 0)} N`;
     context.textAlign = "right";
     context.font = `36px ${font}`;
-    context.fillStyle = entry === undefined ? colours.faint : colours.calm;
+    context.fillStyle = entry === undefined ? colors.faint : colors.calm;
     context.fillText(fitText(context, text, 540), panelWidth - 36, middle);
   }
 
-  private paintButton_(context: CanvasRenderingContext2D, colours: Colours, button: PanelButton, index: number): void {
+  private paintButton_(context: CanvasRenderingContext2D, colors: Colors, button: PanelButton, index: number): void {
     const flashed = index === this.board.flashed;
     const on = flashed || (button.name === "go" && this.armed_);
     const dim = this.dim_(button);
-    const fill = on ? colours.calm : index === this.board.hovered && !dim ? colours.hover : colours.raised;
+    const fill = on ? colors.calm : index === this.board.hovered && !dim ? colors.hover : colors.raised;
     roundedBox(context, button, 26, fill);
-    const ink = on ? colours.onCalm : dim ? colours.faint : colours.ink;
+    const ink = on ? colors.onCalm : dim ? colors.faint : colors.ink;
     const x = button.x + button.width / 2;
     const y = button.y + button.height / 2;
     if (button.sign) {
@@ -232,8 +232,8 @@ export class WristPanel {
     context.fillText(fitText(context, button.label, button.width - 28 - badgeRoom), x - badgeRoom / 2, y + 2);
     if (button.badge !== "") {
       const side = 54;
-      roundedBox(context, { x: button.x + button.width - side - 22, y: y - side / 2, width: side, height: side }, side / 2, on ? colours.onCalm : colours.paper);
-      context.fillStyle = on ? colours.calm : colours.faint;
+      roundedBox(context, { x: button.x + button.width - side - 22, y: y - side / 2, width: side, height: side }, side / 2, on ? colors.onCalm : colors.paper);
+      context.fillStyle = on ? colors.calm : colors.faint;
       context.font = `600 34px ${font}`;
       context.fillText(button.badge, button.x + button.width - side / 2 - 22, y + 2);
     }

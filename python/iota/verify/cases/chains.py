@@ -140,7 +140,7 @@ def divergence(run: Run) -> None:
     """Divergence of chaotic runs (Fig. 4.17).
 
     The falling chain without damping. Two solvers that agree to 1e-14 in the first steps part at the rate at which the
-    chain itself takes neighbouring states apart: that is no error of either. Asked is that they agree at first, that they
+    chain itself takes neighboring states apart: that is no error of either. Asked is that they agree at first, that they
     do part (a comparison that never parted would compare nothing), and that the parted run still keeps its energy.
     """
     steps, h = run.size(2500, 900), 1 / 30

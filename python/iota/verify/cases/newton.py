@@ -83,15 +83,15 @@ class ThesisChain:
 
     def __init__(self, points: Array, link_mass: float) -> None:
         self.mass = link_mass
-        self.centre = (points[1:] + points[:-1]) / 2
+        self.center = (points[1:] + points[:-1]) / 2
         self.arm = (points[1:] - points[:-1]) / 2  # to the lower end; the upper one is its opposite
-        self.velocity = np.zeros_like(self.centre)
-        self.spin = np.zeros_like(self.centre)
+        self.velocity = np.zeros_like(self.center)
+        self.spin = np.zeros_like(self.center)
         self.nail = points[0].copy()
-        self.force = np.zeros_like(self.centre)  # of hinge i on link i at its upper end
+        self.force = np.zeros_like(self.center)  # of hinge i on link i at its upper end
 
     def moved(self, force: Array, h: float) -> tuple[Array, Array, Array, Array]:
-        """Velocity, spin, centre and arm of each link after a step under hinge forces (..., n, 3)."""
+        """Velocity, spin, center and arm of each link after a step under hinge forces (..., n, 3)."""
         pull = force.copy()
         pull[..., :-1, :] -= force[..., 1:, :]
         velocity = self.velocity + h * (pull / self.mass - np.array([0, GRAVITY, 0]))
@@ -103,14 +103,14 @@ class ThesisChain:
         axis = np.divide(h * spin, angle, out=np.zeros_like(spin), where=angle > 0)
         turned = self.arm * np.cos(angle) + np.cross(axis, self.arm) * np.sin(angle)
         turned += axis * np.sum(axis * self.arm, axis=-1, keepdims=True) * (1 - np.cos(angle))
-        return velocity, spin, self.centre + h * velocity, turned
+        return velocity, spin, self.center + h * velocity, turned
 
     def mismatch(self, force: Array, h: float) -> Array:
         """Upper end of each link minus the lower end of the one above, (..., 3 n), m."""
-        _, _, centre, arm = self.moved(force, h)
-        apart = centre - arm
+        _, _, center, arm = self.moved(force, h)
+        apart = center - arm
         apart[..., 0, :] -= self.nail
-        apart[..., 1:, :] -= (centre + arm)[..., :-1, :]
+        apart[..., 1:, :] -= (center + arm)[..., :-1, :]
         return apart.reshape(*apart.shape[:-2], -1)
 
     def step(self, h: float) -> bool:
@@ -141,7 +141,7 @@ class ThesisChain:
                 break
             force, residual = force + length * direction, trial
         self.force = force.reshape(-1, 3)
-        self.velocity, self.spin, self.centre, self.arm = self.moved(self.force, h)
+        self.velocity, self.spin, self.center, self.arm = self.moved(self.force, h)
         return solved
 
 

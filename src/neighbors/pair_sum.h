@@ -4,12 +4,12 @@
 #include "base/parallel.h"
 #include "laws/pair_law.h"
 #include "laws/particle_arrays.h"
-#include "neighbours/pair_list.h"
+#include "neighbors/pair_list.h"
 
 #include <array>
 #include <vector>
 
-namespace iota::neighbours {
+namespace iota::neighbors {
 
 /// A law among all pairs nearer than a cut-off. The list of pairs reaches a skin further and is made anew only when some
 /// particle has moved half of that; pairs beyond the cut-off are passed over, rows are sorted, and many particles are
@@ -56,7 +56,7 @@ class PairSum {
   /// need no more than the distances of most laws.
   template <bool WithPartners, class Take>
   void gather(Part&, const Task&, std::size_t first, std::size_t last, Take take) const;
-  static void prepare(Part&, const Task&, std::size_t count);
+  static laws::PairBatch prepare(Part&, const Task&, std::size_t count);
   static void add_block(Part&, const Task&, std::size_t count, double* fx, double* fy, double* fz);
   static void add_energies(Part&, const Task&, std::size_t count);
 
@@ -67,4 +67,4 @@ class PairSum {
   std::array<Part, 4> parts_;
 };
 
-}  // namespace iota::neighbours
+}  // namespace iota::neighbors

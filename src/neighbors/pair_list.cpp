@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neighbours/pair_list.h"
+#include "neighbors/pair_list.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
 
-namespace iota::neighbours {
+namespace iota::neighbors {
 
 namespace {
 
 constexpr std::uint64_t axis_bits = 21, axis_cells = 1ull << axis_bits;
 constexpr std::uint64_t nowhere = std::numeric_limits<std::uint64_t>::max();
 
-/// Cells of one row along x are neighbours in the order of their numbers. The outermost cells stay empty, so that a
-/// neighbour's number is that of a cell.
+/// Cells of one row along x are neighbors in the order of their numbers. The outermost cells stay empty, so that a
+/// neighbor's number is that of a cell.
 std::uint64_t cell_number(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   return (z << axis_bits | y) << axis_bits | x;
 }
@@ -104,4 +104,4 @@ void PairList::build(const laws::ParticleArrays& p, double radius, const std::ve
   sort_by(by_second_, [](const Pair& q) { return q.i; }, [&](std::size_t at, const Pair& q) { partners_[at] = q.j; });
 }
 
-}  // namespace iota::neighbours
+}  // namespace iota::neighbors

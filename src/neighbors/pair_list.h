@@ -7,7 +7,7 @@
 #include <vector>
 
 /// Who is near whom among many particles.
-namespace iota::neighbours {
+namespace iota::neighbors {
 
 /// All pairs nearer than a radius, each once, as rows: row i holds the partners j > i in rising order. Found by sorting
 /// particles into cells; the particles may be anywhere, memory is linear in their number. What is not finite has no pairs.
@@ -39,4 +39,4 @@ class PairList {
   std::vector<std::size_t> count_;
 };
 
-}  // namespace iota::neighbours
+}  // namespace iota::neighbors

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neighbours/pair_sum.h"
+#include "neighbors/pair_sum.h"
 
 #include <iota/vec3.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-namespace iota::neighbours {
+namespace iota::neighbors {
 namespace {
 
 const Parallel one(1), two(2);
@@ -44,7 +44,7 @@ void expect_brute_force(const laws::ParticleArrays& p, double radius, const std:
   EXPECT_EQ(list.pair_count(), count);
 }
 
-TEST(PairList, FindsWhatAllAgainstAllFinds) {
+TEST(PairList, finds_what_all_against_all_finds) {
   for (const double radius : {0.01, 0.2, 0.7, 5.0}) expect_brute_force(cloud(400, 1, 2), radius, {});
   expect_brute_force(cloud(1, 1, 2), 1, {});
   expect_brute_force(cloud(0, 1, 2), 1, {});
@@ -53,7 +53,7 @@ TEST(PairList, FindsWhatAllAgainstAllFinds) {
   expect_brute_force(cloud(400, 1, 3), 0.5, family);
 }
 
-TEST(PairList, TakesAnyPlacesOnALatticeOnALineAndFarAway) {
+TEST(PairList, takes_any_places_on_a_lattice_on_a_line_and_far_away) {
   laws::ParticleArrays p = cloud(343, 1, 4);
   for (std::size_t i = 0; i < 343; ++i)
     p.x[i] = 0.5 * static_cast<double>(i % 7), p.y[i] = 0.5 * static_cast<double>(i / 7 % 7),
@@ -68,7 +68,7 @@ TEST(PairList, TakesAnyPlacesOnALatticeOnALineAndFarAway) {
   expect_brute_force(p, 0.6, {});
 }
 
-TEST(PairSum, IsTheSumOverAllPairs) {
+TEST(PairSum, is_the_sum_over_all_pairs) {
   const laws::PairLaw listed(laws::find_pair_law("lennard_jones"));
   const laws::PairLaw written("energy = 4*e*((s/r)^12 - (s/r)^6); force = -c*v; drag = 0.1*m_p*m_q", {"e", "s", "c"});
   const double parameters[laws::max_parameters] = {1.2, 0.05, 0.3};
@@ -101,7 +101,7 @@ TEST(PairSum, IsTheSumOverAllPairs) {
   }
 }
 
-TEST(PairSum, HasAnEnergyWithTheSameBitsToo) {
+TEST(PairSum, has_an_energy_with_the_same_bits_too) {
   const laws::PairLaw law(laws::find_pair_law("lennard_jones"));
   const double parameters[laws::max_parameters] = {1, 0.1};
   laws::ParticleArrays p = cloud(6000, 1.4, 6);
@@ -115,7 +115,7 @@ TEST(PairSum, HasAnEnergyWithTheSameBitsToo) {
   EXPECT_TRUE(std::isfinite(kept.energy(p, {}, law, parameters, 0.25, 0, one))) << "what is infinite is left out";
 }
 
-TEST(PairSum, HasTheSameBitsWheneverItsListWasMadeAndByHowManyThreads) {
+TEST(PairSum, has_the_same_bits_whenever_its_list_was_made_and_by_how_many_threads) {
   const laws::PairLaw law(laws::find_pair_law("soft_repulsion"));
   const double parameters[laws::max_parameters] = {100, 0.3};
   laws::ParticleArrays p = cloud(6000, 1.4, 6);
@@ -136,7 +136,7 @@ TEST(PairSum, HasTheSameBitsWheneverItsListWasMadeAndByHowManyThreads) {
   EXPECT_GT(kept.build_count(), 2u);
 }
 
-TEST(PairSum, PassesOverPairsWithoutAFiniteForceAndCountsThem) {
+TEST(PairSum, passes_over_pairs_without_a_finite_force_and_counts_them) {
   const laws::PairLaw law(laws::find_pair_law("lennard_jones"));
   const double parameters[laws::max_parameters] = {1, 0.1};
   laws::ParticleArrays p = cloud(50, 0.5, 7);
@@ -150,4 +150,4 @@ TEST(PairSum, PassesOverPairsWithoutAFiniteForceAndCountsThem) {
 }
 
 }  // namespace
-}  // namespace iota::neighbours
+}  // namespace iota::neighbors

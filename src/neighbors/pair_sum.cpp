@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "neighbours/pair_sum.h"
+#include "neighbors/pair_sum.h"
 
 #include "laws/force_limit.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace iota::neighbours {
+namespace iota::neighbors {
 
 namespace {
 
@@ -134,27 +134,27 @@ void PairSum::gather(Part& b, const Task& task, std::size_t first, std::size_t l
   take(count);
 }
 
-/// What a law may ask for, but for the rate.
-void PairSum::prepare(Part& b, const Task& task, std::size_t count) {
+/// What a law may ask for, but for the numbers of the rate, and no place for results.
+laws::PairBatch PairSum::prepare(Part& b, const Task& task, std::size_t count) {
   const laws::ParticleArrays& p = task.particles;
   take_roots(count, b.r.data());
   if (task.law.depends_on_mass())
     for (std::size_t k = 0; k < count; ++k) b.m_p[k] = p.m[b.i[k]], b.m_q[k] = p.m[b.j[k]];
+  return {.count = count,
+          .r = b.r.data(),
+          .v = b.v.data(),
+          .m_p = b.m_p.data(),
+          .m_q = b.m_q.data(),
+          .t = task.t,
+          .parameters = task.parameters.data(),
+          .same_parameters = true};
 }
 
 void PairSum::add_energies(Part& b, const Task& task, std::size_t count) {
   constexpr std::size_t lanes = std::tuple_size_v<decltype(b.energy)>;
-  prepare(b, task, count);
-  double* const energy = b.force.data();
-  task.law.energies({.count = count,
-                     .r = b.r.data(),
-                     .v = b.v.data(),
-                     .m_p = b.m_p.data(),
-                     .m_q = b.m_q.data(),
-                     .t = task.t,
-                     .parameters = task.parameters.data(),
-                     .same_parameters = true,
-                     .energy = energy});
+  laws::PairBatch batch = prepare(b, task, count);
+  double* const energy = batch.energy = b.force.data();
+  task.law.energies(batch);
   std::fill(energy + count, energy + (count + lanes - 1) / lanes * lanes, 0.0);
   const auto add = [&](auto value) {
     auto sum = b.energy;
@@ -170,22 +170,14 @@ void PairSum::add_energies(Part& b, const Task& task, std::size_t count) {
 
 void PairSum::add_block(Part& b, const Task& task, std::size_t count, double* fx, double* fy, double* fz) {
   const laws::ParticleArrays& p = task.particles;
-  prepare(b, task, count);
+  laws::PairBatch batch = prepare(b, task, count);
   if (task.law.has_damping())
     for (std::size_t k = 0; k < count; ++k) {
       const std::uint32_t i = b.i[k], j = b.j[k];
       b.v[k] = (b.dx[k] * (p.vx[j] - p.vx[i]) + b.dy[k] * (p.vy[j] - p.vy[i]) + b.dz[k] * (p.vz[j] - p.vz[i])) / b.r[k];
     }
-  task.law.evaluate({.count = count,
-                     .r = b.r.data(),
-                     .v = b.v.data(),
-                     .m_p = b.m_p.data(),
-                     .m_q = b.m_q.data(),
-                     .t = task.t,
-                     .parameters = task.parameters.data(),
-                     .same_parameters = true,
-                     .force = b.force.data(),
-                     .drag = b.drag.data()});
+  batch.force = b.force.data(), batch.drag = b.drag.data();
+  task.law.evaluate(batch);
   divide(count, b.force.data(), b.r.data());
 
   const bool has_drag = task.law.has_drag();
@@ -210,4 +202,4 @@ void PairSum::add_block(Part& b, const Task& task, std::size_t count, double* fx
   }
 }
 
-}  // namespace iota::neighbours
+}  // namespace iota::neighbors
