@@ -15,7 +15,7 @@
 
 namespace iota {
 
-/// What a constraint keeps. Nails and hinges are no entries here: a nail is a particle's own, a hinge is a shared
+/// Kinds of constraints. Nails and hinges are not in the list: a nail belongs to a particle, a hinge is a shared
 /// particle (`combine`).
 enum class ConstraintKind : std::uint8_t {
   ball,         ///< a point of a stays at a point of b
@@ -44,7 +44,7 @@ inline constexpr std::array joint_coordinates{JointCoordinate::angle, JointCoord
 
 bool has_coordinate(ConstraintKind, JointCoordinate);
 
-/// What acts on a coordinate. Angles: rad, rad/s, N m, N m/rad, N m s/rad; slides: m, m/s, N, N/m, N s/m.
+/// Limits, motor, friction and spring of a coordinate. Angles: rad, rad/s, N m, N m/rad, N m s/rad; slides: m, m/s, N, N/m, N s/m.
 struct CoordinateOptions {
   double lower = -std::numeric_limits<double>::infinity();  ///< stops, inelastic
   double upper = std::numeric_limits<double>::infinity();
@@ -140,7 +140,7 @@ struct SurfacePairSpec {
   BreakLimits breaks;
 };
 
-/// What can be read of a constraint.
+/// The state of a constraint.
 struct ConstraintState {
   ConstraintKind kind = ConstraintKind::ball;
   BodyId a, b;  ///< b null: the world

@@ -39,11 +39,11 @@ struct EmitterOptions {
   std::uint64_t seed = 1;           ///< equal seeds, equal particles
 };
 
-/// What a particle may have beside place, velocity and mass.
+/// Optional attributes of a particle.
 struct ParticleAttributes {
   double age = 0;                                             ///< s
   double lifetime = std::numeric_limits<double>::infinity();  ///< s
-  double radius = 0;                                          ///< m; 0: nobody said
+  double radius = 0;                                          ///< m; 0: not given
   Color color{1, 1, 1, 1};
 };
 

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-/// Laws of force and what uses them. `docs/forces.md` says what each way of writing a law costs and promises.
+/// Laws of force and their uses. `docs/forces.md` says what each way of writing a law costs.
 namespace iota {
 
 using LawId = Id<struct LawTag>;
@@ -64,7 +64,7 @@ struct DragLaw {
   double damping = 1;  ///< N s/m
 };
 
-/// What a scripted bond is shown. Forces that are held over the step are taken where they act: in the energy-keeping mode at
+/// The arguments of a scripted bond's function. Forces that are held over the step are taken where they act: in the energy-keeping mode at
 /// the middle of the step (positions half a step ahead, as velocities go: the leapfrog scheme), in the robust mode at its start.
 struct BondState {
   BondId bond;

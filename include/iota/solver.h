@@ -19,7 +19,7 @@ class NonlinearProblem {
  public:
   virtual ~NonlinearProblem() = default;
   virtual std::size_t size() const = 0;
-  /// Writes f(x), n numbers. What is not finite makes a solver try a shorter step; what it throws reaches the caller.
+  /// Writes f(x), n numbers. A value that is not finite makes a solver try a shorter step; exceptions reach the caller.
   virtual void evaluate(std::span<const double> x, std::span<double> f) = 0;
   /// Writes df_i/dx_j at jacobian[i n + j] and returns true, or returns false: differences are taken then.
   virtual bool jacobian(std::span<const double> x, std::span<double> jacobian);
@@ -36,7 +36,7 @@ struct SolverOptions {
 struct [[nodiscard]] SolverReport {
   bool converged = false;  ///< largest |f_i| <= tolerance, measured afterwards and not taken from the solver
   int iterations = 0;      ///< as the solver counts them
-  int evaluations = 0;     ///< of f, those for differences included
+  int evaluations = 0;     ///< of f, including those for finite differences
   double residual = 0;     ///< largest |f_i| at the answer; infinite where one is not finite
   std::string reason;      ///< a plain sentence on why it ended
 };

@@ -37,7 +37,7 @@ class Writer {
   std::vector<std::byte>& bytes_;
 };
 
-/// Reads what Writer wrote. After the first value that does not fit, `ok()` is false and everything reads as zero.
+/// Reads the bytes of a Writer. After the first value that does not fit, `ok()` is false and every value reads as zero.
 class Reader {
  public:
   explicit Reader(const std::vector<std::byte>& bytes) : bytes_(bytes) {}

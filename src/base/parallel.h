@@ -10,8 +10,8 @@ namespace iota {
 /// Cores that this process may use, at least 1.
 int available_threads();
 
-/// Work shared among threads (oneTBB). What runs at once must touch different data; then results do not depend on the
-/// number of threads or on who took what. With one thread everything runs where it is called, in order.
+/// Work shared among threads (oneTBB). Calls that run at the same time must touch different data; then results do not
+/// depend on the number of threads or on which thread did what. With one thread all calls run in order on the caller's.
 class Parallel {
  public:
   /// threads: how many, the calling one included; 0: all cores.
@@ -23,7 +23,7 @@ class Parallel {
   int threads() const { return threads_; }
 
   /// Calls work(i) once for every i in [0, count), at most `grain` of them in one go. `work` must not throw.
-  /// Serial where there is no second thread or no second grain. Allocates nothing when warm.
+  /// Runs serially with one thread or one grain. Allocates nothing when warm.
   template <class Work>
   void for_each(std::size_t count, std::size_t grain, Work&& work) const {
     if (threads_ == 1 || count <= grain) {

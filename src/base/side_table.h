@@ -9,8 +9,8 @@
 
 namespace iota {
 
-/// Values that only some items of a slot table have, by the items' slots: four bytes for each slot up to the highest that
-/// has one, and nothing beyond. Reading is safe from many threads, as is writing to values that are there.
+/// Values that only some items of a slot table have, by the items' slots. Costs four bytes for each slot up to the highest
+/// one with a value. Many threads may read, and write to existing values, at the same time.
 template <class T>
 class SideTable {
   static_assert(std::is_trivially_copyable_v<T>, "tables are saved as bytes");
@@ -21,18 +21,18 @@ class SideTable {
   std::uint32_t size() const { return static_cast<std::uint32_t>(values_.size()); }
   bool has(std::uint32_t slot) const { return slot < place_of_.size() && place_of_[slot] != absent; }
 
-  /// The value of an item, a default one where it has none.
+  /// The value of an item, or a default value if it has none.
   const T& operator[](std::uint32_t slot) const {
     static const T standard{};
     return has(slot) ? values_[place_of_[slot]] : standard;
   }
   T* find(std::uint32_t slot) { return has(slot) ? &values_[place_of_[slot]] : nullptr; }
   const T* find(std::uint32_t slot) const { return has(slot) ? &values_[place_of_[slot]] : nullptr; }
-  /// Of an item that has one.
+  /// The item must have a value.
   T& at(std::uint32_t slot) { return values_[place_of_[slot]]; }
   const T& at(std::uint32_t slot) const { return values_[place_of_[slot]]; }
 
-  /// The value of an item, which from now on has one.
+  /// The value of an item; makes a default one if it has none.
   T& make(std::uint32_t slot) {
     if (!has(slot)) {
       if (place_of_.size() <= slot) place_of_.resize(slot + std::size_t{1}, absent);
@@ -41,13 +41,13 @@ class SideTable {
     }
     return at(slot);
   }
-  /// Item `to` gets what `from` has, if it has any.
+  /// Copies the value of `from`, if it has one, to `to`.
   void copy(std::uint32_t from, std::uint32_t to) {
     if (!has(from)) return;
     const T value = at(from);
     make(to) = value;
   }
-  /// Does nothing to an item without one. The last value takes the place.
+  /// Does nothing if the item has no value. The last value moves into the gap.
   void erase(std::uint32_t slot) {
     if (!has(slot)) return;
     const std::uint32_t place = place_of_[slot];
@@ -64,7 +64,7 @@ class SideTable {
     for (std::uint32_t place = 0; place < size(); ++place) visit(owners_[place], values_[place]);
   }
 
-  /// `slots`: of the table of items, whatever is claimed beyond is refused.
+  /// `slots`: number of slots of the item table; values for higher slots are refused.
   template <class Archive>
   void archive(Archive& ar, std::uint32_t slots) {
     ar.vector(values_), ar.vector(owners_);

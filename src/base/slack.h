@@ -6,14 +6,14 @@
 
 namespace iota {
 
-/// Leaves room for a few more: what grows by one now and then is not copied each time. Room that is never used is never
-/// touched, so it takes no memory.
+/// Reserves room for a few more items, so that a list which grows one by one is not copied each time. Unused room is never
+/// touched, so the operating system gives it no memory.
 template <class T>
 void reserve_with_slack(std::vector<T>& list, std::size_t size) {
   if (size > list.capacity()) list.reserve(size + size / 32 + 16);
 }
-/// For what most steps do not need: the first that does should not wait for memory, unless it is megabytes, which it waits
-/// for anyway when it touches them.
+/// Reserves lists that most steps do not need, so that the first step which needs one does not wait for the allocator. Not
+/// for lists of megabytes: first touch dominates their cost anyway.
 template <class T>
 void reserve_for_rare_use(std::vector<T>& list, std::size_t size) {
   if (size <= 4096) reserve_with_slack(list, size);

@@ -59,7 +59,7 @@ class SlotTable {
       if (is_alive(slot)) visit(slot, items_[slot]);
   }
 
-  /// Of all that are alive, in the order of slots.
+  /// Ids of all live objects, in the order of slots.
   std::vector<IdType> ids() const {
     std::vector<IdType> list;
     list.reserve(size());

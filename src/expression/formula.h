@@ -15,7 +15,7 @@
 /// compiled to programs (program.h). Standard library only.
 namespace iota::expression {
 
-/// A text that is no expression. `what()` says what is wrong and shows the line with a caret under the place.
+/// The text is not a valid expression. `what()` says why and shows the line with a caret under the place.
 struct ExpressionError : std::invalid_argument {
   ExpressionError(const std::string& problem, std::string_view text, std::size_t position);
   std::size_t position;  ///< in bytes from the start of the text
@@ -87,7 +87,7 @@ class Formula {
   std::map<std::tuple<Op, Node, Node, Node, std::uint64_t>, Node> known_;
 };
 
-/// One operation on numbers; what every other way of evaluating must agree with, bit by bit.
+/// One operation on numbers: the reference with which every other way of evaluating agrees bit by bit.
 double apply(Op op, double a, double b, double c);
 
 /// `name = expression` of a text, in order. A later expression may use the names of earlier ones.
@@ -103,7 +103,7 @@ struct Definition {
 /// than 100 levels of nesting or 20 000 nodes.
 std::vector<Definition> parse(std::string_view text, Formula& formula);
 
-/// The word of `known` nearest to `word`, empty where none is near.
+/// The word of `known` nearest to `word`; empty if none is near.
 std::string nearest(std::string_view word, std::span<const std::string> known);
 
 }  // namespace iota::expression

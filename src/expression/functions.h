@@ -7,7 +7,7 @@
 #include <limits>
 
 // One build for every x86-64 processor, with the loops compiled for wider registers too and chosen at load time. Widths do
-// not change results: every lane does the same operations. (Sanitizers start too late for the choosing.)
+// not change results: every lane does the same operations. (Sanitizers start too late for the choice at load time.)
 #if defined(__x86_64__) && defined(__linux__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 #define IOTA_WIDER __attribute__((target_clones("avx2", "default")))
@@ -16,7 +16,7 @@
 #endif
 
 /// Elementary functions made of +, -, *, / and bit operations only: the same bits from every compiler and at every
-/// optimization level (those of libm differ), and branch-free, so that loops over them are vectorized.
+/// optimization level (the functions of libm differ), and without branches, so that loops over them are vectorized.
 /// Relative errors stay below 4e-16, unless said otherwise.
 namespace iota::expression {
 
@@ -132,7 +132,7 @@ IOTA_ALWAYS_INLINE double log(double x) {
   return x > 0 ? positive : (x == 0 ? -infinity : std::numeric_limits<double>::quiet_NaN());
 }
 
-/// Beyond 1e9 rad the result is NaN: nothing but round-off would be left of it.
+/// Beyond 1e9 rad the result is NaN: it would be round-off only.
 IOTA_ALWAYS_INLINE double sin(double x) {
   const auto [s, c, quarter] = detail::reduce_angle(x);
   const double v = (quarter & 1) ? c : s;

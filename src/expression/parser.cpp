@@ -22,7 +22,7 @@ struct Function {
   Op op;
 };
 
-/// The one list of functions; pow, step and others that are no operation of their own are spelled out in `call`.
+/// The one list of functions. `call` expands pow, step and others that are made of several operations.
 constexpr std::array functions{
     Function{"sqrt", 1, Op::square_root},
     Function{"exp", 1, Op::exponential},

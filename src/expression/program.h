@@ -10,13 +10,13 @@
 namespace iota::expression {
 
 /// Outputs of a formula as a short list of operations over blocks of lanes: each operation is one loop that the compiler
-/// vectorizes, so that the cost of interpreting is shared by a block. What does not vary from lane to lane is computed
+/// vectorizes, so that a block shares the cost of interpreting. Values that do not vary from lane to lane are computed
 /// once. Plain data after `compile`; may be run from several threads, each with a workspace of its own.
 class Program {
  public:
   static constexpr std::size_t block = 64;  ///< lanes: registers of a typical law stay in the first-level cache
 
-  /// Scratch that grows to what the largest program needs and is then reused.
+  /// Scratch memory; grows to the needs of the largest program and is reused.
   using Workspace = std::vector<double>;
 
   Program() = default;

@@ -13,7 +13,7 @@
 namespace iota::laws {
 
 /// A force on each of many particles by itself: one of the list, or an expression of x, y, z, vx, vy, vz, m, t and its
-/// parameters that defines `energy` (J; the force is its negative gradient), or fx, fy, fz (N; those it leaves out are
+/// parameters. The expression defines `energy` (J; the force is its negative gradient), or fx, fy, fz (N; a missing one is
 /// zero), or both, which add up: "energy = 0.5*k*x^2 + m*9.81*y; fx = -c*vx".
 class FieldLaw {
  public:
@@ -26,7 +26,7 @@ class FieldLaw {
   /// Forces of particles [first, first + count) into out, which has that many rows (count, 3).
   void evaluate(const ParticleArrays&, std::size_t first, std::size_t count, double t, double h,
                 const double* parameters, double* out) const;
-  /// Energy of all particles, J; 0 for fields without one. Particles that have no finite one count for nothing.
+  /// Energy of all particles, J; 0 for fields without one. A particle whose energy is not finite adds nothing.
   double energy(const ParticleArrays&, double t, const double* parameters) const;
 
   static constexpr const char* variables[] = {"x", "y", "z", "vx", "vy", "vz", "m", "t"};

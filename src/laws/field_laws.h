@@ -27,7 +27,7 @@ inline Vec3 drag_towards(const Vec3& u, double drag, const FieldState& s) {
   return (drag * share) * (u - s.velocity);
 }
 
-/// What all fields have unless they say otherwise: no energy stands behind them.
+/// Defaults of a field: it has no energy.
 struct NoEnergy {
   static constexpr bool has_energy = false;
   static double energy(const FieldState&, const double*) { return 0; }  ///< J; the force is its negative gradient

@@ -7,7 +7,7 @@
 
 namespace iota::laws {
 
-/// N. Beyond it a force counts as not finite: what it does within a step has squares that are.
+/// N. A larger force counts as not finite: squares of what it does in a step would overflow.
 inline constexpr double largest_force = 1e30;
 
 inline bool is_force(double x, double y, double z) { return std::abs(x) + std::abs(y) + std::abs(z) < largest_force; }

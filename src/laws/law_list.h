@@ -16,7 +16,7 @@ template <class Laws>
 struct LawList {
   static constexpr std::uint32_t count = std::tuple_size_v<Laws>;
 
-  /// visit.operator()<Law>() of the law with that number; of none beyond the end.
+  /// Calls visit.operator()<Law>() with the law of that number; does nothing beyond the end of the list.
   template <class Visit>
   static void visit(std::uint32_t number, Visit visit) {
     [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -33,7 +33,7 @@ struct LawList {
     visit(number, [&]<class Law>() { list = Law::parameters; });
     return list;
   }
-  /// The number; `count` where there is none of that name.
+  /// Number of the law of that name; `count` for an unknown name.
   static std::uint32_t find(std::string_view name) {
     std::uint32_t number = 0;
     while (number < count && name != LawList::name(number)) ++number;

@@ -14,7 +14,7 @@ std::uint32_t mix(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32
   return h;
 }
 
-/// Towards the middle of one of a cube's twelve edges.
+/// A gradient towards the middle of one of a cube's twelve edges.
 Vec3 edge(std::uint32_t h) {
   const double a = (h & 1) ? 1 : -1, b = (h & 2) ? 1 : -1;
   switch ((h >> 2) % 3) {

@@ -37,12 +37,12 @@ class PairLaw {
   PairLaw(std::string_view text, std::vector<std::string> parameters);
 
   bool has_energy() const { return has_energy_; }
-  bool has_push() const { return has_push_; }        ///< forces at rest that no energy stands behind
+  bool has_push() const { return has_push_; }        ///< forces at rest that do not derive from an energy
   bool has_damping() const { return has_damping_; }  ///< forces of v
   bool has_drag() const { return has_drag_; }
   bool depends_on_time() const { return depends_on_time_; }
   bool depends_on_mass() const { return depends_on_mass_; }
-  /// Whether it may add energy to the world: a user's forces that no energy stands behind may do anything.
+  /// Whether it may add energy to the world: forces of a user's expression that do not derive from an energy may.
   bool may_do_work() const { return has_push_ || (number_ == pair_law_count && (has_damping_ || has_drag_)); }
 
   /// @name One pair, with derivatives, for the solver

@@ -33,7 +33,7 @@ struct PairState {
   double r = 0, v = 0, t = 0, m_p = 1, m_q = 1;
 };
 
-/// What all laws have unless they say otherwise: no energy, no dashpot, no drag.
+/// Defaults of a law: no energy, no dashpot, no drag.
 struct NoForce {
   static constexpr bool has_energy = true, has_dashpot = false, has_drag = false, needs_mass = false;
   static Elastic elastic(const PairState&, const double*) { return {}; }

@@ -8,14 +8,14 @@ namespace iota::model {
 void Model::touch(std::uint32_t articulate, Touch what) {
   ++articulates[articulate].version;
   articulates[articulate].disturbed = 1;
-  articulates[articulate].standing_gap = 0;  // what could not meet may do so now
+  articulates[articulate].standing_gap = 0;  // a conflict may be solvable now
   if (touch_of_.size() <= articulate) touch_of_.resize(articulates.slot_count(), untouched);
   if (touch_of_[articulate] == untouched) touched_.push_back(articulate);
   touch_of_[articulate] = std::max(touch_of_[articulate], what);
 }
 
 void Model::relink(std::uint32_t ring) {
-  constexpr std::size_t most = 64;  // beyond it nobody follows one by one
+  constexpr std::size_t most = 64;  // more changes than this: islands are built anew
   for_each_in_ring(ring, [&](std::uint32_t p) {
     const bool few = relinked_.size() < most;
     if (few) relinked_.push_back(particles[p].body);

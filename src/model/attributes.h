@@ -8,7 +8,7 @@
 
 namespace iota::model {
 
-/// What few particles have: a life, a look, an orientation of their own.
+/// Rare attributes of a particle: lifetime, look, orientation.
 struct Attributes {
   std::uint32_t particle = 0xffffffff, emitter = 0xffffffff;
   double age = 0, lifetime = std::numeric_limits<double>::infinity();  ///< s

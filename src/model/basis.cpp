@@ -113,8 +113,8 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
 }
 
 // Rods have less inertia than point masses at their ends: a negative pair. With less mass at an end than the rod had
-// (assigned, or shared with a twin), motions of negative energy would be left. Masses above twice what the pairs take, as
-// a rod has them, make the matrix diagonally dominant whatever else is hinged or tied there.
+// (assigned, or shared with a twin), some motions would have negative kinetic energy. If each mass is above twice the sum
+// of its pairs, as in a rod, the matrix is diagonally dominant whatever else is hinged or tied there.
 void Model::keep_inertia_positive(std::uint32_t body_slot) {
   std::vector<std::pair<std::uint32_t, double>> taken;  // by each pair from each of its ends
   for_each_inertia_of(body_slot, [&](std::uint32_t i) {
@@ -130,7 +130,8 @@ void Model::keep_inertia_positive(std::uint32_t body_slot) {
     for (; i < taken.size() && taken[i].first == particle; ++i) sum += taken[i].second;
     if (!(particles[particle].mass > 2.001 * sum)) remove_inertia_of(body_slot, particle);
   }
-  if (spins.has(body_slot) && !(axial_inertia(body_slot) > 0)) spins.erase(body_slot);  // it is no rod any more
+  if (spins.has(body_slot) && !(axial_inertia(body_slot) > 0))
+    spins.erase(body_slot);  // the body is not a rod any more
 }
 
 void Model::prefer_unknowns(std::uint32_t body_slot) {
@@ -144,7 +145,7 @@ void Model::prefer_unknowns(std::uint32_t body_slot) {
     outside = outside || particles[p].basis_index < 0;
     in_shape = in_shape && follows_basis(p);
   });
-  // Decided once for each number of needs, so that it does not depend on when somebody looks.
+  // Decided once for each number of needs, so that the result does not depend on when this is called.
   if (needs == body.basis_needs) return;
   body.basis_needs = needs;
   double longest = 0;
@@ -199,7 +200,7 @@ BodyId Model::part_at(std::uint32_t body, const Vec3& place) const {
 }
 
 bool Model::spans(std::uint32_t body_slot, const Vec3& place) const {
-  constexpr double off = 1e-6;  // of the extent: what is farther from the body's point, line or plane is not on it
+  constexpr double off = 1e-6;  // of the extent: a place farther from the body's point, line or plane is not on it
   const Body& body = bodies[body_slot];
   if (body.rank == 0) return false;
   const double longest = extent(body_slot);

@@ -372,7 +372,7 @@ void destroy_constraint(Model& model, std::uint32_t slot) {
   for (int place = 0; place < place_count; ++place) {
     if (!(c.owned >> place & 1)) continue;
     const Particle& p = model.particles[c.particles[place]];
-    // What has been hinged, bonded, constrained or given a mass since is not the constraint's alone any more.
+    // A marker that was hinged, bonded, constrained or given a mass since does not belong to the constraint alone.
     if (p.is_marker() && !model.is_needed(p) && model.references[c.particles[place]].first_constraint == none)
       destroy_particle(model, c.particles[place]);
   }

@@ -115,7 +115,7 @@ MassProperties properties(const Mesh& mesh) {
   }
   require_closed(mesh);
 
-  // Tetrahedra from the vertices' mean to each triangle; those that stick out count negative elsewhere.
+  // Tetrahedra from the vertices' mean to each triangle; a tetrahedron that faces inward has negative volume.
   double volume = 0;
   Vec3 first;
   Mat3 second;

@@ -159,7 +159,7 @@ std::vector<std::uint32_t> ring_neighbors(const Model& model, std::uint32_t part
   return bodies;
 }
 
-/// Destroys what refers to a particle that is about to go. Articulates are split at once: no cut may find one of another
+/// Destroys everything that refers to a particle before it is destroyed. Articulates are split at once: no cut may find one of another
 /// cut waiting.
 void destroy_uses(Model& model, std::uint32_t particle) {
   model.for_each_bond_of(particle, [&](std::uint32_t b) { model.remove_bond(b); });
@@ -186,7 +186,7 @@ std::vector<ParticleId> stray_markers(const Model& model, std::uint32_t body) {
   return strays;
 }
 
-/// Only once everything else is hinged again: articulates are split here as they are.
+/// Call it after everything else is hinged again: it splits articulates as they are.
 void destroy_strays(Model& model, std::uint32_t body, const std::vector<ParticleId>& strays,
                     std::vector<std::string>& notes) {
   for (const ParticleId id : strays)
@@ -238,7 +238,7 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
   if (body_p == body_q) {  // same body: the latter is removed
     if (ring_p != ring_q) require_no_shared_body(model, ring_p, ring_q, body_p);
     if (model.rings[ring_q].count > 1) require_can_meet(model, p, q);
-    // The body keeps its shape without q; what was hinged to q is then brought to p.
+    // The body keeps its shape without q; bodies that were hinged to q are moved to p.
     const bool q_was_hinged = model.rings[ring_q].count > 1;
     const Vec3 momentum = model.particles[p].mass * model.velocity(p) + model.particles[q].mass * model.velocity(q);
     const double mass = model.particles[p].mass + model.particles[q].mass;

@@ -82,7 +82,7 @@ std::uint32_t attach(Model& model, std::uint32_t slot, const Vec3& position) {
     const Vec3 r = model.position(p) - center;
     squares += 0.25 * Mat3::outer(r, r);
   }
-  // A share so small that what remains is positive however far away the place is: at most a ten thousandth of the mass,
+  // The share is small enough to leave positive second moments however far away the place is: at most a ten thousandth of the mass,
   // and a fiftieth of the second moment along the arm.
   const Vec3 arm = position - center;
   const double reach = dot(arm, solve_semidefinite(squares, arm, 1e-14));

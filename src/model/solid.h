@@ -29,7 +29,7 @@ std::uint32_t attach(Model&, std::uint32_t solid, const Vec3& position);
 Mat3 body_inertia(const Model&, std::uint32_t body);
 Vec3 body_velocity(const Model&, std::uint32_t body);          ///< of the center of mass, m/s
 Vec3 body_angular_momentum(const Model&, std::uint32_t body);  ///< about the center of mass, kg m^2/s
-/// rad/s; no part of it along what has no inertia: one point, or the line that all points are on.
+/// rad/s. Has no component about an axis without inertia: any axis of one point, or the line of collinear points.
 Vec3 body_angular_velocity(const Model&, std::uint32_t body);
 
 }  // namespace iota::model

@@ -15,7 +15,7 @@ bool contains(const std::vector<std::uint32_t>& sorted, std::uint32_t item) {
   return std::binary_search(sorted.begin(), sorted.end(), item);
 }
 
-/// Takes the items of a list whose particles all leave over to another list, and counts those that are torn.
+/// Moves the items whose particles all leave to another list, and counts the items that are torn apart.
 template <class Table, class Leaves>
 int hand_over(Table& items, std::uint32_t& from, std::uint32_t& to, std::uint32_t new_body, Leaves how_many_leave) {
   int torn = 0;
@@ -72,7 +72,7 @@ std::uint32_t split_off(Model& model, std::uint32_t body, std::vector<std::uint3
   return own;
 }
 
-/// What is left to do once the particles are where they belong.
+/// The last part of a split, after the particles were moved.
 void finish_split(Model& model, std::uint32_t body, std::uint32_t own, std::vector<std::string>& notes) {
   for (const std::uint32_t b : {body, own}) {
     model.rebuild_basis(b);
@@ -91,7 +91,7 @@ class Pieces {
     parent_.resize(particles.size());
     std::iota(parent_.begin(), parent_.end(), std::size_t{0});
   }
-  /// Nothing for what is of another body.
+  /// Returns nothing for a particle of another body.
   void join(std::uint32_t p, std::uint32_t q) {
     if (has(p) && has(q)) parent_[piece(p)] = piece(q);
   }
@@ -196,7 +196,7 @@ Edit break_cosmetic_bond(Model& model, std::uint32_t bond, RestructureReport& re
   const std::size_t stays = pieces.piece(p), leaves = pieces.piece(q);
   if (stays == leaves) return {};
 
-  // What hangs on neither end goes, piece by piece, with the nearer one.
+  // Pieces that hang on neither end go with the nearer one.
   struct Nearest {
     double to_stays = -1, to_leaves = -1;
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of what joins two particles: each item is linked at both its ends.
+// Adjacency lists: every bond, closing, cosmetic bond and constraint is linked at each of its particles.
 #include "model/model.h"
 
 #include <algorithm>

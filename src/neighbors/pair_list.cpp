@@ -37,7 +37,7 @@ void PairList::build(const laws::ParticleArrays& p, double radius, const std::ve
     for (int k = 0; k < 3; ++k) {
       const double at = ((*axes[k])[i] - low[k]) * inverse;
       finite = finite && std::isfinite(at);
-      // Those beyond two million cells share the last one: correct, if slow.
+      // Cells beyond the two millionth share one: correct, but slow.
       c[k] = 1 + (finite ? static_cast<std::uint64_t>(std::min(at, static_cast<double>(axis_cells - 4))) : 0);
     }
     placed_[i] = {finite ? cell_number(c[0], c[1], c[2]) : nowhere, static_cast<std::uint32_t>(i)};
@@ -62,7 +62,8 @@ void PairList::build(const laws::ParticleArrays& p, double radius, const std::ve
     if (found_.size() < count + (to - from)) found_.resize(2 * found_.size() + (to - from));
     const double x = x_[a], y = y_[a], z = z_[a];
     const std::uint32_t i = particle_[a], own = family_[a];
-    for (std::size_t b = from; b < to; ++b) {  // no branch: one candidate in six is near, which nobody can predict
+    for (std::size_t b = from; b < to;
+         ++b) {  // no branch: one candidate in six is near, and a branch predictor fails on that
       const double dx = x_[b] - x, dy = y_[b] - y, dz = z_[b] - z;
       const std::uint32_t j = particle_[b];
       found_[count] = {std::min(i, j), std::max(i, j)};

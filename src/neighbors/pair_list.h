@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <vector>
 
-/// Who is near whom among many particles.
+/// Pairs of particles that are near each other.
 namespace iota::neighbors {
 
 /// All pairs nearer than a radius, each once, as rows: row i holds the partners j > i in rising order. Found by sorting
-/// particles into cells; the particles may be anywhere, memory is linear in their number. What is not finite has no pairs.
+/// particles into cells; the particles may be anywhere, memory is linear in their number. A particle at a place that is not finite has no pairs.
 class PairList {
  public:
   /// `family`: pairs of equal numbers are left out (points of one rigid body), except where it is empty.

@@ -10,7 +10,7 @@ namespace iota::neighbors {
 
 namespace {
 
-// A tenth of the cut-off: a longer list costs at every step what a shorter one costs when it is made.
+// A tenth of the cut-off. A larger skin makes every step slower, a smaller one rebuilds the list more often.
 constexpr double skin = 0.1;
 constexpr std::size_t block = 512;  // pairs; a law's arrays of one block stay in the nearest cache
 constexpr std::size_t many = 4096;  // particles, from which on threads pay
@@ -114,7 +114,7 @@ void PairSum::gather(Part& b, const Task& task, std::size_t first, std::size_t l
     const double xi = x[i], yi = y[i], zi = z[i];
     for (std::size_t start = 0; start < size; start += block) {
       const std::size_t stop = std::min(size, start + block);
-      for (std::size_t k = start; k < stop; ++k) {  // no branch: what is too far is overwritten by the next
+      for (std::size_t k = start; k < stop; ++k) {  // no branch: the next pair overwrites one that is too far
         const std::uint32_t j = row[k];
         const double dx = x[j] - xi, dy = y[j] - yi, dz = z[j] - zi, r2 = dx * dx + dy * dy + dz * dz;
         if constexpr (WithPartners) {
@@ -134,7 +134,7 @@ void PairSum::gather(Part& b, const Task& task, std::size_t first, std::size_t l
   take(count);
 }
 
-/// What a law may ask for, but for the numbers of the rate, and no place for results.
+/// The inputs of a law, without the rates; the caller sets where results go.
 laws::PairBatch PairSum::prepare(Part& b, const Task& task, std::size_t count) {
   const laws::ParticleArrays& p = task.particles;
   take_roots(count, b.r.data());
@@ -181,7 +181,7 @@ void PairSum::add_block(Part& b, const Task& task, std::size_t count, double* fx
   divide(count, b.force.data(), b.r.data());
 
   const bool has_drag = task.law.has_drag();
-  for (std::size_t k = 0; k < count;) {  // rows: what the first of a pair feels is summed before it goes to memory
+  for (std::size_t k = 0; k < count;) {  // by rows: the force on the first particle is summed in a register
     const std::uint32_t i = b.i[k];
     double sx = 0, sy = 0, sz = 0;
     for (; k < count && b.i[k] == i; ++k) {

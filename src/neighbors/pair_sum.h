@@ -12,12 +12,12 @@
 namespace iota::neighbors {
 
 /// A law among all pairs nearer than a cut-off. The list of pairs reaches a skin further and is made anew only when some
-/// particle has moved half of that; pairs beyond the cut-off are passed over, rows are sorted, and many particles are
-/// summed in four parts however many threads there are: so every bit is the same whenever the list was made, and by whom.
+/// particle has moved half of that. Pairs beyond the cut-off are skipped, rows are sorted, and many particles are summed in
+/// four parts for any number of threads, so the bits do not depend on when the list was made or by which thread.
 class PairSum {
  public:
-  /// Adds the forces to particles.fx, fy, fz. Pairs whose force is not finite get none; returns how many those were, and
-  /// which was the first.
+  /// Adds the forces to particles.fx, fy, fz. Pairs whose force is not finite add nothing; returns their number and
+  /// the first of them.
   struct Bad {
     std::size_t count = 0;
     std::uint32_t i = 0, j = 0;
@@ -25,7 +25,7 @@ class PairSum {
   Bad add_forces(laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family, const laws::PairLaw& law,
                  const double* parameters, double cutoff, double t, const Parallel& parallel);
 
-  /// Energy of all pairs within the cut-off, J; 0 for laws without one. Pairs that have no finite one count for nothing.
+  /// Energy of all pairs within the cut-off, J; 0 for laws without one. A pair whose energy is not finite adds nothing.
   double energy(const laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family,
                 const laws::PairLaw& law, const double* parameters, double cutoff, double t, const Parallel& parallel);
 
@@ -49,7 +49,7 @@ class PairSum {
   static Task make_task(const laws::ParticleArrays&, const laws::PairLaw&, const double* parameters, double cutoff,
                         double t);
   void update(const laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family, double cutoff);
-  /// Calls work(part, first row, last row) for each part; returns how many those are.
+  /// Calls work(part, first row, last row) for each part; returns the number of parts.
   template <class Work>
   std::size_t in_parts(const Parallel& parallel, Work work);
   /// Gathers the pairs of these rows that are within the cut-off, and calls `take(count)` for each block of them. Energies
