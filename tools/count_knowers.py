@@ -1,0 +1,279 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Counts, for each ingredient, shape, joint, message, entity and page command, the source files that know it.
+
+    python3 tools/count_knowers.py                  this checkout
+    python3 tools/count_knowers.py --tree DIR       another checkout
+    python3 tools/count_knowers.py --against DIR    both side by side, DIR first
+    python3 tools/count_knowers.py --list grip      the files behind a number
+
+A file knows a thing when its code names it: in an identifier (also in TypeScript's camelCase), in an included path, or
+in a quoted name such as "revolute". Comments and sentences in strings do not count, and neither do tests, documents and
+generated files. Each thing has several spellings, so that a renaming does not look like an improvement.
+
+The number is the cost of one more of its kind: the fewer files know a shape, the fewer a new shape has to be told to.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SUFFIXES = {".h", ".hpp", ".cpp", ".py", ".pyi", ".ts", ".html", ".json"}
+FOLDERS = ["include", "src", "bindings", "python", "web", "protocol"]
+SKIPPED = {"node_modules", "dist", "dist.new", "dist.old", "e2e", "test", "tests", "test-results", "golden", "page",
+           "__pycache__", "generated.ts", "generated", "package.json", "package-lock.json", "tsconfig.json",
+           "make_golden.py"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Thing:
+    """`spellings`: words in a row of one identifier ("rod spin" finds RodSpin, rod_spins_ and rodSpin), or "=Name" for
+    exactly this identifier or quoted name. `folders`: where the words mean this thing."""
+
+    name: str
+    spellings: tuple[str, ...]
+    folders: tuple[str, ...] = tuple(FOLDERS)
+
+
+ENGINE = ("include", "src", "bindings")
+
+INGREDIENTS = [
+    Thing("point masses", ("virtual mass", "damped masses", "add masses", "mass couplings", "point mass"), ENGINE),
+    Thing("rigid rows", ("rigid row", "pinned row", "rigid rows", "body row"), ENGINE),
+    Thing("tied particles", ("tied", "ties", "tie", "affine"), ENGINE),
+    Thing("nails", ("nail", "nailed", "is nailed"), ENGINE),
+    Thing("closings", ("closing", "closings", "close over"), ENGINE),
+    Thing("joints", ("constraint rows", "joint rows", "constraint data", "joint data", "joint", "joints"), ENGINE),
+    Thing("surfaces", ("surface", "surface data", "surface spec", "placed surface"), ENGINE),
+    Thing("bonds in the step", ("spring", "springs", "drag", "radial", "radials", "implicit bond"), ENGINE),
+    Thing("held laws", ("held force", "held forces", "held law", "held laws", "held bond"), ENGINE),
+    Thing("fields", ("=Field", "=fields", "=fields_", "field law", "field id", "create field", "set field", "field data",
+                     "field options"), ENGINE),
+    Thing("pairs", ("=Pairs", "=pairs", "=pairs_", "pairs id", "create pairs", "set pairs", "pair set", "pair sum",
+                    "pair list", "pairs data"), ENGINE),
+    Thing("grips", ("grip",), ENGINE),
+    Thing("rod spins", ("spin", "spins", "spinning", "rod spin"), ENGINE),
+    Thing("oriented particles", ("orient", "oriented", "particle sets", "turn data", "set turn", "oriented particle"),
+          ENGINE),
+    Thing("emitters", ("emitter",), ENGINE),
+]  # fmt: skip
+
+SHAPES = [
+    Thing("sphere", ("sphere", "ball shape")),
+    Thing("box", ("=Box", "=box", "make box", "box shape", "box geometry", "box surface", "shape box", "box mesh")),
+    Thing("cylinder", ("cylinder",)),
+    Thing("capsule", ("capsule",)),
+    Thing("torus", ("torus",)),
+    Thing("mesh", ("=Mesh", "=mesh", "mesh shape", "shape mesh"),
+          # Elsewhere on the page a mesh is three.js's word for anything that is drawn.
+          ("include", "src", "bindings", "python", "protocol", "web/src/scene/shape.ts", "web/src/scene/geometry.ts",
+           "web/src/scene/mesh.ts", "web/src/scene/shapes")),
+    Thing("cone", ("cone",)),
+    Thing("ellipsoid", ("ellipsoid",)),
+    Thing("half-space", ("half space", "=Plane", "=plane")),
+]  # fmt: skip
+
+JOINTS = [Thing(name, (f"={name}", f"make {name}", f"{name} joint", f"={name.title()}"),
+                ("include", "src/geometry", "src/shape", "src/model", "src/ingredient", "src/solver", "src/island",
+                 "src/edit", "src/read", "src/step", "bindings", "python/iota/__init__.py"))
+          for name in ("ball", "universal", "revolute", "cylindrical", "prismatic", "weld", "rod", "rope", "path",
+                       "inside", "outside", "touching", "apart")]  # fmt: skip
+
+# Those that the schema names. This list only keeps the rows where a schema is spelled in another way.
+MESSAGES = ["hello", "select", "grab_start", "grab_move", "grab_end", "action", "control", "welcome", "poses", "notice",
+            "clients", "pong", "ping", "scene", "effect"]  # fmt: skip
+
+VIEWERS = ("include/iota/pose_snapshot.h", "include/iota/reports.h", "src/net", "bindings/bind_server.cpp",
+           "bindings/bind_world.cpp", "python/iota/world", "protocol", "web")  # fmt: skip
+
+ENTITIES = [
+    Thing("body", ("body view", "bodies", "body entity", "describe bodies"), VIEWERS),
+    Thing("tie", ("tie", "ties"), VIEWERS),
+    Thing("particle set", ("spark", "particle set", "sparks"), VIEWERS),
+    Thing("static shape", ("statics", "static shape", "static shapes", "static entity"), VIEWERS),
+    Thing("nail", ("nail", "nails", "nailed"), VIEWERS),
+    Thing("joint", ("joint", "joints"), VIEWERS),
+]
+
+PAGE_COMMANDS = [
+    Thing("pause, play", ("toggle pause", "play pause", "=pause"), ("web",)),
+    Thing("one step", ("single step", "one step"), ("web",)),
+    Thing("reset", ("=reset",), ("web",)),
+    Thing("speed", ("set speed", "change speed", "speed key", "=speeds", "faster"), ("web",)),
+    Thing("next look", ("next look", "look next"), ("web",)),
+    Thing("select next", ("select next", "next body"), ("web",)),
+    Thing("fly", ("toggle flying", "fly", "flying"), ("web",)),
+    Thing("grid", ("toggle grid", "grid"), ("web",)),
+    Thing("sound", ("toggle sound", "=sound", "=Sound"), ("web",)),
+    Thing("help", ("open help", "help open", "=help"), ("web",)),
+    Thing("first view", ("first view", "reset view", "=Home"), ("web",)),
+]
+
+# --- what a file names ------------------------------------------------------------------------------------------------
+
+# A comment, a string, or an identifier, whichever comes first.
+C_TOKEN = re.compile(
+    r"""(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<include>^[ \t]*\#[ \t]*include[ \t]*[<"][^>"\n]+[>"])"""
+    r"""|(?P<string>"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|`(?:\\.|[^`\\])*`)|(?P<name>[A-Za-z_$][\w$]*)""",
+    re.DOTALL | re.MULTILINE,
+)
+PYTHON_TOKEN = re.compile(
+    r"""(?P<comment>\#[^\n]*)|(?P<include>(?!))"""
+    r"""|(?P<string>\"\"\".*?\"\"\"|'''.*?'''|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')|(?P<name>[A-Za-z_]\w*)""",
+    re.DOTALL,
+)
+HTML_TOKEN = re.compile(
+    r"""(?P<comment><!--.*?-->)|(?P<include>(?!))|(?P<string>"[^"\n]*")|(?P<name>(?!))""", re.DOTALL
+)
+NAME_IN_QUOTES = re.compile(r"[A-Za-z_][\w./-]*")
+WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+
+
+def token_pattern(path: Path) -> re.Pattern[str]:
+    return {".py": PYTHON_TOKEN, ".pyi": PYTHON_TOKEN, ".html": HTML_TOKEN}.get(path.suffix, C_TOKEN)
+
+
+def names_in(text: str, pattern: re.Pattern[str]) -> Iterator[str]:
+    """Identifiers, included paths and quoted names of a source."""
+    for found in pattern.finditer(text):
+        if found["name"] or found["include"]:
+            yield found[0]
+        elif found["string"]:
+            inner = found["string"].strip("\"'`")
+            if NAME_IN_QUOTES.fullmatch(inner):
+                yield inner
+
+
+class File:
+    """What one source names: whole names, and the words of each with blanks around them."""
+
+    def __init__(self, path: Path) -> None:
+        self.names = set(names_in(path.read_text(errors="replace"), token_pattern(path)))
+        self.words = "\n".join(f" {' '.join(word.lower() for word in WORD.findall(name))} " for name in self.names)
+
+    def knows(self, spelling: str) -> bool:
+        if spelling.startswith("="):
+            return spelling[1:] in self.names
+        return f" {spelling} " in self.words or f" {spelling}s " in self.words
+
+
+def files_of(tree: Path) -> dict[str, File]:
+    found: dict[str, File] = {}
+    for folder in FOLDERS:
+        for path in sorted((tree / folder).rglob("*")):
+            parts = path.relative_to(tree).parts
+            if path.suffix in SUFFIXES and path.is_file() and not SKIPPED & set(parts) and "_core" not in path.name:
+                found["/".join(parts)] = File(path)
+    return found
+
+
+def messages_of(tree: Path) -> list[str]:
+    try:
+        schema = json.loads((tree / "protocol" / "schema.json").read_text())
+        return [m["name"] for side in ("client_messages", "server_messages") for m in schema[side]]
+    except (OSError, KeyError, TypeError, ValueError):
+        return []
+
+
+def message(name: str) -> Thing:
+    words = name.split("_")
+    pascal = "".join(word.title() for word in words)
+    camel = pascal[0].lower() + pascal[1:]
+    spellings = (f"={name}", f"={pascal}", f"={camel}", f"encode {' '.join(words)}", f"decode {' '.join(words)}")
+    # A single word such as `action` names many things: only its type and its encoders are this message.
+    here = spellings if len(words) > 1 else (f"={pascal}", *spellings[3:])
+    return Thing(name, here, ("src/net", "bindings", "python/iota/world", "protocol", "web"))
+
+
+def table_of(trees: list[Path]) -> dict[str, list[Thing]]:
+    messages = list(dict.fromkeys([name for tree in trees for name in messages_of(tree)])) or MESSAGES
+    return {
+        "ingredient": INGREDIENTS,
+        "shape": SHAPES,
+        "joint": JOINTS,
+        "message": [message(name) for name in messages],
+        "entity": ENTITIES,
+        "page command": PAGE_COMMANDS,
+    }
+
+
+def knowers(thing: Thing, files: dict[str, File]) -> list[str]:
+    return [
+        name
+        for name, file in files.items()
+        if any(name == f or name.startswith(f"{f}/") for f in thing.folders) and any(map(file.knows, thing.spellings))
+    ]
+
+
+# --- printing ---------------------------------------------------------------------------------------------------------
+
+
+def cells(names: list[str]) -> list[int]:
+    return [sum(name.startswith(f"{folder}/") for name in names) for folder in FOLDERS]
+
+
+def print_one(tree: Path, table: dict[str, list[Thing]]) -> None:
+    files = files_of(tree)
+    print(f"{'':34}{''.join(f'{folder:>10}' for folder in FOLDERS)}{'all':>8}")
+    for kind, things in table.items():
+        total = [0] * len(FOLDERS)
+        for thing in things:
+            row = cells(knowers(thing, files))
+            total = [a + b for a, b in zip(total, row, strict=True)]
+            print(f"{kind:13} {thing.name:20}{''.join(f'{n or chr(45):>10}' for n in row)}{sum(row):>8}")
+        print(f"{kind:13} {'TOTAL':20}{''.join(f'{n or chr(45):>10}' for n in total)}{sum(total):>8}\n")
+
+
+def print_both(before: Path, after: Path, table: dict[str, list[Thing]]) -> None:
+    """Files of the engine's own sources (src) and of everything; a thing that is new has no number before."""
+    old, new = files_of(before), files_of(after)
+    print(f"{'':34}{'src':>8}{'':>8}{'all':>8}")
+    print(f"{'':34}{'before':>8}{'after':>8}{'before':>8}{'after':>8}")
+    for kind, things in table.items():
+        total = [0] * 4
+        for thing in things:
+            a, b = knowers(thing, old), knowers(thing, new)
+            row = [sum(n.startswith("src/") for n in a), sum(n.startswith("src/") for n in b), len(a), len(b)]
+            total = [x + y for x, y in zip(total, row, strict=True)]
+            print(f"{kind:13} {thing.name:20}{''.join(f'{n or chr(45):>8}' for n in row)}")
+        print(f"{kind:13} {'TOTAL':20}{''.join(f'{n or chr(45):>8}' for n in total)}\n")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Counts the source files that know each thing.")
+    parser.add_argument("--tree", type=Path, default=ROOT, help="the checkout to count")
+    parser.add_argument("--against", type=Path, help="a checkout from before, printed beside it")
+    parser.add_argument("--list", metavar="THING", help="print the files that know it")
+    options = parser.parse_args(arguments)
+    trees = [tree for tree in (options.against, options.tree) if tree]
+    for tree in trees:
+        if not (tree / "src").is_dir():
+            print(f"{tree} holds no sources", file=sys.stderr)
+            return 1
+    table = table_of(trees)
+    if options.list:
+        asked = [
+            thing for things in table.values() for thing in things if options.list in (thing.name, thing.name[:-1])
+        ]
+        if not asked:
+            names = ", ".join(thing.name for things in table.values() for thing in things)
+            print(f"{options.list!r} is not in the table. It has: {names}", file=sys.stderr)
+            return 1
+        for thing in asked:
+            print(*knowers(thing, files_of(options.tree)), sep="\n")
+    elif options.against:
+        print_both(options.against, options.tree, table)
+    else:
+        print_one(options.tree, table)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
