@@ -1,47 +1,105 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints which folders of src/ include which, and fails when two of them include each other.
+"""Prints which folders use which, in C++, TypeScript and Python, and fails when two of them use each other.
 
-    python3 tools/folder_graph.py [SRC]
+    python3 tools/folder_graph.py [TREE ...]
 
-A folder is a path below SRC that holds sources, such as `solver/sparse`; public headers count as `iota`. Exit code 1
-when the graph has a cycle, direct or through others, or when the solver sees the model: only `step` knows both.
+Without arguments: src, web/src and python/iota. A folder is a path below its tree that holds sources, such as
+`solver/sparse`; public C++ headers count as `iota`. In Python the package's `__init__.py`, which users import and which
+is made of all the others, is a folder by itself and has the package's name. Imports for types alone count as well. Exit
+code 1 when a graph has a cycle, direct or through others, or when an arrow of FORBIDDEN is drawn.
 """
 
 from __future__ import annotations
 
+import ast
 import re
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
-SUFFIXES = {".h", ".hpp", ".cpp"}
+ROOT = Path(__file__).resolve().parent.parent
+TREES = [ROOT / "src", ROOT / "web" / "src", ROOT / "python" / "iota"]
 # Rules of the architecture that a graph without cycles could still break: (who, must not see).
 FORBIDDEN = [("solver", "model"), ("net", "model"), ("net", "solver"), ("net", "step")]
 
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+TS_IMPORT = re.compile(r'(?:\bfrom|\bimport)\s*\(?\s*"(\.[^"]+)"')
 
-def read_graph(src: Path) -> dict[str, dict[str, list[str]]]:
-    """folder -> folder it includes -> the including files."""
-    graph: dict[str, dict[str, list[str]]] = {}
-    for path in sorted(p for p in src.rglob("*") if p.suffix in SUFFIXES):
-        here = path.parent.relative_to(src).as_posix()
+# Files of a package's own folder that use all others, and what they count as.
+WHOLE = {"__init__.py": "", "__main__.py": "__main__"}
+
+Graph = dict[str, dict[str, list[str]]]
+
+
+def includes_of(path: Path, tree: Path) -> Iterator[str]:
+    for name in INCLUDE.findall(path.read_text(errors="replace")):
+        beside, below = path.parent / name, tree / name
+        if name.startswith("iota/"):
+            yield "iota"
+        elif below.is_file():
+            yield folder_of(below, tree)
+        elif beside.is_file():
+            yield folder_of(beside, tree)
+        # else: the standard library, Boost, generated files
+
+
+def ts_imports_of(path: Path, tree: Path) -> Iterator[str]:
+    for name in TS_IMPORT.findall(path.read_text()):
+        # Not asked whether it is there: generated files count too.
+        yield folder_of(path.parent / name, tree)
+
+
+def python_imports_of(path: Path, tree: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module is not None:
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+        else:
+            continue
+        for name in names:
+            package, *rest = name.split(".")
+            if package == tree.name and (rest[:1] != ["_core"]):
+                yield module_folder(tree, rest)
+
+
+def module_folder(tree: Path, parts: list[str]) -> str:
+    """The folder of the longest part of a dotted name that is a module; the rest are names in it."""
+    for count in range(len(parts), 0, -1):
+        module = tree.joinpath(*parts[:count])
+        for file in (module.with_suffix(".py"), module / "__init__.py"):
+            if file.is_file():
+                return folder_of(file, tree)
+    return folder_of(tree / "__init__.py", tree)
+
+
+def folder_of(file: Path, tree: Path) -> str:
+    if file.parent == tree and file.name in WHOLE:
+        return WHOLE[file.name] or tree.name
+    return file.resolve().parent.relative_to(tree.resolve()).as_posix()
+
+
+IMPORTS_OF: dict[str, Callable[[Path, Path], Iterator[str]]] = {
+    **dict.fromkeys((".h", ".hpp", ".cpp"), includes_of),
+    ".ts": ts_imports_of,
+    ".py": python_imports_of,
+}
+
+
+def read_graph(tree: Path) -> Graph:
+    """folder -> folder it uses -> the files that use it."""
+    graph: Graph = {}
+    for path in sorted(p for p in tree.rglob("*") if p.suffix in IMPORTS_OF):
+        here = folder_of(path, tree)
         edges = graph.setdefault(here, {})
-        for name in INCLUDE.findall(path.read_text(errors="replace")):
-            beside, below = path.parent / name, src / name
-            if name.startswith("iota/"):
-                target = "iota"
-            elif below.is_file():
-                target = below.parent.relative_to(src).as_posix()
-            elif beside.is_file():
-                target = beside.resolve().parent.relative_to(src.resolve()).as_posix()
-            else:
-                continue  # the standard library, Boost, generated files
-            if target != here:
-                edges.setdefault(target, []).append(path.name)
+        for target in IMPORTS_OF[path.suffix](path, tree):
+            if target != here and path.name not in edges.setdefault(target, []):
+                edges[target].append(path.name)
     return graph
 
 
-def find_cycles(graph: dict[str, dict[str, list[str]]]) -> list[list[str]]:
+def find_cycles(graph: Graph) -> list[list[str]]:
     """One cycle for each folder from which it can be entered first, in order of names."""
     cycles: list[list[str]] = []
     done: set[str] = set()
@@ -65,23 +123,30 @@ def is_within(folder: str, parent: str) -> bool:
     return folder == parent or folder.startswith(parent + "/")
 
 
-def main(arguments: list[str]) -> int:
-    src = Path(arguments[0]) if arguments else Path(__file__).resolve().parent.parent / "src"
-    graph = read_graph(src)
-    if not graph:
-        print(f"{src} holds no sources", file=sys.stderr)
-        return 1
-    for folder, edges in graph.items():
-        print(f"{folder:24} -> {', '.join(sorted(edges)) or '-'}")
+def find_wrongs(graph: Graph) -> list[str]:
     wrong = [" -> ".join(cycle) for cycle in find_cycles(graph)]
     for folder, edges in graph.items():
         for who, what in FORBIDDEN:
             for target, files in edges.items():
                 if is_within(folder, who) and is_within(target, what):
                     wrong.append(f"{who} must not see {what}: {folder}/{{{', '.join(files)}}} -> {target}")
-    for line in wrong:
-        print(f"wrong: {line}", file=sys.stderr)
-    return 1 if wrong else 0
+    return wrong
+
+
+def main(arguments: list[str]) -> int:
+    failed = False
+    for tree in [Path(argument) for argument in arguments] or TREES:
+        graph = read_graph(tree)
+        if not graph:
+            print(f"{tree} holds no sources", file=sys.stderr)
+            return 1
+        print(f"{tree}:")
+        for folder, edges in sorted(graph.items()):
+            print(f"  {folder:24} -> {', '.join(sorted(edges)) or '-'}")
+        for line in find_wrongs(graph):
+            print(f"wrong: {line}", file=sys.stderr)
+            failed = True
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

@@ -143,7 +143,7 @@ describe("the page of a chain", () => {
 
   it("orbits, walks, pauses, steps and slows down", async () => {
     await tab.until("nothing lies over the canvas there", () => document.elementFromPoint(600, 60)?.id === "view");
-    const eye = () => tab.page.evaluate(() => iota.page.camera.position.toArray());
+    const eye = () => tab.page.evaluate(() => iota.page.viewer.camera.position.toArray());
     const before = await eye();
     await tab.page.mouse.move(600, 60);
     await tab.page.mouse.down();
@@ -163,9 +163,9 @@ describe("the page of a chain", () => {
     await tab.until("one step was made", (was) => iota.step === was + 1, step);
     await tab.pause(false);
     await tab.page.selectOption("#speed", "0.25");
-    await tab.until("the world is slow", () => Math.abs(iota.page.model.speed - 0.25) < 1e-6);
+    await tab.until("the world is slow", () => Math.abs(iota.page.world.speed - 0.25) < 1e-6);
     await tab.page.selectOption("#speed", "1");
-    await tab.until("the world is at full speed", () => iota.page.model.speed === 1);
+    await tab.until("the world is at full speed", () => iota.page.world.speed === 1);
   });
 
   it("goes on undisturbed by garbage in either direction", async () => {
@@ -192,7 +192,7 @@ describe("the page of a chain", () => {
     expect(outcome.refused).toBe("refused");
     expect(outcome.answers).not.toContain("silent");
     const before = await tab.page.evaluate(() => {
-      const socket = (iota.page.connection as unknown as { socket_: WebSocket }).socket_;
+      const socket = (iota.page.session.connection as unknown as { socket_: WebSocket }).socket_;
       for (const bytes of [[], [68], [68, 1, 2, 3], [66, 255, 255, 255, 255], [200, 0]]) {
         socket.dispatchEvent(new MessageEvent("message", { data: new Uint8Array(bytes).buffer }));
       }

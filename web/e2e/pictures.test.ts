@@ -28,9 +28,9 @@ async function picture(name: string): Promise<void> {
   await tab.page.evaluate(async () => {
     // The page itself lowers the resolution where drawing is slow, so it may have to be asked twice.
     do {
-      iota.page.resize(innerWidth, innerHeight, devicePixelRatio);
+      iota.page.viewer.resize(innerWidth, innerHeight, devicePixelRatio);
       for (let frame = 0; frame < 4; frame++) await new Promise((resolve) => requestAnimationFrame(resolve));
-    } while (iota.page.renderer.getPixelRatio() !== devicePixelRatio);
+    } while (iota.page.viewer.renderer.getPixelRatio() !== devicePixelRatio);
   });
   await tab.picture(`page_${name}`);
 }
@@ -64,16 +64,16 @@ describe("pictures", () => {
       const delays: number[] = [];
       for (let trial = 0; trial < 5; trial++) {
         const began = performance.now();
-        iota.page.connection.send({ type: "grabStart", hold: 500 + trial, body: 16, localPoint: [0, 0, 0], target: [0, 2.5, 0] });
+        iota.page.session.connection.send({ type: "grabStart", hold: 500 + trial, body: 16, localPoint: [0, 0, 0], target: [0, 2.5, 0] });
         await new Promise<void>((resolve) => {
           const look = () => (iota.holds().some((hold) => hold.force > 0) ? resolve() : requestAnimationFrame(look));
           look();
         });
         delays.push(performance.now() - began);
-        iota.page.connection.send({ type: "grabEnd", hold: 500 + trial });
+        iota.page.session.connection.send({ type: "grabEnd", hold: 500 + trial });
         await new Promise((resolve) => setTimeout(resolve, 120));
       }
-      const { frameMs, scriptMs, renderMs, decodeMs } = iota.page.timing;
+      const { frameMs, scriptMs, renderMs, decodeMs } = iota.page.viewer.timing;
       const [navigation] = performance.getEntriesByType("navigation") as PerformanceNavigationTiming[];
       return { load_ms: navigation.loadEventEnd, grab_ms: delays.toSorted((a, b) => a - b)[2], round_trip_ms: iota.roundTripMs, frameMs, scriptMs, renderMs, decodeMs };
     });

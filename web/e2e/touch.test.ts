@@ -26,7 +26,7 @@ beforeEach(async () => {
   await tab.reset();
 });
 
-const eye = (): Promise<number[]> => tab.page.evaluate(() => iota.page.camera.position.toArray());
+const eye = (): Promise<number[]> => tab.page.evaluate(() => iota.page.viewer.camera.position.toArray());
 
 describe("on a phone", () => {
   it("one finger on a link drags it", async () => {
@@ -55,7 +55,7 @@ describe("on a phone", () => {
     await tab.page.waitForTimeout(600);
     const orbited = await eye();
     expect(distance(before, orbited)).toBeGreaterThan(0.3);
-    const range = async () => tab.page.evaluate(() => iota.page.camera.position.length());
+    const range = async () => tab.page.evaluate(() => iota.page.viewer.camera.position.length());
     const far = await range();
     await tab.touch("touchStart", [[60, 700], [330, 700]]);
     for (let step = 1; step <= 5; step++) await tab.touch("touchMove", [[60 + 20 * step, 700], [330 - 20 * step, 700]]);

@@ -33,7 +33,7 @@ afterAll(async () => {
 /** The whole chain again, hanging still: earlier tests leave it broken up, folded or swinging. */
 async function calm(): Promise<void> {
   await me.tab.pause(false);
-  await me.tab.page.evaluate(() => iota.page.commands.reset());
+  await me.tab.page.evaluate(() => iota.page.commands.run("reset"));
   await me.tab.until("the chain hangs still", () => iota.step > 60 && iota.bodies().every((id) => {
     const [x, , z] = iota.bodyPosition(id);
     return Math.hypot(x, z) < 0.12;
@@ -75,17 +75,17 @@ describe("an emulated headset", () => {
   it("draws two different views and stands a step before the chain, facing it", async () => {
     const seen = await me.tab.page.evaluate(() => {
       const { page } = iota;
-      const eyes = page.renderer.xr.getCamera().cameras;
-      const target = page.model.settings.camera!.target;
+      const eyes = page.viewer.renderer.xr.getCamera().cameras;
+      const target = page.world.settings.camera!.target;
       const head = iotaXR!.head();
-      const ahead = page.camera.getWorldDirection(page.camera.position.clone());
+      const ahead = page.viewer.camera.getWorldDirection(page.viewer.camera.position.clone());
       const [dx, dz] = [target[0] - head[0], target[2] - head[2]];
       return {
         views: eyes.map((eye) => [eye.viewport!.x, eye.viewport!.width]),
         apart: Math.hypot(...[12, 13, 14].map((at) => eyes[0].matrixWorld.elements[at] - eyes[1].matrixWorld.elements[at])),
         away: Math.hypot(dx, dz),
         facing: (ahead.x * dx + ahead.z * dz) / Math.hypot(dx, dz),
-        ground: page.model.settings.ground, feet: iotaXR!.rig().position[1],
+        ground: page.world.settings.ground, feet: iotaXR!.rig().position[1],
       };
     });
     expect(seen.views).toEqual([[0, size.width / 2], [size.width / 2, size.width / 2]]);
@@ -256,10 +256,10 @@ describe("leaving and coming back", () => {
     await me.tab.page.evaluate(() => iotaXR!.leave());
     await me.tab.until("the session is over", () => !iotaXR!.presenting);
     await me.tab.until("the canvas lies under the bar again", () => document.getElementById("view")?.parentElement === document.body
-      && document.getElementById("view")?.nextElementSibling?.id === "cards" && iota.page.camera.aspect > 1.5);
+      && document.getElementById("view")?.nextElementSibling?.id === "cards" && iota.page.viewer.camera.aspect > 1.5);
     const flat = await me.tab.page.evaluate(() => ({
       rig: iotaXR!.rig(), pointers: iota.page.gestures.pointers.map((pointer) => pointer.name),
-      size: [iota.page.renderer.domElement.clientWidth, iota.page.renderer.domElement.clientHeight],
+      size: [iota.page.viewer.renderer.domElement.clientWidth, iota.page.viewer.renderer.domElement.clientHeight],
     }));
     expect(flat).toEqual({ rig: { position: [0, 0, 0], yaw: 0 }, pointers: ["mouse"], size: [size.width, size.height] });
     await me.tab.page.setViewportSize(small);
@@ -273,8 +273,8 @@ describe("leaving and coming back", () => {
     await me.look(0.1, -0.1);
     await me.tab.freeze();
     const [x, y] = await me.tab.page.evaluate((id) => {
-      const eye = iota.page.renderer.xr.getCamera().cameras[0];
-      const point = iota.page.camera.position.clone().set(...iota.bodyPosition(id)).project(eye);
+      const eye = iota.page.viewer.renderer.xr.getCamera().cameras[0];
+      const point = iota.page.viewer.camera.position.clone().set(...iota.bodyPosition(id)).project(eye);
       return [((point.x + 1) / 4) * innerWidth, ((1 - point.y) / 2) * innerHeight];
     }, link);
     await me.tab.page.mouse.move(x + 20, y);

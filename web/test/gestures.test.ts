@@ -5,7 +5,7 @@ import { TestScene } from "./test_scene.ts";
 
 class Log implements GestureListener {
   readonly lines: string[] = [];
-  hovered(pointer: Pointer, body: number): void { this.lines.push(`${pointer.name} hovers ${body}`); }
+  hoverChanged(pointer: Pointer, body: number): void { this.lines.push(`${pointer.name} hovers ${body}`); }
   grabStarted(grab: Grab): void { this.lines.push(`${grab.pointer.name} takes ${grab.body} as ${grab.hold}`); }
   grabMoved(grab: Grab): void { this.lines.push(`${grab.hold} to ${[...grab.target].map((value) => (Math.round(value * 100) / 100 + 0).toFixed(2)).join(" ")}`); }
   grabEnded(grab: Grab): void { this.lines.push(`${grab.hold} ends`); }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Matrix4, Object3D, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import type { ActionEntry, WorldSettings } from "../src/scene/world_model.ts";
+import type { Entry, ScriptCommand } from "../src/commands/command.ts";
+import { Commands } from "../src/commands/commands.ts";
+import type { WorldSettings } from "../src/scene/world_model.ts";
 import { layoutPanel, panelWidth } from "../src/xr/panel_layout.ts";
 import { standBefore } from "../src/xr/standing.ts";
 
@@ -39,16 +41,32 @@ describe("where a user stands at first", () => {
 });
 
 describe("the wrist panel's layout", () => {
-  const action = (name: string, button: "a" | "b" | null): ActionEntry => ({ name, key: "", label: name, help: "", on: "body", button });
+  const page = (looks: number): Entry[] => [
+    { name: "play", places: ["bar", "panel"], title: () => "Pause", sign: () => "M0 0", run: () => {} },
+    { name: "speed", places: ["panel"], title: () => "Speed", options: ["1"], unit: "", value: () => "1", choose: () => {} },
+    { name: "look", places: ["panel"], title: () => "Look", offered: () => looks > 1, run: () => {} },
+    { name: "grid", keys: ["g"], title: () => "Grid", run: () => {} },
+    { name: "leave", places: ["panel foot"], title: () => "Leave VR", run: () => {} },
+  ];
+  const action = (name: string, button: "a" | "b" | null): ScriptCommand => ({
+    name: `action ${name}`, button, onBody: true, title: () => name, offered: () => false, run: () => {}, runOn: () => {},
+  });
+  const commandsOf = (looks: number, ...script: ScriptCommand[]): Commands => {
+    const commands = new Commands();
+    commands.add(...page(looks));
+    commands.script = script;
+    return commands;
+  };
 
-  it("has the page's bar and a button for each action, none over another or outside", () => {
+  it("has the commands of the panel and a button for each action, none over another or outside", () => {
     const actions = ["break", "join", "paint", "burn"].map((name) => action(name, name === "break" ? "b" : null));
-    const { buttons, height, speed } = layoutPanel(actions, true, "rope");
-    const names = buttons.map((button) => button.name);
-    for (const name of ["play", "step", "reset", "slower", "faster", "look", "go", "leave"]) expect(names).toContain(name);
-    expect(names.filter((name) => name.startsWith("action "))).toHaveLength(4);
-    expect(buttons.find((button) => button.name === "action break")?.badge).toBe("B");
-    const all = [...buttons, speed];
+    const { buttons, height, readings } = layoutPanel(commandsOf(2, ...actions));
+    expect(buttons.map((button) => button.command.name)).toEqual([
+      "play", "look", "action break", "action join", "action paint", "action burn", "leave",
+    ]);
+    expect(buttons.find((button) => button.command.name === "action break")?.badge).toBe("B");
+    const all = [...buttons, ...readings];
+    expect(all).toHaveLength(8);
     for (const one of all) {
       expect(one.x).toBeGreaterThan(0);
       expect(one.x + one.width).toBeLessThan(panelWidth);
@@ -61,7 +79,9 @@ describe("the wrist panel's layout", () => {
     }
   });
 
-  it("offers no look where there is only one", () => {
-    expect(layoutPanel([], false, "rope").buttons.map((button) => button.name)).not.toContain("look");
+  it("keeps the place of what is not offered now", () => {
+    const play = (looks: number) => layoutPanel(commandsOf(looks)).buttons[0];
+    expect(layoutPanel(commandsOf(1)).buttons.map((button) => button.command.name)).not.toContain("look");
+    expect(play(1).x).toBe(play(2).x);
   });
 });

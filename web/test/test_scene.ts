@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies for tests of picking and gestures, without drawing.
 
-import type { PickScene } from "../src/interact/picking.ts";
 import { toBody } from "../src/interact/picking.ts";
+import type { Pickable } from "../src/scene/pickable.ts";
 import { bodyDistance, bodyReach, parseShape, placeShape, type PlacedShape } from "../src/scene/shape.ts";
 
-export class TestScene implements PickScene {
+export class TestScene implements Pickable {
   readonly pickable: Uint32Array;
   readonly pickableCount: number;
   readonly position: Float32Array;

@@ -2,7 +2,7 @@
 // window.iota: the page seen from a browser's console and from tests. Documented in README.md.
 
 import { Vector3 } from "three";
-import type { Page } from "./page.ts";
+import type { Page } from "../page/page.ts";
 
 export interface IotaDebug {
   readonly clientId: number;
@@ -51,47 +51,47 @@ declare global {
 export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
   const point = new Vector3();
   const positionOf = (body: number): [number, number, number] => {
-    if (!page.view.has(body)) throw new Error(`body ${body} is not drawn`);
-    const { position } = page.view.poses;
+    if (!page.bodies.has(body)) throw new Error(`body ${body} is not drawn`);
+    const { position } = page.bodies.poses;
     return [position[3 * body], position[3 * body + 1], position[3 * body + 2]];
   };
   return {
     page,
-    get clientId() { return page.connection.clientId; },
-    get connected() { return page.connection.connected; },
-    get step() { return page.model.step; },
-    get time() { return page.model.time; },
-    get paused() { return page.model.paused; },
-    get structureVersion() { return page.model.structureVersion; },
-    get selected() { return page.selected; },
-    get held() { return page.held; },
-    get look() { return page.look; },
-    get looks() { return page.model.settings.looks; },
-    get frameMs() { return page.timing.frameMs; },
-    get scriptMs() { return page.timing.scriptMs; },
-    get roundTripMs() { return page.connection.roundTripMs; },
-    get badFrames() { return page.connection.badFrames; },
-    holds: () => page.model.holds.slice(0, page.model.holdCount).map((hold) => ({
+    get clientId() { return page.session.connection.clientId; },
+    get connected() { return page.session.connection.connected; },
+    get step() { return page.world.step; },
+    get time() { return page.world.time; },
+    get paused() { return page.world.paused; },
+    get structureVersion() { return page.world.structureVersion; },
+    get selected() { return page.selection.selected; },
+    get held() { return page.selection.held; },
+    get look() { return page.world.look; },
+    get looks() { return page.world.settings.looks; },
+    get frameMs() { return page.viewer.timing.frameMs; },
+    get scriptMs() { return page.viewer.timing.scriptMs; },
+    get roundTripMs() { return page.session.connection.roundTripMs; },
+    get badFrames() { return page.session.connection.badFrames; },
+    holds: () => page.world.holds.slice(0, page.world.holdCount).map((hold) => ({
       client: hold.client, hold: hold.hold, body: hold.body, force: hold.force, target: [...hold.target],
     })),
-    clients: () => page.model.clients.map((client) => ({ ...client })),
-    articulates: () => new Map(page.model.articulateOf),
-    bodies: () => [...page.model.bodies.keys()].filter((body) => page.view.has(body)),
+    clients: () => page.world.clients.map((client) => ({ ...client })),
+    articulates: () => new Map(page.world.articulateOf),
+    bodies: () => [...page.world.bodies.keys()].filter((body) => page.bodies.has(body)),
     bodyPosition: positionOf,
     bodyRotation: (body) => {
       positionOf(body);
-      const { rotation } = page.view.poses;
+      const { rotation } = page.bodies.poses;
       return [rotation[4 * body], rotation[4 * body + 1], rotation[4 * body + 2], rotation[4 * body + 3]];
     },
     screenPosition: (body) => {
       point.set(...positionOf(body));
-      page.camera.updateMatrixWorld();
-      point.project(page.camera);
+      page.viewer.camera.updateMatrixWorld();
+      point.project(page.viewer.camera);
       if (point.z > 1) return null;
       const box = canvas.getBoundingClientRect();
       return [box.left + ((point.x + 1) / 2) * box.width, box.top + ((1 - point.y) / 2) * box.height];
     },
-    setLook: (look) => page.setLook(look),
-    select: (body) => page.select(body),
+    setLook: (look) => page.world.setLook(look),
+    select: (body) => page.selection.select(body),
   };
 }

@@ -4,7 +4,8 @@
 // and releases only and needs no hover before a press, since a pinch may appear at the very moment of
 // its start.
 
-import { Hit, pickPoint, pickRay, toWorld, type PickScene } from "./picking.ts";
+import type { Pickable } from "../scene/pickable.ts";
+import { Hit, pickPoint, pickRay, toWorld } from "./picking.ts";
 
 /**
  * How a held thing follows. plane: stays under the pointer in the plane that faces the viewer (mouse,
@@ -84,7 +85,7 @@ export class Grab {
 
 export interface GestureListener {
   /** The body under a pointer changed; -1: none. */
-  hovered(pointer: Pointer, body: number): void;
+  hoverChanged(pointer: Pointer, body: number): void;
   grabStarted(grab: Grab): void;
   /** The target moved. */
   grabMoved(grab: Grab): void;
@@ -99,14 +100,14 @@ const still = 1e-5;
 
 export class Gestures {
   readonly grabs: Grab[] = [];
-  private readonly scene_: PickScene;
+  private readonly scene_: Pickable;
   private readonly listener_: GestureListener;
   private readonly pointers_: Pointer[] = [];
   private readonly wasPressed_ = new Set<Pointer>();
   private nextHold_ = 1;
   private readonly target_ = new Float32Array(3);
 
-  constructor(scene: PickScene, listener: GestureListener) {
+  constructor(scene: Pickable, listener: GestureListener) {
     this.scene_ = scene;
     this.listener_ = listener;
   }
@@ -176,7 +177,7 @@ export class Gestures {
     const body = pointer.active && this.pick_(pointer) ? pointer.hit.body : -1;
     if (body === pointer.hovered) return;
     pointer.hovered = body;
-    this.listener_.hovered(pointer, body);
+    this.listener_.hoverChanged(pointer, body);
   }
 
   private press_(pointer: Pointer): void {
@@ -186,7 +187,7 @@ export class Gestures {
     }
     if (pointer.hovered !== pointer.hit.body) {
       pointer.hovered = pointer.hit.body;
-      this.listener_.hovered(pointer, pointer.hit.body);
+      this.listener_.hoverChanged(pointer, pointer.hit.body);
     }
     pointer.depth = 0;
     const grab = new Grab(this.nextHold_++, pointer, pointer.hit, pointer.near, performance.now());

@@ -2,20 +2,8 @@
 // Which body does a ray or a hand mean? Packed bounding spheres first, then the exact distance
 // function of the few that remain. A cone of tolerance lets thin things be caught by a finger.
 
-import { bodyDistance, type PlacedShape } from "../scene/shape.ts";
-
-/** What can be picked, indexed by body slot; poses are those that are drawn at this moment. */
-export interface PickScene {
-  readonly pickable: Uint32Array;
-  readonly pickableCount: number;
-  /** Three numbers a slot, m. */
-  readonly position: Float32Array;
-  /** Four numbers a slot, x y z w. */
-  readonly rotation: Float32Array;
-  /** Bounding radius about the body's origin, m, by slot. */
-  readonly reach: Float32Array;
-  shapesOf(body: number): readonly PlacedShape[];
-}
+import type { Pickable } from "../scene/pickable.ts";
+import { bodyDistance } from "../scene/shape.ts";
 
 /** The answer of a pick; reused by its owner so that hovering allocates nothing. */
 export class Hit {
@@ -31,7 +19,7 @@ export class Hit {
 const local = new Float32Array(3);
 
 /** World point into a body's frame. */
-export function toBody(scene: PickScene, body: number, x: number, y: number, z: number, out: Float32Array): void {
+export function toBody(scene: Pickable, body: number, x: number, y: number, z: number, out: Float32Array): void {
   const p = body * 3;
   const r = body * 4;
   rotate(
@@ -41,7 +29,7 @@ export function toBody(scene: PickScene, body: number, x: number, y: number, z: 
 }
 
 /** Point of a body's frame into the world. */
-export function toWorld(scene: PickScene, body: number, point: Float32Array, out: Float32Array): void {
+export function toWorld(scene: Pickable, body: number, point: Float32Array, out: Float32Array): void {
   const p = body * 3;
   const r = body * 4;
   rotate(
@@ -64,13 +52,13 @@ function rotate(
   out[2] = z + qw * tz + qx * ty - qy * tx;
 }
 
-function distanceAt(scene: PickScene, body: number, x: number, y: number, z: number): number {
+function distanceAt(scene: Pickable, body: number, x: number, y: number, z: number): number {
   toBody(scene, body, x, y, z, local);
   return bodyDistance(scene.shapesOf(body), local[0], local[1], local[2]);
 }
 
 /** Moves a point in the body's frame onto the body's surface when it lies outside. */
-function pullToSurface(scene: PickScene, body: number, point: Float32Array): void {
+function pullToSurface(scene: Pickable, body: number, point: Float32Array): void {
   const shapes = scene.shapesOf(body);
   const step = 1e-4;
   const distance = bodyDistance(shapes, point[0], point[1], point[2]);
@@ -93,7 +81,7 @@ const touching = 5e-4;
  * `tolerance` (tangent of the cone's half-angle) of the ray; among the latter the best aimed wins.
  */
 export function pickRay(
-  scene: PickScene, origin: ArrayLike<number>, direction: ArrayLike<number>,
+  scene: Pickable, origin: ArrayLike<number>, direction: ArrayLike<number>,
   tolerance: number, farthest: number, out: Hit,
 ): boolean {
   const ox = origin[0], oy = origin[1], oz = origin[2];
@@ -145,7 +133,7 @@ export function pickRay(
 }
 
 /** The body whose surface is nearest to a point (a fingertip, a controller), within `reach` meters. */
-export function pickPoint(scene: PickScene, point: ArrayLike<number>, reach: number, out: Hit): boolean {
+export function pickPoint(scene: Pickable, point: ArrayLike<number>, reach: number, out: Hit): boolean {
   const x = point[0], y = point[1], z = point[2];
   let best = reach;
   let found = -1;

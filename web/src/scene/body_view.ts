@@ -5,12 +5,12 @@
 import {
   Color, Group, InstancedBufferAttribute, InstancedMesh, Matrix4, Mesh, type BufferGeometry, type MeshStandardMaterial,
 } from "three";
-import type { PickScene } from "../interact/picking.ts";
 import { makeGeometry } from "./geometry.ts";
 import { makeOutlineMaterial, materialOf, type OutlineMaterial } from "./materials.ts";
 import { PoseBuffer } from "./pose_buffer.ts";
+import type { Pickable } from "./pickable.ts";
 import { bodyReach, type PlacedShape, type Shape } from "./shape.ts";
-import type { WorldModel } from "./world_model.ts";
+import type { Change, WorldModel } from "./world_model.ts";
 
 /** Up to here bodies are few enough for round outlines; above, vertices cost too much. */
 const fineUpTo = 160;
@@ -75,7 +75,7 @@ function writeMatrix(
   out[at + 15] = 1;
 }
 
-export class BodyView implements PickScene {
+export class BodyView implements Pickable {
   readonly root = new Group();
   readonly poses = new PoseBuffer();
   pickable = new Uint32Array(0);
@@ -90,6 +90,7 @@ export class BodyView implements PickScene {
   private tintNow_ = new Float32Array(0);
   private readonly outlines_: Outline[] = [];
   private order_ = new Uint32Array(0);
+  private stale_: "no" | "bodies" | "look" = "no";
 
   constructor(model: WorldModel) {
     this.model_ = model;
@@ -114,6 +115,11 @@ export class BodyView implements PickScene {
 
   addOutline(outline: Outline): void {
     this.outlines_.push(outline);
+  }
+
+  changed(what: Change | string): void {
+    if (what === "look") this.stale_ = "look";
+    else if (what === "bodies" && this.stale_ === "no") this.stale_ = "bodies";
   }
 
   /** Builds meshes anew after bodies, classes or the look changed; `regrow` lets all of it grow in again. */
@@ -172,8 +178,10 @@ export class BodyView implements PickScene {
     this.attach_(outline);
   }
 
-  /** Interpolates poses; to be called before picking. */
-  sample(now: number, seconds: number): void {
+  /** Takes in what has changed, and interpolates poses; to be called before picking. */
+  update(seconds: number, now: number): void {
+    if (this.stale_ !== "no") this.rebuild(this.model_.look, this.stale_ === "look");
+    this.stale_ = "no";
     this.poses.sample(now, seconds);
     if (this.grown_.length < this.poses.capacity) this.reserve_();
     let count = 0;

@@ -5,7 +5,7 @@ import { AdditiveBlending, Color, DoubleSide, Group, Mesh, MeshBasicMaterial, Ri
 import { palette } from "./materials.ts";
 
 const most = 8;
-const seconds = 0.38;
+const shownSeconds = 0.38;
 
 interface Flash {
   readonly mesh: Mesh<RingGeometry, MeshBasicMaterial>;
@@ -18,9 +18,12 @@ const colors: Record<string, Color> = { break: palette.aboutToBreak, join: palet
 export class Flashes {
   readonly root = new Group();
   private readonly flashes_: Flash[] = [];
+  private readonly camera_: Camera;
   private next_ = 0;
 
-  constructor() {
+  /** Rings face the camera. */
+  constructor(camera: Camera) {
+    this.camera_ = camera;
     const ring = new RingGeometry(0.72, 1, 40);
     for (let index = 0; index < most; index++) {
       const material = new MeshBasicMaterial({
@@ -29,11 +32,12 @@ export class Flashes {
       const mesh = new Mesh(ring, material);
       mesh.visible = false;
       this.root.add(mesh);
-      this.flashes_.push({ mesh, age: seconds, size: 0.1 });
+      this.flashes_.push({ mesh, age: shownSeconds, size: 0.1 });
     }
   }
 
-  add(kind: string, position: ArrayLike<number>): void {
+  /** break, join or grab at a place (world, m). */
+  effect(kind: string, position: ArrayLike<number>): void {
     const flash = this.flashes_[this.next_];
     this.next_ = (this.next_ + 1) % most;
     flash.age = 0;
@@ -42,13 +46,13 @@ export class Flashes {
     flash.mesh.position.set(position[0], position[1], position[2]);
   }
 
-  update(dt: number, camera: Camera): void {
+  draw(seconds: number): void {
     for (const flash of this.flashes_) {
-      flash.age = Math.min(flash.age + dt, seconds);
-      const t = flash.age / seconds;
+      flash.age = Math.min(flash.age + seconds, shownSeconds);
+      const t = flash.age / shownSeconds;
       flash.mesh.visible = t < 1;
       if (t >= 1) continue;
-      camera.getWorldQuaternion(flash.mesh.quaternion);
+      this.camera_.getWorldQuaternion(flash.mesh.quaternion);
       flash.mesh.scale.setScalar(flash.size * (0.15 + 0.85 * Math.sqrt(t)));
       flash.mesh.material.opacity = (1 - t) * (1 - t);
     }

@@ -7,7 +7,7 @@ import { makeCoil, makeGeometry } from "./geometry.ts";
 import { materialOf } from "./materials.ts";
 import type { PoseBuffer } from "./pose_buffer.ts";
 import type { Shape } from "./shape.ts";
-import type { TieEnd, TieEntry, WorldModel } from "./world_model.ts";
+import type { Change, TieEnd, TieEntry, WorldModel } from "./world_model.ts";
 
 /** Pieces of a rope: straight ones, that lie along a parabola when it is slack. */
 const ropePieces = 12;
@@ -29,6 +29,7 @@ export class TieView {
   private readonly model_: WorldModel;
   private readonly poses_: PoseBuffer;
   private batches_: Batch[] = [];
+  private stale_ = false;
   private readonly from_ = new Vector3();
   private readonly to_ = new Vector3();
   private readonly start_ = new Vector3();
@@ -41,6 +42,15 @@ export class TieView {
   constructor(model: WorldModel, poses: PoseBuffer) {
     this.model_ = model;
     this.poses_ = poses;
+  }
+
+  changed(what: Change | string): void {
+    if (what === "ties" || what === "bodies" || what === "look") this.stale_ = true;
+  }
+
+  update(): void {
+    if (this.stale_) this.rebuild(this.model_.look);
+    this.stale_ = false;
   }
 
   /** Builds meshes anew after ties, classes or the look changed. */

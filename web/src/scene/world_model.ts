@@ -71,7 +71,7 @@ export interface Hold {
 }
 
 /** Which part of the model changed; listeners redraw only that. */
-export type Change = "world" | "bodies" | "ties" | "statics" | "actions" | "structure" | "clients";
+export type Change = "world" | "bodies" | "ties" | "statics" | "actions" | "structure" | "clients" | "look";
 
 const emptyWorld: WorldSettings = { title: "", looks: [], look: "", camera: null, ground: null, dt: 0 };
 
@@ -120,7 +120,10 @@ export class WorldModel {
   /** The first `holdCount` are valid; entries are reused. */
   readonly holds: Hold[] = [];
   holdCount = 0;
+  /** Name of the look that this page draws. */
+  look = "";
 
+  private lookChosen_ = false;
   private readonly changed_: (change: Change) => void;
 
   constructor(changed: (change: Change) => void) {
@@ -133,6 +136,7 @@ export class WorldModel {
     switch (key) {
       case "world":
         this.settings = value === null ? emptyWorld : readWorld(object(value, key));
+        if (!this.lookChosen_ || !this.settings.looks.includes(this.look)) this.applyLook_(this.settings.look);
         this.changed_("world");
         break;
       case "classes":
@@ -159,6 +163,12 @@ export class WorldModel {
         // A newer server may know more keys than this page: what it cannot draw does not harm it.
         break;
     }
+  }
+
+  /** Draws the world in another of its looks, on this page only. */
+  setLook(look: string): void {
+    this.lookChosen_ = true;
+    this.applyLook_(look);
   }
 
   setStructure(structure: Structure): void {
@@ -202,6 +212,12 @@ export class WorldModel {
         hold.target[axis] = rows.target[3 * row + axis];
       }
     }
+  }
+
+  private applyLook_(look: string): void {
+    if (look === this.look) return;
+    this.look = look;
+    this.changed_("look");
   }
 
   /** Shapes of a class in a look: that look's, else those for every look ("*"), else of any look. */

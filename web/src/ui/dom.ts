@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small helpers for the overlay.
 
-import type { Commands } from "../app/commands.ts";
-import type { ActionEntry } from "../scene/world_model.ts";
-
 /** The element of index.html with this id; throws when page and script do not fit. */
 export function byId<T extends HTMLElement>(id: string, type: new () => T): T {
   const found = document.getElementById(id);
@@ -24,18 +21,6 @@ export function make<K extends keyof HTMLElementTagNameMap>(
 export function keyName(key: string): string {
   const names: Record<string, string> = { " ": "space", Escape: "esc", ArrowUp: "↑", ArrowDown: "↓", ArrowLeft: "←", ArrowRight: "→", Enter: "enter" };
   return names[key] ?? key;
-}
-
-export function makeActionButton(action: ActionEntry, commands: Commands, body: () => number, after?: () => void): HTMLButtonElement {
-  const button = make("button", "action", action.label);
-  button.type = "button";
-  if (action.help !== "") button.title = action.help;
-  if (action.key !== "") button.append(make("kbd", "", keyName(action.key)));
-  button.addEventListener("click", () => {
-    commands.act(action, body());
-    after?.();
-  });
-  return button;
 }
 
 /** Moves a fixed element next to a place in css px, kept inside the window. */

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The help: what the script offers, made from its own key bindings, then what the page offers.
+// The help: what the script offers, then what the page offers, both from the list of commands.
 
-import type { Page } from "../app/page.ts";
+import type { Entry } from "../commands/command.ts";
+import type { Commands } from "../commands/commands.ts";
 import { keyName, make } from "./dom.ts";
-import type { Keys } from "./keys.ts";
+import { walkKeyNames } from "./keys.ts";
 
 const mouse: readonly (readonly [string, string])[] = [
   ["drag a body", "pulls it by a spring; the wheel, or shift and drag, moves it nearer or away"],
@@ -44,29 +45,38 @@ function addSection(root: HTMLElement, title: string, rows: readonly (readonly [
   root.append(make("h2", "", title), list);
 }
 
+/** Lines of the help for commands; those with the same text share one. Keys that `hidden` says yes to are left out. */
+function rowsOf(entries: readonly Entry[], hidden: (key: string) => boolean): (readonly [Node | string, string])[] {
+  const keysOf = new Map<string, string[]>();
+  for (const { help, keys } of entries) {
+    if (help === undefined || keys === undefined) continue;
+    const line = keysOf.get(help) ?? [];
+    line.push(...keys.filter((key) => !hidden(key)));
+    keysOf.set(help, line);
+  }
+  return [...keysOf].filter(([, keys]) => keys.length > 0).map(([help, keys]) => [keyCaps(keys), help] as const);
+}
+
 /** Fills and opens the dialog. */
-export function openHelp(dialog: HTMLDialogElement, page: Page, keys: Keys): void {
+export function openHelp(dialog: HTMLDialogElement, title: string, commands: Commands): void {
   dialog.replaceChildren();
   const header = make("header");
-  header.append(make("h1", "", page.model.settings.title || "Iota"));
+  header.append(make("h1", "", title));
   const close = make("button", "", "×");
   close.type = "button";
   close.setAttribute("aria-label", "Close");
   close.addEventListener("click", () => dialog.close());
   header.append(close);
   dialog.append(header);
-  addSection(dialog, "In this world", page.model.actions.map((action) => [
-    action.key === "" ? action.label : keyCaps([action.key]), action.help || action.label,
+  addSection(dialog, "In this world", commands.script.map((command) => [
+    command.keys === undefined || command.keys.length === 0 ? command.title() : keyCaps(command.keys), command.help || command.title(),
   ]));
   if (matchMedia("(pointer: coarse)").matches) addSection(dialog, "Touch", touch);
   if (matchMedia("(any-hover: hover)").matches) addSection(dialog, "Mouse", mouse);
-  const walking = ["w", "a", "s", "d", "q", "e"].filter((key) => keys.actionOf(key) === undefined);
+  const taken = (key: string) => commands.scriptOfKey(key) !== undefined;
   addSection(dialog, "Keys", [
-    ...keys.bindings
-      .map((binding) => ({ keys: binding.keys.filter((key) => keys.actionOf(key) === undefined), help: binding.help }))
-      .filter((binding) => binding.keys.length > 0)
-      .map((binding) => [keyCaps(binding.keys), binding.help] as const),
-    [keyCaps(walking), "walk, down and up; with shift faster"],
+    ...rowsOf(commands.own, taken),
+    [keyCaps(walkKeyNames.filter((key) => !taken(key))), "walk, down and up; with shift faster"],
   ]);
   dialog.showModal();
 }

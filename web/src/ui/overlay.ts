@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's own controls: one thin bar, time readings, a hint at the pointer, actions, cards, help.
 
-import { speeds } from "../app/commands.ts";
-import type { Page, PageListener } from "../app/page.ts";
+import type { Command } from "../commands/command.ts";
 import type { Grab, Pointer } from "../interact/gestures.ts";
 import type { LinkState } from "../net/connection.ts";
-import type { Notice } from "../protocol/generated.ts";
-import type { ActionEntry, Change } from "../scene/world_model.ts";
+import type { PageListener, PageNotice } from "../page/events.ts";
+import type { Page } from "../page/page.ts";
+import type { FramePart } from "../page/viewer.ts";
+import type { Change } from "../scene/world_model.ts";
+import { makeActionButton, makeBarItem, type BarItem } from "./buttons.ts";
 import { Cards, type CardLevel } from "./cards.ts";
-import { byId, keyName, make, makeActionButton, placeNear } from "./dom.ts";
+import { byId, keyName, make, placeNear } from "./dom.ts";
 import { openHelp } from "./help.ts";
 import { Keys } from "./keys.ts";
 
@@ -18,21 +20,21 @@ const meterEveryMs = 250;
 const linkCard = "link";
 const levels: readonly CardLevel[] = ["info", "warning", "error"];
 
-export class Overlay implements PageListener {
-  readonly cards = new Cards(byId("cards", HTMLElement));
-  readonly keys: Keys;
+type OverlayPage = Pick<Page, "world" | "selection" | "gestures" | "viewer" | "navigation" | "commands" | "sound" | "setTheme">;
 
-  private readonly page_: Page;
+export class Overlay implements PageListener, FramePart {
+  readonly cards = new Cards(byId("cards", HTMLElement));
+
+  private readonly page_: OverlayPage;
   private readonly canvas_: HTMLCanvasElement;
   private readonly hint_ = byId("hint", HTMLElement);
   private readonly menu_ = byId("menu", HTMLElement);
   private readonly strip_ = byId("strip", HTMLElement);
-  private readonly play_ = byId("play", HTMLButtonElement);
-  private readonly look_ = byId("look", HTMLButtonElement);
-  private readonly speed_ = byId("speed", HTMLSelectElement);
+  private readonly bar_ = byId("bar", HTMLElement);
   private readonly meter_ = byId("meter", HTMLElement);
   private readonly welcome_ = byId("welcome", HTMLElement);
   private readonly help_ = byId("help", HTMLDialogElement);
+  private barItems_: readonly BarItem[] = [];
   private pointerAt_ = { x: 0, y: 0, touch: false };
   private idle_: number | undefined;
   private paused_: boolean | null = null;
@@ -40,36 +42,17 @@ export class Overlay implements PageListener {
   private bodyHint_ = "drag";
   private everConnected_ = false;
 
-  constructor(page: Page, canvas: HTMLCanvasElement) {
+  constructor(page: OverlayPage, canvas: HTMLCanvasElement) {
     this.page_ = page;
     this.canvas_ = canvas;
     const stir = () => this.stir();
-    const { commands } = page;
-    this.keys = new Keys(page, [
-      { keys: [" "], help: "pause, play", run: () => commands.togglePause() },
-      { keys: ["."], help: "one step", run: () => commands.step() },
-      { keys: ["r"], help: "reset", run: () => commands.reset() },
-      { keys: ["[", "]"], help: "slower, faster", run: () => {} },
-      { keys: ["l"], help: "next look", run: () => commands.nextLook() },
-      { keys: ["f"], help: "a drag on nothing looks around instead of orbiting", run: () => this.toggleFlying_() },
-      { keys: ["Home", "0"], help: "back to the first view", run: () => page.navigation.reset() },
-      { keys: ["g"], help: "grid: lines each 0.1 m and 1 m", run: () => this.toggleGrid_() },
-      { keys: ["m"], help: "sound on, off", run: () => this.toggleSound_() },
-      { keys: ["ArrowRight", "ArrowDown"], help: "selects the next body", run: () => commands.selectNext(1) },
-      { keys: ["ArrowLeft", "ArrowUp"], help: "selects the one before", run: () => commands.selectNext(-1) },
-      { keys: ["Escape"], help: "selects nothing", run: () => this.escape_() },
-      { keys: ["?"], help: "this help", run: () => this.openHelp() },
-    ], stir);
-    window.addEventListener("keydown", (event) => this.speedKey_(event));
-    this.play_.addEventListener("click", () => commands.togglePause());
-    byId("step", HTMLButtonElement).addEventListener("click", () => commands.step());
-    byId("reset", HTMLButtonElement).addEventListener("click", () => commands.reset());
-    byId("help-open", HTMLButtonElement).addEventListener("click", () => this.openHelp());
-    this.look_.addEventListener("click", () => commands.nextLook());
-    for (const speed of speeds) this.speed_.append(new Option(`${speed}×`, String(speed)));
-    this.speed_.addEventListener("change", () => {
-      commands.setSpeed(Number(this.speed_.value));
-      canvas.focus({ preventScroll: true });
+    page.commands.add(this.helpCommand_());
+    page.commands.onChange(() => this.takeCommands_());
+    this.takeCommands_();
+    window.addEventListener("keydown", (event) => this.closeMenuByKey_(event), true);
+    new Keys(page, () => {
+      page.sound.wake();
+      stir();
     });
     // After a click the keys go to the world again: space must not press the same button once more.
     byId("foot", HTMLElement).addEventListener("click", (event) => {
@@ -91,7 +74,6 @@ export class Overlay implements PageListener {
     applyTheme();
     window.setInterval(() => this.refreshMeter_(), meterEveryMs);
     window.setTimeout(() => this.welcome_.classList.add("gone"), welcomeMs);
-    this.refreshLook_();
     stir();
   }
 
@@ -100,22 +82,22 @@ export class Overlay implements PageListener {
     document.body.classList.remove("idle");
     window.clearTimeout(this.idle_);
     this.idle_ = window.setTimeout(() => {
-      if (!this.page_.model.paused && this.menu_.hidden) document.body.classList.add("idle");
+      if (!this.page_.world.paused && this.menu_.hidden) document.body.classList.add("idle");
     }, idleAfterMs);
   }
 
   openHelp(): void {
-    if (!this.help_.open) openHelp(this.help_, this.page_, this.keys);
+    if (!this.help_.open) openHelp(this.help_, this.page_.world.settings.title || "Iota", this.page_.commands);
   }
 
   /** The actions for a body, at a place in css px. */
   openMenu(body: number, x: number, y: number): void {
-    const actions = this.bodyActions_();
+    const actions = this.page_.commands.script.filter((action) => action.onBody);
     if (actions.length === 0) return;
-    this.page_.select(body);
+    this.page_.selection.select(body);
     this.menu_.replaceChildren(
       ...actions.map((action) => {
-        const button = makeActionButton(action, this.page_.commands, () => body, () => this.closeMenu_());
+        const button = makeActionButton(action, () => this.closeMenu_(), body);
         button.setAttribute("role", "menuitem");
         return button;
       }),
@@ -131,30 +113,14 @@ export class Overlay implements PageListener {
     this.canvas_.classList.remove("waiting");
   }
 
-  changed(what: Change | "selection" | "look"): void {
-    const { settings } = this.page_.model;
-    switch (what) {
-      case "world":
-        document.title = settings.title === "" ? "Iota" : `${settings.title} · Iota`;
-        this.refreshLook_();
-        break;
-      case "look":
-        this.refreshLook_();
-        break;
-      case "actions": {
-        const keys = this.bodyActions_().filter((action) => action.key !== "");
-        this.bodyHint_ = ["drag", ...keys.map((action) => `${keyName(action.key)} ${action.label}`)].join("; ");
-        this.closeMenu_();
-        this.refreshStrip_();
-        break;
-      }
-      case "selection":
-        this.closeMenu_();
-        this.refreshStrip_();
-        break;
-      default:
-        break;
+  changed(what: Change | "selection"): void {
+    const { title } = this.page_.world.settings;
+    if (what === "world") document.title = title === "" ? "Iota" : `${title} · Iota`;
+    if (what === "selection") {
+      this.closeMenu_();
+      this.refreshStrip_();
     }
+    this.refreshBar_();
   }
 
   link(state: LinkState, reason: string): void {
@@ -182,8 +148,8 @@ export class Overlay implements PageListener {
     }
   }
 
-  notice(notice: Omit<Notice, "type">): void {
-    this.cards.show({ level: levels[notice.level] ?? "info", title: notice.title, text: notice.text, hint: notice.hint });
+  notice({ level, title, text, hint, key }: PageNotice): void {
+    this.cards.show({ level: levels[level] ?? "info", title, text, hint }, key);
   }
 
   grab(grab: Grab): void {
@@ -196,21 +162,46 @@ export class Overlay implements PageListener {
     if (pointer.name === "mouse") this.canvas_.classList.toggle("can-grab", body >= 0);
   }
 
-  beforeRender(): void {
+  // --- FramePart
+
+  draw(): void {
     this.refreshHint_();
-    const { paused } = this.page_.model;
+    const { paused } = this.page_.world;
     if (paused === this.paused_) return;
     this.paused_ = paused;
-    document.body.classList.toggle("paused", paused);
-    this.play_.setAttribute("aria-label", paused ? "Play" : "Pause");
-    this.play_.title = paused ? "Play (space)" : "Pause (space)";
+    this.refreshBar_();
     this.stir();
   }
 
   // --- inside
 
-  private bodyActions_(): readonly ActionEntry[] {
-    return this.page_.model.actions.filter((action) => action.on === "body");
+  private helpCommand_(): Command {
+    return {
+      name: "open help",
+      help: "this help",
+      keys: ["?"],
+      places: ["bar"],
+      title: () => "Help",
+      label: () => "?",
+      run: () => this.openHelp(),
+    };
+  }
+
+  /** Puts the buttons of all commands in their places. */
+  private takeCommands_(): void {
+    const { commands } = this.page_;
+    const refocus = () => this.canvas_.focus({ preventScroll: true });
+    this.barItems_ = commands.at("bar").map((entry) => makeBarItem(entry, refocus));
+    this.bar_.replaceChildren(...this.barItems_.map((item) => item.element));
+    const hints = commands.script.filter((action) => action.onBody)
+      .flatMap((action) => (action.keys ?? []).map((key) => `${keyName(key)} ${action.title()}`));
+    this.bodyHint_ = ["drag", ...hints].join("; ");
+    this.closeMenu_();
+    this.refreshStrip_();
+  }
+
+  private refreshBar_(): void {
+    for (const item of this.barItems_) item.refresh();
   }
 
   private anyPress_(event: PointerEvent): void {
@@ -226,53 +217,17 @@ export class Overlay implements PageListener {
     this.canvas_.focus({ preventScroll: true });
   }
 
-  private escape_(): void {
-    if (this.menu_.hidden) this.page_.select(-1);
-    else this.closeMenu_();
-  }
-
-  private toggleGrid_(): void {
-    const { stage } = this.page_;
-    stage.gridShown = !stage.gridShown;
-    this.page_.stir();
-  }
-
-  private toggleFlying_(): void {
-    const { navigation } = this.page_;
-    navigation.flying = !navigation.flying;
-    this.cards.show({
-      level: "info", title: navigation.flying ? "Fly: drag looks around, w a s d q e walk" : "Orbit: drag turns the view", text: "", hint: "",
-    }, "fly");
-  }
-
-  private toggleSound_(): void {
-    const { sound } = this.page_;
-    sound.muted = !sound.muted;
-    this.cards.show({ level: "info", title: sound.muted ? "Sound is off" : "Sound is on", text: "", hint: "" }, "sound");
-  }
-
-  /** Two keys share a line of the help, so they are told apart here. */
-  private speedKey_(event: KeyboardEvent): void {
-    this.page_.sound.wake();
-    if (this.keys.actionOf(event.key) !== undefined) return;
-    if (event.key === "[") this.page_.commands.changeSpeed(-1);
-    if (event.key === "]") this.page_.commands.changeSpeed(1);
-  }
-
-  private refreshLook_(): void {
-    const { looks } = this.page_.model.settings;
-    this.look_.hidden = looks.length < 2;
-    this.look_.textContent = this.page_.look;
-    this.look_.setAttribute("aria-label", `Look: ${this.page_.look}`);
+  /** Escape closes an open menu and does nothing else. */
+  private closeMenuByKey_(event: KeyboardEvent): void {
+    if (event.key !== "Escape" || this.menu_.hidden) return;
+    event.stopImmediatePropagation();
+    this.closeMenu_();
   }
 
   /** Buttons of the script: those about the world always, those about a body while one is selected. */
   private refreshStrip_(): void {
-    const { model, selected, commands } = this.page_;
-    const shown = model.actions.filter((action) => action.on === "world" || selected >= 0);
-    this.strip_.replaceChildren(
-      ...shown.map((action) => makeActionButton(action, commands, () => (action.on === "body" ? this.page_.selected : -1))),
-    );
+    const shown = this.page_.commands.script.filter((action) => action.offered?.() !== false);
+    this.strip_.replaceChildren(...shown.map((action) => makeActionButton(action)));
   }
 
   private refreshHint_(): void {
@@ -293,10 +248,10 @@ export class Overlay implements PageListener {
   }
 
   private calcHint_(): string {
-    if (this.page_.renderer.xr.isPresenting || !this.menu_.hidden) return "";
+    if (this.page_.viewer.presenting || !this.menu_.hidden) return "";
     const grab = this.page_.gestures.grabs.at(-1);
     if (grab !== undefined) {
-      const force = this.page_.forceOf(grab);
+      const force = this.page_.selection.forceOf(grab);
       return `${force < 10 ? force.toFixed(1) : force.toFixed(0)} N`;
     }
     const mouse = this.page_.gestures.pointers[0];
@@ -305,12 +260,11 @@ export class Overlay implements PageListener {
   }
 
   private refreshMeter_(): void {
-    const { model, timing } = this.page_;
-    const step = make("b", "", model.stepMs.toFixed(2));
+    this.refreshBar_();
+    const { world, viewer: { timing } } = this.page_;
+    const step = make("b", "", world.stepMs.toFixed(2));
     const frame = make("b", "", timing.frameMs.toFixed(1));
     this.meter_.replaceChildren("step ", step, " ms\nframe ", frame, " ms");
-    this.meter_.title = `script ${timing.scriptMs.toFixed(2)} ms a frame · step ${model.step} · ${model.time.toFixed(1)} s · gap ${model.gap.toExponential(1)} m`;
-    const speed = speeds.find((value) => Math.abs(value - model.speed) < 0.01 * value);
-    if (speed !== undefined && document.activeElement !== this.speed_) this.speed_.value = String(speed);
+    this.meter_.title = `script ${timing.scriptMs.toFixed(2)} ms a frame · step ${world.step} · ${world.time.toFixed(1)} s · gap ${world.gap.toExponential(1)} m`;
   }
 }

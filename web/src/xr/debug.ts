@@ -3,7 +3,7 @@
 
 import { Vector3 } from "three";
 import type { XRDevice } from "iwer";
-import type { Page } from "../app/page.ts";
+import type { Page } from "../page/page.ts";
 import type { Headset } from "./headset.ts";
 
 export interface IotaXR {
@@ -37,8 +37,8 @@ declare global {
   }
 }
 
-export function makeXrDebug(page: Page, headset: Headset, device: XRDevice | null): IotaXR {
-  const { rig } = page;
+export function makeXrDebug({ viewer }: Pick<Page, "viewer">, headset: Headset, device: XRDevice | null): IotaXR {
+  const { rig } = viewer;
   const { panel, locomotion } = headset;
   return {
     device,
@@ -54,12 +54,12 @@ export function makeXrDebug(page: Page, headset: Headset, device: XRDevice | nul
       hovered: input.pointer.hovered,
       held: input.pointer.grab?.body ?? -1,
       near: input.pointer.near,
-      panelButton: input.board === panel.board && input.button >= 0 ? panel.layout.buttons[input.button].name : "",
+      panelButton: input.board === panel.board && input.button >= 0 ? panel.layout.buttons[input.button].command.name : "",
     })),
-    panelButtons: () => panel.layout.buttons.map((button) => button.name),
+    panelButtons: () => panel.layout.buttons.map((button) => button.command.name),
     panelButton: (name) => {
       const { board, layout } = panel;
-      const button = layout.buttons.find((entry) => entry.name === name);
+      const button = layout.buttons.find((entry) => entry.command.name === name);
       if (button === undefined || !board.ready) return null;
       const at = new Vector3(
         (button.x + button.width / 2) / board.density - board.width / 2, board.height / 2 - (button.y + button.height / 2) / board.density, 0,

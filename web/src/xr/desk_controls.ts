@@ -4,8 +4,9 @@
 
 import { Euler, Quaternion, Vector3 } from "three";
 import type { XRDevice } from "iwer";
-import type { Page, PageListener } from "../app/page.ts";
 import { Hit, pickRay } from "../interact/picking.ts";
+import type { Page } from "../page/page.ts";
+import type { FramePart } from "../page/viewer.ts";
 import { rayOnPlate, Spot, type Plate } from "./plate.ts";
 
 type Side = "left" | "right";
@@ -25,11 +26,13 @@ const stickKeys: Record<string, readonly [number, number]> = {
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
 };
 
-export class DeskControls implements PageListener {
+type DeskPage = Pick<Page, "viewer" | "bodies" | "commands">;
+
+export class DeskControls implements FramePart {
   /** Panels that the mouse may mean; set once they exist. */
   plates: readonly (Plate & { readonly ready: boolean })[] = [];
 
-  private readonly page_: Page;
+  private readonly page_: DeskPage;
   private readonly device_: XRDevice;
   private readonly down_ = new Set<string>();
   private readonly mouse_ = { x: 0, y: 0, known: false };
@@ -49,7 +52,7 @@ export class DeskControls implements PageListener {
   private readonly hit_ = new Hit();
   private readonly spot_ = new Spot();
 
-  constructor(page: Page, canvas: HTMLCanvasElement, device: XRDevice) {
+  constructor(page: DeskPage, canvas: HTMLCanvasElement, device: XRDevice) {
     this.page_ = page;
     this.device_ = device;
     // Before the page's own listeners: while the headset is on, the mouse is a hand.
@@ -65,7 +68,7 @@ export class DeskControls implements PageListener {
     take("keyup", (event) => this.key_(event as KeyboardEvent, false));
   }
 
-  beforeGestures(seconds: number): void {
+  aim(seconds: number): void {
     if (!this.on_ || this.down_.size === 0) return;
     this.flat_.set(0, 0, 0);
     for (const key of this.down_) {
@@ -83,7 +86,7 @@ export class DeskControls implements PageListener {
   }
 
   private get on_(): boolean {
-    return this.page_.renderer.xr.isPresenting;
+    return this.page_.viewer.presenting;
   }
 
   private move_(event: PointerEvent): void {
@@ -131,7 +134,7 @@ export class DeskControls implements PageListener {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { key } = event;
     // Keys of the script win over ours, as on the page.
-    if (this.page_.model.actions.some((action) => action.key === key) || !this.own_(key, down, event.repeat)) return;
+    if (this.page_.commands.script.some((command) => command.keys?.includes(key)) || !this.own_(key, down, event.repeat)) return;
     event.preventDefault();
     event.stopImmediatePropagation();
   }
@@ -203,13 +206,13 @@ export class DeskControls implements PageListener {
 
   /** How far away the thing is that an eye sees along the ray, m. */
   private look_(eye: number): number {
-    const camera = this.page_.renderer.xr.getCamera().cameras.at(eye);
+    const camera = this.page_.viewer.renderer.xr.getCamera().cameras.at(eye);
     if (camera === undefined) return meetsAt;
     this.sight_.setFromMatrixPosition(camera.matrixWorld).toArray(this.origin_);
     this.sight_.copy(this.ray_).transformDirection(camera.matrixWorld).toArray(this.direction_);
     for (const plate of this.plates) {
       if (plate.ready && rayOnPlate(plate, this.origin_, this.direction_, this.spot_)) return this.spot_.distance;
     }
-    return pickRay(this.page_.view, this.origin_, this.direction_, tolerance, 50, this.hit_) ? this.hit_.distance : meetsAt;
+    return pickRay(this.page_.bodies, this.origin_, this.direction_, tolerance, 50, this.hit_) ? this.hit_.distance : meetsAt;
   }
 }

@@ -2,7 +2,8 @@
 // ?emulate=quest3: a headset made of software (IWER), for tests and for people without one.
 
 import { metaQuest3, XRDevice } from "iwer";
-import type { Page } from "../app/page.ts";
+import type { Page } from "../page/page.ts";
+import type { Viewer } from "../page/viewer.ts";
 import { DeskControls } from "./desk_controls.ts";
 
 const eyeHeight = 1.6;
@@ -15,17 +16,17 @@ export interface Emulation {
 }
 
 /** Installs the emulated headset as navigator.xr. Throws on a model it does not know. */
-export function emulate(page: Page, canvas: HTMLCanvasElement, model: string): Emulation {
+export function emulate(page: Pick<Page, "viewer" | "bodies" | "commands">, canvas: HTMLCanvasElement, model: string): Emulation {
   if (model !== "quest3") throw new Error(`?emulate= knows quest3, not ${model}`);
-  shadowClears(page.renderer.getContext() as WebGL2RenderingContext);
+  shadowClears(page.viewer.renderer.getContext() as WebGL2RenderingContext);
   const device = new XRDevice(metaQuest3, { stereoEnabled: true, fovy });
   // Browsers have a navigator.xr of their own even where no headset is.
   device.installRuntime({ forceInstall: true });
   device.position.set(0, eyeHeight, 0);
   restHands(device);
-  keepCanvasPlace(page, canvas);
+  keepCanvasPlace(page.viewer, canvas);
   const desk = new DeskControls(page, canvas, device);
-  page.listeners.push(desk);
+  page.viewer.add(desk);
   return { device, desk };
 }
 
@@ -73,9 +74,9 @@ function shadowClears(gl: WebGL2RenderingContext): void {
 }
 
 /** The emulator moves the canvas while it presents and puts it back last among its siblings, over the page's bar. */
-function keepCanvasPlace(page: Page, canvas: HTMLCanvasElement): void {
+function keepCanvasPlace(viewer: Viewer, canvas: HTMLCanvasElement): void {
   const { parentElement: parent, nextSibling: next } = canvas;
-  page.renderer.xr.addEventListener("sessionend", () => {
+  viewer.renderer.xr.addEventListener("sessionend", () => {
     // After the emulator's own handler, whichever comes first.
     setTimeout(() => {
       parent?.insertBefore(canvas, next);

@@ -3,14 +3,16 @@
 // and controllers to pointers, panels and locomotion.
 
 import { Matrix4, Vector3 } from "three";
-import type { Page, PageListener } from "../app/page.ts";
 import type { LinkState } from "../net/connection.ts";
-import type { Notice } from "../protocol/generated.ts";
+import type { PageListener, PageNotice } from "../page/events.ts";
+import type { Page } from "../page/page.ts";
+import type { FramePart } from "../page/viewer.ts";
 import type { Change } from "../scene/world_model.ts";
 import type { Pointer } from "../interact/gestures.ts";
 import type { Board } from "./board.ts";
 import { ControllerView } from "./controllers.ts";
 import { HandView } from "./hands.ts";
+import { headsetCommands } from "./headset_commands.ts";
 import { Input, type FaceButton } from "./input.ts";
 import { Locomotion, snapDegrees } from "./locomotion.ts";
 import { Notices } from "./notices.ts";
@@ -29,7 +31,7 @@ const helpCard = "help";
 const faceButtons: readonly FaceButton[] = ["a", "b"];
 const fingerSlack = 7;
 
-export class Headset implements PageListener {
+export class Headset implements PageListener, FramePart {
   readonly inputs: Input[] = [];
   readonly panel: WristPanel;
   readonly notices: Notices;
@@ -54,9 +56,9 @@ export class Headset implements PageListener {
 
   constructor(page: Page) {
     this.page_ = page;
-    this.locomotion = new Locomotion(page.rig);
-    this.notices = new Notices(page.rig);
-    this.panel = new WristPanel(page, page.rig, {
+    this.locomotion = new Locomotion(page.viewer.rig);
+    this.notices = new Notices(page.viewer.rig);
+    page.commands.add(...headsetCommands({
       turn: (direction) => {
         this.locomotion.turn(direction * snapDegrees, this.head);
         this.moved_();
@@ -66,16 +68,19 @@ export class Headset implements PageListener {
       },
       teleportArmed: () => this.locomotion.armed,
       leave: () => void this.leave(),
-    });
-    this.everConnected_ = page.connection.connected;
+    }));
+    this.panel = new WristPanel(page);
+    this.everConnected_ = page.session.connection.connected;
     this.boards = [this.panel.board, this.notices.board];
-    page.scene.add(this.locomotion.root);
-    page.listeners.push(this);
-    page.renderer.xr.addEventListener("sessionend", () => this.ended_());
+    page.viewer.scene.add(this.locomotion.root);
+    page.events.add(this);
+    page.viewer.add(this);
+    page.commands.onChange(() => this.markButtons_());
+    page.viewer.renderer.xr.addEventListener("sessionend", () => this.ended_());
   }
 
   get presenting(): boolean {
-    return this.page_.renderer.xr.isPresenting;
+    return this.page_.viewer.presenting;
   }
 
   /** Asks for a session; to be called from a gesture of the user. Rejects when the headset refuses. */
@@ -92,7 +97,7 @@ export class Headset implements PageListener {
     session.addEventListener("selectend", (event) => this.release_(event, true));
     session.addEventListener("squeezestart", (event) => this.press_(event, false));
     session.addEventListener("squeezeend", (event) => this.release_(event, false));
-    const { xr } = this.page_.renderer;
+    const { xr } = this.page_.viewer.renderer;
     xr.enabled = true;
     xr.setReferenceSpaceType("local-floor");
     try {
@@ -111,22 +116,22 @@ export class Headset implements PageListener {
     this.page_.sound.wake();
     for (const source of session.inputSources) this.add_(source);
     this.panel.arrange();
-    this.link(this.page_.connection.state, "");
+    this.link(this.page_.session.connection.state, "");
   }
 
   async leave(): Promise<void> {
     await this.session_?.end();
   }
 
-  // --- PageListener
+  // --- FramePart
 
-  beforeGestures(seconds: number, frame: XRFrame | null): void {
+  aim(seconds: number, frame: XRFrame | null): void {
     if (frame === null || this.space_ === null || !this.presenting) return;
     this.readHead_();
     if (this.toPlace_) this.place_();
     for (const input of this.inputs) {
       input.read(frame, this.space_);
-      input.lift(this.page_.rig.matrixWorld);
+      input.lift(this.page_.viewer.rig.matrixWorld);
     }
     if (this.locomotion.steer(this.inputs, this.head, seconds)) this.moved_();
     this.panel.update(this.wearer_(), this.headLocal_, seconds);
@@ -137,7 +142,7 @@ export class Headset implements PageListener {
     this.actByButtons_();
   }
 
-  beforeRender(seconds: number, frame: XRFrame | null): void {
+  draw(seconds: number, frame: XRFrame | null): void {
     if (frame === null || !this.presenting) return;
     this.locomotion.draw(this.floor_());
     for (const input of this.inputs) {
@@ -152,10 +157,11 @@ export class Headset implements PageListener {
     }
   }
 
-  changed(what: Change | "selection" | "look"): void {
-    if (what === "actions" || what === "world" || what === "look") this.panel.arrange();
+  // --- PageListener
+
+  changed(what: Change | "selection"): void {
+    if (what === "world" || what === "look") this.panel.arrange();
     else this.panel.board.repaint();
-    if (what === "actions") this.markButtons_();
   }
 
   effect(kind: string): void {
@@ -164,8 +170,8 @@ export class Headset implements PageListener {
     for (const input of this.inputs) input.pulse(input.pointer.grab === null ? strength / 2 : strength, kind === "break" ? 60 : 35);
   }
 
-  notice(notice: Omit<Notice, "type">): void {
-    if (this.presenting) this.notices.show(notice.level, notice.title, notice.text, notice.hint);
+  notice({ level, title, text, hint, key }: PageNotice): void {
+    if (this.presenting) this.notices.show(level, title, text, hint, key);
   }
 
   link(state: LinkState, reason: string): void {
@@ -183,7 +189,7 @@ export class Headset implements PageListener {
   pressNothing(pointer: Pointer): void {
     // A bare hand pinches by chance now and then: only a trigger clears the selection.
     const input = this.inputs.find((each) => each.pointer === pointer);
-    if (input !== undefined && !input.isHand) this.page_.select(-1);
+    if (input !== undefined && !input.isHand) this.page_.selection.select(-1);
   }
 
   // --- session
@@ -214,9 +220,9 @@ export class Headset implements PageListener {
 
   private makeView_(input: Input): View {
     const ray = new RayView();
-    this.page_.scene.add(ray.root);
+    this.page_.viewer.scene.add(ray.root);
     const body = !input.hasBody ? null : input.isHand ? new HandView() : new ControllerView(input.source.handedness);
-    if (body !== null) this.page_.rig.add(body.root);
+    if (body !== null) this.page_.viewer.rig.add(body.root);
     return { ray, body };
   }
 
@@ -235,11 +241,11 @@ export class Headset implements PageListener {
     this.panel.board.hide();
     this.notices.clear();
     this.helped_ = false;
-    const { rig } = this.page_;
+    const { rig } = this.page_.viewer;
     rig.position.set(0, 0, 0);
     rig.rotation.set(0, 0, 0);
     rig.updateMatrixWorld();
-    this.page_.stir();
+    this.page_.viewer.stir();
   }
 
   /** Says once a session how to take hold, for what the user has in hand. */
@@ -255,7 +261,7 @@ export class Headset implements PageListener {
 
   /** The middle between the eyes, with the left eye's direction, in the reference space; and in the world. */
   private readHead_(): void {
-    const { rig, renderer } = this.page_;
+    const { rig, renderer } = this.page_.viewer;
     const camera = renderer.xr.getCamera();
     this.headLocal_.copy(camera.matrix);
     const eyes = camera.cameras;
@@ -269,8 +275,8 @@ export class Headset implements PageListener {
 
   private place_(): void {
     this.toPlace_ = false;
-    const { rig, model } = this.page_;
-    standBefore(model.settings, this.headLocal_.elements, rig);
+    const { world, viewer: { rig } } = this.page_;
+    standBefore(world.settings, this.headLocal_.elements, rig);
     rig.updateMatrixWorld();
     this.panel.snap();
     this.readHead_();
@@ -278,7 +284,7 @@ export class Headset implements PageListener {
 
   /** After the rig jumped: everything that hangs on it is worked out again within the frame. */
   private moved_(): void {
-    const { rig } = this.page_;
+    const { rig } = this.page_.viewer;
     this.head.setFromMatrixPosition(this.headLocal_).applyMatrix4(rig.matrixWorld);
     this.eye_.copy(this.head);
     for (const input of this.inputs) input.lift(rig.matrixWorld);
@@ -292,7 +298,7 @@ export class Headset implements PageListener {
   }
 
   private floor_(): number {
-    return this.page_.model.settings.ground ?? this.page_.rig.position.y;
+    return this.page_.world.settings.ground ?? this.page_.viewer.rig.position.y;
   }
 
   /** Finds the panel that a hand means, if any; presses it when a fingertip comes through. */
@@ -335,7 +341,7 @@ export class Headset implements PageListener {
     if (input.board === null || input.button < 0) return;
     this.pressedBy_ = input;
     input.pulse(0.5, 20);
-    this.page_.sound.play("grab");
+    this.page_.sound.effect("grab");
     input.board.push(input.button);
   }
 
@@ -344,20 +350,21 @@ export class Headset implements PageListener {
     for (const input of this.inputs) {
       for (const button of faceButtons) {
         if (!input.pressed(button)) continue;
-        const action = this.page_.model.actions.find((entry) => entry.button === button);
+        const action = this.page_.commands.script.find((command) => command.button === button);
         if (action === undefined) continue;
         const meant = input.pointer.grab?.body ?? (input.board === null ? input.pointer.hovered : -1);
-        if (action.on === "body" && meant >= 0) this.page_.select(meant);
-        this.page_.commands.act(action, meant >= 0 ? meant : this.page_.commands.actionBody());
+        if (action.onBody && meant >= 0) this.page_.selection.select(meant);
+        if (meant >= 0) action.runOn(meant);
+        else action.run();
         input.pulse(0.4, 20);
       }
     }
   }
 
   private markButtons_(): void {
-    const { actions } = this.page_.model;
-    const onA = actions.some((action) => action.button === "a");
-    const onB = actions.some((action) => action.button === "b");
+    const { script } = this.page_.commands;
+    const onA = script.some((command) => command.button === "a");
+    const onB = script.some((command) => command.button === "b");
     for (const view of this.views_.values()) if (view.body instanceof ControllerView) view.body.mark(onA, onB);
   }
 
@@ -397,7 +404,7 @@ export class Headset implements PageListener {
   private aimNow_(input: Input, frame: XRFrame): void {
     if (this.space_ === null) return;
     input.read(frame, this.space_);
-    input.lift(this.page_.rig.matrixWorld);
+    input.lift(this.page_.viewer.rig.matrixWorld);
     this.aim_(input);
   }
 }

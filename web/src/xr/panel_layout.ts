@@ -1,25 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is on the wrist panel and where: the page's bar, the script's actions, and getting about.
+// Where the commands are on the wrist panel: the page's in a row, the script's actions below, and getting about at the foot.
 
-import type { ActionEntry } from "../scene/world_model.ts";
+import { isChoice, type Entry, type ScriptCommand } from "../commands/command.ts";
+import type { Commands } from "../commands/commands.ts";
 import type { Rect } from "./plate.ts";
 
 export interface PanelButton extends Rect {
-  /** What it does: "play", "step", ..., "action break". */
-  readonly name: string;
-  readonly label: string;
-  /** Small, beside the label: the controller's face button that does the same. */
+  readonly command: Entry;
+  /** Small, beside the label: the controller's face button that does the same; may be empty. */
   readonly badge: string;
-  /** Drawn as a sign instead of its label. */
-  readonly sign: boolean;
-  /** Needs a body that is held or selected. */
-  readonly onBody: boolean;
 }
 
 export interface Layout {
+  /** Those that can be pressed. */
   readonly buttons: readonly PanelButton[];
-  /** Where the speed is written. */
-  readonly speed: Rect;
+  /** Those that only show a value. */
+  readonly readings: readonly PanelButton[];
   /** px */
   readonly height: number;
 }
@@ -29,61 +25,50 @@ export const headHeight = 92;
 const edge = 26;
 const gap = 14;
 const row = 124;
+const narrow = 96;
+const reading = 112;
 const actionsInRow = 3;
 
-interface Cell {
-  readonly name: string;
-  readonly label: string;
-  readonly width: number;
-  readonly sign?: boolean;
-  readonly badge?: string;
-  readonly onBody?: boolean;
+/** Width of a command's button, px; 0 takes an equal part of what the others in its row leave. */
+function widthOf(command: Entry): number {
+  if (isChoice(command)) return reading;
+  if (command.sign === undefined) return 0;
+  return command.narrow === true ? narrow : row;
 }
 
-/** Spreads cells over a row; a width of 0 takes an equal part of what is left. */
-function spread(cells: readonly Cell[], top: number): PanelButton[] {
-  const fixed = cells.reduce((sum, cell) => sum + cell.width, 0);
-  const free = panelWidth - 2 * edge - gap * (cells.length - 1) - fixed;
-  const loose = cells.filter((cell) => cell.width === 0).length;
+/** Spreads commands over a row. What is not offered now keeps its place, so that nothing jumps when it is. */
+function spread(commands: readonly Entry[], top: number): PanelButton[] {
+  const widths = commands.map(widthOf);
+  const fixed = widths.reduce((sum, width) => sum + width, 0);
+  const free = panelWidth - 2 * edge - gap * (commands.length - 1) - fixed;
+  const loose = widths.filter((width) => width === 0).length;
   let x = edge;
-  return cells.map((cell) => {
-    const width = cell.width > 0 ? cell.width : free / loose;
-    const button = {
-      name: cell.name, label: cell.label, badge: cell.badge ?? "", sign: cell.sign ?? false, onBody: cell.onBody ?? false,
-      x, y: top, width, height: row,
-    };
+  return commands.map((command, index) => {
+    const width = widths[index] > 0 ? widths[index] : free / loose;
+    const button = { command, badge: badgeOf(command), x, y: top, width, height: row };
     x += width + gap;
     return button;
   });
 }
 
-/** Lays out the panel for a script's actions; `looks`: whether there is more than one, `look`: its name. */
-export function layoutPanel(actions: readonly ActionEntry[], looks: boolean, look: string): Layout {
+function badgeOf(command: Entry): string {
+  return (command as Partial<ScriptCommand>).button?.toUpperCase() ?? "";
+}
+
+export function layoutPanel(commands: Commands): Layout {
   let top = headHeight;
-  const bar = spread([
-    { name: "play", label: "", width: row, sign: true },
-    { name: "step", label: "", width: row, sign: true },
-    { name: "reset", label: "", width: row, sign: true },
-    { name: "slower", label: "", width: 96, sign: true },
-    { name: "speed", label: "", width: 112 },
-    { name: "faster", label: "", width: 96, sign: true },
-    { name: "look", label: looks ? look : "one look", width: 0 },
-  ], top);
-  const speed = bar[4];
-  const buttons = bar.filter((button) => button !== speed && (looks || button.name !== "look"));
-  top += row + gap;
-  for (let from = 0; from < actions.length; from += actionsInRow) {
-    buttons.push(...spread(actions.slice(from, from + actionsInRow).map((action) => ({
-      name: `action ${action.name}`, label: action.label, width: 0,
-      badge: action.button === null ? "" : action.button.toUpperCase(), onBody: action.on === "body",
-    })), top));
+  const buttons: PanelButton[] = [];
+  const add = (entries: readonly Entry[]) => {
+    buttons.push(...spread(entries, top));
     top += row + gap;
-  }
-  buttons.push(...spread([
-    { name: "turn left", label: "", width: row, sign: true },
-    { name: "turn right", label: "", width: row, sign: true },
-    { name: "go", label: "Go to ...", width: 0 },
-    { name: "leave", label: "Leave VR", width: 0 },
-  ], top));
-  return { buttons, speed, height: top + row + edge };
+  };
+  add(commands.at("panel"));
+  const { script } = commands;
+  for (let from = 0; from < script.length; from += actionsInRow) add(script.slice(from, from + actionsInRow));
+  add(commands.at("panel foot"));
+  return {
+    buttons: buttons.filter(({ command }) => !isChoice(command) && (commands.script.includes(command as ScriptCommand) || command.offered?.() !== false)),
+    readings: buttons.filter(({ command }) => isChoice(command)),
+    height: top - gap + edge,
+  };
 }

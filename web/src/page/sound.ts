@@ -15,7 +15,7 @@ export class Sound {
     if (this.context_?.state === "suspended") void this.context_.resume();
   }
 
-  play(kind: string): void {
+  effect(kind: string): void {
     const context = this.context_;
     if (this.muted || context === null || context.state !== "running") return;
     switch (kind as Kind) {

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happens on the page, told to everyone who listens: the overlay, the headset, sounds and flashes.
+
+import type { Grab, Pointer } from "../interact/gestures.ts";
+import type { LinkState } from "../net/connection.ts";
+import type { NoticeLevel, Vec3 } from "../protocol/generated.ts";
+import type { Change } from "../scene/world_model.ts";
+
+/** A card for a person. */
+export interface PageNotice {
+  readonly level: NoticeLevel;
+  readonly title: string;
+  readonly text: string;
+  /** What to try; may be empty. */
+  readonly hint: string;
+  /** Replaces the card with the same key; its title unless told. */
+  readonly key?: string;
+}
+
+/** All optional: a listener has the methods that it wants to be told by. */
+export interface PageListener {
+  /** The first pictures are drawn: the page can be shown. */
+  ready?(): void;
+  /** Part of the world, the selection or the look changed. */
+  changed?(what: Change | "selection"): void;
+  /** The connection to the server; `reason` is a sentence for a person, may be empty. */
+  link?(state: LinkState, reason: string): void;
+  notice?(notice: PageNotice): void;
+  /** break, join or grab at a place (world, m). */
+  effect?(kind: string, position: Readonly<Vec3>): void;
+  hover?(pointer: Pointer, body: number): void;
+  grab?(grab: Grab, phase: "start" | "end"): void;
+  pressNothing?(pointer: Pointer): void;
+}
+
+/** Tells all listeners, in the order in which they were added. */
+export class Events implements Required<PageListener> {
+  private readonly listeners_: PageListener[] = [];
+
+  add(...listeners: readonly PageListener[]): void {
+    this.listeners_.push(...listeners);
+  }
+
+  ready(): void {
+    for (const listener of this.listeners_) listener.ready?.();
+  }
+
+  changed(what: Change | "selection"): void {
+    for (const listener of this.listeners_) listener.changed?.(what);
+  }
+
+  link(state: LinkState, reason: string): void {
+    for (const listener of this.listeners_) listener.link?.(state, reason);
+  }
+
+  notice(notice: PageNotice): void {
+    for (const listener of this.listeners_) listener.notice?.(notice);
+  }
+
+  effect(kind: string, position: Readonly<Vec3>): void {
+    for (const listener of this.listeners_) listener.effect?.(kind, position);
+  }
+
+  hover(pointer: Pointer, body: number): void {
+    for (const listener of this.listeners_) listener.hover?.(pointer, body);
+  }
+
+  grab(grab: Grab, phase: "start" | "end"): void {
+    for (const listener of this.listeners_) listener.grab?.(grab, phase);
+  }
+
+  pressNothing(pointer: Pointer): void {
+    for (const listener of this.listeners_) listener.pressNothing?.(pointer);
+  }
+}

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page's own commands, in the order in which the bar, the help and the wrist panel show them. A new one is one entry here.
+
+import type { Choice, Command, Entry, ScriptCommand } from "../commands/command.ts";
+import { ControlCommand } from "../protocol/generated.ts";
+import type { ActionEntry } from "../scene/world_model.ts";
+import type { PageParts } from "./page.ts";
+
+/** Times real time. */
+const speeds: readonly number[] = [0.1, 0.25, 0.5, 1, 2];
+
+const signs = {
+  play: "M8 5l11 7-11 7z",
+  pause: "M8 5v14M16 5v14",
+  step: "M6 5l9 7-9 7zM18 5v14",
+  reset: "M5 5v5h5M5.6 10A7.5 7.5 0 1 1 4.6 14",
+  minus: "M6 12h12",
+  plus: "M6 12h12M12 6v12",
+};
+
+export function pageCommands({ world, session, selection, viewer, navigation, sound, events }: PageParts): Entry[] {
+  const say = (key: string, title: string) => events.notice({ level: 0, title, text: "", hint: "", key });
+  /** The next faster (1) or slower (-1) of the speeds on offer. */
+  const changeSpeed = (direction: 1 | -1) => {
+    const now = world.speed;
+    const next = direction > 0 ? speeds.find((speed) => speed > now * 1.01) : speeds.findLast((speed) => speed < now * 0.99);
+    if (next !== undefined) session.control(ControlCommand.speed, next);
+  };
+  const speed: Choice = {
+    name: "speed",
+    places: ["bar", "panel"],
+    title: () => "Speed ([ and ])",
+    options: speeds.map(String),
+    unit: "×",
+    value: () => String(Number(world.speed.toPrecision(2))),
+    choose: (option) => session.control(ControlCommand.speed, Number(option)),
+  };
+  const commands: Entry[] = [
+    {
+      name: "play",
+      help: "pause, play",
+      keys: [" "],
+      places: ["bar", "panel"],
+      title: () => (world.paused ? "Play" : "Pause"),
+      sign: () => (world.paused ? signs.play : signs.pause),
+      run: () => session.control(world.paused ? ControlCommand.play : ControlCommand.pause),
+    },
+    {
+      name: "step",
+      help: "one step",
+      keys: ["."],
+      repeats: true,
+      places: ["bar", "panel"],
+      title: () => "Single step",
+      sign: () => signs.step,
+      run: () => {
+        if (!world.paused) session.control(ControlCommand.pause);
+        session.control(ControlCommand.singleStep);
+      },
+    },
+    {
+      name: "reset",
+      help: "reset",
+      keys: ["r"],
+      places: ["bar", "panel"],
+      title: () => "Reset",
+      sign: () => signs.reset,
+      run: () => session.control(ControlCommand.reset),
+    },
+    {
+      name: "slower",
+      help: "slower, faster",
+      keys: ["["],
+      places: ["panel"],
+      narrow: true,
+      title: () => "Slower",
+      sign: () => signs.minus,
+      run: () => changeSpeed(-1),
+    },
+    speed,
+    {
+      name: "faster",
+      help: "slower, faster",
+      keys: ["]"],
+      places: ["panel"],
+      narrow: true,
+      title: () => "Faster",
+      sign: () => signs.plus,
+      run: () => changeSpeed(1),
+    },
+    {
+      name: "look",
+      help: "next look",
+      keys: ["l"],
+      places: ["bar", "panel"],
+      title: () => `Look: ${world.look}`,
+      label: () => world.look,
+      offered: () => world.settings.looks.length > 1,
+      run: () => {
+        const { looks } = world.settings;
+        if (looks.length > 0) world.setLook(looks[(looks.indexOf(world.look) + 1) % looks.length]);
+      },
+    },
+    {
+      name: "fly",
+      help: "a drag on nothing looks around instead of orbiting",
+      keys: ["f"],
+      title: () => "Fly",
+      active: () => navigation.flying,
+      run: () => {
+        navigation.flying = !navigation.flying;
+        say("fly", navigation.flying ? "Fly: drag looks around, w a s d q e walk" : "Orbit: drag turns the view");
+      },
+    },
+    {
+      name: "home",
+      help: "back to the first view",
+      keys: ["Home", "0"],
+      title: () => "First view",
+      run: () => navigation.reset(),
+    },
+    {
+      name: "grid",
+      help: "grid: lines each 0.1 m and 1 m",
+      keys: ["g"],
+      title: () => "Grid",
+      active: () => viewer.stage.gridShown,
+      run: () => {
+        viewer.stage.gridShown = !viewer.stage.gridShown;
+        viewer.stir();
+      },
+    },
+    {
+      name: "sound",
+      help: "sound on, off",
+      keys: ["m"],
+      title: () => "Sound",
+      active: () => !sound.muted,
+      run: () => {
+        sound.muted = !sound.muted;
+        say("sound", sound.muted ? "Sound is off" : "Sound is on");
+      },
+    },
+    {
+      name: "select next",
+      help: "selects the next body",
+      keys: ["ArrowRight", "ArrowDown"],
+      repeats: true,
+      title: () => "Next body",
+      run: () => selection.selectNext(1),
+    },
+    {
+      name: "select previous",
+      help: "selects the one before",
+      keys: ["ArrowLeft", "ArrowUp"],
+      repeats: true,
+      title: () => "Previous body",
+      run: () => selection.selectNext(-1),
+    },
+    {
+      name: "select nothing",
+      help: "selects nothing",
+      keys: ["Escape"],
+      title: () => "Nothing",
+      run: () => selection.select(-1),
+    },
+  ];
+  return commands;
+}
+
+/** What the script offers, as commands. */
+export function scriptCommands(actions: readonly ActionEntry[], { session, selection }: PageParts): ScriptCommand[] {
+  return actions.map((action): ScriptCommand => {
+    const onBody = action.on === "body";
+    const command: Command = {
+      name: `action ${action.name}`,
+      help: action.help,
+      keys: action.key === "" ? [] : [action.key],
+      title: () => action.label,
+      offered: () => !onBody || selection.selected >= 0,
+      enabled: () => !onBody || selection.meant >= 0,
+      run: () => session.act(action.name, selection.meant),
+    };
+    return { ...command, onBody, button: action.button, runOn: (body) => session.act(action.name, body) };
+  });
+}

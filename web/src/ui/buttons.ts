@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands as buttons: those of the bar, and the script's in the strip and the menu.
+
+import { isChoice, type Choice, type Command, type Entry, type ScriptCommand } from "../commands/command.ts";
+import { keyName, make } from "./dom.ts";
+
+const svgNamespace = "http://www.w3.org/2000/svg";
+
+/** An element of the bar that shows an entry as it stands now. */
+export interface BarItem {
+  readonly element: HTMLElement;
+  /** Touches the element only where something changed. */
+  refresh(): void;
+}
+
+export function makeBarItem(entry: Entry, refocus: () => void): BarItem {
+  const item = isChoice(entry) ? makeSelect(entry, refocus) : makeButton(entry);
+  item.element.id = entry.name.replaceAll(" ", "-");
+  item.refresh();
+  return item;
+}
+
+/** "Pause (space)". */
+function tooltip(entry: Entry): string {
+  const key = entry.keys?.at(0);
+  return key === undefined ? entry.title() : `${entry.title()} (${keyName(key)})`;
+}
+
+/** Calls `write` with a value whenever it is another one than last time. */
+function onChange(read: () => string, write: (value: string) => void): () => void {
+  let shown: string | null = null;
+  return () => {
+    const value = read();
+    if (value === shown) return;
+    shown = value;
+    write(value);
+  };
+}
+
+function makeButton(command: Command): BarItem {
+  const button = make("button", command.sign === undefined ? "text" : "");
+  button.type = "button";
+  button.addEventListener("click", () => command.run());
+  const face = command.sign === undefined ? writeLabel(button, command) : drawSign(button, command.sign);
+  const title = onChange(() => tooltip(command), (text) => {
+    button.title = text;
+    button.setAttribute("aria-label", command.title());
+  });
+  return {
+    element: button,
+    refresh: () => {
+      button.hidden = command.offered?.() === false;
+      button.disabled = command.enabled?.() === false;
+      face();
+      title();
+    },
+  };
+}
+
+function drawSign(button: HTMLButtonElement, sign: () => string): () => void {
+  const picture = document.createElementNS(svgNamespace, "svg");
+  picture.setAttribute("viewBox", "0 0 24 24");
+  picture.setAttribute("aria-hidden", "true");
+  const path = document.createElementNS(svgNamespace, "path");
+  picture.append(path);
+  button.append(picture);
+  return onChange(sign, (lines) => path.setAttribute("d", lines));
+}
+
+function writeLabel(button: HTMLButtonElement, command: Command): () => void {
+  return onChange(() => command.label?.() ?? command.title(), (label) => {
+    button.textContent = label;
+  });
+}
+
+function makeSelect(choice: Choice, refocus: () => void): BarItem {
+  const select = make("select");
+  for (const option of choice.options) select.append(new Option(option + choice.unit, option));
+  select.setAttribute("aria-label", choice.title());
+  select.title = choice.title();
+  select.addEventListener("change", () => {
+    choice.choose(select.value);
+    refocus();
+  });
+  const value = onChange(() => choice.value(), (now) => {
+    // Another value than those on offer stands nowhere: the one before stays.
+    if (choice.options.includes(now)) select.value = now;
+  });
+  return {
+    element: select,
+    refresh: () => {
+      if (document.activeElement !== select) value();
+    },
+  };
+}
+
+/** A button with the script's words and its key; `body` is what it is about, by default the usual one. */
+export function makeActionButton(command: ScriptCommand, after?: () => void, body?: number): HTMLButtonElement {
+  const button = make("button", "action", command.title());
+  button.type = "button";
+  if (command.help !== "" && command.help !== undefined) button.title = command.help;
+  for (const key of command.keys ?? []) button.append(make("kbd", "", keyName(key)));
+  button.addEventListener("click", () => {
+    if (body === undefined) command.run();
+    else command.runOn(body);
+    after?.();
+  });
+  return button;
+}
