@@ -23,7 +23,7 @@ class Model;
 enum Place : std::uint8_t { a_origin, a_axis, a_side, a_third, b_origin, b_axis, b_side, b_third };
 inline constexpr int place_count = 8;
 
-/// What a kind is made of; `constraint_kinds` is the one list. Its rows are in step/constraint_rows.cpp.
+/// What a kind is made of; `constraint_kinds` is the one list. Its rows are in ingredient/joint_rows.h.
 struct ConstraintKindInfo {
   const char* name;
   /// Between bodies, with frames; between two particles; a particle on a curve or surface; two surfaces.

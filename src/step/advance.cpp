@@ -51,7 +51,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
       step::FreeParticles::wake(model, articulate);
   }
   for (const std::uint32_t articulate : jolted)
-    if (step::Island* const island = islands.of_articulate(articulate)) (void)island->settle(model, false);
+    if (step::Island* const island = islands.of_articulate(articulate)) (void)island->project(model, false);
   if (model.has_edits) model.book_edits(model.energy());
 
   // 3. Every island by itself, on as many threads as pay; reports are added up in a fixed order.
@@ -61,7 +61,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
                     [&](std::size_t i) { advanced[i] = all[i]->advance(model, h, model.mode); });
   int solves = 0, iterations = 0, handed_back = 0;
   for (const auto* island : all)
-    if (island->rests(model)) report.resting += static_cast<std::uint32_t>(island->body_count());
+    if (island->is_asleep(model)) report.resting += static_cast<std::uint32_t>(island->body_count());
   advanced.push_back(islands.free_particles().advance(model, h, parallel));
   report.resting += islands.free_particles().resting();
   for (const solver::AdvanceReport& r : advanced) {

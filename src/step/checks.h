@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/text.h"
+
 #include <iota/ids.h>
 #include <iota/system.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -15,12 +16,7 @@
 /// Checks of what a user passes in: they name the argument and its value, and throw before anything has changed.
 namespace iota::step {
 
-template <class... Parts>
-std::string text(const Parts&... parts) {
-  std::ostringstream out;
-  (out << ... << parts);
-  return out.str();
-}
+using iota::text;
 
 inline std::string text_of(const Vec3& v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each command about constraints does; checks of what the user passes in.
+#include "ingredient/joint_readings.h"
+#include "ingredient/joint_rows.h"
 #include "step/checks.h"
-#include "step/constraint_rows.h"
 #include "step/execute.h"
 #include "step/hinge_force.h"
 
@@ -10,6 +11,7 @@
 namespace iota {
 
 using model::none;
+using namespace ingredient;
 using namespace step;
 
 namespace {
@@ -139,7 +141,7 @@ void System::Implementation::apply(const step::AddCurvePoints& c) {
 }
 
 ConstraintId System::Implementation::made(std::uint32_t slot) {
-  step::start_contact(model, slot);
+  ingredient::start_contact(model, slot);
   constraint_changed(slot);
   return model.constraints.id(slot);
 }
@@ -188,7 +190,7 @@ void System::Implementation::apply(const step::SetConstraintActive& c) {
   if (constraint.active == static_cast<std::uint8_t>(c.active)) return;
   constraint.active = c.active;
   if (c.active) model.make_geometry_anew(slot);  // a surface that has failed gets another chance
-  step::refresh_coordinates(model, slot);
+  ingredient::refresh_coordinates(model, slot);
   constraint.multipliers.fill(0), constraint.efforts = {}, constraint.gap = 0;
   constraint_changed(slot);
 }

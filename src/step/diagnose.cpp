@@ -11,7 +11,6 @@ namespace iota {
 namespace step {
 
 using model::Model;
-using model::none;
 
 namespace {
 
@@ -44,30 +43,11 @@ std::string times(std::size_t n) { return n == 1 ? "once" : n == 2 ? "twice" : t
 }  // namespace
 
 std::string Island::name_of_row(const Model& model, const solver::RowName& row) const {
-  using Types = solver::ConstraintPools<std::type_identity_t>;
-  static_assert(std::is_same_v<std::tuple_element_t<0, Types>, solver::DistanceConstraint>);
-  static_assert(std::is_same_v<std::tuple_element_t<1, Types>, solver::AffineConstraint>);
-  if (row.pool == 0) {
-    if (row.item < rigid_rows_.size()) return text("the rigidity of body ", rigid_rows_[row.item].body);
-    const std::size_t closing = row.item - rigid_rows_.size();
-    if (closing < closings_.size()) {
-      const model::Closing& c = model.closings[closings_[closing]];
-      return text("the closing of particles ", c.p, " and ", c.q);
-    }
-  } else if (row.pool == 1) {
-    if (row.item < tied_.size())
-      return text("the place of particle ", tied_[row.item], " in body ", model.particles[tied_[row.item]].body);
-    const std::size_t nail = row.item - tied_.size();
-    if (nail < nails_.size()) return "what pins " + name_of_node(model, nails_[nail]);
-  }
-  const std::uint32_t constraint = constraint_rows_.constraint_of(row.pool, row.item);
-  if (constraint == none) return "a constraint";
-  return text("the ", model::info(model.constraints[constraint].kind).name, " constraint ", constraint);
-}
-
-std::string Island::name_of_node(const Model& model, std::size_t node) const {
-  const std::uint32_t particle = model.rings[rings_[node]].first;
-  return text("particle ", particle, " of body ", model.particles[particle].body);
+  std::string name;
+  for_each_ingredient([&](const auto& i) {
+    if (name.empty()) name = i.name_of_row(model, nodes_, row);
+  });
+  return name;
 }
 
 Diagnosis Island::diagnose(const Model& model) const {
@@ -104,7 +84,7 @@ Diagnosis Island::diagnose(const Model& model) const {
       parts.push_back({std::abs(spectrum.svd.u(row, i)), name_of_row(model, spectrum.names[row])});
     for (std::size_t node = 0; node < problem_.size(); ++node) {
       const Vec3 v{spectrum.svd.v(3 * node, i), spectrum.svd.v(3 * node + 1, i), spectrum.svd.v(3 * node + 2, i)};
-      points.push_back({norm(v), name_of_node(model, node)});
+      points.push_back({norm(v), nodes_.name(model, node)});
     }
     out.findings.push_back(text("Nearly singular (", s[i] / s.front(), "): ", enumerate(std::move(parts)),
                                 " nearly repeat each other, and hardly resist a motion of ",

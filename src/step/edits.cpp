@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each command does, and the physics that a structural edit owes.
+#include "ingredient/joint_readings.h"
 #include "math/mat3.h"
 #include "step/checks.h"
-#include "step/constraint_rows.h"
 #include "step/implementation.h"
 
 #include <iota/solver.h>
@@ -172,7 +172,7 @@ void System::Implementation::apply(const step::SetBodyDamping& c) {
 void System::Implementation::refresh_coordinates(std::uint32_t body) {
   if (model.constraints.size() == 0) return;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
-    model.for_each_constraint_of(p, [&](std::uint32_t c, int) { step::refresh_coordinates(model, c); });
+    model.for_each_constraint_of(p, [&](std::uint32_t c, int) { ingredient::refresh_coordinates(model, c); });
   });
 }
 
@@ -338,7 +338,7 @@ void System::Implementation::settle(std::span<const std::uint32_t> bodies, bool 
     if (!island) continue;  // a free particle has nothing to settle
     if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
     settled.push_back(island);
-    if (island->settle(model, positions)) continue;
+    if (island->project(model, positions)) continue;
     report.remaining_gap = model.worst_gap();
     report.notes.push_back(text("no position of the bodies lets the combined particles meet exactly; ",
                                 report.remaining_gap, " m remain, shared by the constraints"));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step/hinge_force.h"
 
-#include "step/constraint_rows.h"
+#include "ingredient/joint_readings.h"
+
 
 #include <tuple>
 
@@ -61,7 +62,7 @@ class PointBalance {
       if (k.basis_index < 0 && model_.is_unknown(k))  // its tie to the basis
         sum_ -= model_.ties[p].weights[index] * pull_of_tie(p);
       model_.for_each_constraint_of(p, [&](std::uint32_t c, int at) {
-        if (const double part = model_.weights(p)[index]; part != 0) sum_ -= part * calc_force_at(model_, c, at);
+        if (const double part = model_.weights(p)[index]; part != 0) sum_ -= part * ingredient::calc_force_at(model_, c, at);
       });
     });
     model_.for_each_inertia_of(particle_.body, [&](std::uint32_t i) {

@@ -31,9 +31,10 @@ void add_once(std::vector<std::uint32_t>& list, std::uint32_t value) {
 }  // namespace
 
 bool Island::relink(const Model& model, std::span<const std::uint32_t> bodies) {
-  if (idle_ || !node_damping_.empty() || solver_ || !closings_.empty() || !grips_.empty()) return false;
+  if (idle_ || solver_ || any_ingredient([](const auto& i) { return !i.can_follow(); })) return false;
   if (!std::all_of(bodies.begin(), bodies.end(), [&](std::uint32_t b) { return is_plain(model, b); })) return false;
-  auto& rows = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem_.constraints).items;
+  auto& rows = ingredient::constraints_in<solver::DistanceConstraint>(problem_);
+  const auto rigid_rows = std::get<ingredient::RigidRows>(ingredients_).rows();
 
   // 1. Which node each basis point has had, by the rows of its body.
   struct Point {
@@ -49,31 +50,31 @@ bool Island::relink(const Model& model, std::span<const std::uint32_t> bodies) {
     for (int i = 0; i < body.rank; ++i)
       points.push_back({body.basis[i], model.particles[body.basis[i]].ring, none, none});
   }
-  for (std::uint32_t r = 0; r < rigid_rows_.size(); ++r) {
-    if (std::find(bodies.begin(), bodies.end(), rigid_rows_[r].body) == bodies.end()) continue;
+  for (std::uint32_t r = 0; r < rigid_rows.size(); ++r) {
+    if (std::find(bodies.begin(), bodies.end(), rigid_rows[r].body) == bodies.end()) continue;
     own_rows.push_back(r);
-    const auto& ends = model::basis_pairs[rigid_rows_[r].row];
+    const auto& ends = model::basis_pairs[rigid_rows[r].row];
     for (int end = 0; end < 2; ++end)
-      point_of(model.bodies[rigid_rows_[r].body].basis[ends[end]])->before = rows[r].nodes[end];
+      point_of(model.bodies[rigid_rows[r].body].basis[ends[end]])->before = rows[r].nodes[end];
   }
   // 2. Which node it has now: that of its ring if there is one, else a new one.
   std::vector<std::array<std::uint32_t, 2>> added;
   std::vector<std::uint32_t> new_rings, touched, left;
   for (Point& p : points) {
     if (p.before == none) return false;
-    const auto same_ring = [&](const Point& q) { return rings_[q.before] == p.ring; };
+    const auto same_ring = [&](const Point& q) { return nodes_.rings[q.before] == p.ring; };
     const auto known =
         std::find_if(points.begin(), points.end(), [&](const Point& q) { return q.before != none && same_ring(q); });
     const auto made = std::find(new_rings.begin(), new_rings.end(), p.ring);
     if (known != points.end()) {
       p.now = known->before;
     } else {
-      p.now = static_cast<std::uint32_t>(rings_.size() + static_cast<std::size_t>(made - new_rings.begin()));
+      p.now = static_cast<std::uint32_t>(nodes_.rings.size() + static_cast<std::size_t>(made - new_rings.begin()));
       if (made == new_rings.end()) new_rings.push_back(p.ring), added.push_back({p.now, p.before});
     }
     if (p.now == p.before) continue;
     add_once(left, p.before), add_once(touched, p.before), add_once(touched, p.now);
-    if (pinned_[p.before] || model.is_pinned(p.ring)) return false;
+    if (nodes_.pinned[p.before] || model.is_pinned(p.ring)) return false;
   }
   if (touched.empty()) return true;
   std::vector<std::uint32_t> removed;
@@ -111,8 +112,8 @@ bool Island::relink(const Model& model, std::span<const std::uint32_t> bodies) {
     add_once(touched, p.now), add_once(touched, q.now);
   }
   for (const std::uint32_t r : own_rows) {
-    const auto& ends = model::basis_pairs[rigid_rows_[r].row];
-    const Body& body = model.bodies[rigid_rows_[r].body];
+    const auto& ends = model::basis_pairs[rigid_rows[r].row];
+    const Body& body = model.bodies[rigid_rows[r].body];
     bool moves = false;
     for (int end = 0; end < 2; ++end) {
       const auto p = point_of(body.basis[ends[end]]);
@@ -124,7 +125,7 @@ bool Island::relink(const Model& model, std::span<const std::uint32_t> bodies) {
 
   // 5. Room for new nodes, and masses where points came or went.
   problem_.add_nodes(added.size());
-  for (const std::uint32_t ring : new_rings) rings_.push_back(ring), pinned_.push_back(0);
+  for (const std::uint32_t ring : new_rings) nodes_.rings.push_back(ring), nodes_.pinned.push_back(0);
   for (const Point& changed : points) {
     if (changed.now == changed.before && !is_left(changed.now)) continue;
     double mass = 0;
@@ -142,13 +143,13 @@ bool Island::relink(const Model& model, std::span<const std::uint32_t> bodies) {
   // 6. The last nodes have taken the numbers of those that are gone.
   std::sort(removed.begin(), removed.end(), std::greater<>());
   for (const std::uint32_t node : removed) {
-    const auto last = static_cast<std::uint32_t>(rings_.size() - 1);
-    std::replace(nails_.begin(), nails_.end(), last, node);
-    for (auto& carriers : slave_nodes_)
+    const auto last = static_cast<std::uint32_t>(nodes_.rings.size() - 1);
+    for_each_ingredient([&](auto& i) { i.renumber_node(last, node); });
+    for (auto& carriers : nodes_.carriers)
       for (auto& carrier : carriers)
         if (carrier.first == last) carrier.first = node;
-    rings_[node] = rings_.back(), pinned_[node] = pinned_.back();
-    rings_.pop_back(), pinned_.pop_back();
+    nodes_.rings[node] = nodes_.rings.back(), nodes_.pinned[node] = nodes_.pinned.back();
+    nodes_.rings.pop_back(), nodes_.pinned.pop_back();
   }
   return true;
 }

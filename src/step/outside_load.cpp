@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step/outside_load.h"
 
-#include "step/constraint_rows.h"
+#include "ingredient/joint_readings.h"
 #include "step/hinge_force.h"
 
 #include <cmath>
@@ -64,7 +64,7 @@ class PartBalance {
     model_.for_each_bond_of(p, [&](std::uint32_t b) {
       if (model_.bonds[b].ties()) force += (model_.bonds[b].p == p ? -1 : 1) * model_.bond_force(b);
     });
-    model_.for_each_constraint_of(p, [&](std::uint32_t c, int at) { force += calc_force_at(model_, c, at); });
+    model_.for_each_constraint_of(p, [&](std::uint32_t c, int at) { force += ingredient::calc_force_at(model_, c, at); });
     add(place(p), force);
   }
 

@@ -1,28 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "step/constraint_rows.h"
+#pragma once
+
+#include "ingredient/ingredient.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
 #include <limits>
-#include <tuple>
 #include <type_traits>
+#include <utility>
 
-namespace iota::step {
+namespace iota::ingredient {
 
-using namespace model;
+/// A place of a joint as the solver sees it: a weighted sum of nodes plus a constant.
+struct PlaceArm {
+  WeightedNodes nodes{};
+  Vec3 constant;
+};
+using PlaceArms = std::array<PlaceArm, model::place_count>;
+
+/// What a solver's row is to its joint.
+struct RowUse {
+  enum class Role : std::uint8_t { hold, limit, motor, friction, spring } role = Role::hold;
+  std::uint8_t coordinate = 0;  ///< of all but `hold`
+  std::uint8_t first = 0;       ///< of `hold`: which of the joint's multipliers
+};
+
+/// Which of limit, motor, friction and spring a coordinate has rows for.
+using RowsOf = std::array<bool, 4>;
+RowsOf rows_of(const CoordinateOptions&);
+
+namespace joint {
+
+using model::Constraint;
+using model::ConstraintGeometry;
+using model::ConstraintKindInfo;
+using model::info;
+using model::place_count;
+using enum model::Place;
 using Role = RowUse::Role;
 
-namespace {
+inline constexpr int angle = static_cast<int>(JointCoordinate::angle), slide = static_cast<int>(JointCoordinate::slide),
+                     second_angle = static_cast<int>(JointCoordinate::second_angle);
 
-constexpr int angle = static_cast<int>(JointCoordinate::angle), slide = static_cast<int>(JointCoordinate::slide),
-              second_angle = static_cast<int>(JointCoordinate::second_angle);
-
-/// Builds the rows of a constraint and hands each to sink(row, use). One function for the problem, where places are
-/// combinations of nodes, and for reactions, where each place is a node of its own.
+/// Builds the rows of a joint and hands each to sink(row, use). One function for the problem, where places are combinations
+/// of nodes, and for reactions, where each place is a node of its own.
 template <class Sink>
-class Expansion {
+class JointRowBuilder {
  public:
-  Expansion(const Constraint& c, const ConstraintGeometry& geometry, const PlaceArms& places, Sink& sink)
+  JointRowBuilder(const Constraint& c, const ConstraintGeometry& geometry, const PlaceArms& places, Sink& sink)
       : c_(c), geometry_(geometry), places_(places), sink_(sink) {}
 
   void run() {
@@ -264,11 +292,11 @@ class Expansion {
 };
 
 /// Every particle a node of its own, numbered as the places are.
-struct Places {
+struct JointPlaces {
   PlaceArms arms{};
   std::array<Vec3, place_count> position{}, velocity{};
 
-  Places(const Model& model, const Constraint& c) {
+  JointPlaces(const Model& model, const Constraint& c) {
     for (int place = 0; place < place_count; ++place) {
       if (!c.has(place)) continue;
       position[place] = position_of(model, c, place);
@@ -284,20 +312,20 @@ struct Places {
 };
 
 /// `now` is the coordinate as it was last seen.
-void set_target(solver::AngleConstraint& row, double now, double target) {
+inline void set_target(solver::AngleConstraint& row, double now, double target) {
   row.target_start = row.target = target;
   row.near = now;
 }
-void set_target(solver::BilinearConstraint& row, double, double target) { row.product = target * row.scale; }
+inline void set_target(solver::BilinearConstraint& row, double, double target) { row.product = target * row.scale; }
 template <class Row>
 void set_target(Row&, double, double) {}
 
-void set_target(solver::StationConstraint& row, double now, double target) {
+inline void set_target(solver::StationConstraint& row, double now, double target) {
   row.target_start = row.target = target;
   row.parameter = now;
 }
 
-/// What a constraint keeps of the rows that hold it: multipliers, and where it is on a curve or between surfaces. Those on
+/// What a joint keeps of the rows that hold it: multipliers, and where it is on a curve or between surfaces. Those on
 /// a curve are kept as a force, whatever normals the row has.
 template <class Row>
 void load_held(Row& row, const Constraint& c, RowUse use, double* multipliers) {
@@ -316,240 +344,11 @@ void save_held(const Row& row, Constraint& c, RowUse use, const double* multipli
   }
 }
 
-void set_length(solver::DistanceConstraint& row, double length) { row.length = length; }
-void set_length(solver::BilinearConstraint& row, double length) { row.product = length * length; }
+inline void set_length(solver::DistanceConstraint& row, double length) { row.length = length; }
+inline void set_length(solver::BilinearConstraint& row, double length) { row.product = length * length; }
 template <class Row>
 void set_length(Row&, double) {}
 
-/// The nearer of the two limits, as a one-sided row.
-template <class Row>
-void load_limit(Row& row, const CoordinateOptions& o, double now, solver::RowLaw& law) {
-  if (o.lower == o.upper) return set_target(row, now, o.lower);
-  const bool at_lower = now - o.lower < o.upper - now;
-  set_target(row, now, at_lower ? o.lower : o.upper);
-  (at_lower ? law.upper : law.lower) = 0;
-}
+}  // namespace joint
 
-}  // namespace
-
-RowsOf rows_of(const CoordinateOptions& o) {
-  return {std::isfinite(o.lower) || std::isfinite(o.upper), o.motor_max > 0, o.friction > 0,
-          o.stiffness > 0 || o.damping > 0};
-}
-
-void ConstraintRows::add(const Model& model, std::uint32_t slot, const PlaceArms& places,
-                         const std::vector<std::uint8_t>& pinned, solver::Problem& problem) {
-  constraints_.push_back(slot);
-  auto sink = [&]<class Row>(const Row& row, RowUse use) {
-    const auto end = row.nodes.begin() + row.node_count();
-    if (std::all_of(row.nodes.begin(), end, [&](std::uint32_t node) { return pinned[node]; })) {
-      if (use.role == Role::hold && (pinned_.empty() || pinned_.back() != slot)) pinned_.push_back(slot);
-      return;
-    }
-    auto& pool = std::get<solver::ConstraintPool<Row>>(problem.constraints);
-    const auto item = static_cast<std::uint32_t>(pool.items.size());
-    std::get<Uses<Row>>(uses_).list.push_back({slot, item, use});
-    pool.items.push_back(row);
-    if (use.role != Role::hold || info(model.constraints[slot].kind).sign != 0) (void)pool.law(item);
-  };
-  Expansion<decltype(sink)>(model.constraints[slot], model.geometry(slot), places, sink).run();
-}
-
-void ConstraintRows::load(const Model& model, solver::Problem& problem) const {
-  problem.for_each_constraint_pool([&]<class C>(solver::ConstraintPool<C>& pool) {
-    for (const auto& [slot, item, use] : std::get<Uses<C>>(uses_).list) {
-      const Constraint& c = model.constraints[slot];
-      C& row = pool.items[item];
-      if (use.role == Role::hold) {
-        load_held(row, c, use, pool.multiplier(item));
-        const ConstraintKindInfo& kind = info(c.kind);
-        if (kind.form == ConstraintKindInfo::Form::distance) set_length(row, c.length);
-        if (kind.sign > 0) *pool.law(item) = {.lower = 0};
-        if (kind.sign < 0) *pool.law(item) = {.upper = 0};
-        continue;
-      }
-      const CoordinateOptions& o = c.options[use.coordinate];
-      *pool.multiplier(item) = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
-      solver::RowLaw& law = *pool.law(item) = {};
-      const double now = c.coordinate[use.coordinate];
-      set_target(row, now, 0);
-      switch (use.role) {
-        case Role::limit: load_limit(row, o, now, law); break;
-        case Role::motor:
-          law = {.lower = -o.motor_max, .upper = o.motor_max, .rate = o.motor_speed, .hold = true};
-          break;
-        case Role::friction: law = {.lower = -o.friction, .upper = o.friction, .hold = true}; break;
-        default:
-          law.compliance = 1 / o.stiffness;  // infinite for a pure dashpot
-          law.damping = o.damping;
-          set_target(row, now, o.rest);
-      }
-    }
-  });
-}
-
-void ConstraintRows::store(Model& model, const solver::Problem& problem) const {
-  for (const std::uint32_t slot : constraints_) {
-    model.constraints[slot].gap = 0;
-    step::refresh_coordinates(model, slot);
-  }
-  problem.for_each_constraint_pool([&]<class C>(const solver::ConstraintPool<C>& pool) {
-    for (const auto& [slot, item, use] : std::get<Uses<C>>(uses_).list) {
-      Constraint& c = model.constraints[slot];
-      if (use.role != Role::hold) {
-        c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1] = *pool.multiplier(item);
-        continue;
-      }
-      save_held(pool.items[item], c, use, pool.multiplier(item));
-      double g[C::rows];
-      pool.items[item].value(problem.position.data(), 1, g);
-      for (int r = 0; r < C::rows; ++r) {
-        const double off = pool.has_laws() ? pool.law(item)[r].violation(g[r]) : std::abs(g[r]);
-        if (!(off <= c.gap)) c.gap = off;
-      }
-    }
-  });
-  for (const std::uint32_t slot : pinned_) {
-    Constraint& c = model.constraints[slot];
-    c.gap = std::max(c.gap, calc_violation(model, slot).absolute);
-  }
-}
-
-bool ConstraintRows::meets_pinned(const Model& model) const {
-  constexpr double met = 1e-6;
-  return std::all_of(pinned_.begin(), pinned_.end(), [&](std::uint32_t slot) {
-    return !is_in_force(model, model.constraints[slot]) || calc_violation(model, slot).relative <= met;
-  });
-}
-
-std::uint32_t ConstraintRows::constraint_of(std::size_t pool, std::size_t item) const {
-  std::uint32_t found = none;
-  std::size_t index = 0;
-  std::apply(
-      [&](const auto&... uses) {
-        const auto look = [&](const auto& list) {
-          if (index++ != pool) return;
-          for (const auto& row : list)
-            if (row.item == item) found = row.constraint;
-        };
-        (look(uses.list), ...);
-      },
-      uses_);
-  return found;
-}
-
-void ConstraintRows::refresh_coordinates(Model& model) const {
-  for (const std::uint32_t slot : constraints_) step::refresh_coordinates(model, slot);
-}
-
-void refresh_coordinates(Model& model, std::uint32_t slot) {
-  Constraint& c = model.constraints[slot];
-  for (const JointCoordinate which : joint_coordinates)
-    if (has_coordinate(c.kind, which))
-      c.coordinate[static_cast<std::size_t>(which)] = calc_coordinate(model, slot, which).first;
-}
-
-namespace {
-
-/// The forces of a constraint on all its places.
-std::array<Vec3, place_count> forces_at(const Model& model, std::uint32_t slot, const Places& places) {
-  const Constraint& c = model.constraints[slot];
-  std::array<Vec3, place_count> forces{};
-  if (!is_in_force(model, c)) return forces;
-  auto sink = [&]<class Row>(const Row& row, RowUse use) {
-    Row loaded = row;
-    double multipliers[Row::rows];
-    if (use.role == Role::hold)
-      load_held(loaded, c, use, multipliers);
-    else
-      multipliers[0] = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
-    const solver::Gradients<Row> gradients(loaded, places.position.data(), 1);
-    for (int i = 0; i < row.node_count(); ++i) {
-      Vec3 direction[Row::rows];
-      gradients.of_node(i, direction);
-      for (int r = 0; r < Row::rows; ++r) forces[row.nodes[i]] -= multipliers[r] * direction[r];
-    }
-  };
-  Expansion<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
-  return forces;
-}
-
-}  // namespace
-
-Vec3 calc_force_at(const Model& model, std::uint32_t slot, int place) {
-  return forces_at(model, slot, Places(model, model.constraints[slot]))[static_cast<std::size_t>(place)];
-}
-
-Reaction calc_reaction(const Model& model, std::uint32_t slot) {
-  const Places places(model, model.constraints[slot]);
-  const std::array<Vec3, place_count> forces = forces_at(model, slot, places);
-  Reaction reaction;
-  reaction.position = places.position[a_origin];
-  for (int place = a_origin; place < b_origin; ++place) {
-    reaction.force += forces[place];
-    reaction.torque += cross(places.position[place] - reaction.position, forces[place]);
-  }
-  return reaction;
-}
-
-Violation calc_violation(const Model& model, std::uint32_t slot) {
-  const Constraint& c = model.constraints[slot];
-  const ConstraintKindInfo& kind = info(c.kind);
-  const Places places(model, c);
-  Violation worst;
-  auto sink = [&]<class Row>(const Row& row, RowUse use) {
-    if (use.role != Role::hold) return;
-    Row loaded = row;
-    double multipliers[Row::rows], g[Row::rows];
-    load_held(loaded, c, use, multipliers);
-    if (kind.form == ConstraintKindInfo::Form::distance) set_length(loaded, c.length);
-    loaded.value(places.position.data(), 1, g);
-    for (const double value : g) {
-      const double off = kind.sign == 0 ? std::abs(value) : std::max(0.0, kind.sign * value);
-      worst.absolute = std::max(worst.absolute, off);
-      worst.relative = std::max(worst.relative, off / loaded.reference_length());
-    }
-  };
-  Expansion<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
-  return worst;
-}
-
-std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot, JointCoordinate which) {
-  const Constraint& c = model.constraints[slot];
-  const Places places(model, c);
-  auto ignore = [](const auto&, RowUse) {};
-  const Expansion<decltype(ignore)> expansion(c, model.geometry(slot), places.arms, ignore);
-  const auto read = [&](const auto& row) {
-    using Row = std::remove_cvref_t<decltype(row)>;
-    double value = 0, speed = 0;
-    row.value(places.position.data(), 1, &value);
-    const solver::Gradients<Row> gradients(row, places.position.data(), 1);
-    for (int i = 0; i < row.node_count(); ++i) {
-      Vec3 direction;
-      gradients.of_node(i, &direction);
-      speed += dot(direction, places.velocity[row.nodes[i]]);
-    }
-    return std::pair{value, speed};
-  };
-  if (which == JointCoordinate::slide)
-    return info(c.kind).form == ConstraintKindInfo::Form::path ? read(expansion.station_row())
-                                                               : read(expansion.slide_row());
-  const bool second = which == JointCoordinate::second_angle;
-  if (second ? !expansion.has_second_angle(c) : !expansion.has_angle(c)) return {0, 0};
-  solver::AngleConstraint row = second ? expansion.second_angle_row() : expansion.angle_row();
-  set_target(row, c.coordinate[static_cast<std::size_t>(which)], 0);
-  return read(row);
-}
-
-void start_contact(Model& model, std::uint32_t slot) {
-  Constraint& c = model.constraints[slot];
-  if (info(c.kind).form != ConstraintKindInfo::Form::surface_pair) return;
-  const Places places(model, c);
-  auto ignore = [](const auto&, RowUse) {};
-  solver::SurfacePairConstraint row =
-      Expansion<decltype(ignore)>(c, model.geometry(slot), places.arms, ignore).contact_row();
-  row.start(places.position.data(), 1);
-  c.contact = row.contact;
-}
-
-}  // namespace iota::step
+}  // namespace iota::ingredient

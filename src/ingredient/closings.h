@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/ingredient.h"
+
+namespace iota::ingredient {
+
+/// Pairs of particles that come together over some time and are combined then: distance rows that get shorter.
+class Closings : public NoAnswers {
+ public:
+  void build(const IslandMap&, Problem&);
+  void load(const Model&, const IslandNodes&, double h, Problem&);
+  void store(Model&, const IslandNodes&, double h, const Problem&) const;
+  std::string name_of_row(const Model&, const IslandNodes&, const solver::RowName&) const;
+  bool can_follow() const { return slots_.empty(); }
+
+ private:
+  std::uint32_t first_ = 0;  // of our distance constraints
+  std::vector<std::uint32_t> slots_;
+};
+
+}  // namespace iota::ingredient

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/island_nodes.h"
+
+#include "base/text.h"
+
+namespace iota::ingredient {
+
+void IslandNodes::build(const Model& model, std::span<const std::uint32_t> articulates,
+                        std::vector<std::uint32_t>& node_of_ring) {
+  // Lists that grow by doubling would leave holes in memory, a quarter of what they hold.
+  std::size_t body_count = 0, point_count = 0;
+  for (const std::uint32_t a : articulates)
+    model.for_each_body_of(a, [&](std::uint32_t body) { ++body_count, point_count += model.bodies[body].count; });
+  bodies.reserve(body_count);
+  rings.reserve(point_count), pinned.reserve(point_count);
+  for (const std::uint32_t articulate : articulates)
+    model.for_each_body_of(articulate, [&](std::uint32_t body) {
+      if (model.bodies[body].kind == BodyKind::inactive || model.bodies[body].count == 0) return;
+      bodies.push_back(body);
+      model.for_each_particle_of(body, [&](std::uint32_t p) {
+        const model::Particle& particle = model.particles[p];
+        if (!model.is_unknown(particle)) return carried.push_back(p);
+        if (node_of_ring[particle.ring] != none) return;
+        node_of_ring[particle.ring] = static_cast<std::uint32_t>(rings.size());
+        rings.push_back(particle.ring);
+        pinned.push_back(model.is_pinned(particle.ring));
+      });
+    });
+  const IslandMap map(model, *this, node_of_ring);
+  carriers.reserve(carried.size());
+  for (const std::uint32_t p : carried) carriers.push_back(map.nodes_of(p));
+}
+
+std::string IslandNodes::name(const Model& model, std::size_t node) const {
+  const std::uint32_t particle = model.rings[rings[node]].first;
+  return text("particle ", particle, " of body ", model.particles[particle].body);
+}
+
+WeightedNodes IslandMap::nodes_of(std::uint32_t particle) const {
+  const model::Particle& p = model.particles[particle];
+  WeightedNodes list{};
+  if (model.is_unknown(p)) {
+    list[0] = {node_of(particle), 1.0};
+    return list;
+  }
+  const model::Body& body = model.bodies[p.body];
+  const auto& weights = model.ties[particle].weights;
+  int used = 0;
+  for (int i = 0; i < body.rank; ++i)
+    if (weights[i] != 0) list[used++] = {node_of(body.basis[i]), weights[i]};
+  return list;
+}
+
+}  // namespace iota::ingredient

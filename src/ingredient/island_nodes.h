@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace iota::ingredient {
+
+using model::is_free;
+using model::Model;
+using model::none;
+
+/// Up to four nodes with their weights; a weight of 0 ends the list.
+using WeightedNodes = std::array<std::pair<std::uint32_t, double>, 4>;
+
+/// The points that an island solves for (its nodes), and the particles that follow them.
+struct IslandNodes {
+  std::vector<std::uint32_t> bodies;    ///< with particles; none is inactive
+  std::vector<std::uint32_t> rings;     ///< of each node
+  std::vector<std::uint8_t> pinned;     ///< of each node: 1 where a nail, a static or a scripted body holds it
+  std::vector<std::uint32_t> carried;   ///< particles that are no nodes: their body's basis carries them
+  std::vector<WeightedNodes> carriers;  ///< of each carried particle
+
+  /// `node_of_ring` has an entry for each ring of the model, `none` before and for rings outside of the island after.
+  void build(const Model&, std::span<const std::uint32_t> articulates, std::vector<std::uint32_t>& node_of_ring);
+
+  std::size_t size() const { return rings.size(); }
+  template <class Visit>
+  void for_each_ring(const Model& model, Visit visit) const {  ///< visit(ring): of the nodes, then of the carried
+    for (const std::uint32_t ring : rings) visit(ring);
+    for (const std::uint32_t p : carried) visit(model.particles[p].ring);
+  }
+  std::string name(const Model&, std::size_t node) const;  ///< for a sentence
+};
+
+/// The nodes of an island by the model's numbers; lives while the island is being built.
+class IslandMap {
+ public:
+  IslandMap(const Model& model, const IslandNodes& nodes, const std::vector<std::uint32_t>& node_of_ring)
+      : model(model), nodes(nodes), node_of_ring_(node_of_ring) {}
+
+  const Model& model;
+  const IslandNodes& nodes;
+
+  /// Of a particle's ring; `none` for one that is outside of the island, or carried.
+  std::uint32_t node_of(std::uint32_t particle) const { return node_of_ring_[model.particles[particle].ring]; }
+  /// The particle's own node, or those that carry it.
+  WeightedNodes nodes_of(std::uint32_t particle) const;
+  bool is_pinned(std::uint32_t node) const { return nodes.pinned[node]; }
+
+ private:
+  const std::vector<std::uint32_t>& node_of_ring_;
+};
+
+}  // namespace iota::ingredient

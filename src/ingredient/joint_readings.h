@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.h"
+
+#include <cstdint>
+#include <utility>
+
+namespace iota::ingredient {
+
+/// Makes the model's coordinates of a joint those of the present places.
+void refresh_coordinates(model::Model&, std::uint32_t joint);
+
+/// Finds where two surfaces are nearest, for those that a joint brings together.
+void start_contact(model::Model&, std::uint32_t joint);
+
+/// Force and torque of a joint on its side a, about `position`, from the last step's multipliers at the present places.
+struct Reaction {
+  Vec3 position, force, torque;
+};
+Reaction calc_reaction(const model::Model&, std::uint32_t joint);
+
+/// Force of a joint on one of its places, N, as `calc_reaction` has it.
+Vec3 calc_force_at(const model::Model&, std::uint32_t joint, int place);
+
+/// The largest violation of what a joint holds, limits apart, at the present places: absolute (m; rad where it is about
+/// directions), and over the reference length of its row.
+struct Violation {
+  double absolute = 0, relative = 0;
+};
+Violation calc_violation(const model::Model&, std::uint32_t joint);
+
+/// Value and speed of a coordinate at the present places; the angle is unwrapped near the last one.
+std::pair<double, double> calc_coordinate(const model::Model&, std::uint32_t joint, JointCoordinate);
+
+}  // namespace iota::ingredient

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/joints.h"
+
+#include "base/text.h"
+#include "ingredient/joint_readings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::ingredient {
+
+using namespace joint;
+
+namespace {
+
+/// The nearer of the two limits, as a one-sided row.
+template <class Row>
+void load_limit(Row& row, const CoordinateOptions& o, double now, solver::RowLaw& law) {
+  if (o.lower == o.upper) return set_target(row, now, o.lower);
+  const bool at_lower = now - o.lower < o.upper - now;
+  set_target(row, now, at_lower ? o.lower : o.upper);
+  (at_lower ? law.upper : law.lower) = 0;
+}
+
+}  // namespace
+
+RowsOf rows_of(const CoordinateOptions& o) {
+  return {std::isfinite(o.lower) || std::isfinite(o.upper), o.motor_max > 0, o.friction > 0,
+          o.stiffness > 0 || o.damping > 0};
+}
+
+void Joints::build(const IslandMap& map, Problem& problem) {
+  const Model& model = map.model;
+  if (model.constraints.size() == 0) return;
+  std::vector<std::uint32_t> joints;  // each once, in order of slots
+  for (const std::uint32_t body : map.nodes.bodies)
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      model.for_each_constraint_of(p, [&](std::uint32_t c, int place) {
+        if (place == a_origin && model.constraints[c].active) joints.push_back(c);
+      });
+    });
+  std::sort(joints.begin(), joints.end());
+  for (const std::uint32_t slot : joints) add(map, slot, problem);
+}
+
+void Joints::add(const IslandMap& map, std::uint32_t slot, Problem& problem) {
+  const Model& model = map.model;
+  const Constraint& c = model.constraints[slot];
+  PlaceArms places{};
+  for (int place = 0; place < place_count; ++place) {
+    if (!c.has(place)) continue;
+    if (c.particles[place] == none) {
+      places[place].constant = c.fixed[place - b_origin];
+      continue;
+    }
+    // Through the basis, also where the particle is an unknown of its own: a row then couples two bodies and no more.
+    const model::Body& body = model.bodies[model.particles[c.particles[place]].body];
+    const std::array<double, 4> weights = model.weights(c.particles[place]);
+    int used = 0;
+    for (int i = 0; i < body.rank; ++i) {
+      if (weights[i] == 0) continue;
+      const std::uint32_t node = map.node_of(body.basis[i]);
+      if (node == none) return;  // that side is inactive
+      places[place].nodes[used++] = {node, weights[i]};
+    }
+  }
+  joints_.push_back(slot);
+  auto sink = [&]<class Row>(const Row& row, RowUse use) {
+    const auto end = row.nodes.begin() + row.node_count();
+    // A step can do nothing about rows whose nodes are all pinned, but to see whether they are met.
+    if (std::all_of(row.nodes.begin(), end, [&](std::uint32_t node) { return map.is_pinned(node); })) {
+      if (use.role == Role::hold && (pinned_.empty() || pinned_.back() != slot)) pinned_.push_back(slot);
+      return;
+    }
+    auto& pool = std::get<solver::ConstraintPool<Row>>(problem.constraints);
+    const auto item = static_cast<std::uint32_t>(pool.items.size());
+    std::get<Uses<Row>>(uses_).list.push_back({slot, item, use});
+    pool.items.push_back(row);
+    if (use.role != Role::hold || info(c.kind).sign != 0) (void)pool.law(item);
+  };
+  JointRowBuilder<decltype(sink)>(c, model.geometry(slot), places, sink).run();
+}
+
+void Joints::load(const Model& model, const IslandNodes&, double, Problem& problem) {
+  problem.for_each_constraint_pool([&]<class C>(solver::ConstraintPool<C>& pool) {
+    for (const auto& [slot, item, use] : std::get<Uses<C>>(uses_).list) {
+      const Constraint& c = model.constraints[slot];
+      C& row = pool.items[item];
+      if (use.role == Role::hold) {
+        load_held(row, c, use, pool.multiplier(item));
+        const ConstraintKindInfo& kind = info(c.kind);
+        if (kind.form == ConstraintKindInfo::Form::distance) set_length(row, c.length);
+        if (kind.sign > 0) *pool.law(item) = {.lower = 0};
+        if (kind.sign < 0) *pool.law(item) = {.upper = 0};
+        continue;
+      }
+      const CoordinateOptions& o = c.options[use.coordinate];
+      *pool.multiplier(item) = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
+      solver::RowLaw& law = *pool.law(item) = {};
+      const double now = c.coordinate[use.coordinate];
+      set_target(row, now, 0);
+      switch (use.role) {
+        case Role::limit: load_limit(row, o, now, law); break;
+        case Role::motor:
+          law = {.lower = -o.motor_max, .upper = o.motor_max, .rate = o.motor_speed, .hold = true};
+          break;
+        case Role::friction: law = {.lower = -o.friction, .upper = o.friction, .hold = true}; break;
+        default:
+          law.compliance = 1 / o.stiffness;  // infinite for a pure dashpot
+          law.damping = o.damping;
+          set_target(row, now, o.rest);
+      }
+    }
+  });
+}
+
+void Joints::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
+  for (const std::uint32_t slot : joints_) {
+    model.constraints[slot].gap = 0;
+    refresh_coordinates(model, slot);
+  }
+  problem.for_each_constraint_pool([&]<class C>(const solver::ConstraintPool<C>& pool) {
+    for (const auto& [slot, item, use] : std::get<Uses<C>>(uses_).list) {
+      Constraint& c = model.constraints[slot];
+      if (use.role != Role::hold) {
+        c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1] = *pool.multiplier(item);
+        continue;
+      }
+      save_held(pool.items[item], c, use, pool.multiplier(item));
+      double g[C::rows];
+      pool.items[item].value(problem.position.data(), 1, g);
+      for (int r = 0; r < C::rows; ++r) {
+        const double off = pool.has_laws() ? pool.law(item)[r].violation(g[r]) : std::abs(g[r]);
+        if (!(off <= c.gap)) c.gap = off;
+      }
+    }
+  });
+  for (const std::uint32_t slot : pinned_) {
+    Constraint& c = model.constraints[slot];
+    c.gap = std::max(c.gap, calc_violation(model, slot).absolute);
+  }
+}
+
+void Joints::refresh(Model& model, const IslandNodes&, bool) const {
+  for (const std::uint32_t slot : joints_) refresh_coordinates(model, slot);
+}
+
+bool Joints::meets_pinned(const Model& model) const {
+  constexpr double met = 1e-6;
+  return std::all_of(pinned_.begin(), pinned_.end(), [&](std::uint32_t slot) {
+    return !is_in_force(model, model.constraints[slot]) || calc_violation(model, slot).relative <= met;
+  });
+}
+
+std::string Joints::name_of_row(const Model& model, const IslandNodes&, const solver::RowName& row) const {
+  std::uint32_t found = none;
+  std::size_t pool = 0;
+  std::apply(
+      [&](const auto&... uses) {
+        const auto look = [&](const auto& list) {
+          if (pool++ != row.pool) return;
+          for (const auto& own : list)
+            if (own.item == row.item) found = own.joint;
+        };
+        (look(uses.list), ...);
+      },
+      uses_);
+  if (found == none) return {};
+  return text("the ", info(model.constraints[found].kind).name, " constraint ", found);
+}
+
+}  // namespace iota::ingredient

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/masses.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+namespace iota::ingredient {
+
+namespace {
+
+using Term = std::pair<std::uint32_t, double>;  // node, weight
+
+/// Adds the kinetic energy 1/2 mass |sum_i w_i v_i|^2.
+void add_mass(std::span<const Term> terms, double mass, Problem& problem) {
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    problem.mass[terms[i].first] += mass * terms[i].second * terms[i].second;
+    for (std::size_t j = i + 1; j < terms.size(); ++j)
+      problem.mass_couplings.push_back({terms[i].first, terms[j].first, mass * terms[i].second * terms[j].second});
+  }
+}
+
+std::span<const Term> used(const WeightedNodes& list) {
+  const auto end = std::find_if(list.begin(), list.end(), [](const Term& t) { return t.second == 0; });
+  return {list.begin(), end};
+}
+
+void add_inertia_pair(const IslandMap& map, const model::InertiaPair& pair, Problem& problem) {
+  std::array<Term, 8> difference{};
+  std::size_t count = 0;
+  const auto add = [&](const WeightedNodes& list, double sign) {
+    for (const auto& [node, weight] : used(list)) {
+      Term* const end = difference.data() + count;
+      Term* const found =
+          std::find_if(difference.data(), end, [node = node](const Term& t) { return t.first == node; });
+      if (found == end) difference[count++] = {node, 0};
+      found->second += sign * weight;
+    }
+  };
+  add(map.nodes_of(pair.p), 1);
+  add(map.nodes_of(pair.q), -1);
+  add_mass({difference.data(), count}, pair.inertia, problem);
+}
+
+/// Of a marker that is an unknown of its own, kg.
+double virtual_mass(const Model& model, std::uint32_t marker) {
+  return 0.1 * model.body_mass(model.particles[marker].body);
+}
+
+}  // namespace
+
+void Masses::build(const IslandMap& map, Problem& problem) {
+  const Model& model = map.model;
+  for (const std::uint32_t body : map.nodes.bodies) {
+    const double damping = model.bodies[body].damping;
+    if (!(damping > 0)) {
+      add_body(map, body, problem);
+      continue;
+    }
+    // Bodies damp a node in the proportion of the masses that they give it.
+    node_damping_.resize(map.nodes.size());
+    const auto for_each_node = [&](auto visit) {
+      model.for_each_particle_of(body, [&](std::uint32_t p) {
+        if (model.is_unknown(model.particles[p])) visit(map.node_of(p));
+      });
+    };
+    for_each_node([&](std::uint32_t node) { node_damping_[node] -= damping * problem.mass[node]; });
+    add_body(map, body, problem);
+    for_each_node([&](std::uint32_t node) { node_damping_[node] += damping * problem.mass[node]; });
+  }
+  for (std::size_t i = 0; i < node_damping_.size(); ++i) node_damping_[i] /= problem.mass[i];
+}
+
+void Masses::add_body(const IslandMap& map, std::uint32_t body, Problem& problem) {
+  const Model& model = map.model;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    const model::Particle& particle = model.particles[p];
+    if (!particle.is_marker())
+      add_mass(used(map.nodes_of(p)), particle.mass, problem);
+    else if (model.is_unknown(particle) && model.ring_mass(particle.ring) == 0)
+      add_virtual_mass(map, p, problem);
+  });
+  model.for_each_inertia_of(body, [&](std::uint32_t i) { add_inertia_pair(map, model.inertia_pairs[i], problem); });
+}
+
+// A marker that is an unknown of its own would leave an empty pivot. It gets mass that acts only against leaving its place
+// in the body; the rows that tie it there make that motion zero.
+void Masses::add_virtual_mass(const IslandMap& map, std::uint32_t marker, Problem& problem) {
+  const model::Body& body = map.model.bodies[map.model.particles[marker].body];
+  std::array<Term, 5> difference{{{map.node_of(marker), 1.0}}};
+  const auto& weights = map.model.ties[marker].weights;
+  std::size_t count = 1;
+  for (int i = 0; i < body.rank; ++i)
+    if (weights[i] != 0) difference[count++] = {map.node_of(body.basis[i]), -weights[i]};
+  add_mass({difference.data(), count}, virtual_mass(map.model, marker), problem);
+  virtual_.push_back(marker);
+}
+
+double Masses::virtual_energy(const Model& model) const {
+  double twice = 0;
+  for (const std::uint32_t marker : virtual_) {
+    const Vec3 off = model.velocity(marker) - model.carried(marker).second;
+    twice += virtual_mass(model, marker) * dot(off, off);
+  }
+  return twice / 2;
+}
+
+double Masses::after_step(Model& model, double h, Problem& problem) {
+  if (node_damping_.empty() && !(model.damping > 0)) return 0;
+  const double before = problem.kinetic_energy();
+  for (std::size_t i = 0; i < problem.size(); ++i)
+    problem.velocity[i] *= std::exp(-(model.damping + (node_damping_.empty() ? 0 : node_damping_[i])) * h);
+  return before - problem.kinetic_energy();
+}
+
+}  // namespace iota::ingredient

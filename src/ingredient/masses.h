@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/ingredient.h"
+
+namespace iota::ingredient {
+
+/// Point masses with the inertia pairs of their bodies, weight and damping.
+class Masses : public NoAnswers {
+ public:
+  void build(const IslandMap&, Problem&);
+  double after_step(Model&, double h, Problem&);
+  double virtual_energy(const Model&) const;
+  bool can_follow() const { return node_damping_.empty(); }
+
+ private:
+  void add_body(const IslandMap&, std::uint32_t body, Problem&);
+  void add_virtual_mass(const IslandMap&, std::uint32_t marker, Problem&);
+
+  std::vector<double> node_damping_;    // 1/s, without the system's; empty: none
+  std::vector<std::uint32_t> virtual_;  // markers with a virtual mass
+};
+
+}  // namespace iota::ingredient

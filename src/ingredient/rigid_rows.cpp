@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/rigid_rows.h"
+
+#include "base/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::ingredient {
+
+void RigidRows::build(const IslandMap& map, Problem& problem) {
+  const Model& model = map.model;
+  auto& distances = constraints_in<solver::DistanceConstraint>(problem);
+  std::size_t count = 0;
+  for (const std::uint32_t body : map.nodes.bodies) count += model.bodies[body].row_count;
+  rows_.reserve(count), distances.reserve(count);
+  for (const std::uint32_t slot : map.nodes.bodies) {
+    const model::Body& body = model.bodies[slot];
+    for (std::uint8_t row = 0; row < body.row_count; ++row) {
+      const auto [i, j] = model::basis_pairs[row];
+      const std::uint32_t a = map.node_of(body.basis[i]), b = map.node_of(body.basis[j]);
+      if (map.is_pinned(a) && map.is_pinned(b)) {
+        if (is_free(body.kind)) pinned_.push_back({slot, row});
+        continue;
+      }
+      const double length = model.row(slot, row).length;
+      distances.push_back({{a, b}, length, length});
+      rows_.push_back({slot, row});
+    }
+  }
+}
+
+void RigidRows::load(const Model& model, const IslandNodes&, double, Problem& problem) {
+  auto& multipliers = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem.constraints).multipliers;
+  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers[i] = model.row(rows_[i].body, rows_[i].row).multiplier;
+}
+
+void RigidRows::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
+  const auto& multipliers =
+      std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem.constraints).multipliers;
+  for (std::size_t i = 0; i < rows_.size(); ++i) model.row(rows_[i].body, rows_[i].row).multiplier = multipliers[i];
+}
+
+bool RigidRows::meets_pinned(const Model& model) const {
+  constexpr double met = 1e-6;  // of the length
+  return std::all_of(pinned_.begin(), pinned_.end(), [&](const Row& r) {
+    const model::Body& body = model.bodies[r.body];
+    const auto [i, j] = model::basis_pairs[r.row];
+    const double length = norm(model.position(body.basis[j]) - model.position(body.basis[i]));
+    const double wanted = model.row(r.body, r.row).length;
+    return std::abs(length - wanted) <= met * wanted;
+  });
+}
+
+std::string RigidRows::name_of_row(const Model&, const IslandNodes&, const solver::RowName& row) const {
+  if (row.pool != pool_index<solver::DistanceConstraint> || row.item >= rows_.size()) return {};
+  return text("the rigidity of body ", rows_[row.item].body);
+}
+
+}  // namespace iota::ingredient

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/ingredient.h"
+
+namespace iota::ingredient {
+
+/// The basis points of a body keep their distances.
+class RigidRows : public NoAnswers {
+ public:
+  struct Row {
+    std::uint32_t body;
+    std::uint8_t row;  ///< which of the body's
+  };
+
+  void build(const IslandMap&, Problem&);
+  void load(const Model&, const IslandNodes&, double h, Problem&);
+  void store(Model&, const IslandNodes&, double h, const Problem&) const;
+  bool meets_pinned(const Model&) const;
+  std::string name_of_row(const Model&, const IslandNodes&, const solver::RowName&) const;
+
+  /// In the order of the problem's distance constraints, of which they are the first.
+  std::span<const Row> rows() const { return rows_; }
+
+ private:
+  std::vector<Row> rows_;
+  std::vector<Row> pinned_;  // whose points are both pinned: left out of the problem
+};
+
+}  // namespace iota::ingredient

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/ingredient.h"
+
+namespace iota::ingredient {
+
+/// Rods turn about themselves. Their two points know nothing of that but a gyroscopic force.
+class RodSpins : public NoAnswers {
+ public:
+  void build(const IslandMap&, Problem&);
+  void load(const Model&, const IslandNodes&, double h, Problem&);
+  double after_step(Model&, double h, Problem&);
+  bool keeps_awake(const Problem&) const { return !bodies_.empty(); }
+  void put_to_rest(Model&) const;
+
+ private:
+  std::vector<std::uint32_t> bodies_;  // of each gyroscopic force
+};
+
+}  // namespace iota::ingredient

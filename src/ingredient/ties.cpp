@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/ties.h"
+
+#include "base/text.h"
+
+#include <algorithm>
+
+namespace iota::ingredient {
+
+namespace {
+
+using Pool = solver::ConstraintPool<solver::AffineConstraint>;
+
+/// What to measure a particle's gap by, m.
+double reference_length(const Model& model, std::uint32_t body) {
+  const double extent = model.extent(body);
+  return extent > 0 ? extent : 1;
+}
+
+}  // namespace
+
+void Ties::build(const IslandMap& map, Problem& problem) {
+  const Model& model = map.model;
+  auto& affines = constraints_in<solver::AffineConstraint>(problem);
+  first_ = static_cast<std::uint32_t>(affines.size());
+  for (const std::uint32_t slot : map.nodes.bodies) {
+    const model::Body& body = model.bodies[slot];
+    if (body.count == body.rank) continue;
+    const double reference = reference_length(model, slot);
+    model.for_each_particle_of(slot, [&](std::uint32_t p) {
+      const model::Particle& particle = model.particles[p];
+      if (particle.basis_index >= 0 || !model.is_unknown(particle)) return;
+      solver::AffineConstraint tie;
+      tie.nodes[0] = map.node_of(p), tie.weights[0] = 1, tie.count = 1;
+      tie.reference = reference;
+      const auto& weights = model.ties[p].weights;
+      bool movable = !map.is_pinned(tie.nodes[0]);
+      for (int i = 0; i < body.rank; ++i) {
+        if (weights[i] == 0) continue;
+        tie.nodes[tie.count] = map.node_of(body.basis[i]);
+        movable = movable || !map.is_pinned(tie.nodes[tie.count]);
+        tie.weights[tie.count++] = -weights[i];
+      }
+      if (!movable) {
+        if (is_free(body.kind)) pinned_.push_back(p);
+        return;
+      }
+      affines.push_back(tie);
+      tied_.push_back(p);
+    });
+  }
+}
+
+void Ties::load(const Model& model, const IslandNodes&, double, Problem& problem) {
+  auto& affines = std::get<Pool>(problem.constraints);
+  for (std::size_t i = 0; i < tied_.size(); ++i)
+    std::copy_n(model.ties.at(tied_[i]).multiplier.begin(), 3, affines.multiplier(first_ + i));
+}
+
+void Ties::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
+  const auto& affines = std::get<Pool>(problem.constraints);
+  for (std::size_t i = 0; i < tied_.size(); ++i)
+    std::copy_n(affines.multiplier(first_ + i), 3, model.ties.at(tied_[i]).multiplier.begin());
+}
+
+bool Ties::meets_pinned(const Model& model) const {
+  constexpr double met = 1e-6;  // of the body's extent
+  return std::all_of(pinned_.begin(), pinned_.end(), [&](std::uint32_t p) {
+    const double gap = norm(model.carried(p).first - model.position(p));
+    return gap <= met * reference_length(model, model.particles[p].body);
+  });
+}
+
+std::string Ties::name_of_row(const Model& model, const IslandNodes&, const solver::RowName& row) const {
+  if (row.pool != pool_index<solver::AffineConstraint> || row.item - first_ >= tied_.size()) return {};
+  const std::uint32_t particle = tied_[row.item - first_];
+  return text("the place of particle ", particle, " in body ", model.particles[particle].body);
+}
+
+}  // namespace iota::ingredient

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/ingredient.h"
+
+namespace iota::ingredient {
+
+/// Particles that are unknowns of their own though they are in no basis stay at their places in their bodies.
+class Ties : public NoAnswers {
+ public:
+  void build(const IslandMap&, Problem&);
+  void load(const Model&, const IslandNodes&, double h, Problem&);
+  void store(Model&, const IslandNodes&, double h, const Problem&) const;
+  bool meets_pinned(const Model&) const;
+  std::string name_of_row(const Model&, const IslandNodes&, const solver::RowName&) const;
+
+ private:
+  std::uint32_t first_ = 0;            // of our affine constraints
+  std::vector<std::uint32_t> tied_;    // particle of each of them
+  std::vector<std::uint32_t> pinned_;  // particles none of whose points can move: left out of the problem
+};
+
+}  // namespace iota::ingredient
