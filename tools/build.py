@@ -430,18 +430,31 @@ def installed_version(package: str) -> str:
     return found.name.removesuffix(".dist-info").split("-")[1]
 
 
+# What cmake/sundials.cmake looks for.
+SUNDIALS_PARTS = [
+    "include/kinsol/kinsol.h",
+    *(f"lib/libsundials_{name}.a" for name in ("kinsol", "nvecserial", "sunlinsoldense", "sunmatrixdense")),
+]
+
+
 def sundials() -> Step:
     """KINSOL, the second solver for equations. The engine is whole without it: no network is no failure."""
     folder = VENV / "sundials"
+    script = ROOT / "tools" / "fetch_sundials.sh"
 
     def work(log: Path) -> None:
         try:
-            run(log, ROOT / "tools" / "fetch_sundials.sh", folder)
+            run(log, script, folder)
         except StepError:
             print(' left out: there will be no solver "kinsol"', end="")
+            return
+        # CMake looks for libraries once; what was configured without them must be configured again.
+        for stamp in BUILD.glob("**/iota-configured.stamp"):
+            stamp.unlink()
 
     def needed() -> bool:
-        return shutil.which("apt-get") is not None and not (folder / "include" / "kinsol" / "kinsol.h").is_file()
+        there = all((folder / part).is_file() for part in SUNDIALS_PARTS)
+        return shutil.which("apt-get") is not None and not there
 
     return Step("sundials", "fetching SUNDIALS for the solver kinsol", work, needed, "")
 

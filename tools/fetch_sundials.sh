@@ -17,9 +17,13 @@ apt-get download "$package" || { apt-get update && apt-get download "$package"; 
 dpkg-deb -x "$package"_*.deb tree
 
 cd - >/dev/null
-rm -rf "$folder"
-mkdir -p "$folder/include" "$folder/lib"
-for part in kinsol nvector sundials sunlinsol sunmatrix; do cp -r "$work/tree/usr/include/$part" "$folder/include/"; done
+# Filled beside its place and then renamed: an interrupted run leaves nothing that looks whole.
+fresh=$folder.new
+rm -rf "$fresh"
+mkdir -p "$fresh/include" "$fresh/lib"
+for part in kinsol nvector sundials sunlinsol sunmatrix; do cp -r "$work/tree/usr/include/$part" "$fresh/include/"; done
 for part in kinsol nvecserial sunlinsoldense sunmatrixdense; do
-  cp "$work"/tree/usr/lib/*/libsundials_$part.a "$folder/lib/"
+  cp "$work"/tree/usr/lib/*/libsundials_$part.a "$fresh/lib/"
 done
+rm -rf "$folder"
+mv "$fresh" "$folder"

