@@ -33,7 +33,6 @@ using error_code = boost::system::error_code;
 using namespace std::chrono_literals;
 
 constexpr auto request_time = 20s;  // a whole request, or a pause between two on one connection
-constexpr auto hello_time = 10s;    // from upgrade to first frame
 constexpr auto silence_time = 30s;  // without even an answer to a ping
 constexpr auto close_time = 1s;     // for the other side's part of a close
 constexpr auto keyframe_time = 1s;
@@ -115,7 +114,8 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
   }
 
   void wait_for_hello() {
-    timer_.expires_after(hello_time);
+    timer_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>(context_.options.hello_time)));
     timer_.async_wait([weak = weak_from_this()](error_code error) {
       const auto self = weak.lock();
       if (!error && self && self->client_ == 0) self->refuse("no hello came");
@@ -249,7 +249,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     parser_.emplace();
     parser_->header_limit(16 * 1024);
     http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
-      if (error) return self->finish();
+      if (error) return self->refuse_unreadable(error);
       self->answer();
     });
   }
@@ -259,6 +259,19 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
  private:
   using Request = http::request<http::empty_body>;
   using Response = http::response<http::string_body>;
+
+  /// Bytes that are not HTTP (such as https:// typed by mistake) or too long a header: told before closing.
+  void refuse_unreadable(error_code error) {
+    static const auto& of_http = http::make_error_code(http::error::bad_version).category();
+    if (error.category() != of_http || error == http::error::end_of_stream || error == http::error::partial_message) {
+      return finish();
+    }
+    must_close_ = true, is_head_ = false;
+    if (error == http::error::header_limit) {
+      return send_text(http::status::request_header_fields_too_large, "the header of the request is too long");
+    }
+    send_text(http::status::bad_request, "this is not a request of HTTP/1.1");
+  }
 
   void answer() {
     const Request& request = parser_->get();
@@ -344,7 +357,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
 
   Response make_response(http::status status) const {
     const Request& request = parser_->get();
-    Response response{status, request.version()};
+    Response response{status, request.version() == 10 ? 10U : 11U};
     response.set(http::field::server, "iota");
     response.set("Content-Security-Policy", content_security_policy);
     response.set("X-Content-Type-Options", "nosniff");
@@ -369,6 +382,16 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
       if (!is_last) return self->start();
       error_code ignored;
       self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+      self->stream_.expires_after(close_time);
+      self->discard();
+    });
+  }
+
+  /// Closing while something is unread would reset the connection, and the other side might lose the answer.
+  void discard() {
+    buffer_.clear();
+    stream_.async_read_some(buffer_.prepare(4096), [self = shared_from_this()](error_code error, std::size_t) {
+      if (!error) self->discard();
     });
   }
 

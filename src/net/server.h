@@ -32,6 +32,7 @@ struct ServerOptions {
   double dt = 1.0 / 120;                  ///< length of a step
   std::size_t max_queue_bytes = 1 << 20;  ///< notices and effects that may wait for one client
   std::size_t max_clients = 64;
+  double hello_time = 10;  ///< s, from the upgrade of a connection to its first frame
 };
 
 /// What a user did, or that one came or went. Fields that a kind does not need are left at their defaults.

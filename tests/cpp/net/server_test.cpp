@@ -246,7 +246,33 @@ TEST_F(ServerTest, survives_what_is_not_http) {
   EXPECT_EQ(test::http_request(server_->port(), "GET", "/healthz").body, "ok");
 }
 
+TEST_F(ServerTest, answers_bad_http_with_a_status_before_it_closes) {
+  const auto answer_to = [&](const std::string& bytes) { return test::raw_request(server_->port(), bytes, 1500ms); };
+  const std::string hello_of_tls("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11);
+  for (const std::string& bytes : {hello_of_tls, std::string("nonsense\r\n\r\n"), std::string("GET / HTTP/9\r\n\r\n")})
+    EXPECT_EQ(answer_to(bytes).rfind("HTTP/1.1 400 ", 0), 0U) << bytes;
+  const std::string too_long = "GET / HTTP/1.1\r\nX: " + std::string(40000, 'x') + "\r\n\r\n";
+  EXPECT_EQ(answer_to(too_long).rfind("HTTP/1.1 431 ", 0), 0U);
+  EXPECT_EQ(test::http_request(server_->port(), "GET", "/healthz").body, "ok");
+}
+
 // -------------------------------------------------------------------------------------------------------- handshake
+
+TEST_F(ServerTest, lets_go_of_a_client_that_says_no_hello_in_time) {
+  server_.reset();
+  ServerOptions hasty = options(0);
+  hasty.hello_time = 0.1;
+  server_ = std::make_unique<Server>(hasty);
+  const auto polite = join();
+  PageClient silent;
+  ASSERT_EQ(silent.connect(server_->port(), target()), 101U);
+  const auto refused = hear<protocol::Refused>(silent, 3000ms);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->reason, "no hello came");
+  EXPECT_FALSE(silent.receive());
+  EXPECT_TRUE(silent.is_closed());
+  EXPECT_TRUE(is_alive(*polite)) << "who has said hello stays";
+}
 
 TEST_F(ServerTest, welcomes_a_client_that_says_hello) {
   const auto client = join("Ada");

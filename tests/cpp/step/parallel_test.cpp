@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any number of threads gives the same bits, through edits of all kinds.
-#include "base/parallel.h"
 #include "scenes/chain.h"
 #include "scenes/ragdoll.h"
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <random>
 #include <vector>
 
@@ -55,17 +53,6 @@ TEST(Threads, of_any_number_give_the_same_bits_after_any_edits) {
     const std::vector<std::uint64_t> one = hashes_of_a_busy_world(1, mode);
     EXPECT_EQ(hashes_of_a_busy_world(2, mode), one);
     EXPECT_EQ(hashes_of_a_busy_world(4, mode), one);
-  }
-}
-
-TEST(Threads, do_every_piece_of_work_once) {
-  for (const int threads : {1, 2, 4}) {
-    const Parallel parallel(threads);
-    for (const std::size_t grain : {1, 7, 1000}) {
-      std::vector<std::atomic<int>> done(500);
-      parallel.for_each(done.size(), grain, [&](std::size_t i) { ++done[i]; });
-      for (const auto& count : done) EXPECT_EQ(count, 1);
-    }
   }
 }
 

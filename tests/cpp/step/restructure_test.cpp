@@ -330,6 +330,22 @@ TEST(Combine, refuses_to_put_two_particles_of_one_body_in_one_place) {
   EXPECT_WHOLE(system);
 }
 
+TEST(Combine, in_one_body_keeps_the_nail_of_the_particle_that_is_removed) {
+  System system;
+  const BodyId body = system.create_body();
+  const ParticleId p = system.create_particle(body, {1, 0, 0}), q = system.create_particle(body, {0, 0, 0});
+  system.create_particle(body, {1, -1, 0});
+  const Vec3 hook{0, 0.25, 0};
+  system.nail(q, hook);
+  (void)system.step(1.0 / 60);
+  (void)system.combine(p, q);
+  EXPECT_FALSE(system.contains(q));
+  ASSERT_TRUE(system.is_nailed(p));
+  for (int i = 0; i < 30; ++i) (void)system.step(1.0 / 60);
+  EXPECT_LT(norm(system.position(p) - hook), 1e-9) << "the nail stays where it is, the body comes to it";
+  EXPECT_WHOLE(system);
+}
+
 TEST(Combine, reports_what_a_nail_takes) {
   System system{SystemOptions{.gravity = {}}};
   const ParticleId nailed = system.create_particle(system.create_body(), {0, 0, 0}),

@@ -96,6 +96,31 @@ TEST(Split, a_piece_off_a_nailed_body_falls_freely) {
   EXPECT_TRUE(system.validate().empty());
 }
 
+TEST(Split, a_grip_stays_with_the_piece_that_it_holds) {
+  for (const bool at_the_end : {false, true}) {
+    Molecule m(zigzag);
+    System& system = m.system;
+    system.set_velocity(m.body, {});
+    system.set_angular_velocity(m.body, {});
+    const std::vector<Vec3> before = [&] {
+      std::vector<Vec3> places;
+      for (const ParticleId atom : m.atoms) places.push_back(system.position(atom));
+      return places;
+    }();
+    // The drawn frame's origin is at the center of mass and its axes are the world's.
+    const Vec3 held = before[at_the_end ? 5 : 0] - system.center_of_mass(m.body);
+    (void)system.create_grip(m.body, held, {2, 9, 0});
+    const BodyId piece = system.destroy(m.bonds[2]).created_bodies.at(0);
+    const BodyId gripped = at_the_end ? piece : m.body, let_go = at_the_end ? m.body : piece;
+    for (int i = 0; i < 20; ++i) (void)system.step(1.0 / 120);
+    ASSERT_EQ(system.poses().holds.size(), 1u);
+    EXPECT_EQ(system.poses().holds[0].body, gripped.slot);
+    EXPECT_GT(norm(system.velocity(gripped)), 0.5);
+    EXPECT_LT(norm(system.velocity(let_go)), 1e-12) << "nobody pulls on the other piece";
+    EXPECT_EQ(system.validate(), std::vector<std::string>{});
+  }
+}
+
 TEST(Split, hinges_and_bonds_of_the_pieces_stay) {
   Molecule m(zigzag);
   System& system = m.system;

@@ -55,6 +55,25 @@ std::pair<double, int> pendulum_error(IntegrationMode mode, double dt, double se
   return {norm(system.position(end) - expected), substeps};
 }
 
+/// A rod of 1 m that turns by more than a radian even in a 64th of a frame: each of its sub-steps falls back.
+void add_whirling_rod(System& system, const Vec3& place) {
+  const BodyId rod = system.create_body();
+  system.create_particle(rod, place + Vec3{0.5, 0, 0}, 1, {0, 4000, 0});
+  system.create_particle(rod, place - Vec3{0.5, 0, 0}, 1, {0, -4000, 0});
+}
+
+TEST(Report, adds_up_the_fall_backs_of_all_islands) {
+  const auto fallbacks_of = [](int rods) {
+    System system{SystemOptions{.gravity = {}}};
+    for (int i = 0; i < rods; ++i) add_whirling_rod(system, {3.0 * i, 0, 0});
+    return system.step(1.0 / 60).fallbacks;
+  };
+  const int of_one = fallbacks_of(1);
+  EXPECT_GT(of_one, 0) << "nothing is tested unless the energy-keeping scheme gives up";
+  EXPECT_EQ(fallbacks_of(3), 3 * of_one);
+  EXPECT_EQ(fallbacks_of(0), 0);
+}
+
 TEST(Mode, accurate_follows_a_double_pendulum_at_any_frame_rate) {
   for (const double hz : {30.0, 60.0, 240.0}) {
     const auto [accurate, substeps] = pendulum_error(IntegrationMode::accurate, 1 / hz, 2);

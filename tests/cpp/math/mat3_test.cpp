@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/mat3.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace iota {
+namespace {
+
+class Random {
+ public:
+  double number() { return std::uniform_real_distribution<double>(-1, 1)(engine_); }
+  Vec3 vector() { return {number(), number(), number()}; }
+  Vec3 direction() {
+    Vec3 v = vector();
+    while (norm(v) < 0.1) v = vector();
+    return (1 / norm(v)) * v;
+  }
+  Quaternion turn() { return axis_angle(direction(), 4 * number()); }
+
+ private:
+  std::mt19937 engine_{2};
+};
+
+double distance(const Vec3& a, const Vec3& b) { return norm(a - b); }
+/// As turns: q and -q are one.
+double difference(const Quaternion& p, const Quaternion& q) {
+  return 1 - std::abs(p.x * q.x + p.y * q.y + p.z * q.z + p.w * q.w);
+}
+
+TEST(Mat3, products_with_a_vector_are_what_their_names_say) {
+  Random random;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 a = random.vector(), b = random.vector(), v = random.vector();
+    EXPECT_LT(distance(Mat3::outer(a, b) * v, dot(b, v) * a), 1e-15);
+    EXPECT_LT(distance(Mat3::cross_matrix(a) * v, cross(a, v)), 1e-15);
+    EXPECT_LT(distance(Mat3::cross_matrix(a).transposed() * v, cross(v, a)), 1e-15);
+    EXPECT_LT(distance((Mat3::diagonal(2) + 3 * Mat3::outer(a, b)) * v, 2 * v + 3 * dot(b, v) * a), 1e-15);
+  }
+}
+
+TEST(Mat3, inertia_of_a_point_gives_the_angular_momentum_of_its_turning) {
+  Random random;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 r = random.vector(), spin = random.vector();
+    EXPECT_LT(distance(point_inertia(2, r) * spin, 2 * cross(r, cross(spin, r))), 1e-15);
+  }
+}
+
+TEST(SymmetricEigen, puts_a_matrix_back_together_from_a_right_handed_set) {
+  Random random;
+  for (int i = 0; i < 200; ++i) {
+    Mat3 a;
+    // Every fourth of rank one, every fourth with a double eigenvalue.
+    const Vec3 u = random.direction(), v = random.vector(), w = random.vector();
+    if (i % 4 == 0) a = Mat3::outer(v, v);
+    if (i % 4 == 1) a = Mat3::diagonal(random.number()) + random.number() * Mat3::outer(u, u);
+    if (i % 4 >= 2) a = Mat3::outer(v, w) + Mat3::outer(w, v) + random.number() * Mat3::outer(u, u);
+    const SymmetricEigen e = symmetric_eigen(a);
+    Mat3 again;
+    for (int k = 0; k < 3; ++k) {
+      again += e.values[k] * Mat3::outer(e.axes[k], e.axes[k]);
+      for (int l = 0; l < 3; ++l) EXPECT_NEAR(dot(e.axes[k], e.axes[l]), k == l, 1e-14);
+    }
+    EXPECT_LT(distance(cross(e.axes[0], e.axes[1]), e.axes[2]), 1e-14);
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(again.m[r][c], a.m[r][c], 1e-14);
+  }
+}
+
+TEST(SymmetricEigen, leaves_a_diagonal_matrix_as_it_is) {
+  const SymmetricEigen e = symmetric_eigen({{{3, 0, 0}, {0, 1, 0}, {0, 0, 2}}});
+  EXPECT_EQ(e.values[0], 3);
+  EXPECT_EQ(e.values[1], 1);
+  EXPECT_EQ(e.values[2], 2);
+  EXPECT_EQ(e.axes[0], (Vec3{1, 0, 0}));
+}
+
+TEST(SolveSemidefinite, solves_what_is_regular_and_leaves_out_directions_that_are_not) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 u = random.direction(), v = any_perpendicular(u), x = random.vector();
+    const Mat3 regular = Mat3::diagonal(1) + 2 * Mat3::outer(u, u);
+    EXPECT_LT(distance(solve_semidefinite(regular, regular * x), x), 1e-14);
+    const Mat3 flat = 5 * Mat3::outer(u, u) + 3 * Mat3::outer(v, v);
+    const Vec3 shadow = dot(x, u) * u + dot(x, v) * v;
+    EXPECT_LT(distance(solve_semidefinite(flat, flat * x), shadow), 1e-13) << "of all solutions the shortest";
+    EXPECT_LT(distance(solve_semidefinite(flat, cross(u, v)), {}), 1e-13) << "least squares: no part of it can be met";
+  }
+  EXPECT_EQ(solve_semidefinite(Mat3{}, {1, 2, 3}), Vec3{});
+}
+
+TEST(Quaternion, turns_by_its_angle_about_its_axis) {
+  const double right = std::numbers::pi / 2;
+  EXPECT_LT(distance(rotate(axis_angle({0, 0, 1}, right), {1, 0, 0}), {0, 1, 0}), 1e-15);
+  EXPECT_LT(distance(rotate(axis_angle({1, 0, 0}, right), {0, 1, 0}), {0, 0, 1}), 1e-15);
+  EXPECT_LT(distance(rotate(axis_angle({0, 1, 0}, right), {0, 0, 1}), {1, 0, 0}), 1e-15);
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 axis = random.direction(), v = random.vector();
+    const double angle = 3 * random.number();
+    const Vec3 along = dot(axis, v) * axis, across = v - along;  // Rodrigues
+    const Vec3 turned = along + std::cos(angle) * across + std::sin(angle) * cross(axis, v);
+    EXPECT_LT(distance(rotate(axis_angle(axis, angle), v), turned), 1e-15);
+  }
+}
+
+TEST(Quaternion, product_turns_by_the_second_and_then_by_the_first) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    const Quaternion a = random.turn(), b = random.turn();
+    const Vec3 v = random.vector();
+    EXPECT_LT(distance(rotate(multiply(a, b), v), rotate(a, rotate(b, v))), 1e-14);
+  }
+}
+
+TEST(Quaternion, that_is_zero_is_normalized_to_no_turn) {
+  EXPECT_EQ(normalized({0, 0, 0, 0}), Quaternion{});
+  EXPECT_EQ(normalized({0, 0, 2, 0}), (Quaternion{0, 0, 1, 0}));
+}
+
+TEST(Quaternion, shortest_turn_carries_one_direction_onto_another_also_where_they_are_opposite) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 from = random.direction();
+    for (const Vec3& to : {random.direction(), from, -from, any_perpendicular(from)}) {
+      const Quaternion turn = shortest_turn(from, to);
+      EXPECT_LT(distance(rotate(turn, from), to), 1e-12);
+      EXPECT_NEAR(turn.w, std::cos(std::acos(std::clamp(dot(from, to), -1.0, 1.0)) / 2), 1e-7) << "and no further";
+    }
+  }
+}
+
+TEST(Quaternion, from_axes_finds_the_turn_back_whatever_its_largest_part) {
+  Random random;
+  std::vector<Quaternion> turns;
+  for (int i = 0; i < 50; ++i) turns.push_back(random.turn());
+  // Half turns: the trace is -1, and each of the three other branches is taken.
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, random.direction()})
+    turns.push_back(axis_angle(axis, std::numbers::pi));
+  for (const Quaternion& turn : turns) {
+    const Quaternion found = from_axes(rotate(turn, {1, 0, 0}), rotate(turn, {0, 1, 0}), rotate(turn, {0, 0, 1}));
+    EXPECT_LT(difference(found, turn), 1e-14);
+  }
+}
+
+TEST(Vec3, any_perpendicular_is_a_unit_vector_at_right_angles) {
+  Random random;
+  for (int i = 0; i < 50; ++i) {
+    const Vec3 v = i < 3 ? Vec3{double(i == 0), double(i == 1), double(i == 2)} : random.direction();
+    EXPECT_NEAR(dot(any_perpendicular(v), v), 0, 1e-15);
+    EXPECT_NEAR(norm(any_perpendicular(v)), 1, 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace iota
