@@ -37,7 +37,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
   run_fields(report);
 
   // 2. Islands whose structure changed are analyzed anew; velocities that were assigned are made consistent.
-  std::vector<std::uint32_t> jolted, disturbed;
+  jolted.clear(), disturbed.clear();
   model.articulates.for_each([&](std::uint32_t slot, model::Articulate& a) {
     if (a.jolted) jolted.push_back(slot);
     if (a.disturbed) disturbed.push_back(slot);

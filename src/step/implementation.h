@@ -29,7 +29,9 @@ struct System::Implementation {
   step::HeldForces held_forces;
   step::ParticleSets particle_sets;
   Parallel parallel;
-  std::vector<solver::AdvanceReport> advanced;   // of each island, in the step at hand
+  std::vector<solver::AdvanceReport> advanced;  // of each island, in the step at hand
+  std::vector<std::uint32_t> jolted,
+      disturbed;  // articulates, since the last step: lists of that step, kept for their room
   std::map<std::uint64_t, ScriptedLaw> scripts;  // functions of scripted bonds; not part of the saved state
   struct LawFunction {
     RadialFunction radial = nullptr;

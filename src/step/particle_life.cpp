@@ -84,20 +84,19 @@ Quaternion turn_by(const Vec3& v) {
 
 void System::Implementation::live(StepReport& report) {
   const double h = report.dt;
-  std::vector<ParticleId> dead;
   model.attributes.for_each([&](std::uint32_t, model::Attributes& a) {
     if (a.oriented) turn(a, h);
     a.age += h;
-    if (a.age >= a.lifetime) dead.push_back(model.particles.id(a.particle));
+    if (a.age >= a.lifetime) report.died.push_back(model.particles.id(a.particle));
   });
-  if (!dead.empty()) model.begin_edits();
-  for (const ParticleId particle : dead) {
-    if (!model.particles.contains(particle)) continue;  // went with another one
+  if (!report.died.empty()) model.begin_edits();
+  std::erase_if(report.died, [&](ParticleId particle) {
+    if (!model.particles.contains(particle)) return true;  // it went with another one
     const std::uint32_t before = model.structure_version, is_spark = model.is_spark(particle.slot);
     apply(Destroy<ParticleId>{particle});
     if (is_spark) model.spark_changes += model.structure_version - before;
-    report.died.push_back(particle);
-  }
+    return false;
+  });
   for (std::uint32_t e = 0; e < model.emitters.slot_count(); ++e)
     if (model.emitters.is_alive(e) && model.emitters[e].active) emit(e, report);
 }

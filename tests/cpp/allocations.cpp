@@ -5,17 +5,21 @@
 #include <new>
 
 namespace iota {
-std::atomic<long> allocations{0};
+std::atomic<long> allocations{0}, allocated_bytes{0};
 }
+
+namespace {
+void count(std::size_t size) { ++iota::allocations, iota::allocated_bytes += static_cast<long>(size); }
+}  // namespace
 
 // Counting is all these do; the default ones are not callable once replaced.
 void* operator new(std::size_t size) {
-  ++iota::allocations;
+  count(size);
   if (void* p = std::malloc(size ? size : 1)) return p;
   throw std::bad_alloc();
 }
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {  // as std::stable_sort asks
-  ++iota::allocations;
+  count(size);
   return std::malloc(size ? size : 1);
 }
 void operator delete(void* p) noexcept { std::free(p); }

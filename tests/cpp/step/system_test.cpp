@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One behavior each: bodies of every rank, nails, bonds, grips, damping, conflicts, bad input.
 #include "scenes/chain.h"
+#include "tests/cpp/allocations.h"
 
 #include <gtest/gtest.h>
 
@@ -58,24 +59,49 @@ TEST(Body, of_any_rank_keeps_its_shape_momentum_and_energy_while_it_tumbles) {
   }
 }
 
-TEST(Body, of_a_thousand_hinges_stays_linear_and_exact) {
-  System system;
-  const BodyId hub = system.create_body();
+/// A wheel on a nail above its hub, with pendulums hinged all round its rim.
+void make_carousel(System& system, int pendulums) {
+  const BodyId wheel = system.create_body();
   std::vector<ParticleId> rim;
-  for (int i = 0; i < 1000; ++i) {
-    const double angle = 2 * std::numbers::pi * i / 1000;
-    rim.push_back(system.create_particle(hub, {std::cos(angle), 0, std::sin(angle)}, 0.01));
+  for (int i = 0; i < pendulums; ++i) {
+    const double angle = 2 * std::numbers::pi * i / pendulums;
+    rim.push_back(system.create_particle(wheel, {std::cos(angle), 0, std::sin(angle)}, 0.01));
   }
-  system.nail(system.create_particle(hub, {0, 1, 0}, 1));
-  for (int i = 0; i < 1000; ++i) {
-    const Vec3 at = system.position(rim[i]);
+  system.nail(system.create_particle(wheel, {0, 1, 0}, 1));
+  for (const ParticleId hinge : rim) {
+    const Vec3 at = system.position(hinge);
     const BodyId link = system.create_body();
     const ParticleId top = system.create_particle(link, at, 0.01);
     system.create_particle(link, at + Vec3{0.01, -0.1, 0}, 0.02);
-    (void)system.combine(rim[i], top);
+    (void)system.combine(hinge, top);
   }
+}
+
+TEST(Body, of_a_thousand_hinges_stays_exact) {
+  System system;
+  make_carousel(system, 1000);
   EXPECT_EQ(system.articulate_count(), 1u);
   run(system, 0.1);
+}
+
+TEST(Body, of_twice_as_many_hinges_costs_twice_the_memory_and_as_many_iterations) {
+  struct Cost {
+    double bytes;
+    int iterations;
+  };
+  const auto cost_of = [](int pendulums) {
+    System system;
+    make_carousel(system, pendulums);
+    const long before = allocated_bytes;
+    int iterations = system.step(1.0 / 120).iterations_max;  // analyzes the structure: the factors and all lists
+    const auto bytes = static_cast<double>(allocated_bytes - before);
+    for (int i = 0; i < 5; ++i) iterations += system.step(1.0 / 120).iterations_max;
+    return Cost{bytes, iterations};
+  };
+  const Cost half = cost_of(400), whole = cost_of(800);
+  // If the hinges of one body were coupled to each other, the matrix would grow fourfold.
+  EXPECT_LT(whole.bytes, 2.3 * half.bytes);
+  EXPECT_LE(whole.iterations, half.iterations + 6);
 }
 
 TEST(Nail, holds_still_and_tells_its_force) {
