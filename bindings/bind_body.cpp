@@ -8,17 +8,21 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* doc =
-    "A rigid set of particles in a system. Make its particles with `Particle(body, ...)`, or give the body as a solid:\n\n"
+    "A rigid set of particles in a system; made by `System.body`.\n\n"
+    "Two handles of the same body are equal. A handle whose body was destroyed or absorbed raises StaleIdError.";
+
+constexpr const char* make_doc =
+    "A new body. Make its particles with `Body.particle`, or give the body as a solid:\n\n"
     "shape: Sphere, Box, Cylinder, Capsule, Torus or Mesh, of density (kg/m^3) or mass (kg), with its origin at position\n"
     "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses then stand for it, with exactly\n"
     "its mass, center and inertia. velocity: of the center of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
-    "shape's frame (m) for particles to hinge, nail or bond, see `attachments` and `attach`.\n\n"
+    "shape's frame (m) for particles to hinge, nail or bond, see `Body.attachment`.\n\n"
     "kind: 'dynamic', 'static' (never moves), 'scripted' (moved by the script, infinite mass), 'inactive' (kept, neither\n"
-    "stepped nor drawn) or 'resting' (dynamic but asleep, see System.rest_after). damping: 1/s, adds to the system's.\n\n"
-    "Two handles of the same body are equal. A handle whose body was destroyed or absorbed raises StaleIdError.\n\n"
-    "    rod = iota.Body(system)\n"
-    "    top, end = iota.Particle(rod, (0, 2, 0)), iota.Particle(rod, (0, 1, 0))\n"
-    "    door = iota.Body(system, shape=iota.Box((0.9, 2, 0.04)), density=600, attachments=[(-0.45, 0.8, 0), (-0.45, -0.8, 0)])\n"
+    "stepped nor drawn) or 'resting' (dynamic but asleep, see `rest_after`). damping: 1/s, adds to the system's.\n\n"
+    "Raises ValueError for numbers that are out of range, TypeError for mass, position, ... without a shape.\n\n"
+    "    rod = system.body()\n"
+    "    top, end = rod.particle((0, 2, 0)), rod.particle((0, 1, 0))\n"
+    "    door = system.body(shape=iota.Box((0.9, 2, 0.04)), density=600, attachments=[(-0.45, 0.8, 0), (-0.45, -0.8, 0)])\n"
     "    for hinge in door.attachments:\n"
     "        hinge.nail()";
 
@@ -46,7 +50,7 @@ void refuse_without_shape(const std::optional<double>& mass, VectorArgument posi
     return;
   throw nb::type_error(
       "mass, position, orientation, velocity, spin and attachments are of bodies with a shape: give shape=..., or make "
-      "particles with Particle(body, position, mass, velocity)");
+      "particles with body.particle(position, mass, velocity)");
 }
 
 System& between_steps(const BodyHandle& self, const char* what) {
@@ -55,24 +59,18 @@ System& between_steps(const BodyHandle& self, const char* what) {
   return engine;
 }
 
-}  // namespace
-
-void bind_body(nb::module_& module) {
+void bind_making(nb::class_<SystemObject>& system) {
   const nb::tuple zero = nb::make_tuple(0.0, 0.0, 0.0);
-  nb::class_<BodyHandle> type(module, "Body", doc, nb::type_slots(handle_slots<BodyHandle>),
-                              nb::is_weak_referenceable());
-  type.def(
-      "__init__",
-      [](BodyHandle* self, nb::handle_t<SystemObject> system, const KindWord& kind, double damping, nb::object shape,
-         double density, std::optional<double> mass, VectorArgument position, nb::object orientation,
-         VectorArgument velocity, VectorArgument spin, nb::iterable attachments) {
-        SystemObject* object = nb::inst_ptr<SystemObject>(system);
-        System& engine = object->use_between_steps("Body(...)");
+  system.def(
+      "body",
+      [](nb::handle_t<SystemObject> self, const KindWord& kind, double damping, nb::object shape, double density,
+         std::optional<double> mass, VectorArgument position, nb::object orientation, VectorArgument velocity,
+         VectorArgument spin, nb::iterable attachments) {
+        System& engine = nb::inst_ptr<SystemObject>(self)->use_between_steps("body(...)");
         finite_not_negative(damping, "damping", "1/s");
         if (shape.is_none()) {
           refuse_without_shape(mass, position, orientation, velocity, spin, attachments);
-          new (self) BodyHandle{nb::borrow(system), object, engine.create_body({to_kind(kind), damping})};
-          return;
+          return handle_of(self, engine.create_body({to_kind(kind), damping}));
         }
         SolidOptions options;
         options.kind = to_kind(kind), options.damping = damping;
@@ -82,21 +80,31 @@ void bind_body(nb::module_& module) {
         options.orientation = to_quaternion(orientation, "orientation");
         options.velocity = to_vec3(velocity, "velocity"), options.spin = to_vec3(spin, "spin");
         for (nb::handle place : attachments) options.attachments.push_back(to_vec3({place}, "each attachment"));
-        new (self) BodyHandle{nb::borrow(system), object, engine.create_body(to_shape(shape), options)};
+        return handle_of(self, engine.create_body(to_shape(shape), options));
       },
-      "system"_a, "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(),
+      "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(),
       "density"_a = 1000.0, "mass"_a = nb::none(), "position"_a = zero,
       "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), "velocity"_a = zero, "spin"_a = zero,
       "attachments"_a = nb::tuple(),
       nb::sig(
-          "def __init__(self, system: System, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting'] = 'dynamic', "
+          "def body(self, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting'] = 'dynamic', "
           "damping: float = 0.0, *, shape: Sphere | Box | Cylinder | Capsule | Torus | Mesh | None = None, "
           "density: float = 1000.0, mass: float | None = None, "
           "position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), "
           "velocity: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "spin: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
-          "attachments: collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] = ()) -> None"));
+          "attachments: collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] = ()) -> Body"),
+      make_doc);
+}
+
+}  // namespace
+
+void bind_body(nb::module_& module) {
+  nb::class_<BodyHandle> type(module, "Body", doc, nb::type_slots(handle_slots<BodyHandle>),
+                              nb::is_weak_referenceable());
+  auto system = nb::borrow<nb::class_<SystemObject>>(module.attr("System"));
+  bind_making(system);
   def_identity(type);
   def_survival(type, "def survivor(self) -> Body | None");
   type.def_prop_ro(
@@ -120,10 +128,6 @@ void bind_body(nb::module_& module) {
           [](const BodyHandle& self, bool active) { self.use().set_active(self.id, active); },
           "False: kind 'inactive'; its bonds do not act. Active again, it is what it was before, at rest where it was left,\n"
           "and its hinges close.")
-      .def(
-          "set_articulate_active",
-          [](const BodyHandle& self, bool active) { self.use().set_articulate_active(self.id, active); }, "active"_a,
-          "Switches the body and all that hangs on it off or on.")
       .def_prop_rw(
           "damping", [](const BodyHandle& self) { return self.use().damping(self.id); },
           [](const BodyHandle& self, double value) {
@@ -168,7 +172,7 @@ void bind_body(nb::module_& module) {
             between_steps(self, "angular_velocity = ...").set_angular_velocity(self.id, to_vec3(v, "angular_velocity"));
           },
           "rad/s, world axes. It has no part along what has no inertia, and assigning one raises ValueError: one point, or\n"
-          "points on a line that are no rod (`set_rod`). Assigning keeps the velocity of the center; what joints do not allow of it is projected out by the next step.")
+          "points on a line without `set_rod`. Assigning keeps the velocity of the center; what joints do not allow of it is projected out by the next step.")
       .def_prop_ro(
           "angular_momentum", [](const BodyHandle& self) { return self.use().angular_momentum(self.id); },
           "About its center of mass, kg m^2/s.")
@@ -181,19 +185,16 @@ void bind_body(nb::module_& module) {
             return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().attachments(self.id));
           },
           nb::sig("def attachments(self) -> list[Particle]"),
-          "Its particles that are no solid's own four points, in the order in which they were made.")
+          "Its particles except for a solid's own four points, in the order in which they were made.")
       .def(
-          "attach",
+          "attachment",
           [](const BodyHandle& self, VectorArgument position) {
-            return sibling(self,
-                           between_steps(self, "attach").create_attachment(self.id, to_vec3(position, "position")));
+            System& engine = between_steps(self, "attachment(...)");
+            return sibling(self, engine.create_attachment(self.id, to_vec3(position, "position")));
           },
-          "position"_a, nb::sig("def attach(self, position: Vec3 | collections.abc.Sequence[float]) -> Particle"),
+          "position"_a, nb::sig("def attachment(self, position: Vec3 | collections.abc.Sequence[float]) -> Particle"),
           "A further particle of a body given by shape, anywhere (world, m). Mass, center, inertia and motion of the body\n"
           "stay exactly what they are. Raises ValueError for bodies without a shape.")
-      .def_prop_ro(
-          "articulate", [](const BodyHandle& self) { return self.use().articulate(self.id); },
-          "A number that is equal for bodies that hang together.")
       .def(
           "set_rod",
           [](const BodyHandle& self, double mass, double radius) {
@@ -207,7 +208,7 @@ void bind_body(nb::module_& module) {
           "any other number of particles.")
       .def(
           "destroy", [](const BodyHandle& self) { self.use().destroy(self.id); },
-          "Removes it with its particles and their bonds. In a bond's function: right after the step.")
+          "Removes it with its particles and their bonds.")
       .def("__repr__", &repr);
 }
 

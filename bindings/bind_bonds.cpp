@@ -12,45 +12,73 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* bond_doc =
-    "A force between two particles, equal and opposite.\n\n"
-    "law: a predefined one by name ('spring', 'drag', 'dashpot', 'tether', 'soft_repulsion', 'gravity', 'coulomb',\n"
-    "'lennard_jones', 'morse', 'attract_repel'), an expression such as 'energy = 0.5*k*(r - r0)^2', a Law, or a function of\n"
-    "the script, called once a step with a BondState; it returns the force on p in N. Parameters of the law are keywords;\n"
+    "A force between two particles, equal and opposite; made by `System.bond`.";
+
+constexpr const char* make_bond_doc =
+    "A new force between two particles, equal and opposite.\n\n"
+    "law: a name, an expression such as 'energy = 0.5*k*(r - r0)^2', a Law, or a function of the script, called once a\n"
+    "step with a BondState; it returns the force on p in N. A name is that of a predefined law ('spring', 'drag',\n"
+    "'dashpot', 'tether', 'soft_repulsion', 'gravity', 'coulomb', 'lennard_jones', 'morse', 'attract_repel'), of a law made\n"
+    "by `law(..., name=...)`, or of a function of the calling script. Parameters of the law are keywords;\n"
     "None is the distance now. Laws with a derivative are solved implicitly, unless implicit=False: any stiffness is\n"
     "stable. A function that raises, or a law without a finite force, switches the bond off, and `System.step` raises\n"
     "BondError. docs/forces.md says what each costs.\n\n"
-    "    iota.Bond(p, q, 'spring', stiffness=200, damping=1)\n"
-    "    iota.Bond(p, q, 'energy = k*(r - r0)^4; force = -c*v', k=50, r0=None, c=0.1)\n"
-    "    iota.Bond(p, q, lambda bond: 50 * (bond.distance - 1) * bond.direction)";
+    "    system.bond(p, q, 'spring', stiffness=200, damping=1)\n"
+    "    system.bond(p, q, 'energy = k*(r - r0)^4; force = -c*v', k=50, r0=None, c=0.1)\n"
+    "    system.bond(p, q, lambda bond: 50 * (bond.distance - 1) * bond.direction)";
 
 constexpr const char* state_doc =
     "What the function of a bond is shown: its two ends. In the energy-keeping mode positions are those of the middle of the\n"
     "step, half a step ahead as velocities go; see docs/forces.md.";
 
-void make_bond(BondHandle* self, const ParticleHandle& p, const ParticleHandle& q, nb::object law,
-               std::optional<bool> implicit, double break_force, const nb::kwargs& keywords) {
-  check_one_system(p, q, "Bond");
-  p.use();
-  q.use();
-  System& engine = p.system->use_between_steps("Bond(...)");
+/// Both ends alive, and of this system.
+void check_ends(const SystemObject& self, const ParticleHandle& p, const ParticleHandle& q, const char* what) {
+  check_one_system(p, q, what);
+  p.use(), q.use();
+  if (p.system != &self) throw nb::value_error((std::string(what) + ": the particles belong to another system").c_str());
+}
+
+/// What a word stands for where no law has that name: a function of the script that calls, local or global. Null if
+/// there is none. Source: thesis, Fig. D.1.
+nb::object function_called(const System& engine, const std::string& word) {
+  if (word.find('=') != std::string::npos) return {};
+  try {
+    (void)engine.find_law(word);
+    return {};
+  } catch (const std::invalid_argument&) {
+  }
+  for (PyObject* names : {PyEval_GetLocals(), PyEval_GetGlobals()}) {
+    PyObject* found = names ? PyDict_GetItemString(names, word.c_str()) : nullptr;
+    if (found && PyCallable_Check(found)) return nb::borrow(found);
+  }
+  return {};
+}
+
+BondHandle make_bond(SystemObject& self, const ParticleHandle& p, const ParticleHandle& q, nb::object law,
+                     std::optional<bool> implicit, double break_force, const nb::kwargs& keywords) {
+  check_ends(self, p, q, "bond");
+  System& engine = self.use_between_steps("bond(...)");
   std::vector<LawParameter> parameters = to_parameters(keywords);
   std::shared_ptr<BondFunction> function;
   BondLaw engine_law;
   const LawHandle* shared = nullptr;
+  const std::string text = nb::isinstance<nb::str>(law) ? nb::cast<std::string>(law) : "";
+  if (!text.empty())
+    if (nb::object named = function_called(engine, text); named.is_valid()) law = named;
   if (nb::isinstance<nb::str>(law)) {
-    const LawId id = law_of_text(*p.system, nb::cast<std::string>(law), parameters);
+    const LawId id = law_of_text(self, text, parameters);
     engine_law = SharedLaw{id, std::move(parameters), implicit};
   } else if (nb::try_cast<const LawHandle*>(law, shared) && shared) {
     shared->use();
-    if (shared->system != p.system) throw nb::value_error("Bond takes a law of the system that its particles are of");
+    if (shared->system != &self) throw nb::value_error("a bond takes a law of its own system");
     engine_law = SharedLaw{shared->id, std::move(parameters), implicit};
   } else if (PyCallable_Check(law.ptr())) {
     if (!parameters.empty()) throw nb::type_error(("a function has no " + parameters.front().name).c_str());
     if (implicit.value_or(false)) throw nb::value_error("a function has no derivative: its bond cannot be implicit");
     const std::string name = function_name(law);
     function = std::make_shared<BondFunction>(BondFunction{{law, "function " + name}, {}, p.id, q.id});
-    p.system->keep(function);
-    engine_law = p.system->make_scripted_law(function, name);
+    self.keep(function);
+    engine_law = self.make_scripted_law(function, name);
   } else {
     throw nb::type_error(
         ("law must be a predefined law, an expression, a Law or a function, not " + describe(law)).c_str());
@@ -58,7 +86,7 @@ void make_bond(BondHandle* self, const ParticleHandle& p, const ParticleHandle& 
   const BondId id = engine.create_bond(p.id, q.id, std::move(engine_law));
   if (function) function->bond = id;
   if (std::isfinite(break_force)) engine.set_break_force(id, break_force);
-  new (self) BondHandle{p.system_object, p.system, id};
+  return sibling(p, id);
 }
 
 void set_parameters(const BondHandle& self, const nb::kwargs& keywords) {
@@ -87,12 +115,14 @@ std::string repr(const BondHandle& self) {
 void bind_bond(nb::module_& module) {
   nb::class_<BondHandle> type(module, "Bond", bond_doc, nb::type_slots(handle_slots<BondHandle>),
                               nb::is_weak_referenceable());
-  type.def("__init__", &make_bond, "p"_a, "q"_a, "law"_a, nb::kw_only(), "implicit"_a = nb::none(),
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
+      .def("bond", &make_bond, "p"_a, "q"_a, "law"_a, nb::kw_only(), "implicit"_a = nb::none(),
            "break_force"_a = std::numeric_limits<double>::infinity(), "parameters"_a,
-           nb::sig("def __init__(self, p: Particle, q: Particle, law: str | Law | "
+           nb::sig("def bond(self, p: Particle, q: Particle, law: str | Law | "
                    "collections.abc.Callable[[BondState], Vec3 | collections.abc.Sequence[float] | "
                    "numpy.typing.NDArray[numpy.float64]], *, implicit: bool | None = None, "
-                   "break_force: float = float('inf'), **parameters: float | None) -> None"));
+                   "break_force: float = float('inf'), **parameters: float | None) -> Bond"),
+           make_bond_doc);
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const BondHandle& self) { return self.is_alive(); },
@@ -173,19 +203,18 @@ void bind_bond_state(nb::module_& module) {
 
 void bind_cosmetic_bond(nb::module_& module) {
   nb::class_<CosmeticBondHandle> type(
-      module, "CBond",
-      "A line to be drawn between two particles of one body; it has no force. A body whose lines are cut in two falls in two.",
+      module, "CosmeticBond",
+      "A line to be drawn between two particles of one body, without a force; made by `System.cosmetic_bond`. A body whose\n"
+      "lines are cut in two falls in two.",
       nb::type_slots(handle_slots<CosmeticBondHandle>), nb::is_weak_referenceable());
-  type.def(
-      "__init__",
-      [](CosmeticBondHandle* self, const ParticleHandle& p, const ParticleHandle& q) {
-        check_one_system(p, q, "CBond");
-        p.use();
-        q.use();
-        const CosmeticBondId id = p.system->use_between_steps("CBond(...)").create_cosmetic_bond(p.id, q.id);
-        new (self) CosmeticBondHandle{p.system_object, p.system, id};
-      },
-      "p"_a, "q"_a);
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
+      .def(
+          "cosmetic_bond",
+          [](SystemObject& self, const ParticleHandle& p, const ParticleHandle& q) {
+            check_ends(self, p, q, "cosmetic_bond");
+            return sibling(p, self.use_between_steps("cosmetic_bond(...)").create_cosmetic_bond(p.id, q.id));
+          },
+          "p"_a, "q"_a, "A new line to be drawn between two particles of one body.");
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const CosmeticBondHandle& self) { return self.is_alive(); },
@@ -210,9 +239,9 @@ void bind_cosmetic_bond(nb::module_& module) {
           "bond's first end, which stays this body, and one with the second. Particles that hang on neither end go with the\n"
           "nearer piece; a solid and its attachments are one piece. Velocities stay.")
       .def("__repr__", [](const CosmeticBondHandle& self) {
-        if (!self.is_alive()) return "<CBond " + std::to_string(self.id.slot) + ", gone>";
+        if (!self.is_alive()) return stale_repr("CosmeticBond", self);
         const auto [p, q] = self.use().ends(self.id);
-        return "<CBond " + std::to_string(self.id.slot) + " between particles " + std::to_string(p.slot) + " and " +
+        return "<CosmeticBond " + std::to_string(self.id.slot) + " between particles " + std::to_string(p.slot) + " and " +
                std::to_string(q.slot) + ">";
       });
 }

@@ -22,6 +22,8 @@ constexpr const char* coordinate_doc =
     "The angle about a joint's axis (rad) or the slide along it (m) of a against b, 0 where the joint was made, and what\n"
     "acts on it. Torques in N m for an angle, forces in N for a slide.";
 
+constexpr std::array coordinate_names{"angle", "slide", "second_angle"};  // as JointCoordinate counts them
+
 using Pair = std::pair<double, double>;
 
 /// What a joint's coordinate was given by keywords.
@@ -267,9 +269,9 @@ void bind_coordinate(nb::module_& module) {
           nb::for_setter(nb::arg("spring").none()), "(stiffness, damping, rest) or a stiffness; None for none.")
       .def("__repr__", [](const CoordinateView& self) {
         const ConstraintState state = self.joint.use().state(self.joint.id);
-        const bool is_angle = self.which == JointCoordinate::angle;
-        return std::string(is_angle ? "<angle " : "<slide ") + std::to_string(state.coordinate[self.index()]) +
-               (is_angle ? " rad>" : " m>");
+        const bool is_slide = self.which == JointCoordinate::slide;
+        return std::string("<") + coordinate_names[self.index()] + " " +
+               std::to_string(state.coordinate[self.index()]) + (is_slide ? " m>" : " rad>");
       });
 }
 
@@ -278,7 +280,7 @@ CoordinateView coordinate_of(const ConstraintHandle& self, JointCoordinate which
   const ConstraintKind kind = self.system->engine.state(self.id).kind;
   if (!has_coordinate(kind, which)) {
     const std::string text = "a " + to_word(constraint_words, kind) + " has no " +
-                             std::array{"angle", "slide", "second_angle"}[static_cast<std::size_t>(which)];
+                             coordinate_names[static_cast<std::size_t>(which)];
     PyErr_SetString(PyExc_AttributeError, text.c_str());
     throw nb::python_error();
   }
@@ -372,7 +374,7 @@ void bind_handle(nb::module_& module) {
           "N m; inf: never.")
       .def(
           "destroy", [](const ConstraintHandle& self) { self.use().destroy(self.id); },
-          "Removes it. In a bond's function: right after the step.")
+          "Removes it.")
       .def("__repr__", &repr);
 }
 

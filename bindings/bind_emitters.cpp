@@ -9,14 +9,17 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* doc =
-    "A source of particles; each is a body of its own with an age and a lifetime, and dies at its end.\n\n"
+    "A source of particles; made by `System.emitter`.";
+
+constexpr const char* make_doc =
+    "A new source of particles; each is a body of its own with an age and a lifetime, and dies at its end.\n\n"
     "rate: births a second. source: Sphere, Box, Cylinder or Capsule; they are born anywhere within, evenly. position (m),\n"
     "orientation (quaternion x y z w): of the source. velocity: in its frame, m/s; each gets up to velocity_spread m/s more\n"
     "in any direction. lifetime: s; each lives up to lifetime_spread longer or shorter. mass: kg. damping: 1/s. max_count:\n"
     "alive at once. curve: at most 8 of (life, radius, color), life rising from 0 at birth to 1 at death, radius in m, color\n"
     "3 or 4 numbers from 0 to 1. Equal seeds give equal particles.\n\n"
-    "    fire = iota.Emitter(system, rate=300, velocity=(0, 2, 0), velocity_spread=0.4, lifetime=0.8,\n"
-    "                        curve=[(0, 0.02, (1, 0.9, 0.3)), (1, 0.06, (0.3, 0, 0, 0))])";
+    "    fire = system.emitter(rate=300, velocity=(0, 2, 0), velocity_spread=0.4, lifetime=0.8,\n"
+    "                          curve=[(0, 0.02, (1, 0.9, 0.3)), (1, 0.06, (0.3, 0, 0, 0))])";
 
 Color to_color(nb::handle value, const char* name) {
   Color color{1, 1, 1, 1};
@@ -56,11 +59,10 @@ std::vector<AttributeKey> to_curve(nb::iterable curve) {
   return keys;
 }
 
-void make_emitter(EmitterHandle* self, nb::handle_t<SystemObject> system, double rate, nb::object source,
-                  VectorArgument position, nb::object orientation, VectorArgument velocity, double velocity_spread,
-                  double lifetime, double lifetime_spread, double mass, double damping, std::uint32_t max_count,
-                  nb::iterable curve, std::uint64_t seed) {
-  SystemObject* object = nb::inst_ptr<SystemObject>(system);
+EmitterHandle make_emitter(nb::handle_t<SystemObject> self, double rate, nb::object source, VectorArgument position,
+                           nb::object orientation, VectorArgument velocity, double velocity_spread, double lifetime,
+                           double lifetime_spread, double mass, double damping, std::uint32_t max_count,
+                           nb::iterable curve, std::uint64_t seed) {
   EmitterOptions o;
   o.rate = finite_not_negative(rate, "rate", "1/s");
   if (!source.is_none()) o.source = to_shape(source);
@@ -71,28 +73,28 @@ void make_emitter(EmitterHandle* self, nb::handle_t<SystemObject> system, double
   o.lifetime_spread = finite_not_negative(lifetime_spread, "lifetime_spread", "s");
   o.mass = finite_positive(mass, "mass", "kg"), o.damping = finite_not_negative(damping, "damping", "1/s");
   o.max_count = max_count, o.curve = to_curve(curve), o.seed = seed;
-  const EmitterId id = object->use_between_steps("Emitter(...)").create_emitter(o);
-  new (self) EmitterHandle{nb::borrow(system), object, id};
+  return handle_of(self, nb::inst_ptr<SystemObject>(self)->use_between_steps("emitter(...)").create_emitter(o));
 }
 
 void bind_emitter(nb::module_& module) {
   const nb::tuple zero = nb::make_tuple(0.0, 0.0, 0.0);
   nb::class_<EmitterHandle> type(module, "Emitter", doc, nb::type_slots(handle_slots<EmitterHandle>),
                                  nb::is_weak_referenceable());
-  type.def(
-      "__init__", &make_emitter, "system"_a, nb::kw_only(), "rate"_a = 10.0, "source"_a = nb::none(),
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System")).def(
+      "emitter", &make_emitter, nb::kw_only(), "rate"_a = 10.0, "source"_a = nb::none(),
       "position"_a = zero, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0),
       "velocity"_a = nb::make_tuple(0.0, 1.0, 0.0), "velocity_spread"_a = 0.0, "lifetime"_a = 1.0,
       "lifetime_spread"_a = 0.0, "mass"_a = 0.001, "damping"_a = 0.0, "max_count"_a = 1000, "curve"_a = nb::tuple(),
       "seed"_a = 1,
       nb::sig(
-          "def __init__(self, system: System, *, rate: float = 10.0, source: Sphere | Box | Cylinder | Capsule | None = "
+          "def emitter(self, *, rate: float = 10.0, source: Sphere | Box | Cylinder | Capsule | None = "
           "None, position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), orientation: "
           "collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), velocity: Vec3 | "
           "collections.abc.Sequence[float] = (0.0, 1.0, 0.0), velocity_spread: float = 0.0, lifetime: float = 1.0, "
           "lifetime_spread: float = 0.0, mass: float = 0.001, damping: float = 0.0, max_count: int = 1000, curve: "
           "collections.abc.Iterable[tuple[float, float, collections.abc.Sequence[float]]] = (), seed: int = 1) -> "
-          "None"));
+          "Emitter"),
+      make_doc);
   def_identity(type);
   const auto checked = [](const EmitterHandle& self, const char* what) -> System& {
     System& engine = self.use();

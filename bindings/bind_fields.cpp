@@ -10,12 +10,18 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* group_doc =
-    "A named set of particles, for fields and pairwise forces to act on. A system has at most 32 at a time.\n\n"
-    "    fish = iota.Group(system, 'fish')\n"
+    "A named set of particles, for fields and pair forces to act on; made by `System.group`.";
+
+constexpr const char* make_group_doc =
+    "A new named set of particles, for fields and pair forces to act on. A system has at most 32 at a time.\n\n"
+    "    fish = system.group('fish')\n"
     "    fish.add(p, q)";
 
 constexpr const char* field_doc =
-    "A force on each particle of a group, or on all, by itself; taken once a step and held. Particles that are hinged\n"
+    "A force on each particle of a group, or on all, by itself; made by `System.field`.";
+
+constexpr const char* make_field_doc =
+    "A new force on each particle of a group, or on all, by itself; taken once a step and held. Particles that are hinged\n"
     "together count as one, with all their mass.\n\n"
     "field is one of\n"
     "- a predefined one: 'uniform' (acceleration), 'wind' (velocity, drag), 'current' (turbulent: velocity, drag, speed, size,\n"
@@ -26,14 +32,17 @@ constexpr const char* field_doc =
     "- compiled code, see docs/forces.md.\n\n"
     "Parameters are keywords; a vector stands for its three: velocity=(1, 0, 0). replaces_gravity=True makes it the default\n"
     "force of all particles instead of gravity.\n\n"
-    "    iota.Field(system, 'wind', velocity=(3, 0, 0), drag=0.05, group=leaves)\n"
-    "    iota.Field(system, 'fy = -m*g*(1 - y/h)', g=9.81, h=100, replaces_gravity=True)";
+    "    system.field('wind', velocity=(3, 0, 0), drag=0.05, group=leaves)\n"
+    "    system.field('fy = -m*g*(1 - y/h)', g=9.81, h=100, replaces_gravity=True)";
 
-constexpr const char* pairs_doc =
-    "A force between all pairs of particles of a group, or of all, that are nearer than `cutoff` (m); taken once a step and\n"
-    "held. law is a predefined law, an expression or a Law with a derivative, as for Bond. Points of one body do not feel\n"
+constexpr const char* pair_force_doc =
+    "A force between all pairs of particles of a group that are near each other; made by `System.pair_force`.";
+
+constexpr const char* make_pair_force_doc =
+    "A new force between all pairs of particles of a group, or of all, that are nearer than `cutoff` (m); taken once a step and\n"
+    "held. law is a predefined law, an expression or a Law with a derivative, as for `bond`. Points of one body do not feel\n"
     "each other.\n\n"
-    "    iota.Pairs(system, 'lennard_jones', cutoff=2.5, depth=1, size=1)";
+    "    system.pair_force('lennard_jones', cutoff=2.5, depth=1, size=1)";
 
 constexpr const char* batch_doc =
     "The particles of a field, as its function sees them: arrays with a row a particle, in the order of `particles`. Good\n"
@@ -110,10 +119,10 @@ std::vector<LawParameter> to_field_parameters(const nb::kwargs& keywords) {
   return list;
 }
 
-void make_field(FieldHandle* self, nb::object system_object, nb::object field, nb::handle group, bool replaces_gravity,
-                const std::string& name, const nb::kwargs& keywords) {
-  SystemObject* system = to_system(system_object);
-  System& engine = system->use_between_steps("Field(...)");
+FieldHandle make_field(nb::handle_t<SystemObject> self, nb::object field, nb::handle group, bool replaces_gravity,
+                       const std::string& name, const nb::kwargs& keywords) {
+  SystemObject* system = nb::inst_ptr<SystemObject>(self);
+  System& engine = system->use_between_steps("field(...)");
   FieldOptions options{name, to_field_parameters(keywords), to_group(group, system), replaces_gravity};
   FieldId id;
   if (nb::isinstance<nb::str>(field)) {
@@ -137,13 +146,13 @@ void make_field(FieldHandle* self, nb::object system_object, nb::object field, n
     throw nb::type_error(
         ("field must be a predefined field, an expression or a function of arrays, not " + describe(field)).c_str());
   }
-  new (self) FieldHandle{system_object, system, id};
+  return handle_of(self, id);
 }
 
-void make_pairs(PairsHandle* self, nb::object system_object, nb::object law, double cutoff, nb::handle group,
-                const nb::kwargs& keywords) {
-  SystemObject* system = to_system(system_object);
-  System& engine = system->use_between_steps("Pairs(...)");
+PairsHandle make_pair_force(nb::handle_t<SystemObject> self, nb::object law, double cutoff, nb::handle group,
+                            const nb::kwargs& keywords) {
+  SystemObject* system = nb::inst_ptr<SystemObject>(self);
+  System& engine = system->use_between_steps("pair_force(...)");
   finite_positive(cutoff, "cutoff", "m");
   SharedLaw shared;
   shared.parameters = to_parameters(keywords);
@@ -152,13 +161,12 @@ void make_pairs(PairsHandle* self, nb::object system_object, nb::object law, dou
     shared.law = law_of_text(*system, nb::cast<std::string>(law), shared.parameters);
   } else if (nb::try_cast<const LawHandle*>(law, handle) && handle) {
     handle->use();
-    if (handle->system != system) throw nb::value_error("Pairs takes a law of the same system");
+    if (handle->system != system) throw nb::value_error("a pair force takes a law of its own system");
     shared.law = handle->id;
   } else {
     throw nb::type_error(("law must be a predefined law, an expression or a Law, not " + describe(law)).c_str());
   }
-  const PairsId id = engine.create_pairs(shared, {cutoff, to_group(group, system)});
-  new (self) PairsHandle{system_object, system, id};
+  return handle_of(self, engine.create_pairs(shared, {cutoff, to_group(group, system)}));
 }
 
 /// All or none of several changes.
@@ -175,7 +183,7 @@ void set_all(const HandleType& self, const std::vector<LawParameter>& changes) {
   }
 }
 
-/// What fields and pairwise forces share.
+/// What fields and pair forces share.
 template <class HandleType>
 void def_force(nb::class_<HandleType>& type) {
   def_identity(type);
@@ -193,7 +201,7 @@ void def_force(nb::class_<HandleType>& type) {
           nb::sig("def parameters(self) -> dict[str, float]"), "A copy; change them with `set`.")
       .def(
           "destroy", [](const HandleType& self) { self.use().destroy(self.id); },
-          "Removes it; in a function that gives forces, right after the step.");
+          "Removes it.");
 }
 
 template <class Add>
@@ -220,14 +228,13 @@ void each_particle(const GroupHandle& self, const nb::args& particles, const cha
 void bind_group(nb::module_& module) {
   nb::class_<GroupHandle> type(module, "Group", group_doc, nb::type_slots(handle_slots<GroupHandle>),
                                nb::is_weak_referenceable());
-  type.def(
-      "__init__",
-      [](GroupHandle* self, nb::object system_object, const std::string& name) {
-        SystemObject* system = to_system(system_object);
-        const GroupId id = system->use_between_steps("Group(...)").create_group(name);
-        new (self) GroupHandle{system_object, system, id};
-      },
-      "system"_a, "name"_a, nb::sig("def __init__(self, system: System, name: str) -> None"));
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
+      .def(
+          "group",
+          [](nb::handle_t<SystemObject> self, const std::string& name) {
+            return handle_of(self, nb::inst_ptr<SystemObject>(self)->use_between_steps("group(...)").create_group(name));
+          },
+          "name"_a, make_group_doc);
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const GroupHandle& self) { return self.is_alive(); }, "False once it was destroyed.")
@@ -277,11 +284,13 @@ void bind_group(nb::module_& module) {
 void bind_field(nb::module_& module) {
   nb::class_<FieldHandle> type(module, "Field", field_doc, nb::type_slots(handle_slots<FieldHandle>),
                                nb::is_weak_referenceable());
-  type.def("__init__", &make_field, "system"_a, "field"_a, nb::kw_only(), "group"_a = nb::none(),
-           "replaces_gravity"_a = false, "name"_a = "", "parameters"_a,
-           nb::sig("def __init__(self, system: System, field: str | int | collections.abc.Callable[[ParticleBatch], "
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
+      .def("field", &make_field, "field"_a, nb::kw_only(), "group"_a = nb::none(), "replaces_gravity"_a = false,
+           "name"_a = "", "parameters"_a,
+           nb::sig("def field(self, field: str | int | collections.abc.Callable[[ParticleBatch], "
                    "numpy.typing.ArrayLike], *, group: Group | None = None, replaces_gravity: bool = False, "
-                   "name: str = '', **parameters: float | Vec3 | collections.abc.Sequence[float]) -> None"));
+                   "name: str = '', **parameters: float | Vec3 | collections.abc.Sequence[float]) -> Field"),
+           make_field_doc);
   def_force(type);
   type.def_prop_ro("name", [](const FieldHandle& self) { return self.use().name(self.id); })
       .def(
@@ -297,13 +306,14 @@ void bind_field(nb::module_& module) {
       });
 }
 
-void bind_pairs(nb::module_& module) {
-  nb::class_<PairsHandle> type(module, "Pairs", pairs_doc, nb::type_slots(handle_slots<PairsHandle>),
+void bind_pair_force(nb::module_& module) {
+  nb::class_<PairsHandle> type(module, "PairForce", pair_force_doc, nb::type_slots(handle_slots<PairsHandle>),
                                nb::is_weak_referenceable());
-  type.def("__init__", &make_pairs, "system"_a, "law"_a, nb::kw_only(), "cutoff"_a, "group"_a = nb::none(),
-           "parameters"_a,
-           nb::sig("def __init__(self, system: System, law: str | Law, *, cutoff: float, group: Group | None = None, "
-                   "**parameters: float) -> None"));
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
+      .def("pair_force", &make_pair_force, "law"_a, nb::kw_only(), "cutoff"_a, "group"_a = nb::none(), "parameters"_a,
+           nb::sig("def pair_force(self, law: str | Law, *, cutoff: float, group: Group | None = None, "
+                   "**parameters: float) -> PairForce"),
+           make_pair_force_doc);
   def_force(type);
   type.def_prop_ro(
           "law", [](const PairsHandle& self) { return sibling(self, self.use().law(self.id)); }, "Its Law.")
@@ -317,9 +327,9 @@ void bind_pairs(nb::module_& module) {
           "set", [](const PairsHandle& self, const nb::kwargs& keywords) { set_all(self, to_parameters(keywords)); },
           "parameters"_a, nb::sig("def set(self, **parameters: float) -> None"), "Changes parameters of its law.")
       .def("__repr__", [](const PairsHandle& self) {
-        if (!self.is_alive()) return stale_repr("Pairs", self);
+        if (!self.is_alive()) return stale_repr("PairForce", self);
         const System& engine = self.system->engine;
-        return "<Pairs " + std::to_string(self.id.slot) + " " + engine.name(engine.law(self.id)) + ">";
+        return "<PairForce " + std::to_string(self.id.slot) + " " + engine.name(engine.law(self.id)) + ">";
       });
 }
 
@@ -333,7 +343,7 @@ void def_fields(nb::class_<SystemObject>& system) {
   };
   def_list("groups", "Group", &System::groups, GroupHandle{});
   def_list("fields", "Field", &System::fields, FieldHandle{});
-  def_list("pairs", "Pairs", &System::all_pairs, PairsHandle{});
+  def_list("pair_forces", "PairForce", &System::all_pairs, PairsHandle{});
   system.def(
       "rehearse",
       [](SystemObject& self, nb::handle force, double dt) -> std::size_t {
@@ -345,23 +355,26 @@ void def_fields(nb::class_<SystemObject>& system) {
         if (nb::try_cast<const LawHandle*>(force, law) && law) return engine.rehearse(law->id, dt);
         if (nb::try_cast<const FieldHandle*>(force, field) && field) return engine.rehearse(field->id, dt);
         if (nb::try_cast<const PairsHandle*>(force, pairs) && pairs) return engine.rehearse(pairs->id, dt);
-        throw nb::type_error(("rehearse takes a Law, a Field or Pairs, not " + describe(force)).c_str());
+        throw nb::type_error(("rehearse takes a Law, a Field or a PairForce, not " + describe(force)).c_str());
       },
-      "force"_a, "dt"_a = 1.0 / 120, nb::sig("def rehearse(self, force: Law | Field | Pairs, dt: float = ...) -> int"),
-      "Evaluates forces without applying them, to measure what they cost; see iota.profile. Returns for how many bonds or\n"
+      "force"_a, "dt"_a = 1.0 / 120, nb::sig("def rehearse(self, force: Law | Field | PairForce, dt: float = ...) -> int"),
+      "Evaluates forces without applying them, to measure what they cost; see `profile`. Returns for how many bonds or\n"
       "particles.");
   system.def(
       "profile",
       [](nb::handle self, double dt) { return nb::module_::import_("iota.profiling").attr("profile")(self, dt); },
-      "dt"_a = 1.0 / 120, nb::sig("def profile(self, dt: float = ...) -> typing.Any"),
-      "What each law, field and pairwise force costs, in ns for each bond or particle: see iota.profile.");
+      "dt"_a = 1.0 / 120, nb::sig("def profile(self, dt: float = ...) -> iota.profiling.ForceProfile"),
+      "What each law, field and pair force costs, in ns for each bond or particle. Forces are evaluated where everything is\n"
+      "now, again and again, without being applied; functions of the script are called. Implicit bonds: force and stiffness\n"
+      "once, as each iteration of the solver asks for them.\n\n"
+      "    print(system.profile())");
 }
 
 void bind_fields(nb::module_& module) {
   bind_batch(module);
   bind_group(module);
   bind_field(module);
-  bind_pairs(module);
+  bind_pair_force(module);
 }
 
 }  // namespace iota::bindings

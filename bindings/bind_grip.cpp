@@ -6,9 +6,12 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* doc =
-    "A user's hand on a body: a critically damped, capped spring from a point of the body to a target.\n\n"
+    "A user's hand on a body; made by `System.grip`.";
+
+constexpr const char* make_doc =
+    "Takes hold of a body: a critically damped, capped spring from a point of the body to a target.\n\n"
     "local_point: in the body's drawn frame, m; it is put on the nearest place that the body's particles span. target:\n"
-    "world, m. client, hold: whose hand; carried to the viewers. frequency: Hz. max_acceleration: m/s^2, caps the force at\n"
+    "world, m, None: the center of mass. client, hold: whose hand; carried to the viewers. frequency: Hz. max_acceleration: m/s^2, caps the force at\n"
     "this times the mass it can feel. Forces of several grips add up.";
 
 }  // namespace
@@ -16,20 +19,24 @@ constexpr const char* doc =
 void bind_grip(nb::module_& module) {
   nb::class_<GripHandle> type(module, "Grip", doc, nb::type_slots(handle_slots<GripHandle>),
                               nb::is_weak_referenceable());
-  type.def(
-      "__init__",
-      [](GripHandle* self, const BodyHandle& body, VectorArgument local_point, std::optional<VectorArgument> target,
-         std::uint32_t client, std::uint32_t hold, double frequency, double max_acceleration) {
-        const Vec3 point = to_vec3(local_point, "local_point");
-        GripOptions options{client, hold, finite_positive(frequency, "frequency", "Hz"),
-                            finite_positive(max_acceleration, "max_acceleration", "m/s^2")};
-        System& checked = body.use();
-        System& engine = body.system->use_between_steps("Grip(...)");
-        const Vec3 goal = target ? to_vec3(*target, "target") : checked.center_of_mass(body.id);
-        new (self) GripHandle{body.system_object, body.system, engine.create_grip(body.id, point, goal, options)};
-      },
-      "body"_a, "local_point"_a = nb::make_tuple(0.0, 0.0, 0.0), "target"_a = nb::none(), nb::kw_only(), "client"_a = 0,
-      "hold"_a = 0, "frequency"_a = GripOptions{}.frequency, "max_acceleration"_a = GripOptions{}.max_acceleration);
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
+      .def(
+          "grip",
+          [](SystemObject& self, const BodyHandle& body, VectorArgument local_point,
+             std::optional<VectorArgument> target, std::uint32_t client, std::uint32_t hold, double frequency,
+             double max_acceleration) {
+            const Vec3 point = to_vec3(local_point, "local_point");
+            GripOptions options{client, hold, finite_positive(frequency, "frequency", "Hz"),
+                                finite_positive(max_acceleration, "max_acceleration", "m/s^2")};
+            body.use();
+            if (body.system != &self) throw nb::value_error("grip: the body belongs to another system");
+            System& engine = self.use_between_steps("grip(...)");
+            const Vec3 goal = target ? to_vec3(*target, "target") : engine.center_of_mass(body.id);
+            return sibling(body, engine.create_grip(body.id, point, goal, options));
+          },
+          "body"_a, "local_point"_a = nb::make_tuple(0.0, 0.0, 0.0), "target"_a.none() = nb::none(), nb::kw_only(),
+          "client"_a = 0, "hold"_a = 0, "frequency"_a = GripOptions{}.frequency,
+          "max_acceleration"_a = GripOptions{}.max_acceleration, make_doc);
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const GripHandle& self) { return self.is_alive(); },

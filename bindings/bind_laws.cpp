@@ -11,7 +11,10 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* law_doc =
-    "A law of force that any number of bonds share. Parameters are keywords, with the values that bonds have unless they\n"
+    "A law of force that any number of bonds share; made by `System.law`.";
+
+constexpr const char* make_doc =
+    "A new law of force that any number of bonds share. Parameters are keywords, with the values that bonds have unless they\n"
     "say otherwise; None is the distance of the two ends when a bond is made.\n\n"
     "law is one of\n"
     "- an expression of r (distance, m), v = dr/dt, t, m_p, m_q and the parameters, which defines `energy` (J), `force`\n"
@@ -22,8 +25,8 @@ constexpr const char* law_doc =
     "- a function of NumPy arrays, called once a step with a BondBatch of all its bonds; it returns the forces on p,\n"
     "  shape (n, 3), N.\n"
     "Code is evaluated once a step and held.\n\n"
-    "    law = iota.Law(system, 'energy = 0.5*k*(r - r0)^2; force = -c*v', k=100, r0=None, c=1)\n"
-    "    bond = iota.Bond(p, q, law, k=200)";
+    "    law = system.law('energy = 0.5*k*(r - r0)^2; force = -c*v', k=100, r0=None, c=1)\n"
+    "    bond = system.bond(p, q, law, k=200)";
 
 constexpr const char* batch_doc =
     "All bonds of one law, as its function sees them: arrays with a row a bond, in the order of `bonds`. Good only until\n"
@@ -122,10 +125,10 @@ LawBody code_at(std::uintptr_t address, const std::string& signature) {
   });
 }
 
-void make_law(LawHandle* self, nb::object system_object, nb::object law, const std::string& name,
-              const std::string& signature, const nb::kwargs& parameters) {
-  SystemObject* system = to_system(system_object);
-  System& engine = system->use_between_steps("Law(...)");
+LawHandle make_law(nb::handle_t<SystemObject> self, nb::object law, const std::string& name,
+                   const std::string& signature, const nb::kwargs& parameters) {
+  SystemObject* system = nb::inst_ptr<SystemObject>(self);
+  System& engine = system->use_between_steps("law(...)");
   LawOptions options{name, to_parameters(parameters)};
   LawId id;
   if (nb::isinstance<nb::str>(law)) {
@@ -149,7 +152,7 @@ void make_law(LawHandle* self, nb::object system_object, nb::object law, const s
     throw nb::type_error(
         ("law must be an expression, compiled code or a function of arrays, not " + describe(law)).c_str());
   }
-  new (self) LawHandle{system_object, system, id};
+  return handle_of(self, id);
 }
 
 }  // namespace
@@ -215,11 +218,12 @@ void bind_laws(nb::module_& module) {
   bind_batch(module);
   nb::class_<LawHandle> type(module, "Law", law_doc, nb::type_slots(handle_slots<LawHandle>),
                              nb::is_weak_referenceable());
-  type.def("__init__", &make_law, "system"_a, "law"_a, nb::kw_only(), "name"_a = "", "signature"_a = "radial",
-           "parameters"_a,
-           nb::sig("def __init__(self, system: System, law: str | int | collections.abc.Callable[[BondBatch], "
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
+      .def("law", &make_law, "law"_a, nb::kw_only(), "name"_a = "", "signature"_a = "radial", "parameters"_a,
+           nb::sig("def law(self, law: str | int | collections.abc.Callable[[BondBatch], "
                    "numpy.typing.ArrayLike] | object, *, name: str = '', signature: str = 'radial', "
-                   "**parameters: float | None) -> None"));
+                   "**parameters: float | None) -> Law"),
+           make_doc);
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const LawHandle& self) { return self.is_alive(); }, "False once it was destroyed.")

@@ -6,11 +6,15 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* doc =
-    "A point with mass, in one body. Particles of different bodies that were combined share one place: a hinge.\n\n"
+    "A point with mass, in one body; made by `Body.particle`. Particles of different bodies that were combined share one\n"
+    "place: a hinge.";
+
+constexpr const char* make_doc =
+    "A new particle of the body.\n\n"
     "position: m. mass: kg, its own share. velocity: m/s. Vectors are any 2 or 3 numbers; z is then 0.\n"
     "mass=0 makes a marker: a massless place that the massive particles of the body carry, so it must lie where these\n"
     "reach. It can be hinged, nailed, bonded and constrained as any other particle.\n\n"
-    "    p = iota.Particle(body, position=(0, 1, 0), mass=0.2)\n"
+    "    p = body.particle((0, 1, 0), mass=0.2)\n"
     "    p.velocity = (1, 0, 0)";
 
 std::string repr(const ParticleHandle& self) {
@@ -69,18 +73,18 @@ void bind_nails(nb::class_<ParticleHandle>& type) {
 void bind_particle(nb::module_& module) {
   nb::class_<ParticleHandle> type(module, "Particle", doc, nb::type_slots(handle_slots<ParticleHandle>),
                                   nb::is_weak_referenceable());
-  type.def(
-      "__init__",
-      [](ParticleHandle* self, const BodyHandle& body, VectorArgument position, double mass, VectorArgument velocity) {
-        const Vec3 place = to_vec3(position, "position"), speed = to_vec3(velocity, "velocity");
-        if (mass != 0) finite_positive(mass, "mass", "kg");
-        body.use();
-        const ParticleId id =
-            body.system->use_between_steps("Particle(...)").create_particle(body.id, place, mass, speed);
-        new (self) ParticleHandle{body.system_object, body.system, id};
-      },
-      "body"_a, "position"_a = nb::make_tuple(0.0, 0.0, 0.0), "mass"_a = 1.0,
-      "velocity"_a = nb::make_tuple(0.0, 0.0, 0.0));
+  nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"))
+      .def(
+          "particle",
+          [](const BodyHandle& self, VectorArgument position, double mass, VectorArgument velocity) {
+            const Vec3 place = to_vec3(position, "position"), speed = to_vec3(velocity, "velocity");
+            if (mass != 0) finite_positive(mass, "mass", "kg");
+            self.use();
+            System& engine = self.system->use_between_steps("particle(...)");
+            return sibling(self, engine.create_particle(self.id, place, mass, speed));
+          },
+          "position"_a = nb::make_tuple(0.0, 0.0, 0.0), "mass"_a = 1.0, "velocity"_a = nb::make_tuple(0.0, 0.0, 0.0),
+          make_doc);
   def_identity(type);
   def_survival(type, "def survivor(self) -> Particle | None");
   bind_nails(type);
@@ -124,7 +128,7 @@ void bind_particle(nb::module_& module) {
           "force"_a, "Adds a force (N) during the next step only.")
       .def(
           "destroy", [](const ParticleHandle& self) { self.use().destroy(self.id); },
-          "Removes it with its bonds; its body too if it was the last one. In a bond's function: right after the step.")
+          "Removes it with its bonds; its body too if it was the last one.")
       .def("__repr__", &repr);
 }
 

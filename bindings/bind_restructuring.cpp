@@ -9,18 +9,21 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* combine_particles_doc =
-    "Joins two particles, or two bodies into one rigid one. Thesis, Tables 4.1 and 4.2.\n\n"
-    "Same particle: nothing. Same body: q is absorbed by p. Hinged: the hinge becomes rigid, q's body is absorbed by p's.\n"
+    "Joins it with particle q. Thesis, Tables 4.1 and 4.2.\n\n"
+    "Same particle: nothing. Same body: this one absorbs q. Hinged: the hinge becomes rigid, and its body absorbs q's.\n"
     "Unrelated: a hinge; particles that are apart meet at once (over=0) or within `over` seconds. Momentum is kept, and\n"
-    "what cannot be kept is reported. In a bond's function it is queued and done right after the step.\n\n"
-    "Raises ValueError for particles of two systems or a bad `over`, StaleIdError for handles whose object is gone.";
+    "what cannot be kept is reported.\n\n"
+    "Raises ValueError for particles of two systems or a bad `over`, StaleIdError for handles whose object is gone.\n\n"
+    "    p.combine(q)";
 
-constexpr const char* combine_bodies_doc = "Makes one rigid body of two, in place; b is absorbed.";
+constexpr const char* combine_bodies_doc =
+    "Makes one rigid body of the two, in place, which absorbs `other`. Raises ValueError for bodies of two systems.";
 
 constexpr const char* separate_doc =
-    "Cuts two particles apart. Thesis, Table 4.3.\n\n"
+    "Cuts it apart from particle q. Thesis, Table 4.3.\n\n"
     "Same particle: a second one at the same place, half the mass each. Same body: q becomes a one-particle body hinged\n"
-    "to p. Hinged: q leaves the ring. Unrelated: nothing (the report is then false).";
+    "to this one. Hinged: q leaves the ring. Unrelated: nothing (the report is then false).\n\n"
+    "    p.separate(q)";
 
 RestructureResult combine_particles(const ParticleHandle& p, const ParticleHandle& q, double over) {
   check_one_system(p, q, "combine");
@@ -69,14 +72,6 @@ auto all_of(Read read) {
   };
 }
 
-std::vector<std::vector<BodyHandle>> articulates(nb::handle_t<SystemObject> self) {
-  SystemObject* object = nb::inst_ptr<SystemObject>(self);
-  std::vector<std::vector<BodyHandle>> out;
-  for (const auto& members : object->use().articulates())
-    out.push_back(wrap_all<BodyHandle>(nb::borrow(self), object, members));
-  return out;
-}
-
 /// The ends of all cosmetic bonds.
 std::vector<std::pair<ParticleHandle, ParticleHandle>> cosmetic_lines(nb::handle_t<SystemObject> self) {
   SystemObject* object = nb::inst_ptr<SystemObject>(self);
@@ -105,9 +100,11 @@ nb::list take_edits(nb::handle_t<SystemObject> self) {
 }  // namespace
 
 void bind_restructuring(nb::module_& module) {
-  module.def("combine", &combine_particles, "p"_a, "q"_a, "over"_a = 0.0, combine_particles_doc);
-  module.def("combine", &combine_bodies, "a"_a, "b"_a, combine_bodies_doc);
-  module.def("separate", &separate, "p"_a, "q"_a, separate_doc);
+  nb::borrow<nb::class_<ParticleHandle>>(module.attr("Particle"))
+      .def("combine", &combine_particles, "q"_a, "over"_a = 0.0, combine_particles_doc)
+      .def("separate", &separate, "q"_a, separate_doc);
+  nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"))
+      .def("combine", &combine_bodies, "other"_a, combine_bodies_doc);
 
   nb::object system = module.attr("System");
   auto type = nb::borrow<nb::class_<SystemObject>>(system);
@@ -115,24 +112,11 @@ void bind_restructuring(nb::module_& module) {
       .def_prop_ro("particles", all_of<ParticleHandle>([](System& engine) { return engine.particles(); }),
                    "In order of slots: the order of the rows of `positions`.")
       .def_prop_ro("bonds", all_of<BondHandle>([](System& engine) { return engine.bonds(); }), "In order of slots.")
-      .def_prop_ro("articulates", &articulates, "The groups of bodies that hang together.")
       .def_prop_ro("cosmetic_bonds", all_of<CosmeticBondHandle>([](System& engine) { return engine.cosmetic_bonds(); }),
                    "In order of slots.")
       .def_prop_ro("cosmetic_lines", &cosmetic_lines, "The ends of all cosmetic bonds.")
       .def("body_at", &body_at, "slot"_a, nb::sig("def body_at(self, slot: int) -> Body | None"),
            "The living body with this slot, or None.")
-      .def(
-          "combine",
-          [](SystemObject&, const ParticleHandle& p, const ParticleHandle& q, double over) {
-            return combine_particles(p, q, over);
-          },
-          "p"_a, "q"_a, "over"_a = 0.0, "As `iota.combine`.")
-      .def(
-          "combine", [](SystemObject&, const BodyHandle& a, const BodyHandle& b) { return combine_bodies(a, b); },
-          "a"_a, "b"_a)
-      .def(
-          "separate", [](SystemObject&, const ParticleHandle& p, const ParticleHandle& q) { return separate(p, q); },
-          "p"_a, "q"_a, "As `iota.separate`.")
       .def(
           "watch_edits", [](SystemObject& self, bool on) { self.watch_edits = on; }, "on"_a,
           "For World: whether structural edits are noted for `take_edits`.")

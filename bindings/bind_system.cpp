@@ -28,7 +28,7 @@ constexpr const char* doc =
     "A system belongs to the thread that made it; while a World runs it, to the World's. Other threads get\n"
     "WrongThreadError.\n\n"
     "    system = iota.System()\n"
-    "    ball = iota.Particle(iota.Body(system), position=(0, 1, 0))\n"
+    "    ball = system.body().particle((0, 1, 0))\n"
     "    report = system.step(1 / 120)";
 
 /// The rows of an array or nested sequence of shape (n, 3), finite.

@@ -37,6 +37,7 @@ void def_fields(nb::class_<SystemObject>&);  ///< what System says of them
 void bind_grip(nb::module_&);
 void bind_constraints(nb::module_&);
 void bind_parts(nb::module_&);
+void bind_articulates(nb::module_&);
 void bind_edits(nb::module_&);
 void bind_emitters(nb::module_&);
 void bind_restructuring(nb::module_&);
@@ -44,6 +45,12 @@ void bind_server(nb::module_&);
 void bind_solvers(nb::module_&);
 
 // --- handles --------------------------------------------------------------------------------------------------------
+
+/// The handle of something in a system.
+template <class IdType>
+Handle<IdType> handle_of(nb::handle_t<SystemObject> system, IdType id) {
+  return {nb::borrow(system), nb::inst_ptr<SystemObject>(system), id};
+}
 
 /// Where an object keeps its system: in itself, unless it says otherwise.
 template <class HandleType>

@@ -21,6 +21,7 @@ NB_MODULE(_core, module) {
   bind_constraints(module);
   bind_restructuring(module);
   bind_parts(module);
+  bind_articulates(module);
   bind_edits(module);
   bind_emitters(module);
   bind_server(module);

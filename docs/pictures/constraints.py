@@ -114,11 +114,10 @@ class Picture:
 
 def box(system: iota.System, center: Point, size: Point, mass: float = 1) -> tuple[iota.Body, list[iota.Particle]]:
     """A solid box and its corners as markers, to draw it by."""
-    body = iota.Body(system, shape=iota.Box(size), mass=mass, position=center)
+    body = system.body(shape=iota.Box(size), mass=mass, position=center)
     signs = [((i & 1) - 0.5, (i >> 1 & 1) - 0.5, (i >> 2) - 0.5) for i in range(8)]
     return body, [
-        iota.Particle(body, tuple(c + s * e for c, s, e in zip(center, sign, size, strict=True)), mass=0)
-        for sign in signs
+        body.particle(tuple(c + s * e for c, s, e in zip(center, sign, size, strict=True)), mass=0) for sign in signs
     ]
 
 
@@ -164,8 +163,8 @@ def hatch(picture: Picture, a: Point, b: Point) -> None:
 @scene
 def nail(picture: Picture) -> None:
     system = iota.System()
-    rod = iota.Body(system)
-    top, end = iota.Particle(rod, (0, 0, 0)), iota.Particle(rod, (0.8, 0.6, 0))
+    rod = system.body()
+    top, end = rod.particle((0, 0, 0)), rod.particle((0.8, 0.6, 0))
     top.nail()
     strobe(
         system,
@@ -181,11 +180,11 @@ def nail(picture: Picture) -> None:
 @scene
 def hinge(picture: Picture) -> None:
     system = iota.System()
-    bodies = [iota.Body(system) for _ in range(2)]
-    a, b = iota.Particle(bodies[0], (0, 0, 0)), iota.Particle(bodies[0], (1, 0.1, 0))
-    c, d = iota.Particle(bodies[1], (1, 0.1, 0)), iota.Particle(bodies[1], (1.9, 0.5, 0))
+    bodies = [system.body() for _ in range(2)]
+    a, b = bodies[0].particle((0, 0, 0)), bodies[0].particle((1, 0.1, 0))
+    c, d = bodies[1].particle((1, 0.1, 0)), bodies[1].particle((1.9, 0.5, 0))
     a.nail()
-    iota.combine(b, c)
+    b.combine(c)
 
     def draw(o: float) -> None:
         picture.line([a.position, b.position, d.position], INK, 2.6, o)
@@ -202,7 +201,7 @@ def ball(picture: Picture) -> None:
     body, corners = box(system, (0.55, -0.2, 0), (0.5, 0.2, 0.3))
     system.ball(body, at=(0, 0, 0))
     body.angular_velocity = (3, 3, -2)
-    arm = iota.Particle(body, (0, 0, 0), mass=0)
+    arm = body.particle((0, 0, 0), mass=0)
 
     def draw(o: float) -> None:
         picture.box([p.position for p in corners], o)
@@ -219,9 +218,8 @@ def universal(picture: Picture) -> None:
     bend = 0.6
     out = (math.cos(bend), -math.sin(bend), 0)
     shafts = [
-        iota.Body(system, shape=iota.Cylinder(0.06, 0.9), mass=1, position=(-0.5, 0, 0)),
-        iota.Body(
-            system,
+        system.body(shape=iota.Cylinder(0.06, 0.9), mass=1, position=(-0.5, 0, 0)),
+        system.body(
             shape=iota.Cylinder(0.06, 0.9),
             mass=1,
             position=tuple(0.5 * v for v in out),
@@ -234,13 +232,12 @@ def universal(picture: Picture) -> None:
         shafts[0], shafts[1], at=(0, 0, 0), axis=(0, 0, 1), second_axis=(math.sin(bend), math.cos(bend), 0)
     )
     arms = [
-        [iota.Particle(shafts[0], (0, 0, z), mass=0) for z in (-0.2, 0.2)],
-        [iota.Particle(shafts[1], (s * math.sin(bend), s * math.cos(bend), 0), mass=0) for s in (-0.2, 0.2)],
+        [shafts[0].particle((0, 0, z), mass=0) for z in (-0.2, 0.2)],
+        [shafts[1].particle((s * math.sin(bend), s * math.cos(bend), 0), mass=0) for s in (-0.2, 0.2)],
     ]
     handles = [
-        iota.Particle(shafts[0], (-0.95, 0.22, 0), mass=0),
-        iota.Particle(
-            shafts[1],
+        shafts[0].particle((-0.95, 0.22, 0), mass=0),
+        shafts[1].particle(
             tuple(0.95 * v + 0.22 * w for v, w in zip(out, (math.sin(bend), math.cos(bend), 0), strict=True)),
             mass=0,
         ),
@@ -288,17 +285,14 @@ def prismatic(picture: Picture) -> None:
     system = iota.System()
     slope = math.radians(30)
     along, up = (math.cos(slope), -math.sin(slope), 0), (math.sin(slope), math.cos(slope), 0)
-    block = iota.Body(
-        system,
+    block = system.body(
         shape=iota.Box((0.36, 0.2, 0.2)),
         mass=1,
         position=tuple(0.1 * u for u in up),
         orientation=(0, 0, -math.sin(slope / 2), math.cos(slope / 2)),
     )
     corners = [
-        iota.Particle(
-            block, tuple(0.18 * sx * a + (0.1 + 0.1 * sy) * u for a, u in zip(along, up, strict=True)), mass=0
-        )
+        block.particle(tuple(0.18 * sx * a + (0.1 + 0.1 * sy) * u for a, u in zip(along, up, strict=True)), mass=0)
         for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
     ]
     joint = system.prismatic(block, at=(0, 0, 0), axis=along, friction=1, limits=(-1, 2))
@@ -354,7 +348,7 @@ def weld(picture: Picture) -> None:
 def rod(picture: Picture) -> None:
     system = iota.System()
     p, q = (
-        iota.Particle(iota.Body(system), (x, 0, 0), mass=m, velocity=v)
+        system.body().particle((x, 0, 0), mass=m, velocity=v)
         for x, m, v in ((-0.3, 2, (1.2, 2, 0)), (0.5, 1, (1.2, 5, 0)))
     )
     system.rod(p, q)
@@ -370,8 +364,8 @@ def rod(picture: Picture) -> None:
 @scene
 def rope(picture: Picture) -> None:
     system = iota.System()
-    hook = iota.Particle(iota.Body(system, kind="static"), (0, 0, 0))
-    stone = iota.Particle(iota.Body(system), (-0.75, 0.1, 0), velocity=(2.6, 2.6, 0))
+    hook = system.body(kind="static").particle((0, 0, 0))
+    stone = system.body().particle((-0.75, 0.1, 0), velocity=(2.6, 2.6, 0))
     line = system.rope(hook, stone, 1)
 
     def draw(o: float) -> None:
@@ -395,11 +389,11 @@ def rope(picture: Picture) -> None:
 def path(picture: Picture) -> None:
     system = iota.System()
     points = [(0, 1), (0.35, 0.45), (0.8, 0.12), (1.3, 0.35), (1.7, 0.75), (2.15, 0.6), (2.6, 0.1), (3.1, 0.3)]
-    bead = iota.Particle(iota.Body(system), points[0])
+    bead = system.body().particle(points[0])
     wire = system.on_path(bead, points)
     strobe(system, 1.5, 16, lambda o: picture.dot(bead.position, 5, INK, o))
     probe = iota.System(gravity=(0, 0, 0))
-    rider = iota.Particle(iota.Body(probe), points[0])
+    rider = probe.body().particle(points[0])
     probe.on_path(rider, points, motor=(wire.length, 1e6))
     outline: list[Point] = []
     strobe(probe, 1, 200, lambda o: outline.append(tuple(rider.position)))
@@ -412,7 +406,7 @@ def path(picture: Picture) -> None:
 def surface(picture: Picture) -> None:
     picture.view = tilted
     system = iota.System()
-    bob = iota.Particle(iota.Body(system), (0.9, -0.43589, 0), velocity=(0, 0, 1.3))
+    bob = system.body().particle((0.9, -0.43589, 0), velocity=(0, 0, 1.3))
     system.on_surface(bob, iota.Sphere(1))
     strobe(system, 6, 2, lambda o: None, [bob], picture)
     strobe(system, 0.5, 5, lambda o: picture.dot(bob.position, 4.5, INK, o))
@@ -430,7 +424,7 @@ def surface(picture: Picture) -> None:
 @scene
 def inside(picture: Picture) -> None:
     system = iota.System(damping=0.15)
-    ball = iota.Particle(iota.Body(system), (-0.62, 0.3, 0), velocity=(0.2, 0, 0))
+    ball = system.body().particle((-0.62, 0.3, 0), velocity=(0.2, 0, 0))
     system.inside(ball, iota.Sphere(1))
     strobe(system, 1.35, 15, lambda o: picture.dot(ball.position, 5, INK, o), [ball], picture)
     picture.line([(math.sin(a), -math.cos(a)) for a in (-2.2 + 4.4 * i / 60 for i in range(61))], WORLD, 2.5)
@@ -439,7 +433,7 @@ def inside(picture: Picture) -> None:
 @scene
 def outside(picture: Picture) -> None:
     system = iota.System()
-    ball = iota.Particle(iota.Body(system), (0.05, 1.0487, 0))
+    ball = system.body().particle((0.05, 1.0487, 0))
     system.outside(ball, iota.Sphere(1.05))
     strobe(system, 1.4, 22, lambda o: picture.dot(ball.position, 4.5, INK, o), [ball], picture)
     picture.ring((0, 0, 0), 1, WORLD, 1, 2.5)
@@ -452,8 +446,7 @@ def surfaces(picture: Picture) -> None:
     normal = (math.sin(slope), math.cos(slope), 0)
     balls = []
     for x, height, radius in ((0, 0, 0.25), (0.55, 0.9, 0.3), (1.6, 0.2, 0.2)):
-        body = iota.Body(
-            system,
+        body = system.body(
             shape=iota.Sphere(radius),
             mass=radius**3,
             position=(x, -math.tan(slope) * x + radius / math.cos(slope) + height, 0),

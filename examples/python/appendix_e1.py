@@ -5,11 +5,11 @@ import iota
 
 system = iota.System(gravity=(0, -1))  # z defaults to 0
 
-body1 = iota.Body(system)
-particle1 = iota.Particle(body1)  # at the origin
-particle2 = iota.Particle(body1, position=(30, 0, 0))
+body1 = system.body()
+particle1 = body1.particle()  # at the origin
+particle2 = body1.particle((30, 0, 0))
 
 # Something to be seen between them; the body is rigid without it.
-iota.CBond(particle1, particle2)
+system.cosmetic_bond(particle1, particle2)
 
 iota.World(system, title="Appendix E.1", ground=None).run()

@@ -5,17 +5,17 @@ import iota
 
 system = iota.System(gravity=(0, -1))
 
-body1 = iota.Body(system)
-particle1 = iota.Particle(body1)
-particle1a = iota.Particle(body1, position=(-30, -35, 0))
-iota.CBond(particle1, particle1a)
+body1 = system.body()
+particle1 = body1.particle()
+particle1a = body1.particle((-30, -35, 0))
+system.cosmetic_bond(particle1, particle1a)
 
-body2 = iota.Body(system)
-particle2 = iota.Particle(body2, position=(0, 10, 0))
-particle2a = iota.Particle(body2, position=(35, -25, 0))
-iota.CBond(particle2, particle2a)
+body2 = system.body()
+particle2 = body2.particle((0, 10, 0))
+particle2a = body2.particle((35, -25, 0))
+system.cosmetic_bond(particle2, particle2a)
 
 # A hinge. The two need not be at one place: they meet at once and stay together.
-iota.combine(particle1, particle2)
+particle1.combine(particle2)
 
 iota.World(system, title="Appendix E.3", ground=None).run()

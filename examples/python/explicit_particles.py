@@ -81,7 +81,7 @@ class ParticleSimulator(iota.Simulator):
             self.x += h * self.v
         self.time += dt
         self.step_count += 1
-        return iota.StepReport(step=self.step_count, time=self.time, dt=dt, energy=self.energy)
+        return iota.types.StepReport(step=self.step_count, time=self.time, dt=dt, energy=self.energy)
 
     # --- and what it may be asked for -----------------------------------------------------------------------------
 
@@ -89,7 +89,7 @@ class ParticleSimulator(iota.Simulator):
     def energy(self):
         stretch = np.linalg.norm(self.x[self.pairs[:, 1]] - self.x[self.pairs[:, 0]], axis=1) - self.length
         potential = 0.5 * self.stiffness * np.sum(stretch**2) - self.mass * np.sum(self.x @ self.gravity)
-        return iota.Energy(kinetic=0.5 * self.mass * np.sum(self.v**2), potential=potential)
+        return iota.types.Energy(kinetic=0.5 * self.mass * np.sum(self.v**2), potential=potential)
 
     def grip(self, body, local_point, target, client, hold):
         hand = Hand(body.slot, target, client, hold)

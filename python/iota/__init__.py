@@ -8,48 +8,36 @@
     world = iota.World(system, title="chain")
     world.run()          # prints the address of a page that shows it
 
-SI units; right-handed, y up. Vectors are any 2 or 3 numbers (z is then 0) and come back as `Vec3`.
+Here is what a script calls, catches or holds; types of what comes back are in `iota.types`. SI units; right-handed, y up.
+Vectors are any 2 or 3 numbers (z is then 0) and come back as `Vec3`. docs/conventions.md has the rules.
 """
 
 from collections.abc import Sequence
 
-from iota import builder, forces, looks
+from iota import builder, forces, looks, types
 from iota._core import (
+    Articulate,
     Body,
     Bond,
-    BondBatch,
-    BondState,
     Box,
     Capsule,
-    CBond,
     Constraint,
+    CosmeticBond,
     Cylinder,
-    Diagnosis,
-    Edit,
     Ellipsoid,
     Emitter,
-    Energy,
     Field,
     Grip,
     Group,
     Law,
-    MassProperties,
     Mesh,
-    Pairs,
-    Part,
+    PairForce,
     Particle,
-    ParticleBatch,
     Plane,
-    Recording,
-    RestructureReport,
-    Solid,
     Sphere,
-    StepReport,
     System,
     Torus,
     Vec3,
-    combine,
-    separate,
 )
 from iota._core import version as __version__
 from iota.errors import (
@@ -61,75 +49,55 @@ from iota.errors import (
     StaleIdError,
     WrongThreadError,
 )
-from iota.profiling import ForceCost, ForceProfile, profile
 from iota.simulator import SimulatedBody, SimulatedGrip, SimulatedParticle, Simulator
-from iota.solvers import Problem, Solution, solve, solver, solver_names
-from iota.world import Camera, Client, Event, RunSummary, World
+from iota.solvers import Problem, solve, solver, solver_names
+from iota.world import Camera, Event, World
 
 Sequence.register(Vec3)
 
 __all__ = [
+    "Articulate",
     "Body",
     "Bond",
-    "BondBatch",
     "BondError",
-    "BondState",
     "Box",
-    "CBond",
     "Camera",
     "Capsule",
-    "Client",
     "Constraint",
     "ConstraintError",
+    "CosmeticBond",
     "Cylinder",
-    "Diagnosis",
-    "Edit",
     "Ellipsoid",
     "Emitter",
-    "Energy",
     "Event",
     "Field",
-    "ForceCost",
     "ForceError",
-    "ForceProfile",
     "ForceWarning",
     "Grip",
     "Group",
     "Law",
-    "MassProperties",
     "Mesh",
     "PageMissingError",
-    "Pairs",
-    "Part",
+    "PairForce",
     "Particle",
-    "ParticleBatch",
     "Plane",
     "Problem",
-    "Recording",
-    "RestructureReport",
-    "RunSummary",
     "SimulatedBody",
     "SimulatedGrip",
     "SimulatedParticle",
     "Simulator",
-    "Solid",
-    "Solution",
     "Sphere",
     "StaleIdError",
-    "StepReport",
     "System",
     "Torus",
-    "Vec3",
     "World",
     "WrongThreadError",
     "__version__",
     "builder",
-    "combine",
     "forces",
     "looks",
-    "profile",
-    "separate",
     "solve",
     "solver",
     "solver_names",
+    "types",
 ]

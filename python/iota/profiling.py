@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from iota._core import Field, Law, Pairs, System
+    from iota._core import Field, Law, PairForce, System
 
 LEAST = 0.02  # s of processor time a row, so that the clock's grain does not show
 
@@ -41,7 +41,7 @@ def profile(system: System, dt: float = 1 / 120) -> ForceProfile:
     Forces are evaluated where everything is now, again and again, without being applied; functions of the script are
     called. Implicit bonds: force and stiffness once, as each iteration of the solver asks for them.
 
-        print(iota.profile(system))
+        print(system.profile())
     """
     rows = ForceProfile()
     laws: dict[Law, str] = {}
@@ -51,8 +51,8 @@ def profile(system: System, dt: float = 1 / 120) -> ForceProfile:
     rows.extend(_cost(system, law, _name(law), f"{_kind(law)}, {how}", dt) for law, how in laws.items())
     fields: Iterable[Field] = (f for f in system.fields if f.active)
     rows.extend(_cost(system, field, f"field {field.name}", "particles", dt) for field in fields)
-    pairs: Iterable[Pairs] = (p for p in system.pairs if p.active)
-    rows.extend(_cost(system, force, f"pairs {_name(force.law)}", "particles", dt) for force in pairs)
+    pairs: Iterable[PairForce] = (p for p in system.pair_forces if p.active)
+    rows.extend(_cost(system, force, f"pair force {_name(force.law)}", "particles", dt) for force in pairs)
     return rows
 
 
@@ -64,7 +64,7 @@ def _kind(law: Law) -> str:
     return law.kind
 
 
-def _cost(system: System, force: Law | Field | Pairs, name: str, kind: str, dt: float) -> ForceCost:
+def _cost(system: System, force: Law | Field | PairForce, name: str, kind: str, dt: float) -> ForceCost:
     count = system.rehearse(force, dt)  # warm
     spent, runs = 0.0, 0
     while spent < LEAST:

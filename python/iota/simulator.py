@@ -97,7 +97,7 @@ class Simulator(ABC):
 
     @abstractmethod
     def step(self, dt: float) -> StepReport:
-        """Advance by dt seconds: StepReport(step=..., time=..., dt=..., energy=iota.Energy(...), warnings=[...])."""
+        """Advance by dt seconds: StepReport(step=..., time=..., dt=..., energy=iota.types.Energy(...), warnings=[...])."""
 
     @abstractmethod
     def poses(self) -> tuple[NDArray[Any], NDArray[Any]]:

@@ -143,7 +143,15 @@ LawId System::create_law(LawBody body, const LawOptions& options) {
 LawId System::find_law(std::string_view name) const {
   const std::uint32_t number = laws::find_pair_law(name);
   if (number < laws::pair_law_count) return implementation_->model.laws.id(number);
+  const auto& made = implementation_->model.laws;
+  LawId found;
   std::vector<std::string> known;
+  made.for_each([&](std::uint32_t slot, const model::Law& law) {
+    if (slot < laws::pair_law_count || law.kind == model::LawKind::scripted || law.name[0] == '\0') return;
+    if (name == law.name.data()) found = made.id(slot);
+    known.emplace_back(law.name.data());
+  });
+  if (found) return found;
   std::string list;
   for (std::uint32_t i = 0; i < laws::pair_law_count; ++i) {
     known.emplace_back(laws::pair_law_name(i));
@@ -151,7 +159,7 @@ LawId System::find_law(std::string_view name) const {
   }
   const std::string near = expression::nearest(name, known);
   throw std::invalid_argument(text("no law is called '", name, "'",
-                                   near.empty() ? "" : "; did you mean '" + near + "'?", " Predefined are ", list,
+                                   near.empty() ? "." : "; did you mean '" + near + "'?", " Predefined are ", list,
                                    "; an expression says 'energy = ...' or 'force = ...'"));
 }
 

@@ -28,40 +28,40 @@ class Scene:
         s = self.system = iota.System(threads=1)
         self.rods = iota.builder.chain(s, links=4, length=1.0, top=(0, 2, 0), direction=(1, 0, 0))
         self.p, self.q = self.rods[0].particles[1], self.rods[2].particles[1]
-        self.box = iota.Body(s, shape=iota.Box((0.4, 0.2, 0.3)), position=(0, 0, 3), attachments=[(0.2, 0, 0)])
-        self.ball = iota.Body(s, shape=iota.Sphere(0.2), position=(1, 0, 3), attachments=[(-0.2, 0, 0)])
-        self.brick = iota.Body(s, shape=iota.Box((0.2, 0.2, 0.2)), position=(0, 0, 5))
+        self.box = s.body(shape=iota.Box((0.4, 0.2, 0.3)), position=(0, 0, 3), attachments=[(0.2, 0, 0)])
+        self.ball = s.body(shape=iota.Sphere(0.2), position=(1, 0, 3), attachments=[(-0.2, 0, 0)])
+        self.brick = s.body(shape=iota.Box((0.2, 0.2, 0.2)), position=(0, 0, 5))
         self.corner, self.pole = self.box.attachments[0], self.ball.attachments[0]
-        self.plate = iota.Body(s)
+        self.plate = s.body()
         for place in ((0, 0, -3), (1, 0, -3), (0, 1, -3), (1, 1, -3)):
-            iota.Particle(self.plate, place, mass=0.5)
-        self.point = iota.Particle(iota.Body(s), (3, 3, 3))
-        self.cbond = iota.CBond(*self.plate.particles[:2])
-        self.spring = iota.Bond(self.p, self.plate.particles[0], "spring", stiffness=50, damping=1)
-        self.script = iota.Bond(self.q, self.corner, lambda bond: bond.direction * 0.5)
+            self.plate.particle(place, mass=0.5)
+        self.point = s.body().particle((3, 3, 3))
+        self.line = s.cosmetic_bond(*self.plate.particles[:2])
+        self.spring = s.bond(self.p, self.plate.particles[0], "spring", stiffness=50, damping=1)
+        self.script = s.bond(self.q, self.corner, lambda bond: bond.direction * 0.5)
         self.hinge = s.revolute(self.box, self.ball, at=(0.5, 0, 3), axis=(0, 0, 1), limits=(-1, 1))
         self.slider = s.prismatic(self.plate, None, at=(0, 0, -3), axis=(0, 1, 0), motor=(0.1, 5))
         self.rope = s.rope(self.point, self.plate.particles[3], 12)
-        self.crowd = iota.Group(s, "crowd")
+        self.crowd = s.group("crowd")
         self.crowd.add(self.plate, self.box)
-        self.well = iota.Field(s, "well", group=self.crowd, strength=0.1)
-        self.swell = iota.Field(s, "energy = k*x^2; fy = -c*vy", k=0.1, c=0.1)
-        self.pairs = iota.Pairs(s, "coulomb", cutoff=2.0, group=self.crowd, strength=0.1, softening=0.1)
-        self.law = iota.Law(s, "energy = 0.5*k*(r - r0)^2; force = -c*v", k=5, r0=None, c=0.1)
-        self.unused_law, self.nobody = iota.Law(s, "energy = r"), iota.Group(s, "nobody")
-        self.written = iota.Bond(self.p, self.point, self.law)
-        self.fountain = iota.Emitter(s, rate=60, position=(8, 8, 8), lifetime=0.2)
-        self.surfel = iota.Particle(iota.Body(s), (7, 7, 7))
+        self.well = s.field("well", group=self.crowd, strength=0.1)
+        self.swell = s.field("energy = k*x^2; fy = -c*vy", k=0.1, c=0.1)
+        self.pair_force = s.pair_force("coulomb", cutoff=2.0, group=self.crowd, strength=0.1, softening=0.1)
+        self.law = s.law("energy = 0.5*k*(r - r0)^2; force = -c*v", k=5, r0=None, c=0.1)
+        self.unused_law, self.nobody = s.law("energy = r"), s.group("nobody")
+        self.written = s.bond(self.p, self.point, self.law)
+        self.fountain = s.emitter(rate=60, position=(8, 8, 8), lifetime=0.2)
+        self.surfel = s.body().particle((7, 7, 7))
         self.surfel.orientation = (0, 0, 0, 1)
-        self.grip = iota.Grip(self.rods[3], target=(1, 1, 1))
-        self.gone = iota.Body(s)
-        self.gone_particle = iota.Particle(self.gone, (9, 9, 9))
-        self.gone_bond = iota.Bond(self.gone_particle, self.point, "drag", damping=1)
+        self.grip = s.grip(self.rods[3], target=(1, 1, 1))
+        self.gone = s.body()
+        self.gone_particle = self.gone.particle((9, 9, 9))
+        self.gone_bond = s.bond(self.gone_particle, self.point, "drag", damping=1)
         self.gone.destroy()
         self.other = iota.System()
-        self.foreign = iota.Body(self.other)
-        self.foreign_particle = iota.Particle(self.foreign)
-        s.combine(self.rods[3].particles[1], self.pole, over=0.5)
+        self.foreign = self.other.body()
+        self.foreign_particle = self.foreign.particle()
+        self.rods[3].particles[1].combine(self.pole, over=0.5)
 
 
 def assign(thing: Any, name: str, value: Any) -> None:
@@ -98,15 +98,14 @@ def calls(c: Scene) -> dict[str, Call]:
         "diagnose": (s.diagnose, {"body": c.box}),
         "restore": (s.restore, {"snapshot": s.snapshot()}),
         "body_at": (s.body_at, {"slot": 0}),
-        "Body": (iota.Body, {"system": s, "kind": "dynamic", "damping": 0.1}),
-        "Body of a shape": (
-            iota.Body,
-            {
-                "system": s, "kind": "dynamic", "damping": 0.1, "shape": SPHERE, "density": 500.0, "position": V,
+        "body": (s.body, {"kind": "dynamic", "damping": 0.1}),
+        "body of a shape": (
+            s.body,
+            {"kind": "dynamic", "damping": 0.1, "shape": SPHERE, "density": 500.0, "position": V,
                 "orientation": (0, 0, 0, 1), "velocity": V, "spin": V, "attachments": [V],
             },
         ),
-        "Body of a mass": (iota.Body, {"system": s, "shape": TETRAHEDRON, "mass": 2.0}),
+        "body of a mass": (s.body, {"shape": TETRAHEDRON, "mass": 2.0}),
         "Sphere": (iota.Sphere, {"radius": 0.5}),
         "Box": (iota.Box, {"size": (1, 2, 3)}),
         "Cylinder": (iota.Cylinder, {"radius": 0.5, "length": 1.0}),
@@ -117,27 +116,27 @@ def calls(c: Scene) -> dict[str, Call]:
             {"vertices": TETRAHEDRON.vertices, "triangles": TETRAHEDRON.triangles},
         ),
         "set_pose": (c.box.set_pose, {"position": V, "orientation": (0, 1, 0, 0)}),
-        "attach": (c.box.attach, {"position": V}),
+        "attachment": (c.box.attachment, {"position": V}),
         "set_rod": (c.rods[1].set_rod, {"mass": 1.0, "radius": 0.1}),
-        "Particle": (iota.Particle, {"body": c.plate, "position": V, "mass": 1.0, "velocity": V}),
-        "marker": (lambda body, position: iota.Particle(body, position, 0), {"body": c.box, "position": V}),
+        "particle": (c.plate.particle, {"position": V, "mass": 1.0, "velocity": V}),
+        "marker": (lambda position: c.box.particle(position, 0), {"position": V}),
         "nail": (c.point.nail, {"position": V}),
         "apply_force": (c.point.apply_force, {"force": V}),
-        "combine": (s.combine, {"p": c.point, "q": c.plate.particles[0]}),
-        "combine over": (s.combine, {"p": c.point, "q": c.plate.particles[0], "over": 0.2}),
-        "combine bodies": (s.combine, {"a": c.rods[0], "b": c.rods[1]}),
-        "separate": (s.separate, {"p": c.p, "q": c.rods[1].particles[0]}),
-        "CBond": (iota.CBond, {"p": c.plate.particles[0], "q": c.plate.particles[1]}),
+        "combine": (c.point.combine, {"q": c.plate.particles[0]}),
+        "combine over": (c.point.combine, {"q": c.plate.particles[0], "over": 0.2}),
+        "combine bodies": (c.rods[0].combine, {"other": c.rods[1]}),
+        "separate": (c.p.separate, {"q": c.rods[1].particles[0]}),
+        "cosmetic_bond": (s.cosmetic_bond, {"p": c.plate.particles[0], "q": c.plate.particles[1]}),
         "spring": (
-            lambda p, q, stiffness, damping, length: iota.Bond(
+            lambda p, q, stiffness, damping, length: s.bond(
                 p, q, "spring", stiffness=stiffness, damping=damping, length=length
             ),
             {"p": c.p, "q": c.point, "stiffness": 10.0, "damping": 0.1, "length": 1.0},
         ),
-        "drag": (lambda p, q, damping: iota.Bond(p, q, "drag", damping=damping), {"p": c.p, "q": c.q, "damping": 1.0}),
-        "scripted": (iota.Bond, {"p": c.p, "q": c.point, "law": lambda bond: (0, 0, 0)}),
-        "Grip": (
-            iota.Grip,
+        "drag": (lambda p, q, damping: s.bond(p, q, "drag", damping=damping), {"p": c.p, "q": c.q, "damping": 1.0}),
+        "scripted": (s.bond, {"p": c.p, "q": c.point, "law": lambda bond: (0, 0, 0)}),
+        "grip": (
+            s.grip,
             {"body": c.box, "local_point": V, "target": V, "client": 1, "hold": 2, "frequency": 2.0,
              "max_acceleration": 50.0},
         ),
@@ -189,52 +188,52 @@ def calls(c: Scene) -> dict[str, Call]:
         "break_force": (lambda value: assign(c.hinge, "break_force", value), {"value": 10.0}),
         "break_torque": (lambda value: assign(c.hinge, "break_torque", value), {"value": 10.0}),
         "rope.length": (lambda value: assign(c.rope, "length", value), {"value": 5.0}),
-        "Law": (iota.Law, {"system": s, "law": "energy = k*r^2", "name": "law", "k": 1.0}),
-        "Law of arrays": (
-            lambda law, k: iota.Bond(c.point, c.corner, iota.Law(s, law, k=k)),
+        "law": (s.law, {"law": "energy = k*r^2", "name": "law", "k": 1.0}),
+        "law of arrays": (
+            lambda law, k: s.bond(c.point, c.corner, s.law(law, k=k)),
             {"law": lambda bonds: np.zeros((len(bonds), 3)), "k": 1.0},
         ),
         "bond of an expression": (
-            lambda law, k: iota.Bond(c.point, c.corner, law, k=k),
+            lambda law, k: s.bond(c.point, c.corner, law, k=k),
             {"law": "energy = 0.5*k*r^2", "k": 1.0},
         ),
-        "bond of a law": (iota.Bond, {"p": c.point, "q": c.corner, "law": c.law, "k": 3.0, "implicit": True}),
+        "bond of a law": (s.bond, {"p": c.point, "q": c.corner, "law": c.law, "k": 3.0, "implicit": True}),
         "bond.set": (c.written.set, {"k": 2.0, "r0": 1.0, "c": 0.1}),
         "lennard_jones": (
-            lambda depth, size: iota.Bond(c.point, c.corner, "lennard_jones", depth=depth, size=size),
+            lambda depth, size: s.bond(c.point, c.corner, "lennard_jones", depth=depth, size=size),
             {"depth": 1.0, "size": 1.0},
         ),
         "morse": (
-            lambda depth, width, length: iota.Bond(
+            lambda depth, width, length: s.bond(
                 c.point, c.corner, "morse", depth=depth, width=width, length=length
             ),
             {"depth": 1.0, "width": 1.0, "length": 1.0},
         ),
-        "Group": (iota.Group, {"system": s, "name": "few"}),
+        "group": (s.group, {"name": "few"}),
         "group.add": (lambda member: c.crowd.add(member), {"member": c.point}),
         "group.remove": (lambda member: c.crowd.remove(member), {"member": c.box}),
         "uniform": (
-            iota.Field,
-            {"system": s, "field": "uniform", "group": c.crowd, "replaces_gravity": True, "acceleration": V},
+            s.field,
+            {"field": "uniform", "group": c.crowd, "replaces_gravity": True, "acceleration": V},
         ),
-        "wind": (iota.Field, {"system": s, "field": "wind", "velocity": V, "drag": 0.1}),
+        "wind": (s.field, {"field": "wind", "velocity": V, "drag": 0.1}),
         "current": (
-            iota.Field,
-            {"system": s, "field": "current", "velocity": V, "drag": 0.1, "speed": 1.0, "size": 2.0, "octaves": 3.0,
+            s.field,
+            {"field": "current", "velocity": V, "drag": 0.1, "speed": 1.0, "size": 2.0, "octaves": 3.0,
              "evolution": 0.1, "seed": 1.0},
         ),
-        "attractor": (iota.Field, {"system": s, "field": "attractor", "center": V, "strength": 1.0, "range": 2.0}),
+        "attractor": (s.field, {"field": "attractor", "center": V, "strength": 1.0, "range": 2.0}),
         "field of an expression": (
-            lambda field, k: iota.Field(s, field, k=k),
+            lambda field, k: s.field(field, k=k),
             {"field": "energy = 0.5*k*y^2", "k": 0.1},
         ),
-        "field of arrays": (iota.Field, {"system": s, "field": lambda batch: np.zeros((len(batch), 3))}),
+        "field of arrays": (s.field, {"field": lambda batch: np.zeros((len(batch), 3))}),
         "well.set": (c.well.set, {"center": V, "strength": 0.2, "softening": 0.1}),
-        "Pairs": (iota.Pairs, {"system": s, "law": "soft_repulsion", "cutoff": 1.5, "group": c.crowd, "length": 1.0}),
-        "pairs.set": (c.pairs.set, {"strength": 0.1, "softening": 0.2}),
-        "Emitter": (
-            iota.Emitter,
-            {"system": s, "rate": 50.0, "source": SPHERE, "position": V, "orientation": (0, 0, 0, 1), "velocity": V,
+        "pair_force": (s.pair_force, {"law": "soft_repulsion", "cutoff": 1.5, "group": c.crowd, "length": 1.0}),
+        "pair_force.set": (c.pair_force.set, {"strength": 0.1, "softening": 0.2}),
+        "emitter": (
+            s.emitter,
+            {"rate": 50.0, "source": SPHERE, "position": V, "orientation": (0, 0, 0, 1), "velocity": V,
              "velocity_spread": 0.1, "lifetime": 1.0, "lifetime_spread": 0.1, "mass": 0.1, "damping": 0.1,
              "max_count": 50, "curve": [(0.0, 0.1, (1, 1, 1)), (1.0, 0.2, (1, 0, 0, 0))], "seed": 3},
         ),
@@ -242,8 +241,8 @@ def calls(c: Scene) -> dict[str, Call]:
         "align": (c.surfel.align, {"direction": V, "stiffness": 2.0, "damping": 0.1}),
         "apply_torque": (c.surfel.apply_torque, {"torque": V}),
         "chain": (
-            iota.builder.chain,
-            {"system": s, "links": 3, "length": 1.0, "top": V, "direction": (1, 0, 0)},
+            lambda links, length, top, direction: iota.builder.chain(s, links, length, top=top, direction=direction),
+            {"links": 3, "length": 1.0, "top": V, "direction": (1, 0, 0)},
         ),
         "World": (iota.World, {"system": s, "title": "t", "dt": 1 / 60}),
         "speed": (lambda value: assign(iota.World(s), "speed", value), {"value": 1.0}),
@@ -263,13 +262,13 @@ def calls(c: Scene) -> dict[str, Call]:
         table[f"System.{name}"] = (set_member(name), {"of": s, "value": value})
     table["emitter.rate"] = (set_member("rate"), {"of": c.fountain, "value": 20.0})
     table["spring.break_force"] = (set_member("break_force"), {"of": c.spring, "value": 100.0})
-    for name, thing in (("field", c.well), ("pairs", c.pairs), ("emitter", c.fountain), ("bond", c.written)):
+    for name, thing in (("field", c.well), ("pair_force", c.pair_force), ("emitter", c.fountain), ("bond", c.written)):
         table[f"{name}.active"] = (set_member("active"), {"of": thing, "value": False})
     table["Bond.active"] = (set_member("active"), {"of": c.spring, "value": False})
     table["Constraint.active"] = (set_member("active"), {"of": c.hinge, "value": False})
     things = {
-        "body": c.box, "particle": c.p, "bond": c.spring, "cbond": c.cbond, "grip": c.grip, "constraint": c.hinge,
-        "field": c.well, "pairs": c.pairs, "emitter": c.fountain, "law": c.unused_law, "group": c.nobody,
+        "body": c.box, "particle": c.p, "bond": c.spring, "cosmetic_bond": c.line, "grip": c.grip, "constraint": c.hinge,
+        "field": c.well, "pair_force": c.pair_force, "emitter": c.fountain, "law": c.unused_law, "group": c.nobody,
     }  # fmt: skip
     for name in things:
         table[f"destroy {name}"] = (lambda thing: thing.destroy(), {"thing": things[name]})
@@ -277,7 +276,7 @@ def calls(c: Scene) -> dict[str, Call]:
 
 
 OTHERS = (
-    iota.Bond, iota.Grip, iota.CBond, iota.Constraint, iota.Field, iota.Pairs, iota.Emitter, iota.Law, iota.Group
+    iota.Bond, iota.Grip, iota.CosmeticBond, iota.Constraint, iota.Field, iota.PairForce, iota.Emitter, iota.Law, iota.Group
 )  # fmt: skip
 HUGE = [1e300, -1e300, 1e12, 1e-12, 1e-300]
 
@@ -297,7 +296,7 @@ def bad_values(c: Scene, good: Any) -> list[Any]:
     if isinstance(good, dict):
         return [{}, {"limit": (0, 1)}, {"limits": (1, -1)}, {"friction": NAN}, 7, None]
     if isinstance(good, iota.Body):
-        return [c.gone, c.foreign, iota.Body(c.system), None, c.p, c.rods[0], c.plate, "body"]
+        return [c.gone, c.foreign, c.system.body(), None, c.p, c.rods[0], c.plate, "body"]
     if isinstance(good, iota.Particle):
         return [c.gone_particle, c.foreign_particle, None, c.plate, c.p, c.q, c.plate.particles[1], "particle"]
     if isinstance(good, iota.System):

@@ -15,7 +15,7 @@ from iota.world.options import RunOptions, use
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "python"
 
 
-def run(name: str, seconds: float) -> tuple[dict[str, Any], iota.RunSummary]:
+def run(name: str, seconds: float) -> tuple[dict[str, Any], iota.types.RunSummary]:
     with use(RunOptions(headless=True, seconds=seconds)) as options:
         space = runpy.run_path(str(EXAMPLES / name), run_name="__main__")
     assert options.summary is not None

@@ -18,13 +18,13 @@ def particle(system: iota.System) -> iota.Particle:
 
 
 BAD_VALUES: dict[str, tuple[Callable[[iota.System], object], str]] = {
-    "nan position": (lambda s: iota.Particle(s.bodies[0], (NAN, 0, 0)), r"position must be finite, not \(nan, 0, 0\)"),
-    "infinite position": (lambda s: iota.Particle(s.bodies[0], (0, INF, 0)), r"position.*\(0, inf, 0\)"),
-    "nan velocity": (lambda s: iota.Particle(s.bodies[0], velocity=(0, 0, NAN)), "velocity must be finite"),
-    "zero mass off the body": (lambda s: iota.Particle(s.bodies[0], (0, 9, 0), mass=0), "massless.*do not reach"),
-    "negative mass": (lambda s: iota.Particle(s.bodies[0], mass=-1), "mass.*above 0 kg, not -1"),
-    "nan mass": (lambda s: iota.Particle(s.bodies[0], mass=NAN), "mass.*not nan"),
-    "infinite mass": (lambda s: iota.Particle(s.bodies[0], mass=INF), "mass.*not inf"),
+    "nan position": (lambda s: s.bodies[0].particle((NAN, 0, 0)), r"position must be finite, not \(nan, 0, 0\)"),
+    "infinite position": (lambda s: s.bodies[0].particle((0, INF, 0)), r"position.*\(0, inf, 0\)"),
+    "nan velocity": (lambda s: s.bodies[0].particle(velocity=(0, 0, NAN)), "velocity must be finite"),
+    "zero mass off the body": (lambda s: s.bodies[0].particle((0, 9, 0), mass=0), "massless.*do not reach"),
+    "negative mass": (lambda s: s.bodies[0].particle(mass=-1), "mass.*above 0 kg, not -1"),
+    "nan mass": (lambda s: s.bodies[0].particle(mass=NAN), "mass.*not nan"),
+    "infinite mass": (lambda s: s.bodies[0].particle(mass=INF), "mass.*not inf"),
     "assigned position": (lambda s: setattr(particle(s), "position", (INF, 0)), "position must be finite"),
     "assigned velocity": (lambda s: setattr(particle(s), "velocity", (0, NAN)), "velocity must be finite"),
     "assigned mass": (lambda s: setattr(particle(s), "mass", 0.0), "mass.*not 0"),
@@ -32,34 +32,34 @@ BAD_VALUES: dict[str, tuple[Callable[[iota.System], object], str]] = {
     "nail": (lambda s: particle(s).nail((NAN, 0, 0)), "position must be finite"),
     "gravity": (lambda s: setattr(s, "gravity", (0, NAN)), "gravity must be finite"),
     "damping": (lambda s: setattr(s, "damping", -1.0), "damping must be finite and at least 0 1/s, not -1"),
-    "body damping": (lambda s: iota.Body(s, damping=NAN), "damping"),
+    "body damping": (lambda s: s.body(damping=NAN), "damping"),
     "mode": (
         lambda s: setattr(s, "mode", "robut"),
         "mode must be one of 'plausible', 'robust', 'energy_keeping', 'accurate', not 'robut'",
     ),
-    "kind": (lambda s: iota.Body(s, kind="frozen"), "kind must be one of 'dynamic', 'static'.* not 'frozen'"),
+    "kind": (lambda s: s.body(kind="frozen"), "kind must be one of 'dynamic', 'static'.* not 'frozen'"),
     "dt zero": (lambda s: s.step(0), "dt"),
     "dt negative": (lambda s: s.step(-0.01), "dt"),
     "dt nan": (lambda s: s.step(NAN), "dt"),
     "dt too long": (lambda s: s.step(1.5), "dt"),
     "law": (
-        lambda s: iota.Bond(*s.particles[:2], "sprong"),
+        lambda s: s.bond(*s.particles[:2], "sprong"),
         "no law is called 'sprong'; did you mean 'spring'",
     ),
     "drag with a length": (
-        lambda s: iota.Bond(*s.particles[:2], "drag", length=1),
+        lambda s: s.bond(*s.particles[:2], "drag", length=1),
         "drag has no parameter 'length'; it has damping",
     ),
-    "stiffness": (lambda s: iota.Bond(*s.particles[:2], "spring", stiffness=-1), "stiffness.*got -1"),
-    "length": (lambda s: iota.Bond(*s.particles[:2], "spring", length=INF), "length.*not inf"),
-    "drag damping": (lambda s: iota.Bond(*s.particles[:2], "drag", damping=NAN), "damping.*not nan"),
-    "over": (lambda s: iota.combine(*s.particles[:2], over=-1), "over.*at least 0 s, not -1"),
+    "stiffness": (lambda s: s.bond(*s.particles[:2], "spring", stiffness=-1), "stiffness.*got -1"),
+    "length": (lambda s: s.bond(*s.particles[:2], "spring", length=INF), "length.*not inf"),
+    "drag damping": (lambda s: s.bond(*s.particles[:2], "drag", damping=NAN), "damping.*not nan"),
+    "over": (lambda s: s.particles[0].combine(s.particles[1], over=-1), "over.*at least 0 s, not -1"),
     "rod mass": (lambda s: s.bodies[0].set_rod(0, 0.1), "mass"),
     "rod radius": (lambda s: s.bodies[0].set_rod(1, -0.1), "radius"),
     "rod of one particle": (lambda s: s.bodies[2].set_rod(1, 0.1), "two massive particles"),
-    "grip point": (lambda s: iota.Grip(s.bodies[0], (NAN, 0, 0)), "local_point"),
-    "grip target": (lambda s: iota.Grip(s.bodies[0], target=(0, INF)), "target"),
-    "grip frequency": (lambda s: iota.Grip(s.bodies[0], frequency=0), "frequency"),
+    "grip point": (lambda s: s.grip(s.bodies[0], (NAN, 0, 0)), "local_point"),
+    "grip target": (lambda s: s.grip(s.bodies[0], target=(0, INF)), "target"),
+    "grip frequency": (lambda s: s.grip(s.bodies[0], frequency=0), "frequency"),
     "snapshot": (lambda s: s.restore(b"this is no snapshot"), "snapshot"),
     "empty snapshot": (lambda s: s.restore(b""), "snapshot"),
     "cut snapshot": (lambda s: s.restore(s.snapshot()[:-8]), "snapshot"),
@@ -74,15 +74,15 @@ BAD_VALUES: dict[str, tuple[Callable[[iota.System], object], str]] = {
 
 BAD_TYPES: dict[str, tuple[Callable[[iota.System], object], str]] = {
     "function with a stiffness": (
-        lambda s: iota.Bond(*s.particles[:2], lambda b: (0, 0, 0), stiffness=1),
+        lambda s: s.bond(*s.particles[:2], lambda b: (0, 0, 0), stiffness=1),
         "a function has no stiffness",
     ),
     "no law": (
-        lambda s: iota.Bond(*s.particles[:2], 7),
+        lambda s: s.bond(*s.particles[:2], 7),
         "law must be a predefined law, an expression, a Law or a function, not 7",
     ),
-    "text for a number": (lambda s: iota.Particle(s.bodies[0], mass="heavy"), "mass"),
-    "body for a particle": (lambda s: iota.separate(s.bodies[0], s.bodies[1]), "incompatible"),
+    "text for a number": (lambda s: s.bodies[0].particle(mass="heavy"), "mass"),
+    "body for a particle": (lambda s: s.particles[0].separate(s.bodies[1]), "incompatible"),
     "two arguments": (lambda s: iota.World(s).on_step(lambda a, b: None), "takes 2 arguments"),
 }
 
@@ -90,10 +90,10 @@ BAD_TYPES: dict[str, tuple[Callable[[iota.System], object], str]] = {
 def two_rods_and_a_ball() -> iota.System:
     system = iota.System()
     for x in (0, 2):
-        body = iota.Body(system)
-        iota.Particle(body, (x, 0, 0))
-        iota.Particle(body, (x + 1, 0, 0))
-    iota.Particle(iota.Body(system), (5, 0, 0))
+        body = system.body()
+        body.particle((x, 0, 0))
+        body.particle((x + 1, 0, 0))
+    system.body().particle((5, 0, 0))
     return system
 
 
@@ -123,12 +123,12 @@ def test_particles_of_two_systems_cannot_be_combined() -> None:
     p, q = one.particles[0], other.particles[1]
     text = "combine takes two of one system, but particle 0 and particle 1 belong to different systems"
     with pytest.raises(ValueError, match=text):
-        iota.combine(p, q)
-    for use in (iota.separate, iota.CBond, lambda a, b: iota.Bond(a, b, "spring")):
+        p.combine(q)
+    for use in (p.separate, lambda q: one.cosmetic_bond(p, q), lambda q: one.bond(p, q, "spring")):
         with pytest.raises(ValueError, match="different systems"):
-            use(p, q)
+            use(q)
     with pytest.raises(ValueError, match="different systems"):
-        iota.combine(p.body, q.body)
+        p.body.combine(q.body)
     assert one.validate() == other.validate() == []
 
 
@@ -139,6 +139,6 @@ def test_an_empty_system_steps() -> None:
 
 def test_a_body_without_particles_steps() -> None:
     system = iota.System()
-    body = iota.Body(system)
+    body = system.body()
     system.step()
     assert body.particles == [] and system.validate() == []

@@ -21,7 +21,7 @@ def space() -> iota.System:
 @pytest.fixture
 def pair(space: iota.System) -> Pair:
     """Two free particles, 1 m apart."""
-    return iota.Particle(iota.Body(space)), iota.Particle(iota.Body(space), (1, 0, 0))
+    return space.body().particle(), space.body().particle((1, 0, 0))
 
 
 def run(system: iota.System, seconds: float, dt: float = 1 / 240) -> None:
@@ -32,7 +32,7 @@ def run(system: iota.System, seconds: float, dt: float = 1 / 240) -> None:
 def test_a_spring_swings_with_its_period(space: iota.System, pair: Pair) -> None:
     p, q = pair
     p.nail()
-    iota.Bond(p, q, "spring", stiffness=(2 * math.pi) ** 2, length=0.8)
+    space.bond(p, q, "spring", stiffness=(2 * math.pi) ** 2, length=0.8)
     run(space, 0.5)
     assert q.position.x == pytest.approx(0.6, abs=0.01), "half a period later it is at the other end"
     run(space, 0.5)
@@ -40,7 +40,7 @@ def test_a_spring_swings_with_its_period(space: iota.System, pair: Pair) -> None
 
 
 def test_a_spring_without_a_length_rests_where_it_was_made(space: iota.System, pair: Pair) -> None:
-    iota.Bond(*pair, "spring", stiffness=1000)
+    space.bond(*pair, "spring", stiffness=1000)
     run(space, 0.1)
     assert pair[1].position == (1, 0, 0)
 
@@ -49,7 +49,7 @@ def test_a_drag_slows_exponentially(space: iota.System, pair: Pair) -> None:
     p, q = pair
     p.nail()
     q.velocity = (0, 1, 0)
-    iota.Bond(p, q, "drag", damping=2.0)
+    space.bond(p, q, "drag", damping=2.0)
     run(space, 0.5)
     assert q.velocity.y == pytest.approx(math.exp(-1), rel=0.01)
 
@@ -58,12 +58,12 @@ def test_a_function_gives_the_force_on_the_first_and_its_opposite_to_the_second(
     p, q = pair
     seen: list[Any] = []
 
-    def force(bond: iota.BondState) -> tuple[float, float, float]:
+    def force(bond: iota.types.BondState) -> tuple[float, float, float]:
         seen.append((bond.position_p, bond.position_q, bond.velocity_p, bond.velocity_q, bond.time))
         seen.append((bond.p, bond.q, bond.bond, bond.distance, bond.direction))
         return (0, 6, 0)
 
-    bond = iota.Bond(p, q, force)
+    bond = space.bond(p, q, force)
     space.step(0.5)
     assert seen[0] == ((0, 0, 0), (1, 0, 0), (0, 0, 0), (0, 0, 0), 0.0)
     assert seen[1] == (p, q, bond, 1.0, (1, 0, 0))
@@ -74,10 +74,10 @@ def test_a_function_gives_the_force_on_the_first_and_its_opposite_to_the_second(
 def test_a_spring_in_python_moves_like_the_built_in_one(space: iota.System) -> None:
     ends = []
     for law in ("spring", lambda bond: 50 * (bond.distance - 0.8) * bond.direction):
-        p = iota.Particle(iota.Body(space))
-        q = iota.Particle(iota.Body(space), (1, 0, 0))
+        p = space.body().particle()
+        q = space.body().particle((1, 0, 0))
         arguments = {"stiffness": 50, "length": 0.8} if law == "spring" else {}
-        iota.Bond(p, q, law, **arguments)
+        space.bond(p, q, law, **arguments)
         ends.append(q)
     run(space, 1.0, 1 / 2000)
     assert abs(ends[0].position - ends[1].position) < 0.01
@@ -100,8 +100,8 @@ def test_a_function_that_fails_is_switched_off_and_named_after_the_step(
     space: iota.System, pair: Pair, law: Callable[..., Any], cause: type[Exception], text: str
 ) -> None:
     pair[1].velocity = (1, 0, 0)
-    good = iota.Bond(*pair, lambda bond: (0, 1, 0))
-    bad = iota.Bond(*pair, law)
+    good = space.bond(*pair, lambda bond: (0, 1, 0))
+    bad = space.bond(*pair, law)
     with pytest.raises(iota.BondError, match=text) as caught:
         space.step(0.5)
     assert "bond 1 between particle 0 and particle 1 was switched off" in str(caught.value)
@@ -113,10 +113,10 @@ def test_a_function_that_fails_is_switched_off_and_named_after_the_step(
 
 
 def test_the_traceback_of_a_failed_function_is_kept(space: iota.System, pair: Pair) -> None:
-    def deep(bond: iota.BondState) -> Any:
+    def deep(bond: iota.types.BondState) -> Any:
         raise KeyError("inside")
 
-    iota.Bond(*pair, deep)
+    space.bond(*pair, deep)
     with pytest.raises(iota.BondError) as caught:
         space.step()
     cause = caught.value.__cause__
@@ -126,24 +126,24 @@ def test_the_traceback_of_a_failed_function_is_kept(space: iota.System, pair: Pa
 
 def test_several_failures_in_one_step_are_counted(space: iota.System, pair: Pair) -> None:
     for _ in range(3):
-        iota.Bond(*pair, lambda bond: 1 / 0)
+        space.bond(*pair, lambda bond: 1 / 0)
     with pytest.raises(iota.BondError, match=r"\(and 2 more in this step\)"):
         space.step()
     space.step()
 
 
 def test_ctrl_c_inside_a_function_is_no_fault_of_the_bond(space: iota.System, pair: Pair) -> None:
-    def interrupted(bond: iota.BondState) -> Any:
+    def interrupted(bond: iota.types.BondState) -> Any:
         raise KeyboardInterrupt
 
-    bond = iota.Bond(*pair, interrupted)
+    bond = space.bond(*pair, interrupted)
     with pytest.raises(KeyboardInterrupt):
         space.step()
     assert bond.active and space.step_count == 1
 
 
 def test_a_bond_can_be_switched_off_on_and_removed(space: iota.System, pair: Pair) -> None:
-    bond = iota.Bond(*pair, lambda bond: (1, 0, 0))
+    bond = space.bond(*pair, lambda bond: (1, 0, 0))
     assert bond.ends == pair and space.bonds == [bond]
     bond.active = False
     space.step()
@@ -159,15 +159,15 @@ def test_a_function_may_cut_and_join_and_this_is_done_after_the_step(
     system: iota.System, chain: list[iota.Body]
 ) -> None:
     upper, lower = chain[2].particles[1], chain[3].particles[0]
-    reports: list[iota.RestructureReport] = []
+    reports: list[iota.types.RestructureReport] = []
 
-    def cut(bond: iota.BondState) -> tuple[float, float, float]:
+    def cut(bond: iota.types.BondState) -> tuple[float, float, float]:
         if not reports:
-            reports.append(iota.separate(upper, lower))
+            reports.append(upper.separate(lower))
             assert system.articulate_count == 1, "not yet"
         return (0, 0, 0)
 
-    iota.Bond(chain[0].particles[0], chain[-1].particles[1], cut)
+    system.bond(chain[0].particles[0], chain[-1].particles[1], cut)
     report = system.step()
     assert reports[0].queued and "queued" in repr(reports[0])
     assert report.articulates == system.articulate_count == 2
@@ -178,22 +178,22 @@ def test_a_function_may_cut_and_join_and_this_is_done_after_the_step(
     "edit",
     [
         lambda s: s.step(),
-        lambda s: iota.Body(s),
-        lambda s: iota.Particle(s.bodies[0]),
-        lambda s: iota.Bond(*s.particles[:2], "drag"),
+        lambda s: s.body(),
+        lambda s: s.bodies[0].particle(),
+        lambda s: s.bond(*s.particles[:2], "drag"),
         lambda s: setattr(s.particles[0], "position", (0, 0, 0)),
         lambda s: setattr(s, "gravity", (0, 0, 0)),
         lambda s: s.snapshot(),
         lambda s: s.restore(b""),
-        lambda s: iota.Grip(s.bodies[0]),
+        lambda s: s.grip(s.bodies[0]),
     ],
 )
 def test_a_function_may_not_do_what_cannot_wait(space: iota.System, pair: Pair, edit: Callable[..., Any]) -> None:
-    def force(bond: iota.BondState) -> tuple[float, float, float]:
+    def force(bond: iota.types.BondState) -> tuple[float, float, float]:
         edit(space)
         return (0, 0, 0)
 
-    iota.Bond(*pair, force)
+    space.bond(*pair, force)
     with pytest.raises(iota.BondError, match="not possible in a bond's function") as caught:
         space.step()
     assert isinstance(caught.value.__cause__, RuntimeError)
@@ -201,11 +201,11 @@ def test_a_function_may_not_do_what_cannot_wait(space: iota.System, pair: Pair, 
 
 
 def test_a_function_may_destroy_its_own_bond_and_body(space: iota.System, pair: Pair) -> None:
-    def force(bond: iota.BondState) -> tuple[float, float, float]:
+    def force(bond: iota.types.BondState) -> tuple[float, float, float]:
         bond.q.body.destroy()
         return (0, 0, 0)
 
-    iota.Bond(*pair, force)
+    space.bond(*pair, force)
     space.step()
     space.step()
     assert not pair[1].alive and pair[0].alive and space.validate() == []
@@ -213,21 +213,21 @@ def test_a_function_may_destroy_its_own_bond_and_body(space: iota.System, pair: 
 
 def test_methods_partials_and_objects_serve_as_functions(space: iota.System, pair: Pair) -> None:
     class Pull:
-        def __call__(self, bond: iota.BondState) -> list[float]:
+        def __call__(self, bond: iota.types.BondState) -> list[float]:
             return [1, 0]
 
-    iota.Bond(*pair, Pull())
-    iota.Bond(*pair, Pull().__call__)
+    space.bond(*pair, Pull())
+    space.bond(*pair, Pull().__call__)
     space.step(0.1)
     assert pair[0].velocity.x == pytest.approx(0.2)
 
 
 def test_a_bond_tells_its_force_breaks_and_is_mended() -> None:
     system = iota.System(mode="robust")
-    hook = iota.Particle(iota.Body(system))
-    weight = iota.Particle(iota.Body(system), position=(0, -1, 0), mass=2)
+    hook = system.body().particle()
+    weight = system.body().particle(position=(0, -1, 0), mass=2)
     hook.nail()
-    thread = iota.Bond(hook, weight, "spring", stiffness=1000, damping=40, length=1, break_force=25)
+    thread = system.bond(hook, weight, "spring", stiffness=1000, damping=40, length=1, break_force=25)
     for _ in range(240):
         system.step(1 / 120)
     assert abs(thread.force.y + 2 * 9.81) < 1e-3 and not thread.broken

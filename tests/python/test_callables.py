@@ -22,8 +22,8 @@ class Marble:
 
     def __init__(self) -> None:
         self.system = iota.System()
-        self.point = iota.Particle(iota.Body(self.system), (0, 0, 0))
-        self.far = iota.Particle(iota.Body(self.system, kind="static"), (9, 0, 0))
+        self.point = self.system.body().particle((0, 0, 0))
+        self.far = self.system.body(kind="static").particle((9, 0, 0))
         self.phi: Surface = lambda x, y, z: y
         self.floor = self.system.outside(self.point, lambda x, y, z: self.phi(x, y, z))
         self.system.step(1 / 60)
@@ -85,7 +85,7 @@ def test_a_world_reports_a_failed_surface_and_goes_on(capsys: pytest.CaptureFixt
 @pytest.mark.parametrize("wrong", [lambda *r: 1 / 0, lambda *r: math.nan, lambda *r: None])
 def test_a_surface_that_fails_at_once_is_not_made(wrong: Surface) -> None:
     marble = Marble()
-    ball = iota.Body(marble.system, shape=iota.Sphere(0.1), position=(3, 3, 3))
+    ball = marble.system.body(shape=iota.Sphere(0.1), position=(3, 3, 3))
     before = marble.system.state_hash()
     with pytest.raises((ValueError, ZeroDivisionError)):
         marble.system.on_surface(marble.point, wrong)
@@ -110,33 +110,33 @@ def test_curves_pass_on_what_their_function_raises_and_show_what_is_no_point() -
 
 EDITS: dict[str, Callable[[Marble], Any]] = {
     "step": lambda m: m.system.step(),
-    "create": lambda m: iota.Body(m.system),
+    "create": lambda m: m.system.body(),
     "assign": lambda m: setattr(m.point, "position", (1, 1, 1)),
     "snapshot": lambda m: m.system.snapshot(),
     "restore": lambda m: m.system.restore(b""),
     "undo": lambda m: m.system.undo(),
-    "law": lambda m: iota.Law(m.system, "energy = r"),
-    "field": lambda m: iota.Field(m.system, "wind"),
+    "law": lambda m: m.system.law("energy = r"),
+    "field": lambda m: m.system.field("wind"),
     "joint": lambda m: m.system.rope(m.point, m.far),
     "recording": lambda m: m.system.start_recording(),
     "solver": lambda m: setattr(m.system, "solver", "newton"),
 }
 QUEUED: dict[str, Callable[[Marble], Any]] = {
     "nail": lambda m: m.far.nail(),
-    "separate": lambda m: iota.separate(m.point, m.far),
+    "separate": lambda m: m.point.separate(m.far),
     "destroy": lambda m: m.far.destroy(),
     "switch": lambda m: setattr(m.floor, "active", False),
 }
 
 
-def zeros(batch: iota.BondBatch | iota.ParticleBatch) -> np.ndarray:
+def zeros(batch: iota.types.BondBatch | iota.types.ParticleBatch) -> np.ndarray:
     return np.zeros((len(batch), 3))
 
 
 CALLERS: dict[str, Callable[[Marble, Callable[[], Any]], Any]] = {
-    "bond": lambda m, act: iota.Bond(m.point, m.far, lambda b: (act() and None) or (0, 0, 0)),
-    "law": lambda m, act: iota.Bond(m.point, m.far, iota.Law(m.system, lambda b: (act() and None) or zeros(b))),
-    "field": lambda m, act: iota.Field(m.system, lambda b: (act() and None) or zeros(b)),
+    "bond": lambda m, act: m.point.system.bond(m.point, m.far, lambda b: (act() and None) or (0, 0, 0)),
+    "law": lambda m, act: m.point.system.bond(m.point, m.far, m.system.law(lambda b: (act() and None) or zeros(b))),
+    "field": lambda m, act: m.system.field(lambda b: (act() and None) or zeros(b)),
 }
 
 
@@ -214,5 +214,5 @@ def test_a_solver_that_raises_is_named_and_the_built_in_one_takes_over() -> None
         return x - equations.evaluate(x)
 
     other = iota.System()
-    solution = iota.solve(lambda x: [x[0] - iota.Body(other).slot * 0 - 3], [1.0], method="stubborn")
+    solution = iota.solve(lambda x: [x[0] - other.body().slot * 0 - 3], [1.0], method="stubborn")
     assert solution.x[0] == 3, "equations of the script may use a system"

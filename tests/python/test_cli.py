@@ -143,7 +143,7 @@ def test_a_script_with_its_own_loop_stops_by_itself(tmp_path: Path) -> None:
     ("text", "said"),
     [
         ("import iota\nsystem = iota.System()\n1 / 0\n", r"iota: ZeroDivisionError: division by zero \(bad.py, line 3\)"),
-        ("import iota\niota.Particle(iota.Body(iota.System()), mass=-1)\n", r"mass must be.*above 0 kg, not -1 \(bad.py, line 2\)"),
+        ("import iota\niota.System().body().particle(mass=-1)\n", r"mass must be.*above 0 kg, not -1 \(bad.py, line 2\)"),
         ("import nothing_like_this\n", r"ModuleNotFoundError.*\(bad.py, line 1\)"),
         ("def build():\n    return 5\n", r"build\(\) of .*bad.py must return a World, not int"),
         ("import iota\n", "made no World run"),

@@ -12,10 +12,10 @@ import iota
 
 def hanging_box() -> tuple[iota.System, iota.Body]:
     system = iota.System()
-    return system, iota.Body(system, shape=iota.Box((0.2, 0.4, 0.3)), mass=2, position=(0, -0.5, 0))
+    return system, system.body(shape=iota.Box((0.2, 0.4, 0.3)), mass=2, position=(0, -0.5, 0))
 
 
-def run(system: iota.System, seconds: float, dt: float = 1 / 120) -> iota.StepReport:
+def run(system: iota.System, seconds: float, dt: float = 1 / 120) -> iota.types.StepReport:
     for _ in range(round(seconds / dt)):
         report = system.step(dt)
     assert system.validate() == []
@@ -69,7 +69,7 @@ def test_two_coordinates_of_a_cylindrical_joint() -> None:
     assert joint.slide.value == pytest.approx(-1, abs=1e-6)
     assert joint.angle.value == pytest.approx(4, rel=1e-2)
     with pytest.raises(AttributeError, match="a weld has no angle"):
-        _ = system.weld(iota.Body(system, shape=iota.Sphere(0.1), position=(0, -0.5, 3)), box, at=(0, -0.5, 1)).angle
+        _ = system.weld(system.body(shape=iota.Sphere(0.1), position=(0, -0.5, 3)), box, at=(0, -0.5, 1)).angle
 
 
 def test_switched_off_a_joint_lets_go_and_switched_on_it_brings_back() -> None:
@@ -91,9 +91,9 @@ def test_switched_off_a_joint_lets_go_and_switched_on_it_brings_back() -> None:
 
 def test_a_joint_ends_with_its_body_and_when_its_bodies_become_one() -> None:
     system, box = hanging_box()
-    other = iota.Body(system, shape=iota.Sphere(0.1), position=(0, -1, 0))
+    other = system.body(shape=iota.Sphere(0.1), position=(0, -1, 0))
     joint = system.weld(other, box, at=(0, -0.8, 0))
-    report = iota.combine(box, other)
+    report = box.combine(other)
     assert not joint.alive
     assert any("weld 0 ended" in note for note in report.notes)
     hinge = system.revolute(box, at=(0, 0, 0), axis=(1, 0, 0))
@@ -104,8 +104,8 @@ def test_a_joint_ends_with_its_body_and_when_its_bodies_become_one() -> None:
 
 def test_rod_and_rope_join_particles() -> None:
     system = iota.System()
-    hook = iota.Particle(iota.Body(system, kind="static"), (0, 0, 0))
-    ball = iota.Particle(iota.Body(system), (0, -1, 0), mass=3)
+    hook = system.body(kind="static").particle((0, 0, 0))
+    ball = system.body().particle((0, -1, 0), mass=3)
     rope = system.rope(hook, ball, 1.5)
     run(system, 2)
     assert rope.length == 1.5
@@ -129,7 +129,7 @@ def test_joints_are_saved_and_replayed() -> None:
     assert system.state_hash() == there
     system.start_recording()
     joint.angle.limits = None
-    system.ball(iota.Body(system, shape=iota.Sphere(0.1), position=(0.3, -0.5, 0)), box, at=(0.2, -0.5, 0))
+    system.ball(system.body(shape=iota.Sphere(0.1), position=(0.3, -0.5, 0)), box, at=(0.2, -0.5, 0))
     run(system, 0.5)
     joint.destroy()
     run(system, 0.2)
@@ -139,51 +139,51 @@ def test_joints_are_saved_and_replayed() -> None:
 
 def test_markers_are_carried_and_can_be_hinged_nailed_and_bonded() -> None:
     system, box = hanging_box()
-    corner = iota.Particle(box, (0.1, -0.3, 0.15), mass=0)
-    below = iota.Particle(box, (0, -0.9, 0), mass=0)
+    corner = box.particle((0.1, -0.3, 0.15), mass=0)
+    below = box.particle((0, -0.9, 0), mass=0)
     assert box.mass == pytest.approx(2)
     corner.nail()
-    bob = iota.Particle(iota.Body(system), (0, -0.9, 0), mass=0.5)
-    iota.combine(below, bob)
-    spring = iota.Bond(iota.Particle(box, (0, -0.5, 0), mass=0), bob, "spring", stiffness=10)
+    bob = system.body().particle((0, -0.9, 0), mass=0.5)
+    below.combine(bob)
+    spring = system.bond(box.particle((0, -0.5, 0), mass=0), bob, "spring", stiffness=10)
     report = run(system, 2)
     assert report.worst_gap < 1e-8
     assert spring.alive
     report = run(system, 20)
     with pytest.raises(ValueError, match="massless and cannot leave"):
-        iota.separate(box.particles[0], corner)
+        box.particles[0].separate(corner)
     with pytest.raises(ValueError, match=r"massless.*do not reach"):
-        iota.Particle(bob.body, (1, 1, 1), mass=0)
+        bob.body.particle((1, 1, 1), mass=0)
 
 
 def test_beads_run_on_points_and_on_functions() -> None:
     system = iota.System()
-    bead = iota.Particle(iota.Body(system), (-1, 1, 0))
+    bead = system.body().particle((-1, 1, 0))
     path = system.on_path(bead, lambda u: (u, u * u, 0), interval=(-1, 1))
     assert path.kind == "path"
     assert path.slide.limits == (0, pytest.approx(path.length))
     run(system, 0.5)
     assert bead.position.y == pytest.approx(bead.position.x**2, abs=1e-6)
-    driven = iota.Particle(iota.Body(system), (1, 0, 0))
+    driven = system.body().particle((1, 0, 0))
     ring = [(math.cos(a), 0, math.sin(a)) for a in (math.tau * i / 40 for i in range(40))]
     loop = system.on_path(driven, ring, closed=True, motor=(1, 1e4))
     run(system, 2)
     assert loop.slide.value == pytest.approx(2, abs=0.02)
     assert driven.position == pytest.approx((math.cos(2), 0, math.sin(2)), abs=0.02)
-    square = iota.Particle(iota.Body(system), (0.5, 3, 0))
+    square = system.body().particle((0.5, 3, 0))
     system.on_path(square, [(0, 3, 0), (1, 3, 0), (1, 4, 0)], smooth=False, rounding=0.1)
     run(system, 0.1)
 
 
 def test_points_stay_on_and_within_surfaces_and_surfaces_apart() -> None:
     system = iota.System(damping=0.5)
-    ball = iota.Body(system, shape=iota.Sphere(0.2), mass=1, position=(0.3, 1, 0))
-    inner = iota.Particle(iota.Body(system), (0.5, 0.3, 5), mass=1)
+    ball = system.body(shape=iota.Sphere(0.2), mass=1, position=(0.3, 1, 0))
+    inner = system.body().particle((0.5, 0.3, 5), mass=1)
     bowl = system.inside(inner, iota.Sphere(1), at=(0, 0, 5))
     floor = system.surface_to_surface(ball, iota.Sphere(0.2), None, iota.Plane())
-    egg = iota.Particle(iota.Body(system), (0, 2, 9))
+    egg = system.body().particle((0, 2, 9))
     on_egg = system.on_surface(egg, iota.Ellipsoid((1, 2, 1)), at=(0, 0, 9))
-    saddle = iota.Particle(iota.Body(system), (0.1, 0.01, 20))
+    saddle = system.body().particle((0.1, 0.01, 20))
     valley = system.on_surface(saddle, lambda x, y, z: y - x * x, at=(0, 0, 20))
     run(system, 8)
     assert ball.center_of_mass.y == pytest.approx(0.2, abs=1e-6)
@@ -239,14 +239,14 @@ def test_a_hinge_tells_what_it_carries_and_breaks_under_too_much() -> None:
 def test_the_function_of_a_bond_may_change_joints_for_after_the_step() -> None:
     system, box = hanging_box()
     joint = system.revolute(box, at=(0, 0, 0), axis=(0, 0, 1), motor=(1, 100))
-    weld = system.weld(iota.Body(system, shape=iota.Sphere(0.1), position=(0, -0.8, 0)), box, at=(0, -0.7, 0))
+    weld = system.weld(system.body(shape=iota.Sphere(0.1), position=(0, -0.8, 0)), box, at=(0, -0.7, 0))
 
-    def pull(_bond: iota.BondState) -> tuple[float, float, float]:
+    def pull(_bond: iota.types.BondState) -> tuple[float, float, float]:
         joint.angle.motor = (-1, 100)
         weld.active = False
         return 0, 0, 0
 
-    iota.Bond(box.particles[0], iota.Particle(iota.Body(system, kind="static"), (0, 5, 0)), pull)
+    system.bond(box.particles[0], system.body(kind="static").particle((0, 5, 0)), pull)
     system.step(1 / 120)
     assert joint.angle.motor == (-1, 100)
     assert not weld.active
@@ -319,18 +319,26 @@ REFUSED = {
         "length must be between 1e-9 and 1e9 m",
     ),
     "break force": (lambda s, a, b: s.ball(a, at=(0, 0, 0), break_force=0), "break_force must be above zero, got 0"),
-    "another system": (lambda s, a, b: s.ball(iota.Body(iota.System()), at=(0, 0, 0)), "another system"),
+    "another system": (lambda s, a, b: s.ball(iota.System().body(), at=(0, 0, 0)), "another system"),
 }
 
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_bad_input_is_refused_in_a_sentence_and_changes_nothing(name: str) -> None:
     system, box = hanging_box()
-    point = iota.Body(system)
-    iota.Particle(point, (0, 2, 0))
+    point = system.body()
+    point.particle((0, 2, 0))
     before = system.state_hash(), len(system.particles), len(system.constraints)
     make, text = REFUSED[name]
     with pytest.raises(ValueError, match=text):
         make(system, box, point)
     assert before == (system.state_hash(), len(system.particles), len(system.constraints))
     assert system.validate() == []
+
+
+def test_each_coordinate_says_its_name_and_unit() -> None:
+    system, box = hanging_box()
+    cross = system.universal(box, at=(0, 0, 0), axis=(1, 0, 0), second_axis=(0, 0, 1))
+    assert repr(cross.angle).startswith("<angle ") and repr(cross.angle).endswith(" rad>")
+    assert repr(cross.second_angle).startswith("<second_angle ") and repr(cross.second_angle).endswith(" rad>")
+    assert repr(system.prismatic(box, at=(0, 0, 0), axis=(0, 1, 0)).slide).endswith(" m>")

@@ -12,8 +12,8 @@ def test_a_batch_of_edits_has_one_report_and_is_undone_as_one(system: iota.Syste
     system.step(0.01)
     before = system.state_hash()
     with system.edit() as edit:
-        ball = iota.Body(system, shape=iota.Sphere(0.1))
-        iota.separate(chain[1].particles[1], chain[2].particles[0])
+        ball = system.body(shape=iota.Sphere(0.1))
+        chain[1].particles[1].separate(chain[2].particles[0])
         chain[5].destroy()
     assert edit.report.created_bodies == [ball] and edit.report.destroyed_bodies == [chain[5]]
     assert edit.report.articulates_after == 3
@@ -33,13 +33,13 @@ def test_a_batch_that_raises_never_was(system: iota.System, chain: list[iota.Bod
 
 
 def test_edits_of_a_function_are_reported_by_the_step(system: iota.System, chain: list[iota.Body]) -> None:
-    p = iota.Particle(iota.Body(system), (0, 1, 0))
+    p = system.body().particle((0, 1, 0))
 
-    def cut(bond: iota.BondState) -> tuple[float, float, float]:
-        iota.separate(chain[1].particles[1], chain[2].particles[0])
+    def cut(bond: iota.types.BondState) -> tuple[float, float, float]:
+        chain[1].particles[1].separate(chain[2].particles[0])
         return (0, 0, 0)
 
-    bond = iota.Bond(p, chain[-1].particles[-1], cut)
+    bond = system.bond(p, chain[-1].particles[-1], cut)
     system.step(0.01)
     report = system.step_edits
     assert report is not None and report.changed
@@ -57,9 +57,9 @@ def test_a_world_goes_back(system: iota.System, chain: list[iota.Body]) -> None:
 
 
 def test_a_cosmetic_bond_that_broke_is_back_after_undo(system: iota.System) -> None:
-    body = iota.Body(system)
-    atoms = [iota.Particle(body, (i, 0, 0)) for i in range(3)]
-    bonds = [iota.CBond(p, q) for p, q in pairwise(atoms)]
+    body = system.body()
+    atoms = [body.particle((i, 0, 0)) for i in range(3)]
+    bonds = [system.cosmetic_bond(p, q) for p, q in pairwise(atoms)]
     with system.edit():
         bonds[1].destroy()
     assert [bond.alive for bond in bonds] == [True, False]

@@ -14,8 +14,8 @@ from iota.world.scene import Scene
 
 
 def test_an_emitter_bears_and_its_particles_die(system: iota.System) -> None:
-    fire = iota.Emitter(
-        system, rate=200, lifetime=0.3, velocity_spread=0.5, curve=[(0, 0.02, (1, 1, 0)), (1, 0.1, (1, 0, 0, 0))]
+    fire = system.emitter(
+        rate=200, lifetime=0.3, velocity_spread=0.5, curve=[(0, 0.02, (1, 1, 0)), (1, 0.1, (1, 0, 0, 0))]
     )
     births = deaths = 0
     for _ in range(100):
@@ -39,7 +39,7 @@ def test_an_emitter_bears_and_its_particles_die(system: iota.System) -> None:
 
 
 def test_sparks_are_dots_until_something_ties_them(system: iota.System) -> None:
-    fire = iota.Emitter(system, rate=100, lifetime=10, velocity=(0, 1, 0))
+    fire = system.emitter(rate=100, lifetime=10, velocity=(0, 1, 0))
     scene, version = Scene(system), system.scene_version
     for _ in range(20):
         system.step(0.01)
@@ -48,7 +48,7 @@ def test_sparks_are_dots_until_something_ties_them(system: iota.System) -> None:
     assert json.loads(scene.describe()[1]) == [] and len(system.poses()[0]) == 0
     first, second = fire.particles[:2]
     assert first.body.is_spark
-    bond = iota.Bond(first, second, "spring", stiffness=1)
+    bond = system.bond(first, second, "spring", stiffness=1)
     assert not first.body.is_spark and system.scene_version != version
     classes, bodies = (json.loads(text) for text in scene.describe())
     assert {body["body"] for body in bodies} == {first.body.slot, second.body.slot} == set(system.poses()[0])
@@ -61,14 +61,14 @@ def test_sparks_are_dots_until_something_ties_them(system: iota.System) -> None:
 
 
 def test_thousands_of_particles_are_no_matter(system: iota.System) -> None:
-    rain = iota.Emitter(system, rate=20_000, source=iota.Box((10, 0.1, 10)), lifetime=0.2, max_count=5000)
+    rain = system.emitter(rate=20_000, source=iota.Box((10, 0.1, 10)), lifetime=0.2, max_count=5000)
     for _ in range(30):
         system.step(0.01)
     assert rain.count == 4000 and system.validate() == []
 
 
 def test_any_particle_may_have_a_lifetime_and_a_look(system: iota.System) -> None:
-    spark = iota.Particle(iota.Body(system))
+    spark = system.body().particle()
     assert not spark.has_attributes and spark.lifetime == math.inf
     spark.lifetime, spark.radius, spark.color = 0.025, 0.3, (1, 0, 0)
     assert spark.color == (1, 0, 0, 1) and spark.radius == 0.3
@@ -76,7 +76,7 @@ def test_any_particle_may_have_a_lifetime_and_a_look(system: iota.System) -> Non
 
 
 def test_oriented_particles_spin_and_are_drawn_to_a_direction(system: iota.System) -> None:
-    surfel = iota.Particle(iota.Body(system))
+    surfel = system.body().particle()
     with pytest.raises(ValueError, match="no orientation of its own"):
         _ = surfel.spin
     surfel.orientation = (0, 0, 0, 2)
@@ -105,5 +105,5 @@ def test_bad_emitters_are_refused(system: iota.System) -> None:
         {"curve": [(i / 10, 1, (1, 1, 1)) for i in range(9)]},
     ):
         with pytest.raises(ValueError):
-            iota.Emitter(system, **bad)
+            system.emitter(**bad)
     assert system.validate() == []

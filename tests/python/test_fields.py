@@ -23,7 +23,7 @@ def space() -> iota.System:
 def scatter(system: iota.System, count: int, speed: float = 0.0) -> list[iota.Particle]:
     random = np.random.default_rng(1)
     return [
-        iota.Particle(iota.Body(system), place, velocity=tuple(velocity))
+        system.body().particle(place, velocity=tuple(velocity))
         for place, velocity in zip(
             random.uniform(-1, 1, (count, 3)), speed * random.normal(size=(count, 3)), strict=True
         )
@@ -32,9 +32,9 @@ def scatter(system: iota.System, count: int, speed: float = 0.0) -> list[iota.Pa
 
 def test_wind_carries_the_particles_of_its_group_only(space: iota.System) -> None:
     still, *leaves = scatter(space, 3)
-    group = iota.Group(space, "leaves")
+    group = space.group("leaves")
     group.add(*leaves)
-    wind = iota.Field(space, "wind", velocity=(3, 0, 0), drag=1000, group=group)
+    wind = space.field("wind", velocity=(3, 0, 0), drag=1000, group=group)
     space.step(0.1)
     assert still.velocity == (0, 0, 0) and leaves[0].velocity == pytest.approx((3, 0, 0))
     wind.set(velocity=(0, 2, 0))
@@ -51,7 +51,7 @@ def test_a_current_is_turbulent_and_repeats(space: iota.System) -> None:
     for _ in range(2):
         system = iota.System(gravity=(0, 0, 0))
         scatter(system, 50)
-        iota.Field(system, "current", velocity=(0.2, 0, 0), speed=1, size=0.5, drag=5, seed=4)
+        system.field("current", velocity=(0.2, 0, 0), speed=1, size=0.5, drag=5, seed=4)
         for _ in range(50):
             system.step(0.02)
         ends.append(system.positions)
@@ -68,8 +68,8 @@ def test_a_current_is_turbulent_and_repeats(space: iota.System) -> None:
     ],
 )
 def test_a_well_holds_an_orbit_however_it_is_written(space: iota.System, field: Any, arguments: Any) -> None:
-    planet = iota.Particle(iota.Body(space), (1, 0, 0), mass=2, velocity=(0, 1, 0))
-    iota.Field(space, field, **arguments)
+    planet = space.body().particle((1, 0, 0), mass=2, velocity=(0, 1, 0))
+    space.field(field, **arguments)
     for _ in range(1000):
         space.step(2 * math.pi / 1000)
     assert planet.position == pytest.approx((1, 0, 0), abs=1e-3)
@@ -77,10 +77,10 @@ def test_a_well_holds_an_orbit_however_it_is_written(space: iota.System, field: 
 
 def test_a_field_can_replace_gravity() -> None:
     system = iota.System()
-    ball = iota.Particle(iota.Body(system))
+    ball = system.body().particle()
     link = iota.builder.chain(system, links=3)[0]
     start = abs(system.momentum)
-    field = iota.Field(system, "fy = 0", replaces_gravity=True)
+    field = system.field("fy = 0", replaces_gravity=True)
     system.step(0.1)
     assert ball.velocity == (0, 0, 0) and abs(system.momentum) == pytest.approx(start) and link.alive
     field.active = False
@@ -90,15 +90,15 @@ def test_a_field_can_replace_gravity() -> None:
 
 def test_a_function_sees_arrays_in_the_order_of_its_particles(space: iota.System) -> None:
     particles = scatter(space, 5)
-    group = iota.Group(space, "some")
+    group = space.group("some")
     group.add(*particles[1:4])
     seen: list[Any] = []
 
-    def push(batch: iota.ParticleBatch) -> np.ndarray:
+    def push(batch: iota.types.ParticleBatch) -> np.ndarray:
         seen.extend([len(batch), batch.particles, batch.mass, batch.time, batch.dt, batch])
         return np.outer(np.arange(len(batch)), [1, 0, 0])
 
-    iota.Field(space, push, group=group)
+    space.field(push, group=group)
     space.step(0.5)
     assert seen[0] == 3 and seen[1] == particles[1:4] and seen[2].tolist() == [1, 1, 1] and seen[3:5] == [0, 0.5]
     assert [p.velocity.x for p in particles] == pytest.approx([0, 0, 0.5, 1, 0])
@@ -107,8 +107,8 @@ def test_a_function_sees_arrays_in_the_order_of_its_particles(space: iota.System
 
 
 def test_a_field_may_be_the_gradient_of_an_energy_which_is_then_kept(space: iota.System) -> None:
-    particle = iota.Particle(iota.Body(space), (1, 0.5, -0.3), mass=2, velocity=(0, 1, 0))
-    spring = iota.Field(space, "energy = 0.5*k*(x^2 + y^2) + m*g*z; fz = -c*vz", k=8, g=3, c=0)
+    particle = space.body().particle((1, 0.5, -0.3), mass=2, velocity=(0, 1, 0))
+    spring = space.field("energy = 0.5*k*(x^2 + y^2) + m*g*z; fz = -c*vz", k=8, g=3, c=0)
     assert space.energy.potential == pytest.approx(4 * (1 + 0.25) - 2 * 3 * 0.3)
     start = space.energy
     for _ in range(round(2 * math.pi / 2 / 0.005)):  # omega = 2: one turn
@@ -121,9 +121,9 @@ def test_a_field_may_be_the_gradient_of_an_energy_which_is_then_kept(space: iota
     space.step(0.005)
     assert space.energy.external_work < -0.01, "what the rest of the field takes"
     with pytest.raises(ValueError, match="an energy cannot depend on a velocity"):
-        iota.Field(space, "energy = x*vy")
+        space.field("energy = x*vy")
     with pytest.raises(ValueError, match="a field defines 'energy'"):
-        iota.Field(space, "force = x")
+        space.field("force = x")
 
 
 def test_a_field_can_be_compiled_code(space: iota.System) -> None:
@@ -134,7 +134,7 @@ def test_a_field_can_be_compiled_code(space: iota.System) -> None:
     def push(count: int, time: float, position: Any, velocity: Any, mass: Any, force: Any) -> None:
         np.ctypeslib.as_array(force, (count, 3))[:] = [1, 2, 3]
 
-    iota.Field(space, push)
+    space.field(push)
     space.step(0.5)
     np.testing.assert_allclose(space.velocities, [[0.5, 1, 1.5]] * 3)
 
@@ -144,12 +144,12 @@ def test_hinged_particles_are_one_row_with_all_their_mass(space: iota.System) ->
     rows: list[int] = []
     masses: list[float] = []
 
-    def look(batch: iota.ParticleBatch) -> np.ndarray:
+    def look(batch: iota.types.ParticleBatch) -> np.ndarray:
         rows.append(len(batch))
         masses.append(batch.mass.sum())
         return np.zeros((len(batch), 3))
 
-    iota.Field(space, look)
+    space.field(look)
     space.step()
     assert rows == [5] and masses[0] == pytest.approx(sum(p.mass for body in bodies for p in body.particles))
 
@@ -159,12 +159,12 @@ def test_hinged_particles_are_one_row_with_all_their_mass(space: iota.System) ->
     [
         (lambda b: 1 / 0, ZeroDivisionError, "division by zero"),
         (lambda b: np.zeros(3), ValueError, r"must have the shape \(2, 3\), one row a particle, not \(3,\)"),
-        (lambda b: iota.Body(b.particles[0].system), RuntimeError, "not possible"),
+        (lambda b: b.particles[0].system.body(), RuntimeError, "not possible"),
     ],
 )
 def test_a_field_that_fails_is_named_and_switched_off(space: iota.System, function: Any, cause: Any, text: str) -> None:
     scatter(space, 2)
-    field = iota.Field(space, function, name="gusts")
+    field = space.field(function, name="gusts")
     with pytest.raises(iota.ForceError, match=text) as caught:
         space.step()
     assert str(caught.value).startswith("field gusts was switched off") and isinstance(caught.value.__cause__, cause)
@@ -173,8 +173,8 @@ def test_a_field_that_fails_is_named_and_switched_off(space: iota.System, functi
 
 
 def test_a_field_without_a_finite_force_warns_in_the_report(space: iota.System) -> None:
-    iota.Particle(iota.Body(space))
-    iota.Field(space, "fx = 1/x", name="pole")
+    space.body().particle()
+    space.field("fx = 1/x", name="pole")
     assert space.step().warnings == ["field 0 (pole) gives no finite force on particle 0; there it gives none"]
 
 
@@ -186,8 +186,8 @@ def test_pairwise_forces_by_name_and_by_expression_are_the_same() -> None:
     ):
         system = iota.System(gravity=(0, 0, 0))
         for i in range(64):
-            iota.Particle(iota.Body(system), (0.24 * (i % 4), 0.24 * (i // 4 % 4), 0.24 * (i // 16)))
-        pairs = iota.Pairs(system, law, cutoff=2, **arguments)
+            system.body().particle((0.24 * (i % 4), 0.24 * (i // 4 % 4), 0.24 * (i // 16)))
+        pairs = system.pair_force(law, cutoff=2, **arguments)
         start = pairs.energy
         for _ in range(100):
             system.step(0.001)
@@ -200,7 +200,7 @@ def test_pairwise_forces_by_name_and_by_expression_are_the_same() -> None:
 def test_a_flock_aligns(space: iota.System) -> None:
     scatter(space, 60, speed=1.0)
     before = space.momentum
-    iota.Pairs(space, "attract_repel", cutoff=1.5, alignment=0.5, repulsion_range=0.2)
+    space.pair_force("attract_repel", cutoff=1.5, alignment=0.5, repulsion_range=0.2)
     spread = np.std(space.velocities, axis=0).sum()
     for _ in range(150):
         space.step(0.02)
@@ -210,8 +210,8 @@ def test_a_flock_aligns(space: iota.System) -> None:
 
 def test_two_particles_at_one_place_are_told(space: iota.System) -> None:
     for _ in range(2):
-        iota.Particle(iota.Body(space))
-    pairs = iota.Pairs(space, "coulomb", cutoff=1)
+        space.body().particle()
+    pairs = space.pair_force("coulomb", cutoff=1)
     assert space.step().warnings == [
         "pairwise force 0 gives no finite force between particles 0 and 1; there it gives none"
     ]
@@ -223,21 +223,21 @@ def test_two_particles_at_one_place_are_told(space: iota.System) -> None:
 
 def test_bad_groups_fields_and_pairs_are_refused(space: iota.System) -> None:
     (ball,) = scatter(space, 1)
-    group = iota.Group(space, "a")
+    group = space.group("a")
     before = space.state_hash()
     for call, error, text in (
-        (lambda: iota.Group(space, "a"), ValueError, "already"),
+        (lambda: space.group("a"), ValueError, "already"),
         (lambda: group.add(3), TypeError, "takes particles and bodies, not 3"),
-        (lambda: iota.Field(space, "wimd"), ValueError, "no field is called 'wimd'"),
-        (lambda: iota.Field(space, "fx = qq"), ValueError, "unknown name 'qq'"),
-        (lambda: iota.Field(space, "wind", velocity=(math.nan, 0, 0)), ValueError, "velocity must be finite"),
-        (lambda: iota.Field(space, "wind", drag="much"), TypeError, "drag must be a number or a vector"),
-        (lambda: iota.Field(space, 3), TypeError, "field must be"),
-        (lambda: iota.Field(space, "wind", group=ball), TypeError, "group must be a Group or None"),
-        (lambda: iota.Field(space, "wind", group=iota.Group(iota.System(), "b")), ValueError, "same system"),
-        (lambda: iota.Pairs(space, "morse", cutoff=1), ValueError, "need a value for length"),
-        (lambda: iota.Pairs(space, "coulomb", cutoff=-1), ValueError, "cutoff"),
-        (lambda: iota.Pairs(space, lambda b: 0, cutoff=1), TypeError, "law must be"),
+        (lambda: space.field("wimd"), ValueError, "no field is called 'wimd'"),
+        (lambda: space.field("fx = qq"), ValueError, "unknown name 'qq'"),
+        (lambda: space.field("wind", velocity=(math.nan, 0, 0)), ValueError, "velocity must be finite"),
+        (lambda: space.field("wind", drag="much"), TypeError, "drag must be a number or a vector"),
+        (lambda: space.field(3), TypeError, "field must be"),
+        (lambda: space.field("wind", group=ball), TypeError, "group must be a Group or None"),
+        (lambda: space.field("wind", group=iota.System().group("b")), ValueError, "same system"),
+        (lambda: space.pair_force("morse", cutoff=1), ValueError, "need a value for length"),
+        (lambda: space.pair_force("coulomb", cutoff=-1), ValueError, "cutoff"),
+        (lambda: space.pair_force(lambda b: 0, cutoff=1), TypeError, "law must be"),
     ):
         with pytest.raises(error, match=text):
             call()
@@ -251,8 +251,8 @@ def test_a_field_whose_function_knows_the_system_is_freed() -> None:
     flag = Flag()
     gone = weakref.ref(flag)
     system = iota.System()
-    iota.Particle(iota.Body(system))
-    iota.Field(system, lambda b, flag=flag, system=system: np.zeros((len(b), 3)))
+    system.body().particle()
+    system.field(lambda b, flag=flag, system=system: np.zeros((len(b), 3)))
     system.step()
     del flag, system
     gc.collect()
@@ -261,8 +261,8 @@ def test_a_field_whose_function_knows_the_system_is_freed() -> None:
 
 def test_forces_on_many_are_saved_and_restored(space: iota.System) -> None:
     scatter(space, 30, speed=1.0)
-    iota.Field(space, "current", drag=1)
-    iota.Pairs(space, "soft_repulsion", cutoff=0.5, length=0.5)
+    space.field("current", drag=1)
+    space.pair_force("soft_repulsion", cutoff=0.5, length=0.5)
     saved = space.snapshot()
     hashes = []
     for _ in range(2):

@@ -18,7 +18,7 @@ def test_a_body_falls_asleep_and_wakes(system: iota.System, chain: list[iota.Bod
     chain[0].kind = "resting"
     assert chain[-1].kind == "resting"
     with pytest.raises(ValueError, match="only dynamic bodies can rest"):
-        iota.Body(system, kind="static").kind = "resting"
+        system.body(kind="static").kind = "resting"
 
 
 def test_things_are_switched_off_and_on(system: iota.System, chain: list[iota.Body]) -> None:
@@ -32,7 +32,7 @@ def test_things_are_switched_off_and_on(system: iota.System, chain: list[iota.Bo
     for _ in range(20):
         assert system.step(0.01).worst_gap < 1e-8
     assert end.position == place and chain[-1].kind == "inactive"
-    chain[0].set_articulate_active(True)
+    chain[0].articulate.active = True
     assert chain[-1].active and system.worst_gap < 1e-8
-    chain[0].set_articulate_active(False)
+    chain[0].articulate.active = False
     assert not any(link.active for link in chain) and system.validate() == []

@@ -33,7 +33,7 @@ def space() -> iota.System:
 
 @pytest.fixture
 def pair(space: iota.System) -> Pair:
-    return iota.Particle(iota.Body(space)), iota.Particle(iota.Body(space), (1, 0, 0))
+    return space.body().particle(), space.body().particle((1, 0, 0))
 
 
 def radial_spring(r: float, v: float, t: float, p: Any) -> float:
@@ -65,11 +65,11 @@ def numba_batch_spring(count, t, xp, xq, vp, vq, parameters, force):
         f[i] = (k[i, 0] * (r - k[i, 1]) / r) * d
 
 
-def numpy_spring(bonds: iota.BondBatch) -> np.ndarray:
+def numpy_spring(bonds: iota.types.BondBatch) -> np.ndarray:
     return pull(bonds.position_p, bonds.position_q, bonds.parameters["k"], bonds.parameters["r0"])
 
 
-def python_spring(bond: iota.BondState) -> iota.Vec3:
+def python_spring(bond: iota.types.BondState) -> iota.Vec3:
     return 20 * (bond.distance - 0.1) * bond.direction
 
 
@@ -77,10 +77,7 @@ def mesh(law: Callable[[iota.System], Any], mode: Any, **arguments: Any) -> iota
     """A stretched 4 x 4 net of particles that hangs from its upper row."""
     system = iota.System(gravity=(0, -1, 0), mode=mode)
     points = [
-        [
-            iota.Particle(iota.Body(system), (0.11 * x, -0.11 * y, 0.01 * ((x + y) % 2)), 0.1 + 0.01 * x)
-            for x in range(4)
-        ]
+        [system.body().particle((0.11 * x, -0.11 * y, 0.01 * ((x + y) % 2)), 0.1 + 0.01 * x) for x in range(4)]
         for y in range(4)
     ]
     for point in points[0]:
@@ -89,9 +86,9 @@ def mesh(law: Callable[[iota.System], Any], mode: Any, **arguments: Any) -> iota
     for y in range(4):
         for x in range(4):
             if x < 3:
-                iota.Bond(points[y][x], points[y][x + 1], ready, **arguments)
+                system.bond(points[y][x], points[y][x + 1], ready, **arguments)
             if y < 3:
-                iota.Bond(points[y][x], points[y + 1][x], ready, **arguments)
+                system.bond(points[y][x], points[y + 1][x], ready, **arguments)
     return system
 
 
@@ -99,11 +96,11 @@ RUNGS: dict[str, tuple[Callable[[iota.System], Any], dict[str, Any]]] = {
     "predefined": (lambda s: "spring", {"stiffness": 20, "length": 0.1, "implicit": False}),
     "expression": (lambda s: "energy = 0.5*k*(r - r0)^2", {"k": 20, "r0": 0.1, "implicit": False}),
     "force expression": (lambda s: "force = -k*(r - r0)", {"k": 20, "r0": 0.1, "implicit": False}),
-    "compiled": (lambda s: iota.Law(s, Radial(radial_spring), k=20, r0=0.1), {}),
-    "compiled batch": (lambda s: iota.Law(s, Batch(batch_spring), signature="batch", k=20, r0=0.1), {}),
-    "numba": (lambda s: iota.Law(s, numba_radial_spring, k=20, r0=0.1), {}),
-    "numba batch": (lambda s: iota.Law(s, numba_batch_spring, signature="batch", k=20, r0=0.1), {}),
-    "numpy": (lambda s: iota.Law(s, numpy_spring, k=20, r0=0.1), {}),
+    "compiled": (lambda s: s.law(Radial(radial_spring), k=20, r0=0.1), {}),
+    "compiled batch": (lambda s: s.law(Batch(batch_spring), signature="batch", k=20, r0=0.1), {}),
+    "numba": (lambda s: s.law(numba_radial_spring, k=20, r0=0.1), {}),
+    "numba batch": (lambda s: s.law(numba_batch_spring, signature="batch", k=20, r0=0.1), {}),
+    "numpy": (lambda s: s.law(numpy_spring, k=20, r0=0.1), {}),
     "python": (lambda s: python_spring, {}),
 }
 
@@ -136,8 +133,8 @@ def test_the_first_two_rungs_are_implicit_alike(space: iota.System) -> None:
 
 
 def test_an_expression_is_made_once_for_all_its_bonds(space: iota.System, pair: Pair) -> None:
-    first = iota.Bond(*pair, "energy = k*r^4", k=1)
-    second = iota.Bond(*pair, "energy = k*r^4", k=2)
+    first = space.bond(*pair, "energy = k*r^4", k=1)
+    second = space.bond(*pair, "energy = k*r^4", k=2)
     assert first.law == second.law and first.parameters == {"k": 1} and second.parameters == {"k": 2}
     assert "energy = k*r^4" in repr(first.law) and first.law.text == "energy = k*r^4"
     with pytest.raises(ValueError, match="2 bonds have it"):
@@ -146,27 +143,27 @@ def test_an_expression_is_made_once_for_all_its_bonds(space: iota.System, pair: 
 
 def test_an_expression_survives_a_restore_that_took_it_away(space: iota.System, pair: Pair) -> None:
     before = space.snapshot()
-    iota.Bond(*pair, "energy = k*r^4", k=1)
+    space.bond(*pair, "energy = k*r^4", k=1)
     space.restore(before)
-    iota.Bond(*pair, "energy = k*r^2", k=1)
-    bond = iota.Bond(*pair, "energy = k*r^4", k=1)
+    space.bond(*pair, "energy = k*r^2", k=1)
+    bond = space.bond(*pair, "energy = k*r^4", k=1)
     assert bond.law.text == "energy = k*r^4"
 
 
 def test_errors_in_an_expression_show_the_place(pair: Pair) -> None:
     with pytest.raises(ValueError, match="did you mean 'length'") as caught:
-        iota.Bond(*pair, "energy = 0.5*k*(r - lenght)^2", k=1, length=1)
+        pair[0].system.bond(*pair, "energy = 0.5*k*(r - lenght)^2", k=1, length=1)
     line, caret = str(caught.value).splitlines()[-2:]
     assert line[caret.index("^") :].startswith("lenght")
     with pytest.raises(ValueError, match="cannot depend on v"):
-        iota.Bond(*pair, "energy = k*v", k=1)
+        pair[0].system.bond(*pair, "energy = k*v", k=1)
     with pytest.raises(ValueError, match="has no parameter 'depth'; it has stiffness, damping, length"):
-        iota.Bond(*pair, "spring", depth=1)
+        pair[0].system.bond(*pair, "spring", depth=1)
 
 
 def test_parameters_can_be_changed_while_it_runs(space: iota.System, pair: Pair) -> None:
     pair[0].nail()
-    bond = iota.Bond(*pair, "energy = 0.5*k*(r - r0)^2; force = -c*v", k=100, r0=None, c=5)
+    bond = space.bond(*pair, "energy = 0.5*k*(r - r0)^2; force = -c*v", k=100, r0=None, c=5)
     assert bond.parameters == {"k": 100, "r0": 1, "c": 5}
     bond.set(r0=0.5)
     for _ in range(2000):
@@ -182,11 +179,11 @@ def test_parameters_can_be_changed_while_it_runs(space: iota.System, pair: Pair)
 
 
 def test_a_bond_acts_within_a_body_and_between_articulates(space: iota.System) -> None:
-    body = iota.Body(space)
-    p, q = iota.Particle(body), iota.Particle(body, (1, 0, 0))
-    far = iota.Particle(iota.Body(space), (3, 0, 0))
-    iota.Bond(p, q, "energy = 1000*r^2")
-    iota.Bond(q, far, "morse", depth=3, length=1)
+    body = space.body()
+    p, q = body.particle(), body.particle((1, 0, 0))
+    far = space.body().particle((3, 0, 0))
+    space.bond(p, q, "energy = 1000*r^2")
+    space.bond(q, far, "morse", depth=3, length=1)
     for _ in range(50):
         space.step(0.01)
     assert abs(q.position - p.position) == pytest.approx(1, abs=1e-9)
@@ -207,8 +204,8 @@ def test_a_bond_acts_within_a_body_and_between_articulates(space: iota.System) -
 def test_a_batch_function_that_fails_is_named_and_switched_off(
     space: iota.System, pair: Pair, function: Any, cause: Any, text: str
 ) -> None:
-    law = iota.Law(space, function, name="wind")
-    bonds = [iota.Bond(*pair, law) for _ in range(2)]
+    law = space.law(function, name="wind")
+    bonds = [space.bond(*pair, law) for _ in range(2)]
     with pytest.raises(iota.ForceError, match=text) as caught:
         space.step()
     assert isinstance(caught.value.__cause__, cause)
@@ -219,8 +216,8 @@ def test_a_batch_function_that_fails_is_named_and_switched_off(
 
 
 def test_a_row_that_is_not_finite_switches_off_that_bond_only(space: iota.System, pair: Pair) -> None:
-    law = iota.Law(space, lambda b: [[0, 1, 0], [math.nan, 0, 0]], name="half")
-    good, bad = iota.Bond(*pair, law), iota.Bond(*pair, law)
+    law = space.law(lambda b: [[0, 1, 0], [math.nan, 0, 0]], name="half")
+    good, bad = space.bond(*pair, law), space.bond(*pair, law)
     with pytest.raises(iota.BondError, match=r"bond 1 \(half\): its function gave the force \(nan, 0, 0\)") as caught:
         space.step(0.5)
     assert caught.value.bond == bad and good.active and not bad.active
@@ -229,8 +226,8 @@ def test_a_row_that_is_not_finite_switches_off_that_bond_only(space: iota.System
 
 @pytest.mark.parametrize("implicit", [True, False])
 def test_dividing_by_zero_switches_the_bond_off(space: iota.System, implicit: bool) -> None:
-    p, q = (iota.Particle(iota.Body(space)) for _ in range(2))
-    bond = iota.Bond(p, q, "force = 1/r", implicit=implicit)
+    p, q = (space.body().particle() for _ in range(2))
+    bond = space.bond(p, q, "force = 1/r", implicit=implicit)
     with pytest.raises(iota.BondError, match="bond 0: the force is not finite at r = 0 m"):
         space.step()
     assert not bond.active and space.validate() == []
@@ -244,19 +241,19 @@ def test_dividing_by_zero_switches_the_bond_off(space: iota.System, implicit: bo
 
 
 def test_a_batch_function_may_cut_but_not_create(space: iota.System, pair: Pair) -> None:
-    def cut(bonds: iota.BondBatch) -> np.ndarray:
+    def cut(bonds: iota.types.BondBatch) -> np.ndarray:
         bonds.bonds[0].destroy()
         return np.zeros((len(bonds), 3))
 
-    iota.Bond(*pair, iota.Law(space, cut))
+    space.bond(*pair, space.law(cut))
     space.step()
     assert space.bonds == []
 
-    def create(bonds: iota.BondBatch) -> np.ndarray:
-        iota.Body(space)
+    def create(bonds: iota.types.BondBatch) -> np.ndarray:
+        space.body()
         return np.zeros((len(bonds), 3))
 
-    iota.Bond(*pair, iota.Law(space, create))
+    space.bond(*pair, space.law(create))
     with pytest.raises(iota.ForceError, match="not possible in a bond's function"):
         space.step()
 
@@ -264,11 +261,11 @@ def test_a_batch_function_may_cut_but_not_create(space: iota.System, pair: Pair)
 def test_a_batch_is_good_only_during_its_call_but_its_arrays_may_be_kept(space: iota.System, pair: Pair) -> None:
     kept: list[Any] = []
 
-    def keep(bonds: iota.BondBatch) -> np.ndarray:
+    def keep(bonds: iota.types.BondBatch) -> np.ndarray:
         kept.extend([bonds, bonds.distance, bonds.direction, bonds.velocity_q, bonds.time])
         return np.zeros((len(bonds), 3))
 
-    iota.Bond(*pair, iota.Law(space, keep))
+    space.bond(*pair, space.law(keep))
     space.step(0.1)
     space.step(0.1)
     assert kept[1].tolist() == [1] and kept[2].tolist() == [[1, 0, 0]] and kept[9] == pytest.approx(0.1)
@@ -278,17 +275,17 @@ def test_a_batch_is_good_only_during_its_call_but_its_arrays_may_be_kept(space: 
 
 def test_code_that_is_no_law_is_refused(space: iota.System, pair: Pair) -> None:
     with pytest.raises(TypeError, match="law must be an expression, compiled code or a function"):
-        iota.Law(space, 3.5)
+        space.law(3.5)
     with pytest.raises(ValueError, match="'radial' or 'batch', not 'fast'"):
-        iota.Law(space, Radial(radial_spring), signature="fast", k=1, r0=1)
+        space.law(Radial(radial_spring), signature="fast", k=1, r0=1)
     with pytest.raises(ValueError, match="cannot be implicit"):
-        iota.Bond(*pair, python_spring, implicit=True)
+        space.bond(*pair, python_spring, implicit=True)
     with pytest.raises(ValueError, match="cannot be implicit"):
-        iota.Bond(*pair, iota.Law(space, numpy_spring, k=1, r0=1), implicit=True)
-    with pytest.raises(ValueError, match="of the system that its particles are of"):
-        iota.Bond(*pair, iota.Law(iota.System(), "energy = r"))
+        space.bond(*pair, space.law(numpy_spring, k=1, r0=1), implicit=True)
+    with pytest.raises(ValueError, match="a law of its own system"):
+        space.bond(*pair, iota.System().law("energy = r"))
     with pytest.raises(ValueError, match="at most 8 parameters"):
-        iota.Law(space, "energy = r", **{f"a{i}": 1 for i in range(9)})
+        space.law("energy = r", **{f"a{i}": 1 for i in range(9)})
 
 
 def test_a_system_with_functions_of_its_own_is_freed() -> None:
@@ -298,27 +295,27 @@ def test_a_system_with_functions_of_its_own_is_freed() -> None:
     flag = Flag()
     gone = weakref.ref(flag)
     system = iota.System()
-    p, q = (iota.Particle(iota.Body(system), (x, 0, 0)) for x in range(2))
-    iota.Bond(p, q, iota.Law(system, lambda b, flag=flag, system=system: np.zeros((len(b), 3))))
+    p, q = (system.body().particle((x, 0, 0)) for x in range(2))
+    system.bond(p, q, system.law(lambda b, flag=flag, system=system: np.zeros((len(b), 3))))
     del flag, p, q, system
     gc.collect()
     assert gone() is None
 
 
 def test_a_world_reports_a_failed_law_and_goes_on(space: iota.System, pair: Pair) -> None:
-    iota.Bond(*pair, iota.Law(space, lambda b: 1 / 0, name="broken"))
+    space.bond(*pair, space.law(lambda b: 1 / 0, name="broken"))
     with use(RunOptions(headless=True, seconds=0.1)):
         iota.World(space, title="test").run()
     assert space.step_count >= 5
 
 
 def test_a_profile_names_every_force_and_changes_nothing(space: iota.System, pair: Pair) -> None:
-    iota.Bond(*pair, "morse", length=1)
-    iota.Bond(*pair, "energy = k*r^2", k=1, implicit=False)
-    iota.Bond(*pair, python_spring)
-    iota.Bond(*pair, iota.Law(space, numpy_spring, k=1, r0=1))
-    iota.Field(space, "wind")
-    iota.Pairs(space, "coulomb", cutoff=2)
+    space.bond(*pair, "morse", length=1)
+    space.bond(*pair, "energy = k*r^2", k=1, implicit=False)
+    space.bond(*pair, python_spring)
+    space.bond(*pair, space.law(numpy_spring, k=1, r0=1))
+    space.field("wind")
+    space.pair_force("coulomb", cutoff=2)
     before = space.state_hash()
     profile = space.profile()
     assert space.state_hash() == before
@@ -328,6 +325,23 @@ def test_a_profile_names_every_force_and_changes_nothing(space: iota.System, pai
         ("function", "function, held", 1),
         ("numpy_spring", "arrays, held", 1),
         ("field wind", "particles", 2),
-        ("pairs coulomb", "particles", 2),
+        ("pair force coulomb", "particles", 2),
     ]
     assert all(0 < row.ns < 1e7 for row in profile) and len(str(profile).splitlines()) == 7
+
+
+def test_a_name_is_that_of_a_law_or_of_a_function_of_the_script(space: iota.System, pair: Pair) -> None:
+    space.law("energy = k*r^2", name="stiff", k=3)
+    assert space.bond(*pair, "stiff").parameters == {"k": 3}
+
+    def local_pull(bond: iota.types.BondState) -> iota.Vec3:
+        return 2 * bond.direction
+
+    assert space.bond(*pair, "local_pull").law.kind == "function"
+    bond = space.bond(*pair, "python_spring")
+    space.step(0.01)
+    assert bond.active and abs(bond.force) > 0
+    with pytest.raises(ValueError, match=r"no law is called 'fred'\. Predefined are"):
+        space.bond(*pair, "fred")
+    with pytest.raises(ValueError, match="did you mean 'stiff'"):
+        space.bond(*pair, "stif")

@@ -10,7 +10,7 @@ def hashes(threads: int) -> list[int]:
     system = iota.System(threads=threads)
     for row in range(30):
         links = iota.builder.chain(system, links=20, length=2, top=(0, 3, row))
-        iota.separate(links[8].particles[1], links[9].particles[0])
+        links[8].particles[1].separate(links[9].particles[0])
     found = []
     for _ in range(5):
         system.step(1 / 60)

@@ -23,7 +23,7 @@ def combine(dice: random.Random, system: iota.System) -> str:
     p, q = pick(dice, system)
     over = dice.choice([0.0, 0.0, 0.05])
     try:
-        iota.combine(p, q, over=over)
+        p.combine(q, over=over)
     except ValueError as refused:  # a rigid body cannot have two of its particles in one place
         return f"refused: {refused}"
     return f"combine({p.slot}, {q.slot}, {over})"
@@ -34,7 +34,7 @@ def separate(dice: random.Random, system: iota.System) -> str:
     q = dice.choice(p.ring if dice.random() < 0.7 else system.particles)
     if p == q and len(system.particles) > 40:
         return "nothing"
-    iota.separate(p, q)
+    p.separate(q)
     return f"separate({p.slot}, {q.slot})"
 
 
@@ -42,7 +42,7 @@ def weld(dice: random.Random, system: iota.System) -> str:
     a, b = dice.choice(system.bodies), dice.choice(system.bodies)
     if a == b or len(system.bodies) < 4:
         return "nothing"
-    iota.combine(a, b)
+    a.combine(b)
     return f"weld({a.slot}, {b.slot})"
 
 
@@ -55,10 +55,10 @@ def scene(dice: random.Random) -> iota.System:
     """Six rods in space, at random places and speeds."""
     system = iota.System(gravity=(0, 0, 0))
     for _ in range(6):
-        body = iota.Body(system)
+        body = system.body()
         at = [dice.uniform(-1, 1) for _ in range(3)]
-        iota.Particle(body, at, mass=dice.uniform(0.5, 2), velocity=[dice.uniform(-1, 1) for _ in range(3)])
-        iota.Particle(body, [at[0] + 0.3, at[1], at[2]], mass=dice.uniform(0.5, 2))
+        body.particle(at, mass=dice.uniform(0.5, 2), velocity=[dice.uniform(-1, 1) for _ in range(3)])
+        body.particle([at[0] + 0.3, at[1], at[2]], mass=dice.uniform(0.5, 2))
     return system
 
 

@@ -9,22 +9,22 @@ import pytest
 import iota
 
 
-def record(system: iota.System, chain: list[iota.Body]) -> iota.Recording:
+def record(system: iota.System, chain: list[iota.Body]) -> iota.types.Recording:
     """Half a second in which a chain is dragged, cut, pushed and mended."""
     system.start_recording()
-    grip = iota.Grip(chain[4], target=(1, 1, 0))
+    grip = system.grip(chain[4], target=(1, 1, 0))
     for number in range(60):
         if number == 10:
             grip.move((1, 2, 1))
         if number == 20:
-            iota.separate(chain[2].particles[1], chain[3].particles[0])
+            chain[2].particles[1].separate(chain[3].particles[0])
             grip.destroy()
         if number == 30:
             chain[5].particles[1].apply_force((0, 3, 0))
             chain[0].particles[1].velocity = (1, 0, 0)
             system.gravity = (0, -5, 0)
         if number == 40:
-            iota.combine(chain[2].particles[1], chain[3].particles[0], over=0.1)
+            chain[2].particles[1].combine(chain[3].particles[0], over=0.1)
         system.step()
     return system.stop_recording()
 
@@ -55,7 +55,7 @@ def test_replay_names_the_first_step_that_differs(system: iota.System, chain: li
     for byte in data[:-8]:
         checksum = ((checksum ^ byte) * 0x100000001B3) % 2**64
     data[-8:] = checksum.to_bytes(8, "little")
-    assert system.replay(iota.Recording.from_bytes(bytes(data))) == 25
+    assert system.replay(iota.types.Recording.from_bytes(bytes(data))) == 25
 
 
 def test_a_recording_survives_its_file(system: iota.System, chain: list[iota.Body], tmp_path: Path) -> None:
@@ -64,8 +64,8 @@ def test_a_recording_survives_its_file(system: iota.System, chain: list[iota.Bod
     recording.save(path)
     recording.save(str(path))
     assert [entry.name for entry in tmp_path.iterdir() if entry.name != "state"] == ["run.iota"], "no part is left"
-    assert iota.Recording.load(path) == recording
-    assert iota.System().replay(iota.Recording.load(str(path))) is None
+    assert iota.types.Recording.load(path) == recording
+    assert iota.System().replay(iota.types.Recording.load(str(path))) is None
 
 
 @pytest.mark.parametrize(
@@ -85,13 +85,13 @@ def test_a_damaged_recording_is_refused(
     path = tmp_path / "run.iota"
     path.write_bytes(change(record(system, chain).to_bytes()))
     with pytest.raises(ValueError, match=text) as caught:
-        iota.Recording.load(path)
+        iota.types.Recording.load(path)
     assert str(path) in str(caught.value)
 
 
 def test_files_that_cannot_be_opened_are_os_errors(system: iota.System, tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
-        iota.Recording.load(tmp_path / "missing")
+        iota.types.Recording.load(tmp_path / "missing")
     system.start_recording()
     with pytest.raises(FileNotFoundError):
         system.stop_recording().save(tmp_path / "no" / "folder")
@@ -102,7 +102,7 @@ def test_restore_goes_back_and_handles_are_good_again(system: iota.System, chain
     for _ in range(20):
         system.step()
     chain[5].destroy()
-    iota.separate(chain[1].particles[1], chain[2].particles[0])
+    chain[1].particles[1].separate(chain[2].particles[0])
     system.restore(start)
     np.testing.assert_array_equal(system.positions, before)
     assert chain[5].alive and system.articulate_count == 1 and system.time == 0
@@ -112,11 +112,11 @@ def test_restore_goes_back_and_handles_are_good_again(system: iota.System, chain
 def test_restore_keeps_the_functions_of_bonds(system: iota.System, chain: list[iota.Body]) -> None:
     calls: list[float] = []
 
-    def force(bond: iota.BondState) -> tuple[float, float, float]:
+    def force(bond: iota.types.BondState) -> tuple[float, float, float]:
         calls.append(bond.time)
         return (0, 0, 0)
 
-    bond = iota.Bond(chain[0].particles[0], chain[3].particles[1], force)
+    bond = system.bond(chain[0].particles[0], chain[3].particles[1], force)
     start = system.snapshot()
     system.step()
     system.restore(start)
@@ -126,7 +126,7 @@ def test_restore_keeps_the_functions_of_bonds(system: iota.System, chain: list[i
 
 def test_restore_brings_back_a_bond_with_its_function(system: iota.System, chain: list[iota.Body]) -> None:
     calls: list[float] = []
-    bond = iota.Bond(chain[0].particles[0], chain[3].particles[1], lambda bond: calls.append(bond.time) or (0, 0, 0))
+    bond = system.bond(chain[0].particles[0], chain[3].particles[1], lambda bond: calls.append(bond.time) or (0, 0, 0))
     start = system.snapshot()
     bond.destroy()
     system.step()

@@ -18,13 +18,13 @@ def space() -> iota.System:
 
 
 def rod(system: iota.System, x: float, y: float = 0.0) -> tuple[iota.Particle, iota.Particle]:
-    body = iota.Body(system)
-    return iota.Particle(body, (x, y, 0)), iota.Particle(body, (x + 1, y, 0))
+    body = system.body()
+    return body.particle((x, y, 0)), body.particle((x + 1, y, 0))
 
 
 def test_combine_makes_a_hinge_of_particles_of_unrelated_bodies(space: iota.System) -> None:
     (_, p), (q, _) = rod(space, 0), rod(space, 1)
-    report = iota.combine(p, q)
+    report = p.combine(q)
     assert report and report.changed and not report.queued
     assert set(p.ring) == {p, q} and p.body != q.body
     assert names(space.articulates) == [[0, 1]] and space.articulate_count == 1
@@ -35,8 +35,8 @@ def test_combine_makes_a_hinge_of_particles_of_unrelated_bodies(space: iota.Syst
 def test_combine_again_makes_the_hinge_rigid_and_absorbs_the_body(space: iota.System) -> None:
     (a, p), (q, b) = rod(space, 0), rod(space, 1)
     first, second = p.body, q.body
-    iota.combine(p, q)
-    report = iota.combine(p, q)
+    p.combine(q)
+    report = p.combine(q)
     assert report.absorbed_bodies == [(second, first)]
     assert not second.alive and second.survivor == first
     assert b.body == a.body == first
@@ -46,20 +46,20 @@ def test_combine_again_makes_the_hinge_rigid_and_absorbs_the_body(space: iota.Sy
 def test_combine_of_one_particle_with_itself_does_nothing(space: iota.System) -> None:
     p, _ = rod(space, 0)
     version = space.structure_version
-    assert not iota.combine(p, p)
+    assert not p.combine(p)
     assert space.structure_version == version
 
 
 def test_combine_in_one_body_absorbs_the_second_particle(space: iota.System) -> None:
     p, q = rod(space, 0)
-    report = iota.combine(p, q)
+    report = p.combine(q)
     assert report.absorbed_particles == [(q, p)]
     assert q.survivor == p and p.body.particles == [p] and p.mass == 2
 
 
 def test_combine_brings_particles_together_that_are_apart(space: iota.System) -> None:
     (_, p), (q, _) = rod(space, 0), rod(space, 1.5, 0.5)
-    report = iota.combine(p, q)
+    report = p.combine(q)
     assert report.closed_distance == pytest.approx(0.5**0.5 * 1.0, rel=1e-9)
     assert report.remaining_gap < 1e-9
     assert p.position == q.position
@@ -68,7 +68,7 @@ def test_combine_brings_particles_together_that_are_apart(space: iota.System) ->
 
 def test_combine_over_a_time_closes_smoothly(space: iota.System) -> None:
     (_, p), (q, _) = rod(space, 0), rod(space, 1.5, 0.5)
-    iota.combine(p, q, over=0.5)
+    p.combine(q, over=0.5)
     assert space.closing_count == 1
     gaps = []
     for _ in range(66):
@@ -81,7 +81,7 @@ def test_combine_over_a_time_closes_smoothly(space: iota.System) -> None:
 
 def test_combine_of_bodies_makes_one_rigid_body_in_place(space: iota.System) -> None:
     (a, _), (c, d) = rod(space, 0), rod(space, 3, 1)
-    report = iota.combine(a.body, c.body)
+    report = a.body.combine(c.body)
     assert report.absorbed_bodies[0][1] == a.body == c.body == d.body
     assert c.position == pytest.approx((3, 1, 0))
     a.velocity = (0, 0, 1)
@@ -92,28 +92,28 @@ def test_combine_of_bodies_makes_one_rigid_body_in_place(space: iota.System) -> 
 
 def test_separate_undoes_a_hinge(space: iota.System) -> None:
     (_, p), (q, _) = rod(space, 0), rod(space, 1)
-    iota.combine(p, q)
-    report = space.separate(p, q)
+    p.combine(q)
+    report = p.separate(q)
     assert report.changed and (report.articulates_before, report.articulates_after) == (1, 2)
     assert p.ring == [p] and q.ring == [q]
 
 
 def test_separate_of_unrelated_particles_does_nothing(space: iota.System) -> None:
     (_, p), (q, _) = rod(space, 0), rod(space, 1)
-    assert not iota.separate(p, q)
+    assert not p.separate(q)
 
 
 def test_separate_of_one_particle_makes_a_second_one_of_half_the_mass(space: iota.System) -> None:
     p, _ = rod(space, 0)
-    report = iota.separate(p, p)
+    report = p.separate(p)
     (twin,) = report.created_particles
     assert twin.position == p.position and twin.mass == p.mass == 0.5
 
 
 def test_separate_in_one_body_makes_the_second_a_body_hinged_to_the_first(space: iota.System) -> None:
     p, q = rod(space, 0)
-    iota.Particle(p.body, (0, 1, 0))
-    report = iota.separate(p, q)
+    p.body.particle((0, 1, 0))
+    report = p.separate(q)
     assert report.created_bodies == [q.body] and q.body != p.body
     assert q in p.ring
 
@@ -122,7 +122,7 @@ def test_a_cut_chain_falls_and_conserves_momentum(system: iota.System, chain: li
     for _ in range(30):
         system.step()
     before = system.momentum, system.energy.total
-    iota.separate(chain[2].particles[1], chain[3].particles[0])
+    chain[2].particles[1].separate(chain[3].particles[0])
     assert abs(system.momentum - before[0]) < 1e-12 and system.energy.total == pytest.approx(before[1])
     assert names(system.articulates) == [[0, 1, 2], [3, 4, 5]]
     height = chain[4].center_of_mass.y
@@ -133,7 +133,7 @@ def test_a_cut_chain_falls_and_conserves_momentum(system: iota.System, chain: li
 
 
 def test_a_nail_holds_moves_and_lets_go(system: iota.System) -> None:
-    particle = iota.Particle(iota.Body(system), (0, 1, 0), mass=2)
+    particle = system.body().particle((0, 1, 0), mass=2)
     particle.nail()
     system.step()
     assert particle.is_nailed and particle.position == pytest.approx((0, 1, 0))
@@ -150,9 +150,9 @@ def test_two_grips_pull_with_the_sum_of_their_forces(space: iota.System) -> None
     speeds = []
     for count in (1, 2):
         system = iota.System(gravity=(0, 0, 0))
-        body = iota.Body(system)
-        iota.Particle(body)
-        grips = [iota.Grip(body, target=(0.05, 0, 0), hold=i) for i in range(count)]
+        body = system.body()
+        body.particle()
+        grips = [system.grip(body, target=(0.05, 0, 0), hold=i) for i in range(count)]
         system.step()
         speeds.append(system.momentum.x)
         grips[0].destroy()
@@ -161,8 +161,8 @@ def test_two_grips_pull_with_the_sum_of_their_forces(space: iota.System) -> None
 
 
 def test_static_bodies_stay_and_scripted_ones_go_where_they_are_put(system: iota.System) -> None:
-    bodies = [iota.Body(system, kind=kind) for kind in ("static", "scripted", "inactive", "dynamic")]
-    particles = [iota.Particle(body, (0, 1, 0)) for body in bodies]
+    bodies = [system.body(kind=kind) for kind in ("static", "scripted", "inactive", "dynamic")]
+    particles = [body.particle((0, 1, 0)) for body in bodies]
     for _ in range(10):
         particles[1].position += (0.01, 0, 0)
         system.step()
@@ -183,3 +183,15 @@ def test_a_chain_of_rods_keeps_its_inertia() -> None:
         lows.append(link.particles[1].position.y)
     # 3/2 g against g for the angular acceleration at the start.
     assert lows[1] / lows[0] == pytest.approx(1.5, rel=0.03)
+
+
+def test_an_articulate_is_what_hangs_together_now(system: iota.System, chain: list[iota.Body]) -> None:
+    whole = chain[0].articulate
+    assert list(whole) == chain and len(whole) == 6 and chain[5] in whole and whole == chain[3].articulate
+    chain[2].particles[1].separate(chain[3].particles[0])
+    assert whole.bodies == chain[:3] and chain[5] not in whole and whole != chain[3].articulate
+    assert [len(part) for part in system.articulates] == [3, 3]
+    whole.active = False
+    assert [body.active for body in chain] == [False] * 3 + [True] * 3 and not whole.active
+    with pytest.raises(TypeError):
+        hash(whole)

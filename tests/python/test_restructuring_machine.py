@@ -58,13 +58,13 @@ class Restructuring(RuleBasedStateMachine):
         places=st.lists(PLACE, min_size=1, max_size=5, unique=True), kind=st.sampled_from(["dynamic"] * 4 + ["static"])
     )
     def make_a_body(self, places: list[tuple[float, float, float]], kind: str) -> None:
-        body = iota.Body(self.system, kind=kind)  # type: ignore[arg-type]
+        body = self.system.body(kind=kind)  # type: ignore[arg-type]
         for place in places:
-            iota.Particle(body, place, mass=0.5)
+            body.particle(place, mass=0.5)
 
     @rule(place=PLACE)
     def make_a_solid(self, place: tuple[float, float, float]) -> None:
-        iota.Body(self.system, shape=iota.Box((0.3, 0.2, 0.4)), position=place, attachments=[(0.15, 0, 0)])
+        self.system.body(shape=iota.Box((0.3, 0.2, 0.4)), position=place, attachments=[(0.15, 0, 0)])
 
     @precondition(has_particles)
     @rule(number=NUMBER)
@@ -81,18 +81,18 @@ class Restructuring(RuleBasedStateMachine):
     @precondition(has_particles)
     @rule(p=NUMBER, q=NUMBER, over=st.sampled_from([0.0, 0.0, 0.05]))
     def combine(self, p: int, q: int, over: float) -> None:
-        self.attempt(lambda: iota.combine(self.particle(p), self.particle(q), over=over))
+        self.attempt(lambda: self.particle(p).combine(self.particle(q), over=over))
 
     @precondition(has_particles)
     @rule(p=NUMBER, q=NUMBER)
     def separate(self, p: int, q: int) -> None:
         particle = self.particle(p)
-        self.attempt(lambda: iota.separate(particle, particle.ring[q % len(particle.ring)]))
+        self.attempt(lambda: particle.separate(particle.ring[q % len(particle.ring)]))
 
     @precondition(has_particles)
     @rule(a=NUMBER, b=NUMBER)
     def make_rigid(self, a: int, b: int) -> None:
-        self.attempt(lambda: iota.combine(self.body(a), self.body(b)))
+        self.attempt(lambda: self.body(a).combine(self.body(b)))
 
     # --- what holds
 
@@ -108,7 +108,7 @@ class Restructuring(RuleBasedStateMachine):
         make = {
             "rod": lambda: system.rod(a, b),
             "rope": lambda: system.rope(a, b),
-            "spring": lambda: iota.Bond(a, b, "spring"),
+            "spring": lambda: system.bond(a, b, "spring"),
             "ball": lambda: system.ball(a.body, b.body, at=a.position),
             "weld": lambda: system.weld(a.body, b.body, at=a.position),
             "revolute": lambda: system.revolute(a.body, at=a.position, axis=(0, 0, 1), motor=(1, 1)),

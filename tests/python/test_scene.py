@@ -19,10 +19,10 @@ def described(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
 
 
 def test_bodies_without_a_class_get_a_look_by_their_particles(system: iota.System) -> None:
-    rod, ball = iota.Body(system), iota.Body(system, kind="static")
-    iota.Particle(rod)
-    iota.Particle(rod, (2, 0, 0))
-    iota.Particle(ball, (0, 1, 0))
+    rod, ball = system.body(), system.body(kind="static")
+    rod.particle()
+    rod.particle((2, 0, 0))
+    ball.particle((0, 1, 0))
     classes, bodies = described(Scene(system))
     assert bodies[0] == {"body": 0, "class": "(rod)", "odd": 0, "kind": "dynamic", "length": 2.0}
     assert bodies[1] == {"body": 1, "class": "(particle)", "odd": 0, "kind": "static"}
@@ -44,7 +44,7 @@ def test_welded_bodies_get_a_compound_of_their_own(system: iota.System, chain: l
     scene = Scene(system)
     scene.classes["link"] = {"*": looks.cylinder(0.01, "brass")}
     scene.assign(chain, "link")
-    iota.combine(chain[0], chain[1])
+    chain[0].combine(chain[1])
     classes, bodies = described(scene)
     assert bodies[0]["class"] == "(body 0)" and len(bodies) == 5
     shapes = classes["(body 0)"]["*"]
@@ -53,10 +53,10 @@ def test_welded_bodies_get_a_compound_of_their_own(system: iota.System, chain: l
 
 
 def test_a_body_is_drawn_along_its_cosmetic_bonds(system: iota.System) -> None:
-    body = iota.Body(system)
-    a, b, c = (iota.Particle(body, at) for at in ((0, 0, 0), (1, 0, 0), (0, 1, 0)))
-    iota.CBond(a, b)
-    iota.CBond(a, c)
+    body = system.body()
+    a, b, c = (body.particle(at) for at in ((0, 0, 0), (1, 0, 0), (0, 1, 0)))
+    system.cosmetic_bond(a, b)
+    system.cosmetic_bond(a, c)
     classes, _ = described(Scene(system))
     lengths = [shape["length"] for shape in classes["(body 0)"]["*"]]
     assert lengths == pytest.approx([1, 1])

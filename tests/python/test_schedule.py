@@ -45,7 +45,7 @@ def test_rewind_brings_back_what_was_asked_for_before_the_run_only() -> None:
     assert names(schedule, 3.0) == ["planned"]
 
 
-def run_headless(world: iota.World, seconds: float) -> iota.RunSummary:
+def run_headless(world: iota.World, seconds: float) -> iota.types.RunSummary:
     from iota.world.options import RunOptions, use
 
     with use(RunOptions(headless=True)):
@@ -112,8 +112,8 @@ def test_an_on_step_that_raises_is_switched_off(capsys: pytest.CaptureFixture[st
 
 def test_a_bond_that_fails_in_a_world_is_told_and_the_world_goes_on(capsys: pytest.CaptureFixture[str]) -> None:
     system = iota.System()
-    p, q = iota.Particle(iota.Body(system)), iota.Particle(iota.Body(system), (1, 0, 0))
-    bond = iota.Bond(p, q, lambda bond: 1 / 0)
+    p, q = system.body().particle(), system.body().particle((1, 0, 0))
+    bond = system.bond(p, q, lambda bond: 1 / 0)
     assert run_headless(iota.World(system, dt=0.01), 0.05).steps == 5
     assert not bond.active
     assert "bond 0 between particle 0 and particle 1 was switched off" in capsys.readouterr().err

@@ -74,9 +74,9 @@ class Minimal(iota.Simulator):
     def bodies(self) -> Any:
         return [self._body]
 
-    def step(self, dt: float) -> iota.StepReport:
+    def step(self, dt: float) -> iota.types.StepReport:
         self.time += dt
-        return iota.StepReport(step=1, time=self.time, dt=dt, warnings=self.warnings)
+        return iota.types.StepReport(step=1, time=self.time, dt=dt, warnings=self.warnings)
 
     def poses(self) -> Any:
         return [7], np.array([[np.cos(self.time), np.sin(self.time), 0, 0, 0, 0, 1]])

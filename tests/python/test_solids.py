@@ -34,7 +34,7 @@ def cube(size: float = 1.0) -> iota.Mesh:
     ],
 )
 def test_a_body_of_any_shape_has_its_mass_and_center(system: iota.System, shape: object, volume: float) -> None:
-    body = iota.Body(system, shape=shape, density=700, position=(1, 2, 3), orientation=(0, 0, 1, 1))
+    body = system.body(shape=shape, density=700, position=(1, 2, 3), orientation=(0, 0, 1, 1))
     assert body.mass == pytest.approx(700 * volume)
     assert shape.mass_properties.volume == pytest.approx(volume)
     assert len(body.particles) == 4 and body.attachments == []
@@ -46,7 +46,7 @@ def test_a_body_of_any_shape_has_its_mass_and_center(system: iota.System, shape:
 
 
 def test_inertia_velocity_and_spin_are_read_and_assigned(system: iota.System) -> None:
-    body = iota.Body(system, shape=iota.Box((1, 2, 3)), mass=12, velocity=(1, 0, 0), spin=(0, 0, 2))
+    body = system.body(shape=iota.Box((1, 2, 3)), mass=12, velocity=(1, 0, 0), spin=(0, 0, 2))
     np.testing.assert_allclose(body.inertia, np.diag([13, 10, 5]), atol=1e-12)
     assert body.velocity == pytest.approx((1, 0, 0)) and body.angular_velocity == pytest.approx((0, 0, 2))
     body.velocity, body.angular_velocity = (0, 1, 0), (3, 0, 0)
@@ -55,9 +55,7 @@ def test_inertia_velocity_and_spin_are_read_and_assigned(system: iota.System) ->
 
 
 def test_attachments_are_ordinary_particles(system: iota.System) -> None:
-    door = iota.Body(
-        system, shape=iota.Box((0.9, 2, 0.04)), density=600, attachments=[(-0.45, 0.8, 0), (-0.45, -0.8, 0)]
-    )
+    door = system.body(shape=iota.Box((0.9, 2, 0.04)), density=600, attachments=[(-0.45, 0.8, 0), (-0.45, -0.8, 0)])
     inertia = door.inertia
     for hinge in door.attachments:
         hinge.nail()
@@ -67,7 +65,7 @@ def test_attachments_are_ordinary_particles(system: iota.System) -> None:
     assert report.worst_gap < 1e-9
     own = (0.9**2 + 0.04**2) / 12  # about its middle; the nails take what is no turn about its edge
     assert door.angular_velocity.y == pytest.approx(own / (own + 0.45**2), rel=1e-6)
-    extra = iota.Body(system, shape=iota.Sphere(0.1)).attach((5, 5, 5))
+    extra = system.body(shape=iota.Sphere(0.1)).attachment((5, 5, 5))
     assert extra.position == pytest.approx((5, 5, 5)) and 0 < extra.mass < 1e-3
     assert door.inertia.trace() == pytest.approx(inertia.trace())
 
@@ -84,15 +82,15 @@ def test_what_makes_no_shape_is_refused(system: iota.System) -> None:
     with pytest.raises(ValueError, match=r"must have the shape \(n, 3\)"):
         iota.Mesh([1, 2, 3], [[0, 1, 2]])
     with pytest.raises(TypeError, match="shape must be a Sphere"):
-        iota.Body(system, shape="box")
+        system.body(shape="box")
     with pytest.raises(TypeError, match="are of bodies with a shape"):
-        iota.Body(system, position=(1, 2, 3))
+        system.body(position=(1, 2, 3))
     with pytest.raises(ValueError, match="orientation must be finite and not zero"):
-        iota.Body(system, shape=iota.Sphere(1), orientation=(0, 0, 0, 0))
+        system.body(shape=iota.Sphere(1), orientation=(0, 0, 0, 0))
     with pytest.raises(ValueError, match="mass"):
-        iota.Body(system, shape=iota.Sphere(1), mass=0)
+        system.body(shape=iota.Sphere(1), mass=0)
     with pytest.raises(ValueError, match="use create_particle"):
-        iota.Body(system).attach((0, 0, 0))
+        system.body().attachment((0, 0, 0))
     assert system.bodies and system.validate() == []
 
 
@@ -100,7 +98,7 @@ def test_the_skin_round_loose_points_is_a_shape(system: iota.System) -> None:
     points = np.vstack([cube(2).vertices, cube(1).vertices, cube(2).vertices])
     hull = iota.Mesh.convex_hull(points)
     assert len(hull.vertices) == 8 and len(hull.triangles) == 12
-    assert iota.Body(system, shape=hull, density=100).mass == pytest.approx(800)
+    assert system.body(shape=hull, density=100).mass == pytest.approx(800)
     with pytest.raises(ValueError, match="in one plane"):
         iota.Mesh.convex_hull([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)])
     with pytest.raises(ValueError, match=r"points must have the shape \(n, 3\)"):
@@ -108,9 +106,9 @@ def test_the_skin_round_loose_points_is_a_shape(system: iota.System) -> None:
 
 
 def test_the_page_draws_the_shapes(system: iota.System) -> None:
-    a = iota.Body(system, shape=iota.Box((1, 1, 1)))
-    b = iota.Body(system, shape=iota.Box((1, 1, 1)), position=(3, 0, 0), orientation=(0, 1, 0, 1))
-    c = iota.Body(system, shape=cube(), position=(0, 5, 0))
+    a = system.body(shape=iota.Box((1, 1, 1)))
+    b = system.body(shape=iota.Box((1, 1, 1)), position=(3, 0, 0), orientation=(0, 1, 0, 1))
+    c = system.body(shape=cube(), position=(0, 5, 0))
     scene = Scene(system)
     classes, bodies = (json.loads(text) for text in scene.describe())
     names = [body["class"] for body in bodies]
@@ -121,7 +119,7 @@ def test_the_page_draws_the_shapes(system: iota.System) -> None:
     assert skin["type"] == "mesh" and len(skin["vertices"]) == 24 and len(skin["triangles"]) == 36
     corners = np.reshape(skin["vertices"], (8, 3)) + skin["offset"]
     assert np.allclose(corners.mean(axis=0), 0, atol=1e-6), "about the center of mass"
-    iota.combine(a, b)
+    a.combine(b)
     classes, bodies = (json.loads(text) for text in scene.describe())
     shapes = classes[bodies[0]["class"]]["*"]
     assert [s["offset"][0] for s in shapes] == pytest.approx([-1.5, 1.5])
@@ -132,13 +130,13 @@ def test_the_page_draws_the_shapes(system: iota.System) -> None:
 def test_a_locked_pair_unlocks_by_the_torque_on_one_of_its_blocks() -> None:
     """Algorithm 4 of the thesis asks for the torque on each block of a locked pair, by what is outside of the two."""
     system = iota.System()
-    upper = iota.Body(system, shape=iota.Box((1, 0.1, 0.5)), mass=1, attachments=[(-0.5, 0, 0), (0.5, 0, 0)])
-    lower = iota.Body(
-        system, shape=iota.Box((1, 0.1, 0.5)), mass=1, position=(1, 0, 0), attachments=[(-0.5, 0, 0), (0.5, 0, 0)]
+    upper = system.body(shape=iota.Box((1, 0.1, 0.5)), mass=1, attachments=[(-0.5, 0, 0), (0.5, 0, 0)])
+    lower = system.body(
+        shape=iota.Box((1, 0.1, 0.5)), mass=1, position=(1, 0, 0), attachments=[(-0.5, 0, 0), (0.5, 0, 0)]
     )
     hinge = upper.attachments[1], lower.attachments[0]
-    iota.combine(*hinge)
-    iota.combine(*hinge)
+    hinge[0].combine(hinge[1])
+    hinge[0].combine(hinge[1])
     upper.particles[4].nail()
     block = upper.parts[1]
     end = block.particles[-1]
@@ -156,8 +154,8 @@ def test_a_locked_pair_unlocks_by_the_torque_on_one_of_its_blocks() -> None:
 
 
 def test_a_rod_spins_and_points_on_a_line_do_not(system: iota.System) -> None:
-    rod = iota.Body(system)
-    iota.Particle(rod, (0, 0, 0)), iota.Particle(rod, (0, 0, 1))
+    rod = system.body()
+    rod.particle((0, 0, 0)), rod.particle((0, 0, 1))
     with pytest.raises(ValueError, match="on one line, about which they have no inertia"):
         rod.angular_velocity = (0, 0, 3)
     rod.set_rod(2, 0.1)
@@ -174,7 +172,7 @@ def test_a_mesh_too_large_to_draw_is_drawn_as_its_box(system: iota.System) -> No
     points = np.concatenate([ring * np.cos(a) + (0, 0, np.sin(a)) for a in np.linspace(-1.5, 1.5, 80)])
     ball = iota.Mesh.convex_hull(points)
     assert len(ball.triangles) > looks.MOST_TRIANGLES
-    iota.Body(system, shape=ball)
+    system.body(shape=ball)
     with pytest.warns(UserWarning, match="at most 50000 triangles, this one has"):
         classes, bodies = (json.loads(text) for text in Scene(system).describe())
     (shape,) = classes[bodies[0]["class"]]["*"]
@@ -182,16 +180,16 @@ def test_a_mesh_too_large_to_draw_is_drawn_as_its_box(system: iota.System) -> No
 
 
 def test_a_pose_is_assigned(system: iota.System) -> None:
-    body = iota.Body(system, shape=iota.Cylinder(0.1, 1), attachments=[(0.5, 0, 0)])
+    body = system.body(shape=iota.Cylinder(0.1, 1), attachments=[(0.5, 0, 0)])
     body.set_pose((1, 2, 3), (0, 0, 1, 1))
     assert body.center_of_mass == pytest.approx((1, 2, 3))
     assert body.attachments[0].position == pytest.approx((1, 2.5, 3))
 
 
 def test_a_rigid_molecule_breaks_where_its_bond_graph_does(system: iota.System) -> None:
-    body = iota.Body(system)
-    atoms = [iota.Particle(body, (i, i % 2, 0), velocity=(0, i, 0)) for i in range(4)]
-    bonds = [iota.CBond(p, q) for p, q in pairwise(atoms)]
+    body = system.body()
+    atoms = [body.particle((i, i % 2, 0), velocity=(0, i, 0)) for i in range(4)]
+    bonds = [system.cosmetic_bond(p, q) for p, q in pairwise(atoms)]
     system.step(0.01)
     momentum = system.momentum
     report = bonds[1].destroy()
@@ -203,11 +201,11 @@ def test_a_rigid_molecule_breaks_where_its_bond_graph_does(system: iota.System) 
 
 
 def test_parts_of_a_locked_pair_are_told_apart_and_unlocked(system: iota.System) -> None:
-    a = iota.Body(system, shape=iota.Box((1, 1, 0.1)), attachments=[(0.5, 0.5, 0)])
-    b = iota.Body(system, shape=iota.Box((1, 1, 0.1)), position=(1, 0, 0), attachments=[(-0.5, 0.5, 0)])
+    a = system.body(shape=iota.Box((1, 1, 0.1)), attachments=[(0.5, 0.5, 0)])
+    b = system.body(shape=iota.Box((1, 1, 0.1)), position=(1, 0, 0), attachments=[(-0.5, 0.5, 0)])
     p, q = a.attachments[0], b.attachments[0]
-    iota.combine(p, q)
-    iota.combine(p, q)
+    p.combine(q)
+    p.combine(q)
     system.step(0.01)
     assert [part.origin for part in a.parts] == [a, b]
     part = a.parts[1]

@@ -230,9 +230,9 @@ def test_an_unknown_solver_of_a_system_is_refused(system: iota.System) -> None:
 
 def test_a_diagnosis_names_what_is_said_twice(system: iota.System) -> None:
     def rod(a: Any, b: Any) -> iota.Body:
-        body = iota.Body(system)
-        iota.Particle(body, a)
-        iota.Particle(body, b)
+        body = system.body()
+        body.particle(a)
+        body.particle(b)
         return body
 
     left, right = rod((0, 0), (0.3, 1)), rod((1, 0), (1.3, 1))
@@ -240,8 +240,8 @@ def test_a_diagnosis_names_what_is_said_twice(system: iota.System) -> None:
     right.particles[0].nail()
     couplers = [rod((0.3, 1), (1.3, 1)) for _ in range(2)]
     for coupler in couplers:
-        iota.combine(left.particles[1], coupler.particles[0])
-        iota.combine(right.particles[1], coupler.particles[1])
+        left.particles[1].combine(coupler.particles[0])
+        right.particles[1].combine(coupler.particles[1])
     diagnosis = system.diagnose(left)
     assert (diagnosis.redundancy, diagnosis.rank, diagnosis.rows) == (1, 9, 10)
     assert diagnosis.degrees_of_freedom == 3, "points 2 and 4 on circles, coupled: one in the plane, two out of it"

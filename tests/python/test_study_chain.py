@@ -8,7 +8,7 @@ from iota.studies import chain as study
 from iota.world.options import RunOptions, use
 
 
-def run(world: iota.World, seconds: float) -> iota.RunSummary:
+def run(world: iota.World, seconds: float) -> iota.types.RunSummary:
     with use(RunOptions(headless=True)):
         return world.run(seconds)
 
@@ -62,7 +62,7 @@ def test_it_runs_with_any_number_of_links(links: int) -> None:
 def test_a_cut_off_part_lies_on_the_floor() -> None:
     world = study.build(repeat=False)
     links = world.system.bodies
-    world.at(0.1)(lambda: iota.separate(links[11].particles[1], links[12].particles[0]))
+    world.at(0.1)(lambda: links[11].particles[1].separate(links[12].particles[0]))
     run(world, 3.5)
     lowest = world.system.positions[:, 1].min()
     assert -0.05 < lowest < 0.1
@@ -74,7 +74,7 @@ def test_the_link_above_is_the_one_towards_the_nail() -> None:
     assert study.hinge_above(links[0]) is None
     hinge = study.hinge_above(links[7])
     assert hinge == (links[6].particles[1], links[7].particles[0])
-    iota.separate(*hinge)
+    hinge[0].separate(hinge[1])
     assert study.hinge_above(links[7]) is None or study.hinge_above(links[23]) is not None
 
 
@@ -82,6 +82,6 @@ def test_join_finds_the_nearest_loose_ends() -> None:
     world = study.build()
     links = world.system.bodies
     assert study.nearest_ends(links[5]) is None
-    iota.separate(links[9].particles[1], links[10].particles[0])
+    links[9].particles[1].separate(links[10].particles[0])
     assert study.nearest_ends(links[12]) == (links[9].particles[1], links[10].particles[0])
     assert study.nearest_ends(links[2]) == (links[10].particles[0], links[9].particles[1])

@@ -65,7 +65,7 @@ def test_the_flag_tears_where_it_is_pulled_too_hard_but_not_in_the_wind() -> Non
     run(system, 3)
     assert not any(bond.broken for bond in system.bonds)
     held = flag[-1]
-    grip = iota.Grip(held.body, target=held.position)
+    grip = system.grip(held.body, target=held.position)
     start, torn = held.position, []
     for step in range(120):
         grip.move(start + (0.02 * step, 0, 0))

@@ -28,20 +28,20 @@ def in_thread(function: Callable[[], Any]) -> BaseException | None:
 
 def test_another_thread_is_told_the_rule(system: iota.System, chain: list[iota.Body]) -> None:
     particle = chain[0].particles[1]
-    bond = iota.Bond(particle, chain[3].particles[1], "drag")
+    bond = system.bond(particle, chain[3].particles[1], "drag")
     uses: list[Callable[[], Any]] = [
         lambda: system.step(),
         lambda: system.positions,
         lambda: system.gravity,
         lambda: system.snapshot(),
-        lambda: iota.Body(system),
+        lambda: system.body(),
         lambda: particle.position,
         lambda: setattr(particle, "position", (0, 0, 0)),
         lambda: chain[0].particles,
         lambda: chain[0].alive,
         lambda: bond.active,
-        lambda: iota.combine(particle, chain[4].particles[0]),
-        lambda: iota.Grip(chain[0]),
+        lambda: particle.combine(chain[4].particles[0]),
+        lambda: system.grip(chain[0]),
     ]
     for use in uses:
         error = in_thread(use)
@@ -65,15 +65,15 @@ def test_a_system_at_rest_can_be_taken_over(system: iota.System, chain: list[iot
 def test_other_threads_run_during_a_step_but_cannot_take_the_system() -> None:
     """The step releases the interpreter lock; a bond's function is where the test catches it in the middle."""
     system = iota.System()
-    p, q = iota.Particle(iota.Body(system)), iota.Particle(iota.Body(system), (1, 0, 0))
+    p, q = system.body().particle(), system.body().particle((1, 0, 0))
     errors: list[BaseException | None] = []
 
-    def force(bond: iota.BondState) -> tuple[float, float, float]:
+    def force(bond: iota.types.BondState) -> tuple[float, float, float]:
         errors.append(in_thread(system.adopt))
         errors.append(in_thread(system.step))
         return (0, 0, 0)
 
-    iota.Bond(p, q, force)
+    system.bond(p, q, force)
     system.step()
     assert isinstance(errors[0], RuntimeError) and "step is under way" in str(errors[0])
     assert isinstance(errors[1], iota.WrongThreadError)

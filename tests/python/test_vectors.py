@@ -13,14 +13,14 @@ from iota import Vec3
 
 @pytest.mark.parametrize("value", [(1, 2), [1, 2, 0], (1.0, 2.0, 0.0), np.array([1, 2, 0]), Vec3(1, 2), range(1, 3)])
 def test_a_position_is_any_two_or_three_numbers(system: iota.System, value: Sequence[float]) -> None:
-    particle = iota.Particle(iota.Body(system), position=value)
+    particle = system.body().particle(position=value)
     assert particle.position == (1, 2, 0)
 
 
 @pytest.mark.parametrize("value", ["12", (1,), (1, 2, 3, 4), 5, ("a", "b"), {"x": 1}, b"ab"])
 def test_anything_else_is_a_type_error_that_names_it(system: iota.System, value: object) -> None:
     with pytest.raises(TypeError, match="position must be 2 or 3 numbers, not"):
-        iota.Particle(iota.Body(system), position=value)
+        system.body().particle(position=value)
 
 
 def test_vectors_calculate_with_tuples_and_arrays() -> None:
@@ -46,7 +46,7 @@ def test_vectors_turn_into_arrays_and_broadcast_with_them() -> None:
 
 
 def test_vectors_cannot_be_changed_but_assigning_works(system: iota.System) -> None:
-    particle = iota.Particle(iota.Body(system))
+    particle = system.body().particle()
     with pytest.raises(TypeError):
         particle.position[1] = 3
     with pytest.raises(AttributeError):

@@ -97,8 +97,8 @@ def test_two_pages_have_their_own_selections_and_agree_on_the_rest(world: iota.W
 
 def test_the_forces_of_two_holders_add_up(run_world: Runner) -> None:
     system = iota.System(gravity=(0, 0, 0), damping=1.0)
-    body = iota.Body(system)
-    iota.Particle(body, (0, 1, 0))
+    body = system.body()
+    body.particle((0, 1, 0))
     url = run_world(iota.World(system))
     with PageClient(url) as one, PageClient(url) as two:
         one.send("grab_start", hold=1, body=0, local_point=(0, 0, 0), target=(1, 1, 0))
@@ -142,7 +142,7 @@ def test_pause_step_speed_and_reset(world: iota.World, run_world: Runner) -> Non
 
 def test_reset_runs_timed_events_again_and_tells_the_script(run_world: Runner) -> None:
     system = iota.System()
-    iota.Particle(iota.Body(system), (0, 1, 0))
+    system.body().particle((0, 1, 0))
     world = iota.World(system)
     calls: list[str] = []
     world.at(0.05)(lambda: calls.append("event"))
@@ -161,7 +161,7 @@ def test_an_action_that_raises_is_told_on_the_page_with_its_line(
     run_world: Runner, capsys: pytest.CaptureFixture[str]
 ) -> None:
     system = iota.System()
-    iota.Particle(iota.Body(system))
+    system.body().particle()
     world = iota.World(system)
 
     @world.action("burn", key="x", on="world")
@@ -197,7 +197,7 @@ def test_a_slow_callback_is_named_while_it_runs_and_stepping_resumes(
     run_world: Runner, capsys: pytest.CaptureFixture[str]
 ) -> None:
     system = iota.System()
-    iota.Particle(iota.Body(system))
+    system.body().particle()
     world = iota.World(system)
 
     @world.action("ponder", key="p", on="world")
@@ -321,9 +321,9 @@ def test_structure_changes_reach_the_page_with_looks_for_what_is_new(
         page.wait_for(lambda: len(page.scene.get("bodies", [])) == 6)
 
         def edit() -> None:
-            iota.Particle(iota.Body(system), (1, 1, 0))
+            system.body().particle((1, 1, 0))
             chain[-1].destroy()
-            iota.combine(chain[0], chain[1])
+            chain[0].combine(chain[1])
 
         world.call(edit)
         page.wait_for(lambda: len(page.scene["bodies"]) == 5)

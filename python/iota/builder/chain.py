@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from iota._core import Body, Particle, System, Vec3, combine
+from iota._core import Body, Particle, System, Vec3
 
 
 def chain(
@@ -47,13 +47,13 @@ def chain(
     bodies: list[Body] = []
     end: Particle | None = None
     for index in range(links):
-        body = Body(system)
-        upper = Particle(body, start + step * index, mass=mass / links / 2)
-        lower = Particle(body, start + step * (index + 1), mass=mass / links / 2)
+        body = system.body()
+        upper = body.particle(start + step * index, mass=mass / links / 2)
+        lower = body.particle(start + step * (index + 1), mass=mass / links / 2)
         if rods:
             body.set_rod(mass / links, radius)
         if end is not None:
-            combine(end, upper)
+            end.combine(upper)
         elif nailed:
             upper.nail()
         end = lower

@@ -22,25 +22,25 @@ _Radial = ctypes.CFUNCTYPE(
 )
 
 
-def _arrays(bonds: iota.BondBatch) -> np.ndarray:
+def _arrays(bonds: iota.types.BondBatch) -> np.ndarray:
     r = bonds.distance
     return (bonds.parameters["k"] * (r - bonds.parameters["r0"]))[:, None] * bonds.direction
 
 
-def _one(bond: iota.BondState) -> iota.Vec3:
+def _one(bond: iota.types.BondState) -> iota.Vec3:
     return 10 * (bond.distance - 0.1) * bond.direction
 
 
 def _compiled(system: iota.System) -> iota.Law:
     """A function of the C library stands for compiled code: x y + z of r, v, t is no spring, but as quick as one."""
-    return iota.Law(system, _Radial(("fma", ctypes.CDLL(None))), name="compiled", k=10, r0=0.1)
+    return system.law(_Radial(("fma", ctypes.CDLL(None))), name="compiled", k=10, r0=0.1)
 
 
 RUNGS: tuple[tuple[str, Callable[[iota.System], Any], dict[str, Any]], ...] = (
     ("predefined", lambda s: "spring", {"stiffness": 10, "length": 0.1, "implicit": False}),
     ("expression", lambda s: "energy = 0.5*k*(r - r0)^2", {"k": 10, "r0": 0.1, "implicit": False}),
     ("compiled code", _compiled, {}),
-    ("function of arrays", lambda s: iota.Law(s, _arrays, name="arrays", k=10, r0=0.1), {}),
+    ("function of arrays", lambda s: s.law(_arrays, name="arrays", k=10, r0=0.1), {}),
     ("function for one bond", lambda s: _one, {}),
     ("predefined, implicit", lambda s: "spring", {"stiffness": 10, "length": 0.1}),
     ("expression, implicit", lambda s: "energy = 0.5*k*(r - r0)^2", {"k": 10, "r0": 0.1}),
@@ -53,8 +53,8 @@ def measure() -> list[ForceCost]:
         system = iota.System(gravity=(0, 0, 0))
         ready = law(system)
         for i in range(BONDS):
-            p = iota.Particle(iota.Body(system), (0.1 * i, 0, 0))
-            iota.Bond(p, iota.Particle(iota.Body(system), (0.1 * i, 0.11, 0)), ready, **arguments)
+            p = system.body().particle((0.1 * i, 0, 0))
+            system.bond(p, system.body().particle((0.1 * i, 0.11, 0)), ready, **arguments)
         (row,) = profile(system)
         rows.append(ForceCost(name, "bond", row.count, row.ns))
     for name, text, names in (
@@ -63,8 +63,8 @@ def measure() -> list[ForceCost]:
     ):
         system = iota.System(gravity=(0, 0, 0))
         for i in range(20**3):  # about 30 neighbors within the cut-off
-            iota.Particle(iota.Body(system), (1.3 * (i % 20), 1.3 * (i // 20 % 20), 1.3 * (i // 400)))
-        iota.Pairs(system, text, cutoff=2.5, group=None, **dict.fromkeys(names, 1.0))
+            system.body().particle((1.3 * (i % 20), 1.3 * (i // 20 % 20), 1.3 * (i // 400)))
+        system.pair_force(text, cutoff=2.5, group=None, **dict.fromkeys(names, 1.0))
         (row,) = profile(system)
         rows.append(ForceCost(name, "particle", row.count, row.ns))
     return rows

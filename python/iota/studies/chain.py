@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import iota
 from iota import looks
@@ -28,7 +29,8 @@ def build(links: int = 24, repeat: bool = True) -> iota.World:
         if hinge is None:
             world.notice("Nothing to break", "This link has none above it.", client=event.client)
         else:
-            iota.separate(*hinge)
+            above, own = hinge
+            above.separate(own)
 
     @world.action("join", key="c", button="a", help="joins the held or selected part to the nearest loose end")
     def join_part(event: iota.Event) -> None:
@@ -36,7 +38,8 @@ def build(links: int = 24, repeat: bool = True) -> iota.World:
         if pair is None:
             world.notice("Nothing to join", "Everything hangs together already.", client=event.client)
         else:
-            iota.combine(*pair, over=max(0.2, abs(pair[0].position - pair[1].position) / 2.5))
+            end, own = pair
+            end.combine(own, over=max(0.2, abs(end.position - own.position) / 2.5))
 
     script_break(world, chain, repeat)
     return world
@@ -71,26 +74,26 @@ def script_break(world: iota.World, chain: list[iota.Body], repeat: bool) -> Non
     weight = 9.81 * sum(link.mass for link in chain[cut:])  # N, what the forces have to carry
     bonds: list[iota.Bond] = []
 
-    def pull(bond: iota.BondState) -> iota.Vec3:
+    def pull(bond: iota.types.BondState) -> iota.Vec3:
         return weight * min(10 * bond.distance, 2.5) * bond.direction
 
     def fall_off() -> None:
         if world.held() or system.articulate_count > 1:
             return  # somebody is at it
-        iota.separate(hook, eye)
-        bonds.append(iota.Bond(hook, eye, "spring", stiffness=weight / 0.25, damping=weight / 3, length=0))
+        hook.separate(eye)
+        bonds.append(system.bond(hook, eye, "spring", stiffness=weight / 0.25, damping=weight / 3, length=0))
         world.after(2.5)(come_close)
         world.after(4.0)(rejoin)
 
     def come_close() -> None:
-        bonds.append(iota.Bond(hook, eye, pull))
-        bonds.append(iota.Bond(hook, eye, "drag", damping=weight / 2))
+        bonds.append(system.bond(hook, eye, pull))
+        bonds.append(system.bond(hook, eye, "drag", damping=weight / 2))
 
     def rejoin() -> None:
         while bonds:
             bonds.pop().destroy()
         if hook.body.articulate != eye.body.articulate:
-            iota.combine(hook, eye, over=0.4)
+            hook.combine(eye, over=0.4)
 
     system = world.system
     world.on_reset(bonds.clear)
@@ -103,19 +106,14 @@ def script_break(world: iota.World, chain: list[iota.Body], repeat: bool) -> Non
 # --- which link hangs on which ----------------------------------------------------------------------------------------
 
 
-def loose_ends(bodies: list[iota.Body]) -> list[iota.Particle]:
+def loose_ends(bodies: Iterable[iota.Body]) -> list[iota.Particle]:
     """The particles that nothing is hinged to and no nail holds."""
     return [p for body in bodies for p in body.particles if len(p.ring) == 1 and not p.is_nailed]
 
 
-def part_of(link: iota.Body) -> list[iota.Body]:
-    """All links that hang together with `link`."""
-    return next(part for part in link.system.articulates if link in part)
-
-
 def hinge_above(link: iota.Body) -> tuple[iota.Particle, iota.Particle] | None:
     """The hinge towards the nail, or towards the highest end of a part that has none: (the one above, the link's own)."""
-    part = part_of(link)
+    part = link.articulate
     roots = [p for body in part for p in body.particles if p.is_nailed]
     roots = roots or [max(loose_ends(part), key=lambda p: p.position.y)]
     reached = {p.body for p in roots}
@@ -135,9 +133,8 @@ def hinge_above(link: iota.Body) -> tuple[iota.Particle, iota.Particle] | None:
 
 def nearest_ends(link: iota.Body) -> tuple[iota.Particle, iota.Particle] | None:
     """The loose end elsewhere and the one of this link's part that are nearest to each other; None without any."""
-    part = part_of(link)
-    others = [body for other in link.system.articulates if link not in other for body in other]
-    pairs = [(theirs, own) for theirs in loose_ends(others) for own in loose_ends(part)]
+    others = [body for body in link.system.bodies if body not in link.articulate]
+    pairs = [(theirs, own) for theirs in loose_ends(others) for own in loose_ends(link.articulate)]
     return min(pairs, key=lambda pair: abs(pair[0].position - pair[1].position), default=None)
 
 

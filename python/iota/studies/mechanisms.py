@@ -48,8 +48,7 @@ def bar(system: iota.System, start: iota.Vec3, end: iota.Vec3, width: float, den
     """A flat bar from `start` to `end` in a plane across z."""
     along, middle = end - start, (start + end) * 0.5
     turn = math.atan2(along.y, along.x) / 2
-    return iota.Body(
-        system,
+    return system.body(
         shape=iota.Box((abs(along) + width, width, 0.012)),
         density=density,
         position=middle,
@@ -61,10 +60,10 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
     """A motor turns a crank, a rod pushes a piston along its guide: one closed loop, exact all the way round."""
     system, crank, rod = world.system, 0.09, 0.3
     about_z = (0.0, 0.5**0.5, 0.0, 0.5**0.5)
-    wheel = iota.Body(system, shape=iota.Cylinder(0.12, 0.02), density=STEEL, position=axle, orientation=about_z)
+    wheel = system.body(shape=iota.Cylinder(0.12, 0.02), density=STEEL, position=axle, orientation=about_z)
     pin, wrist = axle + (crank, 0, 0.03), axle + (crank + rod, 0, 0.03)
     connecting_rod = bar(system, pin, wrist, 0.025)
-    piston = iota.Body(system, shape=iota.Box((0.1, 0.07, 0.07)), density=2700, position=wrist)
+    piston = system.body(shape=iota.Box((0.1, 0.07, 0.07)), density=2700, position=wrist)
     world.look(wheel, "brass")
     world.look([connecting_rod, piston], "steel")
     speed, torque = 2 * math.pi, 20.0
@@ -102,8 +101,7 @@ def shaft(world: iota.World, bearing: iota.Vec3) -> None:
     for direction, angle in zip(directions, (0, lean, 0), strict=True):
         end = place + direction * length
         parts.append(
-            iota.Body(
-                system,
+            system.body(
                 shape=iota.Box((length * 0.9, 0.035, 0.035)),
                 density=STEEL,
                 position=(place + end) * 0.5,
@@ -132,10 +130,9 @@ def scales(world: iota.World, beam: iota.Vec3) -> None:
     system.revolute(yoke, at=beam, axis=(0, 0, 1), friction=0.01)
     stand(world, beam, 0.05)
     for x, drop in ((-0.13, 0.20), (0.13, 0.26)):
-        end = yoke.attach(beam + (x, 0, 0))
+        end = yoke.attachment(beam + (x, 0, 0))
         place = end.position - (0, drop, 0)
-        weight = iota.Body(
-            system,
+        weight = system.body(
             shape=iota.Cylinder(0.03, 0.05),
             density=STEEL,
             position=place,
@@ -143,7 +140,7 @@ def scales(world: iota.World, beam: iota.Vec3) -> None:
             attachments=[(0.025, 0, 0)],
         )
         world.look(weight, "brass")
-        iota.Bond(end, weight.attachments[0], "spring", stiffness=120, damping=0.15, length=0.11)
+        system.bond(end, weight.attachments[0], "spring", stiffness=120, damping=0.15, length=0.11)
 
 
 def crane(world: iota.World, foot: iota.Vec3) -> None:
@@ -153,9 +150,9 @@ def crane(world: iota.World, foot: iota.Vec3) -> None:
     tip = shoulder + (0.32, 0.12, 0)
     boom = bar(system, shoulder, tip, 0.03)
     system.weld(boom, at=shoulder)
-    hook = boom.attach(tip)
-    weight = iota.Body(
-        system, shape=iota.Sphere(0.05), density=STEEL, position=tip - (0, 0.36, 0), attachments=[(0, 0.05, 0)]
+    hook = boom.attachment(tip)
+    weight = system.body(
+        shape=iota.Sphere(0.05), density=STEEL, position=tip - (0, 0.36, 0), attachments=[(0, 0.05, 0)]
     )
     world.look(boom, "wood")
     world.look(weight, "rubber")

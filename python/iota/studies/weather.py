@@ -28,7 +28,7 @@ def build() -> iota.World:
 
 def point(system: iota.System, place: iota.Vec3, mass: float, radius: float) -> iota.Particle:
     """A body of one particle."""
-    particle = iota.Particle(iota.Body(system), place, mass)
+    particle = system.body().particle(place, mass)
     particle.radius = radius
     return particle
 
@@ -36,7 +36,7 @@ def point(system: iota.System, place: iota.Vec3, mass: float, radius: float) -> 
 def flag(world: iota.World, corner: iota.Vec3) -> None:
     """A cloth of springs on a pole, in a turbulent wind that is a field. It tears where somebody pulls too hard."""
     system = world.system
-    cloth = iota.Group(system, "cloth")
+    cloth = system.group("cloth")
     knots = [
         [
             point(system, corner + (SPACING * column, -SPACING * row, 0), mass=0.004, radius=0.006)
@@ -50,7 +50,7 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
         for column in range(COLUMNS):
             for other in ((row, column + 1), (row + 1, column)):
                 if other[0] < ROWS and other[1] < COLUMNS:
-                    iota.Bond(
+                    system.bond(
                         knots[row][column],
                         knots[other[0]][other[1]],
                         "spring",
@@ -58,8 +58,8 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
                         damping=0.02,
                         break_force=6,
                     )
-    wind = iota.Field(
-        system, "current", group=cloth, velocity=WIND, drag=0.025, speed=1.6, size=0.5, octaves=3, evolution=1.5
+    wind = system.field(
+        "current", group=cloth, velocity=WIND, drag=0.025, speed=1.6, size=0.5, octaves=3, evolution=1.5
     )
     world.add_strut(
         tuple(corner + (-0.012, 0.06, 0)), (corner.x - 0.012, 0.0, corner.z), looks.cylinder(0.012, "steel")
@@ -78,8 +78,7 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
 
 def fountain(world: iota.World, nozzle: iota.Vec3) -> None:
     """Sparks that are born, age, change their color and die."""
-    spout = iota.Emitter(
-        world.system,
+    spout = world.system.emitter(
         rate=400, source=iota.Sphere(0.01), position=nozzle, velocity=(0, 4.2, 0), velocity_spread=0.45,
         lifetime=1.0, lifetime_spread=0.15, mass=0.002,
         curve=[(0, 0.007, (1, 0.95, 0.6)), (0.5, 0.012, (1, 0.5, 0.1)), (1, 0.004, (0.35, 0.05, 0.1))],
@@ -94,7 +93,7 @@ def fountain(world: iota.World, nozzle: iota.Vec3) -> None:
 def beads(world: iota.World, middle: iota.Vec3) -> None:
     """Beads that push each other away, in a bowl that they cannot leave: a pairwise law and an inequality each."""
     system = world.system
-    group = iota.Group(system, "beads")
+    group = system.group("beads")
     golden = math.pi * (3 - math.sqrt(5))
     for i in range(BEADS):
         height, turn = 1 - 2 * (i + 0.5) / BEADS, i * golden
@@ -104,8 +103,8 @@ def beads(world: iota.World, middle: iota.Vec3) -> None:
         system.inside(bead, iota.Sphere(BOWL - BEAD), at=middle)
         group.add(bead)
         bead.color = (0.15, 0.45 + 0.4 * i / BEADS, 0.75)
-    iota.Pairs(system, "soft_repulsion", cutoff=2 * BEAD, group=group, stiffness=250, length=2 * BEAD)
-    iota.Field(system, "wind", group=group, drag=0.1)
+    system.pair_force("soft_repulsion", cutoff=2 * BEAD, group=group, stiffness=250, length=2 * BEAD)
+    system.field("wind", group=group, drag=0.1)
     for angle in (0.0, 0.4, 0.8, 1.2):
         ring = looks.torus(BOWL * math.cos(angle), 0.004, "steel")
         world.add_static(ring, (middle.x, middle.y - BOWL * math.sin(angle), middle.z), (0.5**0.5, 0, 0, 0.5**0.5))

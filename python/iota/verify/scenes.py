@@ -21,11 +21,11 @@ def string_of_links(
     moving = np.zeros_like(points) if velocities is None else velocities
     ends: list[iota.Particle] = []
     for i in range(len(points) - 1):
-        link = iota.Body(system)
-        upper = iota.Particle(link, points[i], mass=link_mass / 2, velocity=moving[i])
-        lower = iota.Particle(link, points[i + 1], mass=link_mass / 2, velocity=moving[i + 1])
+        link = system.body()
+        upper = link.particle(points[i], mass=link_mass / 2, velocity=moving[i])
+        lower = link.particle(points[i + 1], mass=link_mass / 2, velocity=moving[i + 1])
         if ends:
-            iota.combine(ends[-1], upper)
+            ends[-1].combine(upper)
         else:
             upper.nail()
             ends.append(upper)
@@ -64,8 +64,8 @@ def rigid_body(
 ) -> list[iota.Particle]:  # fmt: skip
     """One body of the points (n, 3); spin: angular velocity about the center of mass, rad/s."""
     center = np.average(points, axis=0, weights=masses)
-    body = iota.Body(system)
+    body = system.body()
     return [
-        iota.Particle(body, point, mass=mass, velocity=np.asarray(velocity) + np.cross(spin, point - center))
+        body.particle(point, mass=mass, velocity=np.asarray(velocity) + np.cross(spin, point - center))
         for point, mass in zip(points, masses, strict=True)
     ]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from iota._core import Body, Grip, InputEvent, System
-from iota.simulator import SimulatedBody, SimulatedGrip
+from iota.simulator import SimulatedGrip
 
 
 @dataclass
@@ -88,11 +88,7 @@ class Hands:
         if body is None or body.kind == "inactive":
             return
         self._release(client, event.hold)
-        grip: Grip | SimulatedGrip
-        if isinstance(body, SimulatedBody):
-            grip = body.system.grip(body, event.local_point, event.target, client.id, event.hold)
-        else:
-            grip = Grip(body, event.local_point, event.target, client=client.id, hold=event.hold)
+        grip = self._system.grip(body, event.local_point, event.target, client=client.id, hold=event.hold)
         client.holds[event.hold] = Hold(body, grip)
 
     @staticmethod

@@ -36,9 +36,9 @@ def pendulum(run: Run) -> None:
     measured, expected = [], []
     for index, angle in enumerate(np.radians(degrees)):
         system = iota.System()
-        rod = iota.Body(system)
-        iota.Particle(rod, (0, 0)).nail()
-        bob = iota.Particle(rod, (length * np.sin(angle), -length * np.cos(angle)))
+        rod = system.body()
+        rod.particle((0, 0)).nail()
+        bob = rod.particle((length * np.sin(angle), -length * np.cos(angle)))
         exact = 4 * np.sqrt(length / GRAVITY) * ellipk(np.sin(angle / 2) ** 2)
         x = [bob.position.x]
         while len(x) * h < 1.3 * exact:
@@ -172,11 +172,11 @@ def spring_chain(run: Run) -> None:
         row = []
         for i in range(masses + 2):
             x = i * gap + (1e-3 * shape[i - 1] if 0 < i <= masses else 0)
-            row.append(iota.Particle(iota.Body(system), (x, 0, 0), mass=mass))
+            row.append(system.body().particle((x, 0, 0), mass=mass))
         row[0].nail()
         row[-1].nail()
         for p, q in pairwise(row):
-            iota.Bond(p, q, "spring", stiffness=stiffness, damping=0, length=gap)
+            system.bond(p, q, "spring", stiffness=stiffness, damping=0, length=gap)
         steps = round(run.size(10, 3) * 2 * np.pi / omega / h)
         for _ in range(steps):
             system.step(h)
@@ -205,9 +205,9 @@ def oscillator(run: Run) -> None:
         errors = []
         for h in (1 / 480, 1 / 960):
             system = iota.System(gravity=(0, 0, 0))
-            wall, bob = (iota.Particle(iota.Body(system), (x, 0, 0), mass=mass) for x in (0.0, 1.1))
+            wall, bob = (system.body().particle((x, 0, 0), mass=mass) for x in (0.0, 1.1))
             wall.nail()
-            iota.Bond(wall, bob, "spring", stiffness=stiffness, damping=2 * zeta * omega * mass, length=1.0)
+            system.bond(wall, bob, "spring", stiffness=stiffness, damping=2 * zeta * omega * mass, length=1.0)
             x = []
             for _ in range(round(seconds / h)):
                 system.step(h)
@@ -260,14 +260,14 @@ def orbit(run: Run) -> None:
         """The path of one as seen from the other; largest relative changes of energy and angular momentum."""
         system = iota.System(gravity=(0, 0, 0), mode="robust" if scripted else "energy_keeping")
         p, q = (
-            iota.Particle(iota.Body(system), (s * near, 0, 0), mass=m, velocity=(0, s * speed, 0))
+            system.body().particle((s * near, 0, 0), mass=m, velocity=(0, s * speed, 0))
             for s, m in zip(share, masses, strict=True)
         )
         pull = strength * masses.prod()
         if scripted:
-            iota.Bond(p, q, lambda bond: pull / bond.distance**2 * bond.direction)
+            system.bond(p, q, lambda bond: pull / bond.distance**2 * bond.direction)
         else:
-            iota.Bond(p, q, "gravity", strength=strength)
+            system.bond(p, q, "gravity", strength=strength)
 
         def energy() -> float:
             return float(system.energy.kinetic - pull / abs(q.position - p.position))

@@ -28,12 +28,12 @@ def flying_mixture() -> iota.System:
     for arm in range(4):
         end = hub[arm]
         for _ in range(5):
-            link = iota.Body(system)
+            link = system.body()
             here = np.asarray(end.position)
-            upper = iota.Particle(link, here, mass=0.1, velocity=end.velocity)
+            upper = link.particle(here, mass=0.1, velocity=end.velocity)
             there = here + dice.uniform(-0.2, 0.2, 3)
-            lower = iota.Particle(link, there, mass=dice.uniform(0.05, 1), velocity=dice.uniform(-1, 1, 3))
-            iota.combine(end, upper)
+            lower = link.particle(there, mass=dice.uniform(0.05, 1), velocity=dice.uniform(-1, 1, 3))
+            end.combine(upper)
             end = lower
         tips.append(end)
     plate = scenes.rigid_body(
@@ -43,11 +43,11 @@ def flying_mixture() -> iota.System:
         spin=(0, 1, 0),
     )
     for tip, corner in zip(tips[:3], plate[:3], strict=True):
-        iota.combine(tip, corner)  # closes two loops
+        tip.combine(corner)  # closes two loops
     for p, q, stiffness in ((hub[4], plate[3], 1e4), (tips[3], hub[5], 50.0), (tips[3], plate[0], 1e6)):
-        iota.Bond(p, q, "spring", stiffness=stiffness, damping=0)
-    lone = iota.Particle(iota.Body(system), (0.8, 0.1, 0), mass=0.7, velocity=(0, 0.5, 0))
-    iota.Bond(lone, tips[3], "spring", stiffness=20.0, damping=0)
+        system.bond(p, q, "spring", stiffness=stiffness, damping=0)
+    lone = system.body().particle((0.8, 0.1, 0), mass=0.7, velocity=(0, 0.5, 0))
+    system.bond(lone, tips[3], "spring", stiffness=20.0, damping=0)
     return system
 
 

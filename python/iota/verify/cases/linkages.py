@@ -25,15 +25,15 @@ class Linkage:
         self.pins: dict[str, list[iota.Particle]] = {}
 
     def bar(self, *names: str, mass: float = 1.0) -> None:
-        body = iota.Body(self.system)
+        body = self.system.body()
         for name in names:
             ends = [
-                iota.Particle(body, self.joints[name] + np.array([0, 0, z]), mass=mass / (2 * len(names)))
+                body.particle(self.joints[name] + np.array([0, 0, z]), mass=mass / (2 * len(names)))
                 for z in (-WIDTH, WIDTH)
             ]
             if name in self.pins:
                 for old, new in zip(self.pins[name], ends, strict=True):
-                    iota.combine(old, new)
+                    old.combine(new)
             else:
                 self.pins[name] = ends
 

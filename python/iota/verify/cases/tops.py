@@ -122,10 +122,9 @@ def heavy_top(run: Run) -> None:
     def simulate(spin: Array, seconds: float, h: float) -> tuple[Array, Array]:
         """Leans (rad) and azimuths (rad) of the axis after each step."""
         system = iota.System()
-        body = iota.Body(system)
+        body = system.body()
         made = [
-            iota.Particle(body, p, mass=m, velocity=np.cross(spin, p))
-            for p, m in zip(points @ tilt.T, masses, strict=True)
+            body.particle(p, mass=m, velocity=np.cross(spin, p)) for p, m in zip(points @ tilt.T, masses, strict=True)
         ]
         made[0].nail()
         tips = []

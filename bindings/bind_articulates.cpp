@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "binders.h"
+
+namespace iota::bindings {
+
+namespace {
+
+constexpr const char* doc =
+    "The bodies that hang together with one of them by hinges, as they do now: an edit may make it larger or smaller. Two\n"
+    "are equal while their bodies hang together.\n\n"
+    "    if hook.body.articulate != eye.body.articulate:\n"
+    "        hook.combine(eye)";
+
+/// Known by any of its bodies.
+struct ArticulateView {
+  BodyHandle body;
+
+  std::uint32_t number() const { return body.use().articulate(body.id); }
+  std::vector<BodyHandle> bodies() const {
+    System& engine = body.use();
+    std::vector<BodyId> own = engine.bodies();
+    std::erase_if(own, [&, number = number()](const BodyId id) { return engine.articulate(id) != number; });
+    return wrap_all<BodyHandle>(body.system_object, body.system, own);
+  }
+  bool contains(const BodyHandle& other) const {
+    return other.system == body.system && other.use().articulate(other.id) == number();
+  }
+};
+
+BodyHandle& holder_of(ArticulateView& articulate) { return articulate.body; }
+
+std::vector<ArticulateView> all(nb::handle_t<SystemObject> self) {
+  std::vector<ArticulateView> out;
+  for (const auto& members : nb::inst_ptr<SystemObject>(self)->use().articulates())
+    out.push_back({handle_of(self, members.front())});
+  return out;
+}
+
+}  // namespace
+
+void bind_articulates(nb::module_& module) {
+  nb::class_<ArticulateView> type(module, "Articulate", doc, nb::type_slots(handle_slots<ArticulateView>));
+  type.def_prop_ro("bodies", &ArticulateView::bodies, "In order of slots.")
+      .def("__contains__", &ArticulateView::contains, "body"_a)
+      .def("__len__", [](const ArticulateView& self) { return self.bodies().size(); })
+      .def(
+          "__iter__", [](const ArticulateView& self) { return nb::iter(nb::cast(self.bodies())); },
+          nb::sig("def __iter__(self) -> collections.abc.Iterator[Body]"))
+      .def_prop_ro("number", &ArticulateView::number, "Equal for bodies that hang together now; given anew after edits.")
+      .def_prop_rw(
+          "active", [](const ArticulateView& self) { return self.body.use().is_active(self.body.id); },
+          [](const ArticulateView& self, bool active) {
+            self.body.use().set_articulate_active(self.body.id, active);
+          },
+          "False switches all its bodies off; see `Body.active`.")
+      .def(
+          "__eq__",
+          [](const ArticulateView& self, nb::handle other) {
+            const ArticulateView* theirs = nullptr;
+            return nb::try_cast<const ArticulateView*>(other, theirs) && theirs && self.contains(theirs->body);
+          },
+          nb::is_operator(), nb::sig("def __eq__(self, other: object, /) -> bool"))
+      .def("__repr__", [](const ArticulateView& self) {
+        if (!self.body.is_alive()) return stale_repr("Articulate of body", self.body);
+        return "<Articulate of " + std::to_string(self.bodies().size()) + " bodies>";
+      });
+  type.attr("__hash__") = nb::none();  // what it is equal to changes
+
+  nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"))
+      .def_prop_ro(
+          "articulate", [](const BodyHandle& self) { return self.use(), ArticulateView{self}; },
+          nb::sig("def articulate(self) -> Articulate"), "The bodies that hang together with it.");
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
+      .def_prop_ro("articulates", &all, nb::sig("def articulates(self) -> list[Articulate]"),
+                   "The groups of bodies that hang together.");
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Types of what calls give back or hand to a script's functions: for annotations, and for simulators of one's own.
+
+def pull(bond: iota.types.BondState) -> iota.Vec3:
+    return 50 * (bond.distance - 1) * bond.direction
+"""
+
+from iota._core import (
+    BondBatch,
+    BondState,
+    Broken,
+    Diagnosis,
+    Edit,
+    Energy,
+    JointCoordinate,
+    MassProperties,
+    Part,
+    ParticleBatch,
+    Recording,
+    RestructureReport,
+    Solid,
+    StepReport,
+)
+from iota.profiling import ForceCost, ForceProfile
+from iota.solvers import Solution
+from iota.world import Client, RunSummary
+
+__all__ = [
+    "BondBatch",
+    "BondState",
+    "Broken",
+    "Client",
+    "Diagnosis",
+    "Edit",
+    "Energy",
+    "ForceCost",
+    "ForceProfile",
+    "JointCoordinate",
+    "MassProperties",
+    "Part",
+    "ParticleBatch",
+    "Recording",
+    "RestructureReport",
+    "RunSummary",
+    "Solid",
+    "Solution",
+    "StepReport",
+]
