@@ -363,10 +363,10 @@ void def_fields(nb::class_<SystemObject>& system) {
   system.def(
       "profile",
       [](nb::handle self, double dt) { return nb::module_::import_("iota.profiling").attr("profile")(self, dt); },
-      "dt"_a = 1.0 / 120, nb::sig("def profile(self, dt: float = ...) -> iota.profiling.ForceProfile"),
-      "What each law, field and pair force costs, in ns for each bond or particle. Forces are evaluated where everything is\n"
-      "now, again and again, without being applied; functions of the script are called. Implicit bonds: force and stiffness\n"
-      "once, as each iteration of the solver asks for them.\n\n"
+      "dt"_a = 1.0 / 120, nb::sig("def profile(self, dt: float = ...) -> typing.Any"),
+      "What each law, field and pair force costs, in ns for each bond or particle: an iota.types.ForceProfile. Forces are\n"
+      "evaluated where everything is now, again and again, without being applied; functions of the script are called.\n"
+      "Implicit bonds: force and stiffness once, as each iteration of the solver asks for them.\n\n"
       "    print(system.profile())");
 }
 
