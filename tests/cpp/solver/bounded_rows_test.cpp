@@ -2,6 +2,7 @@
 // Rows with bounds, springs and holds against closed forms, in both schemes.
 #include "solver/integrator.h"
 #include "tests/cpp/allocations.h"
+#include "tests/cpp/solver/small_problem.h"
 
 #include <gtest/gtest.h>
 
@@ -12,41 +13,6 @@ namespace iota::solver {
 namespace {
 
 constexpr double g = 9.81;
-
-template <class C>
-ConstraintPool<C>& pool(Problem& problem) {
-  return std::get<ConstraintPool<C>>(problem.constraints);
-}
-template <class C>
-std::size_t add(Problem& problem, const C& c) {
-  pool<C>(problem).items.push_back(c);
-  return pool<C>(problem).items.size() - 1;
-}
-std::uint32_t add_point(Problem& problem, const Vec3& x, double mass = 1, const Vec3& v = {}) {
-  problem.position.push_back(x), problem.velocity.push_back(v), problem.force.push_back({}),
-      problem.mass.push_back(mass);
-  return static_cast<std::uint32_t>(problem.size() - 1);
-}
-void nail(Problem& problem, std::uint32_t node) {
-  AffineConstraint c;
-  c.nodes[0] = node, c.weights[0] = 1, c.count = 1;
-  c.target = c.target_start = problem.position[node];
-  add(problem, c);
-}
-/// x . direction = c for a point, or for the difference of two.
-BilinearConstraint along(std::uint32_t node, const Vec3& direction, double c) {
-  BilinearConstraint row;
-  row.add(0, node, 1);
-  row.set_constant(1, direction);
-  row.product = c;
-  return row;
-}
-BilinearConstraint distance(std::uint32_t a, std::uint32_t b, double length) {
-  BilinearConstraint row;
-  for (const int arm : {0, 1}) row.add(arm, a, -1), row.add(arm, b, 1);
-  row.product = length * length, row.scale = 2 * length, row.reference = length;
-  return row;
-}
 
 class Rows : public testing::TestWithParam<Scheme> {
  protected:

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Articulates against a search through the whole graph.
+#include "tests/cpp/model/small_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+namespace iota::model {
+namespace {
+
+const std::vector<std::string> whole;
+
+TEST(Articulates, that_join_keep_the_slot_of_the_larger_one) {
+  SmallModel m;
+  const auto small = m.chain(2), large = m.chain(5, {0, 5, 0});
+  const std::uint32_t kept = m.model.bodies[large[0]].articulate;
+  m.model.articulates[m.model.bodies[small[0]].articulate].jolted = 1;
+  m.hinge(m.particle(small[1], 1), m.particle(large[0], 0));
+  for (const std::uint32_t body : small) EXPECT_EQ(m.model.bodies[body].articulate, kept);
+  EXPECT_EQ(m.model.articulates[kept].count, 7u);
+  EXPECT_TRUE(m.model.articulates[kept].jolted) << "what was to be projected still is";
+  EXPECT_EQ(m.model.validate(), whole);
+}
+
+TEST(Articulates, that_are_cut_give_the_smaller_piece_a_new_one) {
+  SmallModel m;
+  const auto chain = m.chain(7);
+  const std::uint32_t old = m.model.bodies[chain[0]].articulate;
+  m.leave_ring(m.particle(chain[5], 0));
+  EXPECT_TRUE(m.model.split_articulate(chain[4], chain[5]));
+  for (int i = 0; i < 7; ++i) EXPECT_EQ(m.model.bodies[chain[i]].articulate == old, i < 5) << i;
+  EXPECT_EQ(m.model.validate(), whole);
+}
+
+TEST(Articulates, that_hang_together_otherwise_are_not_split) {
+  SmallModel m;
+  const std::uint32_t a = m.body({{0, 0, 0}, {1, 0, 0}}), b = m.body({{0, 0, 0}, {1, 0, 0}});
+  m.hinge(m.particle(a, 0), m.particle(b, 0));
+  EXPECT_FALSE(m.model.split_articulate(a, a));
+  EXPECT_FALSE(m.model.split_articulate(a, b));
+  Closing closing;
+  closing.p = m.particle(a, 1), closing.q = m.particle(b, 1), closing.duration = 1;
+  m.model.add_closing(closing);
+  m.leave_ring(m.particle(b, 0));
+  EXPECT_FALSE(m.model.split_articulate(a, b)) << "two bodies on their way to each other are one problem";
+  EXPECT_EQ(m.model.validate(), whole);
+}
+
+TEST(Articulates, agree_with_a_search_through_the_graph_after_random_hinges_and_cuts) {
+  std::mt19937 random(9);
+  const auto below = [&](std::size_t n) { return static_cast<std::uint32_t>(random() % n); };
+  for (int round = 0; round < 20; ++round) {
+    SmallModel m;
+    std::vector<std::uint32_t> bodies, particles;
+    for (int i = 0; i < 20; ++i) {
+      bodies.push_back(m.body({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+      for (int n = 0; n < 3; ++n) particles.push_back(m.particle(bodies.back(), n));
+    }
+    for (int edit = 0; edit < 100; ++edit) {
+      const std::uint32_t p = particles[below(particles.size())], q = particles[below(particles.size())];
+      const std::uint32_t a = m.model.particles[p].ring, b = m.model.particles[q].ring;
+      std::set<std::uint32_t> owners;
+      for (const std::uint32_t ring : {a, b})
+        m.model.for_each_in_ring(ring, [&](std::uint32_t member) { owners.insert(m.model.particles[member].body); });
+      if (below(2) == 0 && a != b && owners.size() == m.model.rings[a].count + m.model.rings[b].count) {
+        m.hinge(p, q);
+      } else if (m.model.rings[a].count > 1) {
+        owners.clear();
+        m.model.for_each_in_ring(a, [&](std::uint32_t member) { owners.insert(m.model.particles[member].body); });
+        m.leave_ring(p);
+        owners.erase(m.model.particles[p].body);
+        (void)m.model.split_articulate(m.model.particles[p].body, *owners.begin());
+      }
+      ASSERT_EQ(m.model.validate(), whole) << "round " << round << " edit " << edit;
+    }
+  }
+}
+
+TEST(Touched, names_each_articulate_once_and_tells_hinges_from_other_changes) {
+  SmallModel m;
+  const auto chain = m.chain(3);
+  const std::uint32_t lone = m.body({{0, 9, 0}});
+  Model::Touched touched;
+  m.model.take_touched(touched);
+  EXPECT_FALSE(m.model.is_touched());
+  const std::uint32_t of_chain = m.model.bodies[chain[0]].articulate, of_lone = m.model.bodies[lone].articulate;
+
+  m.model.relink(m.model.particles[m.particle(chain[1], 0)].ring);
+  m.model.touch_body(lone), m.model.touch_body(lone);
+  EXPECT_TRUE(m.model.is_touched());
+  m.model.take_touched(touched);
+  ASSERT_EQ(touched.articulates, (std::vector{of_chain, of_lone}));
+  EXPECT_EQ(touched.only_relinked, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(touched.relinked, (std::vector{chain[0], chain[1]}));
+
+  m.model.relink(m.model.particles[m.particle(chain[1], 0)].ring);
+  m.model.touch_body(chain[2]);
+  m.model.take_touched(touched);
+  EXPECT_EQ(touched.only_relinked, std::vector<std::uint8_t>{0}) << "something else has changed, too";
+}
+
+TEST(Touched, of_very_many_hinges_asks_for_a_problem_that_is_built_anew) {
+  SmallModel m;
+  const auto chain = m.chain(80);
+  Model::Touched touched;
+  m.model.take_touched(touched);
+  for (int i = 1; i < 80; ++i) m.model.relink(m.model.particles[m.particle(chain[i], 0)].ring);
+  m.model.take_touched(touched);
+  EXPECT_EQ(touched.only_relinked, std::vector<std::uint8_t>{0});
+}
+
+TEST(TiedBodies, are_those_that_hinges_and_implicit_bonds_connect) {
+  SmallModel m;
+  const auto left = m.chain(2), right = m.chain(2, {0, 3, 0}), apart = m.chain(1, {0, 6, 0});
+  Bond bond;
+  bond.p = m.particle(left[1], 1), bond.q = m.particle(right[0], 0);
+  const std::uint32_t slot = m.model.add_bond(bond);
+  const auto tied = [&](Model::Ties ties) {
+    std::vector<std::uint32_t> list = m.model.tied_bodies(std::vector{left[0]}, ties);
+    std::sort(list.begin(), list.end());
+    return list;
+  };
+  EXPECT_EQ(tied(Model::Ties::all), (std::vector{left[0], left[1], right[0], right[1]}));
+  EXPECT_EQ(tied(Model::Ties::constraints), (std::vector{left[0], left[1]}));
+  m.model.bonds[slot].implicit = 0;
+  EXPECT_EQ(tied(Model::Ties::all), (std::vector{left[0], left[1]})) << "a force that is held ties nobody";
+  (void)apart;
+}
+
+}  // namespace
+}  // namespace iota::model
