@@ -5,9 +5,10 @@
     python3 tools/folder_graph.py [TREE ...]
 
 Without arguments: src, web/src and python/iota. A folder is a path below its tree that holds sources, such as
-`solver/sparse`; public C++ headers count as `iota`. In Python the package's `__init__.py`, which users import and which
-is made of all the others, is a folder by itself and has the package's name. Imports for types alone count as well. Exit
-code 1 when a graph has a cycle, direct or through others, or when an arrow of FORBIDDEN is drawn.
+`solver/sparse`; public C++ headers count as `iota`. In Python a module beside the sub-packages counts as a folder by
+itself, and `__init__.py`, which users import and which is made of all the others, has the package's name. Imports for
+types alone count as well. Exit code 1 when a graph has a cycle, direct or through others, or when an arrow of FORBIDDEN
+is drawn.
 """
 
 from __future__ import annotations
@@ -25,9 +26,6 @@ FORBIDDEN = [("solver", "model"), ("net", "model"), ("net", "solver"), ("net", "
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 TS_IMPORT = re.compile(r'(?:\bfrom|\bimport)\s*\(?\s*"(\.[^"]+)"')
-
-# Files of a package's own folder that use all others, and what they count as.
-WHOLE = {"__init__.py": "", "__main__.py": "__main__"}
 
 Graph = dict[str, dict[str, list[str]]]
 
@@ -75,8 +73,8 @@ def module_folder(tree: Path, parts: list[str]) -> str:
 
 
 def folder_of(file: Path, tree: Path) -> str:
-    if file.parent == tree and file.name in WHOLE:
-        return WHOLE[file.name] or tree.name
+    if file.parent == tree and file.suffix == ".py":
+        return tree.name if file.name == "__init__.py" else file.stem
     return file.resolve().parent.relative_to(tree.resolve()).as_posix()
 
 
