@@ -60,11 +60,15 @@ void bind_articulates(nb::module_& module) {
             return nb::try_cast<const ArticulateView*>(other, theirs) && theirs && self.contains(theirs->body);
           },
           nb::is_operator(), nb::sig("def __eq__(self, other: object, /) -> bool"))
+      .def(
+          "__hash__",
+          [](const ArticulateView&) -> std::size_t {
+            throw nb::type_error("an articulate has no hash, as edits change what it is equal to; use its number");
+          })
       .def("__repr__", [](const ArticulateView& self) {
         if (!self.body.is_alive()) return stale_repr("Articulate of body", self.body);
         return "<Articulate of " + std::to_string(self.bodies().size()) + " bodies>";
       });
-  type.attr("__hash__") = nb::none();  // what it is equal to changes
 
   nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"))
       .def_prop_ro(

@@ -2,16 +2,17 @@
 import iota
 
 system = iota.System()
-links = iota.builder.chain(system, links=3, length=1.5, top=(0, 2, 0), direction=(1, 0.3, 0))
-weight = system.body().particle(links[-1].particles[-1].position, mass=5)
-links[-1].particles[-1].combine(weight)
+chain = iota.builder.chain(links=3, length=1.5, top=(0, 2, 0), direction=(1, 0.3, 0)).realize(system)
+end = chain.points[-1]
+weight = system.body().particle(end.position, mass=5)
+end.combine(weight)
 
 world = iota.World(system, title="pendulum")
 
 
 @world.action("cut", key="b", help="cuts the weight off", on="world")
 def cut():
-    links[-1].particles[-1].separate(weight)
+    end.separate(weight)
 
 
 world.run()

@@ -4,7 +4,7 @@
     import iota
 
     system = iota.System()
-    links = iota.builder.chain(system, links=24)
+    links = iota.builder.chain(links=24).realize(system).bodies
     world = iota.World(system, title="chain")
     world.run()          # prints the address of a page that shows it
 
@@ -90,6 +90,7 @@ __all__ = [
     "StaleIdError",
     "System",
     "Torus",
+    "Vec3",
     "World",
     "WrongThreadError",
     "__version__",

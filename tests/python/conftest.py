@@ -24,7 +24,7 @@ def system() -> iota.System:
 @pytest.fixture
 def chain(system: iota.System) -> list[iota.Body]:
     """Six links on a nail, hanging askew."""
-    return iota.builder.chain(system, links=6, length=0.6, top=(0, 2, 0), direction=(0.6, -0.8, 0))
+    return iota.builder.chain(links=6, length=0.6, top=(0, 2, 0), direction=(0.6, -0.8, 0)).realize(system).bodies
 
 
 Runner = Callable[[iota.World], str]

@@ -26,7 +26,7 @@ class Scene:
 
     def __init__(self) -> None:
         s = self.system = iota.System(threads=1)
-        self.rods = iota.builder.chain(s, links=4, length=1.0, top=(0, 2, 0), direction=(1, 0, 0))
+        self.rods = iota.builder.chain(links=4, length=1.0, top=(0, 2, 0), direction=(1, 0, 0)).realize(s).bodies
         self.p, self.q = self.rods[0].particles[1], self.rods[2].particles[1]
         self.box = s.body(shape=iota.Box((0.4, 0.2, 0.3)), position=(0, 0, 3), attachments=[(0.2, 0, 0)])
         self.ball = s.body(shape=iota.Sphere(0.2), position=(1, 0, 3), attachments=[(-0.2, 0, 0)])
@@ -241,7 +241,7 @@ def calls(c: Scene) -> dict[str, Call]:
         "align": (c.surfel.align, {"direction": V, "stiffness": 2.0, "damping": 0.1}),
         "apply_torque": (c.surfel.apply_torque, {"torque": V}),
         "chain": (
-            lambda links, length, top, direction: iota.builder.chain(s, links, length, top=top, direction=direction),
+            lambda links, length, top, direction: iota.builder.chain(links, length, top=top, direction=direction).realize(s).bodies,
             {"links": 3, "length": 1.0, "top": V, "direction": (1, 0, 0)},
         ),
         "World": (iota.World, {"system": s, "title": "t", "dt": 1 / 60}),

@@ -63,9 +63,15 @@ BAD_VALUES: dict[str, tuple[Callable[[iota.System], object], str]] = {
     "snapshot": (lambda s: s.restore(b"this is no snapshot"), "snapshot"),
     "empty snapshot": (lambda s: s.restore(b""), "snapshot"),
     "cut snapshot": (lambda s: s.restore(s.snapshot()[:-8]), "snapshot"),
-    "chain links": (lambda s: iota.builder.chain(s, links=0), "links must be a whole number from 1 up, not 0"),
-    "chain length": (lambda s: iota.builder.chain(s, length=-2), "length must be above 0 m.* not -2"),
-    "chain direction": (lambda s: iota.builder.chain(s, direction=(0, 0, 0)), "direction must not be zero"),
+    "chain links": (
+        lambda s: iota.builder.chain(links=0).realize(s).bodies,
+        "links must be a whole number from 1 up, not 0",
+    ),
+    "chain length": (lambda s: iota.builder.chain(length=-2).realize(s).bodies, "length must be above 0 m.* not -2"),
+    "chain direction": (
+        lambda s: iota.builder.chain(direction=(0, 0, 0)).realize(s).bodies,
+        "direction must not be zero",
+    ),
     "world dt": (lambda s: iota.World(s, dt=0), "dt must be above 0"),
     "world speed": (lambda s: setattr(iota.World(s), "speed", NAN), "speed"),
     "event time": (lambda s: iota.World(s).at(NAN)(print), "time"),

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import json
+import math
+from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
@@ -10,7 +13,7 @@ import iota
 
 @pytest.mark.parametrize("links", [1, 2, 24])
 def test_a_chain_has_its_length_mass_and_place(system: iota.System, links: int) -> None:
-    chain = iota.builder.chain(system, links, length=2.4, top=(0, 3, 0), direction=(0, -2, 0), mass=1.2)
+    chain = iota.builder.chain(links, length=2.4, top=(0, 3, 0), direction=(0, -2, 0), mass=1.2).realize(system).bodies
     assert len(chain) == links and system.articulate_count == 1
     assert sum(link.mass for link in chain) == pytest.approx(1.2)
     assert chain[0].particles[0].position == (0, 3, 0)
@@ -22,11 +25,158 @@ def test_a_chain_has_its_length_mass_and_place(system: iota.System, links: int) 
 
 
 def test_a_chain_need_not_be_nailed(system: iota.System) -> None:
-    chain = iota.builder.chain(system, links=3, nailed=False)
+    chain = iota.builder.chain(links=3, nailed=False).realize(system).bodies
     assert not any(p.is_nailed for link in chain for p in link.particles)
 
 
 def test_a_long_chain_is_quick_to_build(system: iota.System) -> None:
-    chain = iota.builder.chain(system, links=2000)
+    chain = iota.builder.chain(links=2000).realize(system).bodies
     report = system.step()
     assert len(chain) == 2000 and report.articulates == 1 and report.worst_gap < 1e-9
+
+
+# --- the common data structure ------------------------------------------------------------------------------------------
+
+
+def swing() -> iota.builder.Structure:
+    """A board on two rods, a spring below it, a free point and a lamp that turns."""
+    s = iota.builder.Structure()
+    for x, side in ((-0.3, "left"), (0.3, "right")):
+        top, end = s.point((x, 2, 0), name=f"{side} nail"), s.point((x, 1, 0))
+        s.body(top, end, name=side, rod=(0.4, 0.01), style="steel")
+        s.nail(top)
+    ends = [s.point((x, 1, 0), mass=0) for x in (-0.3, 0.3)]
+    board = s.body(*ends, shape=iota.Box((0.7, 0.04, 0.3)), density=700, position=(0, 1, 0), name="board", style="wood")
+    for p, q in zip((1, 3), ends, strict=True):
+        s.hinge(p, q)
+    ground = s.point((0, 0.2, 0), mass=3)
+    s.bond(ends[0], ground, "spring", stiffness=40, length=None, name="spring")
+    lamp = s.body(shape=iota.Sphere(0.1), mass=1, position=(0, 3, 0), name="lamp")
+    s.joint("revolute", lamp, at=(0, 3, 0), axis=(0, 1, 0), motor=(2, 5), name="axle")
+    s.tie("rope", ends[1], ground, break_force=100, name="rope")
+    s.group("feelers", [0, ground])
+    s.styles = {"steel": {"*": iota.looks.cylinder(0.01)}, "wood": {"*": iota.looks.solid("wood")}}
+    assert board == 2 and s.problems() == []
+    return s
+
+
+def test_a_structure_becomes_bodies_hinges_bonds_and_joints(system: iota.System) -> None:
+    made = swing().realize(system)
+    assert system.validate() == [] and len(made.bodies) == 4 and len(made.points) == 7
+    assert made["board"].mass == pytest.approx(700 * 0.7 * 0.04 * 0.3) and made["left"].mass == pytest.approx(0.4)
+    assert made["left nail"].is_nailed and made["axle"].angle.motor == (2, 5)
+    assert made.points[4] in made.points[1].ring and made["rope"].kind == "rope" and made["rope"].break_force == 100
+    assert made["spring"].parameters["length"] == pytest.approx(abs(made.points[4].position - made.points[6].position))
+    assert made.groups["feelers"].particles == [made.points[0], made.points[6]]
+    assert made.points[6].body.particles == [made.points[6]] and made.points[6].mass == 3
+    for _ in range(30):
+        report = system.step()
+    assert report.worst_gap < 1e-9 and made["axle"].angle.speed == pytest.approx(2, rel=0.01)
+    with pytest.raises(KeyError):
+        made["door"]
+
+
+def test_a_structure_is_drawn_in_its_styles(system: iota.System) -> None:
+    world = iota.World(system)
+    made = swing().realize(system, world)
+    assert world.classes["wood"] == {"*": iota.looks.solid("wood")} and made["board"].solids
+
+
+def test_a_moved_copy_leaves_the_original(system: iota.System) -> None:
+    one = swing()
+    other = one + (1, 0, -2)
+    made, moved = one.realize(system), other.realize(iota.System())
+    for here, there in zip(made.points, moved.points, strict=True):
+        assert there.position - here.position == pytest.approx((1, 0, -2))
+    assert moved["lamp"].center_of_mass == pytest.approx((1, 3, -2)) and moved["axle"].position == pytest.approx(
+        (1, 3, -2)
+    )
+
+
+def test_merging_renumbers_and_renames(system: iota.System) -> None:
+    row = iota.builder.Structure()
+    for number in range(3):
+        shift = row.merge(swing() + (2 * number, 0, 0), prefix=f"{number} ")
+        assert shift == (7 * number, 4 * number)
+    assert row.problems() == []
+    made = row.realize(system)
+    assert system.articulate_count == 3 * 3  # swing, free point, lamp
+    assert made["2 board"].center_of_mass == pytest.approx((4, 1, 0)) and len(made.groups["feelers"]) == 6
+    assert made["1 axle"].a == made["1 lamp"] and system.validate() == []
+    twice = swing()
+    twice.styles["wood"] = {"*": iota.looks.solid("brass")}
+    with pytest.raises(ValueError, match="different styles 'wood'"):
+        row.merge(twice)
+
+
+def test_a_structure_comes_back_from_json(system: iota.System) -> None:
+    text = json.dumps(swing().to_json(), allow_nan=False)
+    back = iota.builder.Structure.from_json(json.loads(text))
+    assert back.problems() == [] and json.dumps(back.to_json()) == text
+    other = iota.System()
+    swing().realize(system), back.realize(other)
+    for _ in range(5):
+        assert system.step().energy.total == other.step().energy.total
+    assert system.state_hash() == other.state_hash()
+
+
+def test_what_json_cannot_hold_is_named() -> None:
+    s = swing()
+    s.bond(0, 1, lambda bond: (0, 0, 0), name="pull")
+    with pytest.raises(ValueError, match='SoftBond 1 "pull": law cannot be saved'):
+        s.to_json()
+    data = swing().to_json()
+    for change, text in (
+        ({"wheels": []}, "has no wheels"),
+        ({"bodies": [{"points": [0], "weight": 3}]}, "RigidBody 0: .*weight"),
+        (
+            {"bodies": [{"points": [], "shape": {"type": "egg"}, "name": "e"}]},
+            'RigidBody 0 "e": the type of a shape must be',
+        ),
+    ):
+        with pytest.raises(ValueError, match=text):
+            iota.builder.Structure.from_json(data | change)
+
+
+PROBLEMS: dict[str, tuple[Callable[[iota.builder.Structure], object], str]] = {
+    "point": (lambda s: s.bond(0, 99, "drag"), "bond 1: there is no point 99, only 7 points"),
+    "point of a body": (lambda s: s.body(0.5, name="door"), 'body 4 "door": there is no point 0.5'),  # type: ignore[arg-type]
+    "body": (lambda s: s.joint("weld", 7, at=(0, 0, 0)), "weld 1: there is no body 7, only 4 bodies"),
+    "shared point": (lambda s: s.body(0, 6), "point 0 is in 2 bodies"),
+    "far hinge": (lambda s: s.hinge(1, 6), r"hinge 2: points 1 and 6 are 0\.854\d* m apart"),
+    "hinge in one body": (lambda s: s.hinge(0, 0), "hinge 2: points 0 and 0 are of one body"),
+    "mass": (lambda s: s.points.mass.__setitem__(1, -1), "point 1: its mass must be finite and at least 0 kg, not -1"),
+    "marker alone": (lambda s: s.point((9, 9, 9), mass=0), "point 7: it is a body of its own"),
+    "mass of an attachment": (lambda s: s.points.mass.__setitem__(4, 1), 'body 2 "board" has its mass from its shape'),
+    "position": (
+        lambda s: s.points.position.__setitem__(2, math.nan),
+        r"point 2: its position must be finite, not \(nan",
+    ),
+    "empty body": (lambda s: s.body(), "body 4 has neither points nor a shape"),
+    "style": (lambda s: s.body(6, style="glass"), "body 4: there is no style 'glass'"),
+    "kind": (lambda s: s.joint("screw", 0), "joint 1: kind must be one of ball"),  # type: ignore[arg-type]
+    "name": (lambda s: s.point((0, 0, 0), name="board"), 'the name "board" is given 2 times'),
+}
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_what_is_wrong_is_named_and_nothing_is_made(system: iota.System, name: str) -> None:
+    change, text = PROBLEMS[name]
+    structure = swing()
+    change(structure)
+    with pytest.raises(ValueError, match=text):
+        structure.realize(system)
+    assert system.bodies == []
+
+
+def test_what_the_system_refuses_is_named_and_undone(system: iota.System) -> None:
+    for change, text in (
+        (lambda s: s.bond(0, 6, "spring", stifness=3, name="b"), 'bond 1 "b": .*stifness'),
+        (lambda s: s.joint("revolute", 3, at=(0, 3, 0), name="j"), 'revolute 1 "j": '),
+        (lambda s: s.body(6, kind="frozen"), "body 4: kind must be"),
+    ):
+        structure = swing()
+        change(structure)
+        with pytest.raises((ValueError, TypeError), match=text):
+            structure.realize(system)
+        assert system.bodies == [] and system.validate() == []

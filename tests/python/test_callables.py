@@ -190,7 +190,7 @@ def test_the_function_of_a_surface_cannot_use_the_system(edit: str) -> None:
 
 def test_a_solver_that_raises_is_named_and_the_built_in_one_takes_over() -> None:
     marble = Marble()
-    rod = iota.builder.chain(marble.system, links=2)
+    rod = iota.builder.chain(links=2).realize(marble.system).bodies
 
     @iota.solver("stubborn")
     def stubborn(equations: Any, x: np.ndarray, tolerance: float, max_iterations: int) -> Any:

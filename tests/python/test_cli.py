@@ -56,7 +56,7 @@ def script(tmp_path: Path) -> Path:
         import iota
         def build(links=3):
             system = iota.System()
-            iota.builder.chain(system, links=links)
+            iota.builder.chain(links=links).realize(system)
             return iota.World(system, title="mine")
         if __name__ == "__main__":
             build().run()

@@ -218,7 +218,7 @@ def test_what_breaks_is_named_and_can_be_repaired() -> None:
 
 def test_a_hinge_tells_what_it_carries_and_breaks_under_too_much() -> None:
     system = iota.System(damping=5)
-    links = iota.builder.chain(system, links=3, length=0.3)
+    links = iota.builder.chain(links=3, length=0.3).realize(system).bodies
     run(system, 3)
     upper = links[1].particles[0]
     weight = sum(link.mass for link in links[1:]) * 9.81

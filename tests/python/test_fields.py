@@ -78,7 +78,7 @@ def test_a_well_holds_an_orbit_however_it_is_written(space: iota.System, field: 
 def test_a_field_can_replace_gravity() -> None:
     system = iota.System()
     ball = system.body().particle()
-    link = iota.builder.chain(system, links=3)[0]
+    link = iota.builder.chain(links=3).realize(system).bodies[0]
     start = abs(system.momentum)
     field = system.field("fy = 0", replaces_gravity=True)
     system.step(0.1)
@@ -140,7 +140,7 @@ def test_a_field_can_be_compiled_code(space: iota.System) -> None:
 
 
 def test_hinged_particles_are_one_row_with_all_their_mass(space: iota.System) -> None:
-    bodies = iota.builder.chain(space, links=4)
+    bodies = iota.builder.chain(links=4).realize(space).bodies
     rows: list[int] = []
     masses: list[float] = []
 

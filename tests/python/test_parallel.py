@@ -9,7 +9,7 @@ import iota
 def hashes(threads: int) -> list[int]:
     system = iota.System(threads=threads)
     for row in range(30):
-        links = iota.builder.chain(system, links=20, length=2, top=(0, 3, row))
+        links = iota.builder.chain(links=20, length=2, top=(0, 3, row)).realize(system).bodies
         links[8].particles[1].separate(links[9].particles[0])
     found = []
     for _ in range(5):

@@ -177,7 +177,11 @@ def test_a_chain_of_rods_keeps_its_inertia() -> None:
     lows = []
     for rods in (False, True):
         system = iota.System()
-        (link,) = iota.builder.chain(system, links=1, length=1.0, top=(0, 0, 0), direction=(1, 0, 0), rods=rods)
+        (link,) = (
+            iota.builder.chain(links=1, length=1.0, top=(0, 0, 0), direction=(1, 0, 0), rods=rods)
+            .realize(system)
+            .bodies
+        )
         for _ in range(24):
             system.step()
         lows.append(link.particles[1].position.y)

@@ -174,7 +174,7 @@ def test_a_solver_of_the_script_may_raise_or_return_nonsense() -> None:
 
 def swing(solver: str, steps: int = 40) -> tuple[Any, list[str]]:
     system = iota.System()
-    iota.builder.chain(system, links=5, length=0.5, top=(0, 1, 0), direction=(1, 0.2, 0))
+    iota.builder.chain(links=5, length=0.5, top=(0, 1, 0), direction=(1, 0.2, 0)).realize(system)
     system.solver = solver
     assert system.solver == solver
     warnings = [warning for _ in range(steps) for warning in system.step(1 / 120).warnings]

@@ -81,7 +81,7 @@ def test_other_threads_run_during_a_step_but_cannot_take_the_system() -> None:
 
 def test_python_threads_run_while_a_long_step_is_under_way() -> None:
     system = iota.System()
-    iota.builder.chain(system, links=3000, length=300, top=(0, 0, 0), direction=(1, 0, 0))
+    iota.builder.chain(links=3000, length=300, top=(0, 0, 0), direction=(1, 0, 0)).realize(system)
     count, stop = [0], threading.Event()
 
     def spin() -> None:

@@ -35,3 +35,9 @@ def test_the_blocks_of_the_page_on_replaceable_parts_run(capsys: pytest.CaptureF
     for block in blocks(ROOT / "docs" / "replaceable.md"):
         exec(compile(block, "docs/replaceable.md", "exec"), {})
     assert "1.41421356" in capsys.readouterr().out
+
+
+def test_the_blocks_of_the_page_on_builders_run() -> None:
+    names: dict[str, object] = {}
+    for block in blocks(ROOT / "docs" / "builder.md"):
+        exec(compile(block, "docs/builder.md", "exec"), names)

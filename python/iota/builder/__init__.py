@@ -1,6 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builders: whole structures in one call."""
+"""Builders: whole structures as plain data, and their way into a system."""
 
 from iota.builder.chain import chain
+from iota.builder.parts import Joint, RigidBody, SoftBond, Tie
+from iota.builder.points import Points
+from iota.builder.realized import Realized
+from iota.builder.structure import Shift, Structure
 
-__all__ = ["chain"]
+__all__ = [
+    "Joint",
+    "Points",
+    "Realized",
+    "RigidBody",
+    "Shift",
+    "SoftBond",
+    "Structure",
+    "Tie",
+    "chain",
+]

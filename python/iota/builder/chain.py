@@ -4,29 +4,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
-from iota._core import Body, Particle, System, Vec3
+import numpy as np
+
+from iota._core import Vec3
+from iota.builder.parts import RigidBody
+from iota.builder.points import Vector
+from iota.builder.structure import Structure
 
 
 def chain(
-    system: System,
     links: int = 24,
     length: float = 2.4,
     radius: float = 0.012,
-    top: Sequence[float] = (0, 2.6, 0),
-    direction: Sequence[float] = (0, -1, 0),
+    top: Vector = (0, 2.6, 0),
+    direction: Vector = (0, -1, 0),
     mass: float = 1.2,
     rods: bool = False,
     nailed: bool = True,
-) -> list[Body]:
-    """Makes a straight chain and returns its links from the top; each has two particles, the upper one first.
+) -> Structure:
+    """A straight chain: its bodies are the links from the top; each has two points, the upper one first.
 
     links: at least 1. length: of the whole chain, m. mass: of the whole chain, kg. top: of the first link, m.
     direction: from top to end. rods: links are solid cylinders of `radius` m instead of two point masses. nailed: the
     top is held. Raises ValueError.
 
-        links = iota.builder.chain(system, links=24, length=2.4)
+        links = iota.builder.chain(links=24, length=2.4).realize(system).bodies
     """
     if not (isinstance(links, int) and links >= 1):
         raise ValueError(f"links must be a whole number from 1 up, not {links!r}")
@@ -44,18 +47,12 @@ def chain(
         raise ValueError(f"links of {length / links} m are lost in round-off at {tuple(top)}")
     if rods and not 0 < radius <= 1e6:
         raise ValueError(f"radius must be above 0 and at most 1e6 m, not {radius}")
-    bodies: list[Body] = []
-    end: Particle | None = None
-    for index in range(links):
-        body = system.body()
-        upper = body.particle(start + step * index, mass=mass / links / 2)
-        lower = body.particle(start + step * (index + 1), mass=mass / links / 2)
-        if rods:
-            body.set_rod(mass / links, radius)
-        if end is not None:
-            end.combine(upper)
-        elif nailed:
-            upper.nail()
-        end = lower
-        bodies.append(body)
-    return bodies
+    structure = Structure()
+    ends = np.arange(1, 2 * links + 1) // 2  # 0, 1, 1, 2, 2, ...: a link begins where the one before it ends
+    structure.points.add(np.asarray(start) + np.outer(ends, np.asarray(step)), mass / links / 2)
+    rod = (mass / links, radius) if rods else None
+    structure.bodies = [RigidBody([p, p + 1], rod=rod) for p in range(0, 2 * links, 2)]
+    structure.hinges = [(p, p + 1) for p in range(1, 2 * links - 1, 2)]
+    if nailed:
+        structure.nail(0)
+    return structure

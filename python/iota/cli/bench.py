@@ -63,7 +63,7 @@ def measure_all(links: list[int]) -> Iterator[Case]:
     for count in links:
         for kind in ("two_point", "rod"):
             system = iota.System()
-            chain(system, count, 0.1 * count, 0.005, (0, 0, 0), (1, 0, 0), 0.1 * count, rods=kind == "rod")
+            chain(count, 0.1 * count, 0.005, (0, 0, 0), (1, 0, 0), 0.1 * count, rods=kind == "rod").realize(system)
             start = system.snapshot()
             for mode in MODES:
                 for rate in STEP_RATES:

@@ -18,7 +18,7 @@ def build(links: int = 24, repeat: bool = True) -> iota.World:
 
     Up to 500 links keep their energy; finer chains, whose links whirl faster than any eye, are stepped robustly."""
     system = iota.System(damping=0.05, mode="energy_keeping" if links <= 500 else "robust")
-    chain = iota.builder.chain(system, links, LENGTH, top=NAIL, direction=(0.85, -0.55, 0.1))
+    chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(0.85, -0.55, 0.1)).realize(system).bodies
     world = iota.World(system, title="chain", look="rope")
     present(world, chain)
     iota.forces.floor(world)

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is wrong with a structure, in sentences that name the item."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from itertools import chain
+from operator import index
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iota.builder.parts import JOINT_KINDS, TIE_KINDS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from iota.builder.contents import Contents
+
+    Numbers = NDArray[np.int64]
+
+NEAR = 1e-6  # m: a hinge's two points are at one place
+
+
+def label(what: str, number: int, name: str = "") -> str:
+    """'body 3 "door"'."""
+    return f'{what} {number} "{name}"' if name else f"{what} {number}"
+
+
+def problems(structure: Contents) -> Iterator[str]:
+    """One sentence for each inconsistency; none for a structure that can be realized."""
+    members = _members(structure)
+    wrong = [*_missing_points(structure, members), *_missing_bodies(structure)]
+    if wrong:  # the other checks look things up
+        yield from wrong
+        return
+    owner = np.full(len(structure.points), -1)
+    owner[members] = np.repeat(np.arange(len(structure.bodies)), [len(body.points) for body in structure.bodies])
+    yield from _points(structure, members)
+    yield from _bodies(structure)
+    yield from _hinges(structure, owner)
+    yield from _kinds(structure)
+    yield from _names(structure)
+
+
+def _members(structure: Contents) -> Numbers:
+    """The points of all bodies, one after the other."""
+    return _numbers(chain.from_iterable(body.points for body in structure.bodies))
+
+
+def _numbers(values: Iterable[int]) -> Numbers:
+    """As an array; what is no whole number becomes -1."""
+    listed = list(values)
+    try:
+        return np.fromiter(map(index, listed), int, len(listed))
+    except (TypeError, OverflowError):
+        return np.array([value if isinstance(value, int) and abs(value) < 2**62 else -1 for value in listed], int)
+
+
+def _missing_points(structure: Contents, members: Numbers) -> Iterator[str]:
+    """Points that are referred to and are not there."""
+    count = len(structure.points)
+
+    def all_there(numbers: Numbers) -> bool:
+        return bool(((numbers >= 0) & (numbers < count)).all())
+
+    def unknown(owner: str, numbers: Iterable[int]) -> Iterator[str]:
+        for number in numbers:
+            if not all_there(_numbers([number])):
+                yield f"{owner}: there is no point {number!r}, only {count} points"
+
+    if not all_there(members):
+        for number, body in enumerate(structure.bodies):
+            yield from unknown(label("body", number, body.name), body.points)
+    for number, bond in enumerate(structure.bonds):
+        yield from unknown(label("bond", number, bond.name), (bond.p, bond.q))
+    for number, tie in enumerate(structure.ties):
+        yield from unknown(label(tie.kind, number, tie.name), (tie.p, tie.q))
+    for what, pairs in (("hinge", structure.hinges), ("line", structure.lines)):
+        if not all_there(_numbers(chain.from_iterable(pairs))):
+            for number, pair in enumerate(pairs):
+                yield from unknown(label(what, number), pair)
+    yield from unknown("nails", structure.nails)
+    for name, group in structure.groups.items():
+        yield from unknown(f'group "{name}"', group)
+    for name, point in structure.point_names.items():
+        yield from unknown(f'name "{name}"', (point,))
+
+
+def _missing_bodies(structure: Contents) -> Iterator[str]:
+    count = len(structure.bodies)
+    for number, joint in enumerate(structure.joints):
+        for body in (joint.a, joint.b):
+            if body is not None and not 0 <= body < count:
+                yield f"{label(joint.kind, number, joint.name)}: there is no body {body!r}, only {count} bodies"
+
+
+def _points(structure: Contents, members: Numbers) -> Iterator[str]:
+    points = structure.points
+    for name, rows in (("position", points.position), ("velocity", points.velocity)):
+        for number in np.flatnonzero(~np.isfinite(rows).all(axis=1)):
+            yield f"point {number}: its {name} must be finite, not {tuple(rows[number].tolist())}"
+    for number in np.flatnonzero(~(np.isfinite(points.mass) & (points.mass >= 0))):
+        yield f"point {number}: its mass must be finite and at least 0 kg, not {points.mass[number]}"
+    uses = np.bincount(members, minlength=len(points))
+    for number in np.flatnonzero(uses > 1):
+        yield f"point {number} is in {uses[number]} bodies, or twice in one; hinge two points instead"
+    for number in np.flatnonzero((uses == 0) & (points.mass == 0)):
+        yield f"point {number}: it is a body of its own, so its mass must be above 0 kg"
+
+
+def _bodies(structure: Contents) -> Iterator[str]:
+    for number, body in enumerate(structure.bodies):
+        name = label("body", number, body.name)
+        if body.shape is None and not body.points:
+            yield f"{name} has neither points nor a shape"
+        if body.shape is not None:
+            for point in body.points:
+                if structure.points.mass[point] != 0:
+                    yield f"{name} has its mass from its shape, so the mass of point {point} must be 0 kg"
+        if body.rod is not None and len(body.points) != 2:
+            yield f"{name}: a rod has two points, not {len(body.points)}"
+        if body.style and body.style not in structure.styles:
+            yield f"{name}: there is no style {body.style!r}"
+
+
+def _hinges(structure: Contents, owner: Numbers) -> Iterator[str]:
+    if not structure.hinges:
+        return
+    pairs = _numbers(chain.from_iterable(structure.hinges)).reshape(-1, 2)
+    p, q = pairs[:, 0], pairs[:, 1]
+    gaps = np.linalg.norm(structure.points.position[p] - structure.points.position[q], axis=1)
+    for number in np.flatnonzero(~(gaps <= NEAR)):
+        yield f"hinge {number}: points {p[number]} and {q[number]} are {gaps[number]:.6g} m apart"
+    for number in np.flatnonzero((p == q) | ((owner[p] == owner[q]) & (owner[p] >= 0))):
+        yield f"hinge {number}: points {p[number]} and {q[number]} are of one body"
+
+
+def _kinds(structure: Contents) -> Iterator[str]:
+    for number, joint in enumerate(structure.joints):
+        if joint.kind not in JOINT_KINDS:
+            yield f"{label('joint', number, joint.name)}: kind must be one of {', '.join(JOINT_KINDS)}, not {joint.kind!r}"
+    for number, tie in enumerate(structure.ties):
+        if tie.kind not in TIE_KINDS:
+            yield f"{label('tie', number, tie.name)}: kind must be one of {', '.join(TIE_KINDS)}, not {tie.kind!r}"
+
+
+def _names(structure: Contents) -> Iterator[str]:
+    named = (structure.bodies, structure.bonds, structure.joints, structure.ties)
+    names = Counter(item.name for items in named for item in items if item.name)
+    names.update(structure.point_names.keys())
+    for name, count in names.items():
+        if count > 1:
+            yield f'the name "{name}" is given {count} times'

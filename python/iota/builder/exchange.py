@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Structures as JSON: the contents' own fields, without those that have their usual value; a shape is
+{"type": "box", "size": [...]}."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from typing import Any, TypeVar
+
+import numpy as np
+
+from iota._core import Box, Capsule, Cylinder, Mesh, Sphere, Torus, Vec3
+from iota.builder.checks import label
+from iota.builder.contents import Contents
+from iota.builder.parts import Joint, RigidBody, Shape, SoftBond, Tie
+
+# By the names of their constructors' arguments, which are those of their properties.
+SHAPES: dict[str, tuple[Callable[..., Shape], tuple[str, ...]]] = {
+    "sphere": (Sphere, ("radius",)),
+    "box": (Box, ("size",)),
+    "cylinder": (Cylinder, ("radius", "length")),
+    "capsule": (Capsule, ("radius", "length")),
+    "torus": (Torus, ("radius", "tube")),
+    "mesh": (Mesh, ("vertices", "triangles")),
+}
+PARTS: dict[str, type[Any]] = {"bodies": RigidBody, "bonds": SoftBond, "joints": Joint, "ties": Tie}
+PAIRS = ("hinges", "lines")
+PLAIN = ("nails", "groups", "point_names", "styles")
+
+Filled = TypeVar("Filled", bound=Contents)
+
+
+def to_json(structure: Contents) -> dict[str, Any]:
+    data: dict[str, Any] = {"points": structure.points.to_json()}
+    for name, kind in PARTS.items():
+        data[name] = [
+            _part(part, label(kind.__name__, number, part.name)) for number, part in _counted(structure, name)
+        ]
+    for name in (*PAIRS, *PLAIN):
+        data[name] = _plain(getattr(structure, name), name)
+    return data
+
+
+def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
+    """Fills an empty structure."""
+    known = {"points", *PARTS, *PAIRS, *PLAIN}
+    if unknown := sorted(data.keys() - known):
+        raise ValueError(f"a structure has no {', '.join(unknown)}; it has {', '.join(sorted(known))}")
+    structure.points.add(
+        **{name: np.reshape(rows, (-1, 3) if name != "mass" else -1) for name, rows in data["points"].items()}
+    )
+    for name, kind in PARTS.items():
+        for number, entry in enumerate(data.get(name, ())):
+            try:
+                shape = {"shape": _to_shape(entry["shape"])} if "shape" in entry else {}
+                getattr(structure, name).append(kind(**entry | shape))
+            except (TypeError, ValueError) as error:
+                raise ValueError(f"{label(kind.__name__, number, entry.get('name', ''))}: {error}") from None
+    for name in PAIRS:
+        setattr(structure, name, [(p, q) for p, q in data.get(name, ())])
+    for name in PLAIN:
+        setattr(structure, name, data.get(name, getattr(structure, name)))
+    return structure
+
+
+def _counted(structure: Contents, name: str) -> enumerate[Any]:
+    return enumerate(getattr(structure, name))
+
+
+def _part(part: Any, name: str) -> dict[str, Any]:
+    entry = {}
+    for field in fields(part):
+        value = getattr(part, field.name)
+        if value != field.default:
+            entry[field.name] = _plain(value, f"{name}: {field.name}")
+    return entry
+
+
+def _plain(value: Any, name: str) -> Any:
+    """The value as lists, numbers and texts. Raises ValueError that says whose it is."""
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, float) and math.isfinite(value):
+        return value
+    if isinstance(value, dict):
+        return {key: _plain(item, f"{name}.{key}") for key, item in value.items()}
+    for word, (kind, sizes) in SHAPES.items():
+        if isinstance(value, kind):  # type: ignore[arg-type]
+            return {"type": word, **{size: _plain(getattr(value, size), name) for size in sizes}}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, Vec3 | Sequence):
+        return [_plain(item, name) for item in value]
+    raise ValueError(f"{name} cannot be saved: {value!r}")
+
+
+def _to_shape(entry: dict[str, Any]) -> Shape:
+    word = entry.get("type")
+    if word not in SHAPES:
+        raise ValueError(f"the type of a shape must be one of {', '.join(SHAPES)}, not {word!r}")
+    kind, sizes = SHAPES[word]
+    return kind(**{size: entry[size] for size in sizes})

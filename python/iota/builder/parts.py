@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parts of a structure besides its points. Points and bodies are named by their numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from iota._core import Box, Capsule, Cylinder, Mesh, Sphere, Torus
+from iota.builder.points import Vector
+
+Shape = Box | Capsule | Cylinder | Mesh | Sphere | Torus
+Law = str | Callable[..., Any]
+BodyKind = Literal["dynamic", "static", "scripted", "inactive", "resting"]
+JointKind = Literal["ball", "weld", "revolute", "prismatic", "cylindrical", "universal", "orientation"]
+TieKind = Literal["rod", "rope"]
+
+JOINT_KINDS: tuple[str, ...] = ("ball", "weld", "revolute", "prismatic", "cylindrical", "universal", "orientation")
+TIE_KINDS: tuple[str, ...] = ("rod", "rope")
+
+
+@dataclass
+class RigidBody:
+    """A rigid connection of points. By shape, it has the shape's mass and inertia, and its points, of mass 0, are
+    attachments. rod: mass (kg) and radius (m) of a solid cylinder between its two points."""
+
+    points: list[int]
+    name: str = ""
+    kind: BodyKind = "dynamic"
+    damping: float = 0.0  # 1/s
+    rod: tuple[float, float] | None = None
+    shape: Shape | None = None
+    density: float = 1000.0  # kg/m^3
+    mass: float | None = None  # kg, instead of a density
+    position: Vector = (0.0, 0.0, 0.0)  # of the shape's origin, m
+    orientation: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0)  # of the shape, x y z w
+    velocity: Vector = (0.0, 0.0, 0.0)  # m/s, of a body with a shape
+    spin: Vector = (0.0, 0.0, 0.0)  # rad/s, of a body with a shape
+    style: str = ""  # one of the structure's styles
+
+
+@dataclass
+class SoftBond:
+    """A force between two points, as `System.bond` takes it."""
+
+    p: int
+    q: int
+    law: Law
+    parameters: dict[str, float | None] = field(default_factory=dict)
+    implicit: bool | None = None
+    break_force: float = float("inf")  # N
+    name: str = ""
+
+
+@dataclass
+class Joint:
+    """A joint between two bodies, as the method of `System` of that name takes it. b: None for the world."""
+
+    kind: JointKind
+    a: int
+    b: int | None = None
+    options: dict[str, Any] = field(default_factory=dict)  # at, axis, limits, motor ...
+    name: str = ""
+
+
+@dataclass
+class Tie:
+    """A rod or rope between two points of different bodies."""
+
+    kind: TieKind
+    p: int
+    q: int
+    length: float | None = None  # m, None: their distance
+    break_force: float = float("inf")  # N
+    name: str = ""

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The points of a structure: a table that grows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from iota._core import Vec3
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+Vector = Sequence[float] | Vec3
+
+
+class Points:
+    """Places (m), velocities (m/s) and masses (kg) of n points, one row each.
+
+    `position` and `velocity` (n, 3) and `mass` (n,) are views, float64: write into them, but ask again after `add`.
+    """
+
+    def __init__(self) -> None:
+        self._rows = np.empty((0, 7))
+        self._count = 0
+
+    def __len__(self) -> int:
+        return self._count
+
+    @property
+    def position(self) -> Array:
+        return self._rows[: self._count, 0:3]
+
+    @property
+    def velocity(self) -> Array:
+        return self._rows[: self._count, 3:6]
+
+    @property
+    def mass(self) -> Array:
+        return self._rows[: self._count, 6]
+
+    def add(self, position: ArrayLike, mass: ArrayLike = 1.0, velocity: ArrayLike = (0.0, 0.0, 0.0)) -> range:
+        """Adds points; returns their numbers. position: (k, 3) or (3,). mass, velocity: one for all, or one each."""
+        places = np.atleast_2d(np.asarray(position, float))
+        if places.ndim != 2 or places.shape[1] != 3:
+            raise ValueError(f"position must be of shape (k, 3), not {np.shape(position)}")
+        first, self._count = self._count, self._count + len(places)
+        if self._count > len(self._rows):
+            grown = np.empty((max(2 * len(self._rows), self._count), 7))
+            grown[:first] = self._rows[:first]
+            self._rows = grown
+        new = self._rows[first : self._count]
+        new[:, 0:3], new[:, 3:6], new[:, 6] = places, velocity, mass
+        return range(first, self._count)
+
+    def to_json(self) -> dict[str, Any]:
+        return {name: getattr(self, name).tolist() for name in ("position", "velocity", "mass")}

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The common data structure of builders and importers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from iota._core import System, Vec3
+from iota.builder import exchange
+from iota.builder.checks import problems
+from iota.builder.contents import Contents
+from iota.builder.parts import Joint, JointKind, Law, RigidBody, SoftBond, Tie, TieKind
+from iota.builder.points import Vector
+from iota.builder.realized import Realized, realize
+
+if TYPE_CHECKING:
+    from iota.world import World
+
+
+class Shift(NamedTuple):
+    """What is added to the numbers of points and bodies of a structure that was merged into another one."""
+
+    points: int
+    bodies: int
+
+
+class Structure(Contents):
+    """Points, rigid and soft connections, joints, nails, groups and styles as plain data: made without a system, copied,
+    moved, merged, saved, and put into a system as often as wanted.
+
+    The methods that add something have the names that make it in a `System`, and return its number.
+
+        ladder = iota.builder.Structure()
+        a, b = ladder.point((0, 2, 0)), ladder.point((0.3, 2, 0))
+        ladder.body(a, b, name="rung")
+        ladder.nail(a)
+        rung = ladder.realize(system)["rung"]
+    """
+
+    # --- adding ---------------------------------------------------------------------------------------------------
+
+    def point(self, position: Vector, mass: float = 1.0, velocity: Vector = (0.0, 0.0, 0.0), name: str = "") -> int:
+        """A point; position in m, mass in kg, velocity in m/s. `points.add` takes arrays of many."""
+        number = self.points.add(tuple(Vec3(*position)), mass, tuple(Vec3(*velocity)))[0]
+        if name:
+            self.point_names[name] = number
+        return number
+
+    def body(self, *points: int, **options: Any) -> int:
+        """A rigid connection of points; options: the fields of `RigidBody`, such as shape, density, position, name."""
+        self.bodies.append(RigidBody(list(points), **options))
+        return len(self.bodies) - 1
+
+    def hinge(self, p: int, q: int) -> None:
+        """Makes two points of different bodies, at one place, a hinge."""
+        self.hinges.append((p, q))
+
+    def bond(
+        self,
+        p: int,
+        q: int,
+        law: Law,
+        *,
+        implicit: bool | None = None,
+        break_force: float = float("inf"),
+        name: str = "",
+        **parameters: float | None,
+    ) -> int:
+        """A force between two points, as `System.bond` takes it."""
+        self.bonds.append(SoftBond(p, q, law, parameters, implicit, break_force, name))
+        return len(self.bonds) - 1
+
+    def joint(self, kind: JointKind, a: int, b: int | None = None, *, name: str = "", **options: Any) -> int:
+        """A joint of body a with body b, None for the world; options: as the method of `System` of that name has them.
+
+        cart.joint("revolute", wheel, frame, at=(0, 0.1, 0), axis=(0, 0, 1))
+        """
+        self.joints.append(Joint(kind, a, b, options, name))
+        return len(self.joints) - 1
+
+    def tie(
+        self,
+        kind: TieKind,
+        p: int,
+        q: int,
+        length: float | None = None,
+        *,
+        break_force: float = float("inf"),
+        name: str = "",
+    ) -> int:
+        """A 'rod' or 'rope' between two points of different bodies; length in m, None for their distance."""
+        self.ties.append(Tie(kind, p, q, length, break_force, name))
+        return len(self.ties) - 1
+
+    def cosmetic_bond(self, p: int, q: int) -> None:
+        """A line to be drawn between two points of one body."""
+        self.lines.append((p, q))
+
+    def nail(self, *points: int) -> None:
+        """Holds points where they are."""
+        self.nails += points
+
+    def group(self, name: str, points: Iterable[int]) -> None:
+        """Adds points to the named set of particles."""
+        self.groups.setdefault(name, []).extend(points)
+
+    # --- as a whole -----------------------------------------------------------------------------------------------
+
+    def problems(self) -> list[str]:
+        """One sentence for each inconsistency, naming the item; none for a structure that can be realized."""
+        return list(problems(self))
+
+    def realize(self, system: System, world: World | None = None) -> Realized:
+        """Puts it into a system, all of it or nothing, and returns the handles. With a world, its bodies get their styles
+        there. Raises ValueError that names what is wrong.
+
+        chain = iota.builder.chain(links=24).realize(system)
+        """
+        return realize(self, system, world)
+
+    def copy(self) -> Structure:
+        """An independent one; shapes and styles, which nobody changes, are shared."""
+        twin = Structure()
+        twin.points.add(self.points.position, self.points.mass, self.points.velocity)
+        twin.bodies = [replace(body, points=list(body.points)) for body in self.bodies]
+        twin.bonds = [replace(bond, parameters=dict(bond.parameters)) for bond in self.bonds]
+        twin.joints = [replace(joint, options=dict(joint.options)) for joint in self.joints]
+        twin.ties = [replace(tie) for tie in self.ties]
+        twin.hinges, twin.lines, twin.nails = list(self.hinges), list(self.lines), list(self.nails)
+        twin.groups = {name: list(members) for name, members in self.groups.items()}
+        twin.point_names, twin.styles = dict(self.point_names), dict(self.styles)
+        return twin
+
+    def __add__(self, offset: Vector) -> Structure:
+        """A copy, moved by a vector (m)."""
+        way = Vec3(*offset)
+        moved = self.copy()
+        moved.points.position[:] += np.asarray(way)
+        for body in moved.bodies:
+            body.position = Vec3(*body.position) + way
+        for joint in moved.joints:
+            if "at" in joint.options:
+                joint.options["at"] = Vec3(*joint.options["at"]) + way
+        return moved
+
+    def merge(self, other: Structure, prefix: str = "") -> Shift:
+        """Takes in another structure, whose names get `prefix` in front. Groups of one name become one; styles of one name
+        must be equal. Returns what was added to its numbers of points and bodies.
+
+            for x in range(3):
+                row.merge(tower + (x, 0, 0), prefix=f"{x} ")
+        """
+        for name, style in other.styles.items():
+            if self.styles.setdefault(name, style) != style:
+                raise ValueError(f"the two structures have different styles {name!r}")
+        other = other.copy()
+        points, bodies = self.points, len(self.bodies)
+        shift = Shift(len(points), bodies)
+
+        def named(name: str) -> str:
+            return prefix + name if name else ""
+
+        def pairs(listed: list[tuple[int, int]]) -> list[tuple[int, int]]:
+            return [(p + shift.points, q + shift.points) for p, q in listed]
+
+        points.add(other.points.position, other.points.mass, other.points.velocity)
+        self.bodies += [
+            replace(body, points=[p + shift.points for p in body.points], name=named(body.name))
+            for body in other.bodies
+        ]
+        self.hinges += pairs(other.hinges)
+        self.lines += pairs(other.lines)
+        self.nails += [point + shift.points for point in other.nails]
+        for bond in other.bonds:
+            self.bonds.append(replace(bond, p=bond.p + shift.points, q=bond.q + shift.points, name=named(bond.name)))
+        for tie in other.ties:
+            self.ties.append(replace(tie, p=tie.p + shift.points, q=tie.q + shift.points, name=named(tie.name)))
+        for joint in other.joints:
+            b = None if joint.b is None else joint.b + bodies
+            self.joints.append(replace(joint, a=joint.a + bodies, b=b, name=named(joint.name)))
+        for name, members in other.groups.items():
+            self.group(name, [member + shift.points for member in members])
+        self.point_names |= {prefix + name: point + shift.points for name, point in other.point_names.items()}
+        return shift
+
+    def to_json(self) -> dict[str, Any]:
+        """Lists, numbers and texts for `json.dumps`. Raises ValueError for a bond whose law is a function."""
+        return exchange.to_json(self)
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Structure:
+        """What `to_json` gave. Raises ValueError that names what is wrong."""
+        return exchange.from_json(cls(), data)
