@@ -61,17 +61,20 @@ constexpr std::array<const char*, 33> names{"make_body",
 
 constexpr std::uint32_t newest = 0xffffffff;  // as a or b: the particle in the last slot
 
-/// A system under a script, and what the script made.
+/// Turns deeds into calls.
 class Player {
  public:
-  Player(Tally& tally, bool jointed) : tally_(tally), jointed_(jointed) {}
+  explicit Player(Tally& tally, std::string* log = nullptr) : tally_(tally), watched_(tally, log) {}
 
   std::optional<std::string> act(const Deed& deed) {
     Dice dice{deed.seed};
     const bool compare = dice.below(4) == 0;
     const std::uint64_t hash = compare ? system_.state_hash() : 0;
     try {
-      if (deed.kind == DeedKind::step) return step(dice);
+      if (deed.kind == DeedKind::step) {
+        constexpr std::array<double, 4> steps{1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240};
+        return watched_.step(steps[dice.below(4)]);
+      }
       edit(deed, dice);
       ++tally_.edits;
     } catch (const std::invalid_argument& refusal) {
@@ -81,58 +84,13 @@ class Player {
     } catch (const std::exception& error) {
       return std::string("an error of our own: ") + error.what();
     }
-    const std::vector<std::string> complaints = system_.validate();
-    if (!complaints.empty()) return complaints.front();
-    if (!std::isfinite(system_.energy().total())) return "the energy is not finite";
-    return std::nullopt;
+    return watched_.check();
   }
 
  private:
-  std::optional<std::string> step(Dice& dice) {
-    constexpr std::array<double, 4> steps{1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240};
-    const Energy before = system_.energy();
-    const StepReport report = system_.step(steps[dice.below(4)]);
-    ++tally_.steps;
-    tally_.unconverged += report.unconverged > 0;
-    tally_.fallbacks += static_cast<std::uint64_t>(report.fallbacks);
-    const Energy& after = report.energy;
-    if (!std::isfinite(after.total()) || !std::isfinite(after.dissipated) || !std::isfinite(report.worst_gap))
-      return "a step ended with numbers that are not finite";
-    if (report.unconverged == 0 && report.resting == 0) {  // who was put to rest in a conflict keeps it
-      tally_.gap = std::max(tally_.gap, report.worst_gap);
-      // 1e-6 of a body, which may be 3 m long.
-      if (report.worst_gap > 3e-6) return say("a gap of ", report.worst_gap, " m, and the step says that it converged");
-    }
-    const double book = after.total() + after.dissipated - after.external_work - after.edits -
-                        (before.total() + before.dissipated - before.external_work - before.edits);
-    const double size = before.kinetic + after.kinetic + std::abs(before.potential) + std::abs(after.potential) +
-                        std::abs(after.edits) + std::abs(after.external_work) + std::abs(after.dissipated);
-    // Joints that are pulled together at once from far away may turn by more than half a turn: one scene in ten thousand.
-    const double exact = jointed_ ? 1e-2 : 1e-9;
-    if (std::abs(book) > exact * size) return say("the energy book does not add up: ", book, " J of ", size);
-    // Gaps of 1e-9 of a link times the forces of a thousand kilogrammes: energy may wander a little, not jump.
-    const double made_up = before.dissipated - after.dissipated;
-    const double motion = before.kinetic + after.kinetic + std::abs(after.potential - before.potential) +
-                          std::abs(after.edits - before.edits) + 1e-6 * std::abs(after.potential) + 1e-6;
-    if (!disturbed_) {
-      const bool rescued = report.fallbacks > 0 || report.unconverged > 0;  // had to fall back, and says so
-      double& most = jointed_ ? tally_.made_up_with_joints : rescued ? tally_.made_up_by_rescues : tally_.made_up;
-      most = std::max(most, made_up / motion);
-      // Curves and surfaces are no quadratic constraints: at the default accuracy a fast step round a bend may gain.
-      const double allowed = jointed_ ? 0.5 : rescued ? 0.2 : 2e-3;
-      if (made_up > allowed * motion) return say("a step made up ", made_up, " J of ", motion, " J");
-    }
-    disturbed_ = !grips_.empty();
-    const std::vector<std::string> complaints = system_.validate();
-    if (!complaints.empty()) return complaints.front();
-    return std::nullopt;
-  }
-
-  template <class... Parts>
-  static std::string say(const Parts&... parts) {
-    std::ostringstream text;
-    (text << ... << parts);
-    return text.str();
+  template <class... Arguments>
+  void call(std::string_view verb, const Arguments&... arguments) {
+    watched_.call(verb, arguments...);
   }
 
   void edit(const Deed& deed, Dice& dice) {
@@ -143,11 +101,15 @@ class Player {
                      q = particles.empty() ? ParticleId{} : pick(deed.b);
     switch (deed.kind) {
       case DeedKind::make_body: {
-        const BodyId body = system_.create_body();
+        call("body");
+        const BodyId body = watched_.body;
         const Vec3 center = dice.point(1), velocity = dice.point(2);
         const std::uint32_t count = 1 + dice.below(5);
-        for (std::uint32_t i = 0; i < count; ++i)
-          system_.create_particle(body, center + dice.point(0.4), dice.mass(), velocity + dice.point(1));
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const Vec3 own = dice.point(1);
+          const double mass = dice.mass();
+          call("particle", body, center + dice.point(0.4), mass, velocity + own);
+        }
         break;
       }
       case DeedKind::make_solid: make_solid(p, dice); break;
@@ -161,112 +123,107 @@ class Player {
       case DeedKind::bridge: {
         const Vec3 from = system_.position(p), to = system_.position(q);
         if (norm(to - from) < 1e-3) break;
-        (void)system_.combine(link(p, from, to, dice), q);
+        call("combine", link(p, from, to, dice), q, 0);
         break;
       }
       case DeedKind::combine:
-        if (may_meet(p, q, dice)) (void)system_.combine(p, q);
+        if (may_meet(p, q, dice)) call("combine", p, q, 0);
         break;
       case DeedKind::combine_slowly:
-        if (may_meet(p, q, dice)) (void)system_.combine(p, q, dice.uniform(0.02, 0.3));
+        if (may_meet(p, q, dice)) call("combine", p, q, dice.uniform(0.02, 0.3));
         break;
-      case DeedKind::combine_bodies: (void)system_.combine(system_.body(p), system_.body(q)); break;
+      case DeedKind::combine_bodies: call("combine_bodies", system_.body(p), system_.body(q)); break;
       case DeedKind::cut: {
         const std::vector<ParticleId> ring = system_.ring(p);
-        if (ring.size() > 1) (void)system_.separate(p, ring[dice.below(static_cast<std::uint32_t>(ring.size()))]);
+        if (ring.size() > 1) call("separate", p, ring[dice.below(static_cast<std::uint32_t>(ring.size()))]);
         break;
       }
       case DeedKind::separate:
-        if (particles.size() < 60) (void)system_.separate(p, q);
+        if (particles.size() < 60) call("separate", p, q);
         break;
-      case DeedKind::nail: system_.nail(p); break;
+      case DeedKind::nail: call("nail", p); break;
       case DeedKind::move_nail:
-        disturbed_ = disturbed_ || system_.is_nailed(p);
-        if (system_.is_nailed(p)) system_.nail(p, system_.position(p) + dice.point(0.2));
+        if (system_.is_nailed(p)) call("move_nail", p, system_.position(p) + dice.point(0.2));
         break;
-      case DeedKind::release: system_.release(p); break;
+      case DeedKind::release: call("release", p); break;
       case DeedKind::spring:
-        if (p != q)
-          system_.create_bond(p, q,
-                              SpringLaw{.stiffness = std::pow(10, dice.uniform(-1, 5)), .damping = dice.uniform(0, 2)});
+        if (p != q) {
+          const double stiffness = std::pow(10, dice.uniform(-1, 5));
+          call("spring", p, q, stiffness, dice.uniform(0, 2));
+        }
         break;
       case DeedKind::drag:
-        if (p != q) system_.create_bond(p, q, DragLaw{dice.uniform(0, 5)});
+        if (p != q) call("drag", p, q, dice.uniform(0, 5));
         break;
       case DeedKind::law: {
         constexpr std::array laws{"tether", "soft_repulsion", "gravity", "attract_repel", "morse", "dashpot"};
-        if (p != q) system_.create_bond(p, q, SharedLaw{.law = system_.find_law(laws[dice.below(laws.size())])});
+        if (p != q) call("law", p, q, laws[dice.below(laws.size())]);
         break;
       }
       case DeedKind::joint: make_joint(p, q, dice); break;
       case DeedKind::distance:
-        if (p != q)
-          system_.create_constraint(DistanceSpec{
-              .kind = dice.below(2) == 0 ? ConstraintKind::rod : ConstraintKind::rope,
-              .p = p,
-              .q = q,
-          });
+        if (p != q) call("distance", number(dice.below(2) == 0 ? ConstraintKind::rod : ConstraintKind::rope), p, q);
         break;
       case DeedKind::surface: make_surface(p, dice); break;
       case DeedKind::path: {
         const Vec3 from = system_.position(p);
-        PathSpec path{.particle = p, .curve = dice.below(2) == 0 ? CurveKind::spline : CurveKind::polyline};
-        path.points = {from - dice.point(0.5), from, from + dice.point(0.5), from + dice.point(1)};
-        path.slide.friction = dice.below(2) == 0 ? 0 : dice.uniform(0, 5);
-        system_.create_constraint(path);
+        const CurveKind curve = dice.below(2) == 0 ? CurveKind::spline : CurveKind::polyline;
+        const Vec3 before = from - dice.point(0.5), next = from + dice.point(0.5), last = from + dice.point(1);
+        const double friction = dice.below(2) == 0 ? 0 : dice.uniform(0, 5);
+        call("path", p, number(curve), friction, before, from, next, last);
         break;
       }
       case DeedKind::switch_constraint: {
         const std::vector<ConstraintId> all = system_.constraints();
         if (all.empty()) break;
         const ConstraintId constraint = all[deed.a % all.size()];
-        system_.set_active(constraint, !system_.state(constraint).active);
+        call("switch_constraint", constraint, system_.state(constraint).active ? 0 : 1);
         break;
       }
       case DeedKind::destroy_constraint: {
         const std::vector<ConstraintId> all = system_.constraints();
-        if (!all.empty()) system_.destroy(all[deed.a % all.size()]);
+        if (!all.empty()) call("destroy_constraint", all[deed.a % all.size()]);
         break;
       }
       case DeedKind::destroy_bond: {
         const std::vector<BondId> bonds = system_.bonds();
-        if (!bonds.empty()) system_.destroy(bonds[deed.a % bonds.size()]);
+        if (!bonds.empty()) call("destroy_bond", bonds[deed.a % bonds.size()]);
         break;
       }
-      case DeedKind::grip:
-        grips_.push_back(system_.create_grip(system_.body(p), dice.point(0.1), system_.position(p) + dice.point(0.5)));
-        disturbed_ = true;
+      case DeedKind::grip: {
+        const Vec3 target = system_.position(p) + dice.point(0.5);
+        call("grip", system_.body(p), dice.point(0.1), target);
         break;
+      }
       case DeedKind::move_grip:
-        forget_dead_grips();
-        if (!grips_.empty()) system_.move_grip(grips_[deed.a % grips_.size()], dice.point(1));
+        if (!grips().empty()) call("move_grip", grips()[deed.a % grips().size()], dice.point(1));
         break;
       case DeedKind::let_go:
-        forget_dead_grips();
-        if (!grips_.empty()) system_.destroy(grips_[deed.a % grips_.size()]);
-        forget_dead_grips();
+        if (!grips().empty()) call("let_go", grips()[deed.a % grips().size()]);
         break;
-      case DeedKind::push:
-        system_.apply_force(p, 10 * dice.point(1));
-        disturbed_ = true;
-        break;
-      case DeedKind::set_velocity: system_.set_velocity(p, dice.point(3)); break;
-      case DeedKind::set_mass: system_.set_mass(p, dice.mass()); break;
+      case DeedKind::push: call("push", p, 10 * dice.point(1)); break;
+      case DeedKind::set_velocity: call("set_velocity", p, dice.point(3)); break;
+      case DeedKind::set_mass: call("set_mass", p, dice.mass()); break;
       case DeedKind::set_kind: {
         constexpr std::array kinds{BodyKind::dynamic,  BodyKind::dynamic,  BodyKind::static_,
                                    BodyKind::scripted, BodyKind::inactive, BodyKind::resting};
-        system_.set_kind(system_.body(p), kinds[dice.below(kinds.size())]);
-        disturbed_ = true;
+        call("set_kind", system_.body(p), number(kinds[dice.below(kinds.size())]));
         break;
       }
-      case DeedKind::destroy_particle: system_.destroy(p); break;
-      case DeedKind::destroy_body: system_.destroy(system_.body(p)); break;
+      case DeedKind::destroy_particle: call("destroy_particle", p); break;
+      case DeedKind::destroy_body: call("destroy_body", system_.body(p)); break;
       case DeedKind::set_mode:
-        system_.set_mode(dice.below(2) == 0 ? IntegrationMode::robust : IntegrationMode::energy_keeping);
+        call("set_mode", number(dice.below(2) == 0 ? IntegrationMode::robust : IntegrationMode::energy_keeping));
         break;
       case DeedKind::step: break;
     }
   }
+
+  template <class Enum>
+  static int number(Enum value) {
+    return static_cast<int>(value);
+  }
+  const std::vector<GripId>& grips() const { return watched_.grips(); }
 
   /// Particles of bodies that hang together already can seldom meet; one pair in eight may try.
   bool may_meet(ParticleId p, ParticleId q, Dice& dice) const {
@@ -275,72 +232,67 @@ class Player {
 
   /// A two-point body whose first end is combined with p; returns its second end.
   ParticleId link(ParticleId p, const Vec3& from, const Vec3& to, Dice& dice) {
-    const BodyId body = system_.create_body();
     const double mass = dice.mass();
     const Vec3 velocity = system_.velocity(p);
-    const ParticleId first = system_.create_particle(body, from, mass, velocity);
-    const ParticleId second = system_.create_particle(body, to, mass, velocity);
-    if (dice.below(3) == 0) system_.set_rod(body, mass, 0.02);
-    (void)system_.combine(p, first);
+    call("body");
+    const BodyId body = watched_.body;
+    call("particle", body, from, mass, velocity);
+    const ParticleId first = watched_.particle;
+    call("particle", body, to, mass, velocity);
+    const ParticleId second = watched_.particle;
+    if (dice.below(3) == 0) call("rod", body, mass, 0.02);
+    call("combine", p, first, 0);
     return second;
   }
 
   void make_solid(ParticleId p, Dice& dice) {
-    SolidOptions options;
-    options.mass = dice.mass();
-    options.position = dice.point(1);
-    options.velocity = dice.point(1), options.spin = dice.point(3);
+    const double mass = dice.mass();
+    const Vec3 position = dice.point(1), velocity = dice.point(1), spin = dice.point(3);
     const double size = dice.uniform(0.05, 0.3);
-    options.attachments = {{size, 0, 0}, {-size, 0.5 * size, 0.2 * size}};
-    BodyId body;
-    switch (dice.below(4)) {
-      case 0: body = system_.create_body(Box{{size, 2 * size, 0.3 * size}}, options); break;
-      case 1: body = system_.create_body(Sphere{size}, options); break;
-      case 2: body = system_.create_body(Cylinder{0.1 * size, size}, options); break;
-      default: body = system_.create_body(Torus{size, 0.2 * size}, options); break;
-    }
-    (void)system_.combine(p, system_.attachments(body).front());
+    const std::array<std::pair<const char*, Vec3>, 4> shapes{{{"box", {size, 2 * size, 0.3 * size}},
+                                                              {"sphere", {size, 0, 0}},
+                                                              {"cylinder", {0.1 * size, size, 0}},
+                                                              {"torus", {size, 0.2 * size, 0}}}};
+    const auto& [shape, sizes] = shapes[dice.below(4)];
+    call("solid", shape, sizes, mass, position, velocity, spin, Vec3{size, 0, 0}, Vec3{-size, 0.5 * size, 0.2 * size});
+    call("combine", p, system_.attachments(watched_.body).front(), 0);
   }
 
   void make_joint(ParticleId p, ParticleId q, Dice& dice) {
     constexpr std::array kinds{ConstraintKind::ball,        ConstraintKind::universal, ConstraintKind::revolute,
                                ConstraintKind::cylindrical, ConstraintKind::prismatic, ConstraintKind::orientation,
                                ConstraintKind::weld};
-    JointSpec joint{.kind = kinds[dice.below(kinds.size())], .a = system_.body(p), .b = system_.body(q)};
-    if (dice.below(4) == 0) joint.b = {};
-    joint.at = system_.position(p) + dice.point(0.05), joint.axis = dice.point(1);
-    for (CoordinateOptions* coordinate : {&joint.angle, &joint.slide}) {
+    const ConstraintKind kind = kinds[dice.below(kinds.size())];
+    const BodyId b = dice.below(4) == 0 ? BodyId{} : system_.body(q);
+    const Vec3 at = system_.position(p) + dice.point(0.05), axis = dice.point(1);
+    CoordinateOptions angle, slide;
+    for (CoordinateOptions* coordinate : {&angle, &slide}) {
       if (dice.below(4) == 0) coordinate->lower = -dice.uniform(0, 1), coordinate->upper = dice.uniform(0, 1);
       if (dice.below(4) == 0) coordinate->friction = dice.uniform(0, 5);
       if (dice.below(4) == 0) coordinate->stiffness = dice.uniform(0, 100), coordinate->damping = dice.uniform(0, 1);
     }
-    system_.create_constraint(joint);
+    call("joint", number(kind), system_.body(p), b, at, axis, angle.lower, angle.upper, angle.friction, angle.stiffness,
+         angle.damping, slide.lower, slide.upper, slide.friction, slide.stiffness, slide.damping);
   }
 
   /// A particle on a sphere or plane through its place, inside or outside of one that it is inside or outside of.
   void make_surface(ParticleId p, Dice& dice) {
     constexpr std::array kinds{ConstraintKind::surface, ConstraintKind::inside, ConstraintKind::outside};
-    SurfaceSpec spec{.kind = kinds[dice.below(kinds.size())], .particle = p};
+    const ConstraintKind kind = kinds[dice.below(kinds.size())];
     const double radius = dice.uniform(0.2, 1);
     Vec3 away = dice.point(1);
     away = (radius / (norm(away) + 1e-9)) * away;
-    const double part = spec.kind == ConstraintKind::surface ? 1 : spec.kind == ConstraintKind::inside ? 0.5 : 1.5;
+    const double part = kind == ConstraintKind::surface ? 1 : kind == ConstraintKind::inside ? 0.5 : 1.5;
+    const Vec3 place = system_.position(p);
     if (dice.below(2) == 0)
-      spec.surface.shape = Sphere{radius}, spec.surface.position = system_.position(p) + part * away;
+      call("on_sphere", number(kind), p, place + part * away, radius);
     else
-      spec.surface.shape = Plane{away}, spec.surface.position = system_.position(p) - (part - 1) * away;
-    system_.create_constraint(spec);
-  }
-
-  void forget_dead_grips() {
-    std::erase_if(grips_, [&](GripId grip) { return !system_.contains(grip); });
+      call("on_plane", number(kind), p, place - (part - 1) * away, away);
   }
 
   Tally& tally_;
-  System system_;
-  std::vector<GripId> grips_;
-  bool jointed_;
-  bool disturbed_ = false;  // somebody outside does work in the next step
+  WatchedSystem watched_;
+  const System& system_ = watched_.system();
 };
 
 }  // namespace
@@ -425,11 +377,7 @@ std::vector<Deed> random_script(std::uint64_t seed, const RandomSceneOptions& op
 }
 
 std::optional<std::string> play(const std::vector<Deed>& script, Tally& tally) {
-  const bool jointed = std::any_of(script.begin(), script.end(), [](const Deed& deed) {
-    return deed.kind == DeedKind::joint || deed.kind == DeedKind::distance || deed.kind == DeedKind::surface ||
-           deed.kind == DeedKind::path;
-  });
-  Player player(tally, jointed);
+  Player player(tally);
   ++tally.scenes;
   for (std::size_t i = 0; i < script.size(); ++i)
     if (std::optional<std::string> wrong = player.act(script[i]))
@@ -465,13 +413,12 @@ std::vector<Deed> shrink(std::vector<Deed> script, const std::function<bool(cons
 }
 
 std::string tell(const std::vector<Deed>& script) {
-  std::ostringstream text;
-  text << "std::vector<Deed> script{\n";
+  std::string lines;
+  Tally ignored;
+  Player player(ignored, &lines);
   for (const Deed& deed : script)
-    text << "    {DeedKind::" << names[static_cast<std::size_t>(deed.kind)] << ", " << deed.a << ", " << deed.b << ", "
-         << deed.seed << "u},\n";
-  text << "};\n";
-  return text.str();
+    if (player.act(deed)) break;
+  return lines;
 }
 
 }  // namespace iota::scenes

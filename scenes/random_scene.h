@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <iota/system.h>
+#include "scenes/script.h"
 
 #include <cstdint>
 #include <functional>
@@ -68,15 +68,6 @@ struct RandomSceneOptions {
 
 std::vector<Deed> random_script(std::uint64_t seed, const RandomSceneOptions& options = {});
 
-/// Counts over many plays.
-struct Tally {
-  std::uint64_t scenes = 0, steps = 0, edits = 0, refused = 0, unconverged = 0, fallbacks = 0;
-  /// Largest energy made up by a step without hands and moved nails, over its motion; by one that had to fall back to the
-  /// robust scheme or to a least violation; and in scenes with joints.
-  double made_up = 0, made_up_by_rescues = 0, made_up_with_joints = 0;
-  double gap = 0;  ///< worst of the steps that were reported as solved, m
-};
-
 /// Plays a script on a fresh system. Returns what is wrong, in a sentence, after the first deed that shows it: numbers that
 /// are not finite, structure that is not whole, a gap of a step reported as solved, energy out of nothing, a refused edit
 /// that changed something.
@@ -87,7 +78,7 @@ std::function<bool(const std::vector<Deed>&)> same_complaint_as(const std::vecto
 /// The shortest script found, by leaving out, that still fails.
 std::vector<Deed> shrink(std::vector<Deed> script, const std::function<bool(const std::vector<Deed>&)>& fails);
 
-/// A script as lines of C++.
+/// What a script does to a system, line by line: to be played without this file, see WatchedSystem.
 std::string tell(const std::vector<Deed>& script);
 
 }  // namespace iota::scenes
