@@ -12,6 +12,8 @@ Here is what a script calls, catches or holds; types of what comes back are in `
 Vectors are any 2 or 3 numbers (z is then 0) and come back as `Vec3`. docs/conventions.md has the rules.
 """
 
+from iota import starting as starting  # noqa: I001  # first: what follows takes time
+
 from collections.abc import Sequence
 
 from iota import builder, forces, looks, types

@@ -43,10 +43,10 @@ def swing() -> iota.builder.Structure:
     s = iota.builder.Structure()
     for x, side in ((-0.3, "left"), (0.3, "right")):
         top, end = s.point((x, 2, 0), name=f"{side} nail"), s.point((x, 1, 0))
-        s.body(top, end, name=side, rod=(0.4, 0.01), style="steel")
+        s.body(top, end, name=side, rod=(0.4, 0.01), look="steel")
         s.nail(top)
     ends = [s.point((x, 1, 0), mass=0) for x in (-0.3, 0.3)]
-    board = s.body(*ends, shape=iota.Box((0.7, 0.04, 0.3)), density=700, position=(0, 1, 0), name="board", style="wood")
+    board = s.body(*ends, shape=iota.Box((0.7, 0.04, 0.3)), density=700, position=(0, 1, 0), name="board", look="wood")
     for p, q in zip((1, 3), ends, strict=True):
         s.hinge(p, q)
     ground = s.point((0, 0.2, 0), mass=3)
@@ -55,7 +55,7 @@ def swing() -> iota.builder.Structure:
     s.joint("revolute", lamp, at=(0, 3, 0), axis=(0, 1, 0), motor=(2, 5), name="axle")
     s.tie("rope", ends[1], ground, break_force=100, name="rope")
     s.group("feelers", [0, ground])
-    s.styles = {"steel": {"*": iota.looks.cylinder(0.01)}, "wood": {"*": iota.looks.solid("wood")}}
+    s.looks = {"steel": {"*": iota.looks.cylinder(0.01)}, "wood": {"*": iota.looks.solid("wood")}}
     assert board == 2 and s.problems() == []
     return s
 
@@ -76,7 +76,7 @@ def test_a_structure_becomes_bodies_hinges_bonds_and_joints(system: iota.System)
         made["door"]
 
 
-def test_a_structure_is_drawn_in_its_styles(system: iota.System) -> None:
+def test_a_structure_is_drawn_in_its_looks(system: iota.System) -> None:
     world = iota.World(system)
     made = swing().realize(system, world)
     assert world.classes["wood"] == {"*": iota.looks.solid("wood")} and made["board"].solids
@@ -104,8 +104,8 @@ def test_merging_renumbers_and_renames(system: iota.System) -> None:
     assert made["2 board"].center_of_mass == pytest.approx((4, 1, 0)) and len(made.groups["feelers"]) == 6
     assert made["1 axle"].a == made["1 lamp"] and system.validate() == []
     twice = swing()
-    twice.styles["wood"] = {"*": iota.looks.solid("brass")}
-    with pytest.raises(ValueError, match="different styles 'wood'"):
+    twice.looks["wood"] = {"*": iota.looks.solid("brass")}
+    with pytest.raises(ValueError, match="different looks 'wood'"):
         row.merge(twice)
 
 
@@ -153,7 +153,7 @@ PROBLEMS: dict[str, tuple[Callable[[iota.builder.Structure], object], str]] = {
         r"point 2: its position must be finite, not \(nan",
     ),
     "empty body": (lambda s: s.body(), "body 4 has neither points nor a shape"),
-    "style": (lambda s: s.body(6, style="glass"), "body 4: there is no style 'glass'"),
+    "look": (lambda s: s.body(6, look="glass"), "body 4: there is no look 'glass'"),
     "kind": (lambda s: s.joint("screw", 0), "joint 1: kind must be one of ball"),  # type: ignore[arg-type]
     "name": (lambda s: s.point((0, 0, 0), name="board"), 'the name "board" is given 2 times'),
 }

@@ -106,6 +106,7 @@ def test_headless_runs_ten_seconds_by_itself_and_takes_links() -> None:
         ),
         (["run", "missing.py"], "iota: there is no file missing.py", 1),
         (["run", "chain", "--links", "0"], "argument --links: must be 1 or more, not 0. Try: iota run --help", 2),
+        (["run", "chain", "--links", "1000000000"], "--links: must be at most 1000000, not 1000000000", 2),
         (["run", "chain", "--seconds", "-1"], "argument --seconds: must be above 0, not -1", 2),
         (["run", "chain", "--seconds", "nan"], "must be above 0, not nan", 2),
         (["run", "chain", "--port", "70000"], "argument --port: must be from 0 to 65535, not 70000", 2),
@@ -192,6 +193,21 @@ def test_run_serves_prints_the_address_and_keys_and_stops_by_itself() -> None:
     assert re.fullmatch(r"chain: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0])
     assert [line.split()[0] for line in lines[1:3]] == ["b", "c"]
     assert 1 <= json.loads(lines[3])["steps"] <= 125 and len(lines) == 4
+
+
+def test_an_interrupt_while_starting_is_one_line() -> None:
+    script = "import os, signal, sys, time; sys.argv = ['iota']; import iota; os.kill(os.getpid(), signal.SIGINT); time.sleep(9)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "iota: interrupted\n")
+
+
+def test_a_loop_that_ends_without_close_leaves_nothing_on_the_terminal(tmp_path: Path) -> None:
+    path = tmp_path / "loop.py"
+    path.write_text(
+        "import iota\nworld = iota.World(iota.System())\nworld.serve(port=0)\nfor _ in range(3):\n    world.step()\n"
+    )
+    done = subprocess.run([sys.executable, path], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

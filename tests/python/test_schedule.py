@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import ast
 import time
+from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
 import iota
 from iota.world.callbacks import Hook
-from iota.world.pacer import MAX_CATCH_UP, Pacer
+from iota.world.clock import MAX_CATCH_UP, Clock
 from iota.world.schedule import Schedule
 
 
@@ -64,7 +67,7 @@ def test_a_world_calls_its_timed_events_at_their_steps() -> None:
 
     @world.every(0.1)
     def often(event: iota.Event) -> None:
-        assert event.world is world and event.system is system and event.target is None
+        assert event.system is system and event.target is None
         seen.append(("often", system.time))
 
     steps: list[int] = []
@@ -119,25 +122,75 @@ def test_a_bond_that_fails_in_a_world_is_told_and_the_world_goes_on(capsys: pyte
     assert "bond 0 between particle 0 and particle 1 was switched off" in capsys.readouterr().err
 
 
-def test_the_pacer_takes_as_many_steps_as_time_has_passed() -> None:
-    pacer = Pacer(dt=0.01)
+def test_the_clock_takes_as_many_steps_as_time_has_passed() -> None:
+    clock = Clock(dt=0.01)
     taken, end = 0, time.perf_counter() + 0.3
     while time.perf_counter() < end:
-        taken += pacer.due(paused=False)
-        pacer.sleep(paused=False)
+        taken += clock.due()
+        clock.sleep()
     assert 10 <= taken <= 31, "no more than real time; fewer on a busy machine"
 
 
-def test_the_pacer_lets_time_go_that_cannot_be_caught_up() -> None:
-    pacer = Pacer(dt=0.001)
+def test_the_clock_lets_time_go_that_cannot_be_caught_up() -> None:
+    clock = Clock(dt=0.001)
     time.sleep(0.05)
-    assert pacer.due(paused=False) == MAX_CATCH_UP
-    assert pacer.due(paused=False) <= 1, "no debt is left"
-    assert pacer.reached < 1
+    assert clock.due() == MAX_CATCH_UP
+    assert clock.due() <= 1, "no debt is left"
+    assert clock.reached < 1
 
 
-def test_the_pacer_rests_while_paused() -> None:
-    pacer = Pacer(dt=0.001)
+def test_the_clock_rests_while_paused() -> None:
+    clock = Clock(dt=0.001)
     time.sleep(0.02)
-    assert pacer.due(paused=True) == 0
-    assert pacer.due(paused=False) <= 1
+    clock.paused = True
+    assert clock.due() == 0
+    clock.paused = False
+    assert clock.due() <= 1
+
+
+def test_the_length_of_a_step_is_in_one_place() -> None:
+    world = iota.World(iota.System(), dt=0.01)
+    world.at(0.05)(lambda: setattr(world, "dt", 0.025))
+    summary = run_headless(world, 0.2)
+    assert (summary.steps, summary.dt_s) == (5 + 6, 0.025) and summary.simulated_s == pytest.approx(0.2)
+    for bad in (0, -1, 1.5, float("nan")):
+        with pytest.raises(ValueError, match="dt must be above 0 and at most 1 s"):
+            world.dt = bad
+    assert world.dt == 0.025
+
+
+@pytest.mark.parametrize("stream", ["closed", "full", "none"])
+def test_a_world_goes_on_where_stderr_cannot_be_written(stream: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    with suppress(OSError), open("/dev/full", "w") as full:
+        if stream == "closed":
+            full.close()
+        monkeypatch.setattr("sys.stderr", None if stream == "none" else full)
+        run_a_world_that_fails_and_dawdles()
+
+
+def run_a_world_that_fails_and_dawdles() -> None:
+    world = iota.World(iota.System(), dt=0.01)
+    world.at(0.01)(lambda: 1 / 0)
+    world.at(0.02)(lambda: time.sleep(0.6))  # told to be slow
+    assert run_headless(world, 0.05).steps == 5
+
+
+def test_parts_of_a_world_do_not_import_each_other_in_a_circle() -> None:
+    folder = Path(iota.__file__).parent / "world"
+    uses = {
+        path.stem: {
+            name
+            for node in ast.walk(ast.parse(path.read_text()))
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("iota.world")
+            for name in ([node.module.split(".")[2]] if node.module.count(".") > 1 else [a.name for a in node.names])  # type: ignore[union-attr]
+        }
+        for path in folder.glob("*.py")
+        if path.stem != "__init__"
+    }
+    assert {"world", "state", "inputs", "publisher"} <= uses.keys()
+    left = dict(uses)
+    while left:
+        free = [name for name, used in left.items() if not used & left.keys()]
+        assert free, f"a circle: { {name: used & left.keys() for name, used in left.items()} }"
+        for name in free:
+            del left[name]

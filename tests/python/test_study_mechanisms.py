@@ -35,7 +35,7 @@ def test_the_piston_goes_as_crank_and_rod_say() -> None:
 def test_the_motor_can_be_reversed() -> None:
     world = mechanisms.build()
     motor = next(c for c in world.system.constraints if c.kind == "revolute")
-    world._actions["reverse"].hook.function()
+    world._state.actions["reverse"].hook.function()
     for _ in range(60):
         assert world.system.step(1 / 120).unconverged == 0
     assert motor.angle.value < -2

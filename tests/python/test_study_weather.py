@@ -25,7 +25,7 @@ def test_the_flag_flies_in_the_wind_and_hangs_in_a_calm() -> None:
     run(system, 3)
     flying = max(p.position.x for p in flag) - pole
     assert flying > 0.6 * weather.COLUMNS * weather.SPACING
-    world._actions["calm"].hook.function()
+    world._state.actions["calm"].hook.function()
     run(system, 3)
     assert max(p.position.x for p in flag) - pole < 0.7 * flying
 
@@ -53,7 +53,7 @@ def test_a_knot_that_is_torn_out_goes_with_the_wind() -> None:
     world = weather.build()
     knot = group(world.system, "cloth")[-1]
     bonds = len(world.system.bonds)
-    world._actions["tear"].hook.function(iota.world.Event(world, "tear", target=knot.body))
+    world._state.actions["tear"].hook.function(iota.Event(world.system, "tear", target=knot.body))
     assert len(world.system.bonds) == bonds - 2  # a corner
     run(world.system, 1)
     assert knot.position.x > 1  # gone with the wind

@@ -24,8 +24,8 @@ NONE = 0xFFFFFFFF
 def world() -> iota.World:
     """The study, without its scripted break."""
     world = study.build(repeat=False)
-    world._schedule._plan.clear()
-    world._schedule.rewind()
+    world._stepper.schedule._plan.clear()
+    world._stepper.schedule.rewind()
     return world
 
 

@@ -121,8 +121,8 @@ def _bodies(structure: Contents) -> Iterator[str]:
                     yield f"{name} has its mass from its shape, so the mass of point {point} must be 0 kg"
         if body.rod is not None and len(body.points) != 2:
             yield f"{name}: a rod has two points, not {len(body.points)}"
-        if body.style and body.style not in structure.styles:
-            yield f"{name}: there is no style {body.style!r}"
+        if body.look and body.look not in structure.looks:
+            yield f"{name}: there is no look {body.look!r}"
 
 
 def _hinges(structure: Contents, owner: Numbers) -> Iterator[str]:

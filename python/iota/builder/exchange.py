@@ -27,7 +27,7 @@ SHAPES: dict[str, tuple[Callable[..., Shape], tuple[str, ...]]] = {
 }
 PARTS: dict[str, type[Any]] = {"bodies": RigidBody, "bonds": SoftBond, "joints": Joint, "ties": Tie}
 PAIRS = ("hinges", "lines")
-PLAIN = ("nails", "groups", "point_names", "styles")
+PLAIN = ("nails", "groups", "point_names", "looks")
 
 Filled = TypeVar("Filled", bound=Contents)
 

@@ -37,7 +37,7 @@ class RigidBody:
     orientation: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0)  # of the shape, x y z w
     velocity: Vector = (0.0, 0.0, 0.0)  # m/s, of a body with a shape
     spin: Vector = (0.0, 0.0, 0.0)  # rad/s, of a body with a shape
-    style: str = ""  # one of the structure's styles
+    look: str = ""  # one of the structure's looks
 
 
 @dataclass

@@ -39,7 +39,7 @@ class Realized:
 
 
 def realize(structure: Contents, system: _core.System, world: World | None = None) -> Realized:
-    """Puts a structure into a system, all of it or nothing; with a world, gives its bodies their styles there too.
+    """Puts a structure into a system, all of it or nothing; with a world, gives its bodies their looks there too.
 
     Raises ValueError that names the items which are wrong.
 
@@ -159,10 +159,10 @@ def _name(made: Realized, parts: Sequence[Joint | Tie | SoftBond], handles: Sequ
 
 
 def _draw(structure: Contents, world: World, made: Realized) -> None:
-    world.classes.update(structure.styles)
-    of_style: dict[str, list[_core.Body]] = {}
+    world.classes.update(structure.looks)
+    of_look: dict[str, list[_core.Body]] = {}
     for part, body in zip(structure.bodies, made.bodies, strict=True):
-        if part.style:
-            of_style.setdefault(part.style, []).append(body)
-    for style, bodies in of_style.items():
-        world.look(bodies, style)
+        if part.look:
+            of_look.setdefault(part.look, []).append(body)
+    for look, bodies in of_look.items():
+        world.look(bodies, look)

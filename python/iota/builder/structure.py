@@ -29,7 +29,7 @@ class Shift(NamedTuple):
 
 
 class Structure(Contents):
-    """Points, rigid and soft connections, joints, nails, groups and styles as plain data: made without a system, copied,
+    """Points, rigid and soft connections, joints, nails, groups and looks as plain data: made without a system, copied,
     moved, merged, saved, and put into a system as often as wanted.
 
     The methods that add something have the names that make it in a `System`, and return its number.
@@ -115,7 +115,7 @@ class Structure(Contents):
         return list(problems(self))
 
     def realize(self, system: System, world: World | None = None) -> Realized:
-        """Puts it into a system, all of it or nothing, and returns the handles. With a world, its bodies get their styles
+        """Puts it into a system, all of it or nothing, and returns the handles. With a world, its bodies get their looks
         there. Raises ValueError that names what is wrong.
 
         chain = iota.builder.chain(links=24).realize(system)
@@ -123,7 +123,7 @@ class Structure(Contents):
         return realize(self, system, world)
 
     def copy(self) -> Structure:
-        """An independent one; shapes and styles, which nobody changes, are shared."""
+        """An independent one; shapes and looks, which nobody changes, are shared."""
         twin = Structure()
         twin.points.add(self.points.position, self.points.mass, self.points.velocity)
         twin.bodies = [replace(body, points=list(body.points)) for body in self.bodies]
@@ -132,7 +132,7 @@ class Structure(Contents):
         twin.ties = [replace(tie) for tie in self.ties]
         twin.hinges, twin.lines, twin.nails = list(self.hinges), list(self.lines), list(self.nails)
         twin.groups = {name: list(members) for name, members in self.groups.items()}
-        twin.point_names, twin.styles = dict(self.point_names), dict(self.styles)
+        twin.point_names, twin.looks = dict(self.point_names), dict(self.looks)
         return twin
 
     def __add__(self, offset: Vector) -> Structure:
@@ -148,15 +148,15 @@ class Structure(Contents):
         return moved
 
     def merge(self, other: Structure, prefix: str = "") -> Shift:
-        """Takes in another structure, whose names get `prefix` in front. Groups of one name become one; styles of one name
+        """Takes in another structure, whose names get `prefix` in front. Groups of one name become one; looks of one name
         must be equal. Returns what was added to its numbers of points and bodies.
 
             for x in range(3):
                 row.merge(tower + (x, 0, 0), prefix=f"{x} ")
         """
-        for name, style in other.styles.items():
-            if self.styles.setdefault(name, style) != style:
-                raise ValueError(f"the two structures have different styles {name!r}")
+        for name, look in other.looks.items():
+            if self.looks.setdefault(name, look) != look:
+                raise ValueError(f"the two structures have different looks {name!r}")
         other = other.copy()
         points, bodies = self.points, len(self.bodies)
         shift = Shift(len(points), bodies)

@@ -15,6 +15,8 @@ import iota
 from iota.cli import bench, bench_forces, run, verify
 from iota.cli.failure import Failure
 
+MOST_LINKS = 1_000_000  # some GB
+
 
 class Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, without the usage text before it."""
@@ -37,6 +39,13 @@ def count(text: str) -> int:
     return value
 
 
+def link_count(text: str) -> int:
+    value = count(text)
+    if value > MOST_LINKS:
+        raise argparse.ArgumentTypeError(f"must be at most {MOST_LINKS}, not {text}")
+    return value
+
+
 def port(text: str) -> int:
     value = int(text)
     if not 0 <= value <= 65535:
@@ -54,7 +63,7 @@ def make_parser() -> Parser:
 
     running = commands.add_parser("run", help="runs a study, or a script of your own, and serves its page")
     running.add_argument("what", metavar="NAME|FILE.py")
-    running.add_argument("--links", type=count, help="number of links, for what has a build(links=...)")
+    running.add_argument("--links", type=link_count, help="number of links, for what has a build(links=...)")
     running.add_argument("--port", type=port, help="of the page; 0 for any free one (default: 8080)")
     running.add_argument("--seconds", type=positive, help="stop by itself after so long")
     running.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
@@ -66,7 +75,7 @@ def make_parser() -> Parser:
 
     benching = commands.add_parser("bench", help="measures the engine through Python")
     benching.add_argument("what", choices=["chain", "forces"])
-    benching.add_argument("--links", type=count, nargs="+", default=list(bench.LINKS), help="chain lengths")
+    benching.add_argument("--links", type=link_count, nargs="+", default=list(bench.LINKS), help="chain lengths")
     benching.add_argument("--json", action="store_true", help="print one JSON object instead of a table")
     benching.set_defaults(function=lambda a: (bench_forces if a.what == "forces" else bench).run(a))
 
@@ -90,14 +99,16 @@ def _stop(number: int, frame: FrameType | None) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Returns the exit code: 0, 1 for what failed, 2 for wrong arguments."""
-    parsed = make_parser().parse_args(arguments)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # see iota.starting
     signal.signal(signal.SIGTERM, _stop)  # `kill` ends a server as cleanly as Ctrl-C
+    parsed = make_parser().parse_args(arguments)
     try:
         parsed.function(parsed)
     except Failure as failure:
         print(f"iota: {failure}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
+        print("iota: interrupted", file=sys.stderr)
         return 130
     except BrokenPipeError:  # `iota list | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -20,10 +20,10 @@ def floor(world: World, height: float = 0.0, friction: float = 6.0) -> None:
     step can be: particles sink g / (0.4 / dt)^2, 4 mm at 1/120 s.
     """
     system = world.system
-    stiffness = (0.4 / world.dt) ** 2
-    damping = 0.4 / world.dt
 
     def push() -> None:
+        damping = 0.4 / world.dt
+        stiffness = damping**2
         heights = system.positions[:, 1]
         below = np.flatnonzero(heights < height)
         if not below.size:

@@ -27,7 +27,7 @@ def build(links: int = 24, repeat: bool = True) -> iota.World:
     def break_link(event: iota.Event) -> None:
         hinge = hinge_above(event.body)
         if hinge is None:
-            world.notice("Nothing to break", "This link has none above it.", client=event.client)
+            event.notice("Nothing to break", "This link has none above it.")
         else:
             above, own = hinge
             above.separate(own)
@@ -36,7 +36,7 @@ def build(links: int = 24, repeat: bool = True) -> iota.World:
     def join_part(event: iota.Event) -> None:
         pair = nearest_ends(event.body)
         if pair is None:
-            world.notice("Nothing to join", "Everything hangs together already.", client=event.client)
+            event.notice("Nothing to join", "Everything hangs together already.")
         else:
             end, own = pair
             end.combine(own, over=max(0.2, abs(end.position - own.position) / 2.5))

@@ -9,6 +9,7 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -77,8 +78,14 @@ def print_error(error: BaseException) -> None:
     if cause is not None:
         lines = [*traceback.format_exception(type(cause), cause, cause.__traceback__), "\n", *lines]
     lines += traceback.format_exception_only(type(error), error)
-    sys.stderr.write("".join(lines))
-    sys.stderr.flush()
+    print_on_terminal("".join(lines))
+
+
+def print_on_terminal(text: str) -> None:
+    """On stderr. A terminal that is closed or a log on a full disk must not end the world: pages are told as well."""
+    with suppress(OSError, ValueError, AttributeError):  # full or a broken pipe, closed, there is none (pythonw)
+        sys.stderr.write(text)
+        sys.stderr.flush()
 
 
 class Guard:
@@ -130,7 +137,7 @@ class Guard:
             return
         seconds = time.monotonic() - running[1]
         if seconds > SLOW:
-            print(f"iota: {what} took {seconds:.1f} s; the world stood still meanwhile", file=sys.stderr)
+            print_on_terminal(f"iota: {what} took {seconds:.1f} s; the world stood still meanwhile\n")
 
     def _watch(self) -> None:
         while not self._stop.wait(0.1):

@@ -3,27 +3,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
 
 from iota._core import Body, System
-
-if TYPE_CHECKING:
-    from iota.world.world import World
+from iota.world.notices import Notices
 
 
 @dataclass(frozen=True)
 class Event:
-    """What a callback is given. name: of the action, or of what happened. client: whose it is, 0 for no user's."""
+    """What a callback is given. name: of the action, or of what happened. client: whose it is, 0 for no user's. target: the
+    held or selected body, None where there is none."""
 
-    world: World
+    system: System
     name: str
     client: int = 0
     target: Body | None = None
-
-    @property
-    def system(self) -> System:
-        return self.world.system
+    notices: Notices = field(default_factory=Notices, repr=False, compare=False)
 
     @property
     def body(self) -> Body:
@@ -32,3 +27,8 @@ class Event:
         if self.target is None:
             raise LookupError(f"the event {self.name!r} is on no body")
         return self.target
+
+    def notice(self, title: str, text: str = "", hint: str = "", level: str = "info") -> None:
+        """Shows a small card to the user whose event it is; on all pages where it is no user's. level: "info", "warning"
+        or "error"."""
+        self.notices.send(title, text, hint, level, self.client)

@@ -3,64 +3,71 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import queue
+from collections.abc import Callable, Iterable
 
 from iota._core import InputEvent
+from iota.world.callbacks import Guard
+from iota.world.clock import MAX_SPEED
 from iota.world.event import Event
-
-if TYPE_CHECKING:
-    from iota.world.world import World
+from iota.world.state import State
 
 PAUSE, PLAY, SINGLE_STEP, RESET, SPEED = range(5)  # commands of a control event
-MAX_SPEED = 10.0
 
 
 class Inputs:
-    """Brings them to the world, between steps."""
+    """Brings them to the world, between steps. step, reset: what users may ask the world for."""
 
-    def __init__(self, world: World) -> None:
-        self._world = world
+    def __init__(self, state: State, guard: Guard, step: Callable[[], object], reset: Callable[[], None]) -> None:
+        self._state, self._guard, self._step, self._reset = state, guard, step, reset
+        self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
-    def take(self) -> None:
-        """Everything that has arrived."""
-        world = self._world
-        while not world._calls.empty():
-            world._calls.get()()
-        if world._publisher is None:
-            return
-        for event in world._publisher.server.take_input():
+    def call(self, function: Callable[[], None]) -> None:
+        """Has it called with the next inputs. From any thread."""
+        self._calls.put(function)
+
+    def take_calls(self) -> None:
+        while not self._calls.empty():
+            self._calls.get()()
+
+    def take(self, events: Iterable[InputEvent]) -> None:
+        """Everything that users did."""
+        for event in events:
             if event.kind == "action":
                 self._act(event)
             elif event.kind == "control":
                 self._control(event)
             else:
-                world._guard.call(f"{event.kind} by client {event.client}", world._hands.take, event)
+                self._guard.call(f"{event.kind} by client {event.client}", self._state.hands.take, event)
 
     def _act(self, event: InputEvent) -> None:
-        world = self._world
-        action = world._actions.get(event.name)
+        state = self._state
+        action = state.actions.get(event.name)
         if action is None:
-            world.notice("Unknown action", f"This world has no action {event.name!r}.", client=event.client)
+            text = f"This world has no action {event.name!r}."
+            state.notices.send("Unknown action", text, client=event.client)
             return
-        named = None if event.body is None else world.system.body_at(event.body)
-        body = named or world.held(event.client) or world.selected(event.client)
+        named = None if event.body is None else state.system.body_at(event.body)
+        body = named or state.hands.held(event.client) or state.hands.selected(event.client)
         if body is None and action.on == "body":
             hint = f"Hold or select something, then press {action.key}." if action.key else ""
-            world.notice(f"Nothing to {action.label}", "Nothing is held or selected.", hint, client=event.client)
+            title = f"Nothing to {action.label}"
+            state.notices.send(title, "Nothing is held or selected.", hint, client=event.client)
             return
-        arguments = (Event(world, action.name, event.client, body),) if action.hook.takes_event else ()
-        world._guard.call(f"The action {action.name!r}", action.hook.function, *arguments)
+        given = Event(state.system, action.name, event.client, body, state.notices)
+        arguments = (given,) if action.hook.takes_event else ()
+        self._guard.call(f"The action {action.name!r}", action.hook.function, *arguments)
 
     def _control(self, event: InputEvent) -> None:
-        world = self._world
+        clock = self._state.clock
         if event.command == PAUSE:
-            world.paused = True
+            clock.paused = True
         elif event.command == PLAY:
-            world.paused = False
+            clock.paused = False
         elif event.command == SINGLE_STEP:
-            world.paused = True
-            world._advance()
+            clock.paused = True
+            self._step()
         elif event.command == RESET:
-            world.reset()
+            self._reset()
         elif event.command == SPEED:
-            world.speed = min(max(event.value, 0.0), MAX_SPEED)
+            clock.speed = min(max(event.value, 0.0), MAX_SPEED)

@@ -5,36 +5,12 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
-from iota._core import Particle, Server, System, Vec3
-from iota.simulator import Simulator
-from iota.world import page, ties
-from iota.world.callbacks import Hook
+from iota._core import Particle, Server, Vec3
+from iota.world import page
 from iota.world.scene import fitting_camera
-
-if TYPE_CHECKING:
-    from iota.world.world import World
-
-LEVELS = {"info": 0, "warning": 1, "error": 2}
-
-
-@dataclass
-class Action:
-    """What a key, a controller button or the panel does."""
-
-    name: str
-    hook: Hook
-    key: str | None
-    button: str | None
-    help: str
-    label: str
-    on: str
-
-    def describe(self) -> dict[str, str | None]:
-        """As the page's scene names it."""
-        names = ("name", "key", "label", "help", "on", "button")
-        return {name: getattr(self, name) for name in names}
+from iota.world.source import source_of
+from iota.world.state import State
 
 
 @dataclass
@@ -54,71 +30,53 @@ class Effect:
 class Publisher:
     """A server and what it was told already: only what changed is sent again."""
 
-    world: World
+    state: State
     server: Server
     sent: dict[str, str] = field(default_factory=dict)
     scene_version: int = -1
     effects: list[Effect] = field(default_factory=list)
 
     @classmethod
-    def open(cls, world: World, host: str, port: int) -> Publisher:
+    def open(cls, state: State, host: str, port: int) -> Publisher:
         """Listens. Raises OSError where the port is taken, PageMissingError where the page is not built."""
         folder = page.page_folder()
-        server = Server(host=host, port=port, page_folder=str(folder), token=page.token(), dt=world.dt)
-        world.system.watch_edits(True)
-        return cls(world, server)
+        server = Server(host=host, port=port, page_folder=str(folder), token=page.token(), dt=state.clock.dt)
+        state.system.watch_edits(True)
+        state.notices.show = server.notice
+        return cls(state, server)
+
+    def __post_init__(self) -> None:
+        self._source = source_of(self.state.system)
 
     def close(self) -> None:
-        self.world.system.watch_edits(False)
-        self.world.system.take_edits()
+        self.state.notices.show = None
+        self.state.system.watch_edits(False)
+        self.state.system.take_edits()
 
     def scene(self) -> None:
         """Everything but the poses, where it changed."""
-        world = self.world
-        system: System | Simulator = world.system
-        classes, bodies = world._scene.describe()
+        state = self.state
+        classes, bodies = state.scene.describe()
         self._set("world", self._describe_world())
         self._set("classes", classes)
-        self._set("statics", json.dumps(world.statics))
-        self._set("actions", json.dumps([action.describe() for action in world._actions.values()]))
+        self._set("statics", json.dumps(state.statics))
+        self._set("actions", json.dumps([action.describe() for action in state.actions]))
         self._set("bodies", bodies)
-        self._set("ties", ties.describe(system))
-        if isinstance(system, System):
-            self.server.publish_structure(system)
-        else:
-            self.server.publish_structure(system.structure_version, list(system.body_articulates()))
-        self.scene_version = system.scene_version
+        self._set("ties", self._source.ties())
+        self._source.send_structure(self.server)
+        self.scene_version = state.system.scene_version
 
-    def frame(self, dirty: bool) -> None:
+    def frame(self) -> None:
         """One frame: poses, and before them what changed in the structure."""
-        world = self.world
-        system: System | Simulator = world.system
-        if dirty or system.scene_version != self.scene_version:
+        state = self.state
+        if state.is_changed or state.system.scene_version != self.scene_version:
             self.scene()
-        self._send_effects(system)
-        if isinstance(system, System):
-            self.server.publish(system, paused=world.paused, speed=world.speed, step_ms=world.step_ms)
-        else:
-            slots, places = system.poses()
-            holds = [(c, h, b, Vec3(*point), Vec3(*target), f) for c, h, b, point, target, f in system.holds()]
-            self.server.publish_poses(
-                slots,
-                places,
-                holds,
-                step=system.step_count,
-                time=system.time,
-                structure_version=system.structure_version,
-                energy=system.energy,
-                gap=system.worst_gap,
-                paused=world.paused,
-                speed=world.speed,
-                step_ms=world.step_ms,
-            )
+            state.is_changed = False
+        self._send_effects()
+        self._source.send_poses(self.server, state.clock, state.step_ms)
 
-    def notice(self, level: str, title: str, text: str, hint: str, client: int) -> None:
-        self.server.notice(client, LEVELS[level], title, text, hint)
-
-    def _send_effects(self, system: System | Simulator) -> None:
+    def _send_effects(self) -> None:
+        system = self.state.system
         now = system.time
         for kind, place, delay, particle in system.take_edits():
             self.effects.append(Effect(now + delay, kind, place, particle))
@@ -128,19 +86,19 @@ class Publisher:
         self.effects = [effect for effect in self.effects if effect.time > now]
 
     def _describe_world(self) -> str:
-        world = self.world
-        looks = list(dict.fromkeys(name for styles in world.classes.values() for name in styles if name != "*"))
-        camera = world.camera or fitting_camera(world.system)
+        state = self.state
+        looks = list(dict.fromkeys(name for styles in state.scene.classes.values() for name in styles if name != "*"))
+        camera = state.camera or fitting_camera(state.system)
         description = {
-            "title": world.title,
+            "title": state.title,
             "looks": looks,
-            "look": world.default_look or (looks[0] if looks else None),
+            "look": state.look or (looks[0] if looks else None),
             "camera": {"position": list(camera.position), "target": list(camera.target)},
-            "ground": world.ground,
-            "dt": world.dt,
+            "ground": state.ground,
+            "dt": state.clock.dt,
         }
         # The fitted camera is where the world was first seen from: later structures do not move it.
-        world.camera = camera
+        state.camera = camera
         return json.dumps(description)
 
     def _set(self, key: str, text: str) -> None:

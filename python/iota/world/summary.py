@@ -11,7 +11,7 @@ from iota._core import StepReport, System
 
 @dataclass
 class RunSummary:
-    """What a run did. iterations_mean: per articulate and step; worst_gap_m: largest hinge separation or rigidity error."""
+    """What a run did. dt_s: length of the last step. iterations_mean: per articulate and step; worst_gap_m: largest hinge separation or rigidity error."""
 
     steps: int
     dt_s: float
@@ -34,16 +34,19 @@ class RunSummary:
 class Tally:
     """Adds up step reports."""
 
-    def __init__(self, system: System, dt: float) -> None:
-        self._system, self._dt = system, dt
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._dt = self._simulated = 0.0
         energy = system.energy.total
         self._start = self._end = self._max = energy
         self._steps = self._fallbacks = self._iterations_max = 0
         self._iterations = self._gap = 0.0
         self._cpu = time.process_time()
 
-    def add(self, report: StepReport) -> None:
+    def add(self, report: StepReport, dt: float) -> None:
         self._steps += 1
+        self._dt = dt
+        self._simulated += dt
         self._end = report.energy.total
         self._max = max(self._max, self._end)
         self._gap = max(self._gap, report.worst_gap)
@@ -55,7 +58,7 @@ class Tally:
         return RunSummary(
             steps=self._steps,
             dt_s=self._dt,
-            simulated_s=self._steps * self._dt,
+            simulated_s=self._simulated,
             cpu_s=time.process_time() - self._cpu,
             worst_gap_m=self._gap,
             energy_start_j=self._start,

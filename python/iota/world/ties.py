@@ -8,7 +8,6 @@ from typing import Any
 
 from iota._core import Particle, System
 from iota.looks import Looks, cylinder
-from iota.simulator import Simulator
 from iota.world.frames import into_frame
 
 KINDS = ("spring", "rope", "rod")
@@ -23,10 +22,8 @@ def default_looks(radius: float) -> dict[str, Looks]:
     }
 
 
-def describe(system: System | Simulator) -> str:
+def describe(system: System) -> str:
     """JSON text of the scene's "ties": those that are active, of kinds that one can see."""
-    if not isinstance(system, System):
-        return "[]"
     ties = [
         _tie("spring", bond.parameters["length"], *bond.ends)
         for bond in system.bonds

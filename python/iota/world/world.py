@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
+import atexit
 import concurrent.futures
 import math
-import queue
 import sys
 import threading
 import time
@@ -14,33 +14,32 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeVar, cast
 
 from iota._core import Body, StepReport, System, Vec3
-from iota.errors import ForceError
 from iota.looks import Looks, Shape
 from iota.simulator import Simulator
 from iota.world import options as run_options
-from iota.world.callbacks import GO_ON, Guard, Hook
-from iota.world.event import Event
+from iota.world.actions import Action
+from iota.world.callbacks import Guard, Hook
+from iota.world.clock import Clock
 from iota.world.frames import turn_from_x
-from iota.world.hands import Client, Hands
-from iota.world.inputs import MAX_SPEED, Inputs
-from iota.world.pacer import Pacer
-from iota.world.publisher import LEVELS, Action, Publisher
-from iota.world.scene import Camera, Scene
-from iota.world.schedule import Schedule
-from iota.world.summary import RunSummary, Tally
+from iota.world.hands import Client
+from iota.world.inputs import Inputs
+from iota.world.publisher import Publisher
+from iota.world.scene import Camera
+from iota.world.state import State
+from iota.world.stepper import Stepper
+from iota.world.summary import RunSummary
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 Result = TypeVar("Result")
 
 HEADLESS_SECONDS = 10.0  # where nobody says how long
-SWITCHED_OFF = "It is switched off until reset. Correct the script and run it again."
 
 
 class World:
     """Runs a system in real time and serves a page that shows it.
 
-    system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. look: the look that pages start with. ground: height of the drawn
-    ground, m, None for none.
+    system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. look: the look that pages
+    start with. ground: height of the drawn ground, m, None for none. camera: where viewers start, None: all is in view.
 
         world = iota.World(system, title="pendulum")
 
@@ -63,34 +62,48 @@ class World:
         ground: float | None = 0.0,
         camera: Camera | None = None,
     ) -> None:
-        if not (math.isfinite(dt) and 0 < dt <= 1):
-            raise ValueError(f"dt must be above 0 and at most 1 s, not {dt}")
-        self.system = cast(System, system)  # scripts see the built-in one; nothing here asks for more than a Simulator
-        self.title, self.dt = title, float(dt)
-        self.default_look, self.ground, self.camera = look, ground, camera
-        self.paused = False
-        self.step_ms = 0.0
-        self.statics: list[dict[str, Any]] = []
-        self._scene = Scene(self.system)
-        self._actions: dict[str, Action] = {}
-        self._schedule = Schedule()
-        self._on_step: list[Hook] = []
-        self._on_reset: list[Hook] = []
-        self._off: set[Hook] = set()  # raised since the last reset
-        self._hands = Hands(self.system)
-        self._pacer = Pacer(self.dt)
-        self._guard = Guard(self._tell("error"), self._tell("warning"))
-        self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
-        self._inputs = Inputs(self)
+        # Scripts see the built-in system; nothing here asks for more than a Simulator.
+        self._state = State(cast(System, system), Clock(dt), title, look, ground, camera)
+        self._guard = Guard(self._state.notices.error, self._state.notices.warning)
+        self._stepper = Stepper(self._state, self._guard)
+        self._inputs = Inputs(self._state, self._guard, self._stepper.step, self._stepper.reset)
         self._publisher: Publisher | None = None
-        self._tally: Tally | None = None
-        self._start: bytes | None = None
-        self._dirty = True
-        self._told: set[str] = set()
         self._runner: int | None = None
         self._background: threading.Thread | None = None
         self._stopping = False
         self._stop_at = math.inf
+
+    # --- what it is -----------------------------------------------------------------------------------------------
+
+    @property
+    def system(self) -> System:
+        """What is simulated."""
+        return self._state.system
+
+    @property
+    def title(self) -> str:
+        """On the page."""
+        return self._state.title
+
+    @property
+    def dt(self) -> float:
+        """Length of a step, s; above 0, at most 1. Assigned, it holds from the next step on."""
+        return self._state.clock.dt
+
+    @dt.setter
+    def dt(self, value: float) -> None:
+        self._state.clock.dt = value
+        self._state.is_changed = True
+
+    @property
+    def camera(self) -> Camera | None:
+        """Where viewers start; None: where all is in view."""
+        return self._state.camera
+
+    @camera.setter
+    def camera(self, camera: Camera | None) -> None:
+        self._state.camera = camera
+        self._state.is_changed = True
 
     # --- what the script asks for ---------------------------------------------------------------------------------
 
@@ -107,19 +120,11 @@ class World:
 
         on: "body" (the event has the held or selected body; without one the user is told so) or "world".
         """
-        if on not in ("body", "world"):
-            raise ValueError(f"on must be 'body' or 'world', not {on!r}")
-        if button not in (None, "a", "b"):
-            raise ValueError(f"button must be 'a', 'b' or None, not {button!r}")
-        for other in self._actions.values():
-            if other.name == name:
-                raise ValueError(f"there is an action {name!r} already")
-            if key is not None and other.key == key:
-                raise ValueError(f"the key {key!r} is taken by the action {other.name!r}")
+        self._state.actions.check(name, key, button, on)
 
         def register(function: Callback) -> Callback:
-            self._actions[name] = Action(name, Hook.of(function), key, button, help, label or name, on)
-            self._dirty = True
+            self._state.actions.add(Action(name, Hook.of(function), key, button, help, label or name, on))
+            self._state.is_changed = True
             return function
 
         return register
@@ -138,28 +143,28 @@ class World:
 
     def on_step(self, function: Callback) -> Callback:
         """Decorator: calls a function before each step."""
-        self._on_step.append(Hook.of(function))
+        self._stepper.on_step.append(Hook.of(function))
         return function
 
     def on_reset(self, function: Callback) -> Callback:
         """Decorator: calls a function after each reset, for what the script keeps itself."""
-        self._on_reset.append(Hook.of(function))
+        self._stepper.on_reset.append(Hook.of(function))
         return function
 
     @property
     def classes(self) -> dict[str, Looks]:
         """Shapes of each class of bodies by look, see `iota.looks`. Fill it before `run`."""
-        return self._scene.classes
+        return self._state.scene.classes
 
     def look(self, bodies: Body | Iterable[Body], name: str) -> None:
         """Gives bodies the looks of a class; every other one counts as odd for shapes that turn."""
-        self._scene.assign([bodies] if isinstance(bodies, Body) else bodies, name)
-        self._dirty = True
+        self._state.scene.assign([bodies] if isinstance(bodies, Body) else bodies, name)
+        self._state.is_changed = True
 
     def add_static(self, shape: Shape, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> None:
         """Adds something that is only drawn: a beam, a stand. position: m. rotation: quaternion x y z w."""
-        self.statics.append({"shape": shape, "position": list(Vec3(*position)), "rotation": list(rotation)})
-        self._dirty = True
+        self._state.statics.append({"shape": shape, "position": list(Vec3(*position)), "rotation": list(rotation)})
+        self._state.is_changed = True
 
     def add_strut(self, start: Sequence[float], end: Sequence[float], shape: Shape) -> None:
         """Adds a shape that is only drawn from `start` to `end` (m): its local x runs along the line, and a cylinder or
@@ -175,43 +180,47 @@ class World:
 
     def notice(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""
-        if level not in LEVELS:
-            raise ValueError(f"level must be one of {', '.join(LEVELS)}, not {level!r}")
-        if self._publisher is not None:
-            self._publisher.notice(level, title, text, hint, client)
+        self._state.notices.send(title, text, hint, level, client)
 
     # --- who is there ---------------------------------------------------------------------------------------------
 
     @property
     def clients(self) -> list[Client]:
         """The open pages."""
-        return list(self._hands.clients.values())
+        return list(self._state.hands.clients.values())
 
     def held(self, client: int | None = None) -> Body | None:
         """The body that a client holds, or that anyone holds."""
-        return self._hands.held(client)
+        return self._state.hands.held(client)
 
     def selected(self, client: int) -> Body | None:
         """The body that a client has selected."""
-        return self._hands.selected(client)
+        return self._state.hands.selected(client)
 
     # --- control --------------------------------------------------------------------------------------------------
 
     @property
+    def paused(self) -> bool:
+        """No steps are made; users' hands and the script's own edits act all the same."""
+        return self._state.clock.paused
+
+    @paused.setter
+    def paused(self, value: bool) -> None:
+        self._state.clock.paused = value
+
+    @property
     def speed(self) -> float:
-        """Simulated seconds per real second that users asked for; 0 to 10."""
-        return self._pacer.speed
+        """Simulated seconds for each real second that users asked for; 0 to 10."""
+        return self._state.clock.speed
 
     @speed.setter
     def speed(self, value: float) -> None:
-        if not (math.isfinite(value) and 0 <= value <= MAX_SPEED):
-            raise ValueError(f"speed must be from 0 to {MAX_SPEED:g} times real time, not {value}")
-        self._pacer.speed = float(value)
+        self._state.clock.speed = value
 
     @property
     def reached_speed(self) -> float:
         """Share of that speed that this machine reaches; below 1 the world runs in slow motion."""
-        return self._pacer.reached
+        return self._state.clock.reached
 
     @property
     def url(self) -> str | None:
@@ -220,15 +229,7 @@ class World:
 
     def reset(self) -> None:
         """Back to where the run began, with timed events as they were asked for before it."""
-        if self._start is None:
-            return
-        self.system.restore(self._start)
-        self._hands.forget()
-        self._schedule.rewind()
-        self._off.clear()
-        self._dirty = True
-        for hook in self._on_reset:
-            self._call(f"on_reset ({hook.name})", hook, "reset")
+        self._stepper.reset()
 
     def undo(self) -> bool:
         """Back to just before the last batch of edits (`with world.system.edit(): ...`), time included. False when there
@@ -241,8 +242,8 @@ class World:
 
     def _moved_in_history(self, moved: bool) -> bool:
         if moved:
-            self._hands.forget()
-            self._dirty = True
+            self._state.hands.forget()
+            self._state.is_changed = True
         return moved
 
     # --- running --------------------------------------------------------------------------------------------------
@@ -311,7 +312,7 @@ class World:
             except BaseException as error:
                 future.set_exception(error)
 
-        self._calls.put(work)
+        self._inputs.call(work)
         return future.result()
 
     def stop(self) -> None:
@@ -326,15 +327,15 @@ class World:
         """Serves the page, for scripts with a loop of their own around `step()`; returns its address."""
         if self._publisher is None:
             options = run_options.current()
-            self._publisher = Publisher.open(self, host, port if options.port is None else options.port)
+            self._publisher = Publisher.open(self._state, host, port if options.port is None else options.port)
+            atexit.register(self.close)  # for loops of scripts that end without it
             self._begin()
             self._guard.watch()
             try:
-                self._publisher.frame(dirty=True)
+                self._publisher.frame()
             except BaseException:
                 self.close()
                 raise
-            self._dirty = False
         return self._publisher.server.url
 
     def step(self) -> StepReport | None:
@@ -345,18 +346,17 @@ class World:
             world.step()
         """
         options = run_options.current()
-        if self._tally is None:
+        if not self._stepper.has_begun:
             self._begin()
             if options.seconds is not None:
                 self._stop_at = self.system.time + options.seconds
         options.ran = True
-        self._inputs.take()
-        report = None if self.paused else self._advance()
+        self._take_inputs()
+        report = None if self.paused else self._stepper.step()
         if self._publisher is not None:
             self._pace_one_step()
         if self.system.time >= self._stop_at:
-            assert self._tally is not None
-            options.summary = self._tally.summary()
+            options.summary = self._stepper.summary()
             self.close()
             raise SystemExit(0)
         return report
@@ -368,109 +368,77 @@ class World:
         self._stopping = False
         if self._publisher is not None:
             for client in self.clients:
-                self._hands.let_go(client)
-            self._hands.clients.clear()
+                self._state.hands.let_go(client)
+            self._state.hands.clients.clear()
             self._publisher.close()
             self._publisher = None
-        while not self._calls.empty():
-            self._calls.get()()
+            atexit.unregister(self.close)
+        self._inputs.take_calls()
 
     # --- the loop -------------------------------------------------------------------------------------------------
 
     def _begin(self) -> None:
         self._runner = threading.get_ident()
-        self._tally = Tally(self.system, self.dt)
-        self._start = self.system.snapshot()
-        self._schedule.begin()
-        self._pacer.restart()
+        self._stepper.begin()
+        self._state.clock.restart()
 
     def _run_headless(self, seconds: float) -> RunSummary:
         self._begin()
-        assert self._tally is not None
-        for _ in range(round(seconds / self.dt)):
-            if self._stopping:
-                break
-            self._advance()
-        return self._tally.summary()
+        end = self.system.time + seconds
+        while not self._stopping and self.system.time < end - self.dt / 2:
+            self._stepper.step()
+        return self._stepper.summary()
 
     def _run_served(self, seconds: float) -> RunSummary:
         end = time.monotonic() + seconds
-        assert self._tally is not None and self._publisher is not None
+        clock = self._state.clock
         try:
             while not self._stopping and time.monotonic() < end:
-                self._inputs.take()
-                for _ in range(self._pacer.due(self.paused)):
-                    self._advance()
-                if self._pacer.frame_due():
+                self._take_inputs()
+                for _ in range(clock.due()):
+                    self._stepper.step()
+                if clock.frame_due():
                     self._send_frame()
-                self._pacer.sleep(self.paused)
+                clock.sleep()
         except KeyboardInterrupt:
             pass
-        return self._tally.summary()
+        return self._stepper.summary()
 
     def _pace_one_step(self) -> None:
+        clock = self._state.clock
         while True:
-            if self._pacer.frame_due():
+            if clock.frame_due():
                 self._send_frame()
-            stepped = self._pacer.due(self.paused) > 0
+            stepped = clock.due() > 0
             if not stepped:
-                self._pacer.sleep(self.paused)
+                clock.sleep()
             if stepped or self.paused:
                 return
 
-    def _advance(self) -> StepReport:
-        for task in self._schedule.due(self.system.time + 1e-9):
-            again = task.period is not None
-            if not self._call(f"The timed event {task.hook.name!r}", task.hook, "time", again) and again:
-                self._schedule.drop(task.hook)
-        for hook in self._on_step:
-            if hook not in self._off and not self._call(f"on_step ({hook.name})", hook, "step", again=True):
-                self._off.add(hook)
-        began = time.perf_counter()
-        try:
-            report = self.system.step(self.dt)
-        except ForceError as error:
-            report = error.report
-            self._guard.failed("A force", error, "It is switched off. " + GO_ON)
-        self.step_ms += 0.05 * ((time.perf_counter() - began) * 1e3 - self.step_ms)
-        assert self._tally is not None
-        self._tally.add(report)
-        for warning in report.warnings:
-            self._warn_once(warning)
-        return report
+    def _take_inputs(self) -> None:
+        self._inputs.take_calls()
+        if self._publisher is not None:
+            self._inputs.take(self._publisher.server.take_input())
 
     def _send_frame(self) -> None:
         assert self._publisher is not None
-        self._publisher.frame(self._dirty)
-        self._dirty = False
-        if self._pacer.reached < 0.8:
-            self._warn_once("This world is too much for real time on this machine: it runs in slow motion.")
-
-    def _warn_once(self, text: str) -> None:
-        if text not in self._told and len(self._told) < 100:
-            self._told.add(text)
-            self.notice("Note", text, level="warning")
+        self._publisher.frame()
+        if self.reached_speed < 0.8:
+            text = "This world is too much for real time on this machine: it runs in slow motion."
+            self._state.notices.warn_once(text)
 
     # --- small things ---------------------------------------------------------------------------------------------
 
     def _timer(self, time: float, period: float | None) -> Callable[[Callback], Callback]:
         def register(function: Callback) -> Callback:
-            self._schedule.add(time, Hook.of(function), period)
+            self._stepper.schedule.add(time, Hook.of(function), period)
             return function
 
         return register
 
-    def _call(self, what: str, hook: Hook, name: str, again: bool = False) -> bool:
-        """Calls one of the script's functions; False when it raised."""
-        arguments = (Event(self, name),) if hook.takes_event else ()
-        return self._guard.call(what, hook.function, *arguments, hint=SWITCHED_OFF if again else GO_ON)
-
-    def _tell(self, level: str) -> Callable[[str, str, str], None]:
-        return lambda title, text, hint: self.notice(title, text, hint, level)
-
     def _announce(self, show: bool) -> None:
         lines = [f"{self.title}: {self.url}"]
-        lines += [f"  {action.key}  {action.help or action.label}" for action in self._actions.values() if action.key]
+        lines += [f"  {action.key}  {action.help or action.label}" for action in self._state.actions if action.key]
         print("\n".join(lines), flush=True)
         if show and self.url and not webbrowser.open(self.url):
             print("iota: no browser could be opened", file=sys.stderr)

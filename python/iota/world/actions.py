@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What users can ask of the script."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from iota.world.callbacks import Hook
+
+
+@dataclass
+class Action:
+    """What a key, a controller button or the panel does."""
+
+    name: str
+    hook: Hook
+    key: str | None
+    button: str | None
+    help: str
+    label: str
+    on: str
+
+    def describe(self) -> dict[str, str | None]:
+        """As the page's scene names it."""
+        names = ("name", "key", "label", "help", "on", "button")
+        return {name: getattr(self, name) for name in names}
+
+
+class Actions:
+    """By name, in the order in which they were made."""
+
+    def __init__(self) -> None:
+        self._by_name: dict[str, Action] = {}
+
+    def check(self, name: str, key: str | None, button: str | None, on: str) -> None:
+        """Raises ValueError for what cannot become an action."""
+        if on not in ("body", "world"):
+            raise ValueError(f"on must be 'body' or 'world', not {on!r}")
+        if button not in (None, "a", "b"):
+            raise ValueError(f"button must be 'a', 'b' or None, not {button!r}")
+        for other in self:
+            if other.name == name:
+                raise ValueError(f"there is an action {name!r} already")
+            if key is not None and other.key == key:
+                raise ValueError(f"the key {key!r} is taken by the action {other.name!r}")
+
+    def add(self, action: Action) -> None:
+        self._by_name[action.name] = action
+
+    def get(self, name: str) -> Action | None:
+        return self._by_name.get(name)
+
+    def __getitem__(self, name: str) -> Action:
+        return self._by_name[name]
+
+    def __iter__(self) -> Iterator[Action]:
+        return iter(self._by_name.values())

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Small cards that tell users something."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+LEVELS = ("info", "warning", "error")
+MOST_WARNINGS = 100
+
+Show = Callable[[int, int, str, str, str], object]  # client (0: all), number of the level, title, text, hint
+
+
+class Notices:
+    """Shows cards by `show`; before it is set and after it is taken away there is nobody to see them."""
+
+    def __init__(self) -> None:
+        self.show: Show | None = None
+        self._warnings: set[str] = set()
+
+    def send(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
+        """On all pages, or on one client's. Raises ValueError for an unknown level."""
+        if level not in LEVELS:
+            raise ValueError(f"level must be one of {', '.join(LEVELS)}, not {level!r}")
+        if self.show is not None:
+            self.show(client, LEVELS.index(level), title, text, hint)
+
+    def error(self, title: str, text: str, hint: str) -> None:
+        self.send(title, text, hint, "error")
+
+    def warning(self, title: str, text: str, hint: str) -> None:
+        self.send(title, text, hint, "warning")
+
+    def warn_once(self, text: str) -> None:
+        """The same text is shown only once."""
+        if text not in self._warnings and len(self._warnings) < MOST_WARNINGS:
+            self._warnings.add(text)
+            self.send("Note", text, level="warning")

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One step of a world: timed events, the script's functions, the system."""
+
+from __future__ import annotations
+
+import time
+
+from iota._core import StepReport
+from iota.errors import ForceError
+from iota.world.callbacks import GO_ON, Guard, Hook
+from iota.world.event import Event
+from iota.world.schedule import Schedule
+from iota.world.state import State
+from iota.world.summary import RunSummary, Tally
+
+SWITCHED_OFF = "It is switched off until reset. Correct the script and run it again."
+
+
+class Stepper:
+    """Calls the script's functions when they are due, steps the system, and goes back to where a run began."""
+
+    def __init__(self, state: State, guard: Guard) -> None:
+        self._state, self._guard = state, guard
+        self.schedule = Schedule()
+        self.on_step: list[Hook] = []
+        self.on_reset: list[Hook] = []
+        self._off: set[Hook] = set()  # raised since the last reset
+        self._start: bytes | None = None
+        self._tally: Tally | None = None
+
+    @property
+    def has_begun(self) -> bool:
+        return self._tally is not None
+
+    def begin(self) -> None:
+        """From here on; `reset` comes back to this moment."""
+        self._tally = Tally(self._state.system)
+        self._start = self._state.system.snapshot()
+        self.schedule.begin()
+
+    def summary(self) -> RunSummary:
+        """Since `begin`."""
+        assert self._tally is not None
+        return self._tally.summary()
+
+    def step(self) -> StepReport:
+        """One step."""
+        state = self._state
+        for task in self.schedule.due(state.system.time + 1e-9):
+            again = task.period is not None
+            if not self._call(f"The timed event {task.hook.name!r}", task.hook, "time", again) and again:
+                self.schedule.drop(task.hook)
+        for hook in self.on_step:
+            if hook not in self._off and not self._call(f"on_step ({hook.name})", hook, "step", again=True):
+                self._off.add(hook)
+        dt, began = state.clock.dt, time.perf_counter()
+        try:
+            report = state.system.step(dt)
+        except ForceError as error:
+            report = error.report
+            self._guard.failed("A force", error, "It is switched off. " + GO_ON)
+        state.step_ms += 0.05 * ((time.perf_counter() - began) * 1e3 - state.step_ms)
+        if self._tally is not None:
+            self._tally.add(report, dt)
+        for warning in report.warnings:
+            state.notices.warn_once(warning)
+        return report
+
+    def reset(self) -> None:
+        """Back to where the run began, with timed events as they were asked for before it."""
+        if self._start is None:
+            return
+        self._state.system.restore(self._start)
+        self._state.hands.forget()
+        self._state.is_changed = True
+        self.schedule.rewind()
+        self._off.clear()
+        for hook in self.on_reset:
+            self._call(f"on_reset ({hook.name})", hook, "reset")
+
+    def _call(self, what: str, hook: Hook, name: str, again: bool = False) -> bool:
+        """Calls one of the script's functions; False when it raised."""
+        arguments = (Event(self._state.system, name, notices=self._state.notices),) if hook.takes_event else ()
+        return self._guard.call(what, hook.function, *arguments, hint=SWITCHED_OFF if again else GO_ON)
