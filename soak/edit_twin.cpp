@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "soak/edit_twin.h"
 
+#include "ingredient/tables.h"
 #include "model/restructure.h"
 
 #include <algorithm>
@@ -148,7 +149,7 @@ class Pair {
     if (auto wrong = compare()) return last_ + ": " + *wrong;
     if (counted_.edits % 64 == 0) {
       model_.take_touched(touched_);
-      const std::vector<std::string> complaints = model_.validate();
+      const std::vector<std::string> complaints = ingredient::validate(model_);
       if (!complaints.empty()) return last_ + ": " + complaints.front();
     }
     return std::nullopt;

@@ -62,4 +62,19 @@ std::string Closings::name_of_row(const Model& model, const IslandNodes&, const 
   return text("the closing of particles ", c.p, " and ", c.q);
 }
 
+void Closings::validate(const Model& model, model::Audit& audit) {
+  model.closings.for_each([&](std::uint32_t, const model::Closing& c) {
+    const model::Particle &p = model.particles[c.p], &q = model.particles[c.q];
+    audit.join(p.body, q.body);
+    audit.use_particle(c.p), audit.use_particle(c.q);
+    audit.require(p.ring != q.ring && p.body != q.body, "a closing of particles ", c.p, " and ", c.q,
+                  " has nothing to close");
+  });
+  audit.require_listed("closing", model.closings, &model::References::first_closing);
+}
+
+bool Closings::holds(const Model& model, std::uint32_t particle) {
+  return model.references[particle].first_closing != none;
+}
+
 }  // namespace iota::ingredient

@@ -56,4 +56,33 @@ void Grips::store(Model& model, const IslandNodes&, double h, const Problem& pro
                                                    {.h = h, .midpoint = !model.steps_to_end_point()});
 }
 
+void Grips::validate(const Model& model, model::Audit& audit) {
+  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
+    audit.require(model.bodies.is_alive(g.body), "grip ", slot, " holds no living body");
+    for (std::uint32_t i = 0; i < g.count; ++i)
+      audit.require(model.particles.is_alive(g.points[i]) && model.particles[g.points[i]].body == g.body, "grip ", slot,
+                    " hangs on a stranger");
+  });
+}
+
+// It counts for the part at the place that it holds, whichever points carry that.
+void Grips::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
+  const Model& model = step.model;
+  model.grips.for_each([&](std::uint32_t, const model::Grip& g) {
+    if (g.body != body) return;
+    Vec3 place;
+    for (std::uint32_t i = 0; i < g.count; ++i) place += g.weights[i] * step.place(g.points[i]);
+    const BodyId part = model.part_at(body, place);
+    for (std::uint32_t i = 0; i < g.count; ++i)
+      reader.take({.particle = g.points[i], .force = g.weights[i] * g.force, .part = part});
+  });
+}
+
+bool Grips::holds(const Model& model, std::uint32_t particle) {
+  bool any = false;
+  model.grips.for_each(
+      [&](std::uint32_t, const model::Grip& g) { any = any || g.body == model.particles[particle].body; });
+  return any;
+}
+
 }  // namespace iota::ingredient

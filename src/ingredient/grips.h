@@ -8,6 +8,14 @@ namespace iota::ingredient {
 /// What viewers hold: a damped spring from a point of a body to a target, of limited force.
 class Grips : public NoAnswers {
  public:
+  template <class Archive>
+  static void archive(Model& model, Archive& ar) {
+    model.grips.archive(ar);
+  }
+  static void validate(const Model&, model::Audit&);
+  static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
+  static bool holds(const Model&, std::uint32_t particle);
+
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;

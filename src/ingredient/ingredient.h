@@ -2,6 +2,9 @@
 #pragma once
 
 #include "ingredient/island_nodes.h"
+#include "ingredient/loads.h"
+#include "ingredient/scope.h"
+#include "model/audit.h"
 #include "solver/diagnosis.h"
 #include "solver/problem.h"
 
@@ -19,6 +22,24 @@ using solver::Problem;
 /// itself. Static functions are about the whole model. The others are about one island: an ingredient object belongs to an
 /// island and knows the places of its rows and forces in the island's problem.
 struct NoAnswers {
+  /// @name The model
+  ///@{
+
+  /// The tables of the ingredient, to and from bytes. The points, bodies and articulates are there already.
+  template <class Archive>
+  static void archive(Model&, Archive&) {}
+  static void validate(const Model&, model::Audit&) {}
+  /// Energy that the motion of points does not keep by itself, and momentum.
+  static void add_energy(const Scope&, Energies&) {}
+  static void add_momentum(const Scope&, Momenta&) {}
+  /// The largest gap of its constraints, m.
+  static double worst_gap(const Model&) { return 0; }
+  /// What it did to the points of a body in the last step.
+  static void add_loads(const LastStep&, std::uint32_t /*body*/, LoadReader&) {}
+  /// Whether it keeps a particle that is a body by itself from flying freely.
+  static bool holds(const Model&, std::uint32_t /*particle*/) { return false; }
+  ///@}
+
   /// @name Building and stepping
   ///@{
 
@@ -69,7 +90,22 @@ struct NoAnswers {
   ///@}
 };
 
-/// What stages ask of an ingredient of an island.
+/// What is asked of every ingredient about the model.
+template <class I>
+concept ModelIngredient =
+    requires(Model& model, const Model& seen, Writer& writer, Reader& reader, model::Audit& audit, const Scope& scope,
+             Energies& energies, Momenta& momenta, const LastStep& step, LoadReader& loads, std::uint32_t slot) {
+      I::archive(model, writer);
+      I::archive(model, reader);
+      I::validate(seen, audit);
+      I::add_energy(scope, energies);
+      I::add_momentum(scope, momenta);
+      { I::worst_gap(seen) } -> std::same_as<double>;
+      I::add_loads(step, slot, loads);
+      { I::holds(seen, slot) } -> std::same_as<bool>;
+    };
+
+/// What the stages of a step ask of an ingredient of an island.
 template <class I>
 concept IslandIngredient = std::default_initializable<I> && std::movable<I> &&
                            requires(I& own, const I& fixed, Model& model, const Model& seen, const IslandNodes& nodes,

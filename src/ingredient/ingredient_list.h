@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingredient/bonds.h"
 #include "ingredient/closings.h"
+#include "ingredient/emitters.h"
+#include "ingredient/fields.h"
 #include "ingredient/grips.h"
-#include "ingredient/implicit_bonds.h"
 #include "ingredient/joints.h"
+#include "ingredient/laws.h"
 #include "ingredient/masses.h"
 #include "ingredient/nails.h"
+#include "ingredient/oriented_particles.h"
+#include "ingredient/pairs.h"
 #include "ingredient/pushes.h"
 #include "ingredient/rigid_rows.h"
 #include "ingredient/rod_spins.h"
@@ -22,18 +27,46 @@ using Ingredients = std::tuple<  //
     Pushes,                      //
     RigidRows,                   //
     Ties,                        //
+    OrientedParticles,           //
     RodSpins,                    //
     Closings,                    //
     Nails,                       //
+    Laws,                        //
+    Bonds,                       //
     Joints,                      //
-    ImplicitBonds,               //
+    Fields,                      //
+    Pairs,                       //
+    Emitters,                    //
     Grips>;
 
+template <class List>
+struct TypesOf;
 template <class... I>
-consteval bool are_ingredients(std::type_identity<std::tuple<I...>>) {
-  static_assert((IslandIngredient<I> && ...));
-  return true;
+struct TypesOf<std::tuple<I...>> {
+  static_assert((ModelIngredient<I> && ...) && (IslandIngredient<I> && ...));
+  template <class Visit>
+  static void for_each(Visit visit) {
+    (visit.template operator()<I>(), ...);
+  }
+};
+
+/// Calls visit.operator()<I>() for each ingredient of a list, in order.
+template <class List, class Visit>
+void for_each_type(Visit visit) {
+  TypesOf<List>::for_each(visit);
 }
-static_assert(are_ingredients(std::type_identity<Ingredients>{}));
+
+template <class List>
+void add_energies(const Scope& scope, Energies& sum) {
+  for_each_type<List>([&]<class I>() { I::add_energy(scope, sum); });
+}
+template <class List>
+void add_momenta(const Scope& scope, Momenta& sum) {
+  for_each_type<List>([&]<class I>() { I::add_momentum(scope, sum); });
+}
+template <class List>
+void add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
+  for_each_type<List>([&]<class I>() { I::add_loads(step, body, reader); });
+}
 
 }  // namespace iota::ingredient

@@ -169,4 +169,74 @@ std::string Joints::name_of_row(const Model& model, const IslandNodes&, const so
   return text("the ", info(model.constraints[found].kind).name, " constraint ", found);
 }
 
+void Joints::validate(const Model& model, model::Audit& audit) {
+  std::uint32_t places = 0, listed = 0;
+  model.constraints.for_each([&](std::uint32_t slot, const Constraint& c) {
+    for (int place = 0; place < place_count; ++place) {
+      const std::uint32_t p = c.particles[place];
+      if (p == none) continue;
+      const bool own =
+          model.particles.is_alive(p) && model.particles[p].body == body_of_side(model, c, place >= b_origin);
+      audit.require(own, info(c.kind).name, " ", slot, " holds a stranger at place ", place);
+      ++places;
+    }
+    audit.require(body_of_side(model, c, 0) != body_of_side(model, c, 1), info(c.kind).name, " ", slot,
+                  " joins a body to itself");
+  });
+  model.references.for_each([&](std::uint32_t slot, const model::References& of) {
+    for (std::uint32_t link = of.first_constraint; link != none;) {
+      const std::uint32_t joint = link / place_count, place = link % place_count;
+      const bool good = model.constraints.is_alive(joint) && model.constraints[joint].particles[place] == slot;
+      audit.require(good, "particle ", slot, " lists constraint ", joint, ", which is not there");
+      if (!good || ++listed > places) return;
+      link = model.constraints[joint].next[place];
+    }
+  });
+  audit.require(listed == places, "the particles list ", listed, " of ", places, " places of constraints");
+}
+
+// Of its springs, at the coordinates of the last step.
+void Joints::add_energy(const Scope& scope, Energies& sum) {
+  const Model& model = scope.model;
+  const auto add = [&](const Constraint& c) {
+    for (std::size_t i = 0; i < c.options.size() && c.active; ++i) {
+      const double stretch = c.coordinate[i] - c.options[i].rest;
+      sum.potential += 0.5 * c.options[i].stiffness * stretch * stretch;
+    }
+  };
+  if (scope.is_whole())
+    model.constraints.for_each([&](std::uint32_t, const Constraint& c) { add(c); });
+  else if (model.constraints.size() > 0)
+    scope.for_each_particle([&](std::uint32_t p, const model::Particle&) {
+      model.for_each_constraint_of(p, [&](std::uint32_t slot, int place) {
+        if (place == a_origin) add(model.constraints[slot]);
+      });
+    });
+}
+
+double Joints::worst_gap(const Model& model) {
+  double worst = 0;
+  model.constraints.for_each([&](std::uint32_t, const Constraint& c) {
+    if (is_in_force(model, c) && !(c.gap <= worst)) worst = c.gap;
+  });
+  return worst;
+}
+
+void Joints::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
+  const Model& model = step.model;
+  if (model.constraints.size() == 0) return;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model.for_each_constraint_of(p, [&](std::uint32_t slot, int place) {
+      reader.take({.particle = p,
+                   .force = calc_force_at(model, slot, place),
+                   .through_basis = true,
+                   .part = model.particles[p].part});
+    });
+  });
+}
+
+bool Joints::holds(const Model& model, std::uint32_t particle) {
+  return model.references[particle].first_constraint != none;
+}
+
 }  // namespace iota::ingredient

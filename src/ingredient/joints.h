@@ -9,6 +9,17 @@ namespace iota::ingredient {
 /// Joints, rods, ropes, paths and surfaces with their limits, motors, friction and springs.
 class Joints : public NoAnswers {
  public:
+  template <class Archive>
+  static void archive(Model& model, Archive& ar) {
+    model.constraints.archive(ar);
+    ar.vector(model.curve_points);
+  }
+  static void validate(const Model&, model::Audit&);
+  static void add_energy(const Scope&, Energies&);
+  static double worst_gap(const Model&);
+  static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
+  static bool holds(const Model&, std::uint32_t particle);
+
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;

@@ -114,4 +114,67 @@ double Masses::after_step(Model& model, double h, Problem& problem) {
   return before - problem.kinetic_energy();
 }
 
+void Masses::validate(const Model& model, model::Audit& audit) {
+  model.bodies.for_each([&](std::uint32_t slot, const model::Body&) {
+    model.for_each_inertia_of(slot, [&](std::uint32_t i) {
+      const model::InertiaPair& pair = model.inertia_pairs[i];
+      audit.require(model.inertia_pairs.is_alive(i) && pair.body == slot && model.particles[pair.p].body == slot &&
+                        model.particles[pair.q].body == slot,
+                    "inertia pair ", i, " is not of body ", slot);
+    });
+  });
+}
+
+void Masses::add_energy(const Scope& scope, Energies& sum) {
+  const Model& model = scope.model;
+  const Vec3 gravity = model.acting_gravity();
+  scope.for_each_particle([&](std::uint32_t, const model::Particle& p) {
+    const model::Ring& ring = model.rings[p.ring];
+    sum.kinetic += 0.5 * p.mass * dot(ring.velocity, ring.velocity);
+    sum.potential -= p.mass * dot(gravity, ring.position);
+  });
+  scope.for_each_inertia_pair([&](const model::InertiaPair& pair) {
+    const Vec3 v = model.velocity(pair.p) - model.velocity(pair.q);
+    sum.kinetic += 0.5 * pair.inertia * dot(v, v);
+  });
+}
+
+void Masses::add_momentum(const Scope& scope, Momenta& sum) {
+  const Model& model = scope.model;
+  scope.for_each_particle([&](std::uint32_t, const model::Particle& p) {
+    const model::Ring& ring = model.rings[p.ring];
+    sum.linear += p.mass * ring.velocity;
+    sum.angular += p.mass * cross(ring.position, ring.velocity);
+  });
+  scope.for_each_inertia_pair([&](const model::InertiaPair& pair) {
+    sum.angular += pair.inertia * cross(model.position(pair.p) - model.position(pair.q),
+                                        model.velocity(pair.p) - model.velocity(pair.q));
+  });
+}
+
+void Masses::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
+  const Model& model = step.model;
+  const Vec3 gravity = model.acting_gravity();
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    const model::Particle& particle = model.particles[p];
+    if (particle.is_marker()) return;
+    reader.take({.particle = p, .force = particle.mass * (gravity - step.damping(p)), .part = particle.part});
+    reader.take({.particle = p,
+                 .force = -particle.mass * step.acceleration(p),
+                 .kind = Load::Kind::inertia,
+                 .part = particle.part});
+  });
+  model.for_each_inertia_of(body, [&](std::uint32_t i) {
+    const model::InertiaPair& pair = model.inertia_pairs[i];
+    const BodyId part = model.particles[pair.p].part;
+    const BodyId common = part == model.particles[pair.q].part ? part : BodyId{};
+    const auto take = [&](const Vec3& on_p, Load::Kind kind) {
+      reader.take({.particle = pair.p, .force = on_p, .kind = kind, .part = common});
+      reader.take({.particle = pair.q, .force = -on_p, .kind = kind, .part = common});
+    };
+    take(-pair.inertia * (step.damping(pair.p) - step.damping(pair.q)), Load::Kind::outside);
+    take(-pair.inertia * (step.acceleration(pair.p) - step.acceleration(pair.q)), Load::Kind::inertia);
+  });
+}
+
 }  // namespace iota::ingredient

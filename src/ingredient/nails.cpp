@@ -103,4 +103,25 @@ void Nails::renumber_node(std::uint32_t from, std::uint32_t to) {
   std::replace(nodes_.begin(), nodes_.end(), from, to);
 }
 
+void Nails::validate(const Model& model, model::Audit& audit) {
+  audit.require_owners("a nail", model.nails, model.rings);
+  model.rings.for_each([&](std::uint32_t slot, const model::Ring& r) {
+    audit.require(!r.nailed || model.nails.has(slot), "ring ", slot, " is nailed nowhere");
+  });
+}
+
+double Nails::worst_gap(const Model& model) {
+  double worst = 0;
+  model.nails.for_each([&](std::uint32_t ring, const model::Nail& nail) {
+    if (!model.rings[ring].nailed) return;
+    bool moves = false;
+    model.for_each_in_ring(
+        ring, [&](std::uint32_t p) { moves = moves || is_free(model.bodies[model.particles[p].body].kind); });
+    if (!moves) return;
+    const double gap = norm(model.rings[ring].position - nail.position_before);
+    if (!(gap <= worst)) worst = gap;
+  });
+  return worst;
+}
+
 }  // namespace iota::ingredient

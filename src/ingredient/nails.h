@@ -9,6 +9,13 @@ namespace iota::ingredient {
 /// step.
 class Nails : public NoAnswers {
  public:
+  template <class Archive>
+  static void archive(Model& model, Archive& ar) {
+    model.nails.archive(ar, model.rings.slot_count());
+  }
+  static void validate(const Model&, model::Audit&);
+  static double worst_gap(const Model&);
+
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;

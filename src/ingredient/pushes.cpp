@@ -40,4 +40,25 @@ bool Pushes::keeps_awake(const Problem& problem) const {
   return std::any_of(problem.force.begin(), problem.force.end(), [](const Vec3& f) { return f != Vec3{}; });
 }
 
+void Pushes::validate(const Model& model, model::Audit& audit) {
+  audit.require_owners("a push", model.pushes, model.rings);
+}
+
+// A force that was applied to a place that bodies share is theirs in equal parts, as far as they can move.
+void Pushes::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
+  const Model& model = step.model;
+  if (model.pushes.is_empty()) return;
+  const bool moves = is_free(model.bodies[body].kind);
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    const model::Particle& particle = model.particles[p];
+    const model::Push* const push = model.pushes.find(particle.ring);
+    if (!push) return;
+    int free = 0;
+    model.for_each_in_ring(
+        particle.ring, [&](std::uint32_t other) { free += is_free(model.bodies[model.particles[other].body].kind); });
+    if (!moves && free > 0) return;
+    reader.take({.particle = p, .force = (1.0 / std::max(1, free)) * push->before, .part = particle.part});
+  });
+}
+
 }  // namespace iota::ingredient

@@ -4,6 +4,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace iota::ingredient {
@@ -55,6 +56,47 @@ bool RigidRows::meets_pinned(const Model& model) const {
 std::string RigidRows::name_of_row(const Model&, const IslandNodes&, const solver::RowName& row) const {
   if (row.pool != pool_index<solver::DistanceConstraint> || row.item >= rows_.size()) return {};
   return text("the rigidity of body ", rows_[row.item].body);
+}
+
+void RigidRows::validate(const Model& model, model::Audit& audit) {
+  audit.require_owners("rows", model.more_rows, model.bodies);
+  model.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
+    audit.require(b.row_count == b.rank * (b.rank - 1) / 2 || b.count == 0, "body ", slot, " has ", int(b.row_count),
+                  " rows at rank ", int(b.rank));
+    audit.require((b.row_count > 1) == model.more_rows.has(slot), "body ", slot, " with ", int(b.row_count),
+                  " rows has a wrong table of them");
+  });
+}
+
+double RigidRows::worst_gap(const Model& model) {
+  double worst = 0;
+  model.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
+    if (!is_free(b.kind)) return;  // nothing holds it: it is where it was put
+    for (int row = 0; row < b.row_count; ++row) {
+      const auto [i, j] = model::basis_pairs[row];
+      const double length = norm(model.position(b.basis[j]) - model.position(b.basis[i]));
+      const double gap = std::abs(length - model.row(slot, row).length);
+      if (!(gap <= worst)) worst = gap;
+    }
+  });
+  return worst;
+}
+
+void RigidRows::add_loads(const LastStep& step, std::uint32_t slot, LoadReader& reader) {
+  const model::Body& body = step.model.bodies[slot];
+  for (int row = 0; row < body.row_count; ++row) {
+    const model::RigidRow& record = step.model.row(slot, row);
+    const std::array<Vec3, 2> places{step.place(body.basis[model::basis_pairs[row][0]]),
+                                     step.place(body.basis[model::basis_pairs[row][1]])};
+    const solver::DistanceConstraint constraint{{0, 1}, record.length, record.length};
+    for (int end = 0; end < 2; ++end) {
+      Vec3 gradient;
+      constraint.gradient(places.data(), end, &gradient);
+      reader.take({.particle = body.basis[model::basis_pairs[row][static_cast<std::size_t>(end)]],
+                   .force = -record.multiplier * gradient,
+                   .kind = Load::Kind::within});
+    }
+  }
 }
 
 }  // namespace iota::ingredient

@@ -30,9 +30,9 @@ double RodSpins::after_step(Model& model, double h, Problem&) {
   double lost = 0;
   for (const std::uint32_t body : bodies_) {
     model::RodSpin& spin = model.spins.at(body);
-    lost += model.spin_energy(body);
+    lost += energy(model, body);
     spin.momentum *= std::exp(-(model.damping + model.bodies[body].damping) * h);
-    lost -= model.spin_energy(body);
+    lost -= energy(model, body);
     spin.angle += h * spin.momentum / model.axial_inertia(body);
   }
   return lost;
@@ -40,6 +40,43 @@ double RodSpins::after_step(Model& model, double h, Problem&) {
 
 void RodSpins::put_to_rest(Model& model) const {
   for (const std::uint32_t body : bodies_) model.spins.at(body).momentum = 0;
+}
+
+void RodSpins::validate(const Model& model, model::Audit& audit) {
+  audit.require_owners("a spin", model.spins, model.bodies);
+  model.spins.for_each([&](std::uint32_t slot, const model::RodSpin& spin) {
+    audit.require(!model.bodies.is_alive(slot) || model.axial_inertia(slot) > 0, "body ", slot,
+                  " spins, but is not a rod");
+    audit.require(std::isfinite(spin.momentum) && std::isfinite(spin.angle), "the spin of ", slot, " is not finite");
+  });
+}
+
+double RodSpins::energy(const Model& model, std::uint32_t body) {
+  const double momentum = model.spins.at(body).momentum;
+  return 0.5 * momentum * momentum / model.axial_inertia(body);
+}
+
+void RodSpins::add_energy(const Scope& scope, Energies& sum) {
+  scope.for_each_body_in(scope.model.spins, [&](std::uint32_t body) { sum.kinetic += energy(scope.model, body); });
+}
+
+void RodSpins::add_momentum(const Scope& scope, Momenta& sum) {
+  scope.for_each_body_in(scope.model.spins,
+                         [&](std::uint32_t body) { sum.angular += scope.model.spin_momentum(body); });
+}
+
+// A force of inertia: with the axis the momentum of the spin turns.
+void RodSpins::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
+  const Model& model = step.model;
+  if (!model.spins.has(body) || !(step.h > 0)) return;
+  const model::InertiaPair& pair = model.inertia_pairs[model.bodies[body].first_inertia];
+  const Vec3 end = model.position(pair.q) - model.position(pair.p);
+  const Vec3 start = end - step.h * (step.mean_velocity(pair.q) - step.mean_velocity(pair.p));
+  const solver::GyroscopicForce gyroscopic{.spin = model.spins.at(body).momentum / norm(end)};
+  const Vec3 on_q = gyroscopic.force(start, end, {.h = step.h});
+  const BodyId part = model.particles[pair.p].part;
+  reader.take({.particle = pair.p, .force = -on_q, .kind = Load::Kind::inertia, .part = part});
+  reader.take({.particle = pair.q, .force = on_q, .kind = Load::Kind::inertia, .part = part});
 }
 
 }  // namespace iota::ingredient

@@ -4,6 +4,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace iota::ingredient {
 
@@ -75,6 +76,43 @@ std::string Ties::name_of_row(const Model& model, const IslandNodes&, const solv
   if (row.pool != pool_index<solver::AffineConstraint> || row.item - first_ >= tied_.size()) return {};
   const std::uint32_t particle = tied_[row.item - first_];
   return text("the place of particle ", particle, " in body ", model.particles[particle].body);
+}
+
+void Ties::validate(const Model& model, model::Audit& audit) {
+  audit.require_owners("a tie", model.ties, model.particles);
+  model.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
+    audit.require((p.basis_index < 0) == model.ties.has(slot), "particle ", slot,
+                  " is in a basis and tied to it, or neither");
+    double sum = 0;
+    for (const double w : model.weights(slot)) sum += w;
+    audit.require(std::abs(sum - 1) < 1e-9, "particle ", slot, " has basis weights that sum to ", sum);
+  });
+}
+
+double Ties::worst_gap(const Model& model) {
+  double worst = 0;
+  model.ties.for_each([&](std::uint32_t p, const model::Tie&) {
+    if (!is_free(model.bodies[model.particles[p].body].kind)) return;  // nothing holds it: it is where it was put
+    const double gap = norm(model.carried(p).first - model.position(p));
+    if (!(gap <= worst)) worst = gap;
+  });
+  return worst;
+}
+
+// The multiplier of AffineConstraint, with weight 1 for the particle and minus its weights for the basis.
+void Ties::add_loads(const LastStep& step, std::uint32_t slot, LoadReader& reader) {
+  const Model& model = step.model;
+  const model::Body& body = model.bodies[slot];
+  if (body.count == body.rank) return;
+  model.for_each_particle_of(slot, [&](std::uint32_t p) {
+    const model::Particle& particle = model.particles[p];
+    if (particle.basis_index >= 0 || !model.is_unknown(particle)) return;
+    const model::Tie& tie = model.ties[p];
+    const Vec3 multiplier{tie.multiplier[0], tie.multiplier[1], tie.multiplier[2]};
+    reader.take({.particle = p, .force = -multiplier, .kind = Load::Kind::within});
+    for (int i = 0; i < body.rank; ++i)
+      reader.take({.particle = body.basis[i], .force = tie.weights[i] * multiplier, .kind = Load::Kind::within});
+  });
 }
 
 }  // namespace iota::ingredient

@@ -188,6 +188,24 @@ std::array<double, 4> Model::weights(std::uint32_t particle) const {
   return weights;
 }
 
+std::pair<Vec3, Vec3> Model::carried(std::uint32_t particle) const {
+  const Body& body = bodies[particles[particle].body];
+  const std::array<double, 4> w = weights(particle);
+  Vec3 x, v;
+  for (int i = 0; i < body.rank; ++i) {
+    const Ring& b = rings[particles[body.basis[i]].ring];
+    x += w[i] * b.position;
+    v += w[i] * b.velocity;
+  }
+  return {x, v};
+}
+
+bool Model::follows_basis(std::uint32_t particle) const {
+  if (particles[particle].basis_index >= 0) return true;
+  const auto [x, v] = carried(particle);
+  return norm(x - position(particle)) < 1e-9 && norm(v - velocity(particle)) < 1e-9;
+}
+
 BodyId Model::part_at(std::uint32_t body, const Vec3& place) const {
   BodyId part = bodies.id(body);
   double least = -1;

@@ -88,9 +88,13 @@ Vec3 Model::acting_gravity() const {
 }
 
 void Model::compile_laws() {
-  compiled_laws_.clear(), compiled_fields_.clear();
-  fields.for_each([&](std::uint32_t slot, const Field&) { compile_field(slot); });
+  compiled_laws_.clear();
   laws.for_each([&](std::uint32_t slot, const Law&) { compile_law(slot); });
+}
+
+void Model::compile_fields() {
+  compiled_fields_.clear();
+  fields.for_each([&](std::uint32_t slot, const Field&) { compile_field(slot); });
 }
 
 }  // namespace iota::model

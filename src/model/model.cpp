@@ -147,6 +147,16 @@ void Model::remove_solids_of(std::uint32_t body, std::uint32_t particle) {
   }
 }
 
+bool Model::is_pinned(std::uint32_t ring) const {
+  if (rings[ring].nailed) return true;
+  bool pinned = false;
+  for_each_in_ring(ring, [&](std::uint32_t p) {
+    const BodyKind kind = bodies[particles[p].body].kind;
+    pinned = pinned || kind == BodyKind::static_ || kind == BodyKind::scripted;
+  });
+  return pinned;
+}
+
 double Model::body_mass(std::uint32_t body) const {
   double mass = 0;
   for_each_particle_of(body, [&](std::uint32_t p) { mass += particles[p].mass; });

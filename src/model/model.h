@@ -386,6 +386,8 @@ class Model {
   const laws::PairLaw& compiled(std::uint32_t law) const { return *compiled_laws_[law]; }
   std::uint32_t make_field(const Field&);  ///< throws expression::ExpressionError for a text that is no field
   const laws::FieldLaw& compiled_field(std::uint32_t field) const { return *compiled_fields_[field]; }
+  void compile_laws();    ///< anew, after a restore
+  void compile_fields();  ///< anew, after a restore
   /// What pulls on all masses: gravity, unless an active field replaces it.
   Vec3 acting_gravity() const;
   std::uint64_t members_revision = 0;  ///< rises when a group changes; not saved
@@ -417,7 +419,6 @@ class Model {
   double axial_inertia(std::uint32_t body) const;
   Vec3 rod_axis(std::uint32_t body) const;                     ///< of a rod, unit vector
   Vec3 spin_momentum(std::uint32_t body) const;                ///< of a rod's turning about itself, kg m^2/s
-  double spin_energy(std::uint32_t body) const;                ///< J
   void set_spin(std::uint32_t body, double angular_velocity);  ///< of a rod about itself, rad/s
 
   /// Of the massive particle nearest to a place.
@@ -516,37 +517,16 @@ class Model {
   bool is_spark(std::uint32_t particle) const;
   std::optional<BodyId> survivor_of(BodyId) const;
 
-  /// @name Quantities
-  ///@{
-  double kinetic_energy() const;  ///< J
-  double energy() const { return kinetic_energy() + potential_energy(); }
-  double potential_energy() const;               ///< gravity and springs, J
-  double bond_energy(std::uint32_t bond) const;  ///< J; of implicit bonds, at `time`
-  /// Of its springs at the coordinates it was last seen at, J.
-  double constraint_energy(std::uint32_t constraint) const;
-  Vec3 bond_force(std::uint32_t bond) const;  ///< on its second particle, as things stand, N
-  /// The two ends of a bond for its law: distance and its rate (positions `ahead` seconds on), time, masses.
-  laws::PairState bond_state(const Bond& bond, double ahead = 0) const;
-  /// What edits change is the difference of the energy before the first and after the last of them: one sum for all,
-  /// whatever they did. Between steps `booked_energy` is that of the end of the last step.
-  void begin_edits();
-  void book_edits(double energy_now);
-  double energy_of_edits() const;  ///< those not booked yet included, J
-  Vec3 momentum() const;           ///< kg m/s
-  Vec3 angular_momentum() const;   ///< about the origin, kg m^2/s
-  double worst_gap() const;        ///< over rigid distances, tied points, nails and constraints, m
-  ///@}
-
-  std::vector<std::string> validate() const;
   std::uint64_t hash() const;
 
+  /// Settings, points, bodies and articulates with what refers to them. The tables of ingredients are archived by these:
+  /// see ingredient::archive.
   template <class Archive>
   void archive(Archive& ar);
 
  private:
   void compile_law(std::uint32_t law);
   void compile_field(std::uint32_t field);
-  void compile_laws();
   std::vector<std::shared_ptr<const laws::PairLaw>> compiled_laws_;  // by slot; not saved, made from the table
   std::vector<std::shared_ptr<const laws::FieldLaw>> compiled_fields_;
 
@@ -618,24 +598,14 @@ void Model::Survivors<IdType>::archive(Archive& ar) {
 
 template <class Archive>
 void Model::archive(Archive& ar) {
-  particles.archive(ar), rings.archive(ar), bodies.archive(ar), inertia_pairs.archive(ar), solids.archive(ar),
-      twins.archive(ar);
-  attributes.archive(ar), emitters.archive(ar);
-  articulates.archive(ar);
-  laws.archive(ar), groups.archive(ar), fields.archive(ar), pairs.archive(ar), bonds.archive(ar),
-      cosmetic_bonds.archive(ar), grips.archive(ar), closings.archive(ar);
-  constraints.archive(ar), ar.vector(curve_points);
-  ties.archive(ar, particles.slot_count()), references.archive(ar, particles.slot_count()),
-      fuses.archive(ar, particles.slot_count());
-  nails.archive(ar, rings.slot_count()), pushes.archive(ar, rings.slot_count());
-  spins.archive(ar, bodies.slot_count());
-  more_rows.archive(ar, bodies.slot_count());
+  particles.archive(ar), rings.archive(ar), bodies.archive(ar), solids.archive(ar), twins.archive(ar);
+  articulates.archive(ar), groups.archive(ar), cosmetic_bonds.archive(ar);
+  references.archive(ar, particles.slot_count()), fuses.archive(ar, particles.slot_count());
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version), ar.value(spark_changes);
   ar.value(dissipated), ar.value(external_work), ar.value(edit_energy), ar.value(booked_energy), ar.value(has_edits);
   ar.value(held_energy);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
-  if constexpr (std::is_same_v<Archive, Reader>) compile_laws();
 }
 
 }  // namespace iota::model

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One step of the whole system, stage by stage; `docs/architecture.md` tells the same story.
+#include "ingredient/quantities.h"
 #include "step/checks.h"
 #include "step/implementation.h"
 
@@ -52,7 +53,7 @@ StepReport System::Implementation::apply(const step::Step& command) {
   }
   for (const std::uint32_t articulate : jolted)
     if (step::Island* const island = islands.of_articulate(articulate)) (void)island->project(model, false);
-  if (model.has_edits) model.book_edits(model.energy());
+  if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
 
   // 3. Every island by itself, on as many threads as pay; reports are added up in a fixed order.
   const auto all = islands.all();
@@ -97,10 +98,11 @@ StepReport System::Implementation::apply(const step::Step& command) {
   model.notes.clear();
   report.step = model.step;
   report.time = model.time;
-  report.worst_gap = model.worst_gap();
-  const double kinetic = model.kinetic_energy(), potential = model.potential_energy();
-  model.book_edits(kinetic + potential);
-  report.energy = {kinetic, potential + held_energy(), model.dissipated, model.external_work, model.edit_energy};
+  report.worst_gap = ingredient::worst_gap(model);
+  const ingredient::Energies energy = ingredient::calc_energies(model);
+  ingredient::book_edits(model, energy.total());
+  report.energy = {energy.kinetic, energy.potential + held_energy(), model.dissipated, model.external_work,
+                   model.edit_energy};
   report.articulates = model.articulates.size();
   report.structure_version = model.structure_version;
   if (recording) recording->hashes.push_back(model.hash());
@@ -116,7 +118,7 @@ void System::Implementation::finish_closings(StepReport& report) {
   });
   for (const auto& [closing, combine] : met) {
     if (!model.closings.contains(closing)) continue;  // an earlier one has settled it
-    model.begin_edits();
+    ingredient::begin_edits(model);
     try {
       const RestructureReport met_now = apply(combine);
       report.unconverged += met_now.remaining_gap > 0;
@@ -132,7 +134,7 @@ void System::Implementation::apply_queue(StepReport& report) {
   if (queue.empty()) return;
   report.edits.emplace();
   report.edits->articulates_before = model.articulates.size();
-  model.begin_edits();
+  ingredient::begin_edits(model);
   const double before = energy().edits;
   const std::uint32_t version = model.structure_version;
   std::vector<step::Command> edits;

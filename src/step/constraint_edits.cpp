@@ -2,9 +2,10 @@
 // What each command about constraints does; checks of what the user passes in.
 #include "ingredient/joint_readings.h"
 #include "ingredient/joint_rows.h"
+#include "ingredient/loads.h"
+#include "ingredient/quantities.h"
 #include "step/checks.h"
 #include "step/execute.h"
-#include "step/hinge_force.h"
 
 #include <cmath>
 
@@ -276,7 +277,7 @@ void System::Implementation::break_overloaded(StepReport& report) {
     if (!(force > c.breaks.force || torque > c.breaks.torque)) continue;
     report.broken.push_back(
         {.constraint = model.constraints.id(slot), .position = reaction.position, .force = force, .torque = torque});
-    model.begin_edits();
+    ingredient::begin_edits(model);
     apply(SetConstraintActive{model.constraints.id(slot), false});
     model.constraints[slot].broken = 1;
   }
@@ -287,7 +288,7 @@ void System::Implementation::break_overloaded(StepReport& report) {
     if (!(force > bond.break_force)) continue;
     const Vec3 middle = 0.5 * (model.position(bond.p) + model.position(bond.q));
     report.broken.push_back({.bond = model.bonds.id(slot), .position = middle, .force = force});
-    model.begin_edits();
+    ingredient::begin_edits(model);
     apply(SetActive{model.bonds.id(slot), false});
     bond.broken = 1;
   }
@@ -298,7 +299,7 @@ void System::Implementation::break_overloaded(StepReport& report) {
       overloaded.push_back(
           {.particle = model.particles.id(particle), .position = model.position(particle), .force = force});
   });
-  if (!overloaded.empty()) model.begin_edits();
+  if (!overloaded.empty()) ingredient::begin_edits(model);
   for (const Broken& broken : overloaded) {
     const model::Ring& ring = model.rings[model.particles[broken.particle.slot].ring];
     if (ring.count > 1)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step/edit_batch.h"
 
+#include "ingredient/quantities.h"
 #include "step/checks.h"
 #include "step/execute.h"
 
@@ -51,7 +52,7 @@ EditBatch::EditBatch(const model::Model& model, Snapshot start)
       bodies_(model.bodies.ids()),
       particles_(model.particles.ids()),
       version_(model.structure_version),
-      edit_energy_(model.energy_of_edits()) {
+      edit_energy_(ingredient::energy_of_edits(model)) {
   report_.articulates_before = model.articulates.size();
 }
 
@@ -69,7 +70,7 @@ RestructureReport EditBatch::finish(const model::Model& model) {
   forget_absorbed(report_.destroyed_particles, report_.absorbed_particles);
   report_.articulates_after = model.articulates.size();
   report_.structure_version = model.structure_version;
-  report_.energy_change = model.energy_of_edits() - edit_energy_;
+  report_.energy_change = ingredient::energy_of_edits(model) - edit_energy_;
   return std::move(report_);
 }
 

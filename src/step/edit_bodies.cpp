@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bodies as wholes: given by shape, moved, spun.
+#include "ingredient/loads.h"
 #include "model/solid.h"
 #include "step/checks.h"
 #include "step/execute.h"
-#include "step/outside_load.h"
 
 #include <algorithm>
 #include <cmath>
@@ -148,60 +148,24 @@ Vec3 System::net_force(ParticleId id) const {
   const model::Particle& p = implementation_->model.particles[implementation_->require(id)];
   return p.mass * implementation_->model.rings[p.ring].acceleration;
 }
-Vec3 System::net_force(BodyId id) const { return implementation_->rates(implementation_->require(id), {}).force; }
-Vec3 System::net_torque(BodyId id) const { return implementation_->rates(implementation_->require(id), {}).torque; }
+Vec3 System::net_force(BodyId id) const {
+  return ingredient::calc_net_load(implementation_->model, implementation_->require(id), {}).force;
+}
+Vec3 System::net_torque(BodyId id) const {
+  return ingredient::calc_net_load(implementation_->model, implementation_->require(id), {}).torque;
+}
 Vec3 System::net_force(BodyId id, BodyId part) const {
-  return implementation_->rates(implementation_->require(id), part).force;
+  return ingredient::calc_net_load(implementation_->model, implementation_->require(id), part).force;
 }
 Vec3 System::net_torque(BodyId id, BodyId part) const {
-  return implementation_->rates(implementation_->require(id), part).torque;
+  return ingredient::calc_net_load(implementation_->model, implementation_->require(id), part).torque;
 }
 
 Vec3 System::outside_force(BodyId id, BodyId part) const {
-  return calc_outside_load(implementation_->model, implementation_->require(id), part).force;
+  return ingredient::calc_outside_load(implementation_->model, implementation_->require(id), part).force;
 }
 Vec3 System::outside_torque(BodyId id, BodyId part) const {
-  return calc_outside_load(implementation_->model, implementation_->require(id), part).torque;
-}
-
-// Forces act where the scheme takes them: at the end of the step, or half way, where x = x1 - h (v0 + v1) / 4. There the
-// moments of all forces within a body cancel, so that the sum of m x cross a is the torque from outside.
-System::Implementation::Rates System::Implementation::rates(std::uint32_t body, BodyId part) const {
-  std::vector<std::uint32_t> members;
-  model.for_each_particle_of(body, [&](std::uint32_t p) {
-    if (!part || model.particles[p].part == part) members.push_back(p);
-  });
-  double mass = 0;
-  Vec3 position, velocity, force;
-  for (const std::uint32_t p : members) {
-    const double m = model.particles[p].mass;
-    mass += m, position += m * model.position(p), velocity += m * model.velocity(p);
-    force += m * model.rings[model.particles[p].ring].acceleration;
-  }
-  if (!(mass > 0)) return {};
-  const Vec3 x = (1 / mass) * position, v = (1 / mass) * velocity, a = (1 / mass) * force;
-  const bool at_end = model.steps_to_end_point();
-  const double back = at_end ? 0 : model.last_dt / 2;
-  Vec3 torque;
-  const auto add = [&](double m, const Vec3& r, const Vec3& v1, const Vec3& a1) {
-    torque += m * cross(r - back * v1, a1);
-  };
-  for (const std::uint32_t p : members)
-    add(model.particles[p].mass, model.position(p) - x, model.velocity(p) - v,
-        model.rings[model.particles[p].ring].acceleration - a);
-  model.for_each_inertia_of(body, [&](std::uint32_t i) {
-    const model::InertiaPair& pair = model.inertia_pairs[i];
-    if (part && (model.particles[pair.p].part != part || model.particles[pair.q].part != part)) return;
-    add(pair.inertia, model.position(pair.p) - model.position(pair.q), model.velocity(pair.p) - model.velocity(pair.q),
-        model.rings[model.particles[pair.p].ring].acceleration -
-            model.rings[model.particles[pair.q].ring].acceleration);
-    if (!model.spins.has(body)) return;  // whose momentum turns with the axis
-    const Vec3 turning = model.velocity(pair.q) - model.velocity(pair.p) -
-                         back * (model.rings[model.particles[pair.q].ring].acceleration -
-                                 model.rings[model.particles[pair.p].ring].acceleration);
-    torque += (model.spins.at(body).momentum / norm(model.position(pair.q) - model.position(pair.p))) * turning;
-  });
-  return {force, torque};
+  return ingredient::calc_outside_load(implementation_->model, implementation_->require(id), part).torque;
 }
 
 std::vector<SolidView> System::solids(BodyId id) const {

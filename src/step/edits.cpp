@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each command does, and the physics that a structural edit owes.
 #include "ingredient/joint_readings.h"
+#include "ingredient/quantities.h"
 #include "math/mat3.h"
 #include "step/checks.h"
 #include "step/implementation.h"
@@ -277,40 +278,9 @@ RestructureReport System::Implementation::restructure(std::span<const std::uint3
 }
 
 System::Implementation::Conserved System::Implementation::conserved(std::span<const std::uint32_t> bodies) const {
-  Conserved sum;
-  const Vec3 gravity = model.acting_gravity();
-  for (const std::uint32_t body : bodies) {
-    if (!model.bodies.is_alive(body) || model.bodies[body].kind == BodyKind::inactive) continue;
-    model.for_each_particle_of(body, [&](std::uint32_t p) {
-      const double mass = model.particles[p].mass;
-      const Vec3 x = model.position(p), v = model.velocity(p);
-      sum.kinetic += 0.5 * mass * dot(v, v);
-      sum.potential -= mass * dot(gravity, x);
-      sum.momentum += mass * v;
-      sum.angular_momentum += mass * cross(x, v);
-      if (const std::uint32_t a = model.particles[p].attributes; a != none && model.attributes[a].oriented) {
-        const model::Attributes& ball = model.attributes[a];
-        sum.kinetic += 0.5 * ball.moment * dot(ball.spin, ball.spin);
-        sum.angular_momentum += ball.moment * ball.spin;
-      }
-      model.for_each_bond_of(p, [&](std::uint32_t b) {
-        if (model.bonds[b].p == p) sum.potential += model.bond_energy(b);
-      });
-      model.for_each_constraint_of(p, [&](std::uint32_t c, int place) {
-        if (place == model::a_origin) sum.potential += model.constraint_energy(c);
-      });
-    });
-    model.for_each_inertia_of(body, [&](std::uint32_t i) {
-      const model::InertiaPair& pair = model.inertia_pairs[i];
-      const Vec3 x = model.position(pair.p) - model.position(pair.q);
-      const Vec3 v = model.velocity(pair.p) - model.velocity(pair.q);
-      sum.kinetic += 0.5 * pair.inertia * dot(v, v);
-      sum.angular_momentum += pair.inertia * cross(x, v);
-    });
-    sum.kinetic += model.spin_energy(body);
-    sum.angular_momentum += model.spin_momentum(body);
-  }
-  return sum;
+  const ingredient::Energies energies = ingredient::calc_energies(model, bodies);
+  const ingredient::Momenta momenta = ingredient::calc_momenta(model, bodies);
+  return {energies.kinetic, energies.potential, momenta.linear, momenta.angular};
 }
 
 std::vector<System::Implementation::HeldPoint> System::Implementation::held_points(
@@ -339,7 +309,7 @@ void System::Implementation::settle(std::span<const std::uint32_t> bodies, bool 
     if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
     settled.push_back(island);
     if (island->project(model, positions)) continue;
-    report.remaining_gap = model.worst_gap();
+    report.remaining_gap = ingredient::worst_gap(model);
     report.notes.push_back(text("no position of the bodies lets the combined particles meet exactly; ",
                                 report.remaining_gap, " m remain, shared by the constraints"));
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step/free_particles.h"
 
+#include "ingredient/ingredient_list.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,7 +10,6 @@
 namespace iota::step {
 
 using model::Model;
-using model::none;
 
 bool FreeParticles::is_free(const Model& model, std::uint32_t articulate) {
   const model::Articulate& a = model.articulates[articulate];
@@ -18,11 +19,8 @@ bool FreeParticles::is_free(const Model& model, std::uint32_t articulate) {
   const model::Particle& p = model.particles[body.first];
   const model::Ring& ring = model.rings[p.ring];
   if (ring.count != 1 || ring.nailed || !(p.mass > 0)) return false;
-  const model::References& lists = model.references[body.first];
-  if (lists.first_closing != none || lists.first_constraint != none) return false;
   bool held = false;
-  model.for_each_bond_of(body.first, [&](std::uint32_t b) { held = held || model.bonds[b].ties(); });
-  model.grips.for_each([&](std::uint32_t, const model::Grip& g) { held = held || g.body == a.first; });
+  ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() { held = held || I::holds(model, body.first); });
   return !held;
 }
 

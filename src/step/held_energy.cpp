@@ -4,6 +4,7 @@
 // - what edits have changed since the last step is found at the start of the next one;
 // - what a step takes of it is taken off the work that the held forces did, which their island books as external. What is
 //   left there is the error of holding, and is small where the step is short beside the swing.
+#include "ingredient/quantities.h"
 #include "step/implementation.h"
 
 #include <cmath>
@@ -82,8 +83,9 @@ void System::Implementation::book_held_work() {
 
 Energy System::Implementation::energy() {
   const double held = held_energy();
-  return {model.kinetic_energy(), model.potential_energy() + held, model.dissipated, model.external_work,
-          model.energy_of_edits() + held - model.held_energy};
+  const ingredient::Energies now = ingredient::calc_energies(model);
+  return {now.kinetic, now.potential + held, model.dissipated, model.external_work,
+          ingredient::energy_of_edits(model) + held - model.held_energy};
 }
 
 double System::Implementation::pairs_energy(std::uint32_t slot) {

@@ -2,6 +2,7 @@
 // Forces that are taken once a step and held: scripted bonds, laws that are code, and any law on request.
 #include "step/held_forces.h"
 
+#include "ingredient/bonds.h"
 #include "laws/force_limit.h"
 #include "step/checks.h"
 #include "step/implementation.h"
@@ -187,7 +188,7 @@ void System::Implementation::watch_implicit_law(LawBatch& batch, StepReport& rep
     } else if (law.depends_on_time()) {
       // The law changes under the bond: work from outside.
       const model::Bond& bond = model.bonds[batch.bonds[i]];
-      laws::PairState state = model.bond_state(bond);
+      laws::PairState state = ingredient::Bonds::state(model, bond);
       const double before = law.elastic(state, bond.parameters.data()).energy;
       state.t += report.dt;
       model.external_work += law.elastic(state, bond.parameters.data()).energy - before;
@@ -271,7 +272,7 @@ void System::Implementation::run_scripts(StepReport& report) {
 Vec3 System::Implementation::bond_force(std::uint32_t slot) const {
   const model::Bond& bond = model.bonds[slot];
   if (!bond.acts()) return {};
-  return bond.implicit ? -model.bond_force(slot) : bond.held_force;
+  return bond.implicit ? -ingredient::Bonds::force(model, slot) : bond.held_force;
 }
 
 Vec3 System::force(BondId id) const { return implementation_->bond_force(implementation_->require(id)); }

@@ -170,11 +170,6 @@ struct System::Implementation {
   bool give_back_momenta(std::span<const std::uint32_t> bodies, std::span<const std::uint32_t> affected,
                          const Conserved& before);
   void put_to_rest(std::uint32_t body);  ///< with all that hangs together with it
-  struct Rates {
-    Vec3 force, torque;
-  };
-  /// Net force and torque (about the center of mass) of a body or, where it is not null, of one part.
-  Rates rates(std::uint32_t body, BodyId part) const;
   /// Adds motion(position) to the velocities of a body's particles.
   template <class Motion>
   void add_motion(std::uint32_t body, Motion motion);

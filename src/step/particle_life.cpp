@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Particles that are born, age, turn and die.
+#include "ingredient/quantities.h"
 #include "math/mat3.h"
 #include "step/checks.h"
 #include "step/execute.h"
@@ -89,7 +90,7 @@ void System::Implementation::live(StepReport& report) {
     a.age += h;
     if (a.age >= a.lifetime) report.died.push_back(model.particles.id(a.particle));
   });
-  if (!report.died.empty()) model.begin_edits();
+  if (!report.died.empty()) ingredient::begin_edits(model);
   std::erase_if(report.died, [&](ParticleId particle) {
     if (!model.particles.contains(particle)) return true;  // it went with another one
     const std::uint32_t before = model.structure_version, is_spark = model.is_spark(particle.slot);
@@ -108,7 +109,7 @@ void System::Implementation::emit(std::uint32_t slot, StepReport& report) {
   const double rate = model.emitters[slot].rate, owed = model.emitters[slot].due + rate * h;
   const auto count = static_cast<std::uint64_t>(owed);
   model.emitters[slot].due = owed - static_cast<double>(count);
-  if (count > 0) model.begin_edits();
+  if (count > 0) ingredient::begin_edits(model);
   for (std::uint64_t i = 0; i < count; ++i) {
     model::Emitter& e = model.emitters[slot];
     if (e.alive >= e.max_count) return;

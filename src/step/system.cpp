@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ingredient/quantities.h"
+#include "ingredient/tables.h"
 #include "math/mat3.h"
 #include "step/execute.h"
 
@@ -25,7 +27,7 @@ void with_command_type(std::size_t index, Visit visit) {
   }
 }
 
-constexpr std::uint64_t snapshot_magic = 0x32'70616e'73'61746full;  // says what the bytes are, and their version
+constexpr std::uint64_t snapshot_magic = 0x33'70616e'73'61746full;  // says what the bytes are, and their version
 
 std::uint64_t check_sum(const std::vector<std::byte>& bytes) {
   Hasher hasher;
@@ -131,13 +133,13 @@ bool System::is_spark(BodyId id) const {
   const std::uint32_t first = m.bodies[implementation_->require(id)].first;
   return first != model::none && m.is_spark(first);
 }
-Vec3 System::momentum() const { return implementation_->model.momentum(); }
-Vec3 System::angular_momentum() const { return implementation_->model.angular_momentum(); }
-double System::worst_gap() const { return implementation_->model.worst_gap(); }
+Vec3 System::momentum() const { return ingredient::calc_momenta(implementation_->model).linear; }
+Vec3 System::angular_momentum() const { return ingredient::calc_momenta(implementation_->model).angular; }
+double System::worst_gap() const { return ingredient::worst_gap(implementation_->model); }
 std::uint32_t System::closing_count() const { return implementation_->model.closings.size(); }
 std::uint32_t System::articulate_count() const { return implementation_->model.articulates.size(); }
 bool System::is_stepping() const { return implementation_->stepping; }
-std::vector<std::string> System::validate() const { return implementation_->model.validate(); }
+std::vector<std::string> System::validate() const { return ingredient::validate(implementation_->model); }
 std::uint64_t System::state_hash() const { return implementation_->model.hash(); }
 
 Energy System::energy() const { return implementation_->energy(); }
@@ -251,9 +253,10 @@ PoseSnapshot System::poses() const {
   const model::Model& m = implementation_->model;
   PoseSnapshot snapshot;
   snapshot.step = m.step, snapshot.time = m.time, snapshot.structure_version = scene_version();
-  snapshot.kinetic = static_cast<float>(m.kinetic_energy());
-  snapshot.potential = static_cast<float>(m.potential_energy() + implementation_->held_energy());
-  snapshot.gap = static_cast<float>(m.worst_gap());
+  const ingredient::Energies energy = ingredient::calc_energies(m);
+  snapshot.kinetic = static_cast<float>(energy.kinetic);
+  snapshot.potential = static_cast<float>(energy.potential + implementation_->held_energy());
+  snapshot.gap = static_cast<float>(ingredient::worst_gap(m));
   const auto put = [](float (&out)[3], const Vec3& v) {
     out[0] = static_cast<float>(v.x), out[1] = static_cast<float>(v.y), out[2] = static_cast<float>(v.z);
   };
@@ -302,7 +305,7 @@ Snapshot System::snapshot() const { return implementation_->snapshot(); }
 Snapshot System::Implementation::snapshot() {
   std::vector<std::byte> content;
   Writer content_writer(content);
-  model.archive(content_writer);
+  ingredient::archive(model, content_writer);
   // A restored system builds its islands from what is saved; so does this one, or replays would differ in the last bits.
   islands.renew();
   scripts_saved_below = next_script;
@@ -326,7 +329,7 @@ void System::Implementation::restore(const Snapshot& snapshot) {
     throw std::invalid_argument("restore: the snapshot is cut short or damaged");
   Reader content_reader(content);
   model::Model restored;
-  restored.archive(content_reader);
+  ingredient::archive(restored, content_reader);
   if (!content_reader.ok() || !content_reader.at_end())
     throw std::invalid_argument("restore: the snapshot is of another build of Iota");
   restored.surface_functions = std::move(model.surface_functions);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lists of what refers to a particle, against a twin of pairs.
+#include "ingredient/tables.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +46,7 @@ TEST(Adjacency, lists_agree_with_a_twin_through_random_bonds) {
     }
   }
   EXPECT_EQ(m.model.laws[spring_law].uses, twin.size());
-  EXPECT_TRUE(m.model.validate().empty());
+  EXPECT_TRUE(ingredient::validate(m.model).empty());
 }
 
 TEST(Adjacency, redirected_uses_go_to_the_survivor_and_those_between_the_two_end) {
@@ -64,7 +65,7 @@ TEST(Adjacency, redirected_uses_go_to_the_survivor_and_those_between_the_two_end
   EXPECT_EQ(bonds_of(m.model, p[0]), (std::set{kept, other}));
   EXPECT_TRUE(bonds_of(m.model, p[1]).empty());
   EXPECT_EQ(m.model.particles[p[1]].uses, 0u);
-  EXPECT_TRUE(m.model.validate().empty());
+  EXPECT_TRUE(ingredient::validate(m.model).empty());
 }
 
 TEST(Adjacency, a_bond_may_be_removed_while_its_particles_bonds_are_visited) {
@@ -79,7 +80,7 @@ TEST(Adjacency, a_bond_may_be_removed_while_its_particles_bonds_are_visited) {
   m.model.for_each_bond_of(p, [&](std::uint32_t bond) { ++visited, m.model.remove_bond(bond); });
   EXPECT_EQ(visited, 5);
   EXPECT_EQ(m.model.bonds.size(), 0u);
-  EXPECT_TRUE(m.model.validate().empty());
+  EXPECT_TRUE(ingredient::validate(m.model).empty());
 }
 
 TEST(Adjacency, a_bond_is_muted_while_one_of_its_ends_does_not_act) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tables of laws and fields, and what is compiled from them.
 #include "expression/formula.h"
+#include "ingredient/bonds.h"
+#include "ingredient/tables.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>
@@ -57,16 +59,16 @@ TEST(LawTable, is_compiled_again_from_what_is_saved) {
   const std::uint32_t slot = model.make_law(law);
   std::vector<std::byte> bytes;
   Writer writer(bytes);
-  model.archive(writer);
+  ingredient::archive(model, writer);
   Reader reader(bytes);
-  restored.archive(reader);
+  ingredient::archive(restored, reader);
   ASSERT_TRUE(reader.ok() && reader.at_end());
   const auto energy_at = [slot](Model& of) {
     const std::uint32_t body_p = of.make_body(BodyKind::dynamic, 0), body_q = of.make_body(BodyKind::dynamic, 0);
     Bond bond;
     bond.law = slot, bond.parameters[0] = 5;
     bond.p = of.make_particle(body_p, {0, 0, 0}, 1, {}), bond.q = of.make_particle(body_q, {0, 3, 0}, 1, {});
-    return of.bond_energy(of.add_bond(bond));
+    return ingredient::Bonds::energy(of, of.add_bond(bond));
   };
   EXPECT_DOUBLE_EQ(energy_at(model), 5 * 9);
   EXPECT_DOUBLE_EQ(energy_at(restored), 5 * 9);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Membership: who is in which body, ring and articulate.
+#include "ingredient/tables.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@ const std::vector<std::string> whole;
 
 TEST(Model, that_is_new_is_empty_and_whole) {
   const Model model;
-  EXPECT_EQ(model.validate(), whole);
+  EXPECT_EQ(ingredient::validate(model), whole);
   EXPECT_EQ(model.particles.size() + model.bodies.size() + model.articulates.size(), 0u);
   EXPECT_EQ(model.laws.size(), static_cast<std::uint32_t>(laws::pair_law_count) + 1)
       << "the listed ones and `scripted`";
@@ -28,7 +29,7 @@ TEST(Model, puts_each_new_body_into_an_articulate_and_each_new_particle_into_a_r
   std::vector<double> along_x;
   m.model.for_each_particle_of(body, [&](std::uint32_t p) { along_x.push_back(m.model.position(p).x); });
   EXPECT_EQ(along_x, (std::vector<double>{0, 1, 0})) << "in the order in which they were made";
-  EXPECT_EQ(m.model.validate(), whole);
+  EXPECT_EQ(ingredient::validate(m.model), whole);
 }
 
 TEST(Model, destroys_a_ring_with_its_last_particle_and_what_is_kept_for_it) {
@@ -63,14 +64,14 @@ TEST(Model, removes_a_particle_with_its_inertia_solid_twin_fuse_and_attributes) 
   Attributes attributes;
   attributes.particle = p;
   model.particles[p].attributes = model.attributes.create(attributes).slot;
-  ASSERT_EQ(model.validate(), whole);
+  ASSERT_EQ(ingredient::validate(model), whole);
 
   model.remove_particle(p);
   model.rebuild_basis(body);
   EXPECT_EQ(model.inertia_pairs.size() + model.solids.size() + model.twins.size() + model.attributes.size(), 0u);
   EXPECT_FALSE(model.fuses.has(p));
   EXPECT_EQ(model.fuses[other], 8) << "the others keep theirs";
-  EXPECT_EQ(model.validate(), whole);
+  EXPECT_EQ(ingredient::validate(model), whole);
 }
 
 TEST(Model, forgets_a_fuse_that_never_blows) {

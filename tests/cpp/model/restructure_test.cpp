@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who belongs to what after an edit, before any physics: the tables of the thesis, 4.1 to 4.3.
+#include "ingredient/tables.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ struct Edited : testing::Test {
   RestructureReport report;
 
   Vec3& velocity(std::uint32_t p) { return model.rings[model.particles[p].ring].velocity; }
-  void TearDown() override { EXPECT_EQ(model.validate(), whole); }
+  void TearDown() override { EXPECT_EQ(ingredient::validate(model), whole); }
 };
 
 using RestructureCombine = Edited;
@@ -132,7 +133,7 @@ TEST_F(RestructureClosing, ends_without_a_trace_when_it_is_called_off) {
   model.join_articulates(model.bodies[model.particles[p].body].articulate,
                          model.bodies[model.particles[q].body].articulate);
   const std::uint32_t slot = model.add_closing(closing);
-  EXPECT_EQ(model.validate(), whole);
+  EXPECT_EQ(ingredient::validate(model), whole);
   EXPECT_EQ(closing_between(model, p, q), slot);
   EXPECT_EQ(closing_between(model, q, p), slot);
   call_off(model, slot);

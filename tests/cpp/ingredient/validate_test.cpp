@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each sentence of `validate`: one table is damaged, and it is said.
-#include "model/model.h"
+#include "ingredient/tables.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ Model model_of(System& system) {
   outer.value(mark), outer.value(checksum), outer.vector(content);
   Reader reader(content);
   Model model;
-  model.archive(reader);
+  ingredient::archive(model, reader);
   EXPECT_TRUE(reader.ok() && reader.at_end());
   return model;
 }
@@ -135,7 +135,7 @@ const std::vector<Damage> damages{
     {"a spin of 1000, which does not live", [](Everything& e) { e.model.spins.make(nowhere); }},
     {"a nail of 1000, which does not live", [](Everything& e) { e.model.nails.make(nowhere); }},
     {"a push of 1000, which does not live", [](Everything& e) { e.model.pushes.make(nowhere); }},
-    {"spins, but is no rod", [](Everything& e) { e.model.spins.make(e.corners_body); }},
+    {"spins, but is not a rod", [](Everything& e) { e.model.spins.make(e.corners_body); }},
     {"the spin of", [](Everything& e) { e.model.spins.at(e.rod).momentum = std::nan(""); }},
     // bodies
     {"lists stranger", [](Everything& e) { e.model.particles[e.loner].body = e.corners_body; }},
@@ -213,7 +213,7 @@ const std::vector<Damage> damages{
 
 TEST(Validate, finds_nothing_wrong_with_a_system_that_holds_one_of_everything) {
   const Everything e;
-  EXPECT_EQ(e.model.validate(), std::vector<std::string>{});
+  EXPECT_EQ(ingredient::validate(e.model), std::vector<std::string>{});
   EXPECT_GT(e.model.twins.size(), 0u);
   EXPECT_GT(e.model.attributes.size(), 0u);
   EXPECT_GT(e.model.closings.size(), 0u);
@@ -226,7 +226,7 @@ TEST(Validate, says_what_is_wrong_with_any_damaged_table) {
   for (const Damage& damage : damages) {
     Everything e = whole;
     damage.make(e);
-    const std::vector<std::string> complaints = e.model.validate();
+    const std::vector<std::string> complaints = ingredient::validate(e.model);
     const auto says_it = [&](const std::string& text) { return text.find(damage.sentence) != std::string::npos; };
     EXPECT_TRUE(std::any_of(complaints.begin(), complaints.end(), says_it))
         << "not said: " << damage.sentence << "; said instead: " << (complaints.empty() ? "" : complaints.front());

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/loads.h"
+
+#include "ingredient/ingredient_list.h"
+
+#include <cmath>
+
+namespace iota::ingredient {
+
+using namespace model;
+
+namespace {
+
+bool moves_freely(const Model& model, std::uint32_t particle) {
+  return is_free(model.bodies[model.particles[particle].body].kind);
+}
+
+/// The equation of motion of one body at one of its points, without its hinge: the sum of the loads there.
+class PointBalance final : public LoadReader {
+ public:
+  PointBalance(const LastStep& step, std::uint32_t particle, ReadLoads read)
+      : model_(step.model), point_(particle), index_(model_.particles[particle].basis_index) {
+    read(step, model_.particles[particle].body, *this);
+  }
+  const Vec3& sum() const { return sum_; }
+
+  void take(const Load& load) override {
+    if (const double w = weight(load); w != 0) sum_ += w * load.force;
+  }
+
+ private:
+  /// The share of a load that the point bears.
+  double weight(const Load& load) const {
+    const Particle& p = model_.particles[load.particle];
+    const bool through_basis = load.through_basis || p.basis_index >= 0 || !model_.is_unknown(p);
+    if (!through_basis) return load.particle == point_;
+    return index_ < 0 ? 0 : model_.weights(load.particle)[static_cast<std::size_t>(index_)];
+  }
+
+  const Model& model_;
+  std::uint32_t point_;
+  int index_;  // in the basis; -1: an unknown of its own
+  Vec3 sum_;
+};
+
+/// Adds up the loads of one kind on a body or one part of it.
+class PartLoads final : public LoadReader {
+ public:
+  PartLoads(const LastStep& step, std::uint32_t body, BodyId part, Load::Kind kind)
+      : step_(step), part_(part), kind_(kind) {
+    double mass = 0;
+    step.model.for_each_particle_of(body, [&](std::uint32_t p) {
+      if (!counts(step.model.particles[p].part)) return;
+      mass += step.model.particles[p].mass;
+      center_ += step.model.particles[p].mass * step.place(p);
+    });
+    if (mass > 0) center_ = (1 / mass) * center_;
+  }
+  const Wrench& sum() const { return sum_; }
+  bool counts(BodyId part) const { return !part_ || part == part_; }
+
+  void take(const Load& load) override {
+    if (load.kind != kind_ || !counts(load.part)) return;
+    sum_.force += load.force;
+    sum_.torque += cross(step_.place(load.particle) - center_, load.force);
+  }
+
+ private:
+  const LastStep& step_;
+  BodyId part_;
+  Load::Kind kind_;
+  Vec3 center_;
+  Wrench sum_;
+};
+
+}  // namespace
+
+Vec3 LastStep::damping(std::uint32_t particle) const {
+  const double c = model.damping + model.bodies[model.particles[particle].body].damping;
+  return c > 0 && h > 0 ? (std::expm1(c * h) / h) * ring(particle).velocity : Vec3{};
+}
+
+void read_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
+  add_loads<Ingredients>(step, body, reader);
+}
+
+Vec3 calc_hinge_force(const Model& model, std::uint32_t particle, ReadLoads read) {
+  const std::uint32_t slot = model.particles[particle].ring;
+  const Ring& ring = model.rings[slot];
+  const bool free = moves_freely(model, particle);
+  if (ring.count == 1) return ring.nailed && free ? -model.nails[slot].multiplier : Vec3{};
+  const LastStep step(model);
+  Vec3 own, all;
+  int count = 0;
+  model.for_each_in_ring(slot, [&](std::uint32_t p) {
+    if (!moves_freely(model, p)) return;
+    const Vec3 force = -PointBalance(step, p, read).sum();
+    all += force, ++count;
+    if (p == particle) own = force;
+  });
+  if (!free) return -all;  // it carries what the others do not
+  return model.is_pinned(slot) ? own : own - (1.0 / count) * all;
+}
+
+Wrench calc_outside_load(const Model& model, std::uint32_t body, BodyId part, ReadLoads read) {
+  const LastStep step(model);
+  PartLoads loads(step, body, part, Load::Kind::outside);
+  read(step, body, loads);
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    const BodyId own = model.particles[p].part;
+    if (loads.counts(own)) loads.take({.particle = p, .force = calc_hinge_force(model, p, read), .part = own});
+  });
+  return loads.sum();
+}
+
+Wrench calc_net_load(const Model& model, std::uint32_t body, BodyId part, ReadLoads read) {
+  const LastStep step(model);
+  PartLoads loads(step, body, part, Load::Kind::inertia);
+  read(step, body, loads);
+  return {-loads.sum().force, -loads.sum().torque};
+}
+
+}  // namespace iota::ingredient

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/quantities.h"
+
+#include "ingredient/ingredient_list.h"
+
+namespace iota::ingredient {
+
+namespace {
+
+template <class Visit>
+void for_each_alive(const model::Model& model, std::span<const std::uint32_t> bodies, Visit visit) {
+  for (const std::uint32_t body : bodies)
+    if (model.bodies.is_alive(body)) visit(Scope(model, body));
+}
+
+}  // namespace
+
+Energies calc_energies(const Scope& scope) {
+  Energies sum;
+  add_energies<Ingredients>(scope, sum);
+  return sum;
+}
+
+Momenta calc_momenta(const Scope& scope) {
+  Momenta sum;
+  add_momenta<Ingredients>(scope, sum);
+  return sum;
+}
+
+Energies calc_energies(const model::Model& model, std::span<const std::uint32_t> bodies) {
+  Energies sum;
+  for_each_alive(model, bodies, [&](const Scope& body) { add_energies<Ingredients>(body, sum); });
+  return sum;
+}
+
+Momenta calc_momenta(const model::Model& model, std::span<const std::uint32_t> bodies) {
+  Momenta sum;
+  for_each_alive(model, bodies, [&](const Scope& body) { add_momenta<Ingredients>(body, sum); });
+  return sum;
+}
+
+double worst_gap(const model::Model& model) {
+  double worst = 0;
+  for_each_type<Ingredients>([&]<class I>() {
+    const double gap = I::worst_gap(model);
+    if (!(gap <= worst)) worst = gap;  // also where it is not a number
+  });
+  return worst;
+}
+
+void begin_edits(model::Model& model) {
+  if (!model.has_edits) model.booked_energy = calc_energies(model).total();
+  model.has_edits = 1;
+}
+
+void book_edits(model::Model& model, double energy_now) {
+  if (model.has_edits) model.edit_energy += energy_now - model.booked_energy;
+  model.booked_energy = energy_now, model.has_edits = 0;
+}
+
+double energy_of_edits(const model::Model& model) {
+  return model.edit_energy + (model.has_edits ? calc_energies(model).total() - model.booked_energy : 0);
+}
+
+}  // namespace iota::ingredient

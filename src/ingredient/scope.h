@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.h"
+
+#include <cstdint>
+
+namespace iota::ingredient {
+
+/// What energies and momenta are taken of: the whole model, or one body. An inactive body has none, even where it is hinged
+/// to one that moves. A bond or joint belongs to the body of its first end.
+class Scope {
+ public:
+  explicit Scope(const model::Model& model) : model(model) {}
+  Scope(const model::Model& model, std::uint32_t body) : model(model), body_(body) {}
+
+  const model::Model& model;
+
+  bool is_whole() const { return body_ == model::none; }
+  bool is_active(std::uint32_t body) const { return model.bodies[body].kind != BodyKind::inactive; }
+
+  /// visit(slot, particle)
+  template <class Visit>
+  void for_each_particle(Visit visit) const {
+    if (is_whole())
+      model.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
+        if (is_active(p.body)) visit(slot, p);
+      });
+    else if (is_active(body_))
+      model.for_each_particle_of(body_, [&](std::uint32_t p) { visit(p, model.particles[p]); });
+  }
+  template <class Visit>
+  void for_each_inertia_pair(Visit visit) const {
+    if (is_whole())
+      model.inertia_pairs.for_each([&](std::uint32_t, const model::InertiaPair& pair) {
+        if (is_active(pair.body)) visit(pair);
+      });
+    else if (is_active(body_))
+      model.for_each_inertia_of(body_, [&](std::uint32_t i) { visit(model.inertia_pairs[i]); });
+  }
+  /// visit(body): of those that have a value in a side table.
+  template <class T, class Visit>
+  void for_each_body_in(const SideTable<T>& values, Visit visit) const {
+    if (is_whole())
+      values.for_each([&](std::uint32_t body, const T&) { visit(body); });
+    else if (values.has(body_))
+      visit(body_);
+  }
+
+ private:
+  std::uint32_t body_ = model::none;
+};
+
+struct Energies {
+  double kinetic = 0, potential = 0;  ///< J
+  double total() const { return kinetic + potential; }
+};
+
+struct Momenta {
+  Vec3 linear;   ///< kg m/s
+  Vec3 angular;  ///< about the origin, kg m^2/s
+};
+
+}  // namespace iota::ingredient

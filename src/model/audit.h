@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/text.h"
+#include "model/model.h"
+
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace iota::model {
+
+/// Looks for what is wrong with a model. Everything that records count about each other is counted here again, independent
+/// of how edits keep it.
+class Audit {
+ public:
+  explicit Audit(const Model&);
+
+  template <class... Parts>
+  void require(bool condition, const Parts&... parts) {
+    if (!condition) complaints_.push_back(text(parts...));
+  }
+  /// Every value of a side table belongs to an item that is alive.
+  void require_owners(const char* what, const auto& values, const auto& owners) {
+    values.for_each([&](std::uint32_t slot, const auto&) {
+      require(owners.is_alive(slot), what, " of ", slot, ", which does not live");
+    });
+  }
+  void require_ends(const char* what, std::uint32_t slot, const Ends&);
+  /// Every end of an item is in the list of its particle, and in no other.
+  template <class Table>
+  void require_listed(const char* what, const Table& items, std::uint32_t References::* first);
+  /// `group` lives, or is `none`.
+  void require_group(const char* what, std::uint32_t slot, std::uint32_t group);
+  /// An item uses a law, which must live.
+  void use_law(const char* what, std::uint32_t slot, std::uint32_t law);
+
+  /// An item needs a particle as an unknown of its own.
+  void use_particle(std::uint32_t particle) { ++uses_[particle]; }
+  /// Two bodies are in one articulate for a reason other than a hinge.
+  void join(std::uint32_t body_a, std::uint32_t body_b) { parent_[root(body_a)] = root(body_b); }
+
+  /// Particles, rings, bodies, articulates and their lists; then what was counted.
+  void check_structure();
+  void check_counts();
+  std::vector<std::string> complaints() && { return std::move(complaints_); }
+
+ private:
+  void check_particles();
+  void check_rings();
+  void check_bodies();
+  void check_articulates();
+  std::uint32_t root(std::uint32_t body);
+
+  const Model& model_;
+  std::vector<std::string> complaints_;
+  std::vector<std::uint32_t> uses_;      // of each particle
+  std::vector<std::uint32_t> law_uses_;  // of each law
+  std::vector<std::uint32_t> in_body_, in_ring_, in_articulate_;
+  std::vector<std::uint32_t> parent_;  // of each body, in the forest of bodies that hang together
+};
+
+template <class Table>
+void Audit::require_listed(const char* what, const Table& items, std::uint32_t References::* first) {
+  std::uint32_t listed = 0;
+  model_.references.for_each([&](std::uint32_t slot, const References& of) {
+    for (std::uint32_t link = of.*first; link != none; link = items[link / 2].next[link % 2]) {
+      const bool good = items.is_alive(link / 2) && (link % 2 ? items[link / 2].q : items[link / 2].p) == slot;
+      require(good, "particle ", slot, " lists ", what, " ", link / 2, ", which does not end there");
+      if (!good || ++listed > 2 * items.size()) return;
+    }
+  });
+  require(listed == 2 * items.size(), "the particles list ", listed, " ends of ", items.size(), " ", what, "s");
+}
+
+}  // namespace iota::model
