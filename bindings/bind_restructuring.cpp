@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
+#include "names.h"
 #include "restructure_result.h"
 
 #include <algorithm>
@@ -13,7 +14,10 @@ constexpr const char* combine_particles_doc =
     "Same particle: nothing. Same body: this one absorbs q. Hinged: the hinge becomes rigid, and its body absorbs q's.\n"
     "Unrelated: a hinge; particles that are apart meet at once (over=0) or within `over` seconds. Momentum is kept, and\n"
     "what cannot be kept is reported.\n\n"
-    "Raises ValueError for particles of two systems or a bad `over`, StaleIdError for handles whose object is gone.\n\n"
+    "keep: 'both': both are moved to the place between them, by their masses. 'first': this one stays where it is, and q is\n"
+    "brought here with all that is hinged to it, as one rigid thing; so nothing of that may be nailed or static, hang on\n"
+    "this particle already, or take time.\n\n"
+    "Raises ValueError for particles of two systems, a bad `over` or `keep`, StaleIdError for handles whose object is gone.\n\n"
     "    p.combine(q)";
 
 constexpr const char* combine_bodies_doc =
@@ -25,13 +29,41 @@ constexpr const char* separate_doc =
     "to this one. Hinged: q leaves the ring. Unrelated: nothing (the report is then false).\n\n"
     "    p.separate(q)";
 
-RestructureResult combine_particles(const ParticleHandle& p, const ParticleHandle& q, double over) {
+/// Moves all that is hinged to q, as one rigid thing, so that q comes to be where p is.
+void bring(System& engine, ParticleId q, ParticleId p) {
+  const BodyId body = engine.body(q);
+  const Vec3 way = engine.position(p) - engine.position(q);
+  if (way == Vec3{}) return;
+  const std::uint32_t articulate = engine.articulate(body);
+  const auto refuse = [&](const std::string& why) {
+    throw nb::value_error(("combine: " + name_of(q) + " cannot be brought to " + name_of(p) + ": " + why).c_str());
+  };
+  if (engine.articulate(engine.body(p)) == articulate) refuse("they hang together already");
+  for (const BodyId other : engine.bodies()) {
+    if (engine.articulate(other) != articulate) continue;
+    if (const BodyKind kind = engine.kind(other); kind == BodyKind::static_ || kind == BodyKind::scripted)
+      refuse(name_of(other) + " is " + to_word(kind_words, kind));
+    for (const ParticleId held : engine.particles(other))
+      if (engine.is_nailed(held)) refuse(name_of(held) + " is nailed");
+  }
+  engine.set_pose(body, engine.center_of_mass(body) + way, engine.orientation(body));
+}
+
+RestructureResult combine_particles(const ParticleHandle& p, const ParticleHandle& q, double over,
+                                    const std::string& keep) {
   check_one_system(p, q, "combine");
   finite_not_negative(over, "over", "s");
+  const bool keeps_first = keep == "first";
+  if (!keeps_first && keep != "both")
+    throw nb::value_error(("keep must be 'both' or 'first', not '" + keep + "'").c_str());
+  if (keeps_first && over > 0) throw nb::value_error("keep='first' takes no time: over must be 0");
   q.use();
   System& engine = p.use();
+  const double distance = norm(engine.position(p.id) - engine.position(q.id));
+  if (keeps_first) bring(p.system->use_between_steps("combine with keep='first'"), q.id, p.id);
   const Vec3 place = 0.5 * (engine.position(p.id) + engine.position(q.id));
   RestructureResult result{p.system_object, p.system, engine.combine(p.id, q.id, over)};
+  if (keeps_first) result.report.closed_distance = distance;
   if (result.report.changed || result.report.queued) p.system->note_edit("join", place, over, p.id);
   return result;
 }
@@ -101,7 +133,10 @@ nb::list take_edits(nb::handle_t<SystemObject> self) {
 
 void bind_restructuring(nb::module_& module) {
   nb::borrow<nb::class_<ParticleHandle>>(module.attr("Particle"))
-      .def("combine", &combine_particles, "q"_a, "over"_a = 0.0, combine_particles_doc)
+      .def("combine", &combine_particles, "q"_a, "over"_a = 0.0, nb::kw_only(), "keep"_a = "both",
+           nb::sig("def combine(self, q: Particle, over: float = 0.0, *, keep: typing.Literal['both', 'first'] = 'both') "
+                   "-> RestructureReport"),
+           combine_particles_doc)
       .def("separate", &separate, "q"_a, separate_doc);
   nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"))
       .def("combine", &combine_bodies, "other"_a, combine_bodies_doc);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import pytest
@@ -199,3 +200,24 @@ def test_an_articulate_is_what_hangs_together_now(system: iota.System, chain: li
     assert [body.active for body in chain] == [False] * 3 + [True] * 3 and not whole.active
     with pytest.raises(TypeError):
         hash(whole)
+
+
+def test_a_combine_may_keep_the_first_where_it_is(system: iota.System) -> None:
+    (p, _), (q, end) = rod(system, 0, 0), rod(system, 0.3, 4)
+    report = p.combine(q, keep="first")
+    assert p.position == q.position == (0, 0, 0) and report.closed_distance == pytest.approx(math.hypot(0.3, 4))
+    assert end.position == pytest.approx((1, 0, 0))
+    (r, s) = rod(system, 5, 0)
+    s.nail()
+    with pytest.raises(ValueError, match="particle 4 cannot be brought to particle 0: particle 5 is nailed"):
+        p.combine(r, keep="first")
+    r.combine(p, keep="first")
+    assert r.position == (5, 0, 0)
+    (left, right) = rod(system, 9, 0)
+    right.combine(left.body.system.bodies[-1].particles[0])
+    for bad, text in (
+        ({"keep": "last"}, "'both' or 'first', not 'last'"),
+        ({"keep": "first", "over": 1}, "over must be 0"),
+    ):
+        with pytest.raises(ValueError, match=text):
+            r.combine(left, **bad)

@@ -7,15 +7,16 @@ import gc
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from itertools import islice
+from itertools import chain, groupby, islice
 from typing import TYPE_CHECKING, Any
 
 from iota import _core
 from iota.builder.checks import label, problems
 from iota.builder.contents import Contents
+from iota.builder.parts import RigidBody
 
 if TYPE_CHECKING:
-    from iota.builder.parts import Joint, RigidBody, SoftBond, Tie
+    from iota.builder.parts import Joint, SoftBond, Tie
     from iota.world import World
 
 MOST_SHOWN = 5  # problems in one error
@@ -77,30 +78,70 @@ def _without_collector() -> Iterator[None]:
 
 
 def _make_bodies(structure: Contents, system: _core.System, made: Realized) -> None:
-    places, speeds = structure.points.position.tolist(), structure.points.velocity.tolist()
-    masses = structure.points.mass.tolist()
-    points: list[_core.Particle | None] = [None] * len(places)
-    for number, part in enumerate(structure.bodies):
+    points: list[_core.Particle | None] = [None] * len(structure.points)
+    for is_plain, group in groupby(structure.bodies, _is_plain):
+        parts = list(group)
+        if is_plain:
+            _make_plain(structure, system, parts, points, made)
+        else:
+            _make_others(structure, system, parts, points, made)
+    alone = [number for number, point in enumerate(points) if point is None]
+    if alone:
+        _make_plain(structure, system, [RigidBody([number]) for number in alone], points, Realized())
+    made.points = [point for point in points if point is not None]
+    made.names |= {part.name: body for part, body in zip(structure.bodies, made.bodies, strict=True) if part.name}
+
+
+def _is_plain(part: RigidBody) -> bool:
+    return part.shape is None and part.kind == "dynamic" and part.damping == 0
+
+
+def _make_plain(
+    structure: Contents,
+    system: _core.System,
+    parts: list[RigidBody],
+    points: list[_core.Particle | None],
+    made: Realized,
+) -> None:
+    """Many at once: bodies of particles and nothing else."""
+    numbers = list(chain.from_iterable(part.points for part in parts))
+    rows, counts = structure.points, [len(part.points) for part in parts]
+    bodies, particles = _core.make_bodies(
+        system, counts, rows.position[numbers], rows.mass[numbers], rows.velocity[numbers]
+    )
+    for number, particle in zip(numbers, particles, strict=True):
+        points[number] = particle
+    for part, body in zip(parts, bodies, strict=True):
+        if part.rod is not None:
+            body.set_rod(*part.rod)
+    made.bodies += bodies
+
+
+def _make_others(
+    structure: Contents,
+    system: _core.System,
+    parts: list[RigidBody],
+    points: list[_core.Particle | None],
+    made: Realized,
+) -> None:
+    rows = structure.points
+    for part in parts:
         try:
             if part.shape is None:
                 body = system.body(part.kind, part.damping)
-                for point in part.points:
-                    points[point] = body.particle(places[point], masses[point], speeds[point])
+                for number in part.points:
+                    points[number] = body.particle(
+                        rows.position[number], float(rows.mass[number]), rows.velocity[number]
+                    )
                 if part.rod is not None:
                     body.set_rod(*part.rod)
             else:
                 body = _solid(part, system)
-                for point in part.points:
-                    points[point] = body.attachment(places[point])
+                for number in part.points:
+                    points[number] = body.attachment(rows.position[number])
         except ValueError as error:
-            raise ValueError(f"{label('body', number, part.name)}: {error}") from None
+            raise ValueError(f"{label('body', len(made.bodies), part.name)}: {error}") from None
         made.bodies.append(body)
-        if part.name:
-            made.names[part.name] = body
-    made.points = [
-        system.body().particle(places[number], masses[number], speeds[number]) if point is None else point
-        for number, point in enumerate(points)
-    ]
 
 
 def _solid(part: RigidBody, system: _core.System) -> _core.Body:
