@@ -27,7 +27,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 SUFFIXES = {".h", ".hpp", ".cpp", ".py", ".pyi", ".ts", ".html", ".json"}
 FOLDERS = ["include", "src", "bindings", "python", "web", "protocol"]
-SKIPPED = {"node_modules", "dist", "dist.new", "dist.old", "e2e", "test", "tests", "test-results", "golden", "page",
+SKIPPED = {"node_modules", "dist", "dist.new", "dist.old", "e2e", "test", "tests", "test-results", "golden",
            "__pycache__", "generated.ts", "generated", "package.json", "package-lock.json", "tsconfig.json",
            "make_golden.py"}  # fmt: skip
 
@@ -45,9 +45,10 @@ class Thing:
 ENGINE = ("include", "src", "bindings")
 
 INGREDIENTS = [
-    Thing("point masses", ("virtual mass", "damped masses", "add masses", "mass couplings", "point mass"), ENGINE),
+    Thing("point masses", ("virtual mass", "damped masses", "add masses", "mass couplings", "point mass", "=masses",
+                           "=Masses"), ENGINE),
     Thing("rigid rows", ("rigid row", "pinned row", "rigid rows", "body row"), ENGINE),
-    Thing("tied particles", ("tied", "ties", "tie", "affine"), ENGINE),
+    Thing("tied particles", ("tied", "tie", "=ties", "=Ties", "affine"), ENGINE),
     Thing("nails", ("nail", "nailed", "is nailed"), ENGINE),
     Thing("closings", ("closing", "closings", "close over"), ENGINE),
     Thing("joints", ("constraint rows", "joint rows", "constraint data", "joint data", "joint", "joints"), ENGINE),
@@ -103,17 +104,20 @@ ENTITIES = [
 ]
 
 PAGE_COMMANDS = [
-    Thing("pause, play", ("toggle pause", "play pause", "=pause"), ("web",)),
-    Thing("one step", ("single step", "one step"), ("web",)),
-    Thing("reset", ("=reset",), ("web",)),
-    Thing("speed", ("set speed", "change speed", "speed key", "=speeds", "faster"), ("web",)),
-    Thing("next look", ("next look", "look next"), ("web",)),
-    Thing("select next", ("select next", "next body"), ("web",)),
-    Thing("fly", ("toggle flying", "fly", "flying"), ("web",)),
-    Thing("grid", ("toggle grid", "grid"), ("web",)),
-    Thing("sound", ("toggle sound", "=sound", "=Sound"), ("web",)),
-    Thing("help", ("open help", "help open", "=help"), ("web",)),
-    Thing("first view", ("first view", "reset view", "=Home"), ("web",)),
+    Thing(name, spellings, ("web",))
+    for name, spellings in {
+        "pause, play": ("toggle pause", "=play", "play pause"),
+        "one step": ("single step",),
+        "reset": ("commands reset", "=reset", "reset world"),
+        "speed": ("set speed", "change speed", "speed key", "faster"),
+        "next look": ("next look", "set look", "refresh look"),
+        "select next": ("select next",),
+        "fly": ("toggle flying", "fly", "flying"),
+        "grid": ("toggle grid", "=grid", "grid shown"),
+        "sound": ("toggle sound", "=sound", "muted"),
+        "help": ("open help", "help open"),
+        "first view": ("first view", "=Home", "=home"),
+    }.items()
 ]
 
 # --- what a file names ------------------------------------------------------------------------------------------------
@@ -169,7 +173,8 @@ def files_of(tree: Path) -> dict[str, File]:
     for folder in FOLDERS:
         for path in sorted((tree / folder).rglob("*")):
             parts = path.relative_to(tree).parts
-            if path.suffix in SUFFIXES and path.is_file() and not SKIPPED & set(parts) and "_core" not in path.name:
+            built = "_core" in path.name or parts[:3] == ("python", "iota", "page")
+            if path.suffix in SUFFIXES and path.is_file() and not SKIPPED & set(parts) and not built:
                 found["/".join(parts)] = File(path)
     return found
 
