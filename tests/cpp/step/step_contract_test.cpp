@@ -328,6 +328,19 @@ Scene::Script build_edits_from_within(System& system) {
   return [step_now](int step) { *step_now = step; };
 }
 
+/// A force function asks for an edit that cannot be made: two static particles cannot meet.
+Scene::Script build_edit_that_is_refused(System& system) {
+  const Weight weight(system);
+  const ParticleId left = system.create_particle(system.create_body({.kind = BodyKind::static_}), {5, 0, 0}),
+                   right = system.create_particle(system.create_body({.kind = BodyKind::static_}), {6, 0, 0});
+  const auto step_now = std::make_shared<int>(0);
+  system.create_bond(weight.hook, weight.weight, ScriptedLaw{[&system, step_now, left, right](const BondState&) {
+                       if (*step_now == 5) (void)system.combine(left, right);
+                       return Vec3{};
+                     }});
+  return [step_now](int step) { *step_now = step; };
+}
+
 /// Falls on a stop of its hinge, is lifted, and falls again.
 Scene::Script build_impact(System& system) {
   const BodyId arm = system.create_body(Box{{1, 0.1, 0.1}}, {.mass = 1, .position = {0.5, 0, 0}});
@@ -376,6 +389,7 @@ const std::vector<Scene>& all_scenes() {
       {"surface_that_fails", 20, build_surface_that_fails, has_warned, structure_is_analyzed},
       {"edits_from_within", 20, build_edits_from_within, [](const StepReport& r) { return r.edits.has_value(); },
        structure_is_analyzed},
+      {"edit_that_is_refused", 10, build_edit_that_is_refused, has_warned, report_lists_it},
       {"impact", 120, build_impact, [](const StepReport& r) { return r.energy.kinetic < 1e-9; }},
   };
   return scenes;

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/tables.h"
+
+#include <stdexcept>
+#include <vector>
+
+namespace iota::model {
+
+/// The tables of a system, as a snapshot has them: after mark and checksum.
+inline Model model_of(System& system) {
+  const Snapshot snapshot = system.snapshot();
+  Reader outer(snapshot.bytes);
+  std::uint64_t mark = 0, checksum = 0;
+  std::vector<std::byte> content;
+  outer.value(mark), outer.value(checksum), outer.vector(content);
+  Reader reader(content);
+  Model model;
+  ingredient::archive(model, reader);
+  if (!reader.ok() || !reader.at_end()) throw std::logic_error("the tables of a snapshot are laid out otherwise");
+  return model;
+}
+
+/// One of everything that a system can hold, and the slots of what the tests damage.
+struct Everything {
+  std::uint32_t loner, hinged, hinge_partner, inner, corner, rod, corners_body, box;
+  std::uint32_t bond, scripted, cosmetic, joint, grip, field, pairs;
+  Model model;
+
+  Everything() {
+    System system;
+    const auto slot = [](auto id) { return id.slot; };
+    const ParticleId alone = system.create_particle(system.create_body(), {9, 9, 9});
+    loner = slot(alone);
+
+    // A short chain on a nail, of rods, one of which spins.
+    std::vector<ParticleId> upper, lower;
+    std::vector<BodyId> links;
+    for (int i = 0; i < 3; ++i) {
+      links.push_back(system.create_body());
+      upper.push_back(system.create_particle(links[i], {double(i), 0, 0}));
+      lower.push_back(system.create_particle(links[i], {i + 1.0, 0, 0}));
+      system.set_rod(links[i], 1, 0.1);
+      if (i > 0) (void)system.combine(lower[i - 1], upper[i]);
+    }
+    system.nail(upper[0]);
+    system.set_angular_velocity(links[2], {3, 0, 0});
+    system.set_break_force(upper[1], 1e6);
+    hinged = slot(upper[1]), hinge_partner = slot(lower[0]), rod = slot(links[2]);
+
+    // A body of four corners and a particle that is not in its basis, with a cosmetic bond and a group.
+    const BodyId four = system.create_body();
+    std::vector<ParticleId> corners;
+    for (const Vec3& x : {Vec3{0, 5, 0}, Vec3{1, 5, 0}, Vec3{0, 6, 0}, Vec3{0, 5, 1}})
+      corners.push_back(system.create_particle(four, x));
+    const ParticleId middle = system.create_particle(four, {0.3, 5.3, 0});
+    inner = slot(middle), corner = slot(corners[0]), corners_body = slot(four);
+    cosmetic = slot(system.create_cosmetic_bond(corners[0], corners[1]));
+    const GroupId group = system.create_group("corners");
+    system.add(group, corners[0]);
+    field = slot(system.create_field("fx = m", {.group = group}));
+    pairs = slot(system.create_pairs({system.find_law("soft_repulsion"), {{"length", 0.5}}, {}}, {.cutoff = 0.5}));
+
+    // A solid on a joint, in a hand.
+    const BodyId solid = system.create_body(Box{{0.2, 0.3, 0.4}}, {.position = {0, 5, 3}});
+    (void)system.create_attachment(solid, {0, 5.2, 3});
+    joint = slot(
+        system.create_constraint(JointSpec{.kind = ConstraintKind::revolute, .a = solid, .b = four, .at = {0, 5, 1}}));
+    grip = slot(system.create_grip(solid, {}, {1, 1, 1}));
+    box = slot(solid);
+
+    // Bonds of both kinds; two on their way to each other; one rigid body that was two.
+    bond = slot(system.create_bond(alone, corners[1], SpringLaw{}));
+    (void)system.create_bond(alone, corners[2], SpringLaw{});
+    scripted = slot(system.create_bond(alone, lower[2], ScriptedLaw{[](const BondState&) { return Vec3{}; }}));
+    const ParticleId left = system.create_particle(system.create_body(), {-5, 0, 0}),
+                     right = system.create_particle(system.create_body(), {-6, 0, 0});
+    (void)system.combine(left, right, 10);
+    const ParticleId one = system.create_particle(system.create_body(), {-9, 0, 0}),
+                     two = system.create_particle(system.create_body(), {-9, 0, 0});
+    system.create_particle(system.body(two), {-9, 1, 0});
+    (void)system.combine(one, two), (void)system.combine(one, two);
+
+    system.create_emitter({.rate = 240});
+    (void)system.step(1.0 / 60);
+    system.apply_force(alone, {1, 0, 0});
+    model = model_of(system);
+  }
+};
+
+}  // namespace iota::model
