@@ -100,7 +100,7 @@ void Bonds::add_energy(const Scope& scope, Energies& sum) {
   const Model& model = scope.model;
   if (scope.is_whole())
     model.bonds.for_each([&](std::uint32_t slot, const model::Bond&) { sum.potential += energy(model, slot); });
-  else
+  else if (model.bonds.size() > 0)
     scope.for_each_particle([&](std::uint32_t p, const model::Particle&) {
       model.for_each_bond_of(p, [&](std::uint32_t b) {
         if (model.bonds[b].p == p) sum.potential += energy(model, b);
