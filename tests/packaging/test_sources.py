@@ -67,3 +67,24 @@ def test_every_link_between_pages_leads_somewhere() -> None:
             if not re.match(r"[a-z]+:|#", target) and not (page.parent / target.split("#")[0]).exists():
                 broken.append(f"{page.relative_to(ROOT)}: {target}")
     assert not broken
+
+
+CPP_TEST = re.compile(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST)\(\s*(\w+),\s*(\w+)\)", re.MULTILINE)
+
+
+def test_every_cpp_test_is_named_as_a_sentence_in_snake_case() -> None:
+    names = [
+        f"{path.name}: {suite}.{name}"
+        for path in (ROOT / "tests" / "cpp").rglob("*.cpp")
+        for suite, name in CPP_TEST.findall(path.read_text(encoding="utf-8"))
+        if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)+", name)
+    ]
+    assert not names
+
+
+def test_folders_of_cpp_tests_are_those_of_the_sources() -> None:
+    def folders(root: Path, pattern: str) -> set[str]:
+        return {path.parent.relative_to(root).as_posix() for path in root.rglob(pattern)}
+
+    others = {".", "soak"}  # what tests share, and what tests the folder soak
+    assert folders(ROOT / "tests" / "cpp", "*.cpp") - others <= folders(ROOT / "src", "*.h")
