@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,14 +39,19 @@ class WatchedSystem {
   BodyId body;
   ParticleId particle;
 
-  /// Makes one call; what was not refused is written to the log. Throws what the system throws.
+  /// Makes one call and writes it to the log, as a comment if it is refused. Throws what the system throws.
   template <class... Arguments>
   void call(std::string_view verb, const Arguments&... arguments) {
     std::ostringstream line;
     line.precision(17);
     line << verb;
     (write(line, arguments), ...);
-    perform(line.str());
+    try {
+      perform(line.str());
+    } catch (const std::invalid_argument&) {
+      if (log_) *log_ += "# refused: " + line.str() + '\n';
+      throw;
+    }
   }
   void perform(const std::string& line);
 
@@ -72,7 +78,7 @@ class WatchedSystem {
   bool disturbed_ = false;  // somebody outside does work in the next step
 };
 
-/// Plays lines on a fresh system. Returns what is wrong, in a sentence with the number of the line.
+/// Plays lines on a fresh system; those that begin with # are comments. Returns what is wrong, in a sentence with the number of the line.
 std::optional<std::string> play(std::string_view lines, Tally& tally);
 
 }  // namespace iota::scenes

@@ -9,11 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -109,6 +107,7 @@ Scene::Script build_calm(System& system) {
 
 /// A rod of 1 m that turns by more than a radian even in a 64th of a step: the energy-keeping scheme gives up.
 Scene::Script build_whirl(System& system) {
+  system.set_mode(IntegrationMode::energy_keeping);  // the other one has nothing to fall back to
   system.set_gravity({});
   const BodyId rod = system.create_body();
   const ParticleId left = system.create_particle(rod, {-0.5, 0, 0}), right = system.create_particle(rod, {0.5, 0, 0});
@@ -354,7 +353,7 @@ Scene::Script build_impact(System& system) {
 const std::vector<Scene>& all_scenes() {
   static const std::vector<Scene> scenes{
       {"calm", 10, build_calm, always},
-      {"falls_back", 4, build_whirl, [](const StepReport& r) { return r.fallbacks > 0 || r.iterations_max > 0; }},
+      {"falls_back", 4, build_whirl, [](const StepReport& r) { return r.fallbacks > 0; }},
       {"closing", 40, build_closing, [](const StepReport& r) { return r.articulates == 1; }, structure_is_analyzed},
       {"emitter", 60, build_emitter, [](const StepReport& r) { return !r.born.empty() && !r.died.empty(); },
        report_lists_it},
