@@ -261,12 +261,12 @@ TEST_F(ServerTest, answers_bad_http_with_a_status_before_it_closes) {
 TEST_F(ServerTest, lets_go_of_a_client_that_says_no_hello_in_time) {
   server_.reset();
   ServerOptions hasty = options(0);
-  hasty.hello_time = 0.1;
+  hasty.hello_time = 1;
   server_ = std::make_unique<Server>(hasty);
   const auto polite = join();
   PageClient silent;
   ASSERT_EQ(silent.connect(server_->port(), target()), 101U);
-  const auto refused = hear<protocol::Refused>(silent, 3000ms);
+  const auto refused = hear<protocol::Refused>(silent, 10000ms);
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->reason, "no hello came");
   EXPECT_FALSE(silent.receive());
