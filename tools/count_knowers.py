@@ -7,8 +7,8 @@
     python3 tools/count_knowers.py --against DIR    both side by side, DIR first
     python3 tools/count_knowers.py --list grip      the files behind a number
 
-A file knows a thing when its code names it: in an identifier (also in TypeScript's camelCase), in an included path, or
-in a quoted name such as "revolute". Comments and sentences in strings do not count, and neither do tests, documents and
+A file knows a thing when it names it: in an identifier (also in TypeScript's camelCase), in an included path, in a quoted
+name such as "revolute", or in its own name. Comments and sentences in strings do not count, and neither do tests, documents and
 generated files. Each thing has several spellings, so that a renaming does not look like an improvement.
 
 The number is the cost of one more of its kind: the fewer files know a shape, the fewer a new shape has to be told to.
@@ -92,7 +92,8 @@ MESSAGES = ["hello", "select", "grab_start", "grab_move", "grab_end", "action", 
             "clients", "pong", "ping", "scene", "effect"]  # fmt: skip
 
 VIEWERS = ("include/iota/pose_snapshot.h", "include/iota/reports.h", "src/net", "bindings/bind_server.cpp",
-           "bindings/bind_world.cpp", "python/iota/world", "protocol", "web")  # fmt: skip
+           "bindings/bind_world.cpp", "python/iota/world", "protocol", "web/src/app", "web/src/page", "web/src/scene",
+           "web/src/world", "web/src/ui")  # fmt: skip
 
 ENTITIES = [
     Thing("body", ("body view", "bodies", "body entity", "describe bodies"), VIEWERS),
@@ -159,7 +160,7 @@ class File:
     """What one source names: whole names, and the words of each with blanks around them."""
 
     def __init__(self, path: Path) -> None:
-        self.names = set(names_in(path.read_text(errors="replace"), token_pattern(path)))
+        self.names = {path.stem, *names_in(path.read_text(errors="replace"), token_pattern(path))}
         self.words = "\n".join(f" {' '.join(word.lower() for word in WORD.findall(name))} " for name in self.names)
 
     def knows(self, spelling: str) -> bool:
