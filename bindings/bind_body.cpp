@@ -13,7 +13,7 @@ constexpr const char* doc =
 
 constexpr const char* make_doc =
     "A new body. Make its particles with `Body.particle`, or give the body as a solid:\n\n"
-    "shape: Sphere, Box, Cylinder, Capsule, Torus or Mesh, of density (kg/m^3) or mass (kg), with its origin at position\n"
+    "shape: any shape, of density (kg/m^3) or mass (kg), with its origin at position\n"
     "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses then stand for it, with exactly\n"
     "its mass, center and inertia. velocity: of the center of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
     "shape's frame (m) for particles to hinge, nail or bond, see `Body.attachment`.\n\n"
@@ -88,7 +88,7 @@ void bind_making(nb::class_<SystemObject>& system) {
       "attachments"_a = nb::tuple(),
       nb::sig(
           "def body(self, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting'] = 'dynamic', "
-          "damping: float = 0.0, *, shape: Sphere | Box | Cylinder | Capsule | Torus | Mesh | None = None, "
+          "damping: float = 0.0, *, shape: Shape | None = None, "
           "density: float = 1000.0, mass: float | None = None, "
           "position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), "

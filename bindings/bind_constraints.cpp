@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
+#include "shape_argument.h"
 #include "names.h"
 
 #include <nanobind/stl/tuple.h>
@@ -146,22 +147,8 @@ std::vector<Vec3> to_points(nb::handle path, Pair interval, int samples, bool cl
   return points;
 }
 
-SurfaceShape to_surface_shape(SystemObject& self, nb::handle value, double size) {
-  SurfaceShape shape;
-  const auto is = [&]<class S>(S*) {
-    if (!nb::isinstance<S>(value)) return false;
-    shape = nb::cast<S>(value);
-    return true;
-  };
-  if (is(static_cast<Plane*>(nullptr)) || is(static_cast<Sphere*>(nullptr)) || is(static_cast<Ellipsoid*>(nullptr)) ||
-      is(static_cast<Box*>(nullptr)) || is(static_cast<Cylinder*>(nullptr)) || is(static_cast<Capsule*>(nullptr)) ||
-      is(static_cast<Torus*>(nullptr)))
-    return shape;
-  if (!PyCallable_Check(value.ptr()))
-    throw nb::type_error(
-        ("surface must be a Plane, Sphere, Ellipsoid, Box, Cylinder, Capsule, Torus or a function, not " +
-         describe(value))
-            .c_str());
+std::variant<Shape, SurfaceFunction> to_surface_shape(SystemObject& self, nb::handle value, double size) {
+  if (is_shape(value) || !PyCallable_Check(value.ptr())) return to_shape(value);
   finite_positive(size, "size", "m");
   auto function = std::make_shared<ScriptFunction>(ScriptFunction{nb::borrow(value), "a surface", {}});
   self.keep(function);
@@ -571,9 +558,8 @@ void bind_makers(nb::class_<SystemObject>& type) {
   };
   on_surface(
       "on_surface", ConstraintKind::surface,
-      "A particle stays on a surface of body (None: the world). surface: Plane, Sphere, Ellipsoid, Box, Cylinder\n"
-      "(endless), Capsule, Torus, or a function of x, y, z that is 0 on it, negative inside and about the distance (m)\n"
-      "near it; `size`, m, is then that of what it describes. It must not use the system; where it raises or returns no\n"
+      "A particle stays on a surface of body (None: the world). surface: any shape but a Mesh, or a function of\n"
+      "x, y, z that is 0 on it, negative inside and about the distance (m) near it; `size`, m, is then that of what it describes. It must not use the system; where it raises or returns no\n"
       "finite number, the constraint is switched off and `step` raises ConstraintError. at, orientation: of the surface's\n"
       "frame, None: the body's.");
   on_surface("inside", ConstraintKind::inside,
@@ -626,26 +612,6 @@ void bind_makers(nb::class_<SystemObject>& type) {
 }  // namespace
 
 void bind_constraints(nb::module_& module) {
-  nb::class_<Plane>(module, "Plane", "All points at right angles to `normal` from the origin of its frame.")
-      .def(
-          "__init__",
-          [](Plane* self, VectorArgument normal) {
-            const Vec3 n = to_vec3(normal, "normal");
-            if (!(norm(n) > 0)) throw nb::value_error("normal must have a direction, not zero length");
-            new (self) Plane{n};
-          },
-          "normal"_a = nb::make_tuple(0.0, 1.0, 0.0))
-      .def_ro("normal", &Plane::normal);
-  nb::class_<Ellipsoid>(module, "Ellipsoid", "half_axes: along x, y, z, m.")
-      .def(
-          "__init__",
-          [](Ellipsoid* self, VectorArgument half_axes) {
-            const Vec3 a = to_vec3(half_axes, "half_axes");
-            for (const double v : {a.x, a.y, a.z}) finite_positive(v, "each half axis", "m");
-            new (self) Ellipsoid{a};
-          },
-          "half_axes"_a)
-      .def_ro("half_axes", &Ellipsoid::half_axes);
   bind_coordinate(module);
   bind_handle(module);
   bind_broken(module);

@@ -13,7 +13,7 @@ constexpr const char* doc =
 
 constexpr const char* make_doc =
     "A new source of particles; each is a body of its own with an age and a lifetime, and dies at its end.\n\n"
-    "rate: births a second. source: Sphere, Box, Cylinder or Capsule; they are born anywhere within, evenly. position (m),\n"
+    "rate: births a second. source: any shape but a Mesh or HalfSpace; they are born anywhere within, evenly. position (m),\n"
     "orientation (quaternion x y z w): of the source. velocity: in its frame, m/s; each gets up to velocity_spread m/s more\n"
     "in any direction. lifetime: s; each lives up to lifetime_spread longer or shorter. mass: kg. damping: 1/s. max_count:\n"
     "alive at once. curve: at most 8 of (life, radius, color), life rising from 0 at birth to 1 at death, radius in m, color\n"
@@ -87,7 +87,7 @@ void bind_emitter(nb::module_& module) {
       "lifetime_spread"_a = 0.0, "mass"_a = 0.001, "damping"_a = 0.0, "max_count"_a = 1000, "curve"_a = nb::tuple(),
       "seed"_a = 1,
       nb::sig(
-          "def emitter(self, *, rate: float = 10.0, source: Sphere | Box | Cylinder | Capsule | None = "
+          "def emitter(self, *, rate: float = 10.0, source: Shape | None = "
           "None, position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), orientation: "
           "collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), velocity: Vec3 | "
           "collections.abc.Sequence[float] = (0.0, 1.0, 0.0), velocity_spread: float = 0.0, lifetime: float = 1.0, "

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// Shapes: one class each, made from the list (src/shape/shape_list.h). Only a mesh, which has tables instead of sizes, is
+// bound by hand.
 #include "binders.h"
+#include "shape/shape.h"
+#include "shape/shape_list.h"
 #include "shape_argument.h"
 
 namespace iota::bindings {
@@ -12,12 +16,6 @@ constexpr const char* mesh_doc =
     "vertices that are not there; the text says which triangle or edge.\n\n"
     "    iota.Mesh.load('part.stl')         # any format that trimesh reads, where it is installed\n"
     "    iota.Mesh.convex_hull(points)      # the skin round loose points";
-
-std::string text_of(const char* format, auto... values) {
-  char buffer[256];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
 
 nb::object array_of(nb::handle values, const char* dtype, const char* name) {
   nb::object array = nb::module_::import_("numpy").attr("ascontiguousarray")(values, dtype);
@@ -54,100 +52,110 @@ nb::object matrix(const Matrix3& rows) {
   return nb::cast(make_vector3_array(std::move(numbers)));
 }
 
+// --- from the list ----------------------------------------------------------------------------------------------------
+
+/// "half_space" -> "HalfSpace".
+std::string class_name(std::string_view name) {
+  std::string out;
+  bool begins = true;
+  for (const char c : name) {
+    if (c != '_') out += begins ? static_cast<char>(std::toupper(c)) : c;
+    begins = c == '_';
+  }
+  return out;
+}
+
+/// The class' docstring: what the shape is, and its sizes.
+template <class S>
+std::string doc_of() {
+  std::string text(shape::Traits<S>::doc);
+  std::apply([&](const auto&... size) { ((text += "\n" + std::string(size.name) + ": " + std::string(size.doc) + "."), ...); },
+             shape::Traits<S>::sizes);
+  return text;
+}
+
+double from_argument(double value, const char*) { return value; }
+Vec3 from_argument(VectorArgument value, const char* name) { return to_vec3(value, name); }
+nb::object to_argument(double value) { return nb::float_(value); }
+nb::object to_argument(const Vec3& v) { return nb::make_tuple(v.x, v.y, v.z); }
+
+/// The constructor, which checks, and one property for each size.
+template <class S, class... T, std::size_t... I>
+void def_sizes(nb::class_<S>& type, const std::tuple<shape::Size<S, T>...>& sizes, std::index_sequence<I...>) {
+  const auto argument = [&]<std::size_t Index>(std::integral_constant<std::size_t, Index>) {
+    constexpr auto size = std::get<Index>(shape::Traits<S>::sizes);
+    if constexpr (size.range == shape::Range::length)
+      return nb::arg(size.name.data());
+    else
+      return nb::arg(size.name.data()) = to_argument(S{}.*size.member);
+  };
+  type.def(
+      "__init__",
+      [](S* self, std::conditional_t<std::is_same_v<T, Vec3>, VectorArgument, double>... values) {
+        S made;
+        ((made.*std::get<I>(shape::Traits<S>::sizes).member =
+              from_argument(values, std::get<I>(shape::Traits<S>::sizes).name.data())),
+         ...);
+        shape::check(made);
+        new (self) S(made);
+      },
+      argument(std::integral_constant<std::size_t, I>{})...);
+  (type.def_ro(std::get<I>(sizes).name.data(), std::get<I>(sizes).member, std::get<I>(sizes).doc.data()), ...);
+  type.def("__repr__", [](nb::handle self) {
+    std::string text = class_name(shape::Traits<S>::name) + "(";
+    const S& s = *nb::inst_ptr<S>(self);
+    const char* between = "";
+    const auto add = [&](const auto& size) {
+      text += between + std::string(size.name) + "=" + nb::repr(to_argument(s.*size.member)).c_str();
+      between = ", ";
+    };
+    std::apply([&](const auto&... size) { (add(size), ...); }, shape::Traits<S>::sizes);
+    return text + ")";
+  });
+  type.def("__hash__", [](const S& s) {
+    nb::list numbers;
+    for (const double v : shape::to_data(s).sizes) numbers.append(v);
+    return nb::hash(nb::tuple(numbers));
+  });
+}
+
+/// What can be asked of every shape.
 template <class S>
 void def_common(nb::class_<S>& type) {
+  type.attr("kind") = shape::Traits<S>::name;
+  nb::list sizes;
+  std::apply([&](const auto&... size) { (sizes.append(size.name), ...); }, shape::Traits<S>::sizes);
+  type.attr("sizes") = nb::tuple(sizes);
   type.def_prop_ro(
-      "mass_properties", [](const S& s) { return mass_properties(s); },
-      "Volume, center and second moments. Raises ValueError for sizes that are not positive.");
-}
-
-}  // namespace
-
-Shape to_shape(nb::handle value) {
-  Shape shape;
-  const auto is = [&]<class S>(S*) {
-    if (!nb::isinstance<S>(value)) return false;
-    shape = nb::cast<S>(value);
-    return true;
-  };
-  if (is(static_cast<Sphere*>(nullptr)) || is(static_cast<Box*>(nullptr)) || is(static_cast<Cylinder*>(nullptr)) ||
-      is(static_cast<Capsule*>(nullptr)) || is(static_cast<Torus*>(nullptr)) || is(static_cast<Mesh*>(nullptr)))
-    return shape;
-  const std::string text = "shape must be a Sphere, Box, Cylinder, Capsule, Torus or Mesh, not " + describe(value);
-  throw nb::type_error(text.c_str());
-}
-
-nb::object from_shape(const Shape& shape) {
-  return std::visit([](const auto& s) { return nb::cast(s); }, shape);
-}
-
-void bind_shapes(nb::module_& module) {
-  nb::class_<MassProperties>(module, "MassProperties", "Of a homogeneous solid, in its own frame.")
-      .def_ro("volume", &MassProperties::volume, "m^3")
-      .def_ro("center", &MassProperties::center, "Of mass, m.")
-      .def_prop_ro(
-          "mean_squares", [](const MassProperties& p) { return matrix(p.mean_squares); },
-          nb::sig("def mean_squares(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "Mean of r r' over the volume, r from the center, m^2: inertia = mass (trace I - this).");
-
-  nb::class_<Sphere> sphere(module, "Sphere", "A ball. radius: m.");
-  sphere
-      .def(
-          "__init__", [](Sphere* self, double radius) { new (self) Sphere{finite_positive(radius, "radius", "m")}; },
-          "radius"_a)
-      .def_ro("radius", &Sphere::radius)
-      .def("__repr__", [](const Sphere& s) { return text_of("Sphere(%g)", s.radius); });
-  def_common(sphere);
-
-  nb::class_<Box> box(module, "Box", "A box with edges `size` along x, y, z, m; its origin is its middle.");
-  box.def(
-         "__init__",
-         [](Box* self, VectorArgument size) {
-           const Vec3 edges = to_vec3(size, "size");
-           for (const double edge : {edges.x, edges.y, edges.z}) finite_positive(edge, "each edge", "m");
-           new (self) Box{edges};
-         },
-         "size"_a)
-      .def_ro("size", &Box::size)
-      .def("__repr__", [](const Box& b) { return text_of("Box((%g, %g, %g))", b.size.x, b.size.y, b.size.z); });
-  def_common(box);
-
-  const auto bind_rod = [&]<class S>(S*, const char* name, const char* doc) {
-    nb::class_<S> type(module, name, doc);
-    type.def(
-            "__init__",
-            [](S* self, double radius, double length) {
-              new (self) S{finite_positive(radius, "radius", "m"), finite_positive(length, "length", "m")};
-            },
-            "radius"_a, "length"_a)
-        .def_ro("radius", &S::radius)
-        .def_ro("length", &S::length)
-        .def("__repr__", [name](const S& s) { return text_of("%s(%g, %g)", name, s.radius, s.length); });
-    def_common(type);
-  };
-  bind_rod(static_cast<Cylinder*>(nullptr), "Cylinder", "Along x, from -length/2 to +length/2, m.");
-  bind_rod(static_cast<Capsule*>(nullptr), "Capsule",
-           "A cylinder along x with half spheres at its ends; `length` is that of the cylinder, m.");
-
-  nb::class_<Torus> torus(module, "Torus", "A ring in the x-y plane: center line `radius`, wire radius `tube`, m.");
-  torus
-      .def(
-          "__init__",
-          [](Torus* self, double radius, double tube) {
-            new (self) Torus{finite_positive(radius, "radius", "m"), finite_positive(tube, "tube", "m")};
+          "numbers",
+          [](const S& s) {
+            nb::list numbers;
+            const shape::Data data = shape::to_data(s);
+            for (std::size_t i = 0; i < shape::size_names(s).size(); ++i) numbers.append(data.sizes[i]);
+            return nb::tuple(numbers);
           },
-          "radius"_a, "tube"_a)
-      .def_ro("radius", &Torus::radius)
-      .def_ro("tube", &Torus::tube)
-      .def("__repr__", [](const Torus& t) { return text_of("Torus(%g, %g)", t.radius, t.tube); });
-  def_common(torus);
+          nb::sig("def numbers(self) -> tuple[float, ...]"), "Its sizes one after the other, as a page gets them.")
+      .def_prop_ro(
+          "mass_properties", [](const S& s) { return mass_properties(s); },
+          "Volume, center and second moments. Raises ValueError for a shape without a volume.")
+      .def(
+          "distance", [](const S& s, VectorArgument p) { return shape::distance(s, to_vec3(p, "point")); }, "point"_a,
+          "Of a point from the surface, negative inside, m. The point is in the shape's frame.")
+      .def(
+          "closest", [](const S& s, VectorArgument p) { return shape::closest(s, to_vec3(p, "point")); }, "point"_a,
+          "The point of the surface that is nearest to a point, both in the shape's frame, m.")
+      .def(
+          "__eq__",
+          [](const S& s, nb::handle other) { return nb::isinstance<S>(other) && s == *nb::inst_ptr<S>(other); },
+          nb::sig("def __eq__(self, other: object, /) -> bool"), nb::is_operator());
+}
 
-  nb::class_<Mesh> mesh(module, "Mesh", mesh_doc);
-  mesh.def(
+void def_mesh(nb::class_<Mesh>& type) {
+  type.def(
           "__init__",
           [](Mesh* self, nb::object vertices, nb::object triangles) {
             Mesh made = make_mesh(vertices, triangles);
-            (void)mass_properties(made);  // refuses what is no closed surface
+            (void)mass_properties(made);  // refuses a surface that is not closed
             new (self) Mesh(std::move(made));
           },
           "vertices"_a, "triangles"_a,
@@ -191,14 +199,16 @@ void bind_shapes(nb::module_& module) {
           },
           nb::rv_policy::move, "(k, 3)")
       .def("__repr__", [](const Mesh& m) {
-        return text_of("<Mesh: %zu vertices, %zu triangles>", m.vertices.size(), m.triangles.size());
+        return "<Mesh: " + std::to_string(m.vertices.size()) + " vertices, " + std::to_string(m.triangles.size()) +
+               " triangles>";
       });
-  def_common(mesh);
+}
 
+void bind_solid(nb::module_& module) {
   nb::class_<SolidView>(module, "Solid", "One of the solids that a body was given as.")
       .def_prop_ro(
           "shape", [](const SolidView& s) { return from_shape(s.shape); },
-          nb::sig("def shape(self) -> Sphere | Box | Cylinder | Capsule | Torus | Mesh"))
+          nb::sig("def shape(self) -> Shape"))
       .def_ro("position", &SolidView::position, "Of the shape's origin, world, m.")
       .def_prop_ro(
           "orientation",
@@ -207,6 +217,57 @@ void bind_shapes(nb::module_& module) {
           },
           nb::sig("def orientation(self) -> tuple[float, float, float, float]"),
           "Of the shape's frame: unit quaternion x y z w.");
+}
+
+}  // namespace
+
+Shape to_shape(nb::handle value) {
+  std::optional<Shape> shape;
+  std::string names;
+  shape::for_each_shape([&]<class S>(const S&) {
+    if (nb::isinstance<S>(value)) shape = nb::cast<S>(value);
+    names += (names.empty() ? "" : ", ") + class_name(shape::Traits<S>::name);
+  });
+  if (!shape) throw nb::type_error(("a shape must be one of " + names + ", not " + describe(value)).c_str());
+  return *shape;
+}
+
+bool is_shape(nb::handle value) {
+  bool found = false;
+  shape::for_each_shape([&]<class S>(const S&) { found = found || nb::isinstance<S>(value); });
+  return found;
+}
+
+nb::object from_shape(const Shape& shape) {
+  return std::visit([](const auto& s) { return nb::cast(s); }, shape);
+}
+
+void bind_shapes(nb::module_& module) {
+  nb::class_<MassProperties>(module, "MassProperties", "Of a homogeneous solid, in its own frame.")
+      .def_ro("volume", &MassProperties::volume, "m^3")
+      .def_ro("center", &MassProperties::center, "Of mass, m.")
+      .def_prop_ro(
+          "mean_squares", [](const MassProperties& p) { return matrix(p.mean_squares); },
+          nb::sig("def mean_squares(self) -> numpy.typing.NDArray[numpy.float64]"),
+          "Mean of r r' over the volume, r from the center, m^2: inertia = mass (trace I - this).");
+
+  nb::list types;
+  shape::for_each_shape([&]<class S>(const S&) {
+    if constexpr (std::is_same_v<S, Mesh>) {
+      nb::class_<Mesh> type(module, "Mesh", mesh_doc);
+      def_mesh(type), def_common(type);
+      types.append(type);
+    } else {
+      constexpr auto& sizes = shape::Traits<S>::sizes;
+      static const std::string name = class_name(shape::Traits<S>::name), doc = doc_of<S>();
+      nb::class_<S> type(module, name.c_str(), doc.c_str());
+      def_sizes(type, sizes, std::make_index_sequence<std::tuple_size_v<std::remove_cvref_t<decltype(sizes)>>>{});
+      def_common(type);
+      types.append(type);
+    }
+  });
+  module.attr("Shape") = nb::module_::import_("typing").attr("Union")[nb::tuple(types)];
+  bind_solid(module);
 }
 
 }  // namespace iota::bindings

@@ -9,8 +9,9 @@ namespace iota::bindings {
 
 namespace nb = nanobind;
 
-/// One of iota's shapes; TypeError that lists them for anything else.
+/// TypeError that lists the shapes for anything else.
 Shape to_shape(nb::handle value);
+bool is_shape(nb::handle value);
 nb::object from_shape(const Shape& shape);
 
 }  // namespace iota::bindings

@@ -275,7 +275,7 @@ class Player {
          angle.damping, slide.lower, slide.upper, slide.friction, slide.stiffness, slide.damping);
   }
 
-  /// A particle on a sphere or plane through its place, inside or outside of one that it is inside or outside of.
+  /// A particle on a sphere or half-space through its place, inside or outside of one that it is inside or outside of.
   void make_surface(ParticleId p, Dice& dice) {
     constexpr std::array kinds{ConstraintKind::surface, ConstraintKind::inside, ConstraintKind::outside};
     const ConstraintKind kind = kinds[dice.below(kinds.size())];

@@ -131,7 +131,7 @@ void WatchedSystem::perform(const std::string& line) {
     if (verb == "on_sphere")
       spec.surface.shape = Sphere{words.number()};
     else
-      spec.surface.shape = Plane{words.vector()};
+      spec.surface.shape = HalfSpace{words.vector()};
     s.create_constraint(spec);
     jointed_ = true;
   } else if (verb == "path") {

@@ -451,7 +451,7 @@ def surfaces(picture: Picture) -> None:
             mass=radius**3,
             position=(x, -math.tan(slope) * x + radius / math.cos(slope) + height, 0),
         )
-        system.surface_to_surface(body, iota.Sphere(radius), None, iota.Plane(normal))
+        system.surface_to_surface(body, iota.Sphere(radius), None, iota.HalfSpace(normal))
         balls.append((body, radius))
     for i, (a, r) in enumerate(balls):
         for b, s in balls[:i]:

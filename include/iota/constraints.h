@@ -100,25 +100,16 @@ struct PathSpec {
   BreakLimits breaks;
 };
 
-/// All points r with normal . r = 0.
-struct Plane {
-  Vec3 normal{0, 1, 0};
-};
-struct Ellipsoid {
-  Vec3 half_axes{0.5, 0.5, 0.5};  ///< m
-};
 /// phi(r) = 0, with phi negative inside and, near the surface, about the distance in m. Called while the system steps,
 /// from any thread; it must not touch the system. Not part of snapshots.
 struct SurfaceFunction {
   std::function<double(const Vec3&)> phi;
   double size = 1;  ///< of what it describes, m
 };
-/// Of the shapes a Cylinder is endless here, and edges of a Box are rounded by a tenth of its least half size.
-using SurfaceShape = std::variant<Plane, Sphere, Ellipsoid, Box, Cylinder, Capsule, Torus, SurfaceFunction>;
 
-/// A surface with its frame; fixed in a body or in the world.
+/// The surface of a shape (but a Mesh), or of a function, with its frame; fixed in a body or in the world.
 struct Surface {
-  SurfaceShape shape;
+  std::variant<Shape, SurfaceFunction> shape;
   Vec3 position;           ///< of the shape's origin, world frame, m
   Quaternion orientation;  ///< turns vectors of the shape's frame into the world frame
 };

@@ -9,34 +9,57 @@
 #include <variant>
 #include <vector>
 
-/// Homogeneous solids, each in a frame of its own, and their mass properties. Lengths in m.
+/// Shapes: homogeneous solids, surfaces that constraints hold points on, sources of particles. One frame convention for
+/// all: the origin is at the center, what is long lies along x, sizes are full (but radii). Lengths in m. Drawings and
+/// formulas are in the header of each, src/shape/<name>.h.
 namespace iota {
 
 struct Sphere {
   double radius = 0.5;
+  friend bool operator==(const Sphere&, const Sphere&) = default;
 };
 struct Box {
-  Vec3 size{1, 1, 1};  ///< edges along x, y, z
+  Vec3 size{1, 1, 1};   ///< edges along x, y, z
+  double rounding = 0;  ///< radius of its edges, at most half the least edge
+  friend bool operator==(const Box&, const Box&) = default;
 };
 /// Along x, from -length/2 to +length/2.
 struct Cylinder {
   double radius = 0.5, length = 1;
+  friend bool operator==(const Cylinder&, const Cylinder&) = default;
 };
 /// A cylinder along x with half spheres at its ends; `length` is that of the cylinder.
 struct Capsule {
   double radius = 0.5, length = 1;
+  friend bool operator==(const Capsule&, const Capsule&) = default;
 };
-/// A ring in the x-y plane: its center line has `radius`, its wire `tube`.
+/// A ring in the x-y plane: its center line has `radius`, its wire `tube`. Its halves may be pulled apart along x by
+/// `stretch`, with straight wires between them: a link of a chain.
 struct Torus {
-  double radius = 0.5, tube = 0.1;
+  double radius = 0.5, tube = 0.1, stretch = 0;
+  friend bool operator==(const Torus&, const Torus&) = default;
 };
 /// What a closed surface of triangles encloses; seen from outside each triangle runs counter-clockwise.
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< numbers of vertices
+  friend bool operator==(const Mesh&, const Mesh&) = default;
 };
 
-using Shape = std::variant<Sphere, Box, Cylinder, Capsule, Torus, Mesh>;
+/// A ball that is stretched along x, y, z.
+struct Ellipsoid {
+  Vec3 size{1, 1, 1};  ///< whole axes
+  friend bool operator==(const Ellipsoid&, const Ellipsoid&) = default;
+};
+/// All points r with normal . r <= 0: the ground, a wall. It has no volume: static and scripted bodies can be one, and
+/// constraints hold points on its plane.
+struct HalfSpace {
+  Vec3 normal{0, 1, 0};
+  friend bool operator==(const HalfSpace&, const HalfSpace&) = default;
+};
+
+/// Their order is that of protocol/shapes.json, and never changes.
+using Shape = std::variant<Sphere, Box, Cylinder, Capsule, Torus, Mesh, Ellipsoid, HalfSpace>;
 
 using Matrix3 = std::array<Vec3, 3>;  ///< three rows
 
@@ -47,12 +70,13 @@ struct MassProperties {
 };
 
 /// Closed forms; for meshes the divergence theorem (Eberly, Polyhedral Mass Properties, 2002), exact for any closed
-/// surface, convex or not. Throws std::invalid_argument for sizes that are not positive, and for meshes that are open,
-/// inside out, flat, inconsistently wound or name vertices that are not there: the text says which triangle or edge.
+/// surface, convex or not. Throws std::invalid_argument for sizes that are not positive, for shapes without a volume, and
+/// for meshes that are open, inside out, flat, inconsistently wound or name vertices that are not there: the text says
+/// which triangle or edge.
 MassProperties mass_properties(const Shape& shape);
 
-/// What a rubber skin round the points encloses: a closed mesh whose vertices are some of them, in their order. Points
-/// within, on faces and given twice do no harm; what is flatter than 1e-9 of its extent is no solid. O(n log n).
+/// The convex hull: a closed mesh whose vertices are some of the points, in their order. Points within, on faces and given
+/// twice do no harm; hulls that are flatter than 1e-9 of their extent are refused. O(n log n).
 /// Throws std::invalid_argument for fewer than four points, for points that are not finite, and where all are at one
 /// place, on one line or in one plane. Quickhull: Barber, Dobkin, Huhdanpaa 1996.
 Mesh convex_hull(std::span<const Vec3> points);

@@ -1,92 +1,157 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shapes that the page draws bodies with, as plain dictionaries.
+"""How the page draws bodies: shapes, what they are made of, and where they are on their body.
 
-A *class* of bodies has a shape, or a list of shapes, per look; users switch looks on the page while it runs. The look
-"*" is used for every look:
+A *class* of bodies has a `Look`, or a list of looks that are drawn together, for each style; users switch styles on the
+page while it runs. The style "*" is used for every style:
 
     world.classes["link"] = {"rope": looks.cylinder(0.012, "rope"), "chain": looks.chain_link(0.1)}
     world.look(links, "link")
 
-Lengths in m, colors as "#rrggbb", materials one of `MATERIALS`. The body's frame has its origin at the center of mass
-and +x from its first particle to its last.
+Any shape of iota will do: `Look(iota.Ellipsoid((0.1, 0.3, 0.1)), "wood")`. What is drawn is what the engine means by that shape. The
+functions below are short for the usual ones. Lengths in m, colors as "#rrggbb", materials one of `MATERIALS`. The body's
+frame has its origin at the center of mass and +x from its first particle to its last.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any, TypeAlias
 
-Shape: TypeAlias = dict[str, Any]
-Looks: TypeAlias = dict[str, Shape | list[Shape]]
+from iota import shapes
+from iota._core import Box, Capsule, Cylinder, Mesh, Shape, Sphere, Torus
 
 MATERIALS = ("steel", "brass", "rubber", "wood", "rope", "glass", "paint")
-
-
-def _shape(kind: str, material: str, more: dict[str, Any], **sizes: float | None) -> Shape:
-    if material not in MATERIALS:
-        raise ValueError(f"material must be one of {', '.join(MATERIALS)}, not {material!r}")
-    for name, size in sizes.items():
-        if size is not None and not (math.isfinite(size) and size >= 0):
-            raise ValueError(f"{name} of a {kind} must be finite and at least 0 m, not {size}")
-    unknown = more.keys() - {"color", "offset", "rotation", "turn"}
-    if kind == "solid":
-        unknown = more.keys() - {"color"}
-    if unknown:
-        raise TypeError(f"a {kind} has no {', '.join(sorted(unknown))}")
-    return {"type": kind, "material": material, **{n: s for n, s in sizes.items() if s is not None}, **more}
-
-
-def sphere(radius: float, material: str = "brass", **more: Any) -> Shape:
-    """A ball of `radius` m. `more`: color, offset=(x, y, z) and rotation=(x, y, z, w) in the body's frame."""
-    return _shape("sphere", material, more, radius=radius)
-
-
-def cylinder(radius: float, material: str = "steel", length: float | None = None, **more: Any) -> Shape:
-    """A cylinder along local x. Without `length` it is as long as the body: from first to last particle."""
-    return _shape("cylinder", material, more, radius=radius, length=length)
-
-
-def capsule(radius: float, material: str = "steel", length: float | None = None, **more: Any) -> Shape:
-    """A cylinder with round ends; `length` is that of the cylinder."""
-    return _shape("capsule", material, more, radius=radius, length=length)
-
-
-def torus(radius: float, tube: float, material: str = "steel", stretch: float = 0.0, **more: Any) -> Shape:
-    """A ring in the local x-y plane: center line `radius`, wire radius `tube`, both halves pulled apart along x by
-    `stretch`. `turn`: radians about local x for every other body of the class."""
-    return _shape("torus", material, more, radius=radius, tube=tube, stretch=stretch)
-
-
-def box(size: Sequence[float], material: str = "wood", **more: Any) -> Shape:
-    """A box with edges `size` = (x, y, z)."""
-    x, y, z = (float(edge) for edge in size)
-    _shape("box", material, dict(more), x=x, y=y, z=z)
-    return {"type": "box", "material": material, "size": [x, y, z], **more}
-
-
 MOST_TRIANGLES = 50_000
 
 
-def mesh(vertices: Any, triangles: Any, material: str = "paint", **more: Any) -> Shape:
+@dataclass(frozen=True, slots=True)
+class Look:
+    """One shape as the page draws it. Raises ValueError for an unknown material and for a mesh of too many triangles."""
+
+    shape: Shape | None  #: None: the body's own shape, see `solid`
+    material: str = "paint"
+    color: str | None = None  #: "#rrggbb"; None: that of the material
+    offset: Sequence[float] = (0.0, 0.0, 0.0)  #: of the shape's origin, in the body's frame, m
+    rotation: Sequence[float] = (0.0, 0.0, 0.0, 1.0)  #: of the shape's frame, quaternion x y z w
+    turn: float = 0.0  #: of every other body of the class, about the body's x axis, rad
+    fits: bool = False  #: as long as the body, or the strut, that it is drawn for
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "offset", tuple(float(v) for v in self.offset))
+        object.__setattr__(self, "rotation", tuple(float(v) for v in self.rotation))
+        if self.material not in MATERIALS:
+            raise ValueError(f"material must be one of {', '.join(MATERIALS)}, not {self.material!r}")
+        if isinstance(self.shape, Mesh) and len(self.shape.triangles) > MOST_TRIANGLES:
+            raise ValueError(
+                f"the page draws meshes of at most {MOST_TRIANGLES} triangles, this one has "
+                f"{len(self.shape.triangles)}: make it coarser, or give its body a class with another look"
+            )
+
+    def of_length(self, length: float) -> Look:
+        """The same, as long as what it is drawn for (m) where it fits itself to that."""
+        if not self.fits or not isinstance(self.shape, Cylinder | Capsule):
+            return self
+        return replace(self, shape=type(self.shape)(self.shape.radius, length))
+
+    def describe(self) -> dict[str, Any]:
+        """Plain data, as the page reads it."""
+        described: dict[str, Any] = {"material": self.material}
+        if self.shape is not None:
+            described |= {"kind": self.shape.kind, "sizes": list(self.shape.numbers)}
+        if isinstance(self.shape, Mesh):
+            described["vertices"] = [float(f"{x:.6g}") for vertex in self.shape.vertices for x in vertex]
+            described["triangles"] = self.shape.triangles.ravel().tolist()
+        if self.color is not None:
+            described["color"] = self.color
+        if self.turn:
+            described["turn"] = self.turn
+        return described | {"offset": list(self.offset), "rotation": list(self.rotation)}
+
+
+Looks: TypeAlias = dict[str, Look | list[Look]]
+
+
+def sphere(radius: float, material: str = "brass", **more: Any) -> Look:
+    """A ball of `radius` m. `more`, here and below: color, offset, rotation and turn, see `Look`."""
+    return Look(Sphere(radius), material, **more)
+
+
+def cylinder(radius: float, material: str = "steel", length: float | None = None, **more: Any) -> Look:
+    """A cylinder along local x. Without `length` it is as long as the body: from first to last particle."""
+    return Look(Cylinder(radius, length or UNKNOWN), material, fits=length is None, **more)
+
+
+def capsule(radius: float, material: str = "steel", length: float | None = None, **more: Any) -> Look:
+    """A cylinder with half balls at its ends; `length` is that of the cylinder."""
+    return Look(Capsule(radius, length or UNKNOWN), material, fits=length is None, **more)
+
+
+def torus(radius: float, tube: float, material: str = "steel", stretch: float = 0.0, **more: Any) -> Look:
+    """A ring in the local x-y plane: center line `radius`, wire radius `tube`, both halves pulled apart along x by
+    `stretch`."""
+    return Look(Torus(radius, tube, stretch), material, **more)
+
+
+def box(size: Sequence[float], material: str = "wood", rounding: float = 0.0, **more: Any) -> Look:
+    """A box with edges `size` = (x, y, z), rounded by arcs of `rounding`."""
+    return Look(Box(size, rounding), material, **more)
+
+
+def mesh(vertices: Any, triangles: Any, material: str = "paint", **more: Any) -> Look:
     """A closed surface: vertices (n, 3) in m, triangles (k, 3), from outside counter-clockwise, as in `iota.Mesh`.
     Raises ValueError above 50 000 triangles."""
-    if len(triangles) > MOST_TRIANGLES:
-        raise ValueError(
-            f"the page draws meshes of at most {MOST_TRIANGLES} triangles, this one has {len(triangles)}: make it coarser, "
-            "or give its body a class with another look"
-        )
-    shape = _shape("mesh", material, more)
-    places = [float(f"{x:.6g}") for vertex in vertices for x in vertex]
-    return {**shape, "vertices": places, "triangles": [int(v) for triangle in triangles for v in triangle]}
+    return Look(Mesh(vertices, triangles), material, **more)
 
 
-def chain_link(length: float, material: str = "steel") -> Shape:
+def chain_link(length: float, material: str = "steel") -> Look:
     """A link of a real chain for a body of `length` m: neighbors touch where they are hinged, turned by 90 degrees."""
     tube, radius = 0.085 * length, 0.26 * length
     return torus(radius, tube, material, stretch=length + 2 * (tube - radius), turn=math.pi / 2)
 
 
-def solid(material: str, **more: Any) -> Shape:
-    """For bodies given by shape: that shape in another material. `more`: color."""
-    return _shape("solid", material, more)
+def spring(radius: float, wire: float, material: str = "steel", color: str | None = None) -> Look:
+    """For the class "spring" of springs between bodies: a coil of `radius`, of wire of radius `wire`. Its shape is one turn
+    of it."""
+    return Look(Torus(radius, wire), material, color)
+
+
+def solid(material: str, color: str | None = None) -> Look:
+    """For bodies given by shape: that shape, made of this."""
+    return Look(None, material, color)
+
+
+def to_json(styles: Looks) -> dict[str, Any]:
+    """The looks of a class as plain data for a file."""
+    return {style: [_to_json(look) for look in _listed(looks)] for style, looks in styles.items()}
+
+
+def from_json(data: dict[str, Any]) -> Looks:
+    """The looks that `to_json` wrote. Raises ValueError that says what is wrong with them."""
+    styles: Looks = {}
+    for style, described in data.items():
+        looks = [_from_json(entry) for entry in described]
+        styles[style] = looks[0] if len(looks) == 1 else looks
+    return styles
+
+
+def _listed(looks: Look | list[Look]) -> list[Look]:
+    return looks if isinstance(looks, list) else [looks]
+
+
+def _to_json(look: Look) -> dict[str, Any]:
+    """Without the fields that have their usual value."""
+    entry = {f.name: value for f in fields(look) if (value := getattr(look, f.name)) != f.default}
+    return entry | {"shape": look.shape and shapes.to_json(look.shape)}
+
+
+def _from_json(entry: dict[str, Any]) -> Look:
+    shape = entry.get("shape")
+    try:
+        return Look(**{**entry, "shape": shape and shapes.from_json(shape)})
+    except TypeError as error:
+        raise ValueError(f"a look is described wrongly: {error}") from None
+
+
+UNKNOWN = 0.1  # length of what fits itself to a body that has none, m

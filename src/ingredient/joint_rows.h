@@ -129,7 +129,7 @@ class JointRowBuilder {
     add(row, 0, b_origin, 1), add(row, 0, a_origin, -1);
     frame(row, 1, a_origin), frame(row, 4, b_origin);
     row.surface_a = geometry_.surfaces[0].get(), row.surface_b = geometry_.surfaces[1].get();
-    row.reference = std::min(row.surface_a->size(), row.surface_b->size());
+    row.reference = std::min(row.surface_a->scale(), row.surface_b->scale());
     row.contact = c_.contact;
     return row;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "shape/shape.h"
+
 #include <iota/emitters.h>
 
 #include <array>
@@ -27,9 +29,8 @@ struct Attributes {
 
 /// EmitterOptions as plain data, and how far it has come.
 struct Emitter {
-  std::uint32_t source = 0;  ///< index in iota::Shape
-  std::uint32_t active = 1;
-  std::array<double, 3> sizes{};
+  shape::Data source;
+  std::uint32_t active = 1, padding = 0;
   double rate = 0;
   Vec3 position, velocity;
   Quaternion orientation;
@@ -38,7 +39,7 @@ struct Emitter {
   std::array<AttributeKey, 8> keys{};
   std::uint64_t seed = 0, draws = 0;  ///< numbers drawn so far: the whole state of its dice
   double due = 0;                     ///< births that are owed, a fraction
-  std::uint32_t alive = 0, padding = 0;
+  std::uint32_t alive = 0, padding2 = 0;
   std::uint64_t born = 0;
 };
 

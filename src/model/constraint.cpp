@@ -265,31 +265,11 @@ void require_frame(const char* kind, const Side& side) {
     cannot(kind, side.what() + " and holds no frame for a curve or surface; give it a massive particle off its plane");
 }
 
-/// From the frame of a shape to that of its geometry, which has capsules along y and rings about y.
-Quaternion geometry_frame(const SurfaceData& data, const Quaternion& q) {
-  const auto is = [&]<class S>(S*) { return data.type == SurfaceShape(S{}).index(); };
-  if (is(static_cast<Cylinder*>(nullptr)) || is(static_cast<Capsule*>(nullptr)))
-    return multiply(q, from_axes({0, 1, 0}, {1, 0, 0}, {0, 0, -1}));
-  if (is(static_cast<Torus*>(nullptr))) return multiply(q, from_axes({1, 0, 0}, {0, 0, 1}, {0, -1, 0}));
-  return q;
-}
-
-std::shared_ptr<const geometry::Surface> make_surface(const Model& model, const SurfaceData& data) {
-  const Vec3& s = data.size;
-  constexpr double endless = std::numeric_limits<double>::infinity();
-  switch (data.type) {
-    case 0: return std::make_shared<geometry::Plane>(s);
-    case 1: return std::make_shared<geometry::Ellipsoid>(s.x);
-    case 2: return std::make_shared<geometry::Ellipsoid>(s);
-    case 3: return std::make_shared<geometry::Box>(0.5 * s);
-    case 4: return std::make_shared<geometry::Capsule>(s.x, endless);
-    case 5: return std::make_shared<geometry::Capsule>(s.x, s.y / 2);
-    case 6: return std::make_shared<geometry::Torus>(s.x, s.y);
-    default: break;
-  }
+std::shared_ptr<const shape::Surface> make_surface(const Model& model, const SurfaceData& data) {
+  if (data.function == 0) return shape::make_surface(shape::from_data(data.shape));
   const auto found = model.surface_functions.find(data.function);
-  if (found == model.surface_functions.end()) return std::make_shared<geometry::FunctionSurface>(nullptr, 1.0);
-  return std::make_shared<geometry::FunctionSurface>(found->second.phi, found->second.size);
+  if (found == model.surface_functions.end()) return std::make_shared<shape::FunctionSurface>(nullptr, 1.0);
+  return std::make_shared<shape::FunctionSurface>(found->second.phi, found->second.size);
 }
 
 std::shared_ptr<const geometry::Curve> make_curve(const CurveData& curve, std::span<const Vec3> points) {
@@ -345,7 +325,7 @@ std::uint32_t make_constraint(Model& model, const SurfaceConstraintData& spec) {
   c.particles[a_origin] = spec.particle.slot;
   c.surfaces[1] = spec.surface.data;
   (void)make_surface(model, c.surfaces[1]);
-  make_frame(model, c, b, b_origin, spec.surface.position, geometry_frame(c.surfaces[1], spec.surface.orientation));
+  make_frame(model, c, b, b_origin, spec.surface.position, spec.surface.orientation);
   return model.add_constraint(c);
 }
 
@@ -362,7 +342,7 @@ std::uint32_t make_constraint(Model& model, const SurfacePairData& spec) {
   }
   for (std::size_t i = 0; i < 2; ++i)
     make_frame(model, c, sides[i], i == 0 ? a_origin : b_origin, spec.surfaces[i].position,
-               geometry_frame(c.surfaces[i], spec.surfaces[i].orientation));
+               spec.surfaces[i].orientation);
   return model.add_constraint(c);
 }
 

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "geometry/curve.h"
-#include "geometry/surface.h"
+#include "shape/shape.h"
+#include "shape/surface.h"
 
 #include <iota/constraints.h>
 
@@ -59,10 +60,9 @@ inline constexpr std::array<ConstraintKindInfo, 15> constraint_kinds{{
 }};
 inline const ConstraintKindInfo& info(ConstraintKind kind) { return constraint_kinds[static_cast<std::size_t>(kind)]; }
 
-/// A surface's shape as plain data: the index of its type in SurfaceShape, its sizes, the key of a function.
+/// A surface as plain data: of a shape or, where that is not 0, of the function with this key.
 struct SurfaceData {
-  std::uint32_t type = 0, padding = 0;
-  Vec3 size;
+  shape::Data shape;
   std::uint64_t function = 0;
 };
 
@@ -113,7 +113,7 @@ struct Constraint {
 /// What a curve or surface is, made from the data: not saved.
 struct ConstraintGeometry {
   std::shared_ptr<const geometry::Curve> curve;
-  std::array<std::shared_ptr<const geometry::Surface>, 2> surfaces;
+  std::array<std::shared_ptr<const shape::Surface>, 2> surfaces;
 };
 
 /// Specifications of the public header as plain data.

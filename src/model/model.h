@@ -128,8 +128,6 @@ struct RodSpin {
   double drawn = 0;  ///< of that, what the drawn frame shows
 };
 
-enum class SolidKind : std::uint32_t { sphere, box, cylinder, capsule, torus, mesh };
-
 /// A homogeneous solid that a body, or a part of it, was given as. Four ordinary, equal point masses stand for it, at
 ///   x_k = center + R diag(half) t_k,   t_k the corners of a cube with an even number of minus signs,
 /// whose mass, center and second moments are those of the solid: half_i^2 = second moment i / mass. So a solid is nothing
@@ -137,13 +135,10 @@ enum class SolidKind : std::uint32_t { sphere, box, cylinder, capsule, torus, me
 struct Solid {
   std::array<std::uint32_t, 4> points{none, none, none, none};
   std::uint32_t body = none, next = none;
-  SolidKind kind = SolidKind::box;
-  std::uint32_t padding = 0;
-  std::array<double, 3> sizes{};  ///< of a primitive, as in iota/shapes.h, m
-  std::uint64_t mesh = 0;         ///< key of the triangles, which live outside the tables
-  Vec3 half;                      ///< m
-  Vec3 center;                    ///< of the four, in the shape's frame, m
-  Quaternion principal;           ///< turns vectors of the frame of `half` into the shape's frame
+  shape::Data shape;
+  Vec3 half;             ///< m
+  Vec3 center;           ///< of the four, in the shape's frame, m
+  Quaternion principal;  ///< turns vectors of the frame of `half` into the shape's frame
 };
 
 /// A particle that was absorbed when a hinge became rigid: comes back, hinged, when its part leaves the body again.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/restructure.h"
+#include "model/solid.h"
 
 #include "math/mat3.h"
 
@@ -79,6 +80,11 @@ void absorb_particle(Model& model, std::uint32_t p, std::uint32_t q, Restructure
 
 /// All particles of body b become body a's; where both have one in the same ring, one absorbs the other.
 void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
+  const BodyKind kind = model.bodies[a].kind;
+  if (is_endless(model, b) && kind != BodyKind::static_ && kind != BodyKind::scripted)
+    throw std::invalid_argument("combine: body " + std::to_string(b) + " is a half-space, which has no mass, so body " +
+                                std::to_string(a) + " could not move with it; name body " + std::to_string(b) +
+                                " first, or make body " + std::to_string(a) + " static");
   // Inertia pairs move with their particles, so take the list away before the particles leave.
   const std::uint32_t pairs = model.bodies[b].first_inertia;
   model.bodies[b].first_inertia = none;

@@ -60,6 +60,14 @@ std::uint32_t add_solid(Model& model, std::uint32_t body, Solid solid, double ma
   return slot;
 }
 
+bool is_endless(const Model& model, std::uint32_t body) {
+  bool endless = false;
+  model.for_each_solid_of(body, [&](std::uint32_t solid) {
+    endless = endless || !shape::is_solid(shape::from_data(model.solids[solid].shape));
+  });
+  return endless;
+}
+
 bool is_untouched(const Model& model, std::uint32_t slot) {
   const auto& points = model.solids[slot].points;
   const double mass = model.particles[points[0]].mass;

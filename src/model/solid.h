@@ -18,6 +18,9 @@ SolidPose solid_pose(const Model&, std::uint32_t solid);
 std::uint32_t add_solid(Model&, std::uint32_t body, Solid solid, double mass, const Vec3& center,
                         const Mat3& mean_squares, const SolidPose& pose);
 
+/// Whether one of a body's shapes has no volume: it is a half-space. Such a body is static or scripted.
+bool is_endless(const Model&, std::uint32_t body);
+
 /// Whether the four points of a solid may still be moved: no hinge, nail or bond holds on to them, and they are equal.
 bool is_untouched(const Model&, std::uint32_t solid);
 

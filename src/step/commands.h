@@ -41,10 +41,8 @@ struct SetRod {
 };
 struct CreateSolid {
   BodyKind kind;
-  std::uint32_t shape;  ///< index in iota::Shape
   double damping, mass;
-  std::array<double, 3> sizes;
-  std::uint64_t mesh;
+  shape::Data shape;
   Vec3 center;
   Matrix3 mean_squares;
   Vec3 position, velocity, spin;

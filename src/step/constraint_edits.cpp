@@ -57,27 +57,10 @@ void require_function(const model::Model& model, const model::PlacedSurface& sur
   const auto found = model.surface_functions.find(surface.data.function);
   if (found == model.surface_functions.end()) return;
   const Quaternion& q = surface.orientation;
-  const geometry::FunctionSurface function(found->second.phi, found->second.size);
+  const shape::FunctionSurface function(found->second.phi, found->second.size);
   (void)function.at(rotate({-q.x, -q.y, -q.z, q.w}, point - surface.position));
   if (!function.failure().empty())
     throw std::invalid_argument(text("the function of a surface ", function.failure(), ", at ", text_of(point)));
-}
-
-model::SurfaceData to_data(const SurfaceShape& shape) {
-  model::SurfaceData data;
-  data.type = static_cast<std::uint32_t>(shape.index());
-  std::visit(
-      [&]<class S>(const S& s) {
-        if constexpr (std::is_same_v<S, Plane>) data.size = s.normal;
-        if constexpr (std::is_same_v<S, Sphere>) data.size = {s.radius, 0, 0};
-        if constexpr (std::is_same_v<S, Ellipsoid>) data.size = s.half_axes;
-        if constexpr (std::is_same_v<S, Box>) data.size = s.size;
-        if constexpr (std::is_same_v<S, Cylinder>) data.size = {s.radius, 0, 0};
-        if constexpr (std::is_same_v<S, Capsule>) data.size = {s.radius, s.length, 0};
-        if constexpr (std::is_same_v<S, Torus>) data.size = {s.radius, s.tube, 0};
-      },
-      shape);
-  return data;
 }
 
 }  // namespace
@@ -316,12 +299,13 @@ void System::Implementation::break_overloaded(StepReport& report) {
 // --- the public edge --------------------------------------------------------------------------------------------------
 
 model::PlacedSurface System::Implementation::placed(const Surface& surface) {
-  model::PlacedSurface placed{to_data(surface.shape), surface.position, surface.orientation};
+  model::PlacedSurface placed{{}, surface.position, surface.orientation};
   if (const auto* function = std::get_if<SurfaceFunction>(&surface.shape)) {
     if (!function->phi) throw std::invalid_argument("a function surface needs a function");
     placed.data.function = next_script++;
     model.surface_functions[placed.data.function] = *function;
-  }
+  } else
+    placed.data.shape = shape::to_data(std::get<Shape>(surface.shape));
   return placed;
 }
 

@@ -28,25 +28,8 @@ Matrix3 to_rows(const Mat3& m) {
   return rows;
 }
 
-/// The shape of these sizes.
-Shape primitive(model::SolidKind kind, const std::array<double, 3>& s) {
-  switch (kind) {
-    case model::SolidKind::sphere: return Sphere{s[0]};
-    case model::SolidKind::box: return Box{{s[0], s[1], s[2]}};
-    case model::SolidKind::cylinder: return Cylinder{s[0], s[1]};
-    case model::SolidKind::capsule: return Capsule{s[0], s[1]};
-    case model::SolidKind::torus: return Torus{s[0], s[1]};
-    case model::SolidKind::mesh: break;
-  }
-  return Mesh{};
-}
-
-std::uint64_t mesh_key(const Mesh& mesh) {
-  Hasher hasher;
-  hasher.bytes(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3));
-  hasher.bytes(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
-  return hasher.result();
-}
+/// Of a body whose shape has no volume: four points that stand for a cube of 1 m give it a frame.
+constexpr MassProperties frame_only{1, {}, {{{1.0 / 12, 0, 0}, {0, 1.0 / 12, 0}, {0, 0, 1.0 / 12}}}};
 
 Quaternion unit(std::string_view name, const Quaternion& q) {
   const double length2 = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
@@ -58,33 +41,20 @@ Quaternion unit(std::string_view name, const Quaternion& q) {
 
 }  // namespace
 
-std::array<double, 3> step::sizes_of(const Shape& shape) {
-  struct Visitor {
-    std::array<double, 3> operator()(const Sphere& s) const { return {s.radius}; }
-    std::array<double, 3> operator()(const Box& b) const { return {b.size.x, b.size.y, b.size.z}; }
-    std::array<double, 3> operator()(const Cylinder& c) const { return {c.radius, c.length}; }
-    std::array<double, 3> operator()(const Capsule& c) const { return {c.radius, c.length}; }
-    std::array<double, 3> operator()(const Torus& t) const { return {t.radius, t.tube}; }
-    std::array<double, 3> operator()(const Mesh&) const { return {}; }
-  };
-  return std::visit(Visitor{}, shape);
-}
-
 BodyId System::create_body(const Shape& shape, const SolidOptions& o) {
-  const MassProperties p = mass_properties(shape);
+  const bool can_move = o.kind != BodyKind::static_ && o.kind != BodyKind::scripted;
+  const MassProperties p = can_move || shape::is_solid(shape) ? mass_properties(shape) : frame_only;
   CreateSolid command{};
   command.kind = o.kind, command.damping = o.damping;
-  command.shape = static_cast<std::uint32_t>(shape.index());
-  command.sizes = sizes_of(shape);
+  command.shape = shape::to_data(shape);
   if (std::isnan(o.mass)) require_positive("density", o.density);
   command.mass = std::isnan(o.mass) ? o.density * p.volume : o.mass;
   command.center = p.center, command.mean_squares = p.mean_squares;
   command.position = o.position, command.velocity = o.velocity, command.spin = o.spin;
   command.orientation = unit("orientation", o.orientation);
   for (const Vec3& a : o.attachments) require_finite("each attachment", a);
-  if (const auto* mesh = std::get_if<Mesh>(&shape)) command.mesh = mesh_key(*mesh);
   const BodyId body = implementation_->execute(command);
-  if (const auto* mesh = std::get_if<Mesh>(&shape)) implementation_->meshes.try_emplace(command.mesh, *mesh);
+  if (const auto* mesh = std::get_if<Mesh>(&shape)) implementation_->meshes.try_emplace(command.shape.key, *mesh);
   for (const Vec3& a : o.attachments) create_attachment(body, o.position + rotate(command.orientation, a));
   return body;
 }
@@ -174,10 +144,9 @@ std::vector<SolidView> System::solids(BodyId id) const {
   m.for_each_solid_of(implementation_->require(id), [&](std::uint32_t slot) {
     const model::Solid& solid = m.solids[slot];
     const model::SolidPose pose = solid_pose(m, slot);
-    views.push_back({primitive(solid.kind, solid.sizes), pose.position, pose.orientation});
-    const auto mesh = implementation_->meshes.find(solid.mesh);
-    if (solid.kind == model::SolidKind::mesh && mesh != implementation_->meshes.end())
-      views.back().shape = mesh->second;
+    views.push_back({shape::from_data(solid.shape), pose.position, pose.orientation});
+    const auto mesh = implementation_->meshes.find(solid.shape.key);
+    if (solid.shape.key != 0 && mesh != implementation_->meshes.end()) views.back().shape = mesh->second;
   });
   return views;
 }
@@ -202,9 +171,10 @@ BodyId System::Implementation::apply(const CreateSolid& c) {
   require_finite("position", c.position);
   require_finite("velocity", c.velocity);
   require_finite("spin", c.spin);
+  shape::check(shape::from_data(c.shape));
   const std::uint32_t body = model.make_body(c.kind, c.damping);
   model::Solid solid;
-  solid.kind = static_cast<model::SolidKind>(c.shape), solid.sizes = c.sizes, solid.mesh = c.mesh;
+  solid.shape = c.shape;
   const model::SolidPose pose{c.position, c.orientation};
   add_solid(model, body, solid, c.mass, c.center, to_mat3(c.mean_squares), pose);
   const Vec3 center = model.center_of_mass(body);

@@ -3,6 +3,7 @@
 #include "ingredient/joint_readings.h"
 #include "ingredient/quantities.h"
 #include "math/mat3.h"
+#include "model/solid.h"
 #include "step/checks.h"
 #include "step/implementation.h"
 
@@ -365,6 +366,8 @@ void System::Implementation::apply(const SetKind& c) {
   const std::uint32_t slot = require(c.body);
   const BodyKind before = model.bodies[slot].kind;
   if (before == c.kind) return;
+  if (model::is_free(c.kind) && is_endless(model, slot))
+    throw std::invalid_argument(text("body ", slot, " is a half-space, which has no mass: it can only be static or scripted"));
   if (c.kind == BodyKind::resting) {
     if (before != BodyKind::dynamic)
       throw std::invalid_argument(text("only dynamic bodies can rest; body ", slot, " is none: make it dynamic first"));

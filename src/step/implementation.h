@@ -18,8 +18,6 @@
 namespace iota {
 
 namespace step {
-/// A primitive's sizes, in the order of iota/shapes.h.
-std::array<double, 3> sizes_of(const Shape&);
 }  // namespace step
 
 /// The model, its solver islands, and the one door through which everything changes: `execute`.

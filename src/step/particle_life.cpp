@@ -2,6 +2,7 @@
 // Particles that are born, age, turn and die.
 #include "ingredient/quantities.h"
 #include "math/mat3.h"
+#include "shape/traits.h"
 #include "step/checks.h"
 #include "step/execute.h"
 
@@ -28,33 +29,11 @@ class Draw {
   explicit Draw(model::Emitter& emitter) : emitter_(emitter) {}
   double number(double low, double high) { return low + (high - low) * dice(emitter_.seed, emitter_.draws++); }
   Vec3 in_ball(double radius) {
-    for (;;) {
-      const double x = number(-1, 1), y = number(-1, 1), z = number(-1, 1);
-      if (x * x + y * y + z * z <= 1) return radius * Vec3{x, y, z};
-    }
-  }
-  Vec3 in_tube(double radius, double length) {
-    for (;;) {
-      const double y = number(-1, 1), z = number(-1, 1);
-      if (y * y + z * z <= 1) return {number(-length / 2, length / 2), radius * y, radius * z};
-    }
+    const auto draw = [this](double low, double high) { return number(low, high); };
+    return radius * shape::in_ball(draw);
   }
   Vec3 in_source() {
-    const auto& s = emitter_.sizes;
-    switch (emitter_.source) {
-      case 0: return in_ball(s[0]);
-      case 1: {
-        const double x = number(-0.5, 0.5), y = number(-0.5, 0.5);
-        return {s[0] * x, s[1] * y, s[2] * number(-0.5, 0.5)};
-      }
-      case 2: return in_tube(s[0], s[1]);
-      default:  // a capsule
-        for (;;) {
-          const Vec3 x = in_tube(s[0], s[1] + 2 * s[0]);
-          const double beyond = std::max(0.0, std::abs(x.x) - s[1] / 2);
-          if (beyond * beyond + x.y * x.y + x.z * x.z <= s[0] * s[0]) return x;
-        }
-    }
+    return shape::inside(shape::from_data(emitter_.source), [this](double low, double high) { return number(low, high); });
   }
 
  private:
@@ -175,6 +154,7 @@ model::Attributes& System::Implementation::attributes_of(std::uint32_t particle)
 
 EmitterId System::Implementation::apply(const CreateEmitter& c) {
   const model::Emitter& e = c.emitter;
+  shape::check(shape::from_data(e.source));
   require_not_negative("rate", e.rate);
   require_finite("position", e.position);
   require_finite("velocity", e.velocity);
@@ -282,9 +262,9 @@ std::uint32_t System::Implementation::require(EmitterId id) const {
 // --- the public side --------------------------------------------------------------------------------------------------
 
 EmitterId System::create_emitter(const EmitterOptions& o) {
-  (void)mass_properties(o.source);
-  if (o.source.index() > 3)
-    throw std::invalid_argument("the source of an emitter is a Sphere, Box, Cylinder or Capsule");
+  shape::check(o.source);
+  if (!shape::is_source(o.source))
+    throw std::invalid_argument(text("particles cannot be born in a ", shape::name(o.source)));
   model::Emitter e;
   if (o.curve.size() > e.keys.size())
     throw std::invalid_argument(
@@ -295,8 +275,7 @@ EmitterId System::create_emitter(const EmitterOptions& o) {
     require_not_negative("radius", o.curve[i].radius);
     e.keys[i] = o.curve[i];
   }
-  e.source = static_cast<std::uint32_t>(o.source.index());
-  e.sizes = sizes_of(o.source);
+  e.source = shape::to_data(o.source);
   e.rate = o.rate, e.position = o.position, e.velocity = o.velocity, e.orientation = normalized(o.orientation);
   e.velocity_spread = o.velocity_spread, e.lifetime = o.lifetime, e.lifetime_spread = o.lifetime_spread;
   e.mass = o.mass, e.damping = o.damping, e.max_count = o.max_count, e.seed = o.seed;

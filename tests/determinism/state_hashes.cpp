@@ -148,7 +148,7 @@ void print_joints(const char* name, IntegrationMode mode) {
   for (const ParticleId p : system.particles())
     if (system.mass(p) == 0)
       (void)system.create_constraint(
-          SurfaceSpec{.kind = ConstraintKind::outside, .particle = p, .surface = {Plane{}, {0, 0.2, 0}, {}}});
+          SurfaceSpec{.kind = ConstraintKind::outside, .particle = p, .surface = {HalfSpace{}, {0, 0.2, 0}, {}}});
   print(name, system, 120, 1.0 / 120);
 }
 

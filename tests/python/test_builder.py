@@ -130,8 +130,8 @@ def test_what_json_cannot_hold_is_named() -> None:
         ({"wheels": []}, "has no wheels"),
         ({"bodies": [{"points": [0], "weight": 3}]}, "RigidBody 0: .*weight"),
         (
-            {"bodies": [{"points": [], "shape": {"type": "egg"}, "name": "e"}]},
-            'RigidBody 0 "e": the type of a shape must be',
+            {"bodies": [{"points": [], "shape": {"kind": "egg"}, "name": "e"}]},
+            'RigidBody 0 "e": the kind of a shape must be',
         ),
     ):
         with pytest.raises(ValueError, match=text):

@@ -180,9 +180,9 @@ def test_points_stay_on_and_within_surfaces_and_surfaces_apart() -> None:
     ball = system.body(shape=iota.Sphere(0.2), mass=1, position=(0.3, 1, 0))
     inner = system.body().particle((0.5, 0.3, 5), mass=1)
     bowl = system.inside(inner, iota.Sphere(1), at=(0, 0, 5))
-    floor = system.surface_to_surface(ball, iota.Sphere(0.2), None, iota.Plane())
+    floor = system.surface_to_surface(ball, iota.Sphere(0.2), None, iota.HalfSpace())
     egg = system.body().particle((0, 2, 9))
-    on_egg = system.on_surface(egg, iota.Ellipsoid((1, 2, 1)), at=(0, 0, 9))
+    on_egg = system.on_surface(egg, iota.Ellipsoid((2, 4, 2)), at=(0, 0, 9))
     saddle = system.body().particle((0.1, 0.01, 20))
     valley = system.on_surface(saddle, lambda x, y, z: y - x * x, at=(0, 0, 20))
     run(system, 8)
@@ -287,11 +287,11 @@ REFUSED = {
         "is a point and holds no frame",
     ),
     "flat surface": (
-        lambda s, a, b: s.on_surface(a.particles[0], iota.Plane((0, 0, 0))),
-        "normal must have a direction",
+        lambda s, a, b: s.on_surface(a.particles[0], iota.HalfSpace((0, 0, 0))),
+        "normal of a half-space must be finite and not of zero length",
     ),
     "skew frame": (
-        lambda s, a, b: s.on_surface(a.particles[0], iota.Plane(), orientation=(0, 0, 0, 2)),
+        lambda s, a, b: s.on_surface(a.particles[0], iota.HalfSpace(), orientation=(0, 0, 0, 2)),
         "unit quaternion x y z w, got length 2",
     ),
     "zero axis": (lambda s, a, b: s.revolute(a, b, at=(0, 0, 0), axis=(0, 0, 0)), "axis must have a direction"),

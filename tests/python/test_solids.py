@@ -30,6 +30,7 @@ def cube(size: float = 1.0) -> iota.Mesh:
         (iota.Cylinder(0.5, 2), math.pi / 2),
         (iota.Capsule(0.5, 2), math.pi / 2 + math.pi / 6),
         (iota.Torus(1, 0.1), 2 * math.pi**2 * 0.01),
+        (iota.Ellipsoid((1, 2, 3)), math.pi),
         (cube(2), 8),
     ],
 )
@@ -71,7 +72,7 @@ def test_attachments_are_ordinary_particles(system: iota.System) -> None:
 
 
 def test_what_makes_no_shape_is_refused(system: iota.System) -> None:
-    with pytest.raises(ValueError, match="radius must be finite and above 0"):
+    with pytest.raises(ValueError, match="the radius of a sphere must be between 1e-09 and"):
         iota.Sphere(-1)
     with pytest.raises(ValueError, match="not closed: triangle"):
         iota.Mesh(cube().vertices, cube().triangles[:-1])
@@ -81,7 +82,7 @@ def test_what_makes_no_shape_is_refused(system: iota.System) -> None:
         iota.Mesh(cube().vertices[:-1], cube().triangles)
     with pytest.raises(ValueError, match=r"must have the shape \(n, 3\)"):
         iota.Mesh([1, 2, 3], [[0, 1, 2]])
-    with pytest.raises(TypeError, match="shape must be a Sphere"):
+    with pytest.raises(TypeError, match="a shape must be one of Sphere, Box"):
         system.body(shape="box")
     with pytest.raises(TypeError, match="are of bodies with a shape"):
         system.body(position=(1, 2, 3))
@@ -114,9 +115,9 @@ def test_the_page_draws_the_shapes(system: iota.System) -> None:
     names = [body["class"] for body in bodies]
     assert names[0] == names[1] != names[2]  # one shape, one class
     (shape,) = classes[names[0]]["*"]
-    assert shape["type"] == "box" and shape["size"] == [1, 1, 1] and shape["offset"] == [0, 0, 0]
+    assert shape["kind"] == "box" and shape["sizes"] == [1, 1, 1, 0] and shape["offset"] == [0, 0, 0]
     (skin,) = classes[names[2]]["*"]
-    assert skin["type"] == "mesh" and len(skin["vertices"]) == 24 and len(skin["triangles"]) == 36
+    assert skin["kind"] == "mesh" and len(skin["vertices"]) == 24 and len(skin["triangles"]) == 36
     corners = np.reshape(skin["vertices"], (8, 3)) + skin["offset"]
     assert np.allclose(corners.mean(axis=0), 0, atol=1e-6), "about the center of mass"
     a.combine(b)
@@ -176,7 +177,7 @@ def test_a_mesh_too_large_to_draw_is_drawn_as_its_box(system: iota.System) -> No
     with pytest.warns(UserWarning, match="at most 50000 triangles, this one has"):
         classes, bodies = (json.loads(text) for text in Scene(system).describe())
     (shape,) = classes[bodies[0]["class"]]["*"]
-    assert shape["type"] == "box" and shape["size"] == pytest.approx([2, 2, 2], abs=0.01)
+    assert shape["kind"] == "box" and shape["sizes"] == pytest.approx([2, 2, 2, 0], abs=0.01)
 
 
 def test_a_pose_is_assigned(system: iota.System) -> None:

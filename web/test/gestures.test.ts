@@ -24,7 +24,7 @@ function aim(x: number, y: number): void {
 }
 
 beforeEach(() => {
-  scene = new TestScene([{ type: "sphere", radius: 0.1 }, { type: "sphere", radius: 0.1 }]);
+  scene = new TestScene([{ kind: "sphere", sizes: [0.1] }, { kind: "sphere", sizes: [0.1] }]);
   scene.place(0, [0, 0, -2]);
   scene.place(1, [1, 0, -2]);
   log = new Log();

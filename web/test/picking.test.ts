@@ -7,7 +7,7 @@ const forward = [0, 0, -1];
 
 describe("picking with a ray", () => {
   it("finds the nearer of two bodies, with point and place in its frame", () => {
-    const scene = new TestScene([{ type: "sphere", radius: 0.1 }, { type: "sphere", radius: 0.1 }]);
+    const scene = new TestScene([{ kind: "sphere", sizes: [0.1] }, { kind: "sphere", sizes: [0.1] }]);
     scene.place(0, [0, 0, -3]);
     scene.place(1, [0, 0, -2], [0, Math.SQRT1_2, 0, Math.SQRT1_2]);
     const hit = new Hit();
@@ -21,7 +21,7 @@ describe("picking with a ray", () => {
   });
 
   it("goes through the hole of a ring, unless the tolerance is as wide", () => {
-    const scene = new TestScene([{ type: "torus", radius: 0.1, tube: 0.01 }]);
+    const scene = new TestScene([{ kind: "torus", sizes: [0.1, 0.01] }]);
     scene.place(0, [0, 0, -1]);
     const hit = new Hit();
     expect(pickRay(scene, [0, 0, 0], forward, 0.01, 100, hit)).toBe(false);
@@ -30,7 +30,7 @@ describe("picking with a ray", () => {
   });
 
   it("prefers a true hit behind to a near miss before it", () => {
-    const scene = new TestScene([{ type: "sphere", radius: 0.1 }, { type: "sphere", radius: 0.1 }]);
+    const scene = new TestScene([{ kind: "sphere", sizes: [0.1] }, { kind: "sphere", sizes: [0.1] }]);
     scene.place(0, [0.12, 0, -1]);
     scene.place(1, [0, 0, -3]);
     const hit = new Hit();
@@ -39,7 +39,7 @@ describe("picking with a ray", () => {
   });
 
   it("catches a thin rod with a finger's tolerance and takes hold on its surface", () => {
-    const scene = new TestScene([{ type: "capsule", radius: 0.002, length: 0.2 }]);
+    const scene = new TestScene([{ kind: "capsule", sizes: [0.002, 0.2] }]);
     scene.place(0, [0, 0.02, -2]);
     const hit = new Hit();
     expect(pickRay(scene, [0, 0, 0], forward, 0.004, 100, hit)).toBe(false);
@@ -48,7 +48,7 @@ describe("picking with a ray", () => {
   });
 
   it("finds nothing behind the eye or beyond the farthest distance", () => {
-    const scene = new TestScene([{ type: "sphere", radius: 0.1 }]);
+    const scene = new TestScene([{ kind: "sphere", sizes: [0.1] }]);
     scene.place(0, [0, 0, 2]);
     expect(pickRay(scene, [0, 0, 0], forward, 0.01, 100, new Hit())).toBe(false);
     scene.place(0, [0, 0, -20]);
@@ -58,7 +58,7 @@ describe("picking with a ray", () => {
   it("agrees with a fine brute-force march for random bodies and rays", () => {
     let seed = 11;
     const random = () => ((seed = (seed * 16807) % 2147483647) / 2147483647) - 0.5;
-    const scene = new TestScene(Array.from({ length: 12 }, () => ({ type: "capsule" as const, radius: 0.05, length: 0.3 })));
+    const scene = new TestScene(Array.from({ length: 12 }, () => ({ kind: "capsule", sizes: [0.05, 0.3] })));
     for (let trial = 0; trial < 60; trial++) {
       for (let body = 0; body < 12; body++) {
         const q = [random(), random(), random(), random()];
@@ -78,7 +78,7 @@ describe("picking with a ray", () => {
 
 describe("picking with a hand", () => {
   it("finds the nearest surface within reach and puts the hold onto it", () => {
-    const scene = new TestScene([{ type: "sphere", radius: 0.1 }, { type: "box", size: [0.1, 0.1, 0.1] }]);
+    const scene = new TestScene([{ kind: "sphere", sizes: [0.1] }, { kind: "box", sizes: [0.1, 0.1, 0.1] }]);
     scene.place(0, [0.3, 0, 0]);
     scene.place(1, [-0.1, 0, 0]);
     const hit = new Hit();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
-import { bodyDistance, bodyReach, parseShape, placeShape, shapeDistance, shapeReach } from "../src/scene/shape.ts";
+import { bodyDistance, bodyReach, parseShape, placeShape, shapeDistance, shapeReach } from "../src/scene/shapes/shape.ts";
 
 /** A box as a closed mesh: corners by the bits of their numbers. */
 function boxMesh(x: number, y: number, z: number): { vertices: number[]; triangles: number[] } {
@@ -10,27 +10,27 @@ function boxMesh(x: number, y: number, z: number): { vertices: number[]; triangl
 }
 
 const shapes = [
-  parseShape({ type: "sphere", radius: 0.3 }),
-  parseShape({ type: "capsule", radius: 0.1, length: 0.5 }),
-  parseShape({ type: "cylinder", radius: 0.1, length: 0.5 }),
-  parseShape({ type: "torus", radius: 0.2, tube: 0.05, stretch: 0.3 }),
-  parseShape({ type: "box", size: [0.2, 0.3, 0.4] }),
-  parseShape({ type: "mesh", ...boxMesh(0.2, 0.3, 0.4) }),
+  parseShape({ kind: "sphere", sizes: [0.3] }),
+  parseShape({ kind: "capsule", sizes: [0.1, 0.5] }),
+  parseShape({ kind: "cylinder", sizes: [0.1, 0.5] }),
+  parseShape({ kind: "torus", sizes: [0.2, 0.05, 0.3] }),
+  parseShape({ kind: "box", sizes: [0.2, 0.3, 0.4] }),
+  parseShape({ kind: "mesh", ...boxMesh(0.2, 0.3, 0.4) }),
 ];
 
 describe("a shape of the scene description", () => {
   it("takes defaults for what is left out", () => {
-    const shape = parseShape({ type: "capsule", radius: 0.01, length: 0.1 });
+    const shape = parseShape({ kind: "capsule", sizes: [0.01, 0.1] });
     expect(shape).toMatchObject({ material: "paint", color: null, turn: 0, offset: [0, 0, 0], rotation: [0, 0, 0, 1] });
   });
 
   it.each([
-    [null, /object/], [{ type: "cone" }, /unknown shape type "cone"/], [{ type: "sphere", radius: -1 }, /radius must be positive/],
-    [{ type: "sphere", radius: "1" }, /radius must be a finite number/], [{ type: "box", size: [1, 2] }, /size must be 3 numbers/],
-    [{ type: "sphere", rotation: [0, 0, 0, 0] }, /rotation must not be zero/],
-    [{ type: "mesh", vertices: [0, 0], triangles: [] }, /vertices of a mesh must be a list of numbers in threes/],
-    [{ type: "mesh", vertices: [0, 0, 0], triangles: [0, 0, 7] }, /names vertex 7, but there are 1/],
-    [{ type: "mesh", vertices: [0, 0, 0], triangles: Array(3 * 50_001).fill(0) }, /may have 50000 triangles/],
+    [null, /object/], [{ kind: "blob" }, /unknown shape "blob"/], [{ kind: "sphere", sizes: [1, 2] }, /sizes must be at most 1 numbers/],
+    [{ kind: "sphere", sizes: ["1"] }, /sizes\[0\] must be a finite number/], [{ kind: "box", sizes: 3 }, /sizes must be at most 4 numbers/],
+    [{ kind: "sphere", sizes: [1], rotation: [0, 0, 0, 0] }, /rotation must not be zero/],
+    [{ kind: "mesh", vertices: [0, 0], triangles: [] }, /vertices of a mesh must be a list of numbers in threes/],
+    [{ kind: "mesh", vertices: [0, 0, 0], triangles: [0, 0, 7] }, /names vertex 7, but there are 1/],
+    [{ kind: "mesh", vertices: [0, 0, 0], triangles: Array(3 * 50_001).fill(0) }, /may have 50000 triangles/],
   ])("is refused with the name of the wrong field: %j", (json, reason) => {
     expect(() => parseShape(json)).toThrow(reason);
   });
@@ -71,7 +71,7 @@ describe("the distance function", () => {
 
 describe("a shape on a body", () => {
   it("is turned about x on odd bodies only", () => {
-    const link = parseShape({ type: "torus", radius: 0.05, tube: 0.01, turn: Math.PI / 2 });
+    const link = parseShape({ kind: "torus", sizes: [0.05, 0.01], turn: Math.PI / 2 });
     const even = [placeShape(link, false, null)];
     const odd = [placeShape(link, true, null)];
     expect(bodyDistance(even, 0, 0.05, 0)).toBeCloseTo(-0.01, 9);
@@ -80,14 +80,14 @@ describe("a shape on a body", () => {
   });
 
   it("takes the body's length for rods, not for links", () => {
-    const rod = parseShape({ type: "capsule", radius: 0.01, length: 0.1 });
-    const link = parseShape({ type: "torus", radius: 0.05, tube: 0.01 });
-    expect(placeShape(rod, false, 0.3).shape.length).toBe(0.3);
+    const rod = parseShape({ kind: "capsule", sizes: [0.01, 0.1] });
+    const link = parseShape({ kind: "torus", sizes: [0.05, 0.01] });
+    expect(placeShape(rod, false, 0.3).shape.sizes).toEqual([0.01, 0.3]);
     expect(placeShape(link, false, 0.3).shape).toBe(link);
   });
 
   it("reaches as far as its offset and size", () => {
-    const ball = parseShape({ type: "sphere", radius: 0.1, offset: [0, 0.2, 0] });
+    const ball = parseShape({ kind: "sphere", sizes: [0.1], offset: [0, 0.2, 0] });
     expect(bodyReach([placeShape(ball, false, null)])).toBeCloseTo(0.3, 9);
   });
 });

@@ -3,7 +3,7 @@
 
 import { toBody } from "../src/interact/picking.ts";
 import type { Pickable } from "../src/scene/pickable.ts";
-import { bodyDistance, bodyReach, parseShape, placeShape, type PlacedShape } from "../src/scene/shape.ts";
+import { bodyDistance, bodyReach, parseShape, placeShape, type PlacedShape } from "../src/scene/shapes/shape.ts";
 
 export class TestScene implements Pickable {
   readonly pickable: Uint32Array;

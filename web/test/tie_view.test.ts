@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Matrix4, Vector3, type InstancedMesh } from "three";
 import { describe, expect, it } from "vitest";
-import { makeCoil } from "../src/scene/geometry.ts";
+import { makeCoil } from "../src/scene/shapes/coil.ts";
 import { PoseBuffer } from "../src/scene/pose_buffer.ts";
 import { TieView } from "../src/scene/tie_view.ts";
 import { WorldModel } from "../src/scene/world_model.ts";
 
-const classes = { rope: { "*": { type: "cylinder", radius: 0.01, material: "rope" } }, spring: { "*": { type: "cylinder", radius: 0.02 } } };
+const classes = { rope: { "*": { kind: "cylinder", sizes: [0.01], material: "rope" } }, spring: { "*": { kind: "cylinder", sizes: [0.02] } } };
 
 function ties(...entries: object[]): { view: TieView; poses: PoseBuffer; pieces: () => { middle: Vector3; length: number }[] } {
   const model = new WorldModel(() => {});

@@ -9,10 +9,10 @@ function makeModel(): { model: WorldModel; changes: Change[] } {
 
 const classes = {
   link: {
-    rope: { type: "capsule", radius: 0.012, length: 0.1, material: "rope" },
-    chain: [{ type: "torus", radius: 0.03, tube: 0.008, stretch: 0.05, material: "steel", turn: 1.5707963 }],
+    rope: { kind: "capsule", sizes: [0.012, 0.1], material: "rope" },
+    chain: [{ kind: "torus", sizes: [0.03, 0.008, 0.05], material: "steel", turn: 1.5707963 }],
   },
-  weight: { "*": { type: "sphere", radius: 0.1 } },
+  weight: { "*": { kind: "sphere", sizes: [0.1] } },
 };
 
 describe("the world model", () => {
@@ -27,17 +27,17 @@ describe("the world model", () => {
     const odd = model.bodies.get(7);
     const weight = model.bodies.get(9);
     if (odd === undefined || weight === undefined) throw new Error("bodies are missing");
-    expect(model.placedShapes(odd, "rope")[0].shape.length).toBe(0.2);
+    expect(model.placedShapes(odd, "rope")[0].shape.sizes[1]).toBe(0.2);
     expect(model.placedShapes(odd, "chain")[0].rotation[0]).toBeCloseTo(Math.SQRT1_2, 5);
-    expect(model.placedShapes(weight, "chain")[0].shape.type).toBe("sphere");
-    expect(model.shapesOfClass("link", "never heard of")[0].type).toBe("capsule");
+    expect(model.placedShapes(weight, "chain")[0].shape.kind.name).toBe("sphere");
+    expect(model.shapesOfClass("link", "never heard of")[0].kind.name).toBe("capsule");
     expect(model.shapesOfClass("nothing", "rope")).toEqual([]);
   });
 
   it("keeps the old part when a new one is wrong, and says what", () => {
     const { model } = makeModel();
     model.setScene("classes", JSON.stringify(classes));
-    expect(() => model.setScene("classes", '{"link": {"rope": {"type": "blob"}}}')).toThrow(/unknown shape type "blob"/);
+    expect(() => model.setScene("classes", '{"link": {"rope": {"kind": "blob"}}}')).toThrow(/unknown shape "blob"/);
     expect(() => model.setScene("classes", "{")).toThrow();
     expect(() => model.setScene("bodies", '[{"body": -1}]')).toThrow(/slot/);
     expect(model.shapesOfClass("link", "rope")).toHaveLength(1);

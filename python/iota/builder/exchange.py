@@ -1,33 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Structures as JSON: the contents' own fields, without those that have their usual value; a shape is
-{"type": "box", "size": [...]}."""
+"""Structures as JSON: the contents' own fields, without those that have their usual value; shapes as `iota.shapes` describes
+them, looks as `iota.looks` does."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any, TypeVar
 
 import numpy as np
 
-from iota._core import Box, Capsule, Cylinder, Mesh, Sphere, Torus, Vec3
+from iota import looks, shapes
+from iota._core import Shape, Vec3
 from iota.builder.checks import label
 from iota.builder.contents import Contents
-from iota.builder.parts import Joint, RigidBody, Shape, SoftBond, Tie
+from iota.builder.parts import Joint, RigidBody, SoftBond, Tie
 
-# By the names of their constructors' arguments, which are those of their properties.
-SHAPES: dict[str, tuple[Callable[..., Shape], tuple[str, ...]]] = {
-    "sphere": (Sphere, ("radius",)),
-    "box": (Box, ("size",)),
-    "cylinder": (Cylinder, ("radius", "length")),
-    "capsule": (Capsule, ("radius", "length")),
-    "torus": (Torus, ("radius", "tube")),
-    "mesh": (Mesh, ("vertices", "triangles")),
-}
 PARTS: dict[str, type[Any]] = {"bodies": RigidBody, "bonds": SoftBond, "joints": Joint, "ties": Tie}
 PAIRS = ("hinges", "lines")
-PLAIN = ("nails", "groups", "point_names", "looks")
+PLAIN = ("nails", "groups", "point_names")
 
 Filled = TypeVar("Filled", bound=Contents)
 
@@ -40,12 +32,13 @@ def to_json(structure: Contents) -> dict[str, Any]:
         ]
     for name in (*PAIRS, *PLAIN):
         data[name] = _plain(getattr(structure, name), name)
+    data["looks"] = {name: looks.to_json(styles) for name, styles in structure.looks.items()}
     return data
 
 
 def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
     """Fills an empty structure."""
-    known = {"points", *PARTS, *PAIRS, *PLAIN}
+    known = {"points", "looks", *PARTS, *PAIRS, *PLAIN}
     if unknown := sorted(data.keys() - known):
         raise ValueError(f"a structure has no {', '.join(unknown)}; it has {', '.join(sorted(known))}")
     structure.points.add(
@@ -54,7 +47,7 @@ def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
     for name, kind in PARTS.items():
         for number, entry in enumerate(data.get(name, ())):
             try:
-                shape = {"shape": _to_shape(entry["shape"])} if "shape" in entry else {}
+                shape = {"shape": shapes.from_json(entry["shape"])} if "shape" in entry else {}
                 getattr(structure, name).append(kind(**entry | shape))
             except (TypeError, ValueError) as error:
                 raise ValueError(f"{label(kind.__name__, number, entry.get('name', ''))}: {error}") from None
@@ -62,6 +55,7 @@ def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
         setattr(structure, name, [(p, q) for p, q in data.get(name, ())])
     for name in PLAIN:
         setattr(structure, name, data.get(name, getattr(structure, name)))
+    structure.looks = {name: looks.from_json(styles) for name, styles in data.get("looks", {}).items()}
     return structure
 
 
@@ -86,19 +80,10 @@ def _plain(value: Any, name: str) -> Any:
         return value
     if isinstance(value, dict):
         return {key: _plain(item, f"{name}.{key}") for key, item in value.items()}
-    for word, (kind, sizes) in SHAPES.items():
-        if isinstance(value, kind):  # type: ignore[arg-type]
-            return {"type": word, **{size: _plain(getattr(value, size), name) for size in sizes}}
+    if isinstance(value, Shape):
+        return shapes.to_json(value)
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, Vec3 | Sequence):
         return [_plain(item, name) for item in value]
     raise ValueError(f"{name} cannot be saved: {value!r}")
-
-
-def _to_shape(entry: dict[str, Any]) -> Shape:
-    word = entry.get("type")
-    if word not in SHAPES:
-        raise ValueError(f"the type of a shape must be one of {', '.join(SHAPES)}, not {word!r}")
-    kind, sizes = SHAPES[word]
-    return kind(**{size: entry[size] for size in sizes})

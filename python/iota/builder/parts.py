@@ -7,10 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from iota._core import Box, Capsule, Cylinder, Mesh, Sphere, Torus
+from iota._core import Shape
 from iota.builder.points import Vector
 
-Shape = Box | Capsule | Cylinder | Mesh | Sphere | Torus
 Law = str | Callable[..., Any]
 BodyKind = Literal["dynamic", "static", "scripted", "inactive", "resting"]
 JointKind = Literal["ball", "weld", "revolute", "prismatic", "cylindrical", "universal", "orientation"]

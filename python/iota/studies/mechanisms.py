@@ -33,7 +33,7 @@ def present(world: iota.World) -> None:
             world.add_static(looks.box((0.07, BENCH - 0.05, 0.07), "wood"), (x, (BENCH - 0.05) / 2, z))
     for material in ("steel", "brass", "rubber", "wood"):
         world.classes[material] = {"*": looks.solid(material)}
-    world.classes["spring"] = {"*": {**looks.cylinder(0.016, "steel"), "tube": 0.0022}}
+    world.classes["spring"] = {"*": looks.spring(0.016, 0.0022)}
     world.classes["rope"] = {"*": looks.cylinder(0.005, "rope")}
     world.camera = iota.Camera(position=(0.25, 1.5, 2.2), target=(0.17, 1.13, 0))
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from iota._core import Body, Box, Capsule, Cylinder, Mesh, Particle, Solid, Sphere, System, Torus, Vec3
-from iota.looks import Looks, Shape, box, capsule, cylinder, mesh, sphere, torus
+from iota._core import Body, Box, Mesh, Particle, Shape, Solid, System, Vec3
+from iota.looks import Look, Looks, capsule, sphere
 from iota.world import ties
 from iota.world.frames import Quaternion, into_frame, relative_turn, turn_from_x, turned
 
@@ -39,35 +39,27 @@ def fitting_camera(system: System) -> Camera:
 
 def is_solid(looks: Looks) -> bool:
     """Whether a class only says what bodies given by shape are made of (`looks.solid`)."""
-    return any(shape["type"] == "solid" for style in looks.values() for shape in listed(style))
+    return any(look.shape is None for style in looks.values() for look in listed(style))
 
 
-def listed(style: Shape | list[Shape]) -> list[Shape]:
+def listed(style: Look | list[Look]) -> list[Look]:
     return style if isinstance(style, list) else [style]
 
 
-def solid_shapes(solid: object, material: str, **more: Any) -> list[Shape]:
-    """What the page draws for a solid: a primitive or a mesh; of a mesh that is too large, its box, with a warning."""
-    if isinstance(solid, Sphere):
-        return [sphere(solid.radius, material, **more)]
-    if isinstance(solid, Box):
-        return [box(tuple(solid.size), material, **more)]
-    if isinstance(solid, Cylinder):
-        return [cylinder(solid.radius, material, length=solid.length, **more)]
-    if isinstance(solid, Capsule):
-        return [capsule(solid.radius, material, length=solid.length, **more)]
-    if isinstance(solid, Torus):
-        return [torus(solid.radius, solid.tube, material, **more)]
-    assert isinstance(solid, Mesh)
-    if not len(solid.triangles):  # its triangles are with the system that it was made in
+def solid_looks(
+    shape: Shape, material: str, color: str | None, offset: list[float], rotation: list[float]
+) -> list[Look]:
+    """What the page draws for a solid: its shape; of a mesh that is too large, its box, with a warning."""
+    if isinstance(shape, Mesh) and not len(shape.triangles):  # its triangles are with the system that it was made in
         return []
     try:
-        return [mesh(solid.vertices, solid.triangles, material, **more)]
+        return [Look(shape, material, color, offset, rotation)]
     except ValueError as error:
         warnings.warn(f"{error}; its box is drawn instead", stacklevel=2)
-        low, high = solid.vertices.min(axis=0), solid.vertices.max(axis=0)
-        offset = Vec3(*more.pop("offset")) + turned(more["rotation"], Vec3(*(low + high) / 2))
-        return [box(tuple(high - low), material, offset=list(offset), **more)]
+        assert isinstance(shape, Mesh)
+        low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
+        middle = Vec3(*offset) + turned(rotation, Vec3(*(low + high) / 2))
+        return [Look(Box(tuple(high - low)), material, color, list(middle), rotation)]
 
 
 class Scene:
@@ -89,7 +81,7 @@ class Scene:
         classes: dict[str, Any] = {**ties.default_looks(self._scale()), **self.classes}
         bodies = [self._describe_body(body, classes) for body in self._system.bodies if not body.is_spark]
         drawable = {name: looks for name, looks in classes.items() if not is_solid(looks)}
-        return json.dumps(drawable, separators=(",", ":")), json.dumps(bodies, separators=(",", ":"))
+        return json.dumps(drawable, default=Look.describe, separators=(",", ":")), json.dumps(bodies, separators=(",", ":"))
 
     def _describe_body(self, body: Body, classes: dict[str, Any]) -> dict[str, Any]:
         particles = body.particles
@@ -120,27 +112,26 @@ class Scene:
 
     def _solid_class(self, body: Body, solids: list[Solid], classes: dict[str, Any], base: str | None) -> str:
         """A class for a body given by shape: its shapes where they are, in the materials of the class it had."""
-        styles = classes.get(base or "", {"*": {"material": "paint"}})
+        styles = classes.get(base or "", {"*": Look(None)})
         center, orientation = body.center_of_mass, body.orientation
         shapes = {look: self._solids(center, orientation, solids, style) for look, style in styles.items()}
         # Bodies of one shape share a class, so that the page draws them together.
-        text = json.dumps(shapes)
+        text = json.dumps(shapes, default=Look.describe)
         name = self._solid_names.setdefault(text, f"(solid {len(self._solid_names) + 1})")
         classes[name] = shapes
         return name
 
     def _solids(
-        self, center: Vec3, orientation: Quaternion, solids: list[Solid], style: Shape | list[Shape]
-    ) -> list[Shape]:
+        self, center: Vec3, orientation: Quaternion, solids: list[Solid], style: Look | list[Look]
+    ) -> list[Look]:
         like = listed(style)[0]
-        more = {"color": like["color"]} if "color" in like else {}
-        shapes: list[Shape] = []
+        looks: list[Look] = []
         for solid in solids:
             offset = into_frame(solid.position, center, orientation)
             turn = relative_turn(orientation, solid.orientation)
-            place = {"offset": [round(v, 6) + 0.0 for v in offset], "rotation": [round(v, 6) + 0.0 for v in turn]}
-            shapes += solid_shapes(solid.shape, like["material"], **place, **more)
-        return shapes
+            place = [round(v, 6) + 0.0 for v in offset], [round(v, 6) + 0.0 for v in turn]
+            looks += solid_looks(solid.shape, like.material, like.color, *place)
+        return looks
 
     def _particle_class(self, particle: Any, thickness: float, classes: dict[str, Any]) -> str:
         """A ball; one with attributes has its radius and color, in steps, so that many share a class."""
@@ -152,27 +143,26 @@ class Scene:
         return self._shared(f"(particle {radius:g} {color})", sphere(radius, "paint", color=color), classes)
 
     @staticmethod
-    def _shared(name: str, shape: Shape, classes: dict[str, Any]) -> str:
-        classes.setdefault(name, {"*": shape})
+    def _shared(name: str, look: Look, classes: dict[str, Any]) -> str:
+        classes.setdefault(name, {"*": look})
         return name
 
-    def _compound(self, body: Body, particles: list[Particle], style: Shape | list[Shape]) -> list[Shape]:
+    def _compound(self, body: Body, particles: list[Particle], style: Look | list[Look]) -> list[Look]:
         """Capsules along the body's cosmetic bonds, or from particle to particle in their order where it has none."""
         like = listed(style)[0]
-        radius = float(like.get("tube") or like.get("radius") or self._scale())
-        more = {"color": like["color"]} if "color" in like else {}
+        radius = getattr(like.shape, "tube", None) or getattr(like.shape, "radius", None) or self._scale()
         lines = [(p, q) for p, q in self._system.cosmetic_lines if p.body == body and q.body == body]
         center, orientation = body.center_of_mass, body.orientation
-        shapes: list[Shape] = []
+        looks: list[Look] = []
         for p, q in lines or list(pairwise(particles)):
             start, end = (into_frame(r.position, center, orientation) for r in (p, q))
             length = abs(end - start)
             if length > 0:
                 place, turn = (start + end) * 0.5, turn_from_x((end - start).unit())
-                shapes.append(
-                    capsule(radius, like["material"], length=length, offset=list(place), rotation=turn, **more)
+                looks.append(
+                    capsule(radius, like.material, length=length, offset=list(place), rotation=turn, color=like.color)
                 )
-        return shapes or [sphere(radius, like["material"], **more)]
+        return looks or [sphere(radius, like.material, color=like.color)]
 
     def _scale(self) -> float:
         """A radius that suits rods of this system, m: taken once, from their middle length."""

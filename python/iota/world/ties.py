@@ -7,7 +7,7 @@ import json
 from typing import Any
 
 from iota._core import Particle, System
-from iota.looks import Looks, cylinder
+from iota.looks import Looks, cylinder, spring
 from iota.world.frames import into_frame
 
 KINDS = ("spring", "rope", "rod")
@@ -16,7 +16,7 @@ KINDS = ("spring", "rope", "rod")
 def default_looks(radius: float) -> dict[str, Looks]:
     """How each kind is drawn unless the script has a class of that name; radius: that of a rod, m."""
     return {
-        "spring": {"*": {**cylinder(0.8 * radius, "steel"), "tube": 0.12 * radius}},
+        "spring": {"*": spring(0.8 * radius, 0.12 * radius)},
         "rope": {"*": cylinder(0.35 * radius, "rope")},
         "rod": {"*": cylinder(0.4 * radius, "steel")},
     }

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeVar, cast
 
 from iota._core import Body, StepReport, System, Vec3
-from iota.looks import Looks, Shape
+from iota.looks import Look, Looks
 from iota.simulator import Simulator
 from iota.world import options as run_options
 from iota.world.actions import Action
@@ -161,22 +161,20 @@ class World:
         self._state.scene.assign([bodies] if isinstance(bodies, Body) else bodies, name)
         self._state.is_changed = True
 
-    def add_static(self, shape: Shape, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> None:
+    def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> None:
         """Adds something that is only drawn: a beam, a stand. position: m. rotation: quaternion x y z w."""
-        self._state.statics.append({"shape": shape, "position": list(Vec3(*position)), "rotation": list(rotation)})
+        self._state.statics.append({"shape": look.describe(), "position": list(Vec3(*position)), "rotation": list(rotation)})
         self._state.is_changed = True
 
-    def add_strut(self, start: Sequence[float], end: Sequence[float], shape: Shape) -> None:
-        """Adds a shape that is only drawn from `start` to `end` (m): its local x runs along the line, and a cylinder or
+    def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> None:
+        """Adds a look that is only drawn from `start` to `end` (m): its local x runs along the line, and a cylinder or
         capsule without a length gets that of the line."""
         a, b = Vec3(*start), Vec3(*end)
         length = abs(b - a)
         if not length > 0:
             raise ValueError(f"a strut needs two different ends, not {a} twice")
         direction = (b - a) * (1 / length)
-        if shape["type"] in ("cylinder", "capsule"):
-            shape = {"length": length, **shape}
-        self.add_static(shape, list((a + b) * 0.5), turn_from_x(direction))
+        self.add_static(look.of_length(length), list((a + b) * 0.5), turn_from_x(direction))
 
     def notice(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""

@@ -47,6 +47,13 @@ struct Relative {
   Vec3 into_b(const Vec3& p) const { return turn.transposed() * (p - t); }
 };
 
+/// phi, zero where normals exist: on the surface, or a skin farther out.
+shape::Level smooth_at(const shape::Surface& surface, const Vec3& p) {
+  shape::Level level = surface.at(p);
+  level.value -= surface.skin_level();
+  return level;
+}
+
 Mat3 product(const Mat3& a, const Mat3& b) {
   Mat3 c;
   for (int i = 0; i < 3; ++i)
@@ -67,22 +74,22 @@ Mat3 unit_derivative(const Vec3& unit, double size, const Mat3& change) {
 // Flat faces leave the tangential place open; a little damping keeps it near where it was.
 SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const Vec3& near) const {
   const Relative relative(e);
-  const double size = std::min(surface_a->size(), surface_b->size());
+  const double size = std::min(surface_a->scale(), surface_b->scale());
   Vec3 p = near, start = near, dp;
   double gap = 0, start_gap = 0, dgap = 0, best = infinity, part = 1;
   bool first = true;
   Contact contact{};
   for (int iteration = 0; iteration < 60; ++iteration) {
-    const geometry::SurfacePoint a = surface_a->at(p);
+    const shape::Level a = smooth_at(*surface_a, p);
     const double a_size = norm(a.gradient) + 1e-300;
     const Vec3 n = (1 / a_size) * a.gradient;
     if (first) {  // the gap that B's value at p suggests
-      const geometry::SurfacePoint b = surface_b->at(relative.into_b(p));
+      const shape::Level b = smooth_at(*surface_b, relative.into_b(p));
       gap = std::max(b.value / (norm(b.gradient) + 1e-300), -size);
       first = false;
     }
     const Vec3 q = p + gap * n, place = relative.into_b(q);
-    const geometry::SurfacePoint b = surface_b->at(place);
+    const shape::Level b = smooth_at(*surface_b, place);
     const Vec3 b_gradient = relative.turn * b.gradient;
     const double b_size = norm(b_gradient) + 1e-300;
     const Vec3 m = (1 / b_size) * b_gradient;
@@ -93,7 +100,7 @@ SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const 
       continue;
     }
     best = residual, part = 1;
-    contact = {p, q, n, gap, place, b.gradient};
+    contact = {p, q, n, gap + surface_a->skin() + surface_b->skin(), place, b.gradient};
 
     const Mat3 dn = unit_derivative(n, a_size, a.hessian);
     const Mat3 dm = unit_derivative(m, b_size, product(relative.turn, product(b.hessian, relative.turn.transposed())));
@@ -129,7 +136,7 @@ void SurfacePairConstraint::start(const Vec3* x, double fraction) {
   const Relative relative(e);
   Vec3 p = relative.t;
   for (int i = 0; i < 30; ++i) {
-    const geometry::SurfacePoint a = surface_a->at(p);
+    const shape::Level a = smooth_at(*surface_a, p);
     const double slope2 = dot(a.gradient, a.gradient);
     if (slope2 > 0) p -= (a.value / slope2) * a.gradient;
   }

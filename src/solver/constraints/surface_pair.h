@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "geometry/surface.h"
+#include "shape/surface.h"
 #include "solver/constraints/arms.h"
 
 namespace iota::solver {
@@ -12,12 +12,14 @@ namespace iota::solver {
 ///               wander does not count); no Hessian: Newton gets on without what is second order in the step
 /// The contact points p on A and q = p + g n on B solve phi_A(p) = 0, phi_B(q) = 0, grad phi_A || -grad phi_B, by Newton's
 /// method from those of the last `track`: unlike the least distance, this stays regular while the surfaces touch.
+/// Where a surface has sharp edges, and so no normals there, another surface of constant phi takes its place, farther out by
+/// its skin and rounded; the gap is then measured to that and the skin added again, which is exact for convex shapes.
 /// Arms: 0: d = origin of B - origin of A; 1 ... 3: axes of A; 4 ... 6: axes of B (orthonormal). The multiplier is the
 /// normal force, N, positive where it pulls the bodies together: one-sided contact has upper = 0.
 struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
   static constexpr bool has_curvature = false;
 
-  const geometry::Surface *surface_a = nullptr, *surface_b = nullptr;
+  const shape::Surface *surface_a = nullptr, *surface_b = nullptr;
   Vec3 contact;  ///< p at the last `track`, in A's frame
   double reference = 1;
 
@@ -32,7 +34,7 @@ struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
  private:
   struct Contact {
     Vec3 p, q, normal;  // of A, in A's frame
-    double gap;
+    double gap;         // between the surfaces, without skins
     Vec3 place, gradient;  // of q and of phi_B, in B's frame
   };
   Contact find(const Vec3* e, const Vec3& near) const;

@@ -27,7 +27,7 @@ struct Brick : testing::Test {
   const Mat3 squares{{{4.0 / 12, 0, 0}, {0, 9.0 / 12, 0}, {0, 0, 36.0 / 12}}};
   const SolidPose pose{{5, 6, 7}, axis_angle({0.6, 0, 0.8}, 1.1)};
   const std::uint32_t body = model.make_body(BodyKind::dynamic, 0);
-  const std::uint32_t solid = add_solid(model, body, {.kind = SolidKind::box}, mass, center, squares, pose);
+  const std::uint32_t solid = add_solid(model, body, {.shape = shape::to_data(Box{})}, mass, center, squares, pose);
 
   /// About the center of mass, in the world frame: m (trace S I - S), turned.
   Mat3 inertia() const {

@@ -46,9 +46,10 @@ INSTANTIATE_TEST_SUITE_P(Both, Rows, testing::Values(Scheme::end_point, Scheme::
 /// A block on a slope of `angle`: downhill is `down`.
 struct Slope {
   Vec3 down;
-  geometry::Plane plane;
+  std::shared_ptr<const shape::Surface> plane;
   explicit Slope(double angle)
-      : down{std::cos(angle), -std::sin(angle), 0}, plane({std::sin(angle), std::cos(angle), 0}, 0) {}
+      : down{std::cos(angle), -std::sin(angle), 0},
+        plane(shape::make_surface(HalfSpace{{std::sin(angle), std::cos(angle), 0}})) {}
 };
 
 TEST_P(Rows, hold_a_block_on_a_slope_up_to_the_friction_that_they_have) {
@@ -59,7 +60,7 @@ TEST_P(Rows, hold_a_block_on_a_slope_up_to_the_friction_that_they_have) {
     problem.gravity = {0, -g, 0};
     const auto block = add_point(problem, {}, 2);
     SurfaceConstraint surface;
-    surface.surface = &slope.plane;
+    surface.surface = slope.plane.get();
     surface.set_world_frame({});
     surface.add(0, block, 1);
     add(problem, surface);
@@ -234,10 +235,10 @@ TEST_P(Rows, that_are_damped_springs_settle_under_a_load) {
 }
 
 TEST_P(Rows, keep_a_point_inside_a_sphere) {
-  const geometry::Ellipsoid sphere(1.0);
+  const auto sphere = shape::make_surface(Sphere{1.0});
   const auto p = add_point(problem, {0.5, 0.2, 0.1}, 2, {1, 0, 0});
   SurfaceConstraint c;
-  c.surface = &sphere;
+  c.surface = sphere.get();
   c.set_world_frame({});
   c.add(0, p, 1);
   const auto row = add(problem, c);
@@ -297,8 +298,8 @@ TEST_P(Rows, let_a_bead_pass_the_corners_of_a_polyline) {
 }
 
 TEST_P(Rows, let_a_ball_rest_on_the_floor) {
-  const geometry::Ellipsoid ball(0.5);
-  const geometry::Plane floor({0, 1, 0}, 0);
+  const auto ball = shape::make_surface(Sphere{0.5});
+  const auto floor = shape::make_surface(HalfSpace{});
   // A rigid body of four points around (0, 2, 0).
   std::vector<std::uint32_t> corner;
   for (const Vec3& x : {Vec3{0, 2, 0}, Vec3{1, 2, 0}, Vec3{0, 3, 0}, Vec3{0, 2, 1}})
@@ -309,7 +310,7 @@ TEST_P(Rows, let_a_ball_rest_on_the_floor) {
       add(problem, DistanceConstraint{{i, j}, length, length});
     }
   SurfacePairConstraint c;
-  c.surface_a = &ball, c.surface_b = &floor;
+  c.surface_a = ball.get(), c.surface_b = floor.get();
   for (std::uint32_t k = 0; k < 3; ++k) {
     c.add(static_cast<int>(1 + k), corner[0], -1), c.add(static_cast<int>(1 + k), corner[1 + k], 1);
     c.set_constant(static_cast<int>(4 + k), {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0});

@@ -142,22 +142,18 @@ Example<StationConstraint> example(Random& random, StationConstraint c) {
   return found;
 }
 
-const geometry::Surface& random_surface(Random& random, bool convex = false) {
-  using namespace geometry;
-  static const std::vector<std::unique_ptr<Surface>> surfaces = [] {
-    std::vector<std::unique_ptr<Surface>> list;
-    list.push_back(std::make_unique<Ellipsoid>(0.5));
-    list.push_back(std::make_unique<Ellipsoid>(Vec3{0.4, 0.6, 0.5}));
-    list.push_back(std::make_unique<Capsule>(0.4, 0.3));
-    list.push_back(std::make_unique<Box>(Vec3{0.4, 0.5, 0.6}, 0.35));
-    list.push_back(std::make_unique<Capsule>(0.5, std::numeric_limits<double>::infinity()));
-    list.push_back(std::make_unique<Plane>(Vec3{0.3, 1, 0.2}, 0.1));
-    list.push_back(std::make_unique<Torus>(0.7, 0.3));
-    list.push_back(std::make_unique<FunctionSurface>(
-        [](const Vec3& p) { return p.y - 0.1 * std::sin(p.x) * std::sin(p.z); }, 1.0));
-    return list;
-  }();
-  return *surfaces[static_cast<std::size_t>(random.whole(0, convex ? 3 : 7))];
+const shape::Surface& random_surface(Random& random, bool convex = false) {
+  using shape::make_surface;
+  static const std::vector<std::shared_ptr<const shape::Surface>> surfaces{
+      make_surface(Sphere{0.5}),
+      make_surface(Ellipsoid{{0.8, 1.2, 1.0}}),
+      make_surface(Capsule{0.4, 0.6}),
+      make_surface(Box{{0.8, 1.0, 1.2}, 0.35}),
+      make_surface(HalfSpace{{0.3, 1, 0.2}}),
+      make_surface(Torus{0.7, 0.3}),
+      std::make_shared<shape::FunctionSurface>(
+          [](const Vec3& p) { return p.y - 0.1 * std::sin(p.x) * std::sin(p.z); }, 1.0)};
+  return *surfaces[static_cast<std::size_t>(random.whole(0, convex ? 3 : 6))];
 }
 
 Example<SurfaceConstraint> example(Random& random, SurfaceConstraint c) {

@@ -47,14 +47,14 @@ struct JointedWorld {
     return o;
   }
   Surface any_surface() {
-    const SurfaceShape shapes[] = {Plane{point()}, Sphere{uniform(0.1, 2)}, Ellipsoid{{1, 0.5, 0.7}},
-                                   Box{{1, 2, 1}}, Cylinder{0.5, 1},        Capsule{0.3, 1},
-                                   Torus{1, 0.2}};
+    const Shape shapes[] = {HalfSpace{point()}, Sphere{uniform(0.1, 2)}, Ellipsoid{{2, 1, 1.4}},
+                            Box{{1, 2, 1}},     Cylinder{0.5, 1},        Capsule{0.3, 1},
+                            Torus{1, 0.2}};
     return {shapes[index(std::size(shapes))], point(), {}};
   }
 
   Surface any_convex() {
-    const SurfaceShape shapes[] = {Plane{point()}, Sphere{uniform(0.1, 0.5)}, Ellipsoid{{0.3, 0.2, 0.1}}};
+    const Shape shapes[] = {HalfSpace{point()}, Sphere{uniform(0.1, 0.5)}, Ellipsoid{{0.6, 0.4, 0.2}}};
     return {shapes[index(std::size(shapes))], point(), {}};
   }
 

@@ -440,12 +440,12 @@ TEST(Surface, a_point_on_a_sphere_is_a_spherical_pendulum) {
 
 TEST(Surface, every_shape_holds_a_point_where_it_says) {
   const struct {
-    SurfaceShape shape;
+    std::variant<Shape, SurfaceFunction> shape;
     Vec3 on;  // in the shape's frame
   } cases[] = {
-      {Plane{{0, 0, 1}}, {3, 2, 0}},     {Sphere{0.5}, {0, 0.5, 0}},
-      {Ellipsoid{{1, 2, 3}}, {0, 0, 3}}, {Box{{2, 4, 6}}, {0.1, 0.2, 3}},
-      {Cylinder{0.5, 1}, {7, 0, 0.5}},   {Capsule{0.5, 1}, {1, 0, 0}},
+      {HalfSpace{{0, 0, 1}}, {3, 2, 0}}, {Sphere{0.5}, {0, 0.5, 0}},
+      {Ellipsoid{{2, 4, 6}}, {0, 0, 3}}, {Box{{2, 4, 6}}, {0.1, 0.2, 3}},
+      {Cylinder{0.5, 1}, {0.3, 0, 0.5}}, {Capsule{0.5, 1}, {1, 0, 0}},
       {Torus{1, 0.25}, {0, 1.25, 0}},    {SurfaceFunction{[](const Vec3& r) { return r.y - r.x * r.x; }}, {1, 1, 0}}};
   const Quaternion turn{0, 0, std::sin(0.3), std::cos(0.3)};  // by 0.6 about z
   for (const auto& [shape, on] : cases) {
@@ -500,7 +500,7 @@ TEST(SurfacePair, a_ball_rests_on_a_plane_and_another_on_it) {
   const auto ball = [&](double y) { return make_block(system, {0, y, 0}, {0.3, 0.3, 0.3}, 1); };
   const BodyId lower = ball(0.6), upper = ball(1.7);
   const ConstraintId floor = system.create_constraint(SurfacePairSpec{
-      .a = lower, .b = {}, .surface_a = {Sphere{0.5}, {0, 0.6, 0}, {}}, .surface_b = {Plane{}, {}, {}}});
+      .a = lower, .b = {}, .surface_a = {Sphere{0.5}, {0, 0.6, 0}, {}}, .surface_b = {HalfSpace{}, {}, {}}});
   const ConstraintId contact = system.create_constraint(SurfacePairSpec{.a = upper,
                                                                         .b = lower,
                                                                         .surface_a = {Sphere{0.5}, {0, 1.7, 0}, {}},
@@ -521,7 +521,7 @@ TEST(SurfacePair, a_ball_held_to_a_slope_slides_down_it) {
                       .a = ball,
                       .b = {},
                       .surface_a = {Sphere{0.5}, {0, 0.5, 0}, {}},
-                      .surface_b = {Plane{{std::sin(slope), std::cos(slope), 0}}, {0, 0, 0}, {}}});
+                      .surface_b = {HalfSpace{{std::sin(slope), std::cos(slope), 0}}, {0, 0, 0}, {}}});
   run(system, 1, 1.0 / 240, [&](const StepReport&) { EXPECT_LT(system.state(contact).gap, 1e-8); });
   EXPECT_NEAR(norm(system.momentum()), g * std::sin(slope), 0.01);
   EXPECT_NEAR(norm(system.state(contact).force), g * std::cos(slope), 1e-3);

@@ -64,7 +64,7 @@ TEST(Emitter, its_particles_fly_as_they_were_thrown) {
 TEST(Emitter, its_particles_are_born_within_its_source) {
   System system({.gravity = {}});
   for (const Shape& source :
-       {Shape{Sphere{0.5}}, Shape{Box{{1, 2, 3}}}, Shape{Cylinder{0.3, 2}}, Shape{Capsule{0.3, 2}}}) {
+       {Shape{Sphere{0.5}}, Shape{Box{{1, 2, 3}}}, Shape{Cylinder{0.3, 2}}, Shape{Capsule{0.3, 2}}, Shape{Torus{}}}) {
     const EmitterId emitter = system.create_emitter({.rate = 5000, .source = source, .velocity = {}});
     (void)system.step(0.2);
     const MassProperties exact = mass_properties(source);
@@ -79,7 +79,8 @@ TEST(Emitter, its_particles_are_born_within_its_source) {
     EXPECT_NEAR(squares.z / exact.mean_squares[2].z, 1, 0.15);
     system.destroy(emitter);
   }
-  EXPECT_THROW((void)system.create_emitter({.source = Torus{}}), std::invalid_argument);
+  EXPECT_THROW((void)system.create_emitter({.source = HalfSpace{}}), std::invalid_argument);
+  EXPECT_THROW((void)system.create_emitter({.source = Mesh{}}), std::invalid_argument);
 }
 
 TEST(Emitter, no_more_than_its_most_are_alive) {

@@ -417,5 +417,37 @@ TEST(Solid, snapshot_and_replay_keep_shapes) {
   EXPECT_EQ(std::get<Mesh>(solids[0].shape).triangles.size(), 12u);
 }
 
+TEST(HalfSpace, is_the_shape_of_a_body_that_stays_where_it_is) {
+  System system;
+  const BodyId ground = system.create_body(HalfSpace{}, {.position = {0, 1, 0}, .kind = BodyKind::static_});
+  ASSERT_EQ(system.solids(ground).size(), 1u);
+  EXPECT_EQ(system.solids(ground)[0].shape, Shape{HalfSpace{}});
+  EXPECT_LT(norm(system.solids(ground)[0].position - Vec3{0, 1, 0}), 1e-12);
+  system.set_pose(ground, {0, 2, 0}, {});
+  EXPECT_LT(norm(system.solids(ground)[0].position - Vec3{0, 2, 0}), 1e-12);
+
+  const BodyId ball = system.create_body(Sphere{0.5}, {.position = {0, 3, 0}});
+  system.create_constraint(SurfacePairSpec{
+      .a = ball, .b = ground, .surface_a = {Sphere{0.5}, {0, 3, 0}, {}}, .surface_b = {HalfSpace{}, {0, 2, 0}, {}}});
+  for (int i = 0; i < 300; ++i) (void)system.step(0.01);
+  EXPECT_NEAR(system.center_of_mass(ball).y, 2.5, 1e-6);
+}
+
+TEST(HalfSpace, has_no_mass_and_cannot_move) {
+  System system;
+  EXPECT_THROW((void)mass_properties(HalfSpace{}), std::invalid_argument);
+  EXPECT_THROW((void)system.create_body(HalfSpace{}), std::invalid_argument);
+  const BodyId wall = system.create_body(HalfSpace{{1, 0, 0}}, {.kind = BodyKind::static_});
+  const BodyId box = system.create_body(Box{}, {.position = {2, 0, 0}});
+  EXPECT_THROW(system.set_kind(wall, BodyKind::dynamic), std::invalid_argument);
+  EXPECT_THROW((void)system.combine(box, wall), std::invalid_argument);
+  system.set_active(wall, false);
+  system.set_active(wall, true);
+  EXPECT_EQ(system.kind(wall), BodyKind::static_);
+  EXPECT_TRUE(system.validate().empty());
+  (void)system.combine(wall, box);
+  EXPECT_EQ(system.kind(wall), BodyKind::static_);
+}
+
 }  // namespace
 }  // namespace iota

@@ -3,7 +3,7 @@
 // function of the few that remain. A cone of tolerance lets thin things be caught by a finger.
 
 import type { Pickable } from "../scene/pickable.ts";
-import { bodyDistance } from "../scene/shape.ts";
+import { bodyDistance } from "../scene/shapes/shape.ts";
 
 /** The answer of a pick; reused by its owner so that hovering allocates nothing. */
 export class Hit {

@@ -3,7 +3,7 @@
 // interruptible. One state serves all of them: a point, a distance and two angles.
 
 import { MathUtils, Vector3, type PerspectiveCamera } from "three";
-import type { Vec3 } from "../scene/shape.ts";
+import type { Vec3 } from "../scene/shapes/shape.ts";
 
 const easeSeconds = 0.07;
 /** A returning view takes longer than a dragged one. */

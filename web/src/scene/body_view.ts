@@ -5,11 +5,10 @@
 import {
   Color, Group, InstancedBufferAttribute, InstancedMesh, Matrix4, Mesh, type BufferGeometry, type MeshStandardMaterial,
 } from "three";
-import { makeGeometry } from "./geometry.ts";
 import { makeOutlineMaterial, materialOf, type OutlineMaterial } from "./materials.ts";
 import { PoseBuffer } from "./pose_buffer.ts";
 import type { Pickable } from "./pickable.ts";
-import { bodyReach, type PlacedShape, type Shape } from "./shape.ts";
+import { bodyReach, makeGeometry, sizeOf, type PlacedShape, type Shape } from "./shapes/shape.ts";
 import type { Change, WorldModel } from "./world_model.ts";
 
 /** Up to here bodies are few enough for round outlines; above, vertices cost too much. */
@@ -272,7 +271,8 @@ export class BodyView implements Pickable {
     const placement = new Float32Array(8 * bodies.length);
     const nothing = new Matrix4().makeScale(0, 0, 0);
     placed.forEach((item, index) => {
-      placement.set([...item.offset, ...item.rotation, item.shape.length / shape.length], 8 * index);
+      const stretch = sizeOf(item.shape, "length") / sizeOf(shape, "length") || 1;
+      placement.set([...item.offset, ...item.rotation, stretch], 8 * index);
       mesh.setMatrixAt(index, nothing);
     });
     this.batches_.push({ mesh, tint, bodies: Uint32Array.from(bodies), placement });

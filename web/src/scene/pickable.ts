@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What can be pointed at and held, as packed data: what is drawn is what is picked.
 
-import type { PlacedShape } from "./shape.ts";
+import type { PlacedShape } from "./shapes/shape.ts";
 
 /** What can be picked, indexed by body slot; poses are those that are drawn at this moment. */
 export interface Pickable {

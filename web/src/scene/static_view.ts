@@ -2,7 +2,7 @@
 // What is only drawn and stays where it is: a beam, a stand.
 
 import { Group, InstancedBufferAttribute, InstancedMesh, Matrix4 } from "three";
-import { makeGeometry } from "./geometry.ts";
+import { makeGeometry } from "./shapes/shape.ts";
 import { materialOf } from "./materials.ts";
 import type { Change, WorldModel } from "./world_model.ts";
 

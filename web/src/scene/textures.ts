@@ -2,7 +2,7 @@
 // Surfaces computed on the page: nothing is downloaded.
 
 import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, RGBAFormat, SRGBColorSpace, type Texture, type WebGLRenderer } from "three";
-import { strandHeight } from "./geometry.ts";
+import { strandHeight } from "./shapes/rope.ts";
 
 /** A number in 0..1 that depends on two whole numbers only. */
 function hash(x: number, y: number): number {

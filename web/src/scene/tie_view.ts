@@ -3,10 +3,11 @@
 // A tie moves with its two ends, so nothing is sent for it but once.
 
 import { Group, InstancedBufferAttribute, InstancedMesh, Matrix4, Quaternion, Vector3, type BufferGeometry } from "three";
-import { makeCoil, makeGeometry } from "./geometry.ts";
 import { materialOf } from "./materials.ts";
 import type { PoseBuffer } from "./pose_buffer.ts";
-import type { Shape } from "./shape.ts";
+import { makeCoil } from "./shapes/coil.ts";
+import { makeGeometry, sizeOf, type Shape } from "./shapes/shape.ts";
+import { shapeKind } from "./shapes/shape_list.ts";
 import type { Change, TieEnd, TieEntry, WorldModel } from "./world_model.ts";
 
 /** Pieces of a rope: straight ones, that lie along a parabola when it is slack. */
@@ -77,9 +78,13 @@ export class TieView {
   private addBatch_(ties: readonly TieEntry[], shape: Shape): void {
     const rope = ties[0].kind === "rope";
     const pieces = rope ? ropePieces : 1;
-    const length = Math.max(ties[0].length / pieces, 2 * shape.radius);
-    const straight = (): BufferGeometry => makeGeometry({ ...shape, type: rope ? "capsule" : "cylinder", length }, "coarse");
-    const geometry = ties[0].kind === "spring" ? makeCoil(shape.radius, shape.tube, length) : straight();
+    const radius = sizeOf(shape, "radius");
+    const length = Math.max(ties[0].length / pieces, 2 * radius);
+    const straight = (): BufferGeometry =>
+      makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: [radius, length] }, "coarse");
+    // A spring's look is one turn of it: a ring with its wire.
+    const wire = sizeOf(shape, "tube") || 0.15 * radius;
+    const geometry = ties[0].kind === "spring" ? makeCoil(radius, wire, length) : straight();
     const count = ties.length * pieces;
     geometry.setAttribute("tint", new InstancedBufferAttribute(new Float32Array(4 * count), 4));
     const mesh = new InstancedMesh(geometry, materialOf(shape.material, shape.color), count);

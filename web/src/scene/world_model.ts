@@ -2,7 +2,7 @@
 // What the server has said about the world, read and checked; knows neither three.js nor the page.
 
 import { NO_BODY, type BodyArticulate, type ClientEntry, type PosesBuffer, type Structure } from "../protocol/generated.ts";
-import { numbers, parseRotation, parseShape, placeShape, type PlacedShape, type Quat, type Shape, type Vec3 } from "./shape.ts";
+import { numbers, parseRotation, parseShape, placeShape, type PlacedShape, type Quat, type Shape, type Vec3 } from "./shapes/shape.ts";
 
 export type BodyKind = "dynamic" | "static" | "scripted" | "inactive";
 

@@ -1,27 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes as the script describes them, their distance functions and their place on a body.
-// Pure arithmetic: drawing (geometry.ts) and picking (interact/picking.ts) both rest on it.
+// Shapes as the script describes them, and their place on a body. Drawing and picking both rest on the list of kinds, so
+// that what is seen is what is touched.
 
-import { meshDistance, meshReach, parseMesh, type MeshData } from "./mesh.ts";
+import type { BufferGeometry } from "three";
+import { parseMesh } from "./mesh.ts";
+import type { Detail, Solid } from "./kind.ts";
+import { shapeKind } from "./shape_list.ts";
 
-export type ShapeType = "cylinder" | "capsule" | "sphere" | "torus" | "box" | "mesh";
 export type Vec3 = readonly [number, number, number];
 /** x, y, z, w. */
 export type Quat = readonly [number, number, number, number];
 
-/** One primitive; lengths in meters. Cylinder and capsule lie along +x, a torus in the x-y plane. */
-export interface Shape {
-  readonly type: ShapeType;
-  readonly radius: number;
-  /** Cylinder: face to face. Capsule: between the centers of its hemispheres. */
-  readonly length: number;
-  /** Radius of a torus' tube. */
-  readonly tube: number;
-  /** Extra straight length of a torus along x: a real chain link. */
-  readonly stretch: number;
-  readonly size: Vec3;
-  /** Of a mesh alone. */
-  readonly mesh: MeshData | null;
+/** A solid, what it is made of, and where it is on its body. */
+export interface Shape extends Solid {
   readonly material: string;
   readonly color: string | null;
   readonly offset: Vec3;
@@ -30,20 +21,12 @@ export interface Shape {
   readonly turn: number;
 }
 
-const shapeTypes: readonly string[] = ["cylinder", "capsule", "sphere", "torus", "box", "mesh"];
-
 function number(value: unknown, name: string, fallback: number): number {
   if (value === undefined || value === null) return fallback;
   if (typeof value !== "number" || !Number.isFinite(value)) {
     throw new Error(`${name} must be a finite number, it is ${JSON.stringify(value)}`);
   }
   return value;
-}
-
-function positive(value: unknown, name: string, fallback: number): number {
-  const result = number(value, name, fallback);
-  if (result <= 0) throw new Error(`${name} must be positive, it is ${result}`);
-  return result;
 }
 
 /** A list of `count` finite numbers, or the fallback when there is none. */
@@ -63,26 +46,23 @@ export function parseRotation(value: unknown): Quat {
   return unit(numbers(value, 4, "rotation", [0, 0, 0, 1]));
 }
 
+/** Sizes of a kind, checked: all finite, and as many as the kind has. Those that are left out at the end are 0. */
+function parseSizes(value: unknown, count: number): number[] {
+  if (value === undefined) return Array<number>(count).fill(0);
+  if (!Array.isArray(value) || value.length > count) throw new Error(`sizes must be at most ${count} numbers`);
+  return Array.from({ length: count }, (_, index) => number(value[index], `sizes[${index}]`, 0));
+}
+
 /** Reads one shape of the scene description; throws an Error that names the wrong field. */
 export function parseShape(value: unknown): Shape {
   if (typeof value !== "object" || value === null) throw new Error("a shape must be an object");
   const json = value as Record<string, unknown>;
-  const type = json["type"];
-  if (typeof type !== "string" || !shapeTypes.includes(type)) {
-    throw new Error(`unknown shape type ${JSON.stringify(type)}; known: ${shapeTypes.join(", ")}`);
-  }
-  const radius = positive(json["radius"], "radius", 0.05);
-  const size = numbers(json["size"], 3, "size", [0.1, 0.1, 0.1]);
-  if (size.some((side) => side <= 0)) throw new Error("size must be positive");
+  const kind = shapeKind(String(json["kind"]));
   const offset = numbers(json["offset"], 3, "offset", [0, 0, 0]);
   return {
-    type: type as ShapeType,
-    radius,
-    length: positive(json["length"], "length", 0.1),
-    tube: positive(json["tube"], "tube", radius * 0.3),
-    stretch: Math.max(0, number(json["stretch"], "stretch", 0)),
-    size: [size[0], size[1], size[2]],
-    mesh: type === "mesh" ? parseMesh(json["vertices"], json["triangles"]) : null,
+    kind,
+    sizes: parseSizes(json["sizes"], kind.sizes.length),
+    mesh: kind.name === "mesh" ? parseMesh(json["vertices"], json["triangles"]) : null,
     material: typeof json["material"] === "string" ? json["material"] : "paint",
     color: typeof json["color"] === "string" ? json["color"] : null,
     offset: [offset[0], offset[1], offset[2]],
@@ -91,53 +71,31 @@ export function parseShape(value: unknown): Shape {
   };
 }
 
+/** One of its sizes by name; 0 where it has none of that name. */
+export function sizeOf({ kind, sizes }: Solid, name: string): number {
+  const index = kind.sizes.indexOf(name);
+  return index < 0 ? 0 : sizes[index];
+}
+
+/** The same with one size changed, where it has that. */
+export function withSize<S extends Solid>(solid: S, name: string, value: number): S {
+  const index = solid.kind.sizes.indexOf(name);
+  return index < 0 ? solid : { ...solid, sizes: solid.sizes.with(index, value) };
+}
+
 /** Distance in meters from a point in the shape's own frame to its surface, negative inside. */
-export function shapeDistance(shape: Shape, x: number, y: number, z: number): number {
-  switch (shape.type) {
-    case "sphere":
-      return Math.hypot(x, y, z) - shape.radius;
-    case "capsule": {
-      const along = Math.max(0, Math.abs(x) - shape.length / 2);
-      return Math.hypot(along, y, z) - shape.radius;
-    }
-    case "cylinder": {
-      const radial = Math.hypot(y, z) - shape.radius;
-      const axial = Math.abs(x) - shape.length / 2;
-      return Math.min(Math.max(radial, axial), 0) + Math.hypot(Math.max(radial, 0), Math.max(axial, 0));
-    }
-    case "torus": {
-      const along = Math.max(0, Math.abs(x) - shape.stretch / 2);
-      const ring = Math.hypot(along, y) - shape.radius;
-      return Math.hypot(ring, z) - shape.tube;
-    }
-    case "box": {
-      const dx = Math.abs(x) - shape.size[0] / 2;
-      const dy = Math.abs(y) - shape.size[1] / 2;
-      const dz = Math.abs(z) - shape.size[2] / 2;
-      const outside = Math.hypot(Math.max(dx, 0), Math.max(dy, 0), Math.max(dz, 0));
-      return outside + Math.min(Math.max(dx, dy, dz), 0);
-    }
-    case "mesh":
-      return shape.mesh === null ? Infinity : meshDistance(shape.mesh, x, y, z);
-  }
+export function shapeDistance(solid: Solid, x: number, y: number, z: number): number {
+  return solid.kind.distance(solid, x, y, z);
 }
 
 /** Radius in meters of the smallest sphere about the shape's own origin that holds it. */
-export function shapeReach(shape: Shape): number {
-  switch (shape.type) {
-    case "sphere":
-      return shape.radius;
-    case "capsule":
-      return shape.length / 2 + shape.radius;
-    case "cylinder":
-      return Math.hypot(shape.length / 2, shape.radius);
-    case "torus":
-      return shape.stretch / 2 + shape.radius + shape.tube;
-    case "box":
-      return Math.hypot(shape.size[0], shape.size[1], shape.size[2]) / 2;
-    case "mesh":
-      return shape.mesh === null ? 0 : meshReach(shape.mesh);
-  }
+export function shapeReach(solid: Solid): number {
+  return solid.kind.reach(solid);
+}
+
+/** Triangles of a shape in its own frame; the caller disposes of them. */
+export function makeGeometry(shape: Shape, detail: Detail): BufferGeometry {
+  return shape.kind.draw(shape, detail, shape.material);
 }
 
 /** A shape at its place in the body's frame. */
@@ -158,7 +116,7 @@ export function multiply(a: Quat, b: Quat): Quat {
 
 /**
  * Places a shape on a body: odd bodies are turned about the body's x axis, and a body's own length
- * replaces that of a cylinder or capsule.
+ * replaces that of a shape that has one.
  */
 export function placeShape(shape: Shape, odd: boolean, length: number | null): PlacedShape {
   const angle = odd ? shape.turn : 0;
@@ -166,9 +124,8 @@ export function placeShape(shape: Shape, odd: boolean, length: number | null): P
   const [x, y, z] = shape.offset;
   const c = Math.cos(angle);
   const s = Math.sin(angle);
-  const stretchable = shape.type === "cylinder" || shape.type === "capsule";
   return {
-    shape: stretchable && length !== null ? { ...shape, length } : shape,
+    shape: length === null ? shape : withSize(shape, "length", length),
     offset: [x, c * y - s * z, s * y + c * z],
     rotation: multiply(turn, shape.rotation),
   };

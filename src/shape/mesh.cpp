@@ -1,73 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "math/mat3.h"
+#include "shape/mesh.h"
 
-#include <iota/shapes.h>
+#include "base/archive.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <sstream>
-#include <stdexcept>
-#include <string_view>
 
-namespace iota {
+namespace iota::shape {
 
 namespace {
-
-using std::numbers::pi;
-
-template <class... Parts>
-[[noreturn]] void refuse(const Parts&... parts) {
-  std::ostringstream text;
-  (text << ... << parts);
-  throw std::invalid_argument(text.str());
-}
-
-void require_length(std::string_view what, double v) {
-  if (!(v >= 1e-9 && v <= 1e9)) refuse(what, " must be between 1e-9 and 1e9 m, got ", v);
-}
-
-Matrix3 diagonal(double x, double y, double z) { return {Vec3{x, 0, 0}, Vec3{0, y, 0}, Vec3{0, 0, z}}; }
-
-MassProperties properties(const Sphere& s) {
-  require_length("a sphere's radius", s.radius);
-  const double r2 = s.radius * s.radius;
-  return {4 * pi / 3 * r2 * s.radius, {}, diagonal(r2 / 5, r2 / 5, r2 / 5)};
-}
-
-MassProperties properties(const Box& b) {
-  for (const double edge : {b.size.x, b.size.y, b.size.z}) require_length("each edge of a box", edge);
-  const auto& [x, y, z] = b.size;
-  return {x * y * z, {}, diagonal(x * x / 12, y * y / 12, z * z / 12)};
-}
-
-MassProperties properties(const Cylinder& c) {
-  require_length("a cylinder's radius", c.radius);
-  require_length("a cylinder's length", c.length);
-  const double r2 = c.radius * c.radius;
-  return {pi * r2 * c.length, {}, diagonal(c.length * c.length / 12, r2 / 4, r2 / 4)};
-}
-
-MassProperties properties(const Capsule& c) {
-  require_length("a capsule's radius", c.radius);
-  require_length("a capsule's length", c.length);
-  const double r2 = c.radius * c.radius, l2 = c.length * c.length;
-  const double tube = pi * r2 * c.length, ends = 4 * pi / 3 * r2 * c.radius, volume = tube + ends;
-  // A half sphere's mean distance from its flat face is 3/8 r.
-  const double along = tube * l2 / 12 + ends * (l2 / 4 + 3 * c.length * c.radius / 8 + r2 / 5);
-  const double across = tube * r2 / 4 + ends * r2 / 5;
-  return {volume, {}, diagonal(along / volume, across / volume, across / volume)};
-}
-
-MassProperties properties(const Torus& t) {
-  require_length("a torus' radius", t.radius);
-  require_length("a torus' tube", t.tube);
-  if (t.tube > t.radius)
-    refuse("a torus' tube (", t.tube, " m) must not be thicker than its radius (", t.radius,
-           " m): it would cut itself");
-  const double a2 = t.tube * t.tube, across = (t.radius * t.radius + 0.75 * a2) / 2;
-  return {2 * pi * pi * t.radius * a2, {}, diagonal(across, across, a2 / 4)};
-}
 
 /// Every edge must be run through once each way.
 void require_closed(const Mesh& mesh) {
@@ -93,7 +37,67 @@ void require_closed(const Mesh& mesh) {
   }
 }
 
-MassProperties properties(const Mesh& mesh) {
+/// The point of triangle a b c that is nearest to p (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+Vec3 closest_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d1 <= 0 && d2 <= 0) return a;
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / (d4 - d3 + d5 - d6) * (c - b);
+  const double inverse = 1 / (va + vb + vc);
+  return a + vb * inverse * ab + vc * inverse * ac;
+}
+
+/// Solid angle of a triangle as seen from p (van Oosterom, Strackee 1983); over a closed surface 4 pi inside, else 0.
+double solid_angle(Vec3 a, Vec3 b, Vec3 c, const Vec3& p) {
+  a -= p, b -= p, c -= p;
+  const double la = norm(a), lb = norm(b), lc = norm(c);
+  return 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+}
+
+}  // namespace
+
+std::uint64_t Traits<Mesh>::key(const Mesh& mesh) {
+  Hasher hasher;
+  hasher.bytes(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3));
+  hasher.bytes(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
+  return hasher.result();
+}
+
+Vec3 Traits<Mesh>::closest(const Mesh& mesh, const Vec3& p) {
+  Vec3 best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 q = closest_of_triangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], p);
+    if (const double distance = dot(q - p, q - p); distance < least) least = distance, best = q;
+  }
+  return best;
+}
+
+bool Traits<Mesh>::is_within(const Mesh& mesh, const Vec3& p) {
+  double angle = 0;
+  for (const auto& [a, b, c] : mesh.triangles) angle += solid_angle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], p);
+  return angle > 2 * std::numbers::pi;
+}
+
+Vec3 Traits<Mesh>::support(const Mesh& mesh, const Vec3& d) {
+  return *std::max_element(mesh.vertices.begin(), mesh.vertices.end(),
+                           [&](const Vec3& a, const Vec3& b) { return dot(a, d) < dot(b, d); });
+}
+
+double Traits<Mesh>::scale(const Mesh& mesh) {
+  double extent = 0;
+  for (const Vec3& v : mesh.vertices) extent = std::max(extent, norm(v));
+  return extent;
+}
+
+MassProperties Traits<Mesh>::mass(const Mesh& mesh) {
   if (mesh.triangles.size() < 4) refuse("a closed mesh has at least 4 triangles, this one has ", mesh.triangles.size());
   double extent = 0;
   Vec3 mean;
@@ -138,10 +142,4 @@ MassProperties properties(const Mesh& mesh) {
   return p;
 }
 
-}  // namespace
-
-MassProperties mass_properties(const Shape& shape) {
-  return std::visit([](const auto& s) { return properties(s); }, shape);
-}
-
-}  // namespace iota
+}  // namespace iota::shape

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/curve.h"
-#include "geometry/surface.h"
-#include "solver/constraints/surface_pair.h"
 
 #include <gtest/gtest.h>
 
@@ -74,59 +72,6 @@ TEST(Curve, finds_the_nearest_place_that_brute_force_finds) {
       for (int i = 0; i <= 4000; ++i) least = std::min(least, norm(p - curve->at(curve->length() * i / 4000).position));
       ASSERT_LE(norm(p - curve->at(curve->nearest(p)).position), least + 1e-12);
     }
-}
-
-TEST(Surface, of_each_kind_is_where_it_should_be) {
-  EXPECT_NEAR(Plane({0, 2, 0}, 1).at({5, 3, 1}).value, 2, 1e-12);
-  EXPECT_NEAR(Ellipsoid({1, 2, 3}).at({0, 2, 0}).value, 0, 1e-12);
-  EXPECT_NEAR(Capsule(0.5, 1).at({0, 1.5, 0}).value, 0, 1e-12);
-  EXPECT_NEAR(Capsule(0.5, 1).at({0.5, -0.7, 0}).value, 0, 1e-12);
-  EXPECT_NEAR(Torus(2, 0.5).at({0, 0.5, 2}).value, 0, 1e-12);
-  EXPECT_NEAR(Box({1, 2, 3}).at({1, 0.3, -1}).value, 0, 1e-12);
-  EXPECT_LT(Box({1, 2, 3}).at({0.2, 0.3, -1}).value, 0);
-  EXPECT_THROW(Ellipsoid(-1.0), std::invalid_argument);
-  EXPECT_THROW(Plane({0, 0, 0}), std::invalid_argument);
-}
-
-TEST(Surface, whose_function_fails_is_nowhere_from_then_on_and_says_why) {
-  for (const bool throws : {true, false}) {
-    int calls = 0;
-    const FunctionSurface broken(
-        [&](const Vec3& p) -> double {
-          if (++calls == 25 && throws) throw std::runtime_error("no");
-          return calls < 25 ? p.x : std::nan("");
-        },
-        1);
-    EXPECT_EQ(broken.at({2, 0, 0}).value, 2);
-    EXPECT_EQ(broken.failure(), "");
-    for (int i = 0; i < 2; ++i) {
-      EXPECT_EQ(broken.at({2, 0, 0}).value, 0);
-      EXPECT_EQ(norm(broken.at({2, 0, 0}).gradient), 0);
-      EXPECT_EQ(broken.failure(), throws ? "raised: no" : "is not finite");
-    }
-    EXPECT_LT(calls, 40) << "it is not called again";
-  }
-  EXPECT_EQ(FunctionSurface(nullptr, 1).failure(), "has no function in this system");
-}
-
-TEST(SurfacePair, has_the_gap_of_closed_forms_apart_and_overlapping) {
-  const auto gap = [](const Surface& a, const Surface& b, const Vec3& apart) {
-    solver::SurfacePairConstraint c;
-    c.surface_a = &a, c.surface_b = &b;
-    c.set_constant(0, apart);
-    for (int k = 0; k < 3; ++k)
-      for (const int first : {1, 4}) c.set_constant(first + k, {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0});
-    c.start(nullptr, 0);
-    double g = 0;
-    c.value(nullptr, 0, &g);
-    return g;
-  };
-  for (const double d : {0.5, 0.8, 2.0}) {
-    EXPECT_NEAR(gap(Ellipsoid(0.5), Ellipsoid(0.3), {0, d, 0}), d - 0.8, 1e-12);
-    EXPECT_NEAR(gap(Ellipsoid({0.5, 0.2, 0.3}), Plane({0, -1, 0}), {0.1, d, 0.3}), d - 0.2, 1e-12)
-        << "from below a ceiling";
-    EXPECT_NEAR(gap(Capsule(0.2, 0.4), Ellipsoid(0.1), {0.1 + d, 0.1, 0}), d - 0.2, 1e-12);
-  }
 }
 
 }  // namespace

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of the scene description: numbers in, distances out. Pure arithmetic, as shape.ts.
+// A closed surface of triangles: the one shape whose numbers are tables.
+
+import { BufferAttribute, BufferGeometry } from "three";
+import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
+import type { Kind } from "./kind.ts";
 
 /** A closed surface; from outside each triangle runs counter-clockwise. */
 export interface MeshData {
@@ -11,7 +15,7 @@ export interface MeshData {
   readonly high: readonly number[];
 }
 
-/** More is no shape of a world but a scan of one; looks.py has the same limit. */
+/** A mesh of more triangles is a scan, too dear to draw many times; looks.py has the same limit. */
 export const mostTriangles = 50_000;
 /** Up to here a hand feels the triangles, above it their box: picking asks a hundred times a frame. */
 const mostFelt = 1_000;
@@ -44,7 +48,7 @@ export function parseMesh(vertices: unknown, triangles: unknown): MeshData {
 }
 
 /** Radius in meters of the sphere about the mesh's origin that holds it. */
-export function meshReach(mesh: MeshData): number {
+function meshReach(mesh: MeshData): number {
   let reach = 0;
   for (let at = 0; at < mesh.positions.length; at += 3) {
     reach = Math.max(reach, Math.hypot(mesh.positions[at], mesh.positions[at + 1], mesh.positions[at + 2]));
@@ -93,7 +97,7 @@ function solidAngle([ax, ay, az, bx, by, bz, cx, cy, cz]: Triangle): number {
 }
 
 /** Distance in meters to the surface, negative inside; of a mesh of many triangles to its box. */
-export function meshDistance(mesh: MeshData, x: number, y: number, z: number): number {
+function meshDistance(mesh: MeshData, x: number, y: number, z: number): number {
   const toBox = boxDistance(mesh, x, y, z);
   if (mesh.triangles.length > 3 * mostFelt) return toBox;
   const { positions: p, triangles: t } = mesh;
@@ -109,3 +113,35 @@ export function meshDistance(mesh: MeshData, x: number, y: number, z: number): n
   }
   return Math.abs(angle) > 2 * Math.PI ? -Math.sqrt(nearest) : Math.sqrt(nearest);
 }
+
+/** Edges sharper than this are seen as edges, others as a smooth surface, rad. */
+const creaseAngle = 0.6;
+
+/** Faces as they are given; texture coordinates by meters on the side that a face looks to. */
+function drawMesh(mesh: MeshData): BufferGeometry {
+  const indexed = new BufferGeometry();
+  indexed.setAttribute("position", new BufferAttribute(mesh.positions, 3));
+  indexed.setIndex(new BufferAttribute(mesh.triangles, 1));
+  const geometry = toCreasedNormals(indexed, creaseAngle);
+  indexed.dispose();
+  const position = geometry.getAttribute("position");
+  const normal = geometry.getAttribute("normal");
+  const uvs = new Float32Array(2 * position.count);
+  for (let index = 0; index < position.count; index++) {
+    const at = [position.getX(index), position.getY(index), position.getZ(index)];
+    const facing = [normal.getX(index), normal.getY(index), normal.getZ(index)].map(Math.abs);
+    const side = facing.indexOf(Math.max(...facing));
+    const [along, across] = [0, 1, 2].filter((axis) => axis !== side);
+    uvs.set([at[along] / 0.9, at[across] / 0.22], 2 * index);
+  }
+  geometry.setAttribute("uv", new BufferAttribute(uvs, 2));
+  return geometry;
+}
+
+export const mesh: Kind = {
+  name: "mesh",
+  sizes: [],
+  distance: ({ mesh: data }, x, y, z) => (data === null ? Infinity : meshDistance(data, x, y, z)),
+  reach: ({ mesh: data }) => (data === null ? 0 : meshReach(data)),
+  draw: ({ mesh: data }) => (data === null ? new BufferGeometry() : drawMesh(data)),
+};

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shapes as plain data, and back: for files."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+from iota._core import Mesh, Shape
+
+KINDS: dict[str, type] = {shape.kind: shape for shape in get_args(Shape)}
+
+
+def to_json(shape: Shape) -> dict[str, Any]:
+    """A dictionary that JSON can hold: {"kind": "box", "size": [1, 2, 3], "rounding": 0}."""
+    if isinstance(shape, Mesh):
+        return {"kind": "mesh", "vertices": shape.vertices.tolist(), "triangles": shape.triangles.tolist()}
+    sizes = {name: getattr(shape, name) for name in shape.sizes}
+    return {"kind": shape.kind} | {name: v if isinstance(v, float) else list(v) for name, v in sizes.items()}
+
+
+def from_json(data: dict[str, Any]) -> Shape:
+    """The shape that `to_json` wrote. Raises ValueError that says what is wrong with it."""
+    sizes = dict(data)
+    kind = sizes.pop("kind", None)
+    if kind not in KINDS:
+        raise ValueError(f"the kind of a shape must be one of {', '.join(KINDS)}, not {kind!r}")
+    try:
+        shape: Shape = KINDS[kind](**sizes)
+    except TypeError:
+        raise ValueError(f"a {kind} has the sizes {', '.join(KINDS[kind].sizes)}, not {', '.join(sizes)}") from None
+    return shape

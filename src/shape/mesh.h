@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "shape/traits.h"
+
+namespace iota::shape {
+
+/// What a closed surface of triangles encloses; from outside each triangle runs counter-clockwise. Where its origin is, is
+/// up to whoever made it. Its numbers are not sizes: a system keeps them outside its tables, under a key.
+template <>
+struct Traits<Mesh> {
+  static constexpr std::string_view name = "mesh", doc = "What a closed surface of triangles encloses.";
+  static constexpr std::tuple<> sizes{};
+  static void check(const Mesh&) {}  ///< `mass` does it
+  static std::uint64_t key(const Mesh&);
+  static double scale(const Mesh&);  ///< of the sphere about its origin that holds it
+
+  static MassProperties mass(const Mesh&);  ///< throws where the surface is not closed, see mass_properties
+  static bool is_within(const Mesh&, const Vec3& p);
+  static Vec3 closest(const Mesh&, const Vec3& p);
+  static Vec3 support(const Mesh&, const Vec3& d);
+  static Mesh triangulate(const Mesh& mesh, std::uint32_t) { return mesh; }
+};
+
+}  // namespace iota::shape

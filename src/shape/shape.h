@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/shapes.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What can be asked of any shape: folds over the list. Points and directions are in the shape's frame, lengths in m.
+namespace iota::shape {
+
+/// A shape as plain data, for tables and commands. What a key stands for lives outside the tables.
+struct Data {
+  std::uint32_t kind = 0, padding = 0;  ///< number in the list
+  std::array<double, 4> sizes{};        ///< in the order of the list, those of three numbers as three
+  std::uint64_t key = 0;                ///< of a mesh, by its content
+};
+Data to_data(const Shape&);
+/// A mesh comes back empty. Throws std::invalid_argument for a number that is not in the list.
+Shape from_data(const Data&);
+
+std::string_view name(const Shape&);
+/// The names of all sizes, one for each number of Data: "size_x", "rounding".
+std::vector<std::string> size_names(const Shape&);
+/// Throws std::invalid_argument for sizes that are out of range or do not go together. (A mesh's triangles are checked
+/// where its mass is calculated.)
+void check(const Shape&);
+/// Whether it has a volume, and so mass properties.
+bool is_solid(const Shape&);
+
+/// Whether a point is inside, or on the surface.
+bool is_within(const Shape&, const Vec3& p);
+/// The nearest point of the surface.
+Vec3 closest(const Shape&, const Vec3& p);
+/// From the surface, negative inside.
+double distance(const Shape&, const Vec3& p);
+/// A farthest point in a direction that is not zero; infinite where the shape is.
+Vec3 support(const Shape&, const Vec3& direction);
+/// How far a ray from a point, along a unit vector, goes until it meets the surface or, started inside, at once (0).
+/// Nothing where it misses: goes by more than `farthest`.
+std::optional<double> ray(const Shape&, const Vec3& from, const Vec3& unit,
+                          double farthest = std::numeric_limits<double>::infinity());
+
+/// The least box along the axes.
+struct Bounds {
+  Vec3 low, high;
+};
+Bounds bounds(const Shape&);
+
+/// A closed mesh with its vertices on the surface, finer for a higher number: of a convex shape the hull of that many
+/// points. Throws std::invalid_argument for a shape without end.
+Mesh triangulate(const Shape&, std::uint32_t fineness);
+
+/// A place anywhere within, evenly. number(low, high) draws a number. Throws std::invalid_argument where there is none.
+bool is_source(const Shape&);
+Vec3 inside(const Shape&, const std::function<double(double, double)>& number);
+
+}  // namespace iota::shape

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+import { layRope } from "./rope.ts";
+import type { Kind } from "./kind.ts";
+import { arc, bevel, revolve, tilesAlong, type ProfilePoint } from "./sweep.ts";
+
+/** Along x, with flat ends. */
+export const cylinder: Kind = {
+  name: "cylinder",
+  sizes: ["radius", "length"],
+  distance({ sizes }, x, y, z) {
+    const side = Math.hypot(y, z) - sizes[0];
+    const end = Math.abs(x) - sizes[1] / 2;
+    return Math.min(Math.max(side, end), 0) + Math.hypot(Math.max(side, 0), Math.max(end, 0));
+  },
+  reach: ({ sizes: [radius, length] }) => Math.hypot(length / 2, radius),
+  draw({ sizes: [radius, length] }, detail, material) {
+    const edge = bevel * Math.min(2 * radius, length);
+    const half = length / 2 - edge;
+    const steps = detail === "fine" ? 3 : 1;
+    const profile: ProfilePoint[] = [{ x: -length / 2, r: 0, nx: -1, nr: 0 }];
+    arc(profile, -half, radius - edge, edge, 0, Math.PI / 2, steps);
+    arc(profile, half, radius - edge, edge, Math.PI / 2, Math.PI, steps);
+    profile.push({ x: length / 2, r: 0, nx: 1, nr: 0 });
+    if (material === "rope" && detail === "fine") return layRope(profile, half, radius, length);
+    return revolve(profile, detail === "fine" ? 28 : 9, length, tilesAlong(radius, length));
+  },
+};

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every shape, by name. One more: a file here and a line below (and a header in src/shape of the engine).
+
+import { box } from "./box.ts";
+import { capsule } from "./capsule.ts";
+import { cylinder } from "./cylinder.ts";
+import { ellipsoid } from "./ellipsoid.ts";
+import { halfSpace } from "./half_space.ts";
+import type { Kind } from "./kind.ts";
+import { mesh } from "./mesh.ts";
+import { sphere } from "./sphere.ts";
+import { torus } from "./torus.ts";
+
+export const shapeList: readonly Kind[] = [sphere, box, cylinder, capsule, torus, mesh, ellipsoid, halfSpace];
+
+const byName = new Map(shapeList.map((kind) => [kind.name, kind]));
+
+/** Throws an Error that lists the shapes for a name that is none of theirs. */
+export function shapeKind(name: string): Kind {
+  const kind = byName.get(name);
+  if (kind === undefined) throw new Error(`unknown shape ${JSON.stringify(name)}; known: ${[...byName.keys()].join(", ")}`);
+  return kind;
+}
