@@ -57,9 +57,14 @@ struct HalfSpace {
   Vec3 normal{0, 1, 0};
   friend bool operator==(const HalfSpace&, const HalfSpace&) = default;
 };
+/// Along x: its base at -length/2, its tip at +length/2.
+struct Cone {
+  double radius = 0.5, length = 1;
+  friend bool operator==(const Cone&, const Cone&) = default;
+};
 
 /// Their order is that of protocol/shapes.json, and never changes.
-using Shape = std::variant<Sphere, Box, Cylinder, Capsule, Torus, Mesh, Ellipsoid, HalfSpace>;
+using Shape = std::variant<Sphere, Box, Cylinder, Capsule, Torus, Mesh, Ellipsoid, HalfSpace, Cone>;
 
 using Matrix3 = std::array<Vec3, 3>;  ///< three rows
 

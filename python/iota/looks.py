@@ -7,7 +7,7 @@ page while it runs. The style "*" is used for every style:
     world.classes["link"] = {"rope": looks.cylinder(0.012, "rope"), "chain": looks.chain_link(0.1)}
     world.look(links, "link")
 
-Any shape of iota will do: `Look(iota.Ellipsoid((0.1, 0.3, 0.1)), "wood")`. What is drawn is what the engine means by that shape. The
+Any shape of iota will do: `Look(iota.Cone(0.1, 0.3), "wood")`. What is drawn is what the engine means by that shape. The
 functions below are short for the usual ones. Lengths in m, colors as "#rrggbb", materials one of `MATERIALS`. The body's
 frame has its origin at the center of mass and +x from its first particle to its last.
 """

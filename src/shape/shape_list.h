@@ -5,6 +5,7 @@
 // protocol/shapes.json and a file in web/src/scene/shapes. Nothing else names it.
 #include "shape/box.h"
 #include "shape/capsule.h"
+#include "shape/cone.h"
 #include "shape/cylinder.h"
 #include "shape/ellipsoid.h"
 #include "shape/half_space.h"

@@ -111,6 +111,7 @@ def calls(c: Scene) -> dict[str, Call]:
         "Cylinder": (iota.Cylinder, {"radius": 0.5, "length": 1.0}),
         "Capsule": (iota.Capsule, {"radius": 0.5, "length": 1.0}),
         "Torus": (iota.Torus, {"radius": 0.5, "tube": 0.1, "stretch": 0.3}),
+        "Cone": (iota.Cone, {"radius": 0.5, "length": 0.1}),
         "Mesh": (
             lambda vertices, triangles: iota.Mesh(vertices, triangles).mass_properties,
             {"vertices": TETRAHEDRON.vertices, "triangles": TETRAHEDRON.triangles},

@@ -72,6 +72,9 @@ def test_shapes_are_values() -> None:
 
 
 def test_distances_and_nearest_points_are_in_the_frame_of_the_shape() -> None:
+    cone = iota.Cone(1, 2)
+    assert cone.distance((1.5, 0, 0)) == pytest.approx(0.5)
+    assert cone.closest((-2, 0.5, 0)) == pytest.approx((-1, 0.5, 0))
     assert iota.HalfSpace((0, 1, 0)).distance((7, -0.25, 3)) == pytest.approx(-0.25)
 
 
@@ -88,8 +91,8 @@ def test_a_half_space_has_no_mass() -> None:
 
 
 def test_any_shape_is_a_look() -> None:
-    look = looks.Look(iota.Capsule(0.1, 0.3), "wood", color="#aa3311")
-    assert look.describe() | {"kind": "capsule", "sizes": [0.1, 0.3], "material": "wood"} == look.describe()
+    look = looks.Look(iota.Cone(0.1, 0.3), "wood", color="#aa3311")
+    assert look.describe() | {"kind": "cone", "sizes": [0.1, 0.3], "material": "wood"} == look.describe()
     assert looks.cylinder(0.1).of_length(3).shape == iota.Cylinder(0.1, 3)
     assert looks.cylinder(0.1, length=2).of_length(3).shape == iota.Cylinder(0.1, 2)
     assert looks.sphere(0.1).of_length(3).shape == iota.Sphere(0.1)

@@ -31,6 +31,7 @@ def cube(size: float = 1.0) -> iota.Mesh:
         (iota.Capsule(0.5, 2), math.pi / 2 + math.pi / 6),
         (iota.Torus(1, 0.1), 2 * math.pi**2 * 0.01),
         (iota.Ellipsoid((1, 2, 3)), math.pi),
+        (iota.Cone(1, 3), math.pi),
         (cube(2), 8),
     ],
 )

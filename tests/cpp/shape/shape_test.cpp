@@ -37,7 +37,9 @@ std::vector<Shape> examples(double s) {
           Ellipsoid{{3 * s, 3 * s, s}},
           Ellipsoid{{s, s, s}},
           HalfSpace{{1, 2, -0.5}},
-          HalfSpace{{0, 1, 0}}};
+          HalfSpace{{0, 1, 0}},
+          Cone{0.6 * s, 1.5 * s},
+          Cone{2 * s, 0.5 * s}};
 }
 
 class Random {
@@ -250,7 +252,7 @@ TEST(Shape, refuses_sizes_out_of_range_and_sizes_that_do_not_go_together) {
   for (const Shape& bad : {Shape{Sphere{0}}, Shape{Sphere{nan}}, Shape{Box{{1, -1, 1}}}, Shape{Box{{1, 1, 1}, 0.6}},
                            Shape{Box{{1, 1, 1}, -0.1}}, Shape{Cylinder{1, 0}}, Shape{Capsule{INFINITY, 1}},
                            Shape{Torus{0.1, 0.2}}, Shape{Torus{1, 0.2, nan}}, Shape{Ellipsoid{{1, 1, 1e-10}}},
-                           Shape{HalfSpace{{0, 0, 0}}}, Shape{HalfSpace{{1, nan, 0}}}})
+                           Shape{HalfSpace{{0, 0, 0}}}, Shape{HalfSpace{{1, nan, 0}}}, Shape{Cone{1, -1}}})
     EXPECT_THROW(check(bad), std::invalid_argument) << name(bad);
   try {
     check(Ellipsoid{{1, 0, 1}});

@@ -445,7 +445,7 @@ TEST(Surface, every_shape_holds_a_point_where_it_says) {
   } cases[] = {
       {HalfSpace{{0, 0, 1}}, {3, 2, 0}}, {Sphere{0.5}, {0, 0.5, 0}},
       {Ellipsoid{{2, 4, 6}}, {0, 0, 3}}, {Box{{2, 4, 6}}, {0.1, 0.2, 3}},
-      {Cylinder{0.5, 1}, {0.3, 0, 0.5}}, {Capsule{0.5, 1}, {1, 0, 0}},
+      {Cylinder{0.5, 1}, {0.3, 0, 0.5}}, {Cone{0.5, 1}, {-0.5, 0.2, 0.1}}, {Capsule{0.5, 1}, {1, 0, 0}},
       {Torus{1, 0.25}, {0, 1.25, 0}},    {SurfaceFunction{[](const Vec3& r) { return r.y - r.x * r.x; }}, {1, 1, 0}}};
   const Quaternion turn{0, 0, std::sin(0.3), std::cos(0.3)};  // by 0.6 about z
   for (const auto& [shape, on] : cases) {

@@ -3,6 +3,7 @@
 
 import { box } from "./box.ts";
 import { capsule } from "./capsule.ts";
+import { cone } from "./cone.ts";
 import { cylinder } from "./cylinder.ts";
 import { ellipsoid } from "./ellipsoid.ts";
 import { halfSpace } from "./half_space.ts";
@@ -11,7 +12,7 @@ import { mesh } from "./mesh.ts";
 import { sphere } from "./sphere.ts";
 import { torus } from "./torus.ts";
 
-export const shapeList: readonly Kind[] = [sphere, box, cylinder, capsule, torus, mesh, ellipsoid, halfSpace];
+export const shapeList: readonly Kind[] = [sphere, box, cylinder, capsule, torus, mesh, ellipsoid, halfSpace, cone];
 
 const byName = new Map(shapeList.map((kind) => [kind.name, kind]));
 
