@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 import iota
 from iota import looks
 
@@ -18,7 +20,7 @@ WIND = iota.Vec3(4.0, 0.6, 0.6)  # m/s
 def build() -> iota.World:
     """The world of the study."""
     world = iota.World(iota.System(mode="robust", damping=0.05), title="weather")
-    world.classes["spring"] = {"*": looks.cylinder(0.003, "rope")}
+    world.draw_ties("spring", looks.cylinder(0.003, "rope"))
     flag(world, iota.Vec3(-0.75, 1.9, 0))
     fountain(world, iota.Vec3(0.35, 0.75, 0.1))
     beads(world, MIDDLE)
@@ -35,31 +37,23 @@ def point(system: iota.System, place: iota.Vec3, mass: float, radius: float) -> 
 
 def flag(world: iota.World, corner: iota.Vec3) -> None:
     """A cloth of springs on a pole, in a turbulent wind that is a field. It tears where somebody pulls too hard."""
-    system = world.system
-    cloth = system.group("cloth")
-    knots = [
-        [
-            point(system, corner + (SPACING * column, -SPACING * row, 0), mass=0.004, radius=0.006)
-            for column in range(COLUMNS)
-        ]
-        for row in range(ROWS)
-    ]
-    for row in range(ROWS):
-        cloth.add(*knots[row])
-        knots[row][0].nail()
-        for column in range(COLUMNS):
-            for other in ((row, column + 1), (row + 1, column)):
-                if other[0] < ROWS and other[1] < COLUMNS:
-                    system.bond(
-                        knots[row][column],
-                        knots[other[0]][other[1]],
-                        "spring",
-                        stiffness=60,
-                        damping=0.02,
-                        break_force=6,
-                    )
+    system, cloth = world.system, iota.builder.Structure()
+    row, column = np.indices((ROWS, COLUMNS))
+    places = np.asarray(corner) + SPACING * np.stack([column, -row, 0 * row], axis=-1)
+    knots = np.array(cloth.points.add(places.reshape(-1, 3), mass=0.004)).reshape(ROWS, COLUMNS)
+    along, down = (
+        zip(knots[:, :-1].flat, knots[:, 1:].flat, strict=True),
+        zip(knots[:-1].flat, knots[1:].flat, strict=True),
+    )
+    for p, q in (*along, *down):
+        cloth.bond(p, q, "spring", stiffness=60, damping=0.02, break_force=6)
+    cloth.nail(*knots[:, 0])
+    cloth.group("cloth", knots.flat)
+    made = cloth.realize(system)
+    for knot in made.points:
+        knot.radius = 0.006
     wind = system.field(
-        "current", group=cloth, velocity=WIND, drag=0.025, speed=1.6, size=0.5, octaves=3, evolution=1.5
+        "current", group=made.groups["cloth"], velocity=WIND, drag=0.025, speed=1.6, size=0.5, octaves=3, evolution=1.5
     )
     world.add_strut(
         tuple(corner + (-0.012, 0.06, 0)), (corner.x - 0.012, 0.0, corner.z), looks.cylinder(0.012, "steel")
