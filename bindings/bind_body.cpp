@@ -119,7 +119,7 @@ void bind_body(nb::module_& module) {
       .def_prop_rw(
           "kind", [](const BodyHandle& self) { return KindWord{to_word(kind_words, self.use().kind(self.id))}; },
           [](const BodyHandle& self, const KindWord& kind) {
-            between_steps(self, "kind = ...").set_kind(self.id, to_kind(kind));
+            self.use().set_kind(self.id, to_kind(kind));
           },
           "'dynamic', 'static', 'scripted', 'inactive' or 'resting'. A resting body sleeps with all that hangs together with\n"
           "it, and wakes when something touches it.")

@@ -136,10 +136,7 @@ void bind_bond(nb::module_& module) {
           "The two particles.")
       .def_prop_rw(
           "active", [](const BondHandle& self) { return self.use().is_active(self.id); },
-          [](const BondHandle& self, bool active) {
-            self.use();
-            self.system->use_between_steps("active = ...").set_active(self.id, active);
-          },
+          [](const BondHandle& self, bool active) { self.use().set_active(self.id, active); },
           "False while it is switched off or broken; True repairs it.")
       .def_prop_ro(
           "force", [](const BondHandle& self) { return self.use().force(self.id); },

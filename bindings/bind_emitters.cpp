@@ -104,7 +104,7 @@ void bind_emitter(nb::module_& module) {
   type.def_prop_ro("alive", [](const EmitterHandle& self) { return self.is_alive(); })
       .def_prop_rw(
           "active", [](const EmitterHandle& self) { return self.use().is_active(self.id); },
-          [checked](const EmitterHandle& self, bool on) { checked(self, "active = ...").set_active(self.id, on); })
+          [](const EmitterHandle& self, bool on) { self.use().set_active(self.id, on); }, "False: no births.")
       .def_prop_rw(
           "rate", [](const EmitterHandle& self) { return self.use().rate(self.id); },
           [checked](const EmitterHandle& self, double value) {
@@ -132,7 +132,7 @@ void bind_emitter(nb::module_& module) {
                   "collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0)) -> None"),
           "Moves its source: m, quaternion x y z w.")
       .def(
-          "destroy", [checked](const EmitterHandle& self) { checked(self, "destroy").destroy(self.id); },
+          "destroy", [](const EmitterHandle& self) { self.use().destroy(self.id); },
           "Its particles live on, with the look they have.")
       .def("__repr__", [](const EmitterHandle& self) {
         return self.is_alive() ? "<Emitter " + std::to_string(self.id.slot) + ": " +

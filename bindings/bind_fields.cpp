@@ -191,10 +191,7 @@ void def_force(nb::class_<HandleType>& type) {
           "alive", [](const HandleType& self) { return self.is_alive(); }, "False once it was destroyed.")
       .def_prop_rw(
           "active", [](const HandleType& self) { return self.use().is_active(self.id); },
-          [](const HandleType& self, bool active) {
-            self.use();
-            self.system->use_between_steps("active = ...").set_active(self.id, active);
-          },
+          [](const HandleType& self, bool active) { self.use().set_active(self.id, active); },
           "False while it is switched off.")
       .def_prop_ro(
           "parameters", [](const HandleType& self) { return to_dict(self.use().parameters(self.id)); },
@@ -269,10 +266,7 @@ void bind_group(nb::module_& module) {
           "In the order of slots.")
       .def(
           "destroy",
-          [](const GroupHandle& self) {
-            self.use();
-            self.system->use_between_steps("destroy of a group").destroy(self.id);
-          },
+          [](const GroupHandle& self) { self.use().destroy(self.id); },
           "Removes the group, not the particles. Raises ValueError while a force acts on it.")
       .def("__repr__", [](const GroupHandle& self) {
         if (!self.is_alive()) return stale_repr("Group", self);

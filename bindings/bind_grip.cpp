@@ -50,10 +50,7 @@ void bind_grip(nb::module_& module) {
           "target"_a, "Moves its target (world, m).")
       .def(
           "destroy",
-          [](const GripHandle& self) {
-            self.use();
-            self.system->use_between_steps("destroy").destroy(self.id);
-          },
+          [](const GripHandle& self) { self.use().destroy(self.id); },
           "Lets go.")
       .def("__repr__", [](const GripHandle& self) {
         return self.is_alive() ? "<Grip " + std::to_string(self.id.slot) + ">" : stale_repr("Grip", self);

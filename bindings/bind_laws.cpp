@@ -230,7 +230,8 @@ void bind_laws(nb::module_& module) {
       .def_prop_ro("name", [](const LawHandle& self) { return self.use().name(self.id); })
       .def_prop_ro(
           "kind", [](const LawHandle& self) { return self.use().kind(self.id); },
-          "'predefined', 'expression', 'function' (of one bond each), 'compiled' or 'arrays'.")
+          nb::sig("def kind(self) -> typing.Literal['predefined', 'expression', 'function', 'compiled', 'arrays']"),
+          "How it is written; 'function': of one bond each.")
       .def_prop_ro(
           "text", [](const LawHandle& self) { return self.use().expression(self.id); },
           "The expression; empty for code.")
@@ -240,10 +241,7 @@ void bind_laws(nb::module_& module) {
           "The values that bonds have unless they say otherwise; None is the distance of the ends.")
       .def(
           "destroy",
-          [](const LawHandle& self) {
-            self.use();
-            self.system->use_between_steps("destroy of a law").destroy(self.id);
-          },
+          [](const LawHandle& self) { self.use().destroy(self.id); },
           "Removes it. Raises ValueError while bonds have it, and for a predefined law.")
       .def("__repr__", [](const LawHandle& self) {
         if (!self.is_alive()) return stale_repr("Law", self);

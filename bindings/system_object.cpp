@@ -122,8 +122,9 @@ System& SystemObject::use_between_steps(const char* what) {
   System& system = use();
   if (system.is_stepping())
     raise_runtime(std::string(what) +
-                  " is not possible in a bond's function, as a step is under way. There, only combine, separate, nail, "
-                  "release and destroy are taken, and done right after the step");
+                  " is not possible in a function that is called during a step. There, everything may be read, and only "
+                  "destroy, combine, separate, nail, release, kind, active and a joint's length, limits, motor, friction and "
+                  "spring may be asked for; they are made right after the step");
   return system;
 }
 

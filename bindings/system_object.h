@@ -73,7 +73,7 @@ class SystemObject {
     if (owner != std::this_thread::get_id()) raise_foreign_thread();
     return engine;
   }
-  /// The same, for calls that a bond's function must not make.
+  /// The same, for calls that a function which the engine calls during a step must not make.
   System& use_between_steps(const char* what);
 
   void adopt();

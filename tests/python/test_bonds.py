@@ -194,7 +194,7 @@ def test_a_function_may_not_do_what_cannot_wait(space: iota.System, pair: Pair, 
         return (0, 0, 0)
 
     space.bond(*pair, force)
-    with pytest.raises(iota.BondError, match="not possible in a bond's function") as caught:
+    with pytest.raises(iota.BondError, match="not possible in a function that is called during a step") as caught:
         space.step()
     assert isinstance(caught.value.__cause__, RuntimeError)
     assert space.validate() == [] and space.step_count == 1

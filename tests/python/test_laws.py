@@ -254,7 +254,7 @@ def test_a_batch_function_may_cut_but_not_create(space: iota.System, pair: Pair)
         return np.zeros((len(bonds), 3))
 
     space.bond(*pair, space.law(create))
-    with pytest.raises(iota.ForceError, match="not possible in a bond's function"):
+    with pytest.raises(iota.ForceError, match="not possible in a function that is called during a step"):
         space.step()
 
 
