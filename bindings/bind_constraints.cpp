@@ -2,6 +2,7 @@
 #include "binders.h"
 #include "shape_argument.h"
 #include "names.h"
+#include "typed_argument.h"
 
 #include <nanobind/stl/tuple.h>
 
@@ -248,7 +249,7 @@ void bind_coordinate(nb::module_& module) {
             if (o.stiffness == 0 && o.damping == 0) return std::nullopt;
             return std::tuple{o.stiffness, o.damping, o.rest};
           },
-          [](const CoordinateView& self, nb::object spring) {
+          [](const CoordinateView& self, SpringArgument spring) {
             CoordinateOptions options = self.options();
             read_spring(spring, options);
             self.set(options);
@@ -435,7 +436,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
     type.def(
         name,
         [kind](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
-               std::optional<Pair> limits, std::optional<Pair> motor, double friction, nb::object spring,
+               std::optional<Pair> limits, std::optional<Pair> motor, double friction, SpringArgument spring,
                double break_force, double break_torque) {
           JointSpec spec;
           spec.kind = kind, spec.breaks = to_limits(break_force, break_torque);
@@ -459,7 +460,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
   type.def(
       "cylindrical",
       [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
-         nb::object angle, nb::object slide, double break_force, double break_torque) {
+         DriveArgument angle, DriveArgument slide, double break_force, double break_torque) {
         JointSpec spec;
         spec.kind = ConstraintKind::cylindrical, spec.breaks = to_limits(break_force, break_torque);
         spec.axis = to_vec3(axis, "axis");
@@ -475,7 +476,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
       "universal",
       [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
          std::optional<VectorArgument> second_axis, std::optional<Pair> limits, std::optional<Pair> motor,
-         double friction, nb::object spring, nb::object second_angle, double break_force, double break_torque) {
+         double friction, SpringArgument spring, DriveArgument second_angle, double break_force, double break_torque) {
         JointSpec spec;
         spec.kind = ConstraintKind::universal, spec.breaks = to_limits(break_force, break_torque);
         spec.axis = to_vec3(axis, "axis");
@@ -512,9 +513,9 @@ void bind_makers(nb::class_<SystemObject>& type) {
           "Two particles of different bodies come no further apart than length (m, None: as far as now).");
   type.def(
       "on_path",
-      [](SystemObject& self, const ParticleHandle& p, nb::object path, const BodyHandle* body, bool closed, bool smooth,
+      [](SystemObject& self, const ParticleHandle& p, PathArgument path, const BodyHandle* body, bool closed, bool smooth,
          std::optional<double> rounding, Pair interval, int samples, std::optional<Pair> limits,
-         std::optional<Pair> motor, double friction, nb::object spring, double break_force) {
+         std::optional<Pair> motor, double friction, SpringArgument spring, double break_force) {
         p.use();
         if (p.system != &self || (body && body->system != &self))
           throw nb::value_error("the particle or body belongs to another system");
@@ -539,8 +540,8 @@ void bind_makers(nb::class_<SystemObject>& type) {
   const auto on_surface = [&](const char* name, ConstraintKind kind, const char* text) {
     type.def(
         name,
-        [kind](SystemObject& self, const ParticleHandle& p, nb::object surface, const BodyHandle* body, nb::object at,
-               nb::object orientation, double size, double break_force) {
+        [kind](SystemObject& self, const ParticleHandle& p, SurfaceArgument surface, const BodyHandle* body, PlaceArgument at,
+               QuaternionArgument orientation, double size, double break_force) {
           p.use();
           if (p.system != &self || (body && body->system != &self))
             throw nb::value_error("the particle or body belongs to another system");
@@ -568,8 +569,8 @@ void bind_makers(nb::class_<SystemObject>& type) {
              "A particle stays on the outer side of a surface: as `on_surface`, one-sided.");
   type.def(
       "surface_to_surface",
-      [](SystemObject& self, const BodyHandle& a, nb::object surface_a, const BodyHandle* b, nb::object surface_b,
-         bool one_sided, nb::object at_a, nb::object orientation_a, nb::object at_b, nb::object orientation_b,
+      [](SystemObject& self, const BodyHandle& a, SurfaceArgument surface_a, const BodyHandle* b, SurfaceArgument surface_b,
+         bool one_sided, PlaceArgument at_a, QuaternionArgument orientation_a, PlaceArgument at_b, QuaternionArgument orientation_b,
          double break_force) {
         a.use();
         if (a.system != &self) throw nb::value_error("body a belongs to another system");

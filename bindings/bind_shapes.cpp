@@ -123,10 +123,15 @@ void def_sizes(nb::class_<S>& type, const std::tuple<shape::Size<S, T>...>& size
 template <class S>
 void def_common(nb::class_<S>& type) {
   type.attr("kind") = shape::Traits<S>::name;
-  nb::list sizes;
-  std::apply([&](const auto&... size) { (sizes.append(size.name), ...); }, shape::Traits<S>::sizes);
-  type.attr("sizes") = nb::tuple(sizes);
-  type.def_prop_ro(
+  type.def_prop_ro_static(
+          "sizes",
+          [](nb::handle) {
+            nb::list names;
+            std::apply([&](const auto&... size) { (names.append(size.name), ...); }, shape::Traits<S>::sizes);
+            return nb::tuple(names);
+          },
+          nb::sig("def sizes(cls, /) -> tuple[str, ...]"), "The names of its sizes, as its constructor takes them.")
+      .def_prop_ro(
           "numbers",
           [](const S& s) {
             nb::list numbers;

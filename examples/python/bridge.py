@@ -6,7 +6,7 @@ import iota
 plank = iota.builder.Structure()
 left, right = plank.point((-0.15, 0, 0), mass=0), plank.point((0.15, 0, 0), mass=0)
 plank.body(left, right, shape=iota.Box((0.28, 0.03, 0.6)), density=600, look="wood")
-plank.looks["wood"] = {"*": iota.looks.solid("wood")}
+plank.looks["wood"] = iota.looks.solid("wood")
 
 bridge = iota.builder.Structure()
 for number in range(10):

@@ -159,8 +159,7 @@ def build(n=16):
     ]
     cloth = ParticleSimulator(positions, 0.01, pairs, stiffness=60, damping=0.02, fixed=(0, n - 1))
     world = iota.World(cloth, title="a simulator of one's own")
-    world.classes["knot"] = {"*": iota.looks.sphere(0.25 * spacing)}
-    world.look(cloth.bodies, "knot")
+    world.draw(cloth.bodies, iota.looks.sphere(0.25 * spacing))
 
     @world.action("cut", key="b", help="cuts the held or selected knot loose")
     def cut(event):

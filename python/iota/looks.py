@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """How the page draws bodies: shapes, what they are made of, and where they are on their body.
 
-A *class* of bodies has a `Look`, or a list of looks that are drawn together, for each style; users switch styles on the
-page while it runs. The style "*" is used for every style:
+Bodies are drawn by a `Look`, by a list of looks that are drawn together, or by those of each style; users switch styles on
+the page while it runs. The style "*" is used for every style:
 
-    world.classes["link"] = {"rope": looks.cylinder(0.012, "rope"), "chain": looks.chain_link(0.1)}
-    world.look(links, "link")
+    world.draw(wheel, looks.solid("brass"))
+    world.draw(links, {"rope": looks.cylinder(0.012, "rope"), "chain": looks.chain_link(0.1)})
 
 Any shape of iota will do: `Look(iota.Cone(0.1, 0.3), "wood")`. What is drawn is what the engine means by that shape. The
 functions below are short for the usual ones. Lengths in m, colors as "#rrggbb", materials one of `MATERIALS`. The body's
@@ -35,7 +35,7 @@ class Look:
     color: str | None = None  #: "#rrggbb"; None: that of the material
     offset: Sequence[float] = (0.0, 0.0, 0.0)  #: of the shape's origin, in the body's frame, m
     rotation: Sequence[float] = (0.0, 0.0, 0.0, 1.0)  #: of the shape's frame, quaternion x y z w
-    turn: float = 0.0  #: of every other body of the class, about the body's x axis, rad
+    turn: float = 0.0  #: of every other body that is drawn so, about the body's x axis, rad
     fits: bool = False  #: as long as the body, or the strut, that it is drawn for
 
     def __post_init__(self) -> None:
@@ -46,7 +46,7 @@ class Look:
         if isinstance(self.shape, Mesh) and len(self.shape.triangles) > MOST_TRIANGLES:
             raise ValueError(
                 f"the page draws meshes of at most {MOST_TRIANGLES} triangles, this one has "
-                f"{len(self.shape.triangles)}: make it coarser, or give its body a class with another look"
+                f"{len(self.shape.triangles)}: make it coarser, or give its body another look"
             )
 
     def of_length(self, length: float) -> Look:
@@ -71,6 +71,12 @@ class Look:
 
 
 Looks: TypeAlias = dict[str, Look | list[Look]]
+Drawn: TypeAlias = Look | list[Look] | Looks  # one look, several that are drawn together, or those of each style
+
+
+def by_style(look: Drawn) -> Looks:
+    """The looks of each style."""
+    return look if isinstance(look, dict) else {"*": look}
 
 
 def sphere(radius: float, material: str = "brass", **more: Any) -> Look:
@@ -112,7 +118,7 @@ def chain_link(length: float, material: str = "steel") -> Look:
 
 
 def spring(radius: float, wire: float, material: str = "steel", color: str | None = None) -> Look:
-    """For the class "spring" of springs between bodies: a coil of `radius`, of wire of radius `wire`. Its shape is one turn
+    """For springs between bodies, see `World.draw_ties`: a coil of `radius`, of wire of radius `wire`. Its shape is one turn
     of it."""
     return Look(Torus(radius, wire), material, color)
 
@@ -122,9 +128,9 @@ def solid(material: str, color: str | None = None) -> Look:
     return Look(None, material, color)
 
 
-def to_json(styles: Looks) -> dict[str, Any]:
-    """The looks of a class as plain data for a file."""
-    return {style: [_to_json(look) for look in _listed(looks)] for style, looks in styles.items()}
+def to_json(look: Drawn) -> dict[str, Any]:
+    """Looks as plain data for a file."""
+    return {style: [_to_json(each) for each in _listed(looks)] for style, looks in by_style(look).items()}
 
 
 def from_json(data: dict[str, Any]) -> Looks:

@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 from iota._core import Mesh, Shape
 
-KINDS: dict[str, type] = {shape.kind: shape for shape in get_args(Shape)}
+KINDS: dict[str, type[Any]] = {shape.kind: shape for shape in get_args(Shape)}
 
 
 def to_json(shape: Shape) -> dict[str, Any]:

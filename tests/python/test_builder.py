@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 import iota
@@ -51,7 +52,7 @@ def swing() -> iota.builder.Structure:
         s.hinge(p, q)
     ground = s.point((0, 0.2, 0), mass=3)
     s.bond(ends[0], ground, "spring", stiffness=40, length=None, name="spring")
-    lamp = s.body(shape=iota.Sphere(0.1), mass=1, position=(0, 3, 0), name="lamp")
+    lamp = s.body(shape=iota.Sphere(0.1), mass=1, position=np.array([0, 3, 0]), name="lamp")
     s.joint("revolute", lamp, at=(0, 3, 0), axis=(0, 1, 0), motor=(2, 5), name="axle")
     s.tie("rope", ends[1], ground, break_force=100, name="rope")
     s.group("feelers", [0, ground])
@@ -79,7 +80,9 @@ def test_a_structure_becomes_bodies_hinges_bonds_and_joints(system: iota.System)
 def test_a_structure_is_drawn_in_its_looks(system: iota.System) -> None:
     world = iota.World(system)
     made = swing().realize(system, world)
-    assert world.classes["wood"] == {"*": iota.looks.solid("wood")} and made["board"].solids
+    drawn = world._state.scene.classes
+    assert list(drawn.values()) == [{"*": iota.looks.cylinder(0.01)}, {"*": iota.looks.solid("wood")}]
+    assert made["board"].solids
 
 
 def test_a_moved_copy_leaves_the_original(system: iota.System) -> None:

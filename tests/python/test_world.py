@@ -35,7 +35,7 @@ def test_a_page_learns_what_there_is_and_sees_it_move(world: iota.World, run_wor
         page.wait_for(lambda: {"world", "classes", "bodies", "statics", "actions"} <= page.scene.keys())
         assert page.scene["world"]["title"] == "chain"
         assert page.scene["world"]["looks"] == ["rope", "chain"]
-        assert [body["class"] for body in page.scene["bodies"]] == ["link"] * 24
+        assert len(page.scene["bodies"]) == 24 and len({body["class"] for body in page.scene["bodies"]}) == 1
         assert len(page.scene["statics"]) > 0, "what it hangs from is visible"
         actions = {action["key"]: action for action in page.scene["actions"]}
         assert actions["b"]["name"] == "break" and actions["b"]["button"] == "b" and actions["c"]["on"] == "body"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from iota.builder.parts import Joint, RigidBody, SoftBond, Tie
 from iota.builder.points import Points
-from iota.looks import Looks
+from iota.looks import Drawn
 
 
 @dataclass
@@ -24,4 +24,4 @@ class Contents:
     nails: list[int] = field(default_factory=list)  # points that are held where they are
     groups: dict[str, list[int]] = field(default_factory=dict)  # points, for fields and pair forces
     point_names: dict[str, int] = field(default_factory=dict)
-    looks: dict[str, Looks] = field(default_factory=dict)  # how bodies are drawn, as `World.classes` takes it
+    looks: dict[str, Drawn] = field(default_factory=dict)  # how bodies are drawn, as `World.draw` takes it

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from iota import looks, shapes
-from iota._core import Shape, Vec3
+from iota._core import Vec3
 from iota.builder.checks import label
 from iota.builder.contents import Contents
 from iota.builder.parts import Joint, RigidBody, SoftBond, Tie
@@ -67,6 +67,8 @@ def _part(part: Any, name: str) -> dict[str, Any]:
     entry = {}
     for field in fields(part):
         value = getattr(part, field.name)
+        if isinstance(value, np.ndarray):
+            value = tuple(value.tolist())
         if value != field.default:
             entry[field.name] = _plain(value, f"{name}: {field.name}")
     return entry
@@ -80,7 +82,7 @@ def _plain(value: Any, name: str) -> Any:
         return value
     if isinstance(value, dict):
         return {key: _plain(item, f"{name}.{key}") for key, item in value.items()}
-    if isinstance(value, Shape):
+    if type(value) in shapes.KINDS.values():
         return shapes.to_json(value)
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()

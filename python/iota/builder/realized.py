@@ -200,10 +200,9 @@ def _name(made: Realized, parts: Sequence[Joint | Tie | SoftBond], handles: Sequ
 
 
 def _draw(structure: Contents, world: World, made: Realized) -> None:
-    world.classes.update(structure.looks)
     of_look: dict[str, list[_core.Body]] = {}
     for part, body in zip(structure.bodies, made.bodies, strict=True):
         if part.look:
             of_look.setdefault(part.look, []).append(body)
     for look, bodies in of_look.items():
-        world.look(bodies, look)
+        world.draw(bodies, structure.looks[look])

@@ -19,7 +19,7 @@ def build(links: int = 24, repeat: bool = True) -> iota.World:
     Up to 500 links keep their energy; finer chains, whose links whirl faster than any eye, are stepped robustly."""
     system = iota.System(damping=0.05, mode="energy_keeping" if links <= 500 else "robust")
     chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(0.85, -0.55, 0.1)).realize(system).bodies
-    world = iota.World(system, title="chain", look="rope")
+    world = iota.World(system, title="chain", style="rope")
     present(world, chain)
     iota.forces.floor(world)
 
@@ -49,11 +49,7 @@ def present(world: iota.World, chain: list[iota.Body]) -> None:
     """Two looks for the links, and the tripod with the eye that they hang from."""
     link = LENGTH / len(chain)
     radius = min(0.014, 0.3 * link)
-    world.classes["link"] = {
-        "rope": looks.capsule(radius, "rope"),
-        "chain": looks.chain_link(link),
-    }
-    world.look(chain, "link")
+    world.draw(chain, {"rope": looks.capsule(radius, "rope"), "chain": looks.chain_link(link)})
     x, y, z = NAIL
     for foot in ((-1.25, 0, 0.5), (1.25, 0, 0.5), (0, 0, -1.35)):
         side = math.hypot(foot[0], foot[2])

@@ -31,10 +31,8 @@ def present(world: iota.World) -> None:
     for x in (-1.0, 1.3):
         for z in (-0.22, 0.22):
             world.add_static(looks.box((0.07, BENCH - 0.05, 0.07), "wood"), (x, (BENCH - 0.05) / 2, z))
-    for material in ("steel", "brass", "rubber", "wood"):
-        world.classes[material] = {"*": looks.solid(material)}
-    world.classes["spring"] = {"*": looks.spring(0.016, 0.0022)}
-    world.classes["rope"] = {"*": looks.cylinder(0.005, "rope")}
+    world.draw_ties("spring", looks.spring(0.016, 0.0022))
+    world.draw_ties("rope", looks.cylinder(0.005, "rope"))
     world.camera = iota.Camera(position=(0.25, 1.5, 2.2), target=(0.17, 1.13, 0))
 
 
@@ -64,8 +62,8 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
     pin, wrist = axle + (crank, 0, 0.03), axle + (crank + rod, 0, 0.03)
     connecting_rod = bar(system, pin, wrist, 0.025)
     piston = system.body(shape=iota.Box((0.1, 0.07, 0.07)), density=2700, position=wrist)
-    world.look(wheel, "brass")
-    world.look([connecting_rod, piston], "steel")
+    world.draw(wheel, looks.solid("brass"))
+    world.draw([connecting_rod, piston], looks.solid("steel"))
     speed, torque = 2 * math.pi, 20.0
     axis = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(speed, torque)).angle
     system.revolute(connecting_rod, wheel, at=pin, axis=(0, 0, 1))
@@ -87,7 +85,7 @@ def pendulum(world: iota.World, axle: iota.Vec3) -> None:
     """A bar on a torsion spring, with stops."""
     system = world.system
     swing = bar(system, axle - (0, 0.05, 0), axle + (0, 0.24, 0), 0.03)
-    world.look(swing, "brass")
+    world.draw(swing, looks.solid("brass"))
     system.revolute(swing, at=axle, axis=(0, 0, 1), limits=(-1.0, 1.0), spring=(25.0, 0.02, 0.0))
     swing.angular_velocity = (0, 0, 6)
     stand(world, axle, 0.06)
@@ -109,7 +107,7 @@ def shaft(world: iota.World, bearing: iota.Vec3) -> None:
             )
         )
         place = end
-    world.look(parts, "steel")
+    world.draw(parts, looks.solid("steel"))
     first, middle, last = parts
     cross = bearing + directions[0] * length
     system.revolute(first, at=bearing + directions[0] * (length / 2), axis=(1, 0, 0), motor=(3.0, 5))
@@ -126,7 +124,7 @@ def scales(world: iota.World, beam: iota.Vec3) -> None:
     """Three weights on springs: one solve for soft and rigid; the middle one pulls the beam's ends along."""
     system = world.system
     yoke = bar(system, beam - (0.14, 0, 0), beam + (0.14, 0, 0), 0.02)
-    world.look(yoke, "steel")
+    world.draw(yoke, looks.solid("steel"))
     system.revolute(yoke, at=beam, axis=(0, 0, 1), friction=0.01)
     stand(world, beam, 0.05)
     for x, drop in ((-0.13, 0.20), (0.13, 0.26)):
@@ -139,7 +137,7 @@ def scales(world: iota.World, beam: iota.Vec3) -> None:
             orientation=(0, 0, 0.5**0.5, 0.5**0.5),
             attachments=[(0.025, 0, 0)],
         )
-        world.look(weight, "brass")
+        world.draw(weight, looks.solid("brass"))
         system.bond(end, weight.attachments[0], "spring", stiffness=120, damping=0.15, length=0.11)
 
 
@@ -154,8 +152,8 @@ def crane(world: iota.World, foot: iota.Vec3) -> None:
     weight = system.body(
         shape=iota.Sphere(0.05), density=STEEL, position=tip - (0, 0.36, 0), attachments=[(0, 0.05, 0)]
     )
-    world.look(boom, "wood")
-    world.look(weight, "rubber")
+    world.draw(boom, looks.solid("wood"))
+    world.draw(weight, looks.solid("rubber"))
     rope = system.rope(hook, weight.attachments[0], break_force=150)
     world.add_strut(tuple(foot), tuple(shoulder), looks.cylinder(0.025, "steel"))
 

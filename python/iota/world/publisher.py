@@ -92,7 +92,7 @@ class Publisher:
         description = {
             "title": state.title,
             "looks": looks,
-            "look": state.look or (looks[0] if looks else None),
+            "look": state.style or (looks[0] if looks else None),
             "camera": {"position": list(camera.position), "target": list(camera.target)},
             "ground": state.ground,
             "dt": state.clock.dt,

@@ -81,7 +81,9 @@ class Scene:
         classes: dict[str, Any] = {**ties.default_looks(self._scale()), **self.classes}
         bodies = [self._describe_body(body, classes) for body in self._system.bodies if not body.is_spark]
         drawable = {name: looks for name, looks in classes.items() if not is_solid(looks)}
-        return json.dumps(drawable, default=Look.describe, separators=(",", ":")), json.dumps(bodies, separators=(",", ":"))
+        return json.dumps(drawable, default=Look.describe, separators=(",", ":")), json.dumps(
+            bodies, separators=(",", ":")
+        )
 
     def _describe_body(self, body: Body, classes: dict[str, Any]) -> dict[str, Any]:
         particles = body.particles

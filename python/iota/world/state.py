@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from iota._core import System
+from iota.looks import Looks
 from iota.world.actions import Actions
 from iota.world.clock import Clock
 from iota.world.hands import Hands
@@ -21,7 +22,7 @@ class State:
     system: System
     clock: Clock
     title: str
-    look: str | None = None  # that pages start with
+    style: str | None = None  # that pages start with
     ground: float | None = 0.0  # m
     camera: Camera | None = None
     statics: list[dict[str, Any]] = field(default_factory=list)
@@ -33,3 +34,13 @@ class State:
     def __post_init__(self) -> None:
         self.scene = Scene(self.system)
         self.hands = Hands(self.system)
+
+    def class_of(self, looks: Looks) -> str:
+        """The class of bodies that are drawn so, as pages name it: a new one where there is none."""
+        classes = self.scene.classes
+        for name, known in classes.items():
+            if known == looks:
+                return name
+        name = f"class {len(classes) + 1}"
+        classes[name] = looks
+        return name

@@ -11,10 +11,10 @@ import threading
 import time
 import webbrowser
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, TypeVar, cast
+from typing import Any, Literal, TypeVar, cast
 
 from iota._core import Body, StepReport, System, Vec3
-from iota.looks import Look, Looks
+from iota.looks import Drawn, Look, by_style
 from iota.simulator import Simulator
 from iota.world import options as run_options
 from iota.world.actions import Action
@@ -32,14 +32,15 @@ from iota.world.summary import RunSummary
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 Result = TypeVar("Result")
 
+TIES = ("spring", "rope", "rod")
 HEADLESS_SECONDS = 10.0  # where nobody says how long
 
 
 class World:
     """Runs a system in real time and serves a page that shows it.
 
-    system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. look: the look that pages
-    start with. ground: height of the drawn ground, m, None for none. camera: where viewers start, None: all is in view.
+    system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. style: the style of
+    drawing that pages start with, see `draw`. ground: height of the drawn ground, m, None for none. camera: where viewers start, None: all is in view.
 
         world = iota.World(system, title="pendulum")
 
@@ -58,12 +59,12 @@ class World:
         system: System | Simulator,
         title: str = "iota",
         dt: float = 1 / 120,
-        look: str | None = None,
+        style: str | None = None,
         ground: float | None = 0.0,
         camera: Camera | None = None,
     ) -> None:
         # Scripts see the built-in system; nothing here asks for more than a Simulator.
-        self._state = State(cast(System, system), Clock(dt), title, look, ground, camera)
+        self._state = State(cast(System, system), Clock(dt), title, style, ground, camera)
         self._guard = Guard(self._state.notices.error, self._state.notices.warning)
         self._stepper = Stepper(self._state, self._guard)
         self._inputs = Inputs(self._state, self._guard, self._stepper.step, self._stepper.reset)
@@ -151,19 +152,29 @@ class World:
         self._stepper.on_reset.append(Hook.of(function))
         return function
 
-    @property
-    def classes(self) -> dict[str, Looks]:
-        """Shapes of each class of bodies by look, see `iota.looks`. Fill it before `run`."""
-        return self._state.scene.classes
+    def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
+        """Says how bodies are drawn: a look of `iota.looks`, several that are drawn together, or one for each style that
+        users switch between on the page. Every other one of the bodies counts as odd for looks that turn.
 
-    def look(self, bodies: Body | Iterable[Body], name: str) -> None:
-        """Gives bodies the looks of a class; every other one counts as odd for shapes that turn."""
+            world.draw(wheel, looks.solid("brass"))
+            world.draw(links, {"rope": looks.capsule(0.012, "rope"), "chain": looks.chain_link(0.1)})
+        """
+        name = self._state.class_of(by_style(look))
         self._state.scene.assign([bodies] if isinstance(bodies, Body) else bodies, name)
+        self._state.is_changed = True
+
+    def draw_ties(self, kind: Literal["spring", "rope", "rod"], look: Drawn) -> None:
+        """Says how springs, ropes or rods between bodies are drawn, as `draw`; an empty list hides them."""
+        if kind not in TIES:
+            raise ValueError(f"kind must be one of {', '.join(TIES)}, not {kind!r}")
+        self._state.scene.classes[kind] = by_style(look)
         self._state.is_changed = True
 
     def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> None:
         """Adds something that is only drawn: a beam, a stand. position: m. rotation: quaternion x y z w."""
-        self._state.statics.append({"shape": look.describe(), "position": list(Vec3(*position)), "rotation": list(rotation)})
+        self._state.statics.append(
+            {"shape": look.describe(), "position": list(Vec3(*position)), "rotation": list(rotation)}
+        )
         self._state.is_changed = True
 
     def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> None:
