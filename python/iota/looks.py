@@ -75,8 +75,13 @@ Drawn: TypeAlias = Look | list[Look] | Looks  # one look, several that are drawn
 
 
 def by_style(look: Drawn) -> Looks:
-    """The looks of each style."""
-    return look if isinstance(look, dict) else {"*": look}
+    """The looks of each style. Raises TypeError for what is not a look."""
+    styles = look if isinstance(look, dict) else {"*": look}
+    for looks in styles.values():
+        for each in _listed(looks):
+            if not isinstance(each, Look):
+                raise TypeError(f"a look is made by iota.looks, as in looks.solid('brass'), not {each!r}")
+    return styles
 
 
 def sphere(radius: float, material: str = "brass", **more: Any) -> Look:

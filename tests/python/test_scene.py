@@ -92,3 +92,16 @@ def test_links_of_a_real_chain_touch_where_they_are_hinged() -> None:
     end = link.stretch / 2 + link.radius  # center line at the end of the link
     assert end - 0.05 == pytest.approx(link.tube), "the wire goes once around the hinge"
     assert link.radius - link.tube > link.tube, "the neighbor fits inside"
+
+
+def test_bodies_that_are_drawn_alike_share_a_class(system: iota.System, chain: list[iota.Body]) -> None:
+    world = iota.World(system)
+    world.draw_ties("rope", looks.cylinder(0.01))
+    world.draw(chain[:3], looks.cylinder(0.01))
+    world.draw(chain[3], looks.cylinder(0.01))
+    world.draw(chain[4:], {"thin": looks.cylinder(0.001), "thick": [looks.cylinder(0.1), looks.sphere(0.2)]})
+    assert list(world._state.scene.classes) == ["rope", "class 2", "class 3"]
+    with pytest.raises(TypeError, match="a look is made by iota.looks.* not 'brass'"):
+        world.draw(chain, "brass")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="kind must be one of spring, rope, rod, not 'bond'"):
+        world.draw_ties("bond", looks.cylinder(0.01))  # type: ignore[arg-type]

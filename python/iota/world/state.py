@@ -14,6 +14,8 @@ from iota.world.hands import Hands
 from iota.world.notices import Notices
 from iota.world.scene import Camera, Scene
 
+TIES = ("spring", "rope", "rod")  # what is drawn between two points, by classes of these names
+
 
 @dataclass
 class State:
@@ -39,7 +41,7 @@ class State:
         """The class of bodies that are drawn so, as pages name it: a new one where there is none."""
         classes = self.scene.classes
         for name, known in classes.items():
-            if known == looks:
+            if known == looks and name not in TIES:
                 return name
         name = f"class {len(classes) + 1}"
         classes[name] = looks

@@ -25,14 +25,13 @@ from iota.world.hands import Client
 from iota.world.inputs import Inputs
 from iota.world.publisher import Publisher
 from iota.world.scene import Camera
-from iota.world.state import State
+from iota.world.state import TIES, State
 from iota.world.stepper import Stepper
 from iota.world.summary import RunSummary
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 Result = TypeVar("Result")
 
-TIES = ("spring", "rope", "rod")
 HEADLESS_SECONDS = 10.0  # where nobody says how long
 
 
@@ -40,7 +39,8 @@ class World:
     """Runs a system in real time and serves a page that shows it.
 
     system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. style: the style of
-    drawing that pages start with, see `draw`. ground: height of the drawn ground, m, None for none. camera: where viewers start, None: all is in view.
+    drawing that pages start with, see `draw`. ground: height of the drawn ground, m, None for none. camera: where viewers
+    start, None: all is in view.
 
         world = iota.World(system, title="pendulum")
 
@@ -160,7 +160,7 @@ class World:
             world.draw(links, {"rope": looks.capsule(0.012, "rope"), "chain": looks.chain_link(0.1)})
         """
         name = self._state.class_of(by_style(look))
-        self._state.scene.assign([bodies] if isinstance(bodies, Body) else bodies, name)
+        self._state.scene.assign(bodies if isinstance(bodies, Iterable) else [bodies], name)
         self._state.is_changed = True
 
     def draw_ties(self, kind: Literal["spring", "rope", "rod"], look: Drawn) -> None:
