@@ -75,6 +75,8 @@ def test_a_structure_becomes_bodies_hinges_bonds_and_joints(system: iota.System)
     assert report.worst_gap < 1e-9 and made["axle"].angle.speed == pytest.approx(2, rel=0.01)
     with pytest.raises(KeyError):
         made["door"]
+    again = (swing() + (5, 0, 0)).realize(system)
+    assert len(again.groups["feelers"]) == 4 and again["lamp"] != made["lamp"] and system.validate() == []
 
 
 def test_a_structure_is_drawn_in_its_looks(system: iota.System) -> None:

@@ -40,13 +40,7 @@ class Realized:
 
 
 def realize(structure: Contents, system: _core.System, world: World | None = None) -> Realized:
-    """Puts a structure into a system, all of it or nothing; with a world, gives its bodies their looks there too.
-
-    Raises ValueError that names the items which are wrong.
-
-        chain = realize(iota.builder.chain(links=24), system)
-        chain.bodies[-1].velocity = (1, 0, 0)
-    """
+    """See `Structure.realize`."""
     wrong = list(islice(problems(structure), MOST_SHOWN + 1))
     if wrong:
         more = ["..."] if len(wrong) > MOST_SHOWN else []
@@ -55,8 +49,9 @@ def realize(structure: Contents, system: _core.System, world: World | None = Non
     with _without_collector(), system.edit():
         _make_bodies(structure, system, made)
         _make_connections(structure, system, made)
+        known = {group.name: group for group in system.groups}
         for name, members in structure.groups.items():
-            made.groups[name] = system.group(name)
+            made.groups[name] = known.get(name) or system.group(name)
             made.groups[name].add(*(made.points[member] for member in members))
     made.names |= {name: made.points[point] for name, point in structure.point_names.items()}
     if world is not None:

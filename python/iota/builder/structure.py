@@ -116,9 +116,9 @@ class Structure(Contents):
 
     def realize(self, system: System, world: World | None = None) -> Realized:
         """Puts it into a system, all of it or nothing, and returns the handles. With a world, its bodies get their looks
-        there. Raises ValueError that names what is wrong.
+        there. A group that the system has already takes the points in. Raises ValueError that names what is wrong.
 
-        chain = iota.builder.chain(links=24).realize(system)
+            chain = iota.builder.chain(links=24).realize(system)
         """
         return realize(self, system, world)
 
