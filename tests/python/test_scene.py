@@ -80,7 +80,7 @@ def test_the_camera_sees_everything(system: iota.System, chain: list[iota.Body])
 def test_shapes_refuse_what_they_do_not_know() -> None:
     with pytest.raises(ValueError, match=r"material must be one of steel.*not 'gold'"):
         looks.sphere(0.1, "gold")
-    with pytest.raises(ValueError, match="the radius of a sphere must be between .* got -1"):
+    with pytest.raises(ValueError, match=r"the radius of a sphere must be between .* got -1"):
         looks.sphere(-1)
     with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
         looks.capsule(0.1, colour="#ff0000")
@@ -101,7 +101,7 @@ def test_bodies_that_are_drawn_alike_share_a_class(system: iota.System, chain: l
     world.draw(chain[3], looks.cylinder(0.01))
     world.draw(chain[4:], {"thin": looks.cylinder(0.001), "thick": [looks.cylinder(0.1), looks.sphere(0.2)]})
     assert list(world._state.scene.classes) == ["rope", "class 2", "class 3"]
-    with pytest.raises(TypeError, match="a look is made by iota.looks.* not 'brass'"):
+    with pytest.raises(TypeError, match=r"a look is made by iota.looks.* not 'brass'"):
         world.draw(chain, "brass")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="kind must be one of spring, rope, rod, not 'bond'"):
         world.draw_ties("bond", looks.cylinder(0.01))  # type: ignore[arg-type]

@@ -49,7 +49,7 @@ def test_a_shape_comes_back_from_json(shape: iota.Shape) -> None:
 
 
 def test_a_description_that_is_no_shape_is_refused() -> None:
-    with pytest.raises(ValueError, match="must be one of sphere, box, .* not 'blob'"):
+    with pytest.raises(ValueError, match=r"must be one of sphere, box, .* not 'blob'"):
         shapes.from_json({"kind": "blob"})
     with pytest.raises(ValueError, match="a box has the sizes size, rounding, not width"):
         shapes.from_json({"kind": "box", "width": 3})
@@ -67,7 +67,7 @@ def test_shapes_are_values() -> None:
     assert box.size == (1, 2, 3) and box.numbers == (1, 2, 3, 0) and box.sizes == ("size", "rounding")
     with pytest.raises(AttributeError):
         box.size = (3, 2, 1)
-    with pytest.raises(ValueError, match="rounding of a box .* must not be above half its least edge"):
+    with pytest.raises(ValueError, match=r"rounding of a box .* must not be above half its least edge"):
         iota.Box((1, 2, 3), 0.6)
 
 
