@@ -46,12 +46,11 @@ void bind_articulates(nb::module_& module) {
       .def(
           "__iter__", [](const ArticulateView& self) { return nb::iter(nb::cast(self.bodies())); },
           nb::sig("def __iter__(self) -> collections.abc.Iterator[Body]"))
-      .def_prop_ro("number", &ArticulateView::number, "Equal for bodies that hang together now; given anew after edits.")
+      .def_prop_ro("number", &ArticulateView::number,
+                   "Equal for bodies that hang together now; given anew after edits.")
       .def_prop_rw(
           "active", [](const ArticulateView& self) { return self.body.use().is_active(self.body.id); },
-          [](const ArticulateView& self, bool active) {
-            self.body.use().set_articulate_active(self.body.id, active);
-          },
+          [](const ArticulateView& self, bool active) { self.body.use().set_articulate_active(self.body.id, active); },
           "False switches all its bodies off; see `Body.active`.")
       .def(
           "__eq__",
@@ -60,11 +59,10 @@ void bind_articulates(nb::module_& module) {
             return nb::try_cast<const ArticulateView*>(other, theirs) && theirs && self.contains(theirs->body);
           },
           nb::is_operator(), nb::sig("def __eq__(self, other: object, /) -> bool"))
-      .def(
-          "__hash__",
-          [](const ArticulateView&) -> std::size_t {
-            throw nb::type_error("an articulate has no hash, as edits change what it is equal to; use its number");
-          })
+      .def("__hash__",
+           [](const ArticulateView&) -> std::size_t {
+             throw nb::type_error("an articulate has no hash, as edits change what it is equal to; use its number");
+           })
       .def("__repr__", [](const ArticulateView& self) {
         if (!self.body.is_alive()) return stale_repr("Articulate of body", self.body);
         return "<Articulate of " + std::to_string(self.bodies().size()) + " bodies>";

@@ -82,10 +82,9 @@ void bind_making(nb::class_<SystemObject>& system) {
         for (nb::handle place : attachments) options.attachments.push_back(to_vec3({place}, "each attachment"));
         return handle_of(self, engine.create_body(to_shape(shape), options));
       },
-      "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(),
-      "density"_a = 1000.0, "mass"_a = nb::none(), "position"_a = zero,
-      "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), "velocity"_a = zero, "spin"_a = zero,
-      "attachments"_a = nb::tuple(),
+      "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(), "density"_a = 1000.0,
+      "mass"_a = nb::none(), "position"_a = zero, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0),
+      "velocity"_a = zero, "spin"_a = zero, "attachments"_a = nb::tuple(),
       nb::sig(
           "def body(self, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting'] = 'dynamic', "
           "damping: float = 0.0, *, shape: Shape | None = None, "
@@ -118,9 +117,7 @@ void bind_body(nb::module_& module) {
           "A particle that an emitter bore and that nothing ties: viewers see a dot that they cannot hold.")
       .def_prop_rw(
           "kind", [](const BodyHandle& self) { return KindWord{to_word(kind_words, self.use().kind(self.id))}; },
-          [](const BodyHandle& self, const KindWord& kind) {
-            self.use().set_kind(self.id, to_kind(kind));
-          },
+          [](const BodyHandle& self, const KindWord& kind) { self.use().set_kind(self.id, to_kind(kind)); },
           "'dynamic', 'static', 'scripted', 'inactive' or 'resting'. A resting body sleeps with all that hangs together with\n"
           "it, and wakes when something touches it.")
       .def_prop_rw(

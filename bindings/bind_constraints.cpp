@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
-#include "shape_argument.h"
 #include "names.h"
+#include "shape_argument.h"
 #include "typed_argument.h"
 
 #include <nanobind/stl/tuple.h>
@@ -267,8 +267,8 @@ CoordinateView coordinate_of(const ConstraintHandle& self, JointCoordinate which
   (void)self.use();
   const ConstraintKind kind = self.system->engine.state(self.id).kind;
   if (!has_coordinate(kind, which)) {
-    const std::string text = "a " + to_word(constraint_words, kind) + " has no " +
-                             coordinate_names[static_cast<std::size_t>(which)];
+    const std::string text =
+        "a " + to_word(constraint_words, kind) + " has no " + coordinate_names[static_cast<std::size_t>(which)];
     PyErr_SetString(PyExc_AttributeError, text.c_str());
     throw nb::python_error();
   }
@@ -361,8 +361,7 @@ void bind_handle(nb::module_& module) {
           },
           "N m; inf: never.")
       .def(
-          "destroy", [](const ConstraintHandle& self) { self.use().destroy(self.id); },
-          "Removes it.")
+          "destroy", [](const ConstraintHandle& self) { self.use().destroy(self.id); }, "Removes it.")
       .def("__repr__", &repr);
 }
 
@@ -513,8 +512,8 @@ void bind_makers(nb::class_<SystemObject>& type) {
           "Two particles of different bodies come no further apart than length (m, None: as far as now).");
   type.def(
       "on_path",
-      [](SystemObject& self, const ParticleHandle& p, PathArgument path, const BodyHandle* body, bool closed, bool smooth,
-         std::optional<double> rounding, Pair interval, int samples, std::optional<Pair> limits,
+      [](SystemObject& self, const ParticleHandle& p, PathArgument path, const BodyHandle* body, bool closed,
+         bool smooth, std::optional<double> rounding, Pair interval, int samples, std::optional<Pair> limits,
          std::optional<Pair> motor, double friction, SpringArgument spring, double break_force) {
         p.use();
         if (p.system != &self || (body && body->system != &self))
@@ -540,8 +539,8 @@ void bind_makers(nb::class_<SystemObject>& type) {
   const auto on_surface = [&](const char* name, ConstraintKind kind, const char* text) {
     type.def(
         name,
-        [kind](SystemObject& self, const ParticleHandle& p, SurfaceArgument surface, const BodyHandle* body, PlaceArgument at,
-               QuaternionArgument orientation, double size, double break_force) {
+        [kind](SystemObject& self, const ParticleHandle& p, SurfaceArgument surface, const BodyHandle* body,
+               PlaceArgument at, QuaternionArgument orientation, double size, double break_force) {
           p.use();
           if (p.system != &self || (body && body->system != &self))
             throw nb::value_error("the particle or body belongs to another system");
@@ -569,9 +568,9 @@ void bind_makers(nb::class_<SystemObject>& type) {
              "A particle stays on the outer side of a surface: as `on_surface`, one-sided.");
   type.def(
       "surface_to_surface",
-      [](SystemObject& self, const BodyHandle& a, SurfaceArgument surface_a, const BodyHandle* b, SurfaceArgument surface_b,
-         bool one_sided, PlaceArgument at_a, QuaternionArgument orientation_a, PlaceArgument at_b, QuaternionArgument orientation_b,
-         double break_force) {
+      [](SystemObject& self, const BodyHandle& a, SurfaceArgument surface_a, const BodyHandle* b,
+         SurfaceArgument surface_b, bool one_sided, PlaceArgument at_a, QuaternionArgument orientation_a,
+         PlaceArgument at_b, QuaternionArgument orientation_b, double break_force) {
         a.use();
         if (a.system != &self) throw nb::value_error("body a belongs to another system");
         if (b) check_one_system(a, *b, "surface_to_surface"), b->use();

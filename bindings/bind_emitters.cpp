@@ -8,8 +8,7 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* doc =
-    "A source of particles; made by `System.emitter`.";
+constexpr const char* doc = "A source of particles; made by `System.emitter`.";
 
 constexpr const char* make_doc =
     "A new source of particles; each is a body of its own with an age and a lifetime, and dies at its end.\n\n"
@@ -80,21 +79,21 @@ void bind_emitter(nb::module_& module) {
   const nb::tuple zero = nb::make_tuple(0.0, 0.0, 0.0);
   nb::class_<EmitterHandle> type(module, "Emitter", doc, nb::type_slots(handle_slots<EmitterHandle>),
                                  nb::is_weak_referenceable());
-  nb::borrow<nb::class_<SystemObject>>(module.attr("System")).def(
-      "emitter", &make_emitter, nb::kw_only(), "rate"_a = 10.0, "source"_a = nb::none(),
-      "position"_a = zero, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0),
-      "velocity"_a = nb::make_tuple(0.0, 1.0, 0.0), "velocity_spread"_a = 0.0, "lifetime"_a = 1.0,
-      "lifetime_spread"_a = 0.0, "mass"_a = 0.001, "damping"_a = 0.0, "max_count"_a = 1000, "curve"_a = nb::tuple(),
-      "seed"_a = 1,
-      nb::sig(
-          "def emitter(self, *, rate: float = 10.0, source: Shape | None = "
-          "None, position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), orientation: "
-          "collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), velocity: Vec3 | "
-          "collections.abc.Sequence[float] = (0.0, 1.0, 0.0), velocity_spread: float = 0.0, lifetime: float = 1.0, "
-          "lifetime_spread: float = 0.0, mass: float = 0.001, damping: float = 0.0, max_count: int = 1000, curve: "
-          "collections.abc.Iterable[tuple[float, float, collections.abc.Sequence[float]]] = (), seed: int = 1) -> "
-          "Emitter"),
-      make_doc);
+  nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
+      .def(
+          "emitter", &make_emitter, nb::kw_only(), "rate"_a = 10.0, "source"_a = nb::none(), "position"_a = zero,
+          "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), "velocity"_a = nb::make_tuple(0.0, 1.0, 0.0),
+          "velocity_spread"_a = 0.0, "lifetime"_a = 1.0, "lifetime_spread"_a = 0.0, "mass"_a = 0.001, "damping"_a = 0.0,
+          "max_count"_a = 1000, "curve"_a = nb::tuple(), "seed"_a = 1,
+          nb::sig(
+              "def emitter(self, *, rate: float = 10.0, source: Shape | None = "
+              "None, position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), orientation: "
+              "collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), velocity: Vec3 | "
+              "collections.abc.Sequence[float] = (0.0, 1.0, 0.0), velocity_spread: float = 0.0, lifetime: float = 1.0, "
+              "lifetime_spread: float = 0.0, mass: float = 0.001, damping: float = 0.0, max_count: int = 1000, curve: "
+              "collections.abc.Iterable[tuple[float, float, collections.abc.Sequence[float]]] = (), seed: int = 1) -> "
+              "Emitter"),
+          make_doc);
   def_identity(type);
   const auto checked = [](const EmitterHandle& self, const char* what) -> System& {
     System& engine = self.use();

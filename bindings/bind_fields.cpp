@@ -17,8 +17,7 @@ constexpr const char* make_group_doc =
     "    fish = system.group('fish')\n"
     "    fish.add(p, q)";
 
-constexpr const char* field_doc =
-    "A force on each particle of a group, or on all, by itself; made by `System.field`.";
+constexpr const char* field_doc = "A force on each particle of a group, or on all, by itself; made by `System.field`.";
 
 constexpr const char* make_field_doc =
     "A new force on each particle of a group, or on all, by itself; taken once a step and held. Particles that are hinged\n"
@@ -196,9 +195,7 @@ void def_force(nb::class_<HandleType>& type) {
       .def_prop_ro(
           "parameters", [](const HandleType& self) { return to_dict(self.use().parameters(self.id)); },
           nb::sig("def parameters(self) -> dict[str, float]"), "A copy; change them with `set`.")
-      .def(
-          "destroy", [](const HandleType& self) { self.use().destroy(self.id); },
-          "Removes it.");
+      .def("destroy", [](const HandleType& self) { self.use().destroy(self.id); }, "Removes it.");
 }
 
 template <class Add>
@@ -229,7 +226,8 @@ void bind_group(nb::module_& module) {
       .def(
           "group",
           [](nb::handle_t<SystemObject> self, const std::string& name) {
-            return handle_of(self, nb::inst_ptr<SystemObject>(self)->use_between_steps("group(...)").create_group(name));
+            return handle_of(self,
+                             nb::inst_ptr<SystemObject>(self)->use_between_steps("group(...)").create_group(name));
           },
           "name"_a, make_group_doc);
   def_identity(type);
@@ -265,8 +263,7 @@ void bind_group(nb::module_& module) {
           },
           "In the order of slots.")
       .def(
-          "destroy",
-          [](const GroupHandle& self) { self.use().destroy(self.id); },
+          "destroy", [](const GroupHandle& self) { self.use().destroy(self.id); },
           "Removes the group, not the particles. Raises ValueError while a force acts on it.")
       .def("__repr__", [](const GroupHandle& self) {
         if (!self.is_alive()) return stale_repr("Group", self);
@@ -351,7 +348,8 @@ void def_fields(nb::class_<SystemObject>& system) {
         if (nb::try_cast<const PairsHandle*>(force, pairs) && pairs) return engine.rehearse(pairs->id, dt);
         throw nb::type_error(("rehearse takes a Law, a Field or a PairForce, not " + describe(force)).c_str());
       },
-      "force"_a, "dt"_a = 1.0 / 120, nb::sig("def rehearse(self, force: Law | Field | PairForce, dt: float = ...) -> int"),
+      "force"_a, "dt"_a = 1.0 / 120,
+      nb::sig("def rehearse(self, force: Law | Field | PairForce, dt: float = ...) -> int"),
       "Evaluates forces without applying them, to measure what they cost; see `profile`. Returns for how many bonds or\n"
       "particles.");
   system.def(

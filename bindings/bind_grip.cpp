@@ -5,8 +5,7 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* doc =
-    "A user's hand on a body; made by `System.grip`.";
+constexpr const char* doc = "A user's hand on a body; made by `System.grip`.";
 
 constexpr const char* make_doc =
     "Takes hold of a body: a critically damped, capped spring from a point of the body to a target.\n\n"
@@ -49,9 +48,7 @@ void bind_grip(nb::module_& module) {
           },
           "target"_a, "Moves its target (world, m).")
       .def(
-          "destroy",
-          [](const GripHandle& self) { self.use().destroy(self.id); },
-          "Lets go.")
+          "destroy", [](const GripHandle& self) { self.use().destroy(self.id); }, "Lets go.")
       .def("__repr__", [](const GripHandle& self) {
         return self.is_alive() ? "<Grip " + std::to_string(self.id.slot) + ">" : stale_repr("Grip", self);
       });

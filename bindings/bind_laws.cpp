@@ -10,8 +10,7 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* law_doc =
-    "A law of force that any number of bonds share; made by `System.law`.";
+constexpr const char* law_doc = "A law of force that any number of bonds share; made by `System.law`.";
 
 constexpr const char* make_doc =
     "A new law of force that any number of bonds share. Parameters are keywords, with the values that bonds have unless they\n"
@@ -240,8 +239,7 @@ void bind_laws(nb::module_& module) {
           nb::sig("def parameters(self) -> dict[str, float | None]"),
           "The values that bonds have unless they say otherwise; None is the distance of the ends.")
       .def(
-          "destroy",
-          [](const LawHandle& self) { self.use().destroy(self.id); },
+          "destroy", [](const LawHandle& self) { self.use().destroy(self.id); },
           "Removes it. Raises ValueError while bonds have it, and for a predefined law.")
       .def("__repr__", [](const LawHandle& self) {
         if (!self.is_alive()) return stale_repr("Law", self);

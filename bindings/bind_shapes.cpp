@@ -69,8 +69,9 @@ std::string class_name(std::string_view name) {
 template <class S>
 std::string doc_of() {
   std::string text(shape::Traits<S>::doc);
-  std::apply([&](const auto&... size) { ((text += "\n" + std::string(size.name) + ": " + std::string(size.doc) + "."), ...); },
-             shape::Traits<S>::sizes);
+  std::apply(
+      [&](const auto&... size) { ((text += "\n" + std::string(size.name) + ": " + std::string(size.doc) + "."), ...); },
+      shape::Traits<S>::sizes);
   return text;
 }
 
@@ -212,8 +213,7 @@ void def_mesh(nb::class_<Mesh>& type) {
 void bind_solid(nb::module_& module) {
   nb::class_<SolidView>(module, "Solid", "One of the solids that a body was given as.")
       .def_prop_ro(
-          "shape", [](const SolidView& s) { return from_shape(s.shape); },
-          nb::sig("def shape(self) -> Shape"))
+          "shape", [](const SolidView& s) { return from_shape(s.shape); }, nb::sig("def shape(self) -> Shape"))
       .def_ro("position", &SolidView::position, "Of the shape's origin, world, m.")
       .def_prop_ro(
           "orientation",

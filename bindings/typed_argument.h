@@ -29,9 +29,9 @@ struct TypedArgument {
 using SpringArgument = TypedArgument<"float | collections.abc.Sequence[float]">;
 using PlaceArgument = TypedArgument<"Vec3 | collections.abc.Sequence[float]">;
 using QuaternionArgument = TypedArgument<"collections.abc.Sequence[float]">;
-using PathArgument =
-    TypedArgument<"collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] | "
-                  "collections.abc.Callable[[float], Vec3 | collections.abc.Sequence[float]]">;
+using PathArgument = TypedArgument<
+    "collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] | "
+    "collections.abc.Callable[[float], Vec3 | collections.abc.Sequence[float]]">;
 using SurfaceArgument = TypedArgument<"Shape | collections.abc.Callable[[float, float, float], float]">;
 /// Limits, motor, friction and spring of a coordinate.
 using DriveArgument = TypedArgument<"collections.abc.Mapping[str, typing.Any]">;
