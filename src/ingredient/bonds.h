@@ -26,9 +26,6 @@ class Bonds : public NoAnswers {
 
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
-
- private:
-  std::vector<std::uint32_t> springs_, drags_, radials_;  // bonds of the forces of each type
 };
 
 }  // namespace iota::ingredient

@@ -9,8 +9,6 @@ namespace iota::ingredient {
 
 namespace {
 
-using Pool = solver::ConstraintPool<solver::DistanceConstraint>;
-
 /// Shrinks smoothly from 1 to a hundredth. Each step moves positions only: forces that close the distance in a given time
 /// overshoot (measured: they add 25 to 120 J where this adds 0.03 J). A distance row has no direction at 0, so a projection
 /// closes the last bit.
@@ -24,41 +22,40 @@ double closing_factor(double elapsed, double duration) {
 void Closings::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
   if (model.closings.size() == 0) return;
-  for (const std::uint32_t body : map.nodes.bodies)
+  std::vector<std::uint32_t> slots;
+  for (const std::uint32_t body : map.bodies)
     model.for_each_particle_of(body, [&](std::uint32_t p) {
-      model.for_each_closing_of(p, [&](std::uint32_t c) {
-        const model::Closing& closing = model.closings[c];
-        // An inactive body has no nodes.
-        if (closing.p == p && map.node_of(closing.p) != none && map.node_of(closing.q) != none) slots_.push_back(c);
-      });
+      model.for_each_closing_of(p, [&](std::uint32_t c) { slots.push_back(c); });
     });
-  std::sort(slots_.begin(), slots_.end());
-  auto& distances = constraints_in<solver::DistanceConstraint>(problem);
-  first_ = static_cast<std::uint32_t>(distances.size());
-  for (const std::uint32_t slot : slots_) {
+  sort_unique(slots);
+  for (const std::uint32_t slot : slots) {
     const model::Closing& c = model.closings[slot];
-    distances.push_back({{map.node_of(c.p), map.node_of(c.q)}, c.distance, c.distance});
+    const std::uint32_t a = map.node_of(c.p), b = map.node_of(c.q);
+    if (a == none || b == none) continue;  // of an inactive body
+    problem.add(solver::DistanceConstraint{{a, b}, c.distance, c.distance}, {owner, {}, slot});
   }
 }
 
 void Closings::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
-  auto& distances = std::get<Pool>(problem.constraints);
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    const model::Closing& c = model.closings[slots_[i]];
-    distances.multipliers[first_ + i] = c.multiplier;
-    distances.items[first_ + i].length = c.distance * closing_factor(c.elapsed + h, c.duration);
-  }
+  if (model.closings.size() == 0) return;
+  auto& distances = problem.pool_of<solver::DistanceConstraint>();
+  for_each_item_of<solver::DistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    const model::Closing& c = model.closings[key.slot];
+    distances.multipliers[i] = c.multiplier;
+    distances.items[i].length = c.distance * closing_factor(c.elapsed + h, c.duration);
+  });
 }
 
 void Closings::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
-  const auto& distances = std::get<Pool>(problem.constraints);
-  for (std::size_t i = 0; i < slots_.size(); ++i)
-    model.closings[slots_[i]].multiplier = distances.multipliers[first_ + i];
+  if (model.closings.size() == 0) return;
+  const auto& distances = problem.pool_of<solver::DistanceConstraint>();
+  for_each_item_of<solver::DistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    model.closings[key.slot].multiplier = distances.multipliers[i];
+  });
 }
 
-std::string Closings::name_of_row(const Model& model, const IslandNodes&, const solver::RowName& row) const {
-  if (row.pool != pool_index<solver::DistanceConstraint> || row.item - first_ >= slots_.size()) return {};
-  const model::Closing& c = model.closings[slots_[row.item - first_]];
+std::string Closings::name_of_row(const Model& model, solver::ItemKey key) const {
+  const model::Closing& c = model.closings[key.slot];
   return text("the closing of particles ", c.p, " and ", c.q);
 }
 

@@ -18,12 +18,7 @@ class Closings : public NoAnswers {
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
-  std::string name_of_row(const Model&, const IslandNodes&, const solver::RowName&) const;
-  bool can_follow() const { return slots_.empty(); }
-
- private:
-  std::uint32_t first_ = 0;  // of our distance constraints
-  std::vector<std::uint32_t> slots_;
+  std::string name_of_row(const Model&, solver::ItemKey) const;
 };
 
 }  // namespace iota::ingredient

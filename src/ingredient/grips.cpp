@@ -2,19 +2,30 @@
 #include "ingredient/grips.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 namespace iota::ingredient {
 
+namespace {
+
+/// Of the bodies that can move and that rings, bonds and joints tie to a body, kg.
+double calc_tied_mass(const Model& model, std::uint32_t body) {
+  std::vector<std::uint32_t> articulates;
+  for (const std::uint32_t b : model.tied_bodies(std::array{body})) articulates.push_back(model.bodies[b].articulate);
+  sort_unique(articulates);
+  double mass = 0;
+  for (const std::uint32_t articulate : articulates)
+    model.for_each_body_of(articulate, [&](std::uint32_t b) {
+      if (is_free(model.bodies[b].kind)) mass += model.body_mass(b);
+    });
+  return mass;
+}
+
+}  // namespace
+
 void Grips::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
-  double total_mass = -1;  // of the bodies that can move; taken when there is a grip
-  const auto calc_total_mass = [&] {
-    double sum = 0;
-    for (const std::uint32_t body : map.nodes.bodies)
-      if (is_free(model.bodies[body].kind)) sum += model.body_mass(body);
-    return sum;
-  };
   model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
     if (!is_free(model.bodies[g.body].kind)) return;
     solver::GripForce force;
@@ -24,36 +35,40 @@ void Grips::build(const IslandMap& map, Problem& problem) {
       force.arm.nodes[i] = node, force.arm.weights[i] = g.weights[i];
     }
     force.arm.count = g.count;
-    forces_in<solver::GripForce>(problem).push_back(force);
-    slots_.push_back(slot);
+    problem.add(force, {owner, {}, slot});
     // A grip feels the body that it holds and, through the hinges, part of what hangs on that: enough to lift it all.
-    if (total_mass < 0) total_mass = calc_total_mass();
     const double own = model.body_mass(g.body);
-    masses_.push_back(own + 0.5 * (total_mass - own));
+    felt_masses_.push_back({slot, own + 0.5 * (calc_tied_mass(model, g.body) - own)});
   });
-  arms_.resize(slots_.size());
+}
+
+double Grips::felt_mass(std::uint32_t grip) const {
+  return std::find_if(felt_masses_.begin(), felt_masses_.end(), [&](const auto& felt) { return felt.first == grip; })
+      ->second;
 }
 
 void Grips::load(const Model& model, const IslandNodes&, double, Problem& problem) {
-  auto& forces = forces_in<solver::GripForce>(problem);
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    const model::Grip& g = model.grips[slots_[i]];
-    const double omega = 2 * std::numbers::pi * g.frequency;
+  auto& forces = problem.pool_of<solver::GripForce>().items;
+  arms_.resize(forces.size());
+  for_each_item_of<solver::GripForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    const model::Grip& g = model.grips[key.slot];
+    const double omega = 2 * std::numbers::pi * g.frequency, mass = felt_mass(key.slot);
     forces[i].arm.origin = g.target;
     arms_[i] = forces[i].arm.value(problem.position.data());
     // The stiffness gives the largest force at this distance where the body is far away.
     const double distance = norm(arms_[i]);
-    forces[i].stiffness = masses_[i] * std::min(omega * omega, g.max_acceleration / (distance + 1e-12));
-    forces[i].damping = 2 * masses_[i] * omega;
-  }
+    forces[i].stiffness = mass * std::min(omega * omega, g.max_acceleration / (distance + 1e-12));
+    forces[i].damping = 2 * mass * omega;
+  });
 }
 
 // Means over the step, taken where the scheme takes forces and before velocities are damped.
 void Grips::store(Model& model, const IslandNodes&, double h, const Problem& problem) const {
-  const auto& forces = forces_in<solver::GripForce>(problem);
-  for (std::size_t i = 0; i < slots_.size(); ++i)
-    model.grips[slots_[i]].force = forces[i].force(arms_[i], forces[i].arm.value(problem.position.data()),
-                                                   {.h = h, .midpoint = !model.steps_to_end_point()});
+  const auto& forces = problem.pool_of<solver::GripForce>().items;
+  for_each_item_of<solver::GripForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    model.grips[key.slot].force = forces[i].force(arms_[i], forces[i].arm.value(problem.position.data()),
+                                                  {.h = h, .midpoint = !model.steps_to_end_point()});
+  });
 }
 
 void Grips::validate(const Model& model, model::Audit& audit) {

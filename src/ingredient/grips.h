@@ -19,13 +19,14 @@ class Grips : public NoAnswers {
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
-  bool keeps_awake(const Problem&) const { return !slots_.empty(); }
-  bool can_follow() const { return slots_.empty(); }
+  bool keeps_awake(const Problem& problem) const { return !problem.pool_of<solver::GripForce>().items.empty(); }
+  void leave(const IslandMap&) { felt_masses_.clear(); }
 
  private:
-  std::vector<std::uint32_t> slots_;  // of each grip force
-  std::vector<double> masses_;        // kg, that each one feels
-  std::vector<Vec3> arms_;            // of each force, at the start of the step, m
+  double felt_mass(std::uint32_t grip) const;
+
+  std::vector<std::pair<std::uint32_t, double>> felt_masses_;  // of each grip, kg
+  std::vector<Vec3> arms_;                                     // of each force, at the start of the step, m
 };
 
 }  // namespace iota::ingredient

@@ -8,6 +8,7 @@
 #include "solver/diagnosis.h"
 #include "solver/problem.h"
 
+#include <algorithm>
 #include <concepts>
 #include <string>
 #include <tuple>
@@ -22,6 +23,9 @@ using solver::Problem;
 /// itself. Static functions are about the whole model. The others are about one island: an ingredient object belongs to an
 /// island and knows the places of its rows and forces in the island's problem.
 struct NoAnswers {
+  /// Marks our items in the problem; the island numbers its ingredients.
+  std::uint8_t owner = 0;
+
   /// @name The model
   ///@{
 
@@ -43,8 +47,12 @@ struct NoAnswers {
   /// @name Building and stepping
   ///@{
 
-  /// Adds masses, rows and forces to the problem, after those of the ingredients before it in the list.
+  /// Adds the masses, rows and forces of the map's bodies, after those of the ingredients before it in the list. When an
+  /// island follows a change, the map has the bodies at the nodes that changed, and the problem refuses items at other
+  /// nodes, which it has already. An item's key says what it is of: it needs no list that runs along.
   void build(const IslandMap&, Problem&) {}
+  /// Forgets what `build` is about to list again, beyond the items of the problem.
+  void leave(const IslandMap&) {}
   /// Parameters and warm multipliers go into the problem, for a step of h seconds (0: a projection). The problem has its
   /// positions and velocities already.
   void load(const Model&, const IslandNodes&, double /*h*/, Problem&) {}
@@ -60,8 +68,8 @@ struct NoAnswers {
   bool meets_pinned(const Model&) const { return true; }
   /// Kinetic energy in the problem that is not the model's, J.
   double virtual_energy(const Model&) const { return 0; }
-  /// Says what a row of the problem is; empty for a row of another ingredient.
-  std::string name_of_row(const Model&, const IslandNodes&, const solver::RowName&) const { return {}; }
+  /// Says what a row of ours is.
+  std::string name_of_row(const Model&, solver::ItemKey) const { return {}; }
   ///@}
 
   /// @name Points whose motion is prescribed
@@ -80,13 +88,7 @@ struct NoAnswers {
   ///@{
   bool wakes(const Model&, const IslandNodes&) const { return false; }  ///< an island that sleeps
   bool keeps_awake(const Problem&) const { return false; }              ///< an island that would fall asleep
-  void put_to_rest(Model&) const {}
-  ///@}
-
-  /// @name An island that follows when its bodies are hinged otherwise
-  ///@{
-  bool can_follow() const { return true; }
-  void renumber_node(std::uint32_t /*from*/, std::uint32_t /*to*/) {}
+  void put_to_rest(Model&, const Problem&) const {}
   ///@}
 };
 
@@ -110,15 +112,16 @@ template <class I>
 concept IslandIngredient = std::default_initializable<I> && std::movable<I> &&
                            requires(I& own, const I& fixed, Model& model, const Model& seen, const IslandNodes& nodes,
                                     const IslandMap& map, Problem& problem, const Problem& solved,
-                                    const solver::RowName& row, double h, bool moved, std::uint32_t node) {
+                                    solver::ItemKey key, double h, bool moved) {
                              own.build(map, problem);
+                             own.leave(map);
                              own.load(seen, nodes, h, problem);
                              { own.after_step(model, h, problem) } -> std::same_as<double>;
                              fixed.store(model, nodes, h, solved);
                              fixed.refresh(model, nodes, moved);
                              { fixed.meets_pinned(seen) } -> std::same_as<bool>;
                              { fixed.virtual_energy(seen) } -> std::same_as<double>;
-                             { fixed.name_of_row(seen, nodes, row) } -> std::same_as<std::string>;
+                             { fixed.name_of_row(seen, key) } -> std::same_as<std::string>;
                              fixed.accept_assigned(model, nodes);
                              { fixed.prescribes_motion(seen, nodes) } -> std::same_as<bool>;
                              { fixed.velocity_jump(solved, h) } -> std::same_as<double>;
@@ -126,31 +129,21 @@ concept IslandIngredient = std::default_initializable<I> && std::movable<I> &&
                              fixed.impose_positions(problem);
                              { fixed.wakes(seen, nodes) } -> std::same_as<bool>;
                              { fixed.keeps_awake(solved) } -> std::same_as<bool>;
-                             fixed.put_to_rest(model);
-                             { fixed.can_follow() } -> std::same_as<bool>;
-                             own.renumber_node(node, node);
+                             fixed.put_to_rest(model, solved);
                            };
 
-/// The place of a constraint type in the list of the solver's types, as in `RowName::pool`.
-template <class C, class List = solver::ConstraintPools<std::type_identity>>
-inline constexpr std::size_t pool_index = 0;
-template <class C, class... Rest>
-inline constexpr std::size_t pool_index<C, std::tuple<std::type_identity<C>, Rest...>> = 0;
-template <class C, class First, class... Rest>
-inline constexpr std::size_t pool_index<C, std::tuple<First, Rest...>> = 1 + pool_index<C, std::tuple<Rest...>>;
+/// visit(index, key) for the items of one type that an owner has added.
+template <class Item, class Visit>
+void for_each_item_of(std::uint8_t owner, const Problem& problem, Visit visit) {
+  const std::vector<solver::ItemKey>& keys = problem.pool_of<Item>().keys;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (keys[i].owner == owner) visit(i, keys[i]);
+}
 
-/// The items of one type in a problem.
-template <class C>
-std::vector<C>& constraints_in(Problem& problem) {
-  return std::get<solver::ConstraintPool<C>>(problem.constraints).items;
-}
-template <class F>
-std::vector<F>& forces_in(Problem& problem) {
-  return std::get<solver::ForcePool<F>>(problem.forces).items;
-}
-template <class F>
-const std::vector<F>& forces_in(const Problem& problem) {
-  return std::get<solver::ForcePool<F>>(problem.forces).items;
+/// Each number once, in order.
+inline void sort_unique(std::vector<std::uint32_t>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 }  // namespace iota::ingredient

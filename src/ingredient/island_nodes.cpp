@@ -26,13 +26,36 @@ void IslandNodes::build(const Model& model, std::span<const std::uint32_t> artic
         pinned.push_back(model.is_pinned(particle.ring));
       });
     });
-  const IslandMap map(model, *this, node_of_ring);
+  const IslandMap map(model, *this, bodies, node_of_ring);
   carriers.reserve(carried.size());
   for (const std::uint32_t p : carried) carriers.push_back(map.nodes_of(p));
 }
 
-std::string IslandNodes::name(const Model& model, std::size_t node) const {
-  const std::uint32_t particle = model.rings[rings[node]].first;
+void IslandNodes::find_carried_again(const Model& model, std::span<const std::uint32_t> changed,
+                                     const std::vector<std::uint32_t>& node_of_ring) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < carried.size(); ++i)
+    if (!std::binary_search(changed.begin(), changed.end(), model.particles[carried[i]].body))
+      carried[kept] = carried[i], carriers[kept] = carriers[i], ++kept;
+  carried.resize(kept), carriers.resize(kept);
+  const IslandMap map(model, *this, changed, node_of_ring);
+  for (const std::uint32_t body : changed)
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      if (!model.is_unknown(model.particles[p])) carried.push_back(p), carriers.push_back(map.nodes_of(p));
+    });
+}
+
+void IslandNodes::remove(std::uint32_t node) {
+  const auto last = static_cast<std::uint32_t>(rings.size() - 1);
+  for (WeightedNodes& list : carriers)
+    for (auto& [carrier, weight] : list)
+      if (weight != 0 && carrier == last) carrier = node;
+  rings[node] = rings.back(), pinned[node] = pinned.back();
+  rings.pop_back(), pinned.pop_back();
+}
+
+std::string name_of_ring(const Model& model, std::uint32_t ring) {
+  const std::uint32_t particle = model.rings[ring].first;
   return text("particle ", particle, " of body ", model.particles[particle].body);
 }
 

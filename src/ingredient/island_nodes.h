@@ -3,6 +3,7 @@
 
 #include "model/model.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -29,6 +30,11 @@ struct IslandNodes {
 
   /// `node_of_ring` has an entry for each ring of the model, `none` before and for rings outside of the island after.
   void build(const Model&, std::span<const std::uint32_t> articulates, std::vector<std::uint32_t>& node_of_ring);
+  /// Which particles of some bodies (sorted) are carried, and by whom, may have changed.
+  void find_carried_again(const Model&, std::span<const std::uint32_t> bodies,
+                          const std::vector<std::uint32_t>& node_of_ring);
+  /// The last node takes the number of a node that is gone.
+  void remove(std::uint32_t node);
 
   std::size_t size() const { return rings.size(); }
   template <class Visit>
@@ -36,17 +42,28 @@ struct IslandNodes {
     for (const std::uint32_t ring : rings) visit(ring);
     for (const std::uint32_t p : carried) visit(model.particles[p].ring);
   }
-  std::string name(const Model&, std::size_t node) const;  ///< for a sentence
+  template <class Visit>
+  void for_each_pinned(Visit visit) const {  ///< visit(ring)
+    for (std::size_t node = 0; node < size(); ++node)
+      if (pinned[node]) visit(rings[node]);
+  }
 };
 
-/// The nodes of an island by the model's numbers; lives while the island is being built.
+std::string name_of_ring(const Model&, std::uint32_t ring);  ///< for a sentence
+
+/// The nodes of an island by the model's numbers, and the bodies whose items are to be added; lives while the island is
+/// being built or follows a change.
 class IslandMap {
  public:
-  IslandMap(const Model& model, const IslandNodes& nodes, const std::vector<std::uint32_t>& node_of_ring)
-      : model(model), nodes(nodes), node_of_ring_(node_of_ring) {}
+  IslandMap(const Model& model, const IslandNodes& nodes, std::span<const std::uint32_t> bodies,
+            const std::vector<std::uint32_t>& node_of_ring)
+      : model(model), nodes(nodes), bodies(bodies), node_of_ring_(node_of_ring) {}
 
   const Model& model;
   const IslandNodes& nodes;
+  std::span<const std::uint32_t> bodies;
+
+  bool has(std::uint32_t body) const { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); }
 
   /// Of a particle's ring; `none` for one that is outside of the island, or carried.
   std::uint32_t node_of(std::uint32_t particle) const { return node_of_ring_[model.particles[particle].ring]; }

@@ -22,6 +22,25 @@ void load_limit(Row& row, const CoordinateOptions& o, double now, solver::RowLaw
   (at_lower ? law.upper : law.lower) = 0;
 }
 
+/// Each once, in the order of slots.
+std::vector<std::uint32_t> active_joints_of(const IslandMap& map) {
+  std::vector<std::uint32_t> joints;
+  if (map.model.constraints.size() == 0) return joints;
+  for (const std::uint32_t body : map.bodies)
+    map.model.for_each_particle_of(body, [&](std::uint32_t p) {
+      map.model.for_each_constraint_of(p, [&](std::uint32_t c, int place) {
+        if ((place == a_origin || place == b_origin) && map.model.constraints[c].active) joints.push_back(c);
+      });
+    });
+  sort_unique(joints);
+  return joints;
+}
+
+solver::ItemKey key_of(std::uint8_t owner, std::uint32_t joint, RowUse use) {
+  return {owner, {static_cast<std::uint8_t>(use.role), use.coordinate, use.first}, joint};
+}
+RowUse use_of(solver::ItemKey key) { return {static_cast<Role>(key.part[0]), key.part[1], key.part[2]}; }
+
 }  // namespace
 
 RowsOf rows_of(const CoordinateOptions& o) {
@@ -30,17 +49,13 @@ RowsOf rows_of(const CoordinateOptions& o) {
 }
 
 void Joints::build(const IslandMap& map, Problem& problem) {
-  const Model& model = map.model;
-  if (model.constraints.size() == 0) return;
-  std::vector<std::uint32_t> joints;  // each once, in order of slots
-  for (const std::uint32_t body : map.nodes.bodies)
-    model.for_each_particle_of(body, [&](std::uint32_t p) {
-      model.for_each_constraint_of(p, [&](std::uint32_t c, int place) {
-        if (place == a_origin && model.constraints[c].active) joints.push_back(c);
-      });
-    });
-  std::sort(joints.begin(), joints.end());
-  for (const std::uint32_t slot : joints) add(map, slot, problem);
+  for (const std::uint32_t slot : active_joints_of(map)) add(map, slot, problem);
+}
+
+void Joints::leave(const IslandMap& map) {
+  const std::vector<std::uint32_t> again = active_joints_of(map);
+  const auto goes = [&](std::uint32_t slot) { return std::binary_search(again.begin(), again.end(), slot); };
+  std::erase_if(joints_, goes), std::erase_if(pinned_, goes);
 }
 
 void Joints::add(const IslandMap& map, std::uint32_t slot, Problem& problem) {
@@ -72,19 +87,18 @@ void Joints::add(const IslandMap& map, std::uint32_t slot, Problem& problem) {
       if (use.role == Role::hold && (pinned_.empty() || pinned_.back() != slot)) pinned_.push_back(slot);
       return;
     }
-    auto& pool = std::get<solver::ConstraintPool<Row>>(problem.constraints);
-    const auto item = static_cast<std::uint32_t>(pool.items.size());
-    std::get<Uses<Row>>(uses_).list.push_back({slot, item, use});
-    pool.items.push_back(row);
-    if (use.role != Role::hold || info(c.kind).sign != 0) (void)pool.law(item);
+    problem.add(row, key_of(owner, slot, use));
+    if (use.role != Role::hold || info(c.kind).sign != 0) (void)problem.pool_of<Row>().law(0);
   };
   JointRowBuilder<decltype(sink)>(c, model.geometry(slot), places, sink).run();
 }
 
 void Joints::load(const Model& model, const IslandNodes&, double, Problem& problem) {
+  if (joints_.empty()) return;
   problem.for_each_constraint_pool([&]<class C>(solver::ConstraintPool<C>& pool) {
-    for (const auto& [slot, item, use] : std::get<Uses<C>>(uses_).list) {
-      const Constraint& c = model.constraints[slot];
+    for_each_item_of<C>(owner, problem, [&](std::size_t item, solver::ItemKey key) {
+      const Constraint& c = model.constraints[key.slot];
+      const RowUse use = use_of(key);
       C& row = pool.items[item];
       if (use.role == Role::hold) {
         load_held(row, c, use, pool.multiplier(item));
@@ -92,7 +106,7 @@ void Joints::load(const Model& model, const IslandNodes&, double, Problem& probl
         if (kind.form == ConstraintKindInfo::Form::distance) set_length(row, c.length);
         if (kind.sign > 0) *pool.law(item) = {.lower = 0};
         if (kind.sign < 0) *pool.law(item) = {.upper = 0};
-        continue;
+        return;
       }
       const CoordinateOptions& o = c.options[use.coordinate];
       *pool.multiplier(item) = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
@@ -110,21 +124,23 @@ void Joints::load(const Model& model, const IslandNodes&, double, Problem& probl
           law.damping = o.damping;
           set_target(row, now, o.rest);
       }
-    }
+    });
   });
 }
 
 void Joints::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
+  if (joints_.empty()) return;
   for (const std::uint32_t slot : joints_) {
     model.constraints[slot].gap = 0;
     refresh_coordinates(model, slot);
   }
   problem.for_each_constraint_pool([&]<class C>(const solver::ConstraintPool<C>& pool) {
-    for (const auto& [slot, item, use] : std::get<Uses<C>>(uses_).list) {
-      Constraint& c = model.constraints[slot];
+    for_each_item_of<C>(owner, problem, [&](std::size_t item, solver::ItemKey key) {
+      Constraint& c = model.constraints[key.slot];
+      const RowUse use = use_of(key);
       if (use.role != Role::hold) {
         c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1] = *pool.multiplier(item);
-        continue;
+        return;
       }
       save_held(pool.items[item], c, use, pool.multiplier(item));
       double g[C::rows];
@@ -133,7 +149,7 @@ void Joints::store(Model& model, const IslandNodes&, double, const Problem& prob
         const double off = pool.has_laws() ? pool.law(item)[r].violation(g[r]) : std::abs(g[r]);
         if (!(off <= c.gap)) c.gap = off;
       }
-    }
+    });
   });
   for (const std::uint32_t slot : pinned_) {
     Constraint& c = model.constraints[slot];
@@ -152,21 +168,8 @@ bool Joints::meets_pinned(const Model& model) const {
   });
 }
 
-std::string Joints::name_of_row(const Model& model, const IslandNodes&, const solver::RowName& row) const {
-  std::uint32_t found = none;
-  std::size_t pool = 0;
-  std::apply(
-      [&](const auto&... uses) {
-        const auto look = [&](const auto& list) {
-          if (pool++ != row.pool) return;
-          for (const auto& own : list)
-            if (own.item == row.item) found = own.joint;
-        };
-        (look(uses.list), ...);
-      },
-      uses_);
-  if (found == none) return {};
-  return text("the ", info(model.constraints[found].kind).name, " constraint ", found);
+std::string Joints::name_of_row(const Model& model, solver::ItemKey key) const {
+  return text("the ", info(model.constraints[key.slot].kind).name, " constraint ", key.slot);
 }
 
 void Joints::validate(const Model& model, model::Audit& audit) {

@@ -21,24 +21,16 @@ class Joints : public NoAnswers {
   static bool holds(const Model&, std::uint32_t particle);
 
   void build(const IslandMap&, Problem&);
+  void leave(const IslandMap&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   void refresh(Model&, const IslandNodes&, bool moved) const;
   bool meets_pinned(const Model&) const;
-  std::string name_of_row(const Model&, const IslandNodes&, const solver::RowName&) const;
+  std::string name_of_row(const Model&, solver::ItemKey) const;
 
  private:
   void add(const IslandMap&, std::uint32_t joint, Problem&);
 
-  template <class C>
-  struct Uses {
-    struct Row {
-      std::uint32_t joint, item;
-      RowUse use;
-    };
-    std::vector<Row> list;
-  };
-  solver::ConstraintPools<Uses> uses_;
   std::vector<std::uint32_t> joints_;
   std::vector<std::uint32_t> pinned_;  // those with rows whose nodes are all pinned: these rows are left out
 };

@@ -15,9 +15,9 @@ using Term = std::pair<std::uint32_t, double>;  // node, weight
 /// Adds the kinetic energy 1/2 mass |sum_i w_i v_i|^2.
 void add_mass(std::span<const Term> terms, double mass, Problem& problem) {
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    problem.mass[terms[i].first] += mass * terms[i].second * terms[i].second;
+    problem.add_mass(terms[i].first, mass * terms[i].second * terms[i].second);
     for (std::size_t j = i + 1; j < terms.size(); ++j)
-      problem.mass_couplings.push_back({terms[i].first, terms[j].first, mass * terms[i].second * terms[j].second});
+      problem.couple_masses(terms[i].first, terms[j].first, mass * terms[i].second * terms[j].second);
   }
 }
 
@@ -52,24 +52,31 @@ double virtual_mass(const Model& model, std::uint32_t marker) {
 
 void Masses::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
-  for (const std::uint32_t body : map.nodes.bodies) {
-    const double damping = model.bodies[body].damping;
-    if (!(damping > 0)) {
+  auto& damping = problem.damping;
+  for (const std::uint32_t body : map.bodies) {
+    const double own = model.bodies[body].damping;
+    if (!(own > 0)) {
       add_body(map, body, problem);
       continue;
     }
     // Bodies damp a node in the proportion of the masses that they give it.
-    node_damping_.resize(map.nodes.size());
+    damping.resize(problem.size());
     const auto for_each_node = [&](auto visit) {
       model.for_each_particle_of(body, [&](std::uint32_t p) {
-        if (model.is_unknown(model.particles[p])) visit(map.node_of(p));
+        if (!model.is_unknown(model.particles[p])) return;
+        if (const std::uint32_t node = map.node_of(p); problem.is_open(node)) visit(node);
       });
     };
-    for_each_node([&](std::uint32_t node) { node_damping_[node] -= damping * problem.mass[node]; });
+    for_each_node([&](std::uint32_t node) { damping[node] -= own * problem.mass[node]; });
     add_body(map, body, problem);
-    for_each_node([&](std::uint32_t node) { node_damping_[node] += damping * problem.mass[node]; });
+    for_each_node([&](std::uint32_t node) { damping[node] += own * problem.mass[node]; });
   }
-  for (std::size_t i = 0; i < node_damping_.size(); ++i) node_damping_[i] /= problem.mass[i];
+  for (std::uint32_t node = 0; node < damping.size(); ++node)
+    if (problem.is_open(node)) damping[node] /= problem.mass[node];
+}
+
+void Masses::leave(const IslandMap& map) {
+  std::erase_if(virtual_, [&](std::uint32_t marker) { return map.has(map.model.particles[marker].body); });
 }
 
 void Masses::add_body(const IslandMap& map, std::uint32_t body, Problem& problem) {
@@ -107,10 +114,11 @@ double Masses::virtual_energy(const Model& model) const {
 }
 
 double Masses::after_step(Model& model, double h, Problem& problem) {
-  if (node_damping_.empty() && !(model.damping > 0)) return 0;
+  const auto& damping = problem.damping;
+  if (damping.empty() && !(model.damping > 0)) return 0;
   const double before = problem.kinetic_energy();
   for (std::size_t i = 0; i < problem.size(); ++i)
-    problem.velocity[i] *= std::exp(-(model.damping + (node_damping_.empty() ? 0 : node_damping_[i])) * h);
+    problem.velocity[i] *= std::exp(-(model.damping + (damping.empty() ? 0 : damping[i])) * h);
   return before - problem.kinetic_energy();
 }
 

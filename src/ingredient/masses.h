@@ -20,13 +20,12 @@ class Masses : public NoAnswers {
   void build(const IslandMap&, Problem&);
   double after_step(Model&, double h, Problem&);
   double virtual_energy(const Model&) const;
-  bool can_follow() const { return node_damping_.empty(); }
+  void leave(const IslandMap&);
 
  private:
   void add_body(const IslandMap&, std::uint32_t body, Problem&);
   void add_virtual_mass(const IslandMap&, std::uint32_t marker, Problem&);
 
-  std::vector<double> node_damping_;    // 1/s, without the system's; empty: none
   std::vector<std::uint32_t> virtual_;  // markers with a virtual mass
 };
 

@@ -7,100 +7,101 @@ namespace iota::ingredient {
 
 namespace {
 
-using Pool = solver::ConstraintPool<solver::AffineConstraint>;
-
 Vec3 velocity_of(const solver::AffineConstraint& nail, double h) { return (1 / h) * (nail.target - nail.target_start); }
+
+/// visit(nail, node) for the nails of a problem.
+template <class SomeProblem, class Visit>
+void for_each_nail(std::uint8_t owner, SomeProblem& problem, Visit visit) {
+  auto& affines = problem.template pool_of<solver::AffineConstraint>();
+  for_each_item_of<solver::AffineConstraint>(
+      owner, problem, [&](std::size_t i, solver::ItemKey) { visit(affines.items[i], affines.items[i].nodes[0]); });
+}
 
 }  // namespace
 
 void Nails::build(const IslandMap& map, Problem& problem) {
-  auto& affines = constraints_in<solver::AffineConstraint>(problem);
-  first_ = static_cast<std::uint32_t>(affines.size());
   for (std::uint32_t node = 0; node < map.nodes.size(); ++node) {
     if (!map.is_pinned(node)) continue;
     solver::AffineConstraint nail;
     nail.nodes[0] = node, nail.weights[0] = 1, nail.count = 1;
-    affines.push_back(nail);
-    nodes_.push_back(node);
+    problem.add(nail, {owner, {}, map.nodes.rings[node]});
   }
 }
 
-void Nails::load(const Model& model, const IslandNodes& nodes, double h, Problem& problem) {
-  auto& affines = std::get<Pool>(problem.constraints);
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const std::uint32_t ring = nodes.rings[nodes_[i]];
-    const model::Nail& from = model.nails.at(ring);
-    auto& nail = affines.items[first_ + i];
+void Nails::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
+  auto& affines = problem.pool_of<solver::AffineConstraint>();
+  for_each_item_of<solver::AffineConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    const model::Nail& from = model.nails.at(key.slot);
+    auto& nail = affines.items[i];
     nail.target = from.position;
-    nail.target_start = model.rings[ring].nailed && h > 0 ? from.position_before : nail.target;
-    double* const l = affines.multiplier(first_ + i);
+    nail.target_start = model.rings[key.slot].nailed && h > 0 ? from.position_before : nail.target;
+    double* const l = affines.multiplier(i);
     l[0] = from.multiplier.x, l[1] = from.multiplier.y, l[2] = from.multiplier.z;
-  }
+  });
 }
 
-void Nails::store(Model& model, const IslandNodes& nodes, double, const Problem& problem) const {
-  const auto& affines = std::get<Pool>(problem.constraints);
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    model::Nail& nail = model.nails.at(nodes.rings[nodes_[i]]);
-    const double* const l = affines.multiplier(first_ + i);
+void Nails::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
+  const auto& affines = problem.pool_of<solver::AffineConstraint>();
+  for_each_item_of<solver::AffineConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    model::Nail& nail = model.nails.at(key.slot);
+    const double* const l = affines.multiplier(i);
     nail.multiplier = {l[0], l[1], l[2]};
     nail.position_before = nail.position;
-  }
+  });
 }
 
 void Nails::refresh(Model& model, const IslandNodes& nodes, bool moved) const {
   if (!moved) return;
-  for (const std::uint32_t node : nodes_) {
-    model::Nail& nail = model.nails.at(nodes.rings[node]);
+  nodes.for_each_pinned([&](std::uint32_t ring) {
+    model::Nail& nail = model.nails.at(ring);
     nail.position_before = nail.position;
-  }
+  });
 }
 
 // A static body's rings are nailed where the body was put. Nailed where they are at each step, they would creep under
 // their load.
 void Nails::accept_assigned(Model& model, const IslandNodes& nodes) const {
   constexpr double creep = 1e-7;  // m; a ring that is farther away was moved by the script
-  for (const std::uint32_t node : nodes_) {
-    const model::Ring& ring = model.rings[nodes.rings[node]];
-    model::Nail& nail = model.nails.at(nodes.rings[node]);
+  nodes.for_each_pinned([&](std::uint32_t slot) {
+    const model::Ring& ring = model.rings[slot];
+    model::Nail& nail = model.nails.at(slot);
     if (!ring.nailed && norm(ring.position - nail.position) > creep)
       nail.position = nail.position_before = ring.position;
-  }
-}
-
-bool Nails::prescribes_motion(const Model& model, const IslandNodes& nodes) const {
-  return std::any_of(nodes_.begin(), nodes_.end(), [&](std::uint32_t node) {
-    const model::Ring& ring = model.rings[nodes.rings[node]];
-    const model::Nail& nail = model.nails.at(nodes.rings[node]);
-    return (ring.nailed && nail.position != nail.position_before) || ring.velocity != Vec3{};
   });
 }
 
+bool Nails::prescribes_motion(const Model& model, const IslandNodes& nodes) const {
+  bool any = false;
+  nodes.for_each_pinned([&](std::uint32_t slot) {
+    const model::Ring& ring = model.rings[slot];
+    const model::Nail& nail = model.nails.at(slot);
+    any = any || (ring.nailed && nail.position != nail.position_before) || ring.velocity != Vec3{};
+  });
+  return any;
+}
+
 double Nails::velocity_jump(const Problem& problem, double h) const {
-  const auto& affines = std::get<Pool>(problem.constraints).items;
   double largest = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i)
-    largest = std::max(largest, norm(velocity_of(affines[first_ + i], h) - problem.velocity[nodes_[i]]));
+  for_each_nail(owner, problem, [&](const solver::AffineConstraint& nail, std::uint32_t node) {
+    largest = std::max(largest, norm(velocity_of(nail, h) - problem.velocity[node]));
+  });
   return largest;
 }
 
 void Nails::impose_velocities(Problem& problem, double h) const {
-  const auto& affines = std::get<Pool>(problem.constraints).items;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) problem.velocity[nodes_[i]] = velocity_of(affines[first_ + i], h);
+  for_each_nail(owner, problem, [&](const solver::AffineConstraint& nail, std::uint32_t node) {
+    problem.velocity[node] = velocity_of(nail, h);
+  });
 }
 
 void Nails::impose_positions(Problem& problem) const {
-  const auto& affines = std::get<Pool>(problem.constraints).items;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) problem.position[nodes_[i]] = affines[first_ + i].target;
+  for_each_nail(owner, problem, [&](const solver::AffineConstraint& nail, std::uint32_t node) {
+    problem.position[node] = nail.target;
+  });
 }
 
-std::string Nails::name_of_row(const Model& model, const IslandNodes& nodes, const solver::RowName& row) const {
-  if (row.pool != pool_index<solver::AffineConstraint> || row.item - first_ >= nodes_.size()) return {};
-  return "what pins " + nodes.name(model, nodes_[row.item - first_]);
-}
-
-void Nails::renumber_node(std::uint32_t from, std::uint32_t to) {
-  std::replace(nodes_.begin(), nodes_.end(), from, to);
+std::string Nails::name_of_row(const Model& model, solver::ItemKey key) const {
+  return "what pins " + name_of_ring(model, key.slot);
 }
 
 void Nails::validate(const Model& model, model::Audit& audit) {

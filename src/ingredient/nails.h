@@ -20,7 +20,7 @@ class Nails : public NoAnswers {
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   void refresh(Model&, const IslandNodes&, bool moved) const;
-  std::string name_of_row(const Model&, const IslandNodes&, const solver::RowName&) const;
+  std::string name_of_row(const Model&, solver::ItemKey) const;
 
   void accept_assigned(Model&, const IslandNodes&) const;
   bool prescribes_motion(const Model&, const IslandNodes&) const;
@@ -29,11 +29,6 @@ class Nails : public NoAnswers {
   void impose_positions(Problem&) const;
 
   bool wakes(const Model& model, const IslandNodes& nodes) const { return prescribes_motion(model, nodes); }
-  void renumber_node(std::uint32_t from, std::uint32_t to);
-
- private:
-  std::uint32_t first_ = 0;           // of our affine constraints
-  std::vector<std::uint32_t> nodes_;  // of each of them
 };
 
 }  // namespace iota::ingredient

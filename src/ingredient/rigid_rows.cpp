@@ -11,11 +11,10 @@ namespace iota::ingredient {
 
 void RigidRows::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
-  auto& distances = constraints_in<solver::DistanceConstraint>(problem);
   std::size_t count = 0;
-  for (const std::uint32_t body : map.nodes.bodies) count += model.bodies[body].row_count;
-  rows_.reserve(count), distances.reserve(count);
-  for (const std::uint32_t slot : map.nodes.bodies) {
+  for (const std::uint32_t body : map.bodies) count += model.bodies[body].row_count;
+  problem.pool_of<solver::DistanceConstraint>().reserve(count);
+  for (const std::uint32_t slot : map.bodies) {
     const model::Body& body = model.bodies[slot];
     for (std::uint8_t row = 0; row < body.row_count; ++row) {
       const auto [i, j] = model::basis_pairs[row];
@@ -25,21 +24,27 @@ void RigidRows::build(const IslandMap& map, Problem& problem) {
         continue;
       }
       const double length = model.row(slot, row).length;
-      distances.push_back({{a, b}, length, length});
-      rows_.push_back({slot, row});
+      problem.add(solver::DistanceConstraint{{a, b}, length, length}, {owner, {row}, slot});
     }
   }
 }
 
+void RigidRows::leave(const IslandMap& map) {
+  std::erase_if(pinned_, [&](const Row& r) { return map.has(r.body); });
+}
+
 void RigidRows::load(const Model& model, const IslandNodes&, double, Problem& problem) {
-  auto& multipliers = std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem.constraints).multipliers;
-  for (std::size_t i = 0; i < rows_.size(); ++i) multipliers[i] = model.row(rows_[i].body, rows_[i].row).multiplier;
+  auto& multipliers = problem.pool_of<solver::DistanceConstraint>().multipliers;
+  for_each_item_of<solver::DistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    multipliers[i] = model.row(key.slot, key.part[0]).multiplier;
+  });
 }
 
 void RigidRows::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
-  const auto& multipliers =
-      std::get<solver::ConstraintPool<solver::DistanceConstraint>>(problem.constraints).multipliers;
-  for (std::size_t i = 0; i < rows_.size(); ++i) model.row(rows_[i].body, rows_[i].row).multiplier = multipliers[i];
+  const auto& multipliers = problem.pool_of<solver::DistanceConstraint>().multipliers;
+  for_each_item_of<solver::DistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    model.row(key.slot, key.part[0]).multiplier = multipliers[i];
+  });
 }
 
 bool RigidRows::meets_pinned(const Model& model) const {
@@ -53,9 +58,8 @@ bool RigidRows::meets_pinned(const Model& model) const {
   });
 }
 
-std::string RigidRows::name_of_row(const Model&, const IslandNodes&, const solver::RowName& row) const {
-  if (row.pool != pool_index<solver::DistanceConstraint> || row.item >= rows_.size()) return {};
-  return text("the rigidity of body ", rows_[row.item].body);
+std::string RigidRows::name_of_row(const Model&, solver::ItemKey key) const {
+  return text("the rigidity of body ", key.slot);
 }
 
 void RigidRows::validate(const Model& model, model::Audit& audit) {

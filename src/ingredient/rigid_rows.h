@@ -16,22 +16,18 @@ class RigidRows : public NoAnswers {
   static double worst_gap(const Model&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
 
-  struct Row {
-    std::uint32_t body;
-    std::uint8_t row;  ///< which of the body's
-  };
-
   void build(const IslandMap&, Problem&);
+  void leave(const IslandMap&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   bool meets_pinned(const Model&) const;
-  std::string name_of_row(const Model&, const IslandNodes&, const solver::RowName&) const;
-
-  /// In the order of the problem's distance constraints, of which they are the first.
-  std::span<const Row> rows() const { return rows_; }
+  std::string name_of_row(const Model&, solver::ItemKey) const;
 
  private:
-  std::vector<Row> rows_;
+  struct Row {
+    std::uint32_t body;
+    std::uint8_t row;  // which of the body's
+  };
   std::vector<Row> pinned_;  // whose points are both pinned: left out of the problem
 };
 

@@ -21,11 +21,8 @@ class RodSpins : public NoAnswers {
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   double after_step(Model&, double h, Problem&);
-  bool keeps_awake(const Problem&) const { return !bodies_.empty(); }
-  void put_to_rest(Model&) const;
-
- private:
-  std::vector<std::uint32_t> bodies_;  // of each gyroscopic force
+  bool keeps_awake(const Problem& problem) const { return !problem.pool_of<solver::GyroscopicForce>().items.empty(); }
+  void put_to_rest(Model&, const Problem&) const;
 };
 
 }  // namespace iota::ingredient

@@ -10,8 +10,6 @@ namespace iota::ingredient {
 
 namespace {
 
-using Pool = solver::ConstraintPool<solver::AffineConstraint>;
-
 /// What to measure a particle's gap by, m.
 double reference_length(const Model& model, std::uint32_t body) {
   const double extent = model.extent(body);
@@ -22,9 +20,7 @@ double reference_length(const Model& model, std::uint32_t body) {
 
 void Ties::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
-  auto& affines = constraints_in<solver::AffineConstraint>(problem);
-  first_ = static_cast<std::uint32_t>(affines.size());
-  for (const std::uint32_t slot : map.nodes.bodies) {
+  for (const std::uint32_t slot : map.bodies) {
     const model::Body& body = model.bodies[slot];
     if (body.count == body.rank) continue;
     const double reference = reference_length(model, slot);
@@ -46,22 +42,27 @@ void Ties::build(const IslandMap& map, Problem& problem) {
         if (is_free(body.kind)) pinned_.push_back(p);
         return;
       }
-      affines.push_back(tie);
-      tied_.push_back(p);
+      problem.add(tie, {owner, {}, p});
     });
   }
 }
 
+void Ties::leave(const IslandMap& map) {
+  std::erase_if(pinned_, [&](std::uint32_t p) { return map.has(map.model.particles[p].body); });
+}
+
 void Ties::load(const Model& model, const IslandNodes&, double, Problem& problem) {
-  auto& affines = std::get<Pool>(problem.constraints);
-  for (std::size_t i = 0; i < tied_.size(); ++i)
-    std::copy_n(model.ties.at(tied_[i]).multiplier.begin(), 3, affines.multiplier(first_ + i));
+  auto& affines = problem.pool_of<solver::AffineConstraint>();
+  for_each_item_of<solver::AffineConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    std::copy_n(model.ties.at(key.slot).multiplier.begin(), 3, affines.multiplier(i));
+  });
 }
 
 void Ties::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
-  const auto& affines = std::get<Pool>(problem.constraints);
-  for (std::size_t i = 0; i < tied_.size(); ++i)
-    std::copy_n(affines.multiplier(first_ + i), 3, model.ties.at(tied_[i]).multiplier.begin());
+  const auto& affines = problem.pool_of<solver::AffineConstraint>();
+  for_each_item_of<solver::AffineConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    std::copy_n(affines.multiplier(i), 3, model.ties.at(key.slot).multiplier.begin());
+  });
 }
 
 bool Ties::meets_pinned(const Model& model) const {
@@ -72,10 +73,8 @@ bool Ties::meets_pinned(const Model& model) const {
   });
 }
 
-std::string Ties::name_of_row(const Model& model, const IslandNodes&, const solver::RowName& row) const {
-  if (row.pool != pool_index<solver::AffineConstraint> || row.item - first_ >= tied_.size()) return {};
-  const std::uint32_t particle = tied_[row.item - first_];
-  return text("the place of particle ", particle, " in body ", model.particles[particle].body);
+std::string Ties::name_of_row(const Model& model, solver::ItemKey key) const {
+  return text("the place of particle ", key.slot, " in body ", model.particles[key.slot].body);
 }
 
 void Ties::validate(const Model& model, model::Audit& audit) {

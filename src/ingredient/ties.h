@@ -17,14 +17,13 @@ class Ties : public NoAnswers {
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
 
   void build(const IslandMap&, Problem&);
+  void leave(const IslandMap&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   bool meets_pinned(const Model&) const;
-  std::string name_of_row(const Model&, const IslandNodes&, const solver::RowName&) const;
+  std::string name_of_row(const Model&, solver::ItemKey) const;
 
  private:
-  std::uint32_t first_ = 0;            // of our affine constraints
-  std::vector<std::uint32_t> tied_;    // particle of each of them
   std::vector<std::uint32_t> pinned_;  // particles none of whose points can move: left out of the problem
 };
 

@@ -49,7 +49,7 @@ std::uint32_t Model::add_closing(const Closing& closing) {
     const std::uint32_t particle = particle_at(closing, end);
     link(closings, references.make(particle).first_closing, slot, end);
     ++particles[particle].uses;
-    touch_particle(particle);
+    touch_locally(particles[particle].body);
   }
   return slot;
 }
@@ -77,7 +77,7 @@ void Model::remove_closing(std::uint32_t slot) {
     const std::uint32_t particle = particle_at(closings[slot], end);
     unlink(closings, references.at(particle).first_closing, slot, end);
     --particles[particle].uses;
-    touch_particle(particle);
+    touch_locally(particles[particle].body);
   }
   closings.destroy(slot);
 }

@@ -14,21 +14,24 @@ void Model::touch(std::uint32_t articulate, Touch what) {
   touch_of_[articulate] = std::max(touch_of_[articulate], what);
 }
 
-void Model::relink(std::uint32_t ring) {
-  constexpr std::size_t most = 64;  // more changes than this: islands are built anew
-  for_each_in_ring(ring, [&](std::uint32_t p) {
-    const bool few = relinked_.size() < most;
-    if (few) relinked_.push_back(particles[p].body);
-    touch(bodies[particles[p].body].articulate, few ? hinges_only : anything);
-  });
+void Model::touch_locally(std::uint32_t body) {
+  constexpr std::size_t most = 1024;  // more changes than this make islands be built anew
+  const bool few = local_change_.bodies.size() < most;
+  if (few) local_change_.bodies.push_back(body);
+  touch(bodies[body].articulate, few ? locally : anything);
+}
+
+void Model::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
+  for_each_in_ring(ring, [&](std::uint32_t p) { touch_locally(particles[p].body); });
+  local_change_.rings.push_back({ring, split_from});
 }
 
 void Model::take_touched(Touched& taken) {
   taken.articulates.swap(touched_);
-  taken.relinked.swap(relinked_);
-  touched_.clear(), relinked_.clear(), taken.only_relinked.clear();
+  std::swap(taken.local, local_change_);
+  touched_.clear(), local_change_.bodies.clear(), local_change_.rings.clear(), taken.only_locally.clear();
   for (const std::uint32_t slot : taken.articulates) {
-    taken.only_relinked.push_back(touch_of_[slot] == hinges_only);
+    taken.only_locally.push_back(touch_of_[slot] == locally);
     touch_of_[slot] = untouched;
   }
 }
@@ -37,7 +40,7 @@ void Model::take_touched(Touched& taken) {
 void Model::join_articulates(std::uint32_t a, std::uint32_t b) {
   if (a == b) return;
   if (articulates[a].count < articulates[b].count) std::swap(a, b);
-  touch(a, hinges_only), touch(b, hinges_only);
+  touch(a, locally), touch(b, locally);
   touch_of_[a] = std::max(touch_of_[a], touch_of_[b]);
   Articulate &into = articulates[a], &from = articulates[b];
   for_each_body_of(b, [&](std::uint32_t body) { bodies[body].articulate = a; });
@@ -86,7 +89,7 @@ bool Model::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   const std::uint32_t own = articulates.create({}).slot;
   const std::uint32_t whole = bodies[body_a].articulate;
   articulates[own].jolted = articulates[whole].jolted;
-  touch(whole, hinges_only), touch(own, hinges_only);
+  touch(whole, locally), touch(own, locally);
   touch_of_[own] = std::max(touch_of_[own], touch_of_[whole]);
   for (const std::uint32_t body : floods_[which]) {
     leave_articulate(body);

@@ -335,15 +335,25 @@ class Model {
   void touch(std::uint32_t articulate) { touch(articulate, anything); }
   void touch_body(std::uint32_t body) { touch(bodies[body].articulate); }
   void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
-  /// Notes that the bodies of a ring are about to be hinged otherwise, or have been, and nothing else: a problem that
-  /// holds them can follow.
-  void relink(std::uint32_t ring);
+  /// Notes a change that concerns one body and the bodies at its rings only: a problem that holds them can follow.
+  void touch_locally(std::uint32_t body);
+  /// The same for the bodies at a ring, which are about to be hinged otherwise or have been. `split_from`: the ring where a
+  /// new ring's particles were before.
+  void touch_ring(std::uint32_t ring, std::uint32_t split_from = none);
   bool is_touched() const { return !touched_.empty(); }
+  /// Bodies and rings that have changed; some are listed more than once, some are gone.
+  struct LocalChange {
+    struct ChangedRing {
+      std::uint32_t ring, split_from;
+    };
+    std::vector<std::uint32_t> bodies;
+    std::vector<ChangedRing> rings;
+  };
   /// What has changed since the last call.
   struct Touched {
-    std::vector<std::uint32_t> articulates;   ///< slots, destroyed ones too, each once
-    std::vector<std::uint8_t> only_relinked;  ///< of each of those: no more than hinges and membership changed
-    std::vector<std::uint32_t> relinked;      ///< bodies, some more than once, some gone
+    std::vector<std::uint32_t> articulates;  ///< slots, destroyed ones too, each once
+    std::vector<std::uint8_t> only_locally;  ///< of each of those: nothing changed but membership and what `local` has
+    LocalChange local;
   };
   void take_touched(Touched&);
   enum class Ties { all, constraints };
@@ -536,11 +546,12 @@ class Model {
   };
   Marks body_marks_;
   std::array<std::vector<std::uint32_t>, 2> floods_;  ///< of split_articulate
-  enum Touch : std::uint8_t { untouched, hinges_only, anything };
+  enum Touch : std::uint8_t { untouched, locally, anything };
   void touch(std::uint32_t articulate, Touch);
   void leave_articulate(std::uint32_t body);
   void enter_articulate(std::uint32_t body, std::uint32_t articulate);
-  std::vector<std::uint32_t> touched_, relinked_;
+  std::vector<std::uint32_t> touched_;
+  LocalChange local_change_;
   std::vector<Touch> touch_of_;  ///< of each articulate
 
   /// The last 65 536 retirements, oldest forgotten first.

@@ -274,9 +274,10 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
   require_no_shared_body(model, ring_p, ring_q, none);
   require_can_meet(model, p, q);
   if (const std::uint32_t closing = closing_between(model, p, q); closing != none) model.remove_closing(closing);
+  model.touch_ring(ring_q);
   const Edit edit = merge_rings(model, ring_p, ring_q);
   model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
-  model.relink(ring_p);
+  model.touch_ring(ring_p);
   return edit;
 }
 
@@ -332,9 +333,10 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     report.changed = true;
     Ring own;
     own.position = model.rings[ring].position, own.velocity = model.rings[ring].velocity;
-    model.relink(ring);
+    model.touch_ring(ring);
     model.take_from_ring(q);
     model.add_to_ring(q, model.rings.create(own).slot);
+    model.touch_ring(model.particles[q].ring, ring);
     split_where_apart(model, std::array{body, model.particles[q].body});
     return {};
   }

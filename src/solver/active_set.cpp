@@ -13,8 +13,8 @@ namespace {
 
 constexpr double closed_gap = 1e-6;  // relative: below it a bounded row is met
 
-/// Whether velocities differ from what a hold row wants by more than a bent coordinate makes of a step. A motor that has
-/// just been switched on would else be thrown back and forth about its speed for ever by the mid-point rule.
+/// Whether velocities differ from the rate of a hold row by more than the curvature of its coordinate explains within a
+/// step. Otherwise the mid-point rule makes a motor that was just switched on oscillate around its target speed.
 template <class C>
 bool is_off_speed(const Problem& problem, const C& c, int row, double rate, const Stage& stage) {
   constexpr double bent = 1e-3, still = 1e-9;

@@ -27,13 +27,11 @@ enum class Hessian { exact, clamped, none };
 /// row and coupling lies in the matrix.
 class Assembly {
  public:
-  /// Analyzes the structure of the problem; call again whenever nodes, constraints or forces were added or removed.
+  /// Analyzes the structure of the problem; call again after nodes, constraints or forces were added or removed ...
   void compile(Problem&);
-  /// Does as `compile` after nodes were added at the end and rows between them rewired, for a fraction of the time where
-  /// that is possible. `added`: the new nodes and an old neighbor in the order each; `removed`: nodes that nothing
-  /// refers to any more, which go; `touched`: all nodes that gained or lost a coupling, those included.
-  void relink(Problem&, std::span<const std::array<std::uint32_t, 2>> added, std::span<const std::uint32_t> removed,
-              std::span<const std::uint32_t> touched);
+  /// ... or, if they were added and removed by the problem's own functions, keep up with that: removes the nodes that are
+  /// to go and finds new places for what is near the changes, for a fraction of the time.
+  void follow(Problem&);
 
   /// At positions x = x0 + h v0 + u and the pools' multipliers; by unknown in `residuals()`.
   template <bool Midpoint>
@@ -64,13 +62,13 @@ class Assembly {
   BlockFactor& factor() { return factor_; }
 
  private:
-  bool try_relink(Problem&, std::span<const std::array<std::uint32_t, 2>> added, std::span<const std::uint32_t> removed,
-                  std::span<const std::uint32_t> touched);
   template <class C>
-  void set_slots(ConstraintPool<C>&, std::size_t item, const BlockPattern::ConstraintSlot&) const;
+  void set_slots(ConstraintPool<C>&, std::size_t item, std::uint32_t unknown) const;
   template <class F>
   void set_slots(ForcePool<F>&, std::size_t item) const;
-  void set_node_places(const Problem&);
+  template <class IsDue>
+  void place_items(Problem&, const CouplingGraph&, IsDue);
+  void place_nodes(const Problem&);
 
   template <bool Midpoint>
   void add_momentum(const Problem&, const Stage&, const Vec3* x, const Vec3* u);

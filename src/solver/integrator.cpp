@@ -21,9 +21,8 @@ void Integrator::compile(Problem& problem) {
   make_room(problem);
 }
 
-void Integrator::relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
-                        std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched) {
-  newton_.relink(problem, added, removed, touched);
+void Integrator::follow(Problem& problem) {
+  newton_.follow(problem);
   make_room(problem);
 }
 
@@ -33,7 +32,7 @@ void Integrator::make_room(const Problem& problem) {
   multipliers_saved_.resize(problem.multiplier_count());
 }
 
-// Summed when they are first asked for: the mid-point scheme does without.
+// Summed when they are first asked for: the mid-point scheme does not need them.
 std::span<const double> Integrator::lumped_masses(const Problem& problem) {
   if (lumped_mass_.empty()) {
     lumped_mass_.assign(problem.mass.begin(), problem.mass.end());
@@ -42,10 +41,11 @@ std::span<const double> Integrator::lumped_masses(const Problem& problem) {
   return lumped_mass_;
 }
 
-// End point: where the forces of the last step would carry the points, x0 + h v0 + (f - G0' lambda) / (inertia m), which
-// saves half an iteration to one over x0 + h v0. Coupled masses are lumped: exact for neighbors that accelerate alike.
-// Mid-point: the same would take up to twice the iterations, since multipliers ring from step to step; from x0 + h v0 two
-// sweeps bring lengths back.
+// End point: the positions to which the forces of the last step would carry the points,
+//   x0 + h v0 + (f - G0' lambda) / (inertia m).
+// This saves half an iteration to one over x0 + h v0. Coupled masses are lumped, which is exact for neighbors with equal
+// accelerations. Mid-point: multipliers oscillate from step to step, so the same guess would take up to twice the
+// iterations; instead two sweeps over x0 + h v0 restore the lengths.
 void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   const std::size_t n = problem.size();
   const std::span<Vec3> guess = newton_.displacement();
@@ -78,7 +78,7 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
       for (std::uint32_t i = 0; i < f.arm.count; ++i) guess[f.arm.nodes[i]] += f.arm.weights[i] * force;
     }
   });
-  // A pull that would fling points away (a stiff spring, an outdated multiplier) is no help.
+  // A stiff spring or an outdated multiplier may throw points far away: then free flight is the better guess.
   const double limit = newton_.reference_length() * newton_.reference_length();
   double farthest = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -88,8 +88,8 @@ void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   if (!(farthest < limit)) std::fill(guess.begin(), guess.end(), Vec3{});
 }
 
-// Gauss-Seidel over lengths, as SHAKE does it (Ryckaert, Ciccotti, Berendsen 1977), along the gradients of the mid-point
-// rule: a body that spins freely is then where it will be, and Newton starts with what joins bodies.
+// Gauss-Seidel over lengths as in SHAKE (Ryckaert, Ciccotti, Berendsen 1977), along the gradients of the mid-point rule.
+// A body that spins freely is then at its solution, and Newton's method only has to find the forces between bodies.
 void Integrator::sweep_lengths(const Problem& problem, const Stage& stage) {
   constexpr int sweeps = 2;
   const std::span<Vec3> x = newton_.room(), guess = newton_.displacement();
@@ -158,14 +158,14 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
     if constexpr (TrackingConstraint<C>)
       for (C& c : pool.items) c.track(problem.position.data(), stage.fraction);
   });
-  take_stock(problem, stage.fraction);
+  measure_energy(problem, stage.fraction);
   report.external_work += work;
   report.dissipated += before + work - energy_;
   ++report.substeps;
 }
 
-// What moving targets feed in: lambda dg/dt. A motor that does not keep up is a drive behind a slipping clutch: what slips
-// away is dissipated.
+// The work of moving targets, lambda dg/dt, J. A motor that does not reach its speed counts as a drive behind a slipping
+// clutch: the difference is dissipated.
 double Integrator::work_of_drives(const Problem& problem, const Stage& stage) const {
   double work = 0;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
@@ -185,14 +185,14 @@ double Integrator::work_of_drives(const Problem& problem, const Stage& stage) co
   return work;
 }
 
-void Integrator::take_stock(const Problem& problem, double fraction) {
+void Integrator::measure_energy(const Problem& problem, double fraction) {
   kinetic_ = problem.kinetic_energy();
   energy_ = kinetic_ + problem.potential_energy(problem.position.data()) +
             problem.row_energy(problem.position.data(), fraction);
 }
 
-// The mid-point rule only fixes the mean of two successive multipliers; the mean is the better start for the next solve
-// and the reaction that a user wants to read.
+// The mid-point rule determines only the mean of two successive multipliers. The mean is the better start of the next
+// solve, and the reaction that a user expects to read.
 void Integrator::smooth_multipliers(Problem& problem) const {
   auto before = multipliers_saved_.begin();
   problem.for_each_constraint_pool([&](auto& pool) {
@@ -225,8 +225,8 @@ bool Integrator::turns_too_far(const Problem& problem) const {
   return false;
 }
 
-// Energy that a solved step would add, J; nothing to object to where something outside does work.
-double Integrator::gain(const Problem& problem, const Stage& stage) {
+// Energy that a solved step would add, J. If something outside does work, any gain is allowed: -1.
+double Integrator::calc_energy_gain(const Problem& problem, const Stage& stage) {
   if (!conservative_) return -1;
   const auto x1 = newton_.solution();
   const auto velocity = [&](std::size_t i) {
@@ -236,17 +236,18 @@ double Integrator::gain(const Problem& problem, const Stage& stage) {
          problem.row_energy(x1.data(), stage.fraction) - energy_;
 }
 
-// The mid-point rule keeps energy with quadratic constraints. Round the bend of a curve or surface a step that is too long
-// may gain any amount (half of a random scene's in one step), so it is taken in parts.
-bool Integrator::shoots(const Problem& problem, const Stage& stage) {
-  constexpr double much = 0.05;  // of the kinetic energy; a little of the rest, where things turn round
+// The mid-point rule keeps energy with quadratic constraints only. On a curve or surface a step that is too long may gain
+// any amount of energy (half of a random scene's in one step), so it is halved.
+bool Integrator::gains_energy_on_curves(const Problem& problem, const Stage& stage) {
+  // Largest gain that is accepted; the second share is for motions that reverse, whose kinetic energy vanishes.
+  constexpr double of_kinetic = 0.05, of_total = 1e-3;
   const bool curved = !std::get<ConstraintPool<CurveConstraint>>(problem.constraints).items.empty() ||
                       !std::get<ConstraintPool<SurfaceConstraint>>(problem.constraints).items.empty() ||
                       !std::get<ConstraintPool<SurfacePairConstraint>>(problem.constraints).items.empty();
-  return curved && gain(problem, stage) > much * kinetic_ + 1e-3 * std::abs(energy_);
+  return curved && calc_energy_gain(problem, stage) > of_kinetic * kinetic_ + of_total * std::abs(energy_);
 }
 
-// What the constraint forces do where gaps, within the tolerance, open and close.
+// The work of constraint forces on gaps that open or close within the tolerance, J.
 double Integrator::work_of_gaps(const Problem& problem, const Stage& stage) const {
   double work = 0;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
@@ -275,13 +276,13 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
   Stage stage = Stage::mid_point(h, from, to);
   stage.tolerance *= care_.tolerance;
   if (try_step(problem, stage, report) && !turns_too_far(problem) &&
-      !(depth < care_.max_depth && shoots(problem, stage))) {
+      !(depth < care_.max_depth && gains_energy_on_curves(problem, stage))) {
     const bool last = depth == care_.max_depth || report.iterations > care_.patience;
     if (care_.max_error == 0 || last || is_accurate(problem, stage, report)) {
       const bool met = met_ > 0;
       commit(problem, stage, report);
       smooth_multipliers(problem);
-      if (met || care_.max_error > 0) settle_velocities(problem, to, report);
+      if (met || care_.max_error > 0) project_velocities_after_impact(problem, to, report);
       return;
     }
     problem.set_multipliers(multipliers_saved_);
@@ -296,9 +297,9 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
   halve();
 }
 
-// Compares the solved step with one of half its length from the same start. Where the accelerations a and a' that the two
-// have found differ, the third derivative is about 4 (a - a') / h, and the error of the mid-point rule h^3 / 12 of it.
-// The half step lies (a - a') h^2 / 8 from the parabola of the whole one. Leaves the whole step solved.
+// Compares the solved step with one of half its length from the same start. If they find the accelerations a and a', the
+// third derivative is about 4 (a - a') / h, and the error of the mid-point rule h^3 / 12 of that. The half step ends
+// (a - a') h^2 / 8 away from the parabola of the whole one. Afterwards the whole step is solved again.
 bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const int met = met_;
   candidate_.assign(newton_.displacement().begin(), newton_.displacement().end());
@@ -323,14 +324,14 @@ bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport
   return again;
 }
 
-// Rows that have just met leave velocities that they no longer allow, and that the mid-point rule would throw back:
-// impacts are inelastic. The sub-step itself does no harm: a row that ends met and began apart has taken energy. Where
-// errors are estimated it is done always: the slight ringing across the constraints that the mid-point rule carries along
-// would pass for an error (measured: 16 sub-steps instead of 132, for 5e-8 of the energy).
-void Integrator::settle_velocities(Problem& problem, double to, AdvanceReport& report) {
+// Bounded rows that have just met forbid some velocities, which the mid-point rule would reverse; impacts are inelastic, so
+// the velocities are projected. The sub-step itself has only taken energy. If errors are estimated, this is done always:
+// the estimate would take the slight oscillation across the constraints for an error (measured: 16 sub-steps instead of
+// 132, for 5e-8 of the energy).
+void Integrator::project_velocities_after_impact(Problem& problem, double to, AdvanceReport& report) {
   const double before = energy_;
   newton_.project_velocities(problem, conservative_ ? 0 : step_length_, true);
-  take_stock(problem, to);
+  measure_energy(problem, to);
   report.dissipated += before - energy_;
 }
 
@@ -341,18 +342,18 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
   stage.tolerance *= care_.tolerance;
   const bool solved = try_step(problem, stage, report);
   if (solved) {
-    double gained = gain(problem, stage);
+    double gained = calc_energy_gain(problem, stage);
     if (gained > round_off * (std::abs(energy_) + kinetic_)) {  // what the tolerance leaves, or more?
       Stage finer = stage;
       finer.tolerance *= 1e-4;
       (void)solve(problem, finer, report);
-      gained = gain(problem, stage);
+      gained = calc_energy_gain(problem, stage);
     }
     const double slack = 1e-9 * kinetic_ + 1e-12;
     if (!(depth < care_.max_depth && gained > slack && gained > slack + work_of_gaps(problem, stage))) {
       const double before = energy_;
       commit(problem, stage, report);
-      if (conservative_ && energy_ > before) shed(problem, energy_ - before, to, report);
+      if (conservative_ && energy_ > before) remove_excess_energy(problem, energy_ - before, to, report);
       return;
     }
   }
@@ -368,13 +369,13 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
   if (least_violation(problem, stage, report)) {
     commit(problem, stage, report);
   } else {
-    coast(problem, h, report);
+    last_resort_step(problem, h, report);
   }
 }
 
-// Takes made-up energy out of the motion: all velocities get smaller alike, relative to the center of mass where nothing
-// outside holds on, which no constraint notices.
-void Integrator::shed(Problem& problem, double excess, double fraction, AdvanceReport& report) {
+// Reduces the kinetic energy by `excess`: scales all velocities alike, relative to the center of mass if nothing outside
+// holds the problem. Velocities that meet the constraints still do afterwards.
+void Integrator::remove_excess_energy(Problem& problem, double excess, double fraction, AdvanceReport& report) {
   Vec3 drift;
   if (problem.is_isolated()) {
     const std::span<const double> lumped = lumped_masses(problem);
@@ -387,14 +388,14 @@ void Integrator::shed(Problem& problem, double excess, double fraction, AdvanceR
   const double factor = std::sqrt(std::max(0.0, 1 - excess / (kinetic + 1e-300)));
   for (Vec3& v : problem.velocity) v = factor * v + drift;
   const double before = energy_;
-  take_stock(problem, fraction);
+  measure_energy(problem, fraction);
   report.dissipated += before - energy_;
 }
 
-// The last resort keeps moving: points fly on by their velocities, a little at a time, and positions and velocities are
-// projected on the constraints. Where even that leads nowhere they stay, and lose half of their speed. First order and
-// not energy-keeping, but plausible, finite, whole, and reported.
-void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
+// If no scheme has found a solution: moves the points by their velocities, in small pieces, and projects positions and
+// velocities on the constraints after each. If a projection fails, the points stay and lose half of their speed. First
+// order and without energy balance, but plausible, finite and reported.
+void Integrator::last_resort_step(Problem& problem, double h, AdvanceReport& report) {
   constexpr int pieces = 8;
   problem.set_multipliers(multipliers_saved_);
   const double before = energy_;
@@ -411,18 +412,18 @@ void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
   }
   if (!whole)
     for (Vec3& v : problem.velocity) v *= 0.5;
-  take_stock(problem, 1);
+  measure_energy(problem, 1);
   if (!std::isfinite(energy_)) {
     problem.position = start_position_;
     std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
-    take_stock(problem, 1);
+    measure_energy(problem, 1);
   }
   report.dissipated += before - energy_;
   ++report.substeps;
 }
 
-// The start of the step is gone back to where nothing else helps. That cannot be where the first solve of a conservative
-// problem is good, so most steps need not remember it.
+// Saves the start of the step, to which `advance` may have to return. The first solve of a conservative problem never
+// makes it return, so most steps do without the copy.
 void Integrator::keep_start(const Problem& problem) {
   if (std::exchange(keeps_start_, true)) return;
   start_position_.assign(problem.position.begin(), problem.position.end());
@@ -452,18 +453,18 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
   close_gaps(problem, report);
   keeps_start_ = false;
   if (!conservative_ || !report.converged) keep_start(problem);
-  take_stock(problem, 0);
+  measure_energy(problem, 0);
   const double start_kinetic = kinetic_, start_energy = energy_;
   const double start_work = report.external_work, start_dissipated = report.dissipated;
-  // Where moving nails leave a conflict behind, the mid-point rule would double the speed at which things catch up.
+  // If moving nails have left a conflict, the mid-point rule would double the speed at which bodies catch up.
   if (care.scheme == Scheme::mid_point && (conservative_ || !holds_offsets_))
     advance_mid_point(problem, h, 0, 1, 0, report);
   else
     advance_end_point(problem, h, 0, 1, 0, report);
-  // Where Newton found no solution, what it found instead may be anything; made-up energy gives it away.
+  // If Newton failed, check the energy balance; an increase means that the iterate is unphysical: discard it.
   const bool found = report.converged && report.fallbacks == 0;
-  // Where motors, hands or moving nails work, it is what the book cannot explain. There a solution may be the wrong one
-  // too: equations for directions are also met by a body that has leapt half a turn.
+  // If motors, grips or moving nails do work, the increase is what their work does not explain. There even a solution may
+  // be the wrong one: a body that has jumped by half a turn meets the equations for directions, too.
   const double made_up = conservative_ ? energy_ - start_energy : start_dissipated - report.dissipated;
   const double work = conservative_ ? 0 : std::abs(report.external_work - start_work);
   const bool too_much = made_up > 0.1 * start_kinetic + work + 1e-9 * std::abs(start_energy);
@@ -474,21 +475,22 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
     std::copy(start_velocity_.begin(), start_velocity_.end(), problem.velocity.begin());
     report.dissipated = start_dissipated, report.external_work = start_work;  // taken out of the book again
     report.converged = false;
-    take_stock(problem, 0);
-    coast(problem, h, report);
+    measure_energy(problem, 0);
+    last_resort_step(problem, h, report);
   }
   if (!found && conservative_ && energy_ > start_energy) {
-    if (energy_ - start_energy > kinetic_) {  // lifted by projections, and no motion to pay for it: rather stay
+    // Projection raised the potential energy by more than the kinetic energy available: restore the start state.
+    if (energy_ - start_energy > kinetic_) {
       std::copy(start_position_.begin(), start_position_.end(), problem.position.begin());
       for (std::size_t i = 0; i < problem.size(); ++i) problem.velocity[i] = 0.5 * start_velocity_[i];
       const double before = energy_;
-      take_stock(problem, 1);
+      measure_energy(problem, 1);
       report.dissipated += before - energy_;
     } else {
-      shed(problem, energy_ - start_energy, 1, report);
+      remove_excess_energy(problem, energy_ - start_energy, 1, report);
     }
   }
-  let_go(problem);
+  restore_bounds(problem);
   return report;
 }
 

@@ -51,9 +51,8 @@ struct [[nodiscard]] AdvanceReport {
 class Integrator {
  public:
   void compile(Problem& problem);
-  /// After a local change of structure: see Newton::relink.
-  void relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
-              std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched);
+  /// After a change of structure by the problem's own functions: see Problem::open.
+  void follow(Problem& problem);
 
   /// Positions, velocities and multipliers of `problem` become those after h seconds.
   /// mid_point halves the step (to a 64th) when a link turns too far in it, its error is too large or Newton fails, and
@@ -81,8 +80,8 @@ class Integrator {
   bool try_step(Problem&, const Stage&, AdvanceReport&);
   bool solve(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);
-  void take_stock(const Problem&, double fraction);
-  void settle_velocities(Problem&, double to, AdvanceReport&);
+  void measure_energy(const Problem&, double fraction);
+  void project_velocities_after_impact(Problem&, double to, AdvanceReport&);
   double work_of_drives(const Problem&, const Stage&) const;
   double work_of_gaps(const Problem&, const Stage&) const;
   void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
@@ -90,15 +89,15 @@ class Integrator {
   bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;
   void smooth_multipliers(Problem&) const;
-  bool shoots(const Problem&, const Stage&);
-  double gain(const Problem&, const Stage&);
-  void shed(Problem&, double excess, double fraction, AdvanceReport&);
+  bool gains_energy_on_curves(const Problem&, const Stage&);
+  double calc_energy_gain(const Problem&, const Stage&);
+  void remove_excess_energy(Problem&, double excess, double fraction, AdvanceReport&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   void hold_offsets(Problem&, AdvanceReport&);
-  void let_go(Problem&);
+  void restore_bounds(Problem&);
   void keep_start(const Problem&);
   bool least_violation(Problem&, Stage, AdvanceReport&);
-  void coast(Problem&, double h, AdvanceReport&);
+  void last_resort_step(Problem&, double h, AdvanceReport&);
   template <class Attempt>
   bool close_bit_by_bit(Problem&, Attempt);
   void close_gaps(Problem&, AdvanceReport&);

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double standing_gap = 1e-6;  // relative start gap beyond which positions are projected before the step
 constexpr std::uint64_t shortest_wait = 8, longest_wait = 256;  // steps until a conflict that stands is tried again
-constexpr double ample = 1.1;             // of a gap that moves: leave some play, a straight arm has none
+// Of a gap that moves; relaxes it by 10 %: at full extension the constraint gradient is singular.
+constexpr double relaxation = 1.1;
 constexpr double soft_compliance = 1e-3;  // relative: shares what cannot be closed
 
 /// Whether a conflict that has stood for so many steps is tried again: each time after twice as many.
@@ -29,14 +30,14 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     problem.standing_gap = 0;
     return;
   }
-  // A conflict that nothing has changed is left in peace for a while: trying costs tens of iterations.
+  // Retry an unchanged, unsolvable constraint set with exponential back-off: trying costs tens of iterations.
   const bool stands = conservative_ && gap <= 1.001 * problem.standing_gap;
   problem.standing_steps = stands ? problem.standing_steps + 1 : 0;
   if (stands && !is_due(problem.standing_steps)) {
     hold_offsets(problem, report);
     return;
   }
-  take_stock(problem, 0);
+  measure_energy(problem, 0);
   const double before = energy_;
   problem.standing_gap = 0;
   if (!project_positions(problem)) {
@@ -44,19 +45,19 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
   }
   project_velocities(problem);
-  take_stock(problem, 0);
+  measure_energy(problem, 0);
   const double added = energy_ - before;
   report.closing_energy += added;
-  if (holds_offsets_ && conservative_ && added > 0) {  // pulling for ever on what cannot meet must not heat the world
+  if (holds_offsets_ && conservative_ && added > 0) {  // repeated attempts must not add energy without end
     const double dissipated = report.dissipated;
-    shed(problem, added, 0, report);
+    remove_excess_energy(problem, added, 0, report);
     report.closing_energy -= report.dissipated - dissipated, report.dissipated = dissipated;
   }
 }
 
-// What cannot be closed stays as it is during the step. Where nails move it may become what it will be at their end, or
-// less: rows get a bound instead of an equation. Held to its length, an arm that was pulled beyond its reach would have to
-// snap sideways when the pull lets up (measured: 400 J to 3 kJ, against 20 J).
+// Gaps that cannot be closed stay as they are during the step. If nails move, a gap may become what it will be at the
+// nails' end, or less: its row gets a bound instead of an equation. With an equation, an arm that was pulled beyond its
+// reach would have to snap sideways when the pull ends (measured: 400 J to 3 kJ, against 20 J).
 void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
   report.converged = false;
   holds_offsets_ = true;
@@ -85,7 +86,7 @@ void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
         RowLaw& law = pool.law(i)[r];
         if (law.lower_impulse() == 0 || law.upper_impulse() == 0) continue;  // has a bound already
         (offset[r] > 0 ? law.lower : law.upper) = 0;
-        offset[r] *= ample;
+        offset[r] *= relaxation;
         pool.held.push_back(row);
       }
     }
@@ -93,8 +94,8 @@ void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
   });
 }
 
-// Takes the lent bounds back.
-void Integrator::let_go(Problem& problem) {
+// Rows that hold_offsets has given a bound are equations again.
+void Integrator::restore_bounds(Problem& problem) {
   problem.for_each_constraint_pool([&](auto& pool) {
     if (pool.held.empty()) return;
     for (const std::uint32_t row : pool.held) pool.laws[row] = {};
@@ -118,7 +119,7 @@ bool Integrator::project_positions(Problem& problem) {
     if (solved) std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
     return solved;
   };
-  // At once; else bit by bit, as far as there is a way; else by soft steps, each of which shares what cannot be closed.
+  // At once; if that fails, bit by bit; if that fails, by soft steps, each of which shares the violation among the rows.
   bool solved = attempt(1e-12, 20) || close_bit_by_bit(problem, attempt);
   for (int soft = 0; soft < 3 && !solved; ++soft) {
     if (!attempt(soft_compliance, 40)) break;
@@ -128,8 +129,8 @@ bool Integrator::project_positions(Problem& problem) {
   return solved;
 }
 
-// Many links away from a solution Newton gets lost, but a part of the way it finds (a fine chain pulled together over
-// centimeters). What remains is held as offsets meanwhile.
+// Newton's method may diverge over a distance of many links, but converge over a part of it (a fine chain pulled together
+// over centimeters). Meanwhile offsets hold the rest.
 template <class Attempt>
 bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
   double remaining = 1, part = 0.25;

@@ -28,9 +28,8 @@ void Newton::compile(Problem& problem) {
   make_room(problem);
 }
 
-void Newton::relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
-                    std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched) {
-  assembly_.relink(problem, added, removed, touched);
+void Newton::follow(Problem& problem) {
+  assembly_.follow(problem);
   make_room(problem);
 }
 
@@ -67,17 +66,17 @@ void Newton::measure(const Problem& problem, const Stage& stage) {
   residual_ = assembly_.residual<Midpoint>(problem, stage, x_.data(), u_.data());
 }
 
-// Far from the origin places have fewer digits than directions need, and the forces along those are off by as much: 1e-11 of
-// what a link of 0.1 m carries, 10 km out.
+// Far from the origin positions have fewer digits than the directions of links need, and so have the forces along these:
+// at 10 km, the error is 1e-11 of the force in a link of 0.1 m.
 double Newton::blur_of_places(const Problem& problem) const {
   Largest place;
   for (const Vec3& x : problem.position) place.add(largest_component(x));
   return std::max(1.0, std::numeric_limits<double>::epsilon() / round_off * place.value / reference_length());
 }
 
-// By a new factor. Pivots of the wrong sign far from a solution lead to some saddle, so the Hessian is clamped. Near one
-// they may be its own (a chain that is pushed together in a whip), and a clamped Hessian would converge linearly, or turn
-// round at 1e-5. Then returns true: the step is to be tried, no more.
+// With a new factor. Far from a solution, pivots of the wrong sign lead to a saddle, so the Hessian is clamped. Near a
+// solution they may belong to it (a chain compressed in a whip), and a clamped Hessian would converge linearly or diverge
+// from 1e-5. Then returns true: the step is on trial.
 template <bool Midpoint>
 bool Newton::find_step(const Problem& problem, const Stage& stage, Hessian hessian) {
   const bool good = assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), hessian);
@@ -119,8 +118,8 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     measure<Midpoint>(problem, stage);
     const bool own_direction = std::exchange(hessian, Hessian::exact) == Hessian::exact && !served_on;
     if (!(residual_.worst <= 0.5 * before)) {
-      // What Newton's own step does not lessen, and what round-off may leave, is round-off: heavy loads on small links leave
-      // 1e-9 of it, ten times what was reckoned.
+      // If an exact Newton step does not reduce a residual below 10x the estimated round-off, treat it as converged: heavy
+      // loads on small links leave ten times the estimate.
       stuck = own_direction && before <= std::min(10 * blur * residual_.noise, round_off_floor);
       if ((stuck || on_trial) && !(residual_.worst < before)) {
         take_back_step<Midpoint>(problem, stage);
@@ -133,7 +132,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       }
       if (stuck) break;
     }
-    // Near the solution the factor at hand serves on, where making another costs much more than an iteration.
+    // Near the solution the old factor is used again if making a new one costs much more than an iteration.
     factor_will_do = assembly_.is_dear() && residual_.worst <= (factor_will_do ? 0.1 : 0.03) * before;
   }
   if (!stuck && !stage.is_projection() && (Midpoint || report.iterations == 0))
@@ -255,7 +254,7 @@ bool Newton::is_balanced() const {
 template <bool Midpoint>
 void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, bool factor_is_old) {
   constexpr int most_steps = 4;
-  constexpr double clean = 3e-13, comes_and_goes = 1e-12, helps = 0.3;
+  constexpr double clean = 3e-13, noise = 1e-12, sufficient = 0.3;
   if (!(residual_.worst <= stage.tolerance)) return;
   bool needs_factor = report.iterations == 0;
   for (int step = 0; step < most_steps; ++step) {
@@ -269,12 +268,12 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
       assembly_.solve();
     take_step(problem, stage);
     measure<Midpoint>(problem, stage);
-    // So near to round-off a residual comes and goes, but the step takes out of it what all points have in common, and that is what
-    // momentum and angular momentum are made of: taken back, a tumbling mixture's drifted twenty times as far.
-    const bool worse = !(residual_.worst <= std::max(before.worst, comes_and_goes));
+    // Below 1e-12 the residual norm is noise. Keep the step anyway: it reduces the error that all points have in common,
+    // which momentum and angular momentum consist of (without it those of a tumbling mixture drifted twenty times as far).
+    const bool worse = !(residual_.worst <= std::max(before.worst, noise));
     if (worse) take_back_step<Midpoint>(problem, stage);
-    if (!worse && ((!met && residual_.rows <= helps * before.rows) ||
-                   (!balanced && residual_.imbalance <= helps * before.imbalance)))
+    if (!worse && ((!met && residual_.rows <= sufficient * before.rows) ||
+                   (!balanced && residual_.imbalance <= sufficient * before.imbalance)))
       continue;  // it helps
     if (!factor_is_old || residual_.worst <= clean) return;
     factor_is_old = false, needs_factor = true;

@@ -30,10 +30,9 @@ struct [[nodiscard]] NewtonReport {
 /// at a bound a row keeps its place in the matrix, as an identity.
 class Newton {
  public:
-  /// Makes room and analyzes the structure of the problem: see Assembly.
+  /// Makes room and analyzes the structure of the problem, or follows it: see Assembly.
   void compile(Problem& problem);
-  void relink(Problem& problem, std::span<const std::array<std::uint32_t, 2>> added,
-              std::span<const std::uint32_t> removed, std::span<const std::uint32_t> touched);
+  void follow(Problem& problem);
 
   /// Solves for positions and multipliers, from `displacement()` and the pools' multipliers. On success `solution()` and
   /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.

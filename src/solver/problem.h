@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/slack.h"
 #include "solver/constraints/constraint_list.h"
 #include "solver/forces/force_list.h"
 #include "solver/sparse/block_pattern.h"
@@ -54,21 +55,32 @@ struct RowState {
   double start = 0;             ///< g there
 };
 
+/// What a constraint or force is to whoever added it; the solver does not read it. Its owner finds it by this key again,
+/// wherever it lies in its pool.
+struct ItemKey {
+  std::uint8_t owner = 0;  ///< a number for each kind of owner
+  std::array<std::uint8_t, 3> part{};
+  std::uint32_t slot = 0;
+
+  friend bool operator==(const ItemKey&, const ItemKey&) = default;
+};
+
 /// Constraints of one type with their multipliers (warm start in, solution out) and their places in the matrix.
 template <class C>
 struct ConstraintPool {
   struct Slots {
-    std::uint32_t unknown = 0, diagonal = 0;
+    std::uint32_t unknown = CouplingGraph::no_unknown, diagonal = 0;
     std::uint8_t stride = 1;
     std::array<BlockPattern::GradientSlot, C::max_nodes> gradients{};
     std::array<BlockPattern::PairSlot, C::has_curvature ? C::max_nodes * (C::max_nodes - 1) / 2 : 0> pairs{};
   };
   std::vector<C> items;
+  std::vector<ItemKey> keys;
   std::vector<double> multipliers;  ///< C::rows each, N
   std::vector<double> offsets;      ///< C::rows each: what cannot be closed and is held as it is; or empty: nothing
   std::vector<RowLaw> laws;         ///< C::rows each; or empty: all are equations, which costs nothing
   std::vector<RowState> states;     ///< beside laws
-  std::vector<std::uint32_t> held;  ///< rows to which the integrator has lent a bound, see there
+  std::vector<std::uint32_t> held;  ///< rows to which the integrator has lent a bound for a step: Integrator::hold_offsets
   std::vector<Slots> slots;
 
   double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }
@@ -80,6 +92,10 @@ struct ConstraintPool {
   }
   const RowLaw* law(std::size_t i) const { return laws.data() + i * C::rows; }
   bool has_laws() const { return !laws.empty(); }
+  void reserve(std::size_t size) { items.reserve(size), keys.reserve(size); }
+  static std::span<const std::uint32_t> nodes_of(const C& item) {
+    return {item.nodes.data(), static_cast<std::size_t>(item.node_count())};
+  }
   /// What the solver brings to zero: the constraint less its offset.
   void value(std::size_t i, const Vec3* x, double fraction, double* g) const {
     items[i].value(x, fraction, g);
@@ -94,7 +110,10 @@ struct ForcePool {
     std::array<BlockPattern::PairSlot, ForceArm::max_nodes*(ForceArm::max_nodes - 1) / 2> pairs{};
   };
   std::vector<F> items;
+  std::vector<ItemKey> keys;
   std::vector<Slots> slots;
+
+  static std::span<const std::uint32_t> nodes_of(const F& item) { return {item.arm.nodes.data(), item.arm.count}; }
 };
 
 /// One independent problem: points with masses, what constrains them and what pushes them. It knows no bodies; the step
@@ -102,13 +121,14 @@ struct ForcePool {
 struct Problem {
   struct MassCoupling {
     std::uint32_t a, b;
-    double mass;  ///< off-diagonal entry of the constant mass matrix, kg
+    double mass = 0;  ///< off-diagonal entry of the constant mass matrix, kg
     BlockPattern::PairSlot slot{};
   };
 
   std::vector<Vec3> position, velocity;  ///< m, m/s
   std::vector<Vec3> force;               ///< explicit, held over the step, N; or empty: none
   std::vector<double> mass;              ///< diagonal of the mass matrix, kg
+  std::vector<double> damping;           ///< of velocities, 1/s, for whoever advances the problem; or empty: none
   std::vector<MassCoupling> mass_couplings;
   ConstraintPools<ConstraintPool> constraints;
   ForcePools<ForcePool> forces;
@@ -118,24 +138,56 @@ struct Problem {
 
   std::size_t size() const { return position.size(); }
 
-  /// Room for `count` more nodes, without mass.
-  void add_nodes(std::size_t count);
-  /// Takes out nodes that nothing refers to; the last ones get their numbers, the highest first.
-  void remove_nodes(std::span<const std::uint32_t> removed);
-  /// Calls visit(node) for every place that names a node.
-  template <class Visit>
-  void for_each_reference(Visit visit) {
-    for (auto& c : mass_couplings) visit(c.a), visit(c.b);
-    for_each_constraint_pool([&](auto& pool) {
-      for (auto& c : pool.items)
-        for (int i = 0; i < c.node_count(); ++i) visit(c.nodes[i]);
-    });
-    for_each_force_pool([&](auto& pool) {
-      for (auto& f : pool.items)
-        for (std::uint32_t i = 0; i < f.arm.count; ++i) visit(f.arm.nodes[i]);
-    });
+  /// @name Structure
+  /// A problem is built by adding nodes and what acts on them; `compile` then finds it a pattern. It is changed in this
+  /// order: new nodes are added; the nodes at which anything changes are opened, which takes away all that acts on them;
+  /// what acts on them now is added as if the whole problem were built again (the rest is refused, being there already);
+  /// nodes on which nothing acts any more are marked for removal. `follow` then brings the pattern up to date.
+  ///@{
+  void add_nodes(std::size_t count);  ///< without mass
+  void add_mass(std::uint32_t node, double m) {
+    if (is_open(node)) mass[node] += m;
   }
+  void couple_masses(std::uint32_t a, std::uint32_t b, double m);
+  /// A constraint or a force.
+  template <class Item>
+  void add(const Item&, ItemKey);
 
+  /// Returns the number of a new node, which is eliminated right after the one beside it.
+  std::uint32_t add_node_beside(std::uint32_t);
+  void open(std::span<const std::uint32_t> nodes);
+  /// Whether what acts on a node is being added.
+  bool is_open(std::uint32_t node) const { return is_open_.empty() || is_open_[node]; }
+  void mark_for_removal(std::uint32_t node) { changes_.removed.push_back(node); }
+
+  /// Since the pattern was made.
+  const GraphChange& changes() const { return changes_; }
+  /// Takes out nodes on which nothing acts; the last ones get their numbers, the highest first.
+  void remove_nodes(std::span<const std::uint32_t> removed);
+  /// Gives all lists of the pools the length that their items ask for.
+  void fit_pools();
+  void note_compiled() { changes_.clear(), is_open_.clear(); }
+  ///@}
+
+  template <class Item>
+  auto& pool_of() {
+    if constexpr (requires { Item::rows; })
+      return std::get<ConstraintPool<Item>>(constraints);
+    else
+      return std::get<ForcePool<Item>>(forces);
+  }
+  template <class Item>
+  const auto& pool_of() const {
+    return const_cast<Problem*>(this)->pool_of<Item>();
+  }
+  /// Of an item in the constraint pool with this place in the list of types.
+  ItemKey key_of(std::size_t pool, std::size_t item) const {
+    ItemKey key;
+    for_each_constraint_pool([&](const auto& p) {
+      if (pool-- == 0) key = p.keys[item];
+    });
+    return key;
+  }
   template <class Visit>
   void for_each_constraint_pool(Visit visit) {
     std::apply([&](auto&... pool) { (visit(pool), ...); }, constraints);
@@ -209,6 +261,32 @@ struct Problem {
   double row_energy(const Vec3* x, double fraction) const;
   /// Largest violation at x, m, with targets as at `fraction` of the step; with `relative`, as a fraction of each constraint's reference length.
   double worst_gap(const Vec3* x, double fraction = 1, bool relative = false) const;
+
+ private:
+  bool is_any_open(std::span<const std::uint32_t> nodes) const {
+    return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return is_open(node); });
+  }
+  bool is_changing() const { return !is_open_.empty(); }
+  void touch(std::span<const std::uint32_t> nodes) {
+    changes_.touched.insert(changes_.touched.end(), nodes.begin(), nodes.end());
+  }
+
+  GraphChange changes_;
+  std::vector<std::uint8_t> is_open_;  // of each node, while the structure changes; else empty
 };
+
+template <class Item>
+void Problem::add(const Item& item, ItemKey key) {
+  auto& pool = pool_of<Item>();
+  const auto nodes = pool.nodes_of(item);
+  if (is_changing()) {
+    if (!is_any_open(nodes)) return;
+    touch(nodes);
+    reserve_with_slack(pool.items, pool.items.size() + 1);
+    reserve_with_slack(pool.keys, pool.items.size() + 1);
+  }
+  pool.items.push_back(item);
+  pool.keys.push_back(key);
+}
 
 }  // namespace iota::solver

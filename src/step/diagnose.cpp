@@ -45,7 +45,8 @@ std::string times(std::size_t n) { return n == 1 ? "once" : n == 2 ? "twice" : t
 std::string Island::name_of_row(const Model& model, const solver::RowName& row) const {
   std::string name;
   for_each_ingredient([&](const auto& i) {
-    if (name.empty()) name = i.name_of_row(model, nodes_, row);
+    if (const solver::ItemKey key = problem_.key_of(row.pool, row.item); key.owner == i.owner)
+      name = i.name_of_row(model, key);
   });
   return name;
 }
@@ -84,7 +85,7 @@ Diagnosis Island::diagnose(const Model& model) const {
       parts.push_back({std::abs(spectrum.svd.u(row, i)), name_of_row(model, spectrum.names[row])});
     for (std::size_t node = 0; node < problem_.size(); ++node) {
       const Vec3 v{spectrum.svd.v(3 * node, i), spectrum.svd.v(3 * node + 1, i), spectrum.svd.v(3 * node + 2, i)};
-      points.push_back({norm(v), nodes_.name(model, node)});
+      points.push_back({norm(v), ingredient::name_of_ring(model, nodes_.rings[node])});
     }
     out.findings.push_back(text("Nearly singular (", s[i] / s.front(), "): ", enumerate(std::move(parts)),
                                 " nearly repeat each other, and hardly resist a motion of ",

@@ -153,7 +153,7 @@ GripId System::Implementation::apply(const step::CreateGrip& c) {
   grip.frequency = c.options.frequency, grip.max_acceleration = c.options.max_acceleration;
   grip.target = c.target;
   model::anchor_grip(model, grip, model.center_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point));
-  model.touch(model.bodies[body].articulate);
+  model.touch_locally(body);
   return model.grips.create(grip);
 }
 
@@ -168,7 +168,7 @@ void System::Implementation::apply(const step::SetBodyDamping& c) {
   require_not_negative("damping", c.per_second);
   const std::uint32_t body = require(c.body);
   model.bodies[body].damping = c.per_second;
-  model.touch(model.bodies[body].articulate);
+  model.touch_locally(body);
 }
 
 void System::Implementation::refresh_coordinates(std::uint32_t body) {
@@ -297,7 +297,7 @@ void System::Implementation::hold_again(const std::vector<HeldPoint>& held) {
   for (const auto& [slot, point] : held) {
     if (!model.grips.is_alive(slot)) continue;
     anchor_grip(model, model.grips[slot], point);
-    model.touch(model.bodies[model.grips[slot].body].articulate);
+    model.touch_locally(model.grips[slot].body);
   }
 }
 
@@ -483,7 +483,7 @@ void System::Implementation::apply(const step::Nail& c) {
     const bool moved = ring.position != position;
     ring.nailed = 1, ring.position = position, ring.velocity = {};
     model.nails.make(slot) = {position, position, {}};
-    model.touch(model.bodies[model.particles[particle].body].articulate);
+    model.touch_ring(slot);
     return model::Edit{moved, true};
   });
 }
@@ -494,7 +494,7 @@ void System::Implementation::apply(const step::Release& c) {
   if (!model.rings[ring].nailed) return;
   model.rings[ring].nailed = 0;
   model.nails.at(ring).multiplier = {};
-  model.touch(model.bodies[model.particles[particle].body].articulate);
+  model.touch_ring(ring);
   structure_changed();
 }
 
@@ -523,7 +523,7 @@ RestructureReport System::Implementation::apply(const step::SeparatePart& c) {
 }
 void System::Implementation::apply(const step::Destroy<GripId>& c) {
   const std::uint32_t grip = require(c.id);
-  model.touch(model.bodies[model.grips[grip].body].articulate);
+  model.touch_locally(model.grips[grip].body);
   model.grips.destroy(grip);
 }
 

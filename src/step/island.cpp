@@ -32,7 +32,9 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   idle_ = std::none_of(nodes_.bodies.begin(), nodes_.bodies.end(),
                        [&](std::uint32_t b) { return is_free(model.bodies[b].kind); });
   problem_.add_nodes(nodes_.size());
-  const ingredient::IslandMap map(model, nodes_, node_of_ring);
+  std::uint8_t owner = 0;
+  for_each_ingredient([&](auto& i) { i.owner = ++owner; });
+  const ingredient::IslandMap map(model, nodes_, nodes_.bodies, node_of_ring);
   for_each_ingredient([&](auto& i) { i.build(map, problem_); });
   integrator_.compile(problem_);
   for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
@@ -115,6 +117,7 @@ void Island::use_solver(const std::array<char, 32>& name) {
     }
   }
   integrator_.set_external(solver_.get());
+  if (solver_) integrator_.compile(problem_);  // it asks for unknowns without gaps, which an island that follows has
 }
 
 bool Island::is_driven(const Model& model) const {

@@ -23,9 +23,11 @@ class Island {
   void assemble(const model::Model&, std::span<const std::uint32_t> articulates,
                 std::vector<std::uint32_t>& node_of_ring);
 
-  /// Follows when some of its bodies have been hinged to each other otherwise, or no longer, and nothing else changed.
-  /// False where that is more than moving a few rows: then it must be assembled anew.
-  bool relink(const model::Model&, std::span<const std::uint32_t> bodies);
+  /// Keeps up with a change at some bodies and rings; its other bodies are as they were, and which bodies it has too.
+  /// For a fraction of the time it is then as if it had been assembled anew, but for the order of elimination. False if so
+  /// much changed that it must be assembled.
+  bool follow(model::Model&, std::span<const std::uint32_t> articulates, const model::Model::LocalChange&,
+              std::vector<std::uint32_t>& node_of_ring);
   std::span<const std::uint32_t> bodies() const { return nodes_.bodies; }
 
   /// Points to solve for: a measure of the work.
@@ -67,6 +69,10 @@ class Island {
   bool any_ingredient(Test test) const {
     return std::apply([&](const auto&... ingredient) { return (test(ingredient) || ...); }, ingredients_);
   }
+
+  std::vector<std::uint32_t> find_changed_nodes(const model::Model&, const model::Model::LocalChange&,
+                                                std::vector<std::uint32_t>& node_of_ring);
+  void remove_nodes(std::vector<std::uint32_t>);
 
   solver::AdvanceReport advance_idle(model::Model&, double h);
   bool is_driven(const model::Model&) const;  ///< by prescribed motion

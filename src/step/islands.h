@@ -27,10 +27,21 @@ class Islands {
   FreeParticles& free_particles() { return free_particles_; }
 
  private:
+  struct Followed {
+    std::uint32_t leader;
+    std::uint64_t step;  // of the last time
+  };
+
   void drop(std::uint32_t leader);
+  void put_on_waiting_list(std::uint32_t articulate);
   void set_members(std::uint32_t leader);
-  static void make_ready(model::Model&, std::uint32_t articulate);
-  bool relink(const model::Model&, std::uint32_t leader);
+  bool find_members(const Island&, const model::Model&);
+  bool follow(model::Model&, std::uint32_t leader);
+  static void make_ready(model::Model&, std::uint32_t body);
+  bool is_due(const Followed&, const model::Model&) const;
+  void follow_or_drop_touched(model::Model&);
+  void gather_waiting(const model::Model&);
+  void build_fresh(model::Model&, const Parallel&);
 
   // All by articulate slot. The leader of an island is the lowest of its articulates.
   std::vector<std::unique_ptr<Island>> island_of_leader_;
@@ -38,12 +49,9 @@ class Islands {
   std::vector<std::uint32_t> next_member_;  // list of the articulates of one island, from its leader on
   std::vector<std::uint8_t> is_waiting_;    // to be put into an island
   model::Model::Touched touched_;
-  std::vector<std::uint32_t> waiting_, members_, fresh_, bodies_, relinked_;
-  struct Followed {
-    std::uint32_t leader;
-    std::uint64_t step;  // of the last time
-  };
-  std::vector<Followed> followed_;  // islands that have been relinked
+  std::vector<std::uint32_t> waiting_, members_, fresh_;
+  model::Model::LocalChange change_;  // of the island that follows
+  std::vector<Followed> followed_;    // islands that have followed
   bool renew_ = false;
   std::vector<Island*> in_order_;
   std::size_t total_size_ = 0, largest_size_ = 0;  // of those in order, points

@@ -18,7 +18,7 @@ class BlockFactor {
   /// Whether a factorization costs several times what a solution does: not on chains, but in nets and among many-point
   /// bodies.
   bool is_dear() const { return diagonals_.size() + lower_.size() > 10 * std::size_t{pattern_->unknown_count()}; }
-  /// Follows a pattern that has grown by `adapt`.
+  /// Makes room for a pattern that has followed a change.
   void grow();
 
   /// Sets all values to zero; `symmetric` tells which triangles are going to be filled.

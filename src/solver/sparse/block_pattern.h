@@ -1,47 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "solver/sparse/block_storage.h"
+#include "solver/sparse/coupling_graph.h"
+
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
 namespace iota::solver {
-
-/// What couples with what, before any order is known. A node has three unknowns (its position); a constraint has 1 to 3
-/// rows and touches a few nodes; couplings are pairs of nodes with a 3 x 3 block between them.
-struct CouplingGraph {
-  static constexpr int max_constraint_nodes = 8;
-  struct Constraint {
-    std::uint8_t rows = 1;
-    std::uint8_t node_count = 0;
-    std::array<std::uint32_t, max_constraint_nodes> nodes{};
-    /// The gradient of a single node may vanish, so the rows need a pivot of their own, behind the nodes [0, first_side)
-    /// or behind the others, whichever are eliminated first (0: behind all).
-    bool apart = false;
-    std::uint8_t first_side = 0;
-  };
-  std::uint32_t node_count = 0;
-  std::vector<std::array<std::uint32_t, 2>> couplings;
-  std::vector<Constraint> constraints;
-};
-
-/// A local change of a coupling graph.
-struct GraphChange {
-  /// Constraints of one row that touch a node in `touched`, or a node of another such constraint, as they are now.
-  struct Constraint {
-    std::array<std::uint32_t, 2> nodes{};
-    std::uint32_t unknown = 0;  ///< of its multiplier before the change
-  };
-  std::vector<std::array<std::uint32_t, 2>> added;  ///< new nodes, numbered on from the old ones, and an old one each
-                                                    ///< whose neighbor in the order it becomes
-  std::vector<std::uint32_t> removed;               ///< nodes that nothing refers to any more
-  std::vector<std::uint32_t> touched;               ///< all whose couplings changed, those included
-  std::vector<Constraint> constraints;
-  /// Lists the nodes that a node is coupled with now, in any order, twins allowed.
-  std::function<void(std::uint32_t node, std::vector<std::uint32_t>& with)> neighbors;
-};
 
 /// Elimination order and storage of a block-sparse matrix with the structure of
 ///   [ A  G' ]   A: node blocks, G: constraint rows, C: small compliance.
@@ -61,6 +29,10 @@ class BlockPattern {
     std::uint32_t diagonal = 0;    ///< offset of the pivot x pivot block, among the diagonal ones
     std::uint32_t unknown = 0;     ///< offset in right-hand side and solution
     std::uint32_t first_pair = 0;  ///< see pair_targets
+
+    bool is_node() const { return positives > 0; }
+    bool holds(std::uint32_t u) const { return u >= unknown && u < unknown + pivot; }
+    std::uint32_t pair_count() const { return entry_count * (entry_count + 1) / 2; }
   };
   /// An off-diagonal block: the first `width` unknowns of a later vertex by the pivot columns of this one, row-major.
   /// Offsets of diagonal and off-diagonal blocks count separately: both triangles have the former in common.
@@ -93,53 +65,50 @@ class BlockPattern {
     std::array<GradientSlot, CouplingGraph::max_constraint_nodes> gradients{};
   };
 
-  void analyze(const CouplingGraph&);
+  /// Orders the nodes and lays out the storage; gives each constraint its unknown.
+  void analyze(CouplingGraph&);
 
-  /// Follows a small change of the graph without looking at the rest of it: the order stays, new nodes take their places
-  /// beside others, and only fronts whose couplings changed are made anew. Costs a few nanoseconds a node. False where
-  /// that would not do (too much changes, rows without room); the pattern is then unusable until the next `analyze`.
-  bool adapt(const GraphChange&);
-  /// The nodes in whose vertex something moved in the latest `adapt`, by their numbers in the change: what touches
-  /// one of them has new slots.
-  std::span<const std::uint8_t> moved() const { return moved_; }
-  /// After `adapt`: the slot of constraint i of the change.
-  const ConstraintSlot& adapted_slot(std::size_t i) const { return constraint_slots_[i]; }
-  /// After `adapt`: the slot of a constraint that is not in the change, from the unknown it has had all the time.
-  ConstraintSlot find_slot(std::span<const std::uint32_t> nodes, std::uint32_t unknown) const;
-  /// After `adapt`: removed nodes leave their numbers to the last ones, the highest first.
-  void renumber(std::span<const std::uint32_t> removed);
+  /// Makes the pattern that of a graph which has changed in a few places: the order stays, new nodes take their places
+  /// beside others, and only fronts whose couplings changed are made anew. The rows of touched nodes may get other
+  /// unknowns. Removed nodes then leave their numbers to the last ones, the highest first. A cut in a chain of 10 000
+  /// links takes a tenth of what an analysis takes. Returns false if the order no longer suits the graph: analyze it.
+  [[nodiscard]] bool follow(CouplingGraph&, const GraphChange&);
+  /// Whether `follow` has moved the vertex of an unknown, or touched its node: what refers to it has new slots.
+  bool has_moved(std::uint32_t unknown) const { return moved_[unknown]; }
+  /// Frees the memory behind `has_moved`.
+  void forget_moves() { std::vector<std::uint8_t>().swap(moved_); }
 
   std::span<const Vertex> vertices() const { return vertices_; }
   std::span<const Entry> entries() const { return entries_; }
   std::span<const std::uint32_t> pair_targets() const { return pair_targets_; }
-  std::uint32_t diagonal_count() const { return diagonal_count_; }  ///< values in diagonal blocks
-  std::uint32_t lower_count() const { return lower_count_; }        ///< values in off-diagonal blocks, of one triangle
-  std::uint32_t unknown_count() const { return unknown_count_; }
+  std::uint32_t diagonal_count() const { return diagonal_storage_.size(); }  ///< values in diagonal blocks
+  std::uint32_t lower_count() const { return lower_storage_.size(); }  ///< values in off-diagonal blocks, one triangle
+  std::uint32_t unknown_count() const { return unknown_storage_.size(); }  ///< some of them unused after `follow`
   std::uint32_t node_count() const { return static_cast<std::uint32_t>(node_vertex_.size()); }
   std::uint32_t widest_front() const { return widest_front_; }
+  /// Values in off-diagonal blocks that are in use: a measure of fill.
+  std::uint32_t fill() const { return lower_storage_.used(); }
 
   std::uint32_t node_unknown(std::uint32_t node) const { return vertices_[node_vertex_[node]].unknown; }
   std::uint32_t node_diagonal(std::uint32_t node) const { return vertices_[node_vertex_[node]].diagonal; }
   std::uint8_t node_stride(std::uint32_t node) const { return vertices_[node_vertex_[node]].pivot; }
   PairSlot pair_slot(std::uint32_t a, std::uint32_t b) const;
-  const ConstraintSlot& constraint_slot(std::size_t constraint) const { return constraint_slots_[constraint]; }
-  /// The slots are needed once, and larger than all the rest.
-  void forget_slots() { std::vector<ConstraintSlot>().swap(constraint_slots_); }
+  /// Of a constraint, from its nodes and the unknown that the graph got for it.
+  ConstraintSlot constraint_slot(std::span<const std::uint32_t> nodes, std::uint32_t unknown) const;
 
  private:
-  ConstraintSlot calc_slot(std::span<const std::uint32_t> nodes, std::uint32_t home, std::uint8_t row) const;
-  /// Fills the pair targets of a front, from its first_pair on.
-  void set_targets(const Vertex&);
+  friend class PatternBuilder;
   std::uint32_t find_entry(std::uint32_t vertex, std::uint32_t later_vertex) const;
+  std::uint32_t find_home(std::span<const std::uint32_t> nodes, std::uint32_t unknown) const;
 
   std::vector<Vertex> vertices_;  // in order of elimination
   std::vector<Entry> entries_;    // of each vertex, in order of elimination
   std::vector<std::uint32_t> pair_targets_;
   std::vector<std::uint32_t> node_vertex_;
-  std::vector<ConstraintSlot> constraint_slots_;
-  std::uint32_t diagonal_count_ = 0, lower_count_ = 0, unknown_count_ = 0, widest_front_ = 0;
-  std::uint32_t given_up_ = 0;  // values that `adapt` no longer uses
-  std::vector<std::uint8_t> moved_;
+  BlockStorage diagonal_storage_, lower_storage_, unknown_storage_, entry_storage_, pair_storage_;
+  std::uint32_t widest_front_ = 0;
+  std::uint32_t analyzed_fill_ = 0;  // of the latest analysis
+  std::vector<std::uint8_t> moved_;  // of each unknown
 };
 
 /// Nodes in order of elimination: minimum degree, ties by number. O(n) on trees.

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace iota::solver {
+
+/// What couples with what, before any order is known. A node has three unknowns (its position); a constraint has 1 to 3
+/// rows and touches a few nodes; couplings are pairs of nodes with a 3 x 3 block between them.
+struct CouplingGraph {
+  static constexpr int max_constraint_nodes = 8;
+  static constexpr std::uint32_t no_unknown = 0xffffffff;
+  struct Constraint {
+    std::uint8_t rows = 1;
+    std::uint8_t node_count = 0;
+    std::array<std::uint32_t, max_constraint_nodes> nodes{};
+    /// The gradient of a single node may vanish, so the rows need a pivot of their own, behind the nodes [0, first_side)
+    /// or behind the others, whichever are eliminated first (0: behind all).
+    bool apart = false;
+    std::uint8_t first_side = 0;
+    /// Of its first multiplier: an answer of the pattern. `BlockPattern::follow` is given the latest answer, and
+    /// `no_unknown` for a constraint that is new or has other nodes.
+    std::uint32_t unknown = no_unknown;
+  };
+  std::uint32_t node_count = 0;
+  std::vector<std::array<std::uint32_t, 2>> couplings;
+  std::vector<Constraint> constraints;
+};
+
+/// How a coupling graph has changed since its pattern was made.
+struct GraphChange {
+  struct NewNode {
+    std::uint32_t node;    ///< new nodes are numbered on from the old ones
+    std::uint32_t beside;  ///< the node right after which it is eliminated: an old one, or one added earlier
+  };
+  std::vector<NewNode> added;
+  std::vector<std::uint32_t> removed;       ///< nodes that nothing refers to any more
+  std::vector<std::uint32_t> touched;       ///< nodes that gained or lost a coupling or constraint, new ones included
+  std::vector<std::uint32_t> removed_rows;  ///< first unknowns of constraints that are gone or have other nodes
+
+  bool is_empty() const { return added.empty() && removed.empty() && touched.empty(); }
+  void clear() { added.clear(), removed.clear(), touched.clear(), removed_rows.clear(); }
+};
+
+}  // namespace iota::solver

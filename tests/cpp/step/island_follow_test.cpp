@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Large islands follow edits in place; what comes out is what islands give that are built anew.
+#include "scenes/chain.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace iota {
+namespace {
+
+/// A long chain that is cut and rejoined at random places, now and then to a piece that was elsewhere.
+struct BusyChain {
+  System system;
+  scenes::Chain chain;
+  std::mt19937 random{5};
+  std::vector<std::size_t> cuts;  ///< hinges above these links are open
+
+  explicit BusyChain(bool rods) : system({.mode = IntegrationMode::robust, .damping = 0.5}) {
+    chain = scenes::make_chain(system, {.links = 500, .rods = rods, .direction = {0, -1, 0}});
+    (void)system.step(1.0 / 240);
+  }
+  void edit() {
+    if (cuts.size() < 3 && random() % 2) {
+      const std::size_t link = 2 + random() % 497;
+      if (system.ring(chain.upper[link]).size() < 2) return;
+      (void)system.separate(chain.lower[link - 1], chain.upper[link]);
+      cuts.push_back(link);
+    } else if (!cuts.empty()) {
+      const std::size_t which = random() % cuts.size();
+      (void)system.combine(chain.lower[cuts[which] - 1], chain.upper[cuts[which]]);
+      cuts.erase(cuts.begin() + static_cast<std::ptrdiff_t>(which));
+    }
+  }
+};
+
+/// A long chain with everything that an island may have in it: damped links, a rope, a spring, plates, a nail that comes
+/// and goes, closings and hands.
+struct MixedChain {
+  System system;
+  scenes::Chain chain;
+  std::mt19937 random;
+  std::vector<GripId> grips;
+  std::vector<std::size_t> loops;  ///< these links' lower ends are on their way to those ten links further down
+
+  MixedChain(unsigned seed, IntegrationMode mode) : system({.mode = mode}), random(seed) {
+    constexpr int links = 300;
+    const auto joint = [](int i) { return Vec3{0.07 * i, 0.07 * (i % 2), 0.03 * (i % 3)}; };  // a straight one is singular
+    for (int i = 0; i < links; ++i) {
+      chain.links.push_back(system.create_body());
+      chain.upper.push_back(system.create_particle(chain.links.back(), joint(i), 0.05));
+      chain.lower.push_back(system.create_particle(chain.links.back(), joint(i + 1), 0.05));
+      if (i % 40 == 20) {  // a plate, and a particle that it carries
+        (void)system.create_particle(chain.links.back(), joint(i) + Vec3{0, 0, 0.05}, 0.02);
+        (void)system.create_particle(chain.links.back(), joint(i + 1) + Vec3{0, 0, 0.05}, 0.02);
+      } else {
+        system.set_rod(chain.links.back(), 0.1, 0.005);
+      }
+      if (i % 7 == 0) system.set_damping(chain.links.back(), 0.3);
+      if (i > 0) (void)system.combine(chain.lower[i - 1], chain.upper[i]);
+    }
+    system.nail(chain.upper[0]);
+    const ParticleId hook = system.create_particle(system.create_body({.kind = BodyKind::static_}),
+                                                   system.position(chain.lower[299]) + Vec3{0, 0.2, 0});
+    (void)system.create_constraint(
+        DistanceSpec{.kind = ConstraintKind::rope, .p = hook, .q = chain.lower[299], .length = 0.5});
+    (void)system.create_bond(chain.lower[100], chain.lower[140],
+                             SpringLaw{.stiffness = 40, .damping = 0.5, .length = 3});
+    (void)system.step(1.0 / 240);
+  }
+  enum Edit { cut, close, call_off, grab, let_go, damp, nail };
+
+  void edit(std::vector<Edit> choice) {
+    const std::size_t link = 2 + random() % 280;
+    switch (choice[random() % choice.size()]) {
+      case cut:
+        if (system.ring(chain.upper[link]).size() > 1) (void)system.separate(chain.lower[link - 1], chain.upper[link]);
+        return;
+      case close:
+        if (loops.size() > 2) return;
+        (void)system.combine(chain.lower[link], chain.lower[link + 10], 0.5);
+        return loops.push_back(link);
+      case call_off:
+        if (loops.empty()) return;
+        (void)system.separate(chain.lower[loops.back()], chain.lower[loops.back() + 10]);
+        return loops.pop_back();
+      case grab: return grips.push_back(system.create_grip(chain.links[link], {}, system.position(chain.upper[link])));
+      case let_go:
+        if (grips.empty()) return;
+        system.destroy(grips.front());
+        grips.erase(grips.begin());
+        return;
+      case damp: return system.set_damping(chain.links[link], random() % 2 ? 0.5 : 0);
+      case nail: system.is_nailed(chain.upper[150]) ? system.release(chain.upper[150]) : system.nail(chain.upper[150]);
+    }
+  }
+};
+
+/// The largest distance between points of two chains.
+template <class World>
+double difference(const World& a, const World& b) {
+  double farthest = 0;
+  for (const ParticleId p : a.chain.lower)
+    farthest = std::max(farthest, norm(a.system.position(p) - b.system.position(p)));
+  return farthest;
+}
+
+TEST(FollowingIsland, gives_what_an_island_that_is_built_anew_gives) {
+  for (const bool rods : {false, true}) {
+    BusyChain followed(rods), renewed(rods);
+    for (int step = 0; step < 60; ++step) {
+      followed.edit(), renewed.edit();
+      (void)renewed.system.snapshot();  // builds all islands anew
+      (void)followed.system.step(1.0 / 240), (void)renewed.system.step(1.0 / 240);
+      ASSERT_EQ(followed.system.validate(), std::vector<std::string>{});
+      ASSERT_LT(difference(followed, renewed), 1e-7) << "step " << step;
+      ASSERT_LT(followed.system.worst_gap(), 1e-8) << "step " << step;
+    }
+  }
+}
+
+// Cuts by themselves: whatever projects velocities does so for all that is in one problem, pieces that were cut off too.
+TEST(FollowingIsland, gives_the_same_with_grips_closings_nails_joints_and_damping) {
+  using enum MixedChain::Edit;
+  const std::vector<MixedChain::Edit> choices[] = {{cut, grab, let_go, damp}, {close, call_off, grab, let_go, damp, nail}};
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const auto mode = seed % 2 ? IntegrationMode::robust : IntegrationMode::energy_keeping;
+    MixedChain followed(seed, mode), renewed(seed, mode);
+    for (int step = 0; step < 30; ++step) {
+      followed.edit(choices[seed % 3 == 0]), renewed.edit(choices[seed % 3 == 0]);
+      (void)renewed.system.snapshot();  // builds all islands anew
+      (void)followed.system.step(1.0 / 480), (void)renewed.system.step(1.0 / 480);
+      ASSERT_EQ(followed.system.validate(), std::vector<std::string>{});
+      ASSERT_LT(difference(followed, renewed), 1e-9) << "seed " << seed << " step " << step;
+    }
+  }
+}
+
+TEST(FollowingIsland, keeps_a_rope_beside_a_cut) {
+  const auto make = [](System& system, ConstraintId& rope) {
+    auto chain = scenes::make_chain(system, {.links = 300});
+    const ParticleId hook = system.create_particle(system.create_body({.kind = BodyKind::static_}), {30, 0.2, 0});
+    rope = system.create_constraint(
+        DistanceSpec{.kind = ConstraintKind::rope, .p = hook, .q = chain.upper[299], .length = 0.5});
+    for (int i = 0; i < 5; ++i) (void)system.step(1.0 / 120);
+    (void)system.separate(chain.lower[298], chain.upper[299]);
+    return chain;
+  };
+  System followed{SystemOptions{.mode = IntegrationMode::robust}}, renewed{SystemOptions{.mode = IntegrationMode::robust}};
+  ConstraintId rope;
+  const scenes::Chain chain = make(followed, rope);
+  (void)make(renewed, rope);
+  const ParticleId end = chain.upper[299];
+  for (int i = 0; i < 100; ++i) {
+    (void)renewed.snapshot();  // builds its islands anew; the other's follows the cut
+    (void)followed.step(1.0 / 120), (void)renewed.step(1.0 / 120);
+    ASSERT_LT(norm(followed.position(end) - Vec3{30, 0.2, 0}), 0.5 + 1e-8) << "step " << i;
+    ASSERT_LT(norm(followed.position(end) - renewed.position(end)), 1e-7) << "step " << i;
+  }
+  EXPECT_GT(norm(followed.state(rope).force), 0);
+}
+
+TEST(FollowingIsland, replays_to_the_same_bits_from_a_snapshot_amid_the_cuts) {
+  BusyChain world(true);
+  for (int i = 0; i < 5; ++i) world.edit(), (void)world.system.step(1.0 / 240);
+  world.system.start_recording();
+  for (int i = 0; i < 30; ++i) world.edit(), (void)world.system.step(1.0 / 240);
+  const Recording recording = world.system.stop_recording();
+  System other;
+  EXPECT_EQ(other.replay(recording), std::nullopt);
+}
+
+TEST(FollowingIsland, ends_with_an_island_for_each_piece) {
+  BusyChain world(true);
+  (void)world.system.separate(world.chain.lower[249], world.chain.upper[250]);
+  for (int i = 0; i < 130; ++i) (void)world.system.step(1.0 / 240);  // a fall of the free half is exact only by itself
+  const Vec3 v = world.system.velocity(world.chain.lower[499]);
+  EXPECT_LT(v.y, -1) << "the cut-off half falls";
+  EXPECT_EQ(world.system.articulate_count(), 2u);
+}
+
+}  // namespace
+}  // namespace iota
