@@ -226,11 +226,7 @@ void bind_cosmetic_bond(nb::module_& module) {
       .def(
           "destroy",
           [](const CosmeticBondHandle& self) {
-            System& engine = self.use();
-            const ParticleId end = engine.ends(self.id).first;
-            RestructureResult result{self.system_object, self.system, engine.destroy(self.id)};
-            if (!result.report.created_bodies.empty()) self.system->note_edit("break", engine.position(end));
-            return result;
+            return RestructureResult{self.system_object, self.system, self.use().destroy(self.id)};
           },
           "Removes it. Where that disconnects its body's cosmetic bonds the rigid body falls into two pieces: one with the\n"
           "bond's first end, which stays this body, and one with the second. Particles that hang on neither end go with the\n"

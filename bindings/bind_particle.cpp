@@ -38,7 +38,8 @@ using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device:
 /// Body after body with their particles, in one call: a call for each of them from Python takes five times as long.
 std::pair<std::vector<BodyHandle>, std::vector<ParticleHandle>> make_bodies(nb::handle_t<SystemObject> system,
                                                                             const std::vector<std::uint32_t>& counts,
-                                                                            Rows position, Numbers mass, Rows velocity) {
+                                                                            Rows position, Numbers mass,
+                                                                            Rows velocity) {
   System& engine = nb::inst_ptr<SystemObject>(system)->use_between_steps("make_bodies");
   const std::size_t total = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   if (position.shape(0) != total || velocity.shape(0) != total || mass.shape(0) != total)
@@ -63,23 +64,15 @@ void bind_nails(nb::class_<ParticleHandle>& type) {
           "nail",
           [](const ParticleHandle& self, std::optional<VectorArgument> position) {
             System& engine = self.use();
-            const bool is_new = !engine.is_nailed(self.id);
             if (position)
               engine.nail(self.id, to_vec3(*position, "position"));
             else
               engine.nail(self.id);
-            if (is_new) self.system->note_edit("join", engine.position(self.id));
           },
           "position"_a = nb::none(),
           "Holds it where it is, or at a place (m). Called again with another place, it moves the nail.")
       .def(
-          "release",
-          [](const ParticleHandle& self) {
-            System& engine = self.use();
-            if (engine.is_nailed(self.id)) self.system->note_edit("break", engine.position(self.id));
-            engine.release(self.id);
-          },
-          "Takes its nail out.")
+          "release", [](const ParticleHandle& self) { self.use().release(self.id); }, "Takes its nail out.")
       .def_prop_ro("is_nailed", [](const ParticleHandle& self) { return self.use().is_nailed(self.id); })
       .def_prop_ro(
           "nail_force", [](const ParticleHandle& self) { return self.use().nail_force(self.id); },
@@ -113,8 +106,9 @@ void bind_particle(nb::module_& module) {
           },
           "position"_a = nb::make_tuple(0.0, 0.0, 0.0), "mass"_a = 1.0, "velocity"_a = nb::make_tuple(0.0, 0.0, 0.0),
           make_doc);
-  module.def("make_bodies", &make_bodies, "system"_a, "counts"_a, "position"_a, "mass"_a, "velocity"_a,
-             "For iota.builder: a body of counts[i] particles for each i. position, velocity: (n, 3), m and m/s. mass: (n,), kg.");
+  module.def(
+      "make_bodies", &make_bodies, "system"_a, "counts"_a, "position"_a, "mass"_a, "velocity"_a,
+      "For iota.builder: a body of counts[i] particles for each i. position, velocity: (n, 3), m and m/s. mass: (n,), kg.");
   def_identity(type);
   def_survival(type, "def survivor(self) -> Particle | None");
   bind_nails(type);

@@ -56,13 +56,8 @@ void bind_parts(nb::module_& module) {
       .def(
           "separate",
           [](const PartView& self) {
-            System& engine = self.use();
-            const auto particles = engine.particles(self.body.id, self.part);
-            RestructureResult result{self.body.system_object, self.body.system,
-                                     engine.separate(self.body.id, self.part)};
-            if ((result.report.changed || result.report.queued) && !particles.empty())
-              self.body.system->note_edit("break", engine.position(particles.front()));
-            return result;
+            return RestructureResult{self.body.system_object, self.body.system,
+                                     self.use().separate(self.body.id, self.part)};
           },
           "Makes it a body of its own again, with the hinges that combining had made rigid: it is the first of the\n"
           "report's created_bodies.")

@@ -3,8 +3,6 @@
 #include "names.h"
 #include "restructure_result.h"
 
-#include <algorithm>
-
 namespace iota::bindings {
 
 namespace {
@@ -61,39 +59,21 @@ RestructureResult combine_particles(const ParticleHandle& p, const ParticleHandl
   System& engine = p.use();
   const double distance = norm(engine.position(p.id) - engine.position(q.id));
   if (keeps_first) bring(p.system->use_between_steps("combine with keep='first'"), q.id, p.id);
-  const Vec3 place = 0.5 * (engine.position(p.id) + engine.position(q.id));
   RestructureResult result{p.system_object, p.system, engine.combine(p.id, q.id, over)};
   if (keeps_first) result.report.closed_distance = distance;
-  if (result.report.changed || result.report.queued) p.system->note_edit("join", place, over, p.id);
   return result;
 }
 
 RestructureResult combine_bodies(const BodyHandle& a, const BodyHandle& b) {
   check_one_system(a, b, "combine");
   b.use();
-  System& engine = a.use();
-  const Vec3 place = 0.5 * (engine.center_of_mass(a.id) + engine.center_of_mass(b.id));
-  RestructureResult result{a.system_object, a.system, engine.combine(a.id, b.id)};
-  if (result.report.changed || result.report.queued) a.system->note_edit("join", place);
-  return result;
+  return {a.system_object, a.system, a.use().combine(a.id, b.id)};
 }
 
 RestructureResult separate(const ParticleHandle& p, const ParticleHandle& q) {
   check_one_system(p, q, "separate");
   q.use();
-  System& engine = p.use();
-  const Vec3 place = engine.position(q.id);
-  RestructureResult result{p.system_object, p.system, engine.separate(p.id, q.id)};
-  if (result.report.changed || result.report.queued) p.system->note_edit("break", place);
-  return result;
-}
-
-/// The living body of a slot, if any: what the page names bodies by.
-nb::object body_at(SystemObject& self, std::uint32_t slot) {
-  const std::vector<BodyId> bodies = self.use().bodies();
-  const auto found = std::ranges::lower_bound(bodies, slot, {}, &BodyId::slot);
-  if (found == bodies.end() || found->slot != slot) return nb::none();
-  return nb::cast(BodyHandle{nb::find(&self), &self, *found});
+  return {p.system_object, p.system, p.use().separate(p.id, q.id)};
 }
 
 template <class HandleType, class Read>
@@ -116,26 +96,14 @@ std::vector<std::pair<ParticleHandle, ParticleHandle>> cosmetic_lines(nb::handle
   return out;
 }
 
-nb::list take_edits(nb::handle_t<SystemObject> self) {
-  SystemObject* object = nb::inst_ptr<SystemObject>(self);
-  object->use();
-  nb::list out;
-  for (const VisibleEdit& edit : object->edits) {
-    nb::object particle = nb::none();
-    if (edit.particle) particle = nb::cast(ParticleHandle{nb::borrow(self), object, edit.particle});
-    out.append(nb::make_tuple(edit.kind, edit.position, edit.delay, particle));
-  }
-  object->edits.clear();
-  return out;
-}
-
 }  // namespace
 
 void bind_restructuring(nb::module_& module) {
   nb::borrow<nb::class_<ParticleHandle>>(module.attr("Particle"))
       .def("combine", &combine_particles, "q"_a, "over"_a = 0.0, nb::kw_only(), "keep"_a = "both",
-           nb::sig("def combine(self, q: Particle, over: float = 0.0, *, keep: typing.Literal['both', 'first'] = 'both') "
-                   "-> RestructureReport"),
+           nb::sig(
+               "def combine(self, q: Particle, over: float = 0.0, *, keep: typing.Literal['both', 'first'] = 'both') "
+               "-> RestructureReport"),
            combine_particles_doc)
       .def("separate", &separate, "q"_a, separate_doc);
   nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"))
@@ -149,15 +117,7 @@ void bind_restructuring(nb::module_& module) {
       .def_prop_ro("bonds", all_of<BondHandle>([](System& engine) { return engine.bonds(); }), "In order of slots.")
       .def_prop_ro("cosmetic_bonds", all_of<CosmeticBondHandle>([](System& engine) { return engine.cosmetic_bonds(); }),
                    "In order of slots.")
-      .def_prop_ro("cosmetic_lines", &cosmetic_lines, "The ends of all cosmetic bonds.")
-      .def("body_at", &body_at, "slot"_a, nb::sig("def body_at(self, slot: int) -> Body | None"),
-           "The living body with this slot, or None.")
-      .def(
-          "watch_edits", [](SystemObject& self, bool on) { self.watch_edits = on; }, "on"_a,
-          "For World: whether structural edits are noted for `take_edits`.")
-      .def(
-          "take_edits", &take_edits, nb::sig("def take_edits(self) -> list[tuple[str, Vec3, float, Particle | None]]"),
-          "For World: (kind, place, delay in s, particle to be there then) of each structural edit since the last call.");
+      .def_prop_ro("cosmetic_lines", &cosmetic_lines, "The ends of all cosmetic bonds.");
 }
 
 }  // namespace iota::bindings

@@ -182,7 +182,6 @@ StepReport SystemObject::step(double dt) {
   }
   step_edits = report.edits;
   broken = report.broken;
-  for (const Broken& b : broken) note_edit("break", b.position);
   // Functions that the engine has dropped: ours is the only reference left.
   std::erase_if(functions, [](const auto& function) { return function.use_count() == 1; });
   if (nb::object raised = take_solver_failure(); raised.is_valid()) {

@@ -54,14 +54,6 @@ struct ForceFailure {
   nb::object exception;
 };
 
-/// A structural edit that a viewer should see and hear.
-struct VisibleEdit {
-  const char* kind;  ///< "join" or "break"
-  Vec3 position;
-  double delay;         ///< s until it shows
-  ParticleId particle;  ///< where it shows then, if it is not null and still alive
-};
-
 /// What a Python `System` holds: the engine's system, its owner thread and the functions of its scripted bonds.
 class SystemObject {
  public:
@@ -89,9 +81,6 @@ class SystemObject {
   /// answers by switching off what the function is for; a signal that happens to arrive in it is noted only.
   template <class Call>
   void guard(const std::shared_ptr<ScriptFunction>& source, BondId bond, Call call);
-  void note_edit(const char* kind, const Vec3& position, double delay = 0, ParticleId particle = {}) {
-    if (watch_edits) edits.push_back({kind, position, delay, particle});
-  }
 
   int traverse(visitproc visit, void* argument);
   void clear();
@@ -105,8 +94,6 @@ class SystemObject {
   bool warn_of_forces = false;                  ///< where forces fail: a warning instead of an exception
   std::map<std::string, LawId> written_laws;    ///< of expressions given to bonds: by text and parameters
   std::optional<RestructureReport> step_edits;  ///< asked for during the last step
-  bool watch_edits = false;
-  std::vector<VisibleEdit> edits;
   std::vector<Broken> broken;  ///< in the last step
 
  private:

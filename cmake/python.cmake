@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# _core: the nanobind module, and its typed stub.
+# _core: the nanobind module, and its typed stub; _protocol: the protocol's numbers.
 #
 # Both land in BUILD/python/iota. `make build` links them beside the Python sources, so that python/iota is the whole
 # package; a wheel gets them by the install rules at the end.
@@ -17,7 +17,7 @@ endif()
 
 if(SKBUILD AND IOTA_PREBUILT)
   install(DIRECTORY "${IOTA_PREBUILT}/" DESTINATION iota COMPONENT python
-          FILES_MATCHING PATTERN "_core.*" PATTERN "libtbb.so*")
+          FILES_MATCHING PATTERN "_core.*" PATTERN "_protocol.py" PATTERN "libtbb.so*")
   add_custom_target(everyday)
   return()
 endif()
@@ -39,6 +39,7 @@ set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${CMAKE_CURRENT
 target_compile_definitions(_core PRIVATE IOTA_VERSION="${PROJECT_VERSION}")
 target_include_directories(_core PRIVATE bindings src ${CMAKE_CURRENT_SOURCE_DIR})
 target_link_libraries(_core PRIVATE iota_engine iota_net)
+add_dependencies(_core iota_protocol_python)
 # Only the module's entry point is seen from outside: nothing of Boost or of ours can clash with another extension.
 target_link_options(_core PRIVATE "$<$<PLATFORM_ID:Linux>:-Wl,--exclude-libs,ALL>")
 
@@ -66,7 +67,7 @@ add_custom_target(everyday DEPENDS _core iota_stub)
 
 if(SKBUILD)
   install(TARGETS _core LIBRARY DESTINATION iota COMPONENT python)
-  install(FILES "${iota_stub}" DESTINATION iota COMPONENT python)
+  install(FILES "${iota_stub}" "${iota_protocol_module}" DESTINATION iota COMPONENT python)
   if(IOTA_THREADS)
     install(FILES "$<TARGET_FILE_DIR:_core>/$<TARGET_SONAME_FILE_NAME:TBB::tbb>" DESTINATION iota COMPONENT python)
   endif()

@@ -4,7 +4,7 @@
 
     python3 protocol/make_golden.py
 
-This is on purpose a second encoder that never reads schema.json and shares no code with
+This is on purpose a second encoder that never reads the schema and shares no code with
 tools/generate_protocol.py: each frame is put together by hand with struct.pack, so that a
 mistake in the schema or the generator shows as a difference. Run it only after a change
 of the protocol, and look at the difference it makes. Floats are exact in 32 bits.
@@ -29,6 +29,22 @@ def vec3(value: list[float]) -> bytes:
     return pack("<3f", *value)
 
 
+def quat(value: list[float]) -> bytes:
+    return pack("<4f", *value)
+
+
+def array(kind: str, values: list[Any]) -> bytes:
+    return pack(f"<I{len(values)}{kind}", len(values), *values)
+
+
+def identity(slot: int, generation: int) -> bytes:
+    return pack("<II", slot, generation)
+
+
+NOTHING = {"slot": 0, "generation": 0}
+NO_COLOR = 0xFFFFFFFF
+
+
 # name, message, bytes, values
 Vector = tuple[str, str, bytes, dict[str, Any]]
 
@@ -36,22 +52,27 @@ CLIENT: list[Vector] = [
     (
         "hello",
         "hello",
-        b"\x01" + b"IOTA" + pack("<H", 1) + text("default") + text("Ada \u00fc\u4e16\U0001f517"),
-        {"magic": 0x41544F49, "version": 1, "world": "default", "name": "Ada \u00fc\u4e16\U0001f517"},
+        b"\x01" + b"IOTA" + pack("<H", 3) + text("default") + b"\x01" + text("Ada \u00fc\u4e16\U0001f517"),
+        {"magic": 0x41544F49, "version": 3, "world": "default", "role": 1, "name": "Ada \u00fc\u4e16\U0001f517"},
     ),
     (
         "hello_empty",
         "hello",
-        b"\x01IOTA\x01\x00" + bytes(8),
-        {"magic": 0x41544F49, "version": 1, "world": "", "name": ""},
+        b"\x01IOTA\x03\x00" + bytes(9),
+        {"magic": 0x41544F49, "version": 3, "world": "", "role": 0, "name": ""},
     ),
-    ("select", "select", b"\x02" + pack("<I", 23), {"body": 23}),
-    ("select_none", "select", b"\x02\xff\xff\xff\xff", {"body": 0xFFFFFFFF}),
+    ("select", "select", b"\x02" + identity(70000, 3), {"body": {"slot": 70000, "generation": 3}}),
+    ("select_none", "select", b"\x02" + bytes(8), {"body": NOTHING}),
     (
         "grab_start",
         "grab_start",
-        b"\x03" + pack("<II", 7, 12) + vec3([0.5, -0.25, 0.0]) + vec3([1.5, -2.0, 1024.125]),
-        {"hold": 7, "body": 12, "local_point": [0.5, -0.25, 0.0], "target": [1.5, -2.0, 1024.125]},
+        b"\x03" + pack("<I", 7) + identity(12, 1) + vec3([0.5, -0.25, 0.0]) + vec3([1.5, -2.0, 1024.125]),
+        {
+            "hold": 7,
+            "body": {"slot": 12, "generation": 1},
+            "local_point": [0.5, -0.25, 0.0],
+            "target": [1.5, -2.0, 1024.125],
+        },
     ),
     (
         "grab_move",
@@ -60,7 +81,12 @@ CLIENT: list[Vector] = [
         {"hold": 7, "target": [-0.125, 3.0, 0.0625]},
     ),
     ("grab_end", "grab_end", b"\x05" + pack("<I", 4000000000), {"hold": 4000000000}),
-    ("action", "action", b"\x06" + text("break") + pack("<I", 5), {"name": "break", "body": 5}),
+    (
+        "action",
+        "action",
+        b"\x06" + text("break") + identity(5, 2),
+        {"name": "break", "body": {"slot": 5, "generation": 2}},
+    ),
     ("control_pause", "control", b"\x07\x00" + pack("<f", 0.0), {"command": 0, "value": 0.0}),
     ("control_speed", "control", b"\x07\x04" + pack("<f", 0.25), {"command": 4, "value": 0.25}),
     ("ping", "ping", b"\x08" + pack("<d", 1234.5678), {"client_time": 1234.5678}),
@@ -86,35 +112,16 @@ SERVER: list[Vector] = [
     (
         "welcome",
         "welcome",
-        b"\x40" + pack("<H", 1) + text("default") + pack("<I", 3) + pack("<d", 1 / 120),
-        {"version": 1, "world": "default", "client": 3, "dt": 1 / 120},
+        b"\x40" + pack("<H", 3) + text("default") + pack("<I", 3),
+        {"version": 3, "world": "default", "client": 3},
     ),
     ("refused", "refused", b"\x41" + text("no such world"), {"reason": "no such world"}),
-    (
-        "scene",
-        "scene",
-        b"\x42" + text("world") + text('{"title":"K\u00e4tte"}'),
-        {"key": "world", "json": '{"title":"K\u00e4tte"}'},
-    ),
-    (
-        "structure",
-        "structure",
-        b"\x43" + pack("<I", 9) + pack("<I", 3) + pack("<6I", 0, 0, 1, 0, 2, 70000),
-        {
-            "structure_version": 9,
-            "articulates": [
-                {"body": 0, "articulate": 0},
-                {"body": 1, "articulate": 0},
-                {"body": 2, "articulate": 70000},
-            ],
-        },
-    ),
     (
         "poses",
         "poses",
         b"\x44"
-        + pack("<QdIBB", 0x0001_0002_0003_0004, 16.0625, 9, 1, 0)
-        + pack("<5f", 1.0, 0.375, 2.5, -7.25, 0.0009765625)
+        + pack("<QdIB", 0x0001_0002_0003_0004, 16.0625, 9, 1)
+        + pack("<3f", 2.5, -7.25, 0.0009765625)
         + vec3([-1.0, -2.0, -4.0])
         + vec3([1.0, 2.0, 4.0])
         + pack("<I", 2)
@@ -124,7 +131,7 @@ SERVER: list[Vector] = [
         + pack("<I3fI", 70000, 0.0, -4096.5, 8.0, 0xC0000001)
         + pack("<I", 1)
         + vec3([0.25, 0.5, -0.75])
-        + pack("<fI", 0.0625, 0xFF8000)
+        + pack("<fII", 0.0625, 0xFF8000, 4)
         + pack("<I", 1)
         + pack("<III", 2, 7, 12)
         + vec3([0.5, 1.0, 1.5])
@@ -135,9 +142,6 @@ SERVER: list[Vector] = [
             "time": 16.0625,
             "structure_version": 9,
             "keyframe": True,
-            "paused": False,
-            "speed": 1.0,
-            "step_ms": 0.375,
             "kinetic": 2.5,
             "potential": -7.25,
             "gap": 0.0009765625,
@@ -145,22 +149,19 @@ SERVER: list[Vector] = [
             "box_max": [1.0, 2.0, 4.0],
             "bodies": BODIES,
             "far_bodies": FAR,
-            "sparks": [{"position": [0.25, 0.5, -0.75], "radius": 0.0625, "color": 0xFF8000}],
+            "sparks": [{"position": [0.25, 0.5, -0.75], "radius": 0.0625, "color": 0xFF8000, "set": 4}],
             "holds": HOLDS,
         },
     ),
     (
         "poses_nothing_moved",
         "poses",
-        b"\x44" + pack("<QdIBB", 5, 0.5, 1, 0, 1) + bytes(5 * 4) + bytes(6 * 4) + bytes(4 * 4),
+        b"\x44" + pack("<QdIB", 5, 0.5, 1, 0) + bytes(3 * 4) + bytes(6 * 4) + bytes(4 * 4),
         {
             "step": 5,
             "time": 0.5,
             "structure_version": 1,
             "keyframe": False,
-            "paused": True,
-            "speed": 0.0,
-            "step_ms": 0.0,
             "kinetic": 0.0,
             "potential": 0.0,
             "gap": 0.0,
@@ -193,14 +194,148 @@ SERVER: list[Vector] = [
     (
         "clients",
         "clients",
-        b"\x48" + pack("<I", 2) + pack("<I", 1) + text("Ada") + pack("<II", 4, 2) + text("") + b"\xff" * 4,
+        b"\x48"
+        + pack("<I", 2)
+        + pack("<I", 1)
+        + text("Ada")
+        + identity(4, 1)
+        + b"\0"
+        + pack("<I", 2)
+        + text("")
+        + bytes(8)
+        + b"\1",
         {
             "clients": [
-                {"client": 1, "name": "Ada", "selected": 4},
-                {"client": 2, "name": "", "selected": 0xFFFFFFFF},
+                {"client": 1, "name": "Ada", "selected": {"slot": 4, "generation": 1}, "role": 0},
+                {"client": 2, "name": "", "selected": NOTHING, "role": 1},
             ]
         },
     ),
+    (
+        "entities_set",
+        "entities_set",
+        b"\x49" + text("body") + pack("<I", 5) + b"\x01\x02\x03\x04\x05",
+        {"kind": "body", "records": [1, 2, 3, 4, 5]},
+    ),
+    (
+        "entities_destroyed",
+        "entities_destroyed",
+        b"\x4a" + text("tie") + pack("<I", 2) + identity(7, 1) + identity(70000, 9),
+        {"kind": "tie", "ids": [{"slot": 7, "generation": 1}, {"slot": 70000, "generation": 9}]},
+    ),
+    (
+        "world_settings",
+        "world_settings",
+        b"\x4b"
+        + text("K\u00e4tte")
+        + pack("<I", 2)
+        + text("rope")
+        + text("chain")
+        + text("rope")
+        + vec3([2.5, 1.5, 3.5])
+        + vec3([0.0, 1.25, 0.0])
+        + b"\x01"
+        + pack("<f", -0.5),
+        {
+            "title": "K\u00e4tte",
+            "looks": ["rope", "chain"],
+            "look": "rope",
+            "camera_position": [2.5, 1.5, 3.5],
+            "camera_target": [0.0, 1.25, 0.0],
+            "has_ground": True,
+            "ground": -0.5,
+        },
+    ),
+    (
+        "world_state",
+        "world_state",
+        b"\x4c\x01" + pack("<ffd", 0.5, 0.375, 1 / 120),
+        {"paused": True, "speed": 0.5, "step_ms": 0.375, "dt": 1 / 120},
+    ),
+    (
+        "actions",
+        "actions",
+        b"\x4d" + pack("<I", 1) + text("push") + text("p") + text("push it") + text("") + b"\x01\x02",
+        {"actions": [{"name": "push", "key": "p", "label": "push it", "help": "", "on": 1, "button": 2}]},
+    ),
+]
+
+PART = {
+    "look": "*",
+    "shape": {"kind": "torus", "sizes": [0.5, 0.125], "vertices": [], "triangles": []},
+    "offset": [0.0, 0.25, 0.0],
+    "rotation": [0.5, 0.5, 0.5, 0.5],
+    "turn": 1.5,
+    "material": "brass",
+    "color": NO_COLOR,
+}
+MESH = {
+    "look": "chain",
+    "shape": {
+        "kind": "mesh",
+        "sizes": [],
+        "vertices": [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+        "triangles": [0, 1, 2],
+    },
+    "offset": [0.0, 0.0, 0.0],
+    "rotation": [0.0, 0.0, 0.0, 1.0],
+    "turn": 0.0,
+    "material": "paint",
+    "color": 0xFF8000,
+}
+
+
+def part(value: dict[str, Any]) -> bytes:
+    shape = value["shape"]
+    return (
+        text(value["look"])
+        + text(shape["kind"])
+        + array("f", shape["sizes"])
+        + array("f", shape["vertices"])
+        + array("I", shape["triangles"])
+        + vec3(value["offset"])
+        + quat(value["rotation"])
+        + pack("<f", value["turn"])
+        + text(value["material"])
+        + pack("<I", value["color"])
+    )
+
+
+ID = {"slot": 70000, "generation": 3}
+A = {"body": 12, "point": [0.5, 0.0, -0.25]}
+B = {"body": 0xFFFFFFFF, "point": [0.0, 2.0, 0.0]}
+
+
+def anchor(value: dict[str, Any]) -> bytes:
+    return pack("<I", value["body"]) + vec3(value["point"])
+
+
+# kind, its record, values
+ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
+    (
+        "style",
+        text("link") + pack("<I", 2) + part(PART) + part(MESH),
+        {"name": "link", "parts": [PART, MESH]},
+    ),
+    (
+        "body",
+        b"\x02" + pack("<I", 9) + b"\x01" + pack("<f", 0.125),
+        {"kind": 2, "style": 9, "odd": True, "length": 0.125},
+    ),
+    ("membership", pack("<I", 40000), {"articulate": 40000}),
+    (
+        "tie",
+        b"\x01" + pack("<If", 3, 0.75) + anchor(A) + anchor(B),
+        {"kind": 1, "style": 3, "length": 0.75, "a": A, "b": B},
+    ),
+    (
+        "joint",
+        text("revolute") + anchor(A) + anchor(B) + vec3([0.0, 0.0, 1.0]),
+        {"kind": "revolute", "a": A, "b": B, "axis": [0.0, 0.0, 1.0]},
+    ),
+    ("nail", anchor(A), {"at": A}),
+    ("particle_set", b"\x01" + pack("<I", 1000), {"active": True, "capacity": 1000}),
+    ("static_shape", part(PART), {"part": PART}),
 ]
 
 NAN, INFINITY = float("nan"), float("inf")
@@ -211,25 +346,32 @@ BAD: list[tuple[str, str, bytes, str]] = [
     ("bad_type", "client", b"\x09", "has the type 9"),
     ("bad_direction", "client", b"\x40\x01\x00", "has the type 64"),
     ("bad_short_select", "client", b"\x02\x01\x00\x00", "select.body ends early"),
-    ("bad_long_select", "client", b"\x02\x01\x00\x00\x00\x00", "the frame has 1 bytes too many"),
+    ("bad_long_select", "client", b"\x02" + bytes(9), "the frame has 1 bytes too many"),
     ("bad_nan", "client", b"\x04" + pack("<I3f", 1, 0.0, NAN, 0.0), "grab_move.target is not a finite number"),
     ("bad_infinity", "client", b"\x07\x04" + pack("<f", -INFINITY), "control.value is not a finite number"),
     ("bad_nan_double", "client", b"\x08" + pack("<d", NAN), "ping.client_time is not a finite number"),
     ("bad_command", "client", b"\x07\x05" + bytes(4), "control.command has no meaning for the value 5"),
     ("bad_string_length", "client", b"\x06" + pack("<I", 100) + b"break", "action.name ends early"),
     ("bad_string_huge", "client", b"\x06\xff\xff\xff\xff" + b"break", "action.name has 4294967295 entries"),
-    ("bad_string_limit", "client", b"\x06" + text("a" * 129) + bytes(4), "action.name has 129 entries"),
-    ("bad_utf8", "client", b"\x06" + pack("<I", 2) + b"\xc0\x80" + bytes(4), "action.name is not UTF-8"),
-    ("bad_surrogate", "client", b"\x06" + pack("<I", 3) + b"\xed\xa0\x80" + bytes(4), "action.name is not UTF-8"),
-    ("bad_count", "server", b"\x43" + pack("<II", 1, 1000000) + bytes(8), "structure.articulates ends early"),
-    ("bad_count_huge", "server", b"\x43" + pack("<II", 1, 0xFFFFFFFF), "structure.articulates has 4294967295"),
-    ("bad_bool", "server", b"\x44" + pack("<QdIBB", 5, 0.5, 1, 2, 1) + bytes(60), "poses.keyframe is neither 0 nor 1"),
-    ("bad_poses_short", "server", b"\x44" + pack("<QdIBB", 5, 0.5, 1, 0, 1) + bytes(59), "poses.holds ends early"),
+    ("bad_string_limit", "client", b"\x06" + text("a" * 129) + bytes(8), "action.name has 129 entries"),
+    ("bad_utf8", "client", b"\x06" + pack("<I", 2) + b"\xc0\x80" + bytes(8), "action.name is not UTF-8"),
+    ("bad_surrogate", "client", b"\x06" + pack("<I", 3) + b"\xed\xa0\x80" + bytes(8), "action.name is not UTF-8"),
+    ("bad_count", "server", b"\x4a" + text("tie") + pack("<I", 100000) + bytes(8), "entities_destroyed.ids ends early"),
+    (
+        "bad_count_huge",
+        "server",
+        b"\x4a" + text("tie") + pack("<I", 0xFFFFFFFF),
+        "entities_destroyed.ids has 4294967295",
+    ),
+    ("bad_bool", "server", b"\x44" + pack("<QdIB", 5, 0.5, 1, 2) + bytes(52), "poses.keyframe is neither 0 nor 1"),
+    ("bad_poses_short", "server", b"\x44" + pack("<QdIB", 5, 0.5, 1, 0) + bytes(51), "poses.holds ends early"),
 ]
 
 
 def main() -> None:
     GOLDEN.mkdir(exist_ok=True)
+    for old in GOLDEN.iterdir():
+        old.unlink()
     good, bad = [], []
     for sender, vectors in (("client", CLIENT), ("server", SERVER)):
         for name, message, data, values in vectors:
@@ -238,7 +380,12 @@ def main() -> None:
     for name, sender, data, error in BAD:
         (GOLDEN / f"{name}.hex").write_text(data.hex() + "\n")
         bad.append({"name": name, "sender": sender, "error": error})
-    vectors_json = json.dumps({"good": good, "bad": bad}, indent=1, ensure_ascii=True)
+    entities = []
+    for kind, fields, values in ENTITIES:
+        data = identity(ID["slot"], ID["generation"]) + fields
+        (GOLDEN / f"entity_{kind}.hex").write_text(data.hex() + "\n")
+        entities.append({"kind": kind, "values": {"id": ID, **values}})
+    vectors_json = json.dumps({"good": good, "bad": bad, "entities": entities}, indent=1, ensure_ascii=True)
     (GOLDEN / "vectors.json").write_text(vectors_json + "\n")
 
 

@@ -250,7 +250,11 @@ def peer_packages() -> Step:
     )
 
 
-PROTOCOL_INPUTS = [ROOT / "protocol" / "schema.json", ROOT / "tools" / "generate_protocol.py"]
+PROTOCOL_INPUTS = [
+    *files_under(ROOT / "protocol", skip=["golden"]),
+    *files_under(ROOT / "tools" / "protocol"),
+    ROOT / "tools" / "generate_protocol.py",
+]
 
 
 def page() -> Step:
@@ -346,7 +350,7 @@ def command_line() -> Step:
     """
 
     def parts() -> list[Path]:
-        return [*sorted((BUILD / "python" / "iota").glob("_core.*")), PAGE]
+        return [*sorted((BUILD / "python" / "iota").glob("_*.*")), PAGE]
 
     def name_of(part: Path) -> Path:
         return PACKAGE / ("page" if part == PAGE else part.name)
@@ -361,7 +365,7 @@ def command_line() -> Step:
         return not (script.exists() and (metadata() / "RECORD").exists() and all(path.exists() for path in links))
 
     def work(log: Path) -> None:
-        for old in [*PACKAGE.glob("_core.*"), PACKAGE / "page"]:
+        for old in [*PACKAGE.glob("_*.*"), PACKAGE / "page"]:
             if old.is_symlink():
                 old.unlink()
         for part in parts():

@@ -141,7 +141,7 @@ class ParticleSimulator(iota.Simulator):
         """Removes the springs of a particle."""
         keep = (self.pairs != slot).all(axis=1)
         self.pairs, self.length = self.pairs[keep], self.length[keep]
-        self.flashes.append(("break", iota.Vec3(*self.x[slot]), 0.0, None))
+        self.flashes.append(("break", iota.Vec3(*self.x[slot])))
         self.structure_version += 1
 
 

@@ -19,6 +19,7 @@ struct SparkPose {
   float position[3];    ///< world frame, m
   float radius;         ///< m
   std::uint32_t color;  ///< 0xRRGGBB
+  std::uint32_t set;    ///< slot of its emitter
 };
 
 /// A user's hand on a body: the spring from `point` to `target`.
@@ -28,20 +29,13 @@ struct HoldPose {
   float force;                ///< N
 };
 
-struct BodyArticulate {
-  std::uint32_t body, articulate;
-};
-
 /// All that a viewer needs of one instant: an immutable copy, safe to hand to another thread.
 struct PoseSnapshot {
   std::uint64_t step = 0;
   double time = 0;                      ///< s
-  std::uint32_t structure_version = 0;  ///< System::scene_version
-  bool paused = false;
-  float speed = 1;                   ///< simulated seconds per real second that the user asked for
-  float step_ms = 0;                 ///< mean time of the latest steps
-  float kinetic = 0, potential = 0;  ///< J
-  float gap = 0;                     ///< worst hinge separation or rigidity error, m
+  std::uint32_t structure_version = 0;  ///< System::structure_version
+  float kinetic = 0, potential = 0;     ///< J
+  float gap = 0;                        ///< worst hinge separation or rigidity error, m
   std::vector<BodyPose> bodies;
   std::vector<SparkPose> sparks;
   std::vector<HoldPose> holds;

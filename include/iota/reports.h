@@ -33,6 +33,13 @@ struct Broken {
   double torque = 0;        ///< N m
 };
 
+/// Something that happened and that a viewer shows for a moment, where it happened.
+struct ViewEvent {
+  enum class Kind : std::uint8_t { join, break_ };
+  Kind kind = Kind::join;
+  Vec3 position;  ///< m
+};
+
 /// What one structural edit did.
 struct RestructureReport {
   bool queued = false;   ///< asked for during a step: applied right after it

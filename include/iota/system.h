@@ -7,6 +7,7 @@
 #include <iota/ids.h>
 #include <iota/pose_snapshot.h>
 #include <iota/reports.h>
+#include <iota/scene.h>
 #include <iota/shapes.h>
 #include <iota/vec3.h>
 
@@ -367,7 +368,11 @@ class System {
   void read_positions(std::span<double> out) const;
   void read_velocities(std::span<double> out) const;
   PoseSnapshot poses() const;
-  std::vector<BodyArticulate> body_articulates() const;
+  /// What a viewer has to be told: all that changed since the last call, at first and after a restore everything, and on
+  /// request (`whole`); `also` names bodies to be described though they have not changed. Costs what has changed. One caller
+  /// at a time.
+  SceneChanges take_scene_changes(bool whole = false, std::span<const BodyId> also = {});
+  void stop_watching_scene();  ///< nothing is noted any more for the next call, which will be given everything
   ///@}
 
   /// @name Particles that live for a time

@@ -55,7 +55,7 @@ from iota.errors import (
 )
 from iota.simulator import SimulatedBody, SimulatedGrip, SimulatedParticle, Simulator
 from iota.solvers import Problem, solve, solver, solver_names
-from iota.world import Camera, Event, World
+from iota.world import Camera, Event, Server, World
 
 Sequence.register(Vec3)
 
@@ -87,6 +87,7 @@ __all__ = [
     "PairForce",
     "Particle",
     "Problem",
+    "Server",
     "Shape",
     "SimulatedBody",
     "SimulatedGrip",

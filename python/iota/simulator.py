@@ -31,8 +31,10 @@ class SimulatedParticle:
 
 
 class SimulatedBody:
-    """Something that is drawn and can be held. slot: its number on the page, never used for another while it is there."""
+    """Something that is drawn and can be held. slot: its number on the page, used for one body at a time. generation: tells
+    the bodies apart that have the same slot one after the other."""
 
+    generation = 1
     kind = "dynamic"  # or "static", "inactive"
     is_spark = False  # see `Body.is_spark`
     solids: Sequence[Solid] = ()  # shapes that it is drawn as; without them it is drawn by its particles
@@ -156,11 +158,8 @@ class Simulator(ABC):
     def adopt(self) -> None:  # noqa: B027
         """The calling thread takes over."""
 
-    def watch_edits(self, on: bool) -> None:  # noqa: B027
-        """Whether `take_edits` is going to be asked."""
-
-    def take_edits(self) -> Sequence[tuple[str, Vec3, float, Any]]:
-        """Flashes since the last call: kind ("join" or "break"), place, delay in s, a particle to follow or None."""
+    def take_edits(self) -> Sequence[tuple[str, Vec3]]:
+        """Flashes since the last call: kind ("join" or "break") and place."""
         return ()
 
 

@@ -58,6 +58,7 @@ std::uint32_t Model::add_cosmetic_bond(const CosmeticBond& bond) {
   const std::uint32_t slot = cosmetic_bonds.create(bond).slot;
   for (const std::uint32_t end : {0u, 1u})
     link(cosmetic_bonds, references.make(particle_at(bond, end)).first_cosmetic_bond, slot, end);
+  scene.bodies.note(particles[bond.p].body);
   return slot;
 }
 
@@ -70,6 +71,7 @@ void Model::remove_bond(std::uint32_t slot) {
     touch_particle(particle);
   }
   bonds.destroy(slot);
+  scene.bonds.note(slot);
 }
 
 void Model::remove_closing(std::uint32_t slot) {
@@ -83,6 +85,7 @@ void Model::remove_closing(std::uint32_t slot) {
 }
 
 void Model::remove_cosmetic_bond(std::uint32_t slot) {
+  scene.bodies.note(particles[cosmetic_bonds[slot].p].body);
   for (const std::uint32_t end : {0u, 1u})
     unlink(cosmetic_bonds, references.at(particle_at(cosmetic_bonds[slot], end)).first_cosmetic_bond, slot, end);
   cosmetic_bonds.destroy(slot);
@@ -115,6 +118,7 @@ void Model::remove_constraint(std::uint32_t slot) {
   const CurveData curve = constraints[slot].curve;
   geometries_[slot] = {};
   constraints.destroy(slot);
+  scene.constraints.note(slot);
   if (curve.count == 0) return;
   const auto first = curve_points.begin() + curve.first;
   curve_points.erase(first, first + curve.count);

@@ -18,11 +18,15 @@ void Model::touch_locally(std::uint32_t body) {
   constexpr std::size_t most = 1024;  // more changes than this make islands be built anew
   const bool few = local_change_.bodies.size() < most;
   if (few) local_change_.bodies.push_back(body);
+  scene.bodies.note(body);
   touch(bodies[body].articulate, few ? locally : anything);
 }
 
 void Model::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
-  for_each_in_ring(ring, [&](std::uint32_t p) { touch_locally(particles[p].body); });
+  for_each_in_ring(ring, [&](std::uint32_t p) {
+    scene.bodies.note(particles[p].body);
+    touch_locally(particles[p].body);
+  });
   local_change_.rings.push_back({ring, split_from});
 }
 
@@ -43,7 +47,10 @@ void Model::join_articulates(std::uint32_t a, std::uint32_t b) {
   touch(a, locally), touch(b, locally);
   touch_of_[a] = std::max(touch_of_[a], touch_of_[b]);
   Articulate &into = articulates[a], &from = articulates[b];
-  for_each_body_of(b, [&](std::uint32_t body) { bodies[body].articulate = a; });
+  for_each_body_of(b, [&](std::uint32_t body) {
+    bodies[body].articulate = a;
+    scene.memberships.note(body);
+  });
   bodies[from.first].previous_in_articulate = into.last;
   bodies[into.last].next_in_articulate = from.first;
   into.last = from.last;

@@ -51,6 +51,7 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
   constexpr double flat = 1e-7;  // of the extent: thinner counts as a point, line or plane
   constexpr double tie = 1 + 1e-6, far_enough = 0.2;
   Body& body = bodies[body_slot];
+  scene.bodies.note(body_slot);
   const std::array<std::uint32_t, 4> old_basis = body.basis;
   body.rank = 0, body.row_count = 0, body.basis_needs = 0;
   body.basis.fill(none);

@@ -45,6 +45,7 @@ std::uint32_t Model::make_body(BodyKind kind, double body_damping) {
   Body b;
   b.kind = kind, b.damping = body_damping;
   const std::uint32_t body = bodies.create(b).slot;
+  scene.bodies.note(body, true);
   add_to_articulate(body, articulates.create({}).slot);
   return body;
 }
@@ -88,10 +89,12 @@ void Model::take_from_ring(std::uint32_t particle) {
   if (rings[ring].count > 0) return;
   nails.erase(ring), pushes.erase(ring);
   rings.destroy(ring);
+  scene.rings.note(ring);
 }
 
 void Model::enter_articulate(std::uint32_t body, std::uint32_t articulate) {
   bodies[body].articulate = articulate;
+  scene.memberships.note(body);
   append(bodies, articulates[articulate], body, &Body::next_in_articulate, &Body::previous_in_articulate);
 }
 
@@ -107,7 +110,7 @@ void Model::add_to_articulate(std::uint32_t body, std::uint32_t articulate) {
 }
 
 void Model::take_from_articulate(std::uint32_t body) {
-  touch(bodies[body].articulate);
+  touch_body(body);
   leave_articulate(body);
 }
 

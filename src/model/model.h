@@ -8,6 +8,7 @@
 #include "laws/pair_law.h"
 #include "model/attributes.h"
 #include "model/constraint.h"
+#include "model/scene_log.h"
 
 #include <iota/system.h>
 
@@ -309,6 +310,7 @@ class Model {
   std::uint64_t has_edits = 0;     ///< since then
   double held_energy = 0;          ///< of forces that are held, which `energy` leaves out, when it was last booked, J
   std::vector<std::string> notes;  ///< of edits that have no report, for the next step's; not saved
+  SceneLog scene;                  ///< what viewers have to be told; not saved
 
   /// @name Membership: cheap links only, no physics
   ///@{
@@ -333,7 +335,7 @@ class Model {
   /// exhausted without meeting the other, gives it an articulate of its own. O(smaller side). True if split.
   bool split_articulate(std::uint32_t body_a, std::uint32_t body_b);
   void touch(std::uint32_t articulate) { touch(articulate, anything); }
-  void touch_body(std::uint32_t body) { touch(bodies[body].articulate); }
+  void touch_body(std::uint32_t body) { scene.bodies.note(body), touch(bodies[body].articulate); }
   void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
   /// Notes a change that concerns one body and the bodies at its rings only: a problem that holds them can follow.
   void touch_locally(std::uint32_t body);

@@ -134,7 +134,7 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
   report.absorbed_bodies.push_back({retired, survivor});
   model.remove_body(b);
   model.rebuild_basis(a);
-  model.touch(model.bodies[a].articulate);
+  model.touch_body(a);
 }
 
 std::uint32_t massive_count(const Model& model, std::uint32_t body) {
@@ -261,7 +261,7 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
     model.rebuild_basis(body_p);
     const std::vector<ParticleId> strays = stray_markers(model, body_p);  // by its shape before anything is moved
     if (q_was_hinged && ring_p != ring_q) edit = merge_rings(model, ring_p, ring_q);
-    model.touch(model.bodies[body_p].articulate);
+    model.touch_body(body_p);
     destroy_strays(model, body_p, strays, report.notes);
     return edit;
   }
@@ -295,7 +295,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     const std::uint32_t twin = model.make_particle(body, model.position(p), model.particles[p].mass, model.velocity(p));
     model.particles[twin].inactive = model.particles[p].inactive;
     model.rebuild_basis(body);
-    model.touch(model.bodies[body].articulate);
+    model.touch_body(body);
     report.changed = true;
     report.created_particles.push_back(model.particles.id(twin));
     return {};
@@ -321,7 +321,7 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     model.rebuild_basis(own);
     const Edit edit = merge_rings(model, model.particles[p].ring, model.particles[q].ring);
     model.join_articulates(model.bodies[body].articulate, model.bodies[own].articulate);
-    model.touch(model.bodies[body].articulate);
+    model.touch_body(body);
     split_where_apart(model, neighbors);
     destroy_strays(model, body, strays, report.notes);
     report.created_bodies.push_back(model.bodies.id(own));
@@ -380,7 +380,7 @@ void destroy_particle(Model& model, std::uint32_t particle) {
   destroy_uses(model, particle);
   std::vector<std::uint32_t> apart = ring_neighbors(model, particle);
   model.remove_particle(particle);
-  model.touch(model.bodies[body].articulate);
+  model.touch_body(body);
   apart.push_back(body);
   split_where_apart(model, apart);
   if (!massive) return;

@@ -56,7 +56,7 @@ std::uint32_t add_solid(Model& model, std::uint32_t body, Solid solid, double ma
   while (*last != none) last = &model.solids[*last].next;
   *last = slot;
   model.rebuild_basis(body);
-  model.touch(model.bodies[body].articulate);
+  model.touch_body(body);
   return slot;
 }
 
@@ -109,7 +109,7 @@ std::uint32_t attach(Model& model, std::uint32_t slot, const Vec3& position) {
   const std::uint32_t body = solid.body;
   const std::uint32_t particle = model.make_particle(body, position, share * mass, motion(position));
   model.rebuild_basis(body);
-  model.touch(model.bodies[body].articulate);
+  model.touch_body(body);
   return particle;
 }
 

@@ -10,6 +10,7 @@
 #include <boost/beast/websocket.hpp>
 
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,6 +38,7 @@ constexpr auto silence_time = 30s;  // without even an answer to a ping
 constexpr auto close_time = 1s;     // for the other side's part of a close
 constexpr auto keyframe_time = 1s;
 constexpr std::size_t max_connections = 256;
+constexpr std::uint8_t body_kind = entity_kind<protocol::BodyEntity>();
 
 /// The page loads only its own files and runs no inline code; three.js makes textures and workers from blobs. 'self' in
 /// connect-src does not cover ws: in every browser.
@@ -55,7 +57,6 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
  public:
   WebSocketSession(tcp::socket socket, ConnectionContext& context)
       : context_(context),
-        hub_(context.hub),
         socket_(std::move(socket)),
         timer_(socket_.get_executor()),
         queue_(context.options.max_queue_bytes) {
@@ -90,15 +91,16 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     if (!queue_.push(frame, key)) return drop("too slow: too much is waiting for this client");
     pump();
   }
-  void poses_changed() override { pump(); }
+  void world_changed() override { pump(); }
   void drop(std::string_view reason) override {
     if (is_closing_) return;
-    ++hub_.counters().clients_dropped;
+    ++context_.counters.clients_dropped;
     queue_.clear();
     close_when_sent(websocket::close_code::policy_error, reason);
     start_close();
   }
 
+  void world_ended() override { close_when_sent(websocket::close_code::going_away, "the world has ended"); }
   void finish() override { close_when_sent(websocket::close_code::going_away, "the server stops"); }
 
  private:
@@ -135,19 +137,22 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     const auto data = buffer_.cdata();
     const std::span bytes(static_cast<const std::uint8_t*>(data.data()), data.size());
     if (client_ == 0) return take_hello(bytes);
-    if (socket_.got_text()) return hub_.refuse_frame(client_, "the frame is text, not binary");
-    hub_.receive(client_, bytes);
+    if (socket_.got_text()) return hub_->refuse_frame(client_, "the frame is text, not binary");
+    hub_->receive(client_, bytes);
   }
 
   void take_hello(std::span<const std::uint8_t> bytes) {
     const auto decoded = protocol::decode_client_message(bytes);
     const auto* hello = decoded ? std::get_if<protocol::Hello>(&*decoded.value) : nullptr;
     if (hello == nullptr) {
-      ++hub_.counters().frames_refused;
+      ++context_.counters.frames_refused;
       return refuse(decoded ? "the first frame has to be hello" : "the first frame has to be hello: " + decoded.error);
     }
-    auto [client, reason] = hub_.join(*this, *hello);
+    auto [hub, unknown] = context_.find_world(hello->world);
+    if (!hub) return refuse(unknown);
+    auto [client, reason] = hub->join(*this, *hello);
     if (client == 0) return refuse(reason);
+    hub_ = std::move(hub);
     client_ = client;
     timer_.cancel();
     pump();
@@ -161,7 +166,8 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     close_when_sent(websocket::close_code::policy_error, "refused");
   }
 
-  /// Sends what fits: edits first, then the newest poses, made only now so that they are the newest.
+  /// Sends what fits: messages first, then entities, then the newest poses, made only now so that they are the newest. So
+  /// a pose always is of the body that the client was told of last in its slot.
   void pump() {
     if (!is_open_ || is_writing_ || is_close_started_) return;
     if (!queue_.empty()) {
@@ -169,11 +175,23 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
       return write(asio::buffer(*outgoing_));
     }
     if (is_closing_) return start_close();
-    if (client_ == 0 || sent_pose_ == hub_.pose_number()) return;
-    if (sent_pose_ != 0) hub_.counters().frames_dropped += hub_.pose_number() - sent_pose_ - 1;
-    sent_pose_ = hub_.pose_number();
+    if (client_ == 0) return;
+    if (entity_frames_.empty() && sent_entities_ != hub_->entities().version()) {
+      const std::vector<Frame>& frames = hub_->entities().frames_since(sent_entities_);
+      entity_frames_.assign(frames.begin(), frames.end());
+      sent_entities_ = hub_->entities().version();
+    }
+    if (!entity_frames_.empty()) {
+      outgoing_ = std::move(entity_frames_.front());
+      entity_frames_.pop_front();
+      return write(asio::buffer(*outgoing_));
+    }
+    if (sent_pose_ == hub_->pose_number()) return;
+    if (sent_pose_ != 0) context_.counters.frames_dropped += hub_->pose_number() - sent_pose_ - 1;
+    sent_pose_ = hub_->pose_number();
     const auto now = std::chrono::steady_clock::now();
-    delta_.encode(hub_.poses(), now - keyframe_sent_ >= keyframe_time, pose_bytes_);
+    delta_.encode(hub_->poses(), hub_->entities().generations(body_kind), now - keyframe_sent_ >= keyframe_time,
+                  pose_bytes_);
     if (delta_.last_was_keyframe()) keyframe_sent_ = now;
     write(asio::buffer(pose_bytes_));
   }
@@ -183,8 +201,8 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     socket_.async_write(bytes, [self = shared_from_this()](error_code error, std::size_t size) {
       self->is_writing_ = false;
       if (error) return self->ended();
-      self->hub_.counters().bytes_sent += size;
-      ++self->hub_.counters().frames_sent;
+      self->context_.counters.bytes_sent += size;
+      ++self->context_.counters.frames_sent;
       self->pump();
     });
   }
@@ -213,16 +231,18 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     is_close_started_ = true;
     timer_.cancel();
     queue_.clear();
-    if (const std::uint32_t client = std::exchange(client_, 0); client != 0) hub_.leave(client);
+    if (const std::uint32_t client = std::exchange(client_, 0); client != 0) hub_->leave(client);
     beast::get_lowest_layer(socket_).close();
   }
 
   ConnectionContext& context_;
-  Hub& hub_;
+  std::shared_ptr<Hub> hub_;  ///< none until welcomed
   websocket::stream<beast::tcp_stream> socket_;
   asio::steady_timer timer_;
   beast::flat_buffer buffer_;
   OutQueue queue_;
+  std::deque<Frame> entity_frames_;
+  std::uint64_t sent_entities_ = 0;  ///< version that the client has, or has on its way
   Frame outgoing_;
   std::vector<std::uint8_t> pose_bytes_;
   PoseDelta delta_;
@@ -318,7 +338,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   }
 
   void refuse(const std::string& reason) {
-    ++context_.hub.counters().upgrades_refused;
+    ++context_.counters.upgrades_refused;
     must_close_ = true;
     send_text(http::status::forbidden, reason);
   }

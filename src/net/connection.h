@@ -11,7 +11,10 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
+#include <string>
 #include <unordered_set>
+#include <utility>
 
 namespace iota::net {
 
@@ -28,7 +31,9 @@ class OpenConnection {
 /// What all connections share. Outlives them; used on the server's thread only.
 struct ConnectionContext {
   const ServerOptions& options;
-  Hub& hub;
+  Counters& counters;
+  /// The hub that a hello asks for, or none and the reason.
+  std::function<std::pair<std::shared_ptr<Hub>, std::string>(const std::string& world)> find_world;
   std::uint16_t port = 0;
   std::unordered_set<OpenConnection*> open;
   bool is_finishing = false;

@@ -37,18 +37,17 @@ protocol::Notice make_notice(std::uint8_t level, std::string_view title, std::st
           fit_text(text, 8192), fit_text(hint, 1024)};
 }
 
-std::string scene_queue_key(const std::string& key) { return "scene/" + key; }
-
 }  // namespace
 
-Hub::Hub(std::string world, double dt, std::size_t max_clients)
-    : world_(std::move(world)), dt_(dt), max_clients_(std::min<std::size_t>(max_clients, 1024)) {}
+Hub::Hub(std::string world, std::size_t max_clients, Counters& counters)
+    : world_(std::move(world)), max_clients_(std::min<std::size_t>(max_clients, 1024)), counters_(counters) {}
 
 // ----------------------------------------------------------------------------------------------------- from any thread
 
-bool Hub::publish(const PoseSnapshot& snapshot) {
+bool Hub::publish(const PoseSnapshot& snapshot, EntityChanges changes) {
   const std::lock_guard lock(out_mutex_);
   snapshot_ = snapshot;  // its vectors are reused: no allocation once they are large enough
+  if (!changes.empty()) changes_.push_back(std::move(changes));
   ++snapshot_number_;
   return !std::exchange(is_delivery_due_, true);
 }
@@ -59,22 +58,14 @@ bool Hub::post(Edit edit) {
   return !std::exchange(is_delivery_due_, true);
 }
 
-bool Hub::publish_structure(std::uint32_t structure_version, std::span<const BodyArticulate> articulates) {
-  protocol::Structure message;
-  message.structure_version = structure_version;
-  message.articulates.reserve(articulates.size());
-  for (const BodyArticulate& entry : articulates) message.articulates.push_back({entry.body, entry.articulate});
-  return post([this, frame = make_frame(message)] {
-    structure_ = frame;
-    broadcast(frame, "structure");
-  });
-}
-
-bool Hub::set_scene(std::string_view key, std::string_view json) {
-  const Frame frame = make_frame(protocol::Scene{std::string(key), std::string(json)});
-  return post([this, key = std::string(key), is_removed = json == "null", frame] {
-    store_scene(key, is_removed, frame);
-    broadcast(frame, scene_queue_key(key));
+bool Hub::set_latest(std::string key, Frame frame) {
+  return post([this, key = std::move(key), frame = std::move(frame)] {
+    const auto known = std::ranges::find(latest_, key, [](const auto& part) { return part.first; });
+    if (known == latest_.end())
+      latest_.emplace_back(key, frame);
+    else
+      known->second = frame;
+    broadcast(frame, key);
   });
 }
 
@@ -105,16 +96,24 @@ void Hub::deliver() {
     const std::lock_guard lock(out_mutex_);
     is_delivery_due_ = false;
     std::swap(edits_, delivering_);
+    std::swap(changes_, delivered_changes_);
     has_newer_poses = snapshot_number_ != pose_number_;
     if (has_newer_poses) std::swap(snapshot_, delivered_);
     pose_number_ = snapshot_number_;
   }
-  // Edits first: whatever was said about a body before its pose was published is then known when the pose comes.
   for (const Edit& edit : delivering_) edit();
   delivering_.clear();
+  for (const EntityChanges& changes : delivered_changes_) entities_.apply(changes);
+  delivered_changes_.clear();
   if (!has_newer_poses) return;
   poses_.update(delivered_);
-  for (auto& [number, client] : clients_) client.link->poses_changed();
+  for (auto& [number, client] : clients_) client.link->world_changed();
+}
+
+void Hub::end() {
+  const auto clients = clients_;  // closing may take some out
+  for (const auto& [number, client] : clients)
+    if (clients_.contains(number)) client.link->world_ended();
 }
 
 std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol::Hello& hello) {
@@ -123,16 +122,14 @@ std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol
     return {0, "the page speaks protocol version " + std::to_string(hello.version) + ", the server version " +
                    std::to_string(protocol::protocol_version) + ": reload the page"};
   }
-  if (!hello.world.empty() && hello.world != world_) return {0, "there is no world '" + hello.world + "' here"};
   if (clients_.size() >= max_clients_) {
     return {0, "the world is full: " + std::to_string(max_clients_) + " clients are connected"};
   }
   const std::uint32_t number = next_client_++;
-  link.send(make_frame(protocol::Welcome{protocol::protocol_version, world_, number, dt_}), {});
-  for (const auto& [key, frame] : scene_) link.send(frame, scene_queue_key(key));
-  if (structure_) link.send(structure_, "structure");
-  clients_[number] = {&link, hello.name, protocol::no_body, {}};
-  counters_.clients = static_cast<std::uint32_t>(clients_.size());
+  link.send(make_frame(protocol::Welcome{protocol::protocol_version, world_, number}), {});
+  for (const auto& [key, frame] : latest_) link.send(frame, key);
+  clients_[number] = {&link, hello.name, hello.role, {}, {}};
+  ++counters_.clients;
   broadcast_clients();
   InputEvent event;
   event.kind = InputEvent::Kind::join;
@@ -144,7 +141,7 @@ std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol
 
 void Hub::leave(std::uint32_t client) {
   if (clients_.erase(client) == 0) return;
-  counters_.clients = static_cast<std::uint32_t>(clients_.size());
+  --counters_.clients;
   broadcast_clients();
   InputEvent event{.kind = InputEvent::Kind::leave, .client = client};
   push_input(std::move(event));
@@ -158,9 +155,18 @@ void Hub::receive(std::uint32_t client, std::span<const std::uint8_t> bytes) {
 
 void Hub::refuse_frame(std::uint32_t client, std::string_view reason) {
   ++counters_.frames_refused;
+  tell(client, make_notice(2, "A message was not understood", reason, "Reload the page."));
+}
+
+void Hub::tell(std::uint32_t client, const protocol::Notice& notice) {
   const auto found = clients_.find(client);
-  if (found == clients_.end()) return;
-  found->second.link->send(make_frame(make_notice(2, "A message was not understood", reason, "Reload the page.")), {});
+  if (found != clients_.end()) found->second.link->send(make_frame(notice), {});
+}
+
+bool Hub::may_act(std::uint32_t client) {
+  if (clients_.at(client).role == protocol::Role::actor) return true;
+  tell(client, make_notice(0, "You only watch", "This page came as a viewer of the world.", "Open it as an actor."));
+  return false;
 }
 
 void Hub::broadcast(const Frame& frame, std::string_view key) {
@@ -169,19 +175,9 @@ void Hub::broadcast(const Frame& frame, std::string_view key) {
 
 void Hub::broadcast_clients() {
   protocol::Clients message;
-  for (const auto& [number, client] : clients_) message.clients.push_back({number, client.name, client.selected});
+  for (const auto& [number, client] : clients_)
+    message.clients.push_back({number, client.name, client.selected, client.role});
   broadcast(make_frame(message), "clients");
-}
-
-void Hub::store_scene(const std::string& key, bool is_removed, const Frame& frame) {
-  const auto known = std::find_if(scene_.begin(), scene_.end(), [&](const auto& part) { return part.first == key; });
-  if (known == scene_.end()) {
-    if (!is_removed) scene_.emplace_back(key, frame);
-  } else if (is_removed) {
-    scene_.erase(known);
-  } else {
-    known->second = frame;
-  }
 }
 
 void Hub::push_input(InputEvent event) {
@@ -222,6 +218,7 @@ void Hub::handle(std::uint32_t client, const protocol::Select& message) {
 }
 
 void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
+  if (!may_act(client)) return;
   Client& self = clients_.at(client);
   if (self.holds.contains(message.hold)) return refuse_frame(client, "grab_start.hold is in use already");
   if (self.holds.size() == max_holds) return refuse_frame(client, "grab_start: this client has too many hands");
@@ -235,6 +232,7 @@ void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
 }
 
 void Hub::handle(std::uint32_t client, const protocol::GrabMove& message) {
+  if (clients_.at(client).role == protocol::Role::viewer) return;  // it has been told when it grabbed
   if (!clients_.at(client).holds.contains(message.hold)) return refuse_frame(client, "grab_move.hold holds nothing");
   InputEvent event{.kind = InputEvent::Kind::grab_move, .client = client};
   event.hold = message.hold;
@@ -243,6 +241,7 @@ void Hub::handle(std::uint32_t client, const protocol::GrabMove& message) {
 }
 
 void Hub::handle(std::uint32_t client, const protocol::GrabEnd& message) {
+  if (clients_.at(client).role == protocol::Role::viewer) return;
   if (clients_.at(client).holds.erase(message.hold) == 0) return refuse_frame(client, "grab_end.hold holds nothing");
   InputEvent event{.kind = InputEvent::Kind::grab_end, .client = client};
   event.hold = message.hold;
@@ -250,6 +249,7 @@ void Hub::handle(std::uint32_t client, const protocol::GrabEnd& message) {
 }
 
 void Hub::handle(std::uint32_t client, const protocol::Action& message) {
+  if (!may_act(client)) return;
   InputEvent event{.kind = InputEvent::Kind::action, .client = client};
   event.body = message.body;
   event.name = message.name;
@@ -257,8 +257,9 @@ void Hub::handle(std::uint32_t client, const protocol::Action& message) {
 }
 
 void Hub::handle(std::uint32_t client, const protocol::Control& message) {
+  if (!may_act(client)) return;
   InputEvent event{.kind = InputEvent::Kind::control, .client = client};
-  event.command = static_cast<std::uint8_t>(message.command);
+  event.command = message.command;
   event.value = message.value;
   push_input(std::move(event));
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the clients share: the scene so far, the newest poses, who is connected, and the two boxes through which the
-// stepping thread and the server's thread pass things to each other. Knows messages, not sockets.
+// What the clients of one world share: its entities, settings and newest poses, who is connected, and the two boxes through
+// which the stepping thread and the server's thread pass things to each other. Knows messages, not sockets.
 #pragma once
 
+#include "net/entity_store.h"
 #include "net/out_queue.h"
 #include "net/pose_encoder.h"
 #include "net/server.h"
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <span>
@@ -27,15 +29,18 @@ namespace iota::net {
 class ClientLink {
  public:
   virtual void send(const Frame& frame, std::string_view key) = 0;
-  /// There is a newer pose; fetch it when there is room.
-  virtual void poses_changed() = 0;
+  /// There are newer entities or poses; fetch them when there is room.
+  virtual void world_changed() = 0;
   /// Tell the reason and close.
   virtual void drop(std::string_view reason) = 0;
+  /// The world has ended: send what is queued, then close.
+  virtual void world_ended() = 0;
 
  protected:
   ~ClientLink() = default;
 };
 
+/// Of a server, over all its worlds.
 struct Counters {
   std::atomic<std::uint32_t> clients{0};
   std::atomic<std::uint64_t> bytes_sent{0}, frames_sent{0}, frames_dropped{0}, frames_refused{0}, upgrades_refused{0},
@@ -44,17 +49,19 @@ struct Counters {
 
 class Hub {
  public:
-  Hub(std::string world, double dt, std::size_t max_clients);
+  Hub(std::string world, std::size_t max_clients, Counters& counters);
+  const std::string& world() const { return world_; }
 
   // --- from any thread. True: nothing was waiting, so deliver() has to be called on the server's thread.
-  [[nodiscard]] bool publish(const PoseSnapshot& snapshot);
-  [[nodiscard]] bool publish_structure(std::uint32_t structure_version, std::span<const BodyArticulate> articulates);
-  [[nodiscard]] bool set_scene(std::string_view key, std::string_view json);
+  /// Changes of entities add up, of poses only the newest counts; both reach clients together.
+  [[nodiscard]] bool publish(const PoseSnapshot& snapshot, EntityChanges changes);
+  /// A message that is whole: the latest of each type counts, and is given to late joiners.
+  template <class Message>
+  [[nodiscard]] bool set(const Message& message);
   [[nodiscard]] bool notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
                             std::string_view hint);
   [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position);
   std::vector<InputEvent> take_input();
-  Counters& counters() { return counters_; }
 
   // --- on the server's thread
   /// Hands everything that was published on to the clients: edits in order, then the newest poses.
@@ -68,12 +75,16 @@ class Hub {
   const PoseQuantizer& poses() const { return poses_; }
   /// Number of the newest poses, 0 before the first.
   std::uint64_t pose_number() const { return pose_number_; }
+  EntityStore& entities() { return entities_; }
+  /// Closes all connections.
+  void end();
 
  private:
   struct Client {
     ClientLink* link = nullptr;
     std::string name;
-    std::uint32_t selected = protocol::no_body;
+    protocol::Role role = protocol::Role::actor;
+    protocol::Id selected;
     std::set<std::uint32_t> holds;
   };
   using Edit = std::function<void()>;
@@ -81,8 +92,11 @@ class Hub {
   bool post(Edit edit);
   void broadcast(const Frame& frame, std::string_view key = {});
   void broadcast_clients();
-  void store_scene(const std::string& key, bool is_removed, const Frame& frame);
+  [[nodiscard]] bool set_latest(std::string key, Frame frame);
   void push_input(InputEvent event);
+  void tell(std::uint32_t client, const protocol::Notice& notice);
+  /// Tells a client that only watches that it does.
+  bool may_act(std::uint32_t client);
 
   void handle(std::uint32_t client, const protocol::Hello& message);
   void handle(std::uint32_t client, const protocol::Select& message);
@@ -94,14 +108,14 @@ class Hub {
   void handle(std::uint32_t client, const protocol::Ping& message);
 
   const std::string world_;
-  const double dt_;
   const std::size_t max_clients_;
-  Counters counters_;
+  Counters& counters_;
 
   // Between the threads: to the server ...
   std::mutex out_mutex_;
   std::vector<Edit> edits_;
   PoseSnapshot snapshot_;
+  std::vector<EntityChanges> changes_;
   std::uint64_t snapshot_number_ = 0;
   bool is_delivery_due_ = false;
   // ... and to the stepping thread.
@@ -112,12 +126,19 @@ class Hub {
   // On the server's thread only.
   std::map<std::uint32_t, Client> clients_;
   std::uint32_t next_client_ = 1;
-  std::vector<std::pair<std::string, Frame>> scene_;  ///< in the order in which keys were first set
-  Frame structure_;
+  std::vector<std::pair<std::string, Frame>> latest_;  ///< in the order in which keys were first set
+  EntityStore entities_;
   std::vector<Edit> delivering_;
+  std::vector<EntityChanges> delivered_changes_;
   PoseSnapshot delivered_;
   PoseQuantizer poses_;
   std::uint64_t pose_number_ = 0;
 };
+
+template <class Message>
+bool Hub::set(const Message& message) {
+  return set_latest(std::to_string(static_cast<int>(Message::message_type)),
+                    std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message)));
+}
 
 }  // namespace iota::net

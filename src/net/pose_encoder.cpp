@@ -182,9 +182,6 @@ void PoseQuantizer::update(const PoseSnapshot& snapshot) {
   poses_.time = std::isfinite(snapshot.time) ? snapshot.time : 0;
   poses_.structure_version = snapshot.structure_version;
   poses_.keyframe = true;
-  poses_.paused = snapshot.paused;
-  poses_.speed = finite_or_zero(snapshot.speed);
-  poses_.step_ms = finite_or_zero(snapshot.step_ms);
   poses_.kinetic = finite_or_zero(snapshot.kinetic);
   poses_.potential = finite_or_zero(snapshot.potential);
   poses_.gap = finite_or_zero(snapshot.gap);
@@ -199,7 +196,7 @@ void PoseQuantizer::update(const PoseSnapshot& snapshot) {
   for (const SparkPose& spark : snapshot.sparks) {
     if (poses_.sparks.size() == 65536) break;  // the protocol's limit
     if (!is_finite(spark.position) || !std::isfinite(spark.radius)) continue;
-    poses_.sparks.push_back({to_vec3(spark.position), spark.radius, spark.color});
+    poses_.sparks.push_back({to_vec3(spark.position), spark.radius, spark.color, spark.set});
   }
   poses_.holds.clear();
   for (const HoldPose& hold : snapshot.holds) {
@@ -212,29 +209,29 @@ void PoseQuantizer::update(const PoseSnapshot& snapshot) {
 
 // --------------------------------------------------------------------------------------------------------------- delta
 
-bool PoseDelta::note_near(const protocol::PoseBody& body) {
+bool PoseDelta::note_near(const protocol::PoseBody& body, std::uint32_t generation) {
   if (near_.size() <= body.body) near_.resize(body.body + 1U);
   Near& known = near_[body.body];
   if (!far_.empty()) far_.erase(body.body);
-  if (known.is_there && known.pose == body) return false;
-  known = {body, true};
+  if (known.is_there && known.generation == generation && known.pose == body) return false;
+  known = {body, generation, true};
   return true;
 }
 
-bool PoseDelta::note_far(const protocol::PoseFarBody& body) {
+bool PoseDelta::note_far(const protocol::PoseFarBody& body, std::uint32_t generation) {
   if (body.body < near_.size()) near_[body.body].is_there = false;
-  const auto [known, is_new] = far_.try_emplace(body.body, body);
-  if (!is_new && known->second == body) return false;
-  known->second = body;
+  const auto [known, is_new] = far_.try_emplace(body.body, Far{body, generation});
+  if (!is_new && known->second.generation == generation && known->second.pose == body) return false;
+  known->second = {body, generation};
   return true;
 }
 
-void PoseDelta::encode(const PoseQuantizer& latest, bool wants_keyframe, std::vector<std::uint8_t>& out) {
+void PoseDelta::encode(const PoseQuantizer& latest, std::span<const std::uint32_t> generations, bool wants_keyframe,
+                       std::vector<std::uint8_t>& out) {
   const protocol::Poses& all = latest.poses();
-  const bool is_keyframe =
-      wants_keyframe || box_version_ != latest.box_version() || structure_version_ != all.structure_version;
+  const auto generation = [&](std::uint32_t slot) { return slot < generations.size() ? generations[slot] : 0; };
+  const bool is_keyframe = wants_keyframe || box_version_ != latest.box_version();
   box_version_ = latest.box_version();
-  structure_version_ = all.structure_version;
   if (is_keyframe) {
     near_.assign(near_.size(), Near{});
     far_.clear();
@@ -243,9 +240,6 @@ void PoseDelta::encode(const PoseQuantizer& latest, bool wants_keyframe, std::ve
   frame_.time = all.time;
   frame_.structure_version = all.structure_version;
   frame_.keyframe = is_keyframe;
-  frame_.paused = all.paused;
-  frame_.speed = all.speed;
-  frame_.step_ms = all.step_ms;
   frame_.kinetic = all.kinetic;
   frame_.potential = all.potential;
   frame_.gap = all.gap;
@@ -256,10 +250,10 @@ void PoseDelta::encode(const PoseQuantizer& latest, bool wants_keyframe, std::ve
   frame_.bodies.clear();
   frame_.far_bodies.clear();
   for (const auto& body : all.bodies) {
-    if (note_near(body)) frame_.bodies.push_back(body);
+    if (note_near(body, generation(body.body))) frame_.bodies.push_back(body);
   }
   for (const auto& body : all.far_bodies) {
-    if (note_far(body)) frame_.far_bodies.push_back(body);
+    if (note_far(body, generation(body.body))) frame_.far_bodies.push_back(body);
   }
   out.clear();
   protocol::encode(frame_, out);

@@ -61,23 +61,29 @@ class PoseQuantizer {
 /// What one client has got, so that it is sent only what differs.
 class PoseDelta {
  public:
-  /// Replaces `out` by the next frame for this client. A keyframe when asked for, at first, and after a change of box
-  /// or structure.
-  void encode(const PoseQuantizer& latest, bool wants_keyframe, std::vector<std::uint8_t>& out);
+  /// Replaces `out` by the next frame for this client. A keyframe when asked for, at first, and after a change of box.
+  /// generations: of the bodies in the slots, as the client has been told: another body's pose is no known one.
+  void encode(const PoseQuantizer& latest, std::span<const std::uint32_t> generations, bool wants_keyframe,
+              std::vector<std::uint8_t>& out);
   bool last_was_keyframe() const { return frame_.keyframe; }
 
  private:
   struct Near {
     protocol::PoseBody pose;
+    std::uint32_t generation = 0;
     bool is_there = false;
   };
-  bool note_near(const protocol::PoseBody& body);
-  bool note_far(const protocol::PoseFarBody& body);
+  struct Far {
+    protocol::PoseFarBody pose;
+    std::uint32_t generation = 0;
+  };
+  bool note_near(const protocol::PoseBody& body, std::uint32_t generation);
+  bool note_far(const protocol::PoseFarBody& body, std::uint32_t generation);
 
   protocol::Poses frame_;
   std::vector<Near> near_;  ///< by slot
-  std::unordered_map<std::uint32_t, protocol::PoseFarBody> far_;
-  std::optional<std::uint32_t> box_version_, structure_version_;
+  std::unordered_map<std::uint32_t, Far> far_;
+  std::optional<std::uint32_t> box_version_;
 };
 
 }  // namespace iota::net

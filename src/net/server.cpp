@@ -9,8 +9,11 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <exception>
+#include <mutex>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -33,8 +36,30 @@ std::string place_of(const ServerOptions& options) { return options.host + " por
 
 ServerOptions checked(ServerOptions options) {
   if (options.token.empty()) throw std::invalid_argument("the server needs a token");
-  protocol::encode(protocol::Welcome{protocol::protocol_version, options.world, 1, options.dt});  // throws
   return options;
+}
+
+void check_world(const std::string& world) {
+  if (world.empty()) throw std::invalid_argument("a world needs an id");
+  try {
+    protocol::encode(protocol::Welcome{protocol::protocol_version, world, 1});
+  } catch (const std::length_error& error) {
+    throw std::invalid_argument(error.what());
+  }
+}
+
+std::string percent_encoded(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) || c == '-' || c == '_' || c == '.' || c == '~') {
+      out += c;
+    } else {
+      constexpr const char* digits = "0123456789ABCDEF";
+      out.append({'%', digits[byte >> 4], digits[byte & 15]});
+    }
+  }
+  return out;
 }
 
 error_code try_listen(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {
@@ -67,13 +92,66 @@ tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
   fail(error, "cannot listen on " + place_of(options));
 }
 
+/// The worlds of a server, in the order in which they were opened. From any thread.
+class Worlds {
+ public:
+  std::shared_ptr<Hub> open(const std::string& world, std::size_t max_clients, Counters& counters) {
+    const std::lock_guard lock(mutex_);
+    if (find(world) != hubs_.end())
+      throw std::invalid_argument("there is a world '" + world + "' on this server already");
+    return hubs_.emplace_back(std::make_shared<Hub>(world, max_clients, counters));
+  }
+  void close(const std::shared_ptr<Hub>& hub) {
+    const std::lock_guard lock(mutex_);
+    std::erase(hubs_, hub);
+  }
+  /// The hub that a hello asks for, or none and the reason.
+  std::pair<std::shared_ptr<Hub>, std::string> ask(const std::string& world) {
+    const std::lock_guard lock(mutex_);
+    if (hubs_.empty()) return {nullptr, "there is no world here yet"};
+    if (world.empty()) return {hubs_.front(), {}};
+    if (const auto found = find(world); found != hubs_.end()) return {*found, {}};
+    constexpr std::size_t most = 5;  // a reason has 1024 bytes
+    std::string reason = "there is no world '" + world + "' here; there are: " + hubs_.front()->world();
+    for (std::size_t i = 1; i < std::min(most, hubs_.size()); ++i) reason += ", " + hubs_[i]->world();
+    if (hubs_.size() > most) reason += ", ...";
+    return {nullptr, reason};
+  }
+
+ private:
+  std::vector<std::shared_ptr<Hub>>::iterator find(const std::string& world) {
+    return std::ranges::find_if(hubs_, [&](const auto& hub) { return hub->world() == world; });
+  }
+  std::mutex mutex_;
+  std::vector<std::shared_ptr<Hub>> hubs_;
+};
+
 }  // namespace
+
+struct Room::Link {
+  explicit Link(asio::io_context& context) : io(&context) {}
+  /// Runs something on the server's thread.
+  template <class Work>
+  void post(Work work) {
+    const std::lock_guard lock(mutex);
+    if (io) asio::post(*io, std::move(work));
+  }
+  void cut() {
+    const std::lock_guard lock(mutex);
+    io = nullptr;
+  }
+
+  std::mutex mutex;
+  asio::io_context* io;
+  Worlds worlds;
+};
 
 struct Server::Implementation {
   explicit Implementation(ServerOptions given)
       : options(checked(std::move(given))),
-        hub(options.world, options.dt, options.max_clients),
-        context{options, hub, 0, {}, false, {}},
+        link(std::make_shared<Room::Link>(io)),
+        context{options, counters, [this](const std::string& world) { return link->worlds.ask(world); }, 0, {},
+                false,   {}},
         acceptor(listen(io, options)),
         timer(io) {
     context.port = acceptor.local_endpoint().port();
@@ -83,6 +161,7 @@ struct Server::Implementation {
   }
 
   ~Implementation() {
+    link->cut();
     asio::post(io, [this] { finish(); });
     thread.join();
     context.on_all_closed = nullptr;  // connections that are left go with io
@@ -129,12 +208,9 @@ struct Server::Implementation {
     if (context.open.empty()) io.stop();
   }
 
-  void deliver_if(bool is_due) {
-    if (is_due) asio::post(io, [this] { hub.deliver(); });
-  }
-
   const ServerOptions options;
-  Hub hub;
+  Counters counters;
+  std::shared_ptr<Room::Link> link;
   ConnectionContext context;
   asio::io_context io{1};  // destroyed first: handlers own connections, which refer to the members above
   tcp::acceptor acceptor;
@@ -154,33 +230,54 @@ std::string Server::url() const {
   return "http://" + host + ":" + std::to_string(port()) + "/?token=" + implementation_->options.token;
 }
 
-void Server::publish(const PoseSnapshot& snapshot) {
-  implementation_->deliver_if(implementation_->hub.publish(snapshot));
-}
+std::string Server::url(const std::string& world) const { return url() + "&world=" + percent_encoded(world); }
 
-void Server::publish_structure(std::uint32_t structure_version, std::span<const BodyArticulate> articulates) {
-  implementation_->deliver_if(implementation_->hub.publish_structure(structure_version, articulates));
+std::unique_ptr<Room> Server::open(const std::string& world) {
+  check_world(world);
+  const auto& link = implementation_->link;
+  auto hub = link->worlds.open(world, implementation_->options.max_clients, implementation_->counters);
+  return std::unique_ptr<Room>(new Room(std::move(hub), link));
 }
-
-void Server::set_scene(std::string_view key, std::string_view json) {
-  implementation_->deliver_if(implementation_->hub.set_scene(key, json));
-}
-
-void Server::notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
-                    std::string_view hint) {
-  implementation_->deliver_if(implementation_->hub.notice(client, level, title, text, hint));
-}
-
-void Server::effect(std::string_view kind, const Vec3f& position) {
-  implementation_->deliver_if(implementation_->hub.effect(kind, position));
-}
-
-std::vector<InputEvent> Server::take_input() { return implementation_->hub.take_input(); }
 
 ServerStatistics Server::statistics() const {
-  const Counters& now = implementation_->hub.counters();
+  const Counters& now = implementation_->counters;
   return {now.clients,        now.bytes_sent,       now.frames_sent,    now.frames_dropped,
           now.frames_refused, now.upgrades_refused, now.clients_dropped};
 }
+
+// ------------------------------------------------------------------------------------------------------------ a room
+
+Room::Room(std::shared_ptr<Hub> hub, std::shared_ptr<Link> link) : hub_(std::move(hub)), link_(std::move(link)) {}
+
+Room::~Room() {
+  link_->worlds.close(hub_);
+  link_->post([hub = hub_] {
+    hub->deliver();
+    hub->end();
+  });
+}
+
+void Room::deliver_if(bool is_due) {
+  if (is_due) link_->post([hub = hub_] { hub->deliver(); });
+}
+
+const std::string& Room::world() const { return hub_->world(); }
+
+void Room::publish(const PoseSnapshot& snapshot, EntityChanges changes) {
+  deliver_if(hub_->publish(snapshot, std::move(changes)));
+}
+
+void Room::set(const protocol::WorldSettings& settings) { deliver_if(hub_->set(settings)); }
+void Room::set(const protocol::WorldState& state) { deliver_if(hub_->set(state)); }
+void Room::set(const protocol::Actions& actions) { deliver_if(hub_->set(actions)); }
+
+void Room::notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
+                  std::string_view hint) {
+  deliver_if(hub_->notice(client, level, title, text, hint));
+}
+
+void Room::effect(std::string_view kind, const Vec3f& position) { deliver_if(hub_->effect(kind, position)); }
+
+std::vector<InputEvent> Room::take_input() { return hub_->take_input(); }
 
 }  // namespace iota::net

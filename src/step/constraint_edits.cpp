@@ -204,6 +204,7 @@ void System::Implementation::apply(const step::SetLength& c) {
   if (!(c.value > 1e-9 && c.value <= 1e9))
     throw std::invalid_argument(text("length must be between 1e-9 and 1e9 m, got ", c.value));
   model.constraints[slot].length = c.value;
+  model.scene.constraints.note(slot);
   wake(slot);
 }
 
@@ -263,6 +264,7 @@ void System::Implementation::break_overloaded(StepReport& report) {
     ingredient::begin_edits(model);
     apply(SetConstraintActive{model.constraints.id(slot), false});
     model.constraints[slot].broken = 1;
+    model.scene.note(ViewEvent::Kind::break_, reaction.position);
   }
   held_forces.update(model);
   for (const std::uint32_t slot : held_forces.breakable) {
@@ -274,6 +276,7 @@ void System::Implementation::break_overloaded(StepReport& report) {
     ingredient::begin_edits(model);
     apply(SetActive{model.bonds.id(slot), false});
     bond.broken = 1;
+    model.scene.note(ViewEvent::Kind::break_, middle);
   }
   std::vector<Broken> overloaded;
   model.fuses.for_each([&](std::uint32_t particle, double most) {

@@ -87,7 +87,7 @@ ParticleId System::Implementation::apply(const step::CreateParticle& c) {
   require_mass("mass", c.mass);
   const std::uint32_t particle = model.make_particle(body, c.position, c.mass, c.velocity);
   model.rebuild_basis(body);
-  model.touch(model.bodies[body].articulate);
+  model.touch_body(body);
   jolt(particle);
   structure_changed();
   return model.particles.id(particle);
@@ -126,7 +126,7 @@ void System::Implementation::apply(const step::SetRod& c) {
   for (const std::uint32_t end : {p, q}) model.particles[end].mass = sum;
   model::InertiaPair pair{body, none, p, q, -(sum - difference) / 2};
   model.bodies[body].first_inertia = model.inertia_pairs.create(pair).slot;
-  model.touch(model.bodies[body].articulate);
+  model.touch_body(body);
 }
 
 CosmeticBondId System::Implementation::apply(const step::CreateCosmeticBond& c) {
@@ -407,6 +407,12 @@ void System::Implementation::apply(const SetKind& c) {
   structure_changed();
 }
 
+/// Lets viewers know of an edit that has changed something.
+RestructureReport System::Implementation::seen(ViewEvent::Kind kind, const Vec3& place, RestructureReport report) {
+  if (report.changed) model.scene.note(kind, place);
+  return report;
+}
+
 RestructureReport System::Implementation::apply(const step::CombineParticles& c) {
   const std::uint32_t p = require(c.p), q = require(c.q);
   require_not_negative("over", c.over);
@@ -428,16 +434,20 @@ RestructureReport System::Implementation::apply(const step::CombineParticles& c)
   const model::Ring& ring_q = model.rings[model.particles[q].ring];
   const bool gentle = unrelated && ring_p.position == ring_q.position && ring_p.velocity == ring_q.velocity &&
                       !(ring_p.nailed && ring_q.nailed);
-  return restructure(std::array{body_p, body_q}, gentle,
-                     [&](RestructureReport& report) { return combine_particles(model, p, q, report); });
+  const Vec3 place = 0.5 * (ring_p.position + ring_q.position);
+  return seen(ViewEvent::Kind::join, place,
+              restructure(std::array{body_p, body_q}, gentle,
+                          [&](RestructureReport& report) { return combine_particles(model, p, q, report); }));
 }
 
 RestructureReport System::Implementation::apply(const step::CombineBodies& c) {
   const std::uint32_t a = require(c.a), b = require(c.b);
   for (const std::uint32_t body : {a, b})
     if (model.bodies[body].count == 0) throw std::invalid_argument(text("combine: body ", body, " has no particles"));
-  return restructure(std::array{a, b}, false,
-                     [&](RestructureReport& report) { return combine_bodies(model, a, b, report); });
+  const Vec3 place = 0.5 * (model.center_of_mass(a) + model.center_of_mass(b));
+  return seen(ViewEvent::Kind::join, place, restructure(std::array{a, b}, false, [&](RestructureReport& report) {
+                return combine_bodies(model, a, b, report);
+              }));
 }
 
 RestructureReport System::Implementation::apply(const step::Separate& c) {
@@ -446,11 +456,13 @@ RestructureReport System::Implementation::apply(const step::Separate& c) {
   bool gentle = p == q ? model.bodies[body_p].first_inertia == none  // a rod with less mass at its end is no rod
                        : body_p != body_q && model.particles[p].ring == model.particles[q].ring;
   model.for_each_in_ring(model.particles[q].ring, [&](std::uint32_t r) { gentle = gentle && model.follows_basis(r); });
-  return restructure(std::array{body_p, body_q}, gentle, [&](RestructureReport& report) {
-    model::Edit edit = separate_particles(model, p, q, report);
-    edit.jolted = !gentle;
-    return edit;
-  });
+  const Vec3 place = model.position(q);
+  return seen(ViewEvent::Kind::break_, place,
+              restructure(std::array{body_p, body_q}, gentle, [&](RestructureReport& report) {
+                model::Edit edit = separate_particles(model, p, q, report);
+                edit.jolted = !gentle;
+                return edit;
+              }));
 }
 
 RestructureReport System::Implementation::call_off(std::uint32_t closing) {
@@ -484,6 +496,7 @@ void System::Implementation::apply(const step::Nail& c) {
     ring.nailed = 1, ring.position = position, ring.velocity = {};
     model.nails.make(slot) = {position, position, {}};
     model.touch_ring(slot);
+    model.scene.note(ViewEvent::Kind::join, position);
     return model::Edit{moved, true};
   });
 }
@@ -493,6 +506,7 @@ void System::Implementation::apply(const step::Release& c) {
   const std::uint32_t ring = model.particles[particle].ring;
   if (!model.rings[ring].nailed) return;
   model.rings[ring].nailed = 0;
+  model.scene.note(ViewEvent::Kind::break_, model.rings[ring].position);
   model.nails.at(ring).multiplier = {};
   model.touch_ring(ring);
   structure_changed();
@@ -512,14 +526,21 @@ void System::Implementation::apply(const step::Destroy<ParticleId>& c) {
 }
 RestructureReport System::Implementation::apply(const step::Destroy<CosmeticBondId>& c) {
   if (!model.cosmetic_bonds.contains(c.id)) throw_stale("cosmetic bond", c.id, std::optional<CosmeticBondId>{});
-  const std::uint32_t body = model.particles[model.cosmetic_bonds[c.id.slot].p].body;
-  return restructure({{body}}, false,
-                     [&](RestructureReport& report) { return break_cosmetic_bond(model, c.id.slot, report); });
+  const model::CosmeticBond& bond = model.cosmetic_bonds[c.id.slot];
+  const Vec3 place = 0.5 * (model.position(bond.p) + model.position(bond.q));
+  RestructureReport report =
+      restructure({{model.particles[bond.p].body}}, false,
+                  [&](RestructureReport& report) { return break_cosmetic_bond(model, c.id.slot, report); });
+  if (!report.created_bodies.empty()) model.scene.note(ViewEvent::Kind::break_, place);
+  return report;
 }
 RestructureReport System::Implementation::apply(const step::SeparatePart& c) {
   const std::uint32_t body = require(c.body);
-  return restructure({{body}}, false,
-                     [&](RestructureReport& report) { return separate_part(model, body, c.part, report); });
+  RestructureReport report = restructure(
+      {{body}}, false, [&](RestructureReport& report) { return separate_part(model, body, c.part, report); });
+  for (const BodyId created : report.created_bodies)
+    model.scene.note(ViewEvent::Kind::break_, model.center_of_mass(created.slot));
+  return report;
 }
 void System::Implementation::apply(const step::Destroy<GripId>& c) {
   const std::uint32_t grip = require(c.id);

@@ -150,6 +150,8 @@ struct System::Implementation {
   template <class EditFunction>
   RestructureReport restructure(std::span<const std::uint32_t> touched_bodies, bool gentle, EditFunction edit);
 
+  RestructureReport seen(ViewEvent::Kind, const Vec3& place, RestructureReport);
+
   struct Conserved {
     double kinetic = 0, potential = 0;
     Vec3 momentum, angular_momentum;

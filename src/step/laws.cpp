@@ -89,6 +89,7 @@ BondId System::Implementation::apply(const step::CreateBond& c) {
 
 void System::Implementation::apply(const step::SetParameter& c) {
   model::Bond& bond = model.bonds[require(c.bond)];
+  model.scene.bonds.note(c.bond.slot);
   step::set_parameter(model.laws[bond.law], bond.parameters, c.index, c.value);
 }
 

@@ -167,7 +167,9 @@ EmitterId System::Implementation::apply(const CreateEmitter& c) {
         text("lifetime_spread (", e.lifetime_spread, " s) must be below the lifetime (", e.lifetime, " s)"));
   require_mass("mass", e.mass);
   require_not_negative("damping", e.damping);
-  return model.emitters.create(e);
+  const EmitterId emitter = model.emitters.create(e);
+  model.scene.emitters.note(emitter.slot);
+  return emitter;
 }
 
 void System::Implementation::apply(const SetEmitter& c) {
@@ -178,6 +180,7 @@ void System::Implementation::apply(const SetEmitter& c) {
   model::Emitter& e = model.emitters[slot];
   e.active = c.active, e.rate = c.rate, e.position = c.position, e.velocity = c.velocity;
   e.orientation = normalized(c.orientation);
+  model.scene.emitters.note(slot);
 }
 
 void System::Implementation::apply(const Destroy<EmitterId>& c) {
@@ -187,8 +190,10 @@ void System::Implementation::apply(const Destroy<EmitterId>& c) {
     ParticleAttributes look{a.age, a.lifetime, a.radius, a.color};
     look_at(model.emitters[slot], a.age / a.lifetime, look);  // they keep the look of this moment
     a.radius = look.radius, a.color = look.color, a.emitter = none;
+    model.scene.bodies.note(model.particles[a.particle].body);
   });
   model.emitters.destroy(slot);
+  model.scene.emitters.note(slot);
   structure_changed();
 }
 
@@ -199,6 +204,7 @@ void System::Implementation::apply(const SetAttributes& c) {
   require_not_negative("radius", c.value.radius);
   model::Attributes& a = attributes_of(particle);
   a.age = c.value.age, a.lifetime = c.value.lifetime, a.radius = c.value.radius, a.color = c.value.color;
+  model.scene.bodies.note(model.particles[particle].body);
 }
 
 void System::Implementation::apply(const SetTurn& c) {

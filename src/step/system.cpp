@@ -252,7 +252,7 @@ PoseSnapshot System::poses() const {
   implementation_->refresh_orientations();
   const model::Model& m = implementation_->model;
   PoseSnapshot snapshot;
-  snapshot.step = m.step, snapshot.time = m.time, snapshot.structure_version = scene_version();
+  snapshot.step = m.step, snapshot.time = m.time, snapshot.structure_version = m.structure_version;
   const ingredient::Energies energy = ingredient::calc_energies(m);
   snapshot.kinetic = static_cast<float>(energy.kinetic);
   snapshot.potential = static_cast<float>(energy.potential + implementation_->held_energy());
@@ -268,6 +268,7 @@ PoseSnapshot System::poses() const {
       SparkPose& spark = snapshot.sparks.emplace_back();
       put(spark.position, m.position(b.first));
       spark.radius = static_cast<float>(look.radius);
+      spark.set = m.attributes[m.particles[b.first].attributes].emitter;
       for (int i = 0; i < 3; ++i)
         spark.color = spark.color << 8 | static_cast<std::uint32_t>(std::clamp(look.color[i], 0.0f, 1.0f) * 255 + 0.5f);
       return;
@@ -287,15 +288,6 @@ PoseSnapshot System::poses() const {
     hold.force = static_cast<float>(norm(g.force));
   });
   return snapshot;
-}
-
-std::vector<BodyArticulate> System::body_articulates() const {
-  std::vector<BodyArticulate> list;
-  implementation_->model.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
-    if (b.kind != BodyKind::inactive && b.count > 0 && !implementation_->model.is_spark(b.first))
-      list.push_back({slot, b.articulate});
-  });
-  return list;
 }
 
 // --- save, restore, replay --------------------------------------------------------------------------------------------
@@ -333,6 +325,7 @@ void System::Implementation::restore(const Snapshot& snapshot) {
   if (!content_reader.ok() || !content_reader.at_end())
     throw std::invalid_argument("restore: the snapshot is of another build of Iota");
   restored.surface_functions = std::move(model.surface_functions);
+  if (model.scene.is_on()) restored.scene.watch();
   model = std::move(restored);
   model.make_geometries();
   islands.forget();

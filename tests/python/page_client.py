@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A page without a browser: speaks the protocol as protocol/schema.json describes it."""
+"""A page without a browser: speaks the protocol as the files in protocol describe it."""
 
 from __future__ import annotations
 
@@ -11,17 +11,22 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import parse_qs, urlsplit
 
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "protocol" / "schema.json").read_text())
+PROTOCOL = Path(__file__).resolve().parents[2] / "protocol"
+SCHEMA = json.loads((PROTOCOL / "schema.json").read_text())
+ENTITIES = {kind: json.loads((PROTOCOL / "entities" / f"{kind}.json").read_text()) for kind in SCHEMA["entities"]}
 STRUCTS = {entry["name"]: entry["fields"] for entry in SCHEMA["structs"]}
 TO_SERVER = {entry["name"]: entry for entry in SCHEMA["client_messages"]}
 TO_CLIENT = {entry["type"]: entry for entry in SCHEMA["server_messages"]}
 CONSTANTS = {entry["name"]: entry["value"] for entry in SCHEMA["constants"]}
-NUMBERS = {"u8": "B", "bool": "B", "u16": "H", "u32": "I", "u64": "Q", "f32": "f", "f64": "d", "vec3": "3f"}
+NUMBERS = {"u8": "B", "u16": "H", "u32": "I", "u64": "Q", "f32": "f", "f64": "d", "vec3": "3f", "quat": "4f"}
+NUMBERS |= {"bool": "?", "id": "2I"}
+GROUPS = ("vec3", "quat", "id")  # come as tuples
+NOTHING = (0, 0)  # in place of an id: slot and generation
 
 
 def encode(name: str, /, **values: Any) -> bytes:
@@ -34,7 +39,7 @@ def encode(name: str, /, **values: Any) -> bytes:
             text = value.encode()
             out += struct.pack("<I", len(text)) + text
         else:
-            out += struct.pack("<" + NUMBERS[kind], *(value if kind == "vec3" else (value,)))
+            out += struct.pack("<" + NUMBERS[kind], *(value if kind in GROUPS else (value,)))
     assert not values, f"{name} has no {', '.join(values)}"
     return out
 
@@ -46,15 +51,20 @@ class Reader:
         self.data, self.at = data, 0
 
     def field(self, kind: Any) -> Any:
+        if isinstance(kind, dict) and "array" in kind:
+            return [self.field(kind["array"]) for _ in range(self.field("u32"))]
         if isinstance(kind, dict):
-            return [self.fields(STRUCTS[kind["array"]]) for _ in range(self.field("u32"))]
-        if kind == "string":
+            return self.field(kind["struct"])
+        if kind in STRUCTS:
+            return self.fields(STRUCTS[kind])
+        if kind in ("string", "bytes"):
             size = self.field("u32")
             self.at += size
-            return self.data[self.at - size : self.at].decode()
+            data = self.data[self.at - size : self.at]
+            return data.decode() if kind == "string" else data
         values = struct.unpack_from("<" + NUMBERS[kind], self.data, self.at)
         self.at += struct.calcsize("<" + NUMBERS[kind])
-        return values if kind == "vec3" else values[0]
+        return values if kind in GROUPS else values[0]
 
     def fields(self, fields: list[dict[str, Any]]) -> dict[str, Any]:
         return {field["name"]: self.field(field["type"]) for field in fields}
@@ -70,24 +80,36 @@ def decode(data: bytes) -> tuple[str, dict[str, Any]]:
     return message["name"], values
 
 
-class PageClient:
-    """Connects, keeps what the server last said of each kind, and sends what a user does."""
+def records(kind: str, data: bytes) -> list[dict[str, Any]]:
+    """The entities of one kind whose records these are."""
+    reader, out = Reader(data), []
+    while reader.at < len(data):
+        out.append({"id": reader.field("id"), **reader.fields(ENTITIES[kind]["fields"])})
+    return out
 
-    def __init__(self, url: str, name: str = "test") -> None:
+
+class PageClient:
+    """Connects, keeps what the server last said of each message and entity, and sends what a user does.
+
+    entities: by kind and slot. told, pose_frames: how many records and frames came so far. places: of bodies, by slot."""
+
+    def __init__(self, url: str, name: str = "test", role: int = 0) -> None:
         parts = urlsplit(url)
         address = f"ws://{parts.netloc}/ws?{parts.query}"
         origin = f"http://{parts.netloc}"
         self._open = ExitStack()
         self.socket = self._open.enter_context(connect(address, origin=origin, max_size=None, proxy=None))
-        self.scene: dict[str, Any] = {}
-        self.articulates: dict[int, int] = {}
+        self.entities: dict[str, dict[int, dict[str, Any]]] = {kind: {} for kind in ENTITIES}
+        self.told = self.pose_frames = 0
         self.places: dict[int, tuple[float, ...]] = {}
         self.last: dict[str, dict[str, Any]] = {}
         self.notices: list[dict[str, Any]] = []
         self.effects: list[dict[str, Any]] = []
         self.closed = threading.Event()
         self._changed = threading.Condition()
-        self.send("hello", magic=CONSTANTS["protocol_magic"], version=SCHEMA["version"], world="", name=name)
+        world = parse_qs(parts.query).get("world", [""])[0]
+        magic, version = CONSTANTS["protocol_magic"], SCHEMA["version"]
+        self.send("hello", magic=magic, version=version, world=world, role=role, name=name)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
         self.wait_for(lambda: "welcome" in self.last and "poses" in self.last)
@@ -118,9 +140,23 @@ class PageClient:
                 self._changed.wait(0.02)
         return value
 
+    @property
+    def articulates(self) -> dict[int, int]:
+        """Of each body, by slot."""
+        return {slot: entity["articulate"] for slot, entity in self.entities["membership"].items()}
+
     def parts(self) -> int:
         """How many articulates the page knows of."""
         return len(set(self.articulates.values()))
+
+    def body(self, slot: int) -> tuple[int, int]:
+        """Id of the body in a slot."""
+        identity: tuple[int, int] = self.wait_for(lambda: self.entities["body"].get(slot))["id"]
+        return identity
+
+    def style_of(self, slot: int) -> dict[str, Any]:
+        """How the body in a slot is drawn."""
+        return self.entities["style"][self.entities["body"][slot]["style"]]
 
     def _read(self) -> None:
         try:
@@ -134,16 +170,22 @@ class PageClient:
 
     def _take(self, name: str, values: dict[str, Any]) -> None:
         self.last[name] = values
-        if name == "scene":
-            self.scene[values["key"]] = json.loads(values["json"])
-        elif name == "structure":
-            self.articulates = {entry["body"]: entry["articulate"] for entry in values["articulates"]}
+        if name == "entities_set":
+            for entity in records(values["kind"], values["records"]):
+                self.entities[values["kind"]][entity["id"][0]] = entity
+                self.told += 1
+        elif name == "entities_destroyed":
+            for identity in values["ids"]:
+                assert self.entities[values["kind"]].pop(identity[0])["id"] == identity
         elif name == "notice":
             self.notices.append(values)
         elif name == "effect":
             self.effects.append(values)
         elif name == "poses":
+            self.pose_frames += 1
             low, high = values["box_min"], values["box_max"]
+            for body in values["far_bodies"]:
+                self.places[body["body"]] = body["position"]
             for body in values["bodies"]:
                 raw = (body["x"], body["y"], body["z"])
                 place = (a + n / 65535 * (b - a) for a, b, n in zip(low, high, raw, strict=True))

@@ -97,7 +97,6 @@ def calls(c: Scene) -> dict[str, Call]:
         "step": (s.step, {"dt": 1 / 60}),
         "diagnose": (s.diagnose, {"body": c.box}),
         "restore": (s.restore, {"snapshot": s.snapshot()}),
-        "body_at": (s.body_at, {"slot": 0}),
         "body": (s.body, {"kind": "dynamic", "damping": 0.1}),
         "body of a shape": (
             s.body,

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import numpy as np
 import pytest
+from shown import show
 
 import iota
-from iota.world.scene import Scene
 
 
 def test_an_emitter_bears_and_its_particles_die(system: iota.System) -> None:
@@ -40,24 +39,26 @@ def test_an_emitter_bears_and_its_particles_die(system: iota.System) -> None:
 
 def test_sparks_are_dots_until_something_ties_them(system: iota.System) -> None:
     fire = system.emitter(rate=100, lifetime=10, velocity=(0, 1, 0))
-    scene, version = Scene(system), system.scene_version
-    for _ in range(20):
-        system.step(0.01)
-    assert fire.count == 20 and system.structure_version > 20
-    assert system.scene_version == version  # nothing to tell a page
-    assert json.loads(scene.describe()[1]) == [] and len(system.poses()[0]) == 0
-    first, second = fire.particles[:2]
-    assert first.body.is_spark
-    bond = system.bond(first, second, "spring", stiffness=1)
-    assert not first.body.is_spark and system.scene_version != version
-    classes, bodies = (json.loads(text) for text in scene.describe())
-    assert {body["body"] for body in bodies} == {first.body.slot, second.body.slot} == set(system.poses()[0])
-    assert all(classes[body["class"]]["*"]["kind"] == "sphere" for body in bodies)
-    version = system.scene_version
-    first.destroy()  # takes the bond with it
-    assert not bond.alive and second.body.is_spark and system.scene_version != version
-    fire.destroy()  # from now on they are particles like others
-    assert not second.body.is_spark
+    with show(system) as shown:
+        for _ in range(20):
+            system.step(0.01)
+        assert fire.count == 20 and system.structure_version > 20
+        assert shown.look() == 0 and len(system.poses()[0]) == 0, "nothing to tell a page but where they are"
+        first, second = fire.particles[:2]
+        assert first.body.is_spark
+        bond = system.bond(first, second, "spring", stiffness=1)
+        assert not first.body.is_spark
+        shown.look()
+        assert set(shown.bodies) == {first.body.slot, second.body.slot} == set(system.poses()[0])
+        assert all(shown.parts(p.body)[0]["shape"]["kind"] == "sphere" for p in (first, second))
+        first.destroy()  # takes the bond with it
+        assert not bond.alive and second.body.is_spark
+        shown.look()
+        assert not shown.bodies
+        fire.destroy()  # from now on they are particles like others
+        assert not second.body.is_spark
+        shown.look()
+        assert len(shown.bodies) == 19
 
 
 def test_thousands_of_particles_are_no_matter(system: iota.System) -> None:

@@ -1,55 +1,54 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
-import json
 import math
-from typing import Any
 
 import pytest
+from shown import show
 
 import iota
 from iota import looks
+from iota._protocol import BodyKind, TieKind
 from iota.world.frames import into_frame, turn_from_x
 from iota.world.scene import Scene, fitting_camera
 
 
-def described(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    classes, bodies = scene.describe()
-    return json.loads(classes), json.loads(bodies)
-
-
 def test_bodies_without_a_class_get_a_look_by_their_particles(system: iota.System) -> None:
     rod, ball = system.body(), system.body(kind="static")
-    rod.particle()
+    rod.particle((0, 0, 0))
     rod.particle((2, 0, 0))
     ball.particle((0, 1, 0))
-    classes, bodies = described(Scene(system))
-    assert bodies[0] == {"body": 0, "class": "(rod)", "odd": 0, "kind": "dynamic", "length": 2.0}
-    assert bodies[1] == {"body": 1, "class": "(particle)", "odd": 0, "kind": "static"}
-    assert classes["(rod)"]["*"]["kind"] == "capsule" and classes["(particle)"]["*"]["kind"] == "sphere"
-    assert classes["(rod)"]["*"]["sizes"][0] == pytest.approx(0.12)
+    with show(system) as shown:
+        assert shown.bodies[0]["kind"] == BodyKind.DYNAMIC and shown.bodies[0]["length"] == 2.0
+        assert shown.bodies[1]["kind"] == BodyKind.STATIC and shown.bodies[1]["length"] == 0.0
+        (thick,), (round_,) = shown.parts(rod), shown.parts(ball)
+        assert thick["shape"]["kind"] == "capsule" and thick["shape"]["sizes"][0] == pytest.approx(0.12)
+        assert round_["shape"]["kind"] == "sphere" and round_["look"] == "*"
 
 
 def test_bodies_of_a_class_take_turns_to_be_odd(system: iota.System, chain: list[iota.Body]) -> None:
-    scene = Scene(system)
+    scene = Scene()
     scene.classes["link"] = {"rope": looks.cylinder(0.01, "rope"), "chain": looks.chain_link(0.1)}
     scene.assign(chain, "link")
-    classes, bodies = described(scene)
-    assert [body["odd"] for body in bodies] == [0, 1, 0, 1, 0, 1]
-    assert {body["class"] for body in bodies} == {"link"}
-    assert set(classes["link"]) == {"rope", "chain"}
+    with show(system, scene) as shown:
+        assert [shown.bodies[body.slot]["odd"] for body in chain] == [False, True] * 3
+        assert len({shown.bodies[body.slot]["style"] for body in chain}) == 1
+        style = shown.page.style_of(chain[0].slot)
+        assert style["name"] == "link" and [part["look"] for part in style["parts"]] == ["rope", "chain"]
 
 
 def test_welded_bodies_get_a_compound_of_their_own(system: iota.System, chain: list[iota.Body]) -> None:
-    scene = Scene(system)
+    scene = Scene()
     scene.classes["link"] = {"*": looks.cylinder(0.01, "brass")}
     scene.assign(chain, "link")
-    chain[0].combine(chain[1])
-    classes, bodies = described(scene)
-    assert bodies[0]["class"] == "(body 0)" and len(bodies) == 5
-    shapes = classes["(body 0)"]["*"]
-    assert all(shape["material"] == "brass" and shape["sizes"][0] == 0.01 for shape in shapes)
-    assert sum(shape["sizes"][1] for shape in shapes) == pytest.approx(0.2)
+    with show(system, scene) as shown:
+        chain[0].combine(chain[1])
+        shown.look()
+        parts = shown.parts(chain[0])
+        assert len(shown.bodies) == 5 and shown.page.style_of(chain[2].slot)["name"] == "link"
+        assert all(part["material"] == "brass" for part in parts)
+        assert [part["shape"]["sizes"][0] for part in parts] == pytest.approx([0.01] * len(parts))
+        assert sum(part["shape"]["sizes"][1] for part in parts) == pytest.approx(0.2)
 
 
 def test_a_body_is_drawn_along_its_cosmetic_bonds(system: iota.System) -> None:
@@ -57,9 +56,116 @@ def test_a_body_is_drawn_along_its_cosmetic_bonds(system: iota.System) -> None:
     a, b, c = (body.particle(at) for at in ((0, 0, 0), (1, 0, 0), (0, 1, 0)))
     system.cosmetic_bond(a, b)
     system.cosmetic_bond(a, c)
-    classes, _ = described(Scene(system))
-    lengths = [shape["sizes"][1] for shape in classes["(body 0)"]["*"]]
-    assert lengths == pytest.approx([1, 1])
+    with show(system) as shown:
+        assert [part["shape"]["sizes"][1] for part in shown.parts(body)] == pytest.approx([1, 1])
+
+
+def test_an_edit_tells_only_what_it_touches(system: iota.System) -> None:
+    links = iota.builder.chain(links=100).realize(system).bodies
+    with show(system) as shown:
+        assert len(shown.bodies) == 100
+        links[50].particles[0].separate(links[49].particles[-1])
+        assert shown.look() == 50, "the half that hangs together anew, and none of the bodies"
+        assert shown.look() == 0
+
+
+def test_what_is_gone_is_told_and_its_slot_gets_another_generation(system: iota.System, chain: list[iota.Body]) -> None:
+    with show(system) as shown:
+        slot, before = chain[5].slot, shown.bodies[chain[5].slot]["id"]
+        chain[5].destroy()
+        shown.look()
+        assert slot not in shown.bodies and slot not in shown.page.articulates
+        new = system.body()
+        new.particle((0, 5, 0))
+        shown.look()
+        assert new.slot == slot and shown.bodies[slot]["id"] == (slot, before[1] + 1)
+
+
+def test_after_a_restore_a_body_made_since_is_another_one(system: iota.System, chain: list[iota.Body]) -> None:
+    with show(system) as shown:
+        start, kept = system.snapshot(), shown.bodies[0]["id"]
+        system.body().particle((0, 5, 0))
+        shown.look()
+        (first,) = (body["id"] for slot, body in shown.bodies.items() if slot >= len(chain))
+        system.restore(start)
+        system.body().particle((0, 6, 0))  # under the very id that the engine had given before
+        shown.look()
+        (second,) = (body["id"] for slot, body in shown.bodies.items() if slot >= len(chain))
+        assert first[0] == second[0] and first[1] != second[1]
+        assert shown.bodies[0]["id"] == kept
+
+
+def test_springs_ropes_and_rods_are_ties_while_they_are_active(system: iota.System) -> None:
+    a, b = system.body(), system.body()
+    p, q = a.particle((0, 0, 0)), b.particle((1, 0, 0))
+    spring = system.bond(p, q, "spring", stiffness=1, length=0.5)
+    with show(system) as shown:
+        ties = shown.page.entities["tie"]
+        (tie,) = ties.values()
+        assert tie["kind"] == TieKind.SPRING and tie["length"] == 0.5
+        assert (tie["a"]["body"], tie["b"]["body"]) == (a.slot, b.slot)
+        spring.active = False
+        shown.look()
+        assert not ties
+        spring.active = True
+        spring.set(length=0.25)
+        shown.look()
+        (tie,) = ties.values()
+        assert tie["length"] == 0.25
+        spring.destroy()
+        shown.look()
+        assert not ties
+
+
+def test_joints_nails_and_emitters_are_told(system: iota.System, chain: list[iota.Body]) -> None:
+    box, other = (system.body(shape=iota.Box((1, 1, 1)), position=(x, 5, 0)) for x in (0, 2))
+    hinge = system.revolute(box, other, at=(1, 5, 0), axis=(0, 0, 2))
+    fire = system.emitter(rate=1, max_count=7)
+    with show(system) as shown:
+        page = shown.page
+        (joint,) = page.entities["joint"].values()
+        assert joint["kind"] == "revolute" and joint["axis"] == pytest.approx((0, 0, 1), abs=1e-6)
+        (emitter,) = page.entities["particle_set"].values()
+        assert emitter["active"] and emitter["capacity"] == 7
+        nails = len(page.entities["nail"])
+        chain[5].particles[-1].nail()
+        hinge.destroy()
+        fire.destroy()
+        shown.look()
+        assert len(page.entities["nail"]) == nails + 1
+        assert not page.entities["joint"] and not page.entities["particle_set"]
+
+
+def test_joins_and_breaks_are_seen_when_they_happen(system: iota.System) -> None:
+    p, q = system.body().particle((0, 0, 0)), system.body().particle((1, 0, 0))
+    with show(system) as shown:
+        effects = shown.page.effects
+        p.combine(q, over=0.1)
+        shown.look()
+        assert not effects, "they have not met yet"
+        for _ in range(15):
+            system.step(0.01)
+        shown.look()
+        shown.page.wait_for(lambda: [effect["kind"] for effect in effects] == ["join"])
+        p.separate(q)
+        shown.look()
+        shown.page.wait_for(lambda: [effect["kind"] for effect in effects] == ["join", "break"])
+
+
+def test_a_join_that_is_called_off_or_undone_is_not_seen(system: iota.System) -> None:
+    p, q = system.body().particle((0, 0, 0)), system.body().particle((1, 0, 0))
+    with show(system) as shown:
+        p.combine(q, over=0.1)
+        p.separate(q)
+        with system.edit():
+            p.combine(q)
+        system.undo()
+        for _ in range(15):
+            system.step(0.01)
+        shown.look()
+        shown.room.notice(0, 0, "end", "")
+        shown.page.wait_for(lambda: shown.page.notices)
+        assert [effect["kind"] for effect in shown.page.effects if effect["kind"] == "join"] == []
 
 
 @pytest.mark.parametrize("direction", [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0.6, 0, -0.8)])

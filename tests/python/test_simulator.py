@@ -13,6 +13,7 @@ import pytest
 from page_client import PageClient
 
 import iota
+from iota._protocol import BodyKind
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "python" / "explicit_particles.py"
 Runner = Callable[[iota.World], str]
@@ -43,20 +44,20 @@ def test_a_page_shows_drags_cuts_pauses_and_resets_it(example: dict[str, Any], r
     cloth: Any = world.system
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.places) == 64 and page.parts() == 1)
-        assert [body["kind"] for body in page.scene["bodies"]].count("static") == 2
+        assert [body["kind"] for body in page.entities["body"].values()].count(BodyKind.STATIC) == 2
         page.wait_for(lambda: page.places[60][1] < 1.0)  # the free edge falls
-        page.send("grab_start", hold=1, body=60, local_point=(0, 0, 0), target=(0, 1, 2))
+        page.send("grab_start", hold=1, body=page.body(60), local_point=(0, 0, 0), target=(0, 1, 2))
         page.wait_for(lambda: page.places[60][2] > 1.2)
         (hold,) = page.last["poses"]["holds"]
         assert hold["client"] == page.id and hold["body"] == 60 and hold["force"] > 0
         assert world.call(lambda: world.held(page.id)) is cloth.bodies[60]
-        page.send("action", name="cut", body=60)
+        page.send("action", name="cut", body=page.body(60))
         page.wait_for(lambda: page.parts() == 2)
         page.wait_for(lambda: [e for e in page.effects if e["kind"] == "break"])
         page.send("grab_end", hold=1)
         page.wait_for(lambda: not page.last["poses"]["holds"])
         page.send("control", command=0, value=0)
-        page.wait_for(lambda: page.last["poses"]["paused"])
+        page.wait_for(lambda: page.last["world_state"]["paused"])
         page.send("control", command=3, value=0)
         page.wait_for(lambda: page.parts() == 1)
         assert [n for n in page.notices if "slow motion" not in n["text"]] == []
@@ -96,7 +97,7 @@ def test_five_members_are_enough(run_world: Runner) -> None:
         page.wait_for(lambda: 7 in page.places and page.places[7][1] > 0.2)
         assert np.hypot(*page.places[7][:2]) == pytest.approx(1, abs=1e-3)
         page.wait_for(lambda: [n for n in page.notices if n["text"] == "a warning of its own"])
-        page.send("grab_start", hold=1, body=7, local_point=(0, 0, 0), target=(0, 0, 0))
+        page.send("grab_start", hold=1, body=page.body(7), local_point=(0, 0, 0), target=(0, 0, 0))
         page.wait_for(lambda: [n for n in page.notices if "Minimal has no hands" in n["text"]])
 
 

@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-import json
 import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from shown import show
 
 import iota
 from iota import looks
-from iota.world.scene import Scene
 
 
 def cube(size: float = 1.0) -> iota.Mesh:
@@ -111,22 +110,20 @@ def test_the_page_draws_the_shapes(system: iota.System) -> None:
     a = system.body(shape=iota.Box((1, 1, 1)))
     b = system.body(shape=iota.Box((1, 1, 1)), position=(3, 0, 0), orientation=(0, 1, 0, 1))
     c = system.body(shape=cube(), position=(0, 5, 0))
-    scene = Scene(system)
-    classes, bodies = (json.loads(text) for text in scene.describe())
-    names = [body["class"] for body in bodies]
-    assert names[0] == names[1] != names[2]  # one shape, one class
-    (shape,) = classes[names[0]]["*"]
-    assert shape["kind"] == "box" and shape["sizes"] == [1, 1, 1, 0] and shape["offset"] == [0, 0, 0]
-    (skin,) = classes[names[2]]["*"]
-    assert skin["kind"] == "mesh" and len(skin["vertices"]) == 24 and len(skin["triangles"]) == 36
-    corners = np.reshape(skin["vertices"], (8, 3)) + skin["offset"]
-    assert np.allclose(corners.mean(axis=0), 0, atol=1e-6), "about the center of mass"
-    a.combine(b)
-    classes, bodies = (json.loads(text) for text in scene.describe())
-    shapes = classes[bodies[0]["class"]]["*"]
-    assert [s["offset"][0] for s in shapes] == pytest.approx([-1.5, 1.5])
-    assert shapes[1]["rotation"] == pytest.approx([0, math.sqrt(0.5), 0, math.sqrt(0.5)], abs=1e-5)
-    assert c.alive
+    with show(system) as shown:
+        assert shown.bodies[a.slot]["style"] == shown.bodies[b.slot]["style"] != shown.bodies[c.slot]["style"]
+        (part,) = shown.parts(a)
+        assert (
+            part["shape"]["kind"] == "box" and part["shape"]["sizes"][:3] == [1, 1, 1] and part["offset"] == (0, 0, 0)
+        )
+        (skin,) = shown.parts(c)
+        assert skin["shape"]["kind"] == "mesh"
+        assert len(skin["shape"]["vertices"]) == 24 and len(skin["shape"]["triangles"]) == 36
+        corners = np.reshape(skin["shape"]["vertices"], (8, 3)) + skin["offset"]
+        assert np.allclose(corners.mean(axis=0), 0, atol=1e-6), "about the center of mass"
+        a.combine(b)
+        shown.look()
+        assert [part["offset"][0] for part in shown.parts(a)] == pytest.approx([-1.5, 1.5])
 
 
 def test_a_locked_pair_unlocks_by_the_torque_on_one_of_its_blocks() -> None:
@@ -175,10 +172,12 @@ def test_a_mesh_too_large_to_draw_is_drawn_as_its_box(system: iota.System) -> No
     ball = iota.Mesh.convex_hull(points)
     assert len(ball.triangles) > looks.MOST_TRIANGLES
     system.body(shape=ball)
-    with pytest.warns(UserWarning, match="at most 50000 triangles, this one has"):
-        classes, bodies = (json.loads(text) for text in Scene(system).describe())
-    (shape,) = classes[bodies[0]["class"]]["*"]
-    assert shape["kind"] == "box" and shape["sizes"] == pytest.approx([2, 2, 2, 0], abs=0.01)
+    body = system.bodies[0]
+    with show(system) as shown:
+        (warning,) = shown.room.take_warnings()
+        assert "at most 50000 triangles, that of body 0 has" in warning
+        (part,) = shown.parts(body)
+        assert part["shape"]["kind"] == "box" and part["shape"]["sizes"][:3] == pytest.approx([2, 2, 2], abs=0.01)
 
 
 def test_a_pose_is_assigned(system: iota.System) -> None:

@@ -11,13 +11,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from page_client import PageClient, encode
+from page_client import NOTHING, PageClient, encode
 
 import iota
+from iota._protocol import ActionTarget, ControlCommand, ControllerButton, Role
 from iota.studies import chain as study
 
 Runner = Callable[[iota.World], str]
-NONE = 0xFFFFFFFF
 
 
 @pytest.fixture
@@ -31,14 +31,16 @@ def world() -> iota.World:
 
 def test_a_page_learns_what_there_is_and_sees_it_move(world: iota.World, run_world: Runner) -> None:
     with PageClient(run_world(world)) as page:
-        assert page.last["welcome"]["dt"] == 1 / 120
-        page.wait_for(lambda: {"world", "classes", "bodies", "statics", "actions"} <= page.scene.keys())
-        assert page.scene["world"]["title"] == "chain"
-        assert page.scene["world"]["looks"] == ["rope", "chain"]
-        assert len(page.scene["bodies"]) == 24 and len({body["class"] for body in page.scene["bodies"]}) == 1
-        assert len(page.scene["statics"]) > 0, "what it hangs from is visible"
-        actions = {action["key"]: action for action in page.scene["actions"]}
-        assert actions["b"]["name"] == "break" and actions["b"]["button"] == "b" and actions["c"]["on"] == "body"
+        page.wait_for(lambda: {"world_settings", "world_state", "actions"} <= page.last.keys())
+        assert page.last["world_state"]["dt"] == 1 / 120
+        assert page.last["world_settings"]["title"] == "chain"
+        assert page.last["world_settings"]["looks"] == ["rope", "chain"]
+        page.wait_for(lambda: len(page.entities["body"]) == 24)
+        assert len({body["style"] for body in page.entities["body"].values()}) == 1
+        assert len(page.entities["static_shape"]) > 0, "what it hangs from is visible"
+        actions = {action["key"]: action for action in page.last["actions"]["actions"]}
+        assert actions["b"]["name"] == "break" and actions["b"]["button"] == ControllerButton.B
+        assert actions["c"]["on"] == ActionTarget.BODY
         page.wait_for(lambda: len(page.places) == 24 and page.parts() == 1)
         before = page.places[23]
         page.wait_for(lambda: abs(page.places[23][1] - before[1]) > 0.01)
@@ -48,14 +50,14 @@ def test_b_breaks_and_c_rejoins_in_python_and_on_the_page(world: iota.World, run
     system = world.system
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: page.parts() == 1)
-        page.send("select", body=11)
-        page.send("action", name="break", body=11)
+        page.send("select", body=page.body(11))
+        page.send("action", name="break", body=page.body(11))
         page.wait_for(lambda: page.parts() == 2)
         assert world.call(lambda: system.articulate_count) == 2
         assert page.articulates[10] != page.articulates[11]
         flash = page.wait_for(lambda: [e for e in page.effects if e["kind"] == "break"])
         assert flash[0]["position"][1] > 0
-        page.send("action", name="join", body=NONE)  # what is selected
+        page.send("action", name="join", body=NOTHING)  # what is selected
         page.wait_for(lambda: page.parts() == 1)
         assert world.call(lambda: system.articulate_count) == 1
         page.wait_for(lambda: [e for e in page.effects if e["kind"] == "join"])
@@ -65,7 +67,7 @@ def test_b_breaks_and_c_rejoins_in_python_and_on_the_page(world: iota.World, run
 def test_a_dragged_link_follows_and_swings_back(world: iota.World, run_world: Runner) -> None:
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: 23 in page.places)
-        page.send("grab_start", hold=1, body=23, local_point=(0, 0, 0), target=(1.2, 1.2, 1.0))
+        page.send("grab_start", hold=1, body=page.body(23), local_point=(0, 0, 0), target=(1.2, 1.2, 1.0))
         page.wait_for(lambda: abs(page.places[23][2] - 1.0) < 0.15)
         (hold,) = page.wait_for(lambda: page.last["poses"]["holds"])
         assert hold["client"] == page.id and hold["hold"] == 1 and hold["body"] == 23 and hold["force"] > 0
@@ -82,14 +84,14 @@ def test_two_pages_have_their_own_selections_and_agree_on_the_rest(world: iota.W
     bodies = world.system.bodies
     url = run_world(world)
     with PageClient(url, "one") as one, PageClient(url, "two") as two:
-        one.send("select", body=3)
-        two.send("select", body=20)
+        one.send("select", body=one.body(3))
+        two.send("select", body=two.body(20))
         one.wait_for(lambda: len(one.last["clients"]["clients"]) == 2)
-        two.wait_for(lambda: {c["selected"] for c in two.last["clients"]["clients"]} == {3, 20})
+        two.wait_for(lambda: {c["selected"][0] for c in two.last["clients"]["clients"]} == {3, 20})
         for page, slot in ((one, 3), (two, 20)):
             page.wait_for(lambda p=page, s=slot: world.call(lambda: world.selected(p.id)) == bodies[s])
         assert sorted(client.name for client in world.call(lambda: world.clients)) == ["one", "two"]
-        two.send("action", name="break", body=NONE)
+        two.send("action", name="break", body=NOTHING)
         one.wait_for(lambda: one.parts() == 2)
         two.wait_for(lambda: two.parts() == 2)
         assert one.articulates == two.articulates
@@ -101,8 +103,8 @@ def test_the_forces_of_two_holders_add_up(run_world: Runner) -> None:
     body.particle((0, 1, 0))
     url = run_world(iota.World(system))
     with PageClient(url) as one, PageClient(url) as two:
-        one.send("grab_start", hold=1, body=0, local_point=(0, 0, 0), target=(1, 1, 0))
-        two.send("grab_start", hold=1, body=0, local_point=(0, 0, 0), target=(0, 2, 0))
+        one.send("grab_start", hold=1, body=one.body(0), local_point=(0, 0, 0), target=(1, 1, 0))
+        two.send("grab_start", hold=1, body=two.body(0), local_point=(0, 0, 0), target=(0, 2, 0))
         one.wait_for(lambda: len(one.last["poses"]["holds"]) == 2)
         two.wait_for(lambda: two.places[0] == pytest.approx((0.5, 1.5, 0), abs=0.01))
 
@@ -111,7 +113,7 @@ def test_what_a_leaving_page_held_is_let_go(world: iota.World, run_world: Runner
     url = run_world(world)
     with PageClient(url) as stays:
         with PageClient(url) as leaves:
-            leaves.send("grab_start", hold=7, body=5, local_point=(0, 0, 0), target=(0, 2, 2))
+            leaves.send("grab_start", hold=7, body=leaves.body(5), local_point=(0, 0, 0), target=(0, 2, 2))
             stays.wait_for(lambda: stays.last["poses"]["holds"])
         stays.wait_for(lambda: not stays.last["poses"]["holds"])
         assert len(world.call(lambda: world.clients)) == 1
@@ -121,16 +123,16 @@ def test_pause_step_speed_and_reset(world: iota.World, run_world: Runner) -> Non
     system = world.system
     with PageClient(run_world(world)) as page:
         page.send("control", command=0, value=0)
-        page.wait_for(lambda: page.last["poses"]["paused"])
+        page.wait_for(lambda: page.last["world_state"]["paused"])
         step = world.call(lambda: system.step_count)
         page.send("control", command=2, value=0)
         page.wait_for(lambda: page.last["poses"]["step"] == step + 1)
         page.send("control", command=4, value=0.5)
         page.send("control", command=1, value=0)
-        page.wait_for(lambda: page.last["poses"]["speed"] == 0.5 and not page.last["poses"]["paused"])
-        page.send("action", name="break", body=9)
+        page.wait_for(lambda: page.last["world_state"]["speed"] == 0.5 and not page.last["world_state"]["paused"])
+        page.send("action", name="break", body=page.body(9))
         page.wait_for(lambda: page.parts() == 2)
-        page.send("grab_start", hold=1, body=3, local_point=(0, 0, 0), target=(0, 0, 2))
+        page.send("grab_start", hold=1, body=page.body(3), local_point=(0, 0, 0), target=(0, 0, 2))
         page.wait_for(lambda: page.last["poses"]["holds"])
         page.send("control", command=3, value=0)
         page.wait_for(lambda: page.parts() == 1 and page.last["poses"]["time"] < 1 and not page.last["poses"]["holds"])
@@ -170,7 +172,7 @@ def test_an_action_that_raises_is_told_on_the_page_with_its_line(
 
     line = burn.__code__.co_firstlineno + 2
     with PageClient(run_world(world)) as page:
-        page.send("action", name="burn", body=NONE)
+        page.send("action", name="burn", body=NOTHING)
         (notice,) = page.wait_for(lambda: page.notices)
         assert notice["level"] == 2 and "'burn' failed" in notice["title"]
         assert notice["text"] == f"RuntimeError: too hot (test_world.py, line {line})"
@@ -183,12 +185,12 @@ def test_an_action_that_raises_is_told_on_the_page_with_its_line(
 def test_an_action_without_a_body_says_what_to_do(world: iota.World, run_world: Runner) -> None:
     url = run_world(world)
     with PageClient(url) as page, PageClient(url) as other:
-        page.send("action", name="break", body=NONE)
+        page.send("action", name="break", body=NOTHING)
         (notice,) = page.wait_for(lambda: page.notices)
         assert notice["title"] == "Nothing to break" and "Hold or select" in notice["hint"]
-        page.send("action", name="dance", body=NONE)
+        page.send("action", name="dance", body=NOTHING)
         page.wait_for(lambda: "no action 'dance'" in page.notices[-1]["text"])
-        page.send("action", name="break", body=4000)  # no such body
+        page.send("action", name="break", body=(4000, 1))  # no such body
         page.wait_for(lambda: len(page.notices) == 3)
         assert other.notices == [], "told to the one who asked"
 
@@ -205,7 +207,7 @@ def test_a_slow_callback_is_named_while_it_runs_and_stepping_resumes(
         time.sleep(2.0)
 
     with PageClient(run_world(world)) as page:
-        page.send("action", name="ponder", body=NONE)
+        page.send("action", name="ponder", body=NOTHING)
         asked = time.monotonic()
         (notice,) = page.wait_for(lambda: page.notices)
         assert time.monotonic() - asked < 1.9, "told before it is over"
@@ -216,7 +218,7 @@ def test_a_slow_callback_is_named_while_it_runs_and_stepping_resumes(
 
 
 def test_garbage_frames_are_refused_with_a_reason_and_the_session_lives(world: iota.World, run_world: Runner) -> None:
-    good = encode("grab_start", hold=1, body=3, local_point=(0, 0, 0), target=(0, 0, 0))
+    good = encode("grab_start", hold=1, body=(3, 1), local_point=(0, 0, 0), target=(0, 0, 0))
     with PageClient(run_world(world)) as page:
         garbage = [
             b"",
@@ -232,11 +234,11 @@ def test_garbage_frames_are_refused_with_a_reason_and_the_session_lives(world: i
             page.send_bytes(frame)
             page.wait_for(lambda n=number: len(page.notices) == n + 1)
             assert page.notices[-1]["level"] == 2 and page.notices[-1]["text"]
-        page.send("grab_start", hold=1, body=9999, local_point=(0, 0, 0), target=(0, 0, 0))
+        page.send("grab_start", hold=1, body=(9999, 1), local_point=(0, 0, 0), target=(0, 0, 0))
         page.send("grab_move", hold=77, target=(0, 0, 0))
         page.send("grab_end", hold=78)
-        page.send("select", body=9999)
-        page.send("action", name="break", body=12)
+        page.send("select", body=(9999, 1))
+        page.send("action", name="break", body=page.body(12))
         page.wait_for(lambda: page.parts() == 2)
 
 
@@ -258,7 +260,7 @@ def test_strangers_are_refused(world: iota.World, run_world: Runner, change: str
     address = url.replace("http://", "ws://").replace("/?", "/ws?")
     if change == "version":
         with connect(address, proxy=None) as socket:
-            socket.send(encode("hello", magic=0x41544F49, version=99, world="", name=""))
+            socket.send(encode("hello", magic=0x41544F49, version=99, world="", role=0, name=""))
             reply = socket.recv(timeout=5)
             assert isinstance(reply, bytes) and reply[0] == 65 and b"version" in reply
         return
@@ -318,7 +320,7 @@ def test_structure_changes_reach_the_page_with_looks_for_what_is_new(
 ) -> None:
     world = iota.World(system)
     with PageClient(run_world(world)) as page:
-        page.wait_for(lambda: len(page.scene.get("bodies", [])) == 6)
+        page.wait_for(lambda: len(page.entities["body"]) == 6)
 
         def edit() -> None:
             system.body().particle((1, 1, 0))
@@ -326,9 +328,75 @@ def test_structure_changes_reach_the_page_with_looks_for_what_is_new(
             chain[0].combine(chain[1])
 
         world.call(edit)
-        page.wait_for(lambda: len(page.scene["bodies"]) == 5)
-        classes = {body["body"]: body["class"] for body in page.scene["bodies"]}
-        assert classes[0] == "(body 0)" and all(name in page.scene["classes"] for name in classes.values())
+        page.wait_for(lambda: len(page.entities["body"]) == 5)
+        assert page.style_of(0)["name"] == "(body)"
+        assert all(body["style"] in page.entities["style"] for body in page.entities["body"].values())
+
+
+def test_what_names_a_body_that_is_gone_is_answered_by_a_notice(system: iota.System, run_world: Runner) -> None:
+    bodies = [system.body() for _ in range(2)]
+    for index, body in enumerate(bodies):
+        body.particle((index, 1, 0))
+    world, asked = iota.World(system), []
+
+    @world.action("poke")
+    def poke(event: iota.Event) -> None:
+        asked.append(event.body)
+
+    def replace() -> iota.Body:
+        bodies[1].destroy()
+        new = system.body()
+        new.particle((1, 2, 0))
+        return new
+
+    with PageClient(run_world(world)) as page:
+        old = page.body(1)
+        new = world.call(replace)
+        assert new.slot == old[0]
+        now = page.wait_for(lambda: (found := page.body(1)) != old and found)
+        page.send("grab_start", hold=1, body=old, local_point=(0, 0, 0), target=(0, 5, 0))
+        page.send("select", body=old)
+        page.send("action", name="poke", body=old)
+        page.wait_for(lambda: [n["title"] for n in page.notices] == ["That is gone"] * 3)
+        assert asked == [] and not page.last["poses"]["holds"]
+        assert world.call(lambda: world.selected(page.id)) is None
+        page.send("action", name="poke", body=now)
+        page.wait_for(lambda: asked == [new])
+
+
+def test_worlds_may_share_a_server() -> None:
+    server = iota.Server(port=0)
+    worlds = {}
+    for name, count in (("one", 1), ("two", 2)):
+        system = iota.System(gravity=(0, 0, 0))
+        for index in range(count):
+            system.body().particle((index, 1, 0))
+        worlds[name] = iota.World(system, title=name)
+    urls = {name: world.start(server=server, id=name) for name, world in worlds.items()}
+    try:
+        with (
+            PageClient(urls["one"], "a") as a,
+            PageClient(server.url, "b") as b,  # the first world
+            PageClient(urls["two"], "c") as c,
+            PageClient(urls["two"], "d", role=Role.VIEWER) as d,
+        ):
+            for page, name, count in ((a, "one", 1), (b, "one", 1), (c, "two", 2), (d, "two", 2)):
+                page.wait_for(lambda p=page, n=count: len(p.entities["body"]) == n == len(p.places))
+                assert page.last["welcome"]["world"] == page.last["world_settings"]["title"] == name
+                page.wait_for(lambda p=page: len(p.last["clients"]["clients"]) == 2)
+            c.send("grab_start", hold=1, body=c.body(0), local_point=(0, 0, 0), target=(0, 3, 0))
+            d.wait_for(lambda: d.places[0][1] > 2)
+            assert a.places[0][1] == pytest.approx(1, abs=1e-3), "the other world is not touched"
+            d.send("control", command=ControlCommand.PAUSE, value=0)
+            d.wait_for(lambda: d.notices)
+            worlds["two"].stop()
+            assert c.closed.wait(10) and not a.closed.is_set()
+            before = a.pose_frames
+            a.wait_for(lambda: a.pose_frames > before)
+    finally:
+        for world in worlds.values():
+            world.stop()
+        server.close()
 
 
 def test_bad_actions_are_refused() -> None:

@@ -76,7 +76,7 @@ describe("an emulated headset", () => {
     const seen = await me.tab.page.evaluate(() => {
       const { page } = iota;
       const eyes = page.viewer.renderer.xr.getCamera().cameras;
-      const target = page.world.settings.camera!.target;
+      const target = page.world.settings.cameraTarget;
       const head = iotaXR!.head();
       const ahead = page.viewer.camera.getWorldDirection(page.viewer.camera.position.clone());
       const [dx, dz] = [target[0] - head[0], target[2] - head[2]];
@@ -85,7 +85,7 @@ describe("an emulated headset", () => {
         apart: Math.hypot(...[12, 13, 14].map((at) => eyes[0].matrixWorld.elements[at] - eyes[1].matrixWorld.elements[at])),
         away: Math.hypot(dx, dz),
         facing: (ahead.x * dx + ahead.z * dz) / Math.hypot(dx, dz),
-        ground: page.world.settings.ground, feet: iotaXR!.rig().position[1],
+        ground: page.world.ground, feet: iotaXR!.rig().position[1],
       };
     });
     expect(seen.views).toEqual([[0, size.width / 2], [size.width / 2, size.width / 2]]);

@@ -1,34 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
-import { decodePosesInto, encodePoses, PosesBuffer, type PoseBody, type Poses } from "../src/protocol/generated.ts";
 import { mixRotation, PoseBuffer, usualLateness } from "../src/scene/pose_buffer.ts";
-
-const span = 10;
-
-function packRotation(q: readonly number[]): number {
-  let largest = 0;
-  for (let axis = 1; axis < 4; axis++) if (Math.abs(q[axis]) > Math.abs(q[largest])) largest = axis;
-  const sign = q[largest] < 0 ? -1 : 1;
-  let packed = largest;
-  for (let axis = 0; axis < 4; axis++) {
-    if (axis !== largest) packed = packed * 1024 + Math.round(((q[axis] * sign + Math.SQRT1_2) / Math.SQRT2) * 1023);
-  }
-  return packed;
-}
-
-function frame(step: number, bodies: PoseBody[], extra: Partial<Poses> = {}): PosesBuffer {
-  const poses: Poses = {
-    type: "poses", step, time: step / 60, structureVersion: 1, keyframe: false, paused: false, speed: 1, stepMs: 0, kinetic: 0,
-    potential: 0, gap: 0, boxMin: [0, 0, 0], boxMax: [span, span, span], bodies, farBodies: [], sparks: [], holds: [], ...extra,
-  };
-  const buffer = new PosesBuffer();
-  decodePosesInto(encodePoses(poses), buffer);
-  return buffer;
-}
-
-function body(slot: number, x: number, q: readonly number[] = [0, 0, 0, 1]): PoseBody {
-  return { body: slot, x: Math.round((x / span) * 65535), y: 0, z: 0, rotation: packRotation(q) };
-}
+import { body, frame, packRotation } from "./test_world.ts";
 
 describe("the pose buffer", () => {
   it("draws between frames, one and a half intervals late", () => {
@@ -64,6 +37,17 @@ describe("the pose buffer", () => {
     buffer.push(frame(4, [body(0, 1), body(1, 5)]), 64);
     buffer.sample(64, 0.016);
     expect(buffer.position[3]).toBeCloseTo(5, 3);
+  });
+
+  it("never mixes poses of two bodies that had the same slot", () => {
+    const buffer = new PoseBuffer();
+    for (let step = 0; step < 8; step++) buffer.push(frame(step, [body(0, 1)]), step * 16);
+    buffer.forget(0);
+    buffer.sample(8 * 16, 0.016);
+    expect(buffer.known[0]).toBe(0);
+    buffer.push(frame(8, [body(0, 5)]), 8 * 16);
+    buffer.sample(8 * 16 + 1, 0.016);
+    expect(buffer.position[0]).toBeCloseTo(5, 3);
   });
 
   it("takes bodies outside the box too, and no absurd slot", () => {

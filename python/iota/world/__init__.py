@@ -4,7 +4,8 @@
 from iota.world.event import Event
 from iota.world.hands import Client
 from iota.world.scene import Camera
+from iota.world.server import Server
 from iota.world.summary import RunSummary
 from iota.world.world import World
 
-__all__ = ["Camera", "Client", "Event", "RunSummary", "World"]
+__all__ = ["Camera", "Client", "Event", "RunSummary", "Server", "World"]

@@ -21,10 +21,9 @@ class Action:
     label: str
     on: str
 
-    def describe(self) -> dict[str, str | None]:
-        """As the page's scene names it."""
-        names = ("name", "key", "label", "help", "on", "button")
-        return {name: getattr(self, name) for name in names}
+    def describe(self) -> tuple[str, str, str, str, bool, str]:
+        """As a room takes it."""
+        return (self.name, self.key or "", self.label, self.help, self.on == "body", self.button or "")
 
 
 class Actions:

@@ -40,9 +40,8 @@ class Hands:
         self._system = system
         self.clients: dict[int, Client] = {}
 
-    def take(self, event: InputEvent) -> None:
-        """One event of kind join, leave, select or grab_*. What names a body that is gone does nothing: the page will
-        learn of it with the next structure."""
+    def take(self, event: InputEvent, body: Any) -> None:
+        """One event of kind join, leave, select or grab_*. body: that it is on, if any."""
         if event.kind == "join":
             self.clients[event.client] = Client(event.client, event.name)
             return
@@ -53,9 +52,9 @@ class Hands:
             self.let_go(client)
             del self.clients[event.client]
         elif event.kind == "select":
-            client.selected = None if event.body is None else self._system.body_at(event.body)
+            client.selected = body
         elif event.kind == "grab_start":
-            self._grab(client, event)
+            self._grab(client, event, body)
         elif event.kind == "grab_move":
             hold = client.holds.get(event.hold)
             if hold is not None and hold.grip.alive:
@@ -83,8 +82,7 @@ class Hands:
         for client in self.clients.values():
             client.holds.clear()
 
-    def _grab(self, client: Client, event: InputEvent) -> None:
-        body: Any = None if event.body is None else self._system.body_at(event.body)
+    def _grab(self, client: Client, event: InputEvent, body: Any) -> None:
         if body is None or body.kind == "inactive":
             return
         self._release(client, event.hold)

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 import queue
 from collections.abc import Callable, Iterable
+from typing import Any
 
 from iota._core import InputEvent
+from iota._protocol import ControlCommand
 from iota.world.callbacks import Guard
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event
 from iota.world.state import State
-
-PAUSE, PLAY, SINGLE_STEP, RESET, SPEED = range(5)  # commands of a control event
 
 
 class Inputs:
@@ -30,24 +30,28 @@ class Inputs:
         while not self._calls.empty():
             self._calls.get()()
 
-    def take(self, events: Iterable[InputEvent]) -> None:
-        """Everything that users did."""
-        for event in events:
+    def take(self, events: Iterable[tuple[InputEvent, Any]]) -> None:
+        """Everything that users did, each with the body that it is on, if that is there."""
+        for event, body in events:
+            if event.names_body and body is None:
+                text = "It was destroyed, or made one with another body."
+                self._state.notices.send("That is gone", text, client=event.client)
+                if event.kind != "select":
+                    continue
             if event.kind == "action":
-                self._act(event)
+                self._act(event, body)
             elif event.kind == "control":
                 self._control(event)
             else:
-                self._guard.call(f"{event.kind} by client {event.client}", self._state.hands.take, event)
+                self._guard.call(f"{event.kind} by client {event.client}", self._state.hands.take, event, body)
 
-    def _act(self, event: InputEvent) -> None:
+    def _act(self, event: InputEvent, named: Any) -> None:
         state = self._state
         action = state.actions.get(event.name)
         if action is None:
             text = f"This world has no action {event.name!r}."
             state.notices.send("Unknown action", text, client=event.client)
             return
-        named = None if event.body is None else state.system.body_at(event.body)
         body = named or state.hands.held(event.client) or state.hands.selected(event.client)
         if body is None and action.on == "body":
             hint = f"Hold or select something, then press {action.key}." if action.key else ""
@@ -60,14 +64,14 @@ class Inputs:
 
     def _control(self, event: InputEvent) -> None:
         clock = self._state.clock
-        if event.command == PAUSE:
+        if event.command == ControlCommand.PAUSE:
             clock.paused = True
-        elif event.command == PLAY:
+        elif event.command == ControlCommand.PLAY:
             clock.paused = False
-        elif event.command == SINGLE_STEP:
+        elif event.command == ControlCommand.SINGLE_STEP:
             clock.paused = True
             self._step()
-        elif event.command == RESET:
+        elif event.command == ControlCommand.RESET:
             self._reset()
-        elif event.command == SPEED:
+        elif event.command == ControlCommand.SPEED:
             clock.speed = min(max(event.value, 0.0), MAX_SPEED)

@@ -4,43 +4,36 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from typing import Any
 
-from iota._core import Server, System, Vec3
+from iota._core import InputEvent, Room, System, Vec3
 from iota.simulator import Simulator
-from iota.world import ties
-from iota.world.clock import Clock
+from iota.world import simulated
 
 
 class Source(ABC):
     """Sends what a simulator has to show."""
 
     @abstractmethod
-    def send_structure(self, server: Server) -> None:
-        """Which bodies there are and which hang together."""
+    def publish(self, room: Room) -> None:
+        """Where everything is now, and what has changed."""
 
     @abstractmethod
-    def send_poses(self, server: Server, clock: Clock, step_ms: float) -> None:
-        """Where everything is now."""
-
-    @abstractmethod
-    def ties(self) -> str:
-        """JSON text of what ties bodies together."""
+    def body_of(self, room: Room, event: InputEvent) -> Any:
+        """The body that an event names; None once it is gone."""
 
 
 class EngineSource(Source):
-    """The engine's own system: poses go from it to the server without Python."""
+    """The engine's own system: what it has to show goes from it to the server without Python."""
 
     def __init__(self, system: System) -> None:
         self._system = system
 
-    def send_structure(self, server: Server) -> None:
-        server.publish_structure(self._system)
+    def publish(self, room: Room) -> None:
+        room.publish(self._system)
 
-    def send_poses(self, server: Server, clock: Clock, step_ms: float) -> None:
-        server.publish(self._system, paused=clock.paused, speed=clock.speed, step_ms=step_ms)
-
-    def ties(self) -> str:
-        return ties.describe(self._system)
+    def body_of(self, room: Room, event: InputEvent) -> Any:
+        return room.body_of(event, self._system)
 
 
 class SimulatorSource(Source):
@@ -48,30 +41,31 @@ class SimulatorSource(Source):
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator
+        self._scene_version = -1
 
-    def send_structure(self, server: Server) -> None:
-        server.publish_structure(self._simulator.structure_version, list(self._simulator.body_articulates()))
-
-    def send_poses(self, server: Server, clock: Clock, step_ms: float) -> None:
+    def publish(self, room: Room) -> None:
         simulator = self._simulator
+        for kind, place in simulator.take_edits():
+            room.effect(kind, place)
+        is_changed = room.needs_all or simulator.scene_version != self._scene_version
+        self._scene_version = simulator.scene_version
         slots, places = simulator.poses()
-        holds = [(c, h, b, Vec3(*point), Vec3(*target), f) for c, h, b, point, target, f in simulator.holds()]
-        server.publish_poses(
+        room.publish_simulated(
+            simulated.describe(simulator) if is_changed else None,
             slots,
             places,
-            holds,
+            [(c, h, b, Vec3(*point), Vec3(*target), f) for c, h, b, point, target, f in simulator.holds()],
             step=simulator.step_count,
             time=simulator.time,
             structure_version=simulator.structure_version,
             energy=simulator.energy,
             gap=simulator.worst_gap,
-            paused=clock.paused,
-            speed=clock.speed,
-            step_ms=step_ms,
+            extent=simulated.extent(simulator) if is_changed else 0.0,
         )
 
-    def ties(self) -> str:
-        return "[]"
+    def body_of(self, room: Room, event: InputEvent) -> Any:
+        slot = room.slot_of(event)
+        return None if slot is None else self._simulator.body_at(slot)
 
 
 def source_of(system: System | Simulator) -> Source:

@@ -34,7 +34,7 @@ class State:
     is_changed: bool = True  # what pages were told of it, poses apart, does not hold any more
 
     def __post_init__(self) -> None:
-        self.scene = Scene(self.system)
+        self.scene = Scene()
         self.hands = Hands(self.system)
 
     def class_of(self, looks: Looks) -> str:

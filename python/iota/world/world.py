@@ -25,6 +25,7 @@ from iota.world.hands import Client
 from iota.world.inputs import Inputs
 from iota.world.publisher import Publisher
 from iota.world.scene import Camera
+from iota.world.server import Server
 from iota.world.state import TIES, State
 from iota.world.stepper import Stepper
 from iota.world.summary import RunSummary
@@ -234,7 +235,7 @@ class World:
     @property
     def url(self) -> str | None:
         """The page's address, with its token, while it is served."""
-        return None if self._publisher is None else self._publisher.server.url
+        return None if self._publisher is None else self._publisher.url
 
     def reset(self) -> None:
         """Back to where the run began, with timed events as they were asked for before it."""
@@ -279,9 +280,9 @@ class World:
         options.summary = summary
         return summary
 
-    def start(self, port: int = 8080) -> str:
+    def start(self, port: int = 8080, server: Server | None = None, id: str = "default") -> str:
         """Runs in the background, for notebooks and prompts; returns the page's address. Use `call` to reach the system
-        meanwhile and `stop` to end it."""
+        meanwhile and `stop` to end it. server, id: as for `serve`."""
         if self._background is not None:
             raise RuntimeError("the world runs already")
         ready: concurrent.futures.Future[str] = concurrent.futures.Future()
@@ -289,7 +290,7 @@ class World:
         def background() -> None:
             try:
                 self.system.adopt()
-                self.serve(port)
+                self.serve(port, server=server, id=id)
                 ready.set_result(self.url or "")
             except BaseException as error:
                 ready.set_exception(error)
@@ -332,11 +333,19 @@ class World:
             self._background = None
             self.system.adopt()
 
-    def serve(self, port: int = 8080, host: str = "127.0.0.1") -> str:
-        """Serves the page, for scripts with a loop of their own around `step()`; returns its address."""
+    def serve(
+        self, port: int = 8080, host: str = "127.0.0.1", server: Server | None = None, id: str = "default"
+    ) -> str:
+        """Serves the page, for scripts with a loop of their own around `step()`; returns its address.
+
+        server: one that several worlds share, each with an id of its own; without it the world makes one for itself.
+        """
         if self._publisher is None:
-            options = run_options.current()
-            self._publisher = Publisher.open(self._state, host, port if options.port is None else options.port)
+            if server is None:
+                options = run_options.current()
+                self._publisher = Publisher.open(self._state, host, port if options.port is None else options.port)
+            else:
+                self._publisher = Publisher.join(self._state, server, id)
             atexit.register(self.close)  # for loops of scripts that end without it
             self._begin()
             self._guard.watch()
@@ -345,7 +354,7 @@ class World:
             except BaseException:
                 self.close()
                 raise
-        return self._publisher.server.url
+        return self._publisher.url
 
     def step(self) -> StepReport | None:
         """One round of a script's own loop: users' input, one step in real time (none while paused), a frame to the page.
@@ -427,7 +436,7 @@ class World:
     def _take_inputs(self) -> None:
         self._inputs.take_calls()
         if self._publisher is not None:
-            self._inputs.take(self._publisher.server.take_input())
+            self._inputs.take(self._publisher.take_input())
 
     def _send_frame(self) -> None:
         assert self._publisher is not None

@@ -21,14 +21,14 @@ using test::golden;
 /// The values of protocol/golden/vectors.json, by name.
 const std::map<std::string, ClientMessage>& client_vectors() {
   static const std::map<std::string, ClientMessage> vectors{
-      {"hello", Hello{protocol_magic, 1, "default", "Ada \u00fc\u4e16\U0001F517"}},
-      {"hello_empty", Hello{protocol_magic, 1, "", ""}},
-      {"select", Select{23}},
-      {"select_none", Select{no_body}},
-      {"grab_start", GrabStart{7, 12, {0.5F, -0.25F, 0.0F}, {1.5F, -2.0F, 1024.125F}}},
+      {"hello", Hello{protocol_magic, 3, "default", Role::viewer, "Ada \u00fc\u4e16\U0001F517"}},
+      {"hello_empty", Hello{protocol_magic, 3, "", Role::actor, ""}},
+      {"select", Select{{70000, 3}}},
+      {"select_none", Select{}},
+      {"grab_start", GrabStart{7, {12, 1}, {0.5F, -0.25F, 0.0F}, {1.5F, -2.0F, 1024.125F}}},
       {"grab_move", GrabMove{7, {-0.125F, 3.0F, 0.0625F}}},
       {"grab_end", GrabEnd{4000000000}},
-      {"action", Action{"break", 5}},
+      {"action", Action{"break", {5, 2}}},
       {"control_pause", Control{ControlCommand::pause, 0}},
       {"control_speed", Control{ControlCommand::speed, 0.25F}},
       {"ping", Ping{1234.5678}},
@@ -38,17 +38,12 @@ const std::map<std::string, ClientMessage>& client_vectors() {
 
 const std::map<std::string, ServerMessage>& server_vectors() {
   static const std::map<std::string, ServerMessage> vectors{
-      {"welcome", Welcome{1, "default", 3, 1.0 / 120}},
+      {"welcome", Welcome{3, "default", 3}},
       {"refused", Refused{"no such world"}},
-      {"scene", Scene{"world", "{\"title\":\"K\u00e4tte\"}"}},
-      {"structure", Structure{9, {{0, 0}, {1, 0}, {2, 70000}}}},
       {"poses", Poses{0x0001000200030004,
                       16.0625,
                       9,
                       true,
-                      false,
-                      1.0F,
-                      0.375F,
                       2.5F,
                       -7.25F,
                       0.0009765625F,
@@ -56,16 +51,40 @@ const std::map<std::string, ServerMessage>& server_vectors() {
                       {1, 2, 4},
                       {{0, 0, 65535, 32768, 0xDFF7FDFF}, {65535, 1, 2, 3, 0}},
                       {{70000, {0, -4096.5F, 8}, 0xC0000001}},
-                      {{{0.25F, 0.5F, -0.75F}, 0.0625F, 0xFF8000}},
+                      {{{0.25F, 0.5F, -0.75F}, 0.0625F, 0xFF8000, 4}},
                       {{2, 7, 12, {0.5F, 1, 1.5F}, {0.5F, 1.25F, 1.5F}, 12.5F}}}},
-      {"poses_nothing_moved", Poses{5, 0.5, 1, false, true, 0, 0, 0, 0, 0, {}, {}, {}, {}, {}, {}}},
+      {"poses_nothing_moved", Poses{5, 0.5, 1, false, 0, 0, 0, {}, {}, {}, {}, {}, {}}},
       {"notice", Notice{NoticeLevel::error, "chain.py", "ZeroDivisionError", ""}},
       {"effect", Effect{"break", {0, 1.5F, -0.5F}}},
       {"pong", Pong{1234.5678, 600}},
-      {"clients", Clients{{{1, "Ada", 4}, {2, "", no_body}}}},
+      {"clients", Clients{{{1, "Ada", {4, 1}, Role::actor}, {2, "", {}, Role::viewer}}}},
+      {"entities_set", EntitiesSet{"body", {1, 2, 3, 4, 5}}},
+      {"entities_destroyed", EntitiesDestroyed{"tie", {{7, 1}, {70000, 9}}}},
+      {"world_settings",
+       WorldSettings{"K\u00e4tte", {"rope", "chain"}, "rope", {2.5F, 1.5F, 3.5F}, {0, 1.25F, 0}, true, -0.5F}},
+      {"world_state", WorldState{true, 0.5F, 0.375F, 1.0 / 120}},
+      {"actions", Actions{{{"push", "p", "push it", "", ActionTarget::body, ControllerButton::b}}}},
   };
   return vectors;
 }
+
+constexpr Id entity_id{70000, 3};
+const Anchor on_body{12, {0.5F, 0, -0.25F}}, in_world{no_body, {0, 2, 0}};
+const Part torus{"*",     {"torus", {0.5F, 0.125F}, {}, {}}, {0, 0.25F, 0}, {0.5F, 0.5F, 0.5F, 0.5F}, 1.5F, "brass",
+                 no_color};
+const Part mesh{"chain", {"mesh", {}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}}, {}, {0, 0, 0, 1}, 0, "paint", 0xFF8000};
+
+/// A record of each kind, as in vectors.json.
+const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEntity, NailEntity, ParticleSetEntity,
+                 StaticShapeEntity>
+    entity_vectors{{entity_id, "link", {torus, mesh}},
+                   {entity_id, BodyKind::scripted, 9, true, 0.125F},
+                   {entity_id, 40000},
+                   {entity_id, TieKind::rope, 3, 0.75F, on_body, in_world},
+                   {entity_id, "revolute", on_body, in_world, {0, 0, 1}},
+                   {entity_id, on_body},
+                   {entity_id, true, 1000},
+                   {entity_id, torus}};
 
 template <class Variant>
 std::vector<std::uint8_t> encode_any(const Variant& message) {
@@ -87,6 +106,31 @@ TEST(Protocol, golden_bytes_are_decoded_to_their_values_and_encoded_back) {
   }
 }
 
+template <class Entity>
+void expect_golden_record(const Entity& entity) {
+  const std::vector<std::uint8_t> bytes = golden("entity_" + std::string(Entity::kind_name));
+  std::vector<std::uint8_t> twice;
+  append_record(entity, twice);
+  EXPECT_EQ(twice, bytes) << Entity::kind_name;
+  append_record(entity, twice);
+  const auto decoded = decode_records<Entity>(twice);
+  ASSERT_TRUE(decoded) << decoded.error;
+  EXPECT_EQ(*decoded.value, (std::vector<Entity>{entity, entity})) << Entity::kind_name;
+  for (std::size_t size = 1; size < bytes.size(); ++size)
+    EXPECT_FALSE(decode_records<Entity>(std::span(bytes).first(size))) << Entity::kind_name << " cut to " << size;
+}
+
+TEST(Protocol, golden_records_of_entities_are_decoded_to_their_values_and_encoded_back) {
+  static_assert(std::is_same_v<std::remove_const_t<decltype(entity_vectors)>, EntityKinds>, "a record of each kind");
+  std::apply([](const auto&... entity) { (expect_golden_record(entity), ...); }, entity_vectors);
+}
+
+TEST(Protocol, a_record_that_cannot_be_written_leaves_the_others_as_they_are) {
+  std::vector<std::uint8_t> records{1, 2, 3};
+  EXPECT_THROW(append_record(StyleEntity{{}, std::string(129, 'x'), {}}, records), std::length_error);
+  EXPECT_EQ(records, (std::vector<std::uint8_t>{1, 2, 3}));
+}
+
 TEST(Protocol, every_golden_file_is_used_and_every_message_has_one) {
   std::set<std::size_t> client_kinds;
   std::set<std::size_t> server_kinds;
@@ -98,7 +142,7 @@ TEST(Protocol, every_golden_file_is_used_and_every_message_has_one) {
   for (const auto& entry : std::filesystem::directory_iterator(test::golden_folder())) {
     if (entry.path().extension() == ".hex" && entry.path().stem().string().rfind("bad_", 0) != 0) ++good;
   }
-  EXPECT_EQ(good, client_vectors().size() + server_vectors().size());
+  EXPECT_EQ(good, client_vectors().size() + server_vectors().size() + std::tuple_size_v<EntityKinds>);
 }
 
 TEST(Protocol, bad_golden_bytes_are_refused_with_their_reason) {
@@ -119,8 +163,8 @@ TEST(Protocol, bad_golden_bytes_are_refused_with_their_reason) {
       {"bad_surrogate", "action.name is not UTF-8"},
   };
   const std::map<std::string, std::string> server_reasons{
-      {"bad_count", "structure.articulates ends early"},
-      {"bad_count_huge", "structure.articulates has 4294967295"},
+      {"bad_count", "entities_destroyed.ids ends early"},
+      {"bad_count_huge", "entities_destroyed.ids has 4294967295"},
       {"bad_bool", "poses.keyframe is neither 0 nor 1"},
       {"bad_poses_short", "poses.holds ends early"},
   };
@@ -148,8 +192,8 @@ TEST(Protocol, frames_that_are_cut_or_too_long_are_refused) {
 }
 
 TEST(Protocol, encoding_refuses_what_a_decoder_would_refuse) {
-  EXPECT_THROW(encode(Action{std::string(129, 'x'), 0}), std::length_error);
-  EXPECT_THROW(encode(Action{"\xff", 0}), std::invalid_argument);
+  EXPECT_THROW(encode(Action{std::string(129, 'x'), {}}), std::length_error);
+  EXPECT_THROW(encode(Action{"\xff", {}}), std::invalid_argument);
   EXPECT_THROW(encode(Effect{"break", {0, std::numeric_limits<float>::quiet_NaN(), 0}}), std::invalid_argument);
   EXPECT_THROW(encode(Ping{std::numeric_limits<double>::infinity()}), std::invalid_argument);
   std::vector<std::uint8_t> out{1, 2, 3};
@@ -183,7 +227,7 @@ TEST(Protocol, two_hundred_thousand_damaged_frames_give_an_error_or_a_valid_mess
     if (round % 4 == 0) {  // noise behind a type that exists
       bytes.resize(1 + below(100));
       for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
-      bytes[0] = static_cast<std::uint8_t>(random() % 2 == 0 ? 1 + below(8) : 64 + below(9));
+      bytes[0] = static_cast<std::uint8_t>(random() % 2 == 0 ? 1 + below(8) : 64 + below(14));
     } else {
       bytes = seeds[below(seeds.size())];
       for (std::size_t n = below(4); n > 0 && !bytes.empty(); --n) {

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <map>
 #include <memory>
 #include <random>
 #include <system_error>
@@ -52,24 +53,28 @@ class ServerTest : public testing::Test {
     options.port = port;
     options.page_folder = page_.path() / "page";
     options.token = token;
-    options.dt = 1.0 / 120;
     options.max_queue_bytes = 1 << 18;
     return options;
   }
 
-  void restart(std::uint16_t port) {
+  void restart(std::uint16_t port) { start(options(port)); }
+
+  void start(const ServerOptions& options) {
+    room_.reset();
     server_.reset();
-    server_ = std::make_unique<Server>(options(port));
+    server_ = std::make_unique<Server>(options);
+    room_ = server_->open("default");
   }
 
   std::string target() const { return std::string("/ws?token=") + token; }
 
   /// A client that was welcomed; what came after the welcome waits to be received.
-  std::unique_ptr<PageClient> join(const std::string& name = "", bool is_small = false) {
+  std::unique_ptr<PageClient> join(const std::string& name = "", bool is_small = false, const std::string& world = "",
+                                   protocol::Role role = protocol::Role::actor) {
     auto client = std::make_unique<PageClient>();
     if (is_small) client->use_small_buffer();
     EXPECT_EQ(client->connect(server_->port(), target()), 101U);
-    say(*client, protocol::Hello{protocol::protocol_magic, protocol::protocol_version, "", name});
+    say(*client, protocol::Hello{protocol::protocol_magic, protocol::protocol_version, world, role, name});
     return client;
   }
 
@@ -110,7 +115,7 @@ class ServerTest : public testing::Test {
   std::vector<InputEvent> take(std::size_t count) {
     std::vector<InputEvent> events;
     for (int i = 0; i < 400 && events.size() < count; ++i) {
-      for (auto& event : server_->take_input()) events.push_back(std::move(event));
+      for (auto& event : room_->take_input()) events.push_back(std::move(event));
       if (events.size() < count) std::this_thread::sleep_for(5ms);
     }
     return events;
@@ -127,7 +132,19 @@ class ServerTest : public testing::Test {
 
   test::TemporaryFolder page_;
   std::unique_ptr<Server> server_;
+  std::unique_ptr<Room> room_;
 };
+
+protocol::Id body_id(std::uint32_t slot, std::uint32_t generation = 1) { return {slot, generation}; }
+
+/// A change of one body.
+EntityChanges told(protocol::BodyEntity body) {
+  std::vector<std::uint8_t> record;
+  protocol::append_record(body, record);
+  EntityChanges changes;
+  changes.set(entity_kind<protocol::BodyEntity>(), body.id, record);
+  return changes;
+}
 
 // ------------------------------------------------------------------------------------------------------------ start
 
@@ -155,9 +172,6 @@ TEST_F(ServerTest, says_clearly_that_the_host_is_unknown) {
   wrong = options(0);
   wrong.token.clear();
   EXPECT_THROW(Server{wrong}, std::invalid_argument);
-  wrong = options(0);
-  wrong.dt = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(Server{wrong}, std::invalid_argument);
 }
 
 TEST_F(ServerTest, starts_again_on_its_port_at_once_and_clients_come_back) {
@@ -175,7 +189,7 @@ TEST_F(ServerTest, starts_again_on_its_port_at_once_and_clients_come_back) {
 TEST_F(ServerTest, delivers_a_farewell_notice_before_it_closes) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
-  server_->notice(0, 2, "chain.py", "it raised an error");
+  room_->notice(0, 2, "chain.py", "it raised an error");
   server_.reset();
   const auto notice = hear<protocol::Notice>(*client);
   ASSERT_TRUE(notice);
@@ -262,7 +276,7 @@ TEST_F(ServerTest, lets_go_of_a_client_that_says_no_hello_in_time) {
   server_.reset();
   ServerOptions hasty = options(0);
   hasty.hello_time = 1;
-  server_ = std::make_unique<Server>(hasty);
+  start(hasty);
   const auto polite = join();
   PageClient silent;
   ASSERT_EQ(silent.connect(server_->port(), target()), 101U);
@@ -281,7 +295,6 @@ TEST_F(ServerTest, welcomes_a_client_that_says_hello) {
   EXPECT_EQ(welcome->version, protocol::protocol_version);
   EXPECT_EQ(welcome->world, "default");
   EXPECT_EQ(welcome->client, 1U);
-  EXPECT_EQ(welcome->dt, 1.0 / 120);
   const auto events = take(1);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].kind, Kind::join);
@@ -323,20 +336,21 @@ TEST_F(ServerTest, refuses_a_wrong_version_world_or_first_frame_with_a_reason) {
   };
   const auto magic = protocol::protocol_magic;
   constexpr std::uint16_t version = protocol::protocol_version;
-  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{magic, std::uint16_t{version + 1}, "", ""})),
+  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{magic, std::uint16_t{version + 1}, "", {}, ""})),
             "the page speaks protocol version " + std::to_string(version + 1) + ", the server version " +
                 std::to_string(version) + ": reload the page");
-  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{magic, version, "moon", ""})), "there is no world 'moon' here");
-  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{7, version, "", ""})), "this is not Iota's protocol");
+  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{magic, version, "moon", {}, ""})),
+            "there is no world 'moon' here; there are: default");
+  EXPECT_EQ(refusal(protocol::encode(protocol::Hello{7, version, "", {}, ""})), "this is not Iota's protocol");
   EXPECT_EQ(refusal(protocol::encode(protocol::Ping{0})), "the first frame has to be hello");
   EXPECT_EQ(refusal(test::golden("bad_type")).rfind("the first frame has to be hello: ", 0), 0U);
-  EXPECT_TRUE(server_->take_input().empty());
+  EXPECT_TRUE(room_->take_input().empty());
 }
 
 TEST_F(ServerTest, refuses_more_clients_than_it_is_made_for) {
   ServerOptions small = options(0);
   small.max_clients = 1;
-  server_ = std::make_unique<Server>(small);
+  start(small);
   const auto first = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*first));
   const auto second = join();
@@ -360,7 +374,7 @@ TEST_F(ServerTest, answers_a_bad_frame_with_a_notice_and_the_session_lives) {
   }
   client->send_text("hello?");
   EXPECT_NE(hear<protocol::Notice>(*client)->text.find("text"), std::string::npos);
-  say(*client, protocol::Hello{protocol::protocol_magic, 1, "", ""});
+  say(*client, protocol::Hello{protocol::protocol_magic, 1, "", {}, ""});
   EXPECT_NE(hear<protocol::Notice>(*client)->text.find("hello"), std::string::npos);
   EXPECT_TRUE(is_alive(*client));
   EXPECT_EQ(server_->statistics().frames_refused, 12U);
@@ -398,11 +412,11 @@ TEST_F(ServerTest, survives_connections_that_are_cut) {
   for (int i = 0; i < 50; ++i) {
     const auto client = join();
     if (i % 2 == 0) client->receive();
-    server_->publish(make_snapshot(static_cast<std::uint64_t>(i), 100));
+    room_->publish(make_snapshot(static_cast<std::uint64_t>(i), 100));
     client->cut();
   }
   EXPECT_TRUE(soon([&] { return server_->statistics().clients == 0; }));
-  const auto events = server_->take_input();
+  const auto events = room_->take_input();
   const auto count = [&](Kind kind) {
     return std::count_if(events.begin(), events.end(), [&](const auto& event) { return event.kind == kind; });
   };
@@ -411,12 +425,12 @@ TEST_F(ServerTest, survives_connections_that_are_cut) {
 }
 
 TEST_F(ServerTest, refuses_published_things_that_cannot_travel) {
-  EXPECT_THROW(server_->set_scene(std::string(65, 'k'), "1"), std::length_error);
-  EXPECT_THROW(server_->set_scene("world", "\xff"), std::invalid_argument);
-  EXPECT_THROW(server_->effect("break", {std::numeric_limits<float>::infinity(), 0, 0}), std::invalid_argument);
+  EXPECT_THROW(room_->set(protocol::WorldSettings{std::string(257, 't'), {}, "", {}, {}, false, 0}), std::length_error);
+  EXPECT_THROW(room_->set(protocol::WorldSettings{"\xff", {}, "", {}, {}, false, 0}), std::invalid_argument);
+  EXPECT_THROW(room_->effect("break", {std::numeric_limits<float>::infinity(), 0, 0}), std::invalid_argument);
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
-  server_->notice(0, 9, "\xff", std::string(10000, 'x') + "\xff");
+  room_->notice(0, 9, "\xff", std::string(10000, 'x') + "\xff");
   const auto notice = hear<protocol::Notice>(*client);
   ASSERT_TRUE(notice);
   EXPECT_EQ(notice->title, "?");
@@ -432,9 +446,9 @@ TEST_F(ServerTest, two_clients_have_their_own_selections_and_see_each_other) {
   const auto b = hear<protocol::Welcome>(*bob);
   ASSERT_TRUE(a && b);
   EXPECT_NE(a->client, b->client);
-  say(*ada, protocol::Select{3});
-  say(*bob, protocol::Select{5});
-  std::vector<protocol::ClientEntry> expected{{a->client, "Ada", 3}, {b->client, "Bob", 5}};
+  say(*ada, protocol::Select{body_id(3)});
+  say(*bob, protocol::Select{body_id(5)});
+  std::vector<protocol::ClientEntry> expected{{a->client, "Ada", body_id(3), {}}, {b->client, "Bob", body_id(5), {}}};
   for (PageClient* client : {ada.get(), bob.get()}) {
     std::optional<protocol::Clients> clients;
     do {
@@ -446,7 +460,7 @@ TEST_F(ServerTest, two_clients_have_their_own_selections_and_see_each_other) {
   ASSERT_EQ(events.size(), 4U);
   for (const auto& event : events) {
     if (event.kind == Kind::select) {
-      EXPECT_EQ(event.body, event.client == a->client ? 3U : 5U);
+      EXPECT_EQ(event.body, body_id(event.client == a->client ? 3 : 5));
     }
   }
   bob->cut();
@@ -462,81 +476,196 @@ TEST_F(ServerTest, notices_go_to_one_or_to_all) {
   const auto bob = join("Bob");
   const auto number = hear<protocol::Welcome>(*ada)->client;
   ASSERT_TRUE(hear<protocol::Welcome>(*bob));
-  server_->notice(number, 1, "one", "");
-  server_->notice(0, 0, "all", "", "try");
-  server_->notice(12345, 0, "nobody", "");
+  room_->notice(number, 1, "one", "");
+  room_->notice(0, 0, "all", "", "try");
+  room_->notice(12345, 0, "nobody", "");
   EXPECT_EQ(hear<protocol::Notice>(*ada)->title, "one");
   EXPECT_EQ(hear<protocol::Notice>(*ada)->hint, "try");
   EXPECT_EQ(hear<protocol::Notice>(*bob)->title, "all");
-  server_->effect("break", {1, 2, 3});
+  room_->effect("break", {1, 2, 3});
   EXPECT_EQ(hear<protocol::Effect>(*bob)->position, (protocol::Vec3{1, 2, 3}));
 }
 
-TEST_F(ServerTest, a_late_joiner_gets_the_scene_structure_and_all_poses) {
-  server_->set_scene("world", "{\"title\":\"old\"}");
-  server_->set_scene("classes", "{}");
-  server_->set_scene("statics", "[]");
-  server_->set_scene("world", "{\"title\":\"new\"}");
-  server_->set_scene("statics", "null");
-  const std::vector<BodyArticulate> articulates{{0, 0}, {1, 0}, {2, 1}};
-  server_->publish_structure(1, articulates);
-  server_->publish(make_snapshot(1, 3));
-  server_->publish(make_snapshot(2, 3));
+TEST_F(ServerTest, a_late_joiner_gets_settings_entities_and_all_poses) {
+  room_->set(protocol::WorldSettings{"old", {}, "", {}, {}, false, 0});
+  room_->set(protocol::WorldSettings{"new", {"rope"}, "rope", {}, {}, true, -1});
+  room_->set(protocol::WorldState{false, 1, 0, 1.0 / 120});
+  room_->publish(make_snapshot(1, 3), told({body_id(2), protocol::BodyKind::dynamic, 0, false, 1}));
+  room_->publish(make_snapshot(2, 3), told({body_id(2), protocol::BodyKind::static_, 4, true, 2}));
+  EntityChanges gone;
+  gone.destroy(entity_kind<protocol::TieEntity>(), {7, 1});
+  room_->publish(make_snapshot(2, 3), std::move(gone));
   const auto client = join();
-  const auto first = hear<protocol::Scene>(*client);
-  const auto second = hear<protocol::Scene>(*client);
-  ASSERT_TRUE(first && second);
-  EXPECT_EQ(first->key, "world");
-  EXPECT_EQ(first->json, "{\"title\":\"new\"}");
-  EXPECT_EQ(second->key, "classes");
-  const auto structure = hear<protocol::Structure>(*client);
-  ASSERT_TRUE(structure);
-  EXPECT_EQ(structure->articulates.size(), 3U);
-  EXPECT_EQ(structure->articulates[2].articulate, 1U);
-  const auto poses = hear<protocol::Poses>(*client);
-  ASSERT_TRUE(poses);
+  const auto settings = hear<protocol::WorldSettings>(*client);
+  ASSERT_TRUE(settings);
+  EXPECT_EQ(settings->title, "new");
+  EXPECT_EQ(hear<protocol::WorldState>(*client)->dt, 1.0 / 120);
+  const auto entities = hear<protocol::EntitiesSet>(*client);
+  ASSERT_TRUE(entities);
+  EXPECT_EQ(entities->kind, "body");
+  const auto bodies = protocol::decode_records<protocol::BodyEntity>(entities->records);
+  ASSERT_TRUE(bodies);
+  EXPECT_EQ(*bodies.value, (std::vector<protocol::BodyEntity>{{body_id(2), protocol::BodyKind::static_, 4, true, 2}}));
+  const auto next = client->receive();
+  ASSERT_TRUE(next);
+  const auto decoded = protocol::decode_server_message(*next);
+  const auto* poses = std::get_if<protocol::Poses>(&*decoded.value);
+  ASSERT_NE(poses, nullptr) << "what is gone is not told to those who never knew it";
   EXPECT_TRUE(poses->keyframe);
   EXPECT_EQ(poses->step, 2U);
   EXPECT_EQ(poses->bodies.size(), 3U);
+}
+
+TEST_F(ServerTest, a_client_that_was_behind_is_told_of_each_entity_once_as_it_is_now) {
+  const auto client = join("", true);
+  ASSERT_TRUE(hear<protocol::Welcome>(*client));
+  constexpr std::uint32_t rounds = 400, bodies = 2000;
+  for (std::uint32_t round = 1; round <= rounds; ++round) {
+    EntityChanges changes;
+    for (std::uint32_t slot = 0; slot < bodies; ++slot) {
+      const protocol::BodyEntity body{body_id(slot, round), {}, round, false, 1};
+      std::vector<std::uint8_t> record;
+      protocol::append_record(body, record);
+      changes.set(entity_kind<protocol::BodyEntity>(), body.id, record);
+    }
+    room_->publish(make_snapshot(round, 1), std::move(changes));
+  }
+  std::map<std::uint32_t, std::uint32_t> seen;
+  std::size_t records = 0;
+  for (std::uint64_t step = 0; step < rounds;) {
+    const auto frame = client->receive();
+    ASSERT_TRUE(frame);
+    const auto decoded = protocol::decode_server_message(*frame);
+    if (const auto* poses = std::get_if<protocol::Poses>(&*decoded.value)) step = poses->step;
+    const auto* set = std::get_if<protocol::EntitiesSet>(&*decoded.value);
+    if (set == nullptr) continue;
+    const auto entities = protocol::decode_records<protocol::BodyEntity>(set->records);
+    for (const auto& body : *entities.value) seen[body.id.slot] = body.id.generation, ++records;
+  }
+  ASSERT_EQ(seen.size(), bodies);
+  for (const auto& [slot, generation] : seen) EXPECT_EQ(generation, rounds);
+  EXPECT_LT(records, std::size_t{rounds} * bodies) << "a slow client skips what has changed again";
+  EXPECT_TRUE(is_alive(*client)) << "and is not dropped for being slow";
 }
 
 TEST_F(ServerTest, only_what_moved_is_sent_and_everything_once_a_second) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
   PoseSnapshot snapshot = make_snapshot(1, 50);
-  server_->publish(snapshot);
+  room_->publish(snapshot);
   EXPECT_EQ(hear<protocol::Poses>(*client)->bodies.size(), 50U);
   snapshot.bodies[7].position[0] = 0.01F;
   snapshot.step = 2;
-  server_->publish(snapshot);
+  room_->publish(snapshot);
   const auto poses = hear<protocol::Poses>(*client);
   EXPECT_FALSE(poses->keyframe);
   ASSERT_EQ(poses->bodies.size(), 1U);
   EXPECT_EQ(poses->bodies[0].body, 7);
   std::this_thread::sleep_for(1050ms);
-  server_->publish(snapshot);
+  room_->publish(snapshot);
   EXPECT_TRUE(hear<protocol::Poses>(*client)->keyframe);
 }
 
-TEST_F(ServerTest, scenes_come_before_the_poses_that_were_published_after_them) {
+TEST_F(ServerTest, entities_come_before_the_poses_that_were_published_with_them) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
-  for (std::uint64_t round = 1; round <= 50; ++round) {
-    server_->publish(make_snapshot(2 * round - 1, 1));
-    server_->set_scene("bodies", std::to_string(round));
-    server_->publish(make_snapshot(2 * round, 1));
-    std::uint64_t scene = 0;
+  for (std::uint32_t round = 1; round <= 50; ++round) {
+    room_->publish(make_snapshot(2 * round - 1, 1));
+    room_->publish(make_snapshot(2 * round, 1), told({body_id(0, round), {}, 0, false, 1}));
+    std::uint32_t generation = 0;
     for (;;) {
       const auto frame = client->receive();
       ASSERT_TRUE(frame);
       const auto decoded = protocol::decode_server_message(*frame);
-      if (const auto* edit = std::get_if<protocol::Scene>(&*decoded.value)) scene = std::stoull(edit->json);
+      if (const auto* set = std::get_if<protocol::EntitiesSet>(&*decoded.value))
+        generation = protocol::decode_records<protocol::BodyEntity>(set->records).value->at(0).id.generation;
       const auto* poses = std::get_if<protocol::Poses>(&*decoded.value);
       if (poses == nullptr || poses->step < 2 * round) continue;
-      EXPECT_EQ(scene, round);
+      EXPECT_EQ(generation, round);
+      EXPECT_EQ(poses->bodies.size(), 1U) << "the pose of another body is new, wherever it is";
       break;
     }
   }
+}
+
+// ------------------------------------------------------------------------------------------------------ several worlds
+
+TEST_F(ServerTest, two_worlds_on_one_server_do_not_mix) {
+  const auto moon = server_->open("moon");
+  EXPECT_EQ(server_->url("moon"), server_->url() + "&world=moon");
+  EXPECT_EQ(server_->url("a b&c"), server_->url() + "&world=a%20b%26c");
+  room_->publish(make_snapshot(1, 3));
+  moon->publish(make_snapshot(100, 5));
+  const auto here = join("here"), also_here = join("also here", false, "default");
+  const auto there = join("there", false, "moon"), also_there = join("also there", false, "moon");
+  for (PageClient* client : {here.get(), also_here.get()}) {
+    EXPECT_EQ(hear<protocol::Welcome>(*client)->world, "default");
+    EXPECT_EQ(hear<protocol::Poses>(*client)->bodies.size(), 3U);
+  }
+  for (PageClient* client : {there.get(), also_there.get()}) {
+    EXPECT_EQ(hear<protocol::Welcome>(*client)->world, "moon");
+    EXPECT_EQ(hear<protocol::Poses>(*client)->bodies.size(), 5U);
+  }
+  say(*there, protocol::Action{"jump", {}});
+  ASSERT_TRUE(is_alive(*there));
+  std::vector<std::string> actions;
+  for (const auto& event : moon->take_input())
+    if (event.kind == Kind::action) actions.push_back(event.name);
+  EXPECT_EQ(actions, std::vector<std::string>{"jump"});
+  for (const auto& event : take(2)) EXPECT_EQ(event.kind, Kind::join);
+  moon->notice(0, 0, "moon only", "");
+  EXPECT_EQ(hear<protocol::Notice>(*also_there)->title, "moon only");
+  EXPECT_FALSE(hear<protocol::Notice>(*here, 50ms));
+  EXPECT_EQ(server_->statistics().clients, 4U);
+}
+
+TEST_F(ServerTest, a_world_that_ends_says_so_to_its_clients_and_the_others_go_on) {
+  auto moon = server_->open("moon");
+  const auto here = join("here");
+  const auto there = join("there", false, "moon");
+  ASSERT_TRUE(hear<protocol::Welcome>(*there));
+  moon.reset();
+  EXPECT_FALSE(hear<protocol::Pong>(*there));
+  EXPECT_EQ(there->close_code(), 1001U);
+  EXPECT_EQ(there->close_reason(), "the world has ended");
+  EXPECT_TRUE(is_alive(*here));
+  const auto late = join("late", false, "moon");
+  EXPECT_EQ(hear<protocol::Refused>(*late)->reason, "there is no world 'moon' here; there are: default");
+}
+
+TEST_F(ServerTest, worlds_need_ids_of_their_own) {
+  EXPECT_THROW((void)server_->open("default"), std::invalid_argument);
+  EXPECT_THROW((void)server_->open(""), std::invalid_argument);
+  EXPECT_THROW((void)server_->open(std::string(129, 'x')), std::invalid_argument);
+  EXPECT_THROW((void)server_->open("\xff"), std::invalid_argument);
+}
+
+TEST_F(ServerTest, a_room_outlives_its_server_in_silence) {
+  server_.reset();
+  room_->publish(make_snapshot(1, 1));
+  room_->notice(0, 0, "to nobody", "");
+  EXPECT_TRUE(room_->take_input().empty());
+}
+
+TEST_F(ServerTest, a_viewer_sees_and_selects_but_does_not_act) {
+  const auto viewer = join("eyes", false, "", protocol::Role::viewer);
+  ASSERT_TRUE(hear<protocol::Welcome>(*viewer));
+  const auto clients = hear<protocol::Clients>(*viewer);
+  ASSERT_TRUE(clients);
+  EXPECT_EQ(clients->clients.at(0).role, protocol::Role::viewer);
+  say(*viewer, protocol::GrabStart{1, body_id(3), {}, {}});
+  EXPECT_EQ(hear<protocol::Notice>(*viewer)->title, "You only watch");
+  say(*viewer, protocol::GrabMove{1, {}});
+  say(*viewer, protocol::GrabEnd{1});
+  say(*viewer, protocol::Action{"push", {}});
+  EXPECT_EQ(hear<protocol::Notice>(*viewer)->title, "You only watch");
+  say(*viewer, protocol::Control{protocol::ControlCommand::pause, 0});
+  EXPECT_EQ(hear<protocol::Notice>(*viewer)->title, "You only watch");
+  say(*viewer, protocol::Select{body_id(3)});
+  ASSERT_TRUE(is_alive(*viewer));
+  const auto events = room_->take_input();
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[1].kind, Kind::select);
 }
 
 // ------------------------------------------------------------------------------------------------------------- input
@@ -544,17 +673,17 @@ TEST_F(ServerTest, scenes_come_before_the_poses_that_were_published_after_them) 
 TEST_F(ServerTest, gestures_arrive_in_order_and_moves_of_one_hand_as_one) {
   const auto client = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
-  say(*client, protocol::GrabStart{1, 5, {0.1F, 0, 0}, {1, 1, 1}});
-  say(*client, protocol::GrabStart{2, 6, {}, {}});
+  say(*client, protocol::GrabStart{1, body_id(5), {0.1F, 0, 0}, {1, 1, 1}});
+  say(*client, protocol::GrabStart{2, body_id(6), {}, {}});
   for (int i = 1; i <= 100; ++i) {
     say(*client, protocol::GrabMove{1, {static_cast<float>(i), 0, 0}});
     say(*client, protocol::GrabMove{2, {0, static_cast<float>(i), 0}});
   }
-  say(*client, protocol::Action{"break", 5});
+  say(*client, protocol::Action{"break", body_id(5, 2)});
   say(*client, protocol::Control{protocol::ControlCommand::speed, 0.5F});
   say(*client, protocol::GrabEnd{1});
   ASSERT_TRUE(is_alive(*client));
-  const auto events = server_->take_input();
+  const auto events = room_->take_input();
   std::vector<Kind> kinds;
   for (const auto& event : events) kinds.push_back(event.kind);
   ASSERT_EQ(kinds, (std::vector<Kind>{Kind::join, Kind::grab_start, Kind::grab_start, Kind::grab_move, Kind::grab_move,
@@ -564,8 +693,8 @@ TEST_F(ServerTest, gestures_arrive_in_order_and_moves_of_one_hand_as_one) {
   EXPECT_EQ(events[3].target, (Vec3f{100, 0, 0}));
   EXPECT_EQ(events[4].target, (Vec3f{0, 100, 0}));
   EXPECT_EQ(events[5].name, "break");
-  EXPECT_EQ(events[5].body, 5U);
-  EXPECT_EQ(events[6].command, 4);
+  EXPECT_EQ(events[5].body, body_id(5, 2));
+  EXPECT_EQ(events[6].command, protocol::ControlCommand::speed);
   EXPECT_EQ(events[6].value, 0.5F);
   EXPECT_EQ(events[7].hold, 1U);
 }
@@ -577,10 +706,10 @@ TEST_F(ServerTest, holds_that_do_not_fit_are_refused) {
   EXPECT_NE(hear<protocol::Notice>(*client)->text.find("holds nothing"), std::string::npos);
   say(*client, protocol::GrabEnd{1});
   EXPECT_NE(hear<protocol::Notice>(*client)->text.find("holds nothing"), std::string::npos);
-  for (std::uint32_t hold = 0; hold < 32; ++hold) say(*client, protocol::GrabStart{hold, 0, {}, {}});
-  say(*client, protocol::GrabStart{31, 0, {}, {}});
+  for (std::uint32_t hold = 0; hold < 32; ++hold) say(*client, protocol::GrabStart{hold, body_id(0), {}, {}});
+  say(*client, protocol::GrabStart{31, body_id(0), {}, {}});
   EXPECT_NE(hear<protocol::Notice>(*client)->text.find("in use"), std::string::npos);
-  say(*client, protocol::GrabStart{32, 0, {}, {}});
+  say(*client, protocol::GrabStart{32, body_id(0), {}, {}});
   EXPECT_NE(hear<protocol::Notice>(*client)->text.find("too many"), std::string::npos);
   EXPECT_EQ(take(33).size(), 33U);
 }
@@ -589,7 +718,7 @@ TEST_F(ServerTest, a_client_that_floods_the_script_is_dropped_with_a_reason) {
   const auto client = join();
   const auto other = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
-  for (int i = 0; i < 5000 && say(*client, protocol::Action{"a", 0}); ++i) {
+  for (int i = 0; i < 5000 && say(*client, protocol::Action{"a", {}}); ++i) {
   }
   while (client->receive()) {
   }
@@ -611,7 +740,7 @@ TEST_F(ServerTest, a_client_that_does_not_read_holds_up_nobody_and_skips_to_the_
   for (std::uint64_t step = 1; step <= frames; ++step) {
     const PoseSnapshot snapshot = make_snapshot(step, 2000, 0.001F * static_cast<float>(step));
     const auto before = std::chrono::steady_clock::now();
-    server_->publish(snapshot);
+    room_->publish(snapshot);
     longest = std::max<std::chrono::nanoseconds>(longest, std::chrono::steady_clock::now() - before);
     if (step % 10 == 0) {
       std::optional<protocol::Poses> poses;
@@ -644,7 +773,7 @@ TEST_F(ServerTest, a_client_over_its_queue_is_dropped_with_a_reason) {
   ASSERT_TRUE(hear<protocol::Welcome>(*other));
   const std::string text(8000, 'x');
   for (int i = 0; i < 400 && server_->statistics().clients_dropped == 0; ++i) {
-    server_->notice(1, 0, "flood", text);
+    room_->notice(1, 0, "flood", text);
     if (i % 20 == 0) {
       ASSERT_TRUE(is_alive(*other));
     }

@@ -50,9 +50,10 @@ declare global {
 
 export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
   const point = new Vector3();
+  const { body: bodies, membership } = page.world.entities;
   const positionOf = (body: number): [number, number, number] => {
-    if (!page.bodies.has(body)) throw new Error(`body ${body} is not drawn`);
-    const { position } = page.bodies.poses;
+    if (!bodies.has(body)) throw new Error(`body ${body} is not drawn`);
+    const { position } = page.world.poses;
     return [position[3 * body], position[3 * body + 1], position[3 * body + 2]];
   };
   return {
@@ -74,13 +75,13 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
     holds: () => page.world.holds.slice(0, page.world.holdCount).map((hold) => ({
       client: hold.client, hold: hold.hold, body: hold.body, force: hold.force, target: [...hold.target],
     })),
-    clients: () => page.world.clients.map((client) => ({ ...client })),
-    articulates: () => new Map(page.world.articulateOf),
-    bodies: () => [...page.world.bodies.keys()].filter((body) => page.bodies.has(body)),
+    clients: () => page.world.clients.map(({ client, name, selected }) => ({ client, name, selected: bodies.slotOf(selected) })),
+    articulates: () => new Map([...bodies.slots()].map((body) => [body, membership.articulateOf(body)])),
+    bodies: () => [...bodies.slots()].filter((body) => bodies.has(body)),
     bodyPosition: positionOf,
     bodyRotation: (body) => {
       positionOf(body);
-      const { rotation } = page.bodies.poses;
+      const { rotation } = page.world.poses;
       return [rotation[4 * body], rotation[4 * body + 1], rotation[4 * body + 2], rotation[4 * body + 3]];
     },
     screenPosition: (body) => {

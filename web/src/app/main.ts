@@ -2,8 +2,10 @@
 // Puts the page together: world, input, overlay, and the headset when there is one.
 
 import { ScreenInput } from "../interact/screen_input.ts";
+import type { JoinRequest } from "../net/connection.ts";
 import { makePage } from "../page/page.ts";
 import { Resolution } from "../page/resolution.ts";
+import { Role } from "../protocol/generated.ts";
 import { Overlay } from "../ui/overlay.ts";
 import { byId } from "../ui/dom.ts";
 import { offerHeadset } from "../xr/entry.ts";
@@ -18,16 +20,22 @@ function socketUrl(): string {
   return url.href;
 }
 
+/** The world and the role that the page's address asks for. */
+function requestOf(search: string): JoinRequest {
+  const asked = new URLSearchParams(search);
+  return { world: asked.get("world") ?? "", role: asked.get("role") === "viewer" ? Role.viewer : Role.actor, name: "" };
+}
+
 function main(): void {
   const canvas = byId("view", HTMLCanvasElement);
   canvas.classList.add("waiting");
-  const page = makePage(canvas, socketUrl(), "");
+  const page = makePage(canvas, socketUrl(), requestOf(location.search));
   const { viewer, selection, events, navigation } = page;
   const overlay = new Overlay(page, canvas);
   const input = new ScreenInput(canvas, viewer.camera, page.gestures, navigation, {
     clickNothing: () => selection.select(-1),
     menu: (body, x, y) => overlay.openMenu(body, x, y),
-    stir: () => overlay.stir(),
+    active: () => overlay.showBar(),
   });
   events.add(overlay);
   viewer.add(overlay, new Resolution(viewer), {

@@ -16,13 +16,13 @@ interface Described {
   title(): string;
   /** Drawn on its button: lines of a 24 x 24 square, as the path of an SVG. Without it the button shows `label`. */
   sign?(): string;
-  /** Written on its button where there is no sign; its title unless told. */
+  /** Written on its button where there is no sign; by default its title. */
   label?(): string;
-  /** Whether its button is there now; always unless told. */
+  /** Whether its button is shown now; by default always. */
   offered?(): boolean;
-  /** Whether it can do something now; always unless told. */
+  /** Whether it can be run now; by default always. */
   enabled?(): boolean;
-  /** Whether it is in progress, and shown so. */
+  /** Whether it is switched on or in progress; its button is highlighted. */
   active?(): boolean;
   /** A narrower button on the wrist panel. */
   readonly narrow?: boolean;
@@ -39,12 +39,12 @@ export interface Choice extends Described {
   readonly options: readonly string[];
   /** Written after each value. */
   readonly unit: string;
-  /** What is chosen now; it need not be one of the options. */
+  /** The current value; it need not be one of the options. */
   value(): string;
   choose(option: string): void;
 }
 
-/** An action of the script: it is about a body (the held, else the selected, else the hovered one) or about the world. */
+/** An action of the script, about the world or about a body (see Selection.actionBody). */
 export interface ScriptCommand extends Command {
   readonly onBody: boolean;
   /** Controller face button that runs it. */

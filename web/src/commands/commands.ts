@@ -39,12 +39,12 @@ export class Commands {
     this.tell_();
   }
 
-  /** Those that have a button at a place. */
+  /** The page's commands with a button at a place. */
   at(place: Place): readonly Entry[] {
     return this.own_.filter((entry) => entry.places?.includes(place) === true);
   }
 
-  /** Throws when there is no such command: the caller's mistake. */
+  /** Runs a command of the page by its name. Throws when there is none. */
   run(name: string): void {
     const command = this.own_.find((entry) => entry.name === name);
     if (command === undefined || isChoice(command)) throw new Error(`there is no command "${name}"`);

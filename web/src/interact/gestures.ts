@@ -34,7 +34,7 @@ export class Pointer {
   drag: RayDrag = "plane";
   /** Unit normal of the drag plane, pointing away from the viewer; for drag "plane". */
   readonly facing = new Float32Array([0, 0, -1]);
-  /** What is held is pushed this far away from the viewer, m; its owner adds to it (wheel, thumbstick). */
+  /** Distance by which the held body is pushed away from the viewer, m; the pointer's owner adds to it (wheel, thumbstick). */
   depth = 0;
   /** A haptic pulse; strength 0..1. */
   pulse: (strength: number, milliseconds: number) => void = () => {};
@@ -66,7 +66,7 @@ export class Grab {
   readonly start: Float32Array;
   /** Distance along the ray at the start, m. */
   readonly distance: number;
-  /** From where the pointer means to where the point is, at the start, m: a near miss must not jerk the body. */
+  /** From the pointer's target to the grabbed point at the start, m: a near miss must not jerk the body. */
   readonly offset = new Float32Array(3);
   readonly startedAt: number;
 
@@ -161,9 +161,19 @@ export class Gestures {
     this.listener_.grabEnded(grab);
   }
 
-  /** Ends all grabs (connection lost, session over), or those on one body (it vanished). */
-  releaseAll(body = -1): void {
-    for (const grab of this.grabs.slice()) if (body < 0 || grab.body === body) this.release(grab.pointer);
+  /** Ends all grabs (connection lost, session over). */
+  releaseAll(): void {
+    for (const grab of this.grabs.slice()) this.release(grab.pointer);
+  }
+
+  /** A body was destroyed: ends grabs on it and stops hovering over it. */
+  forget(body: number): void {
+    for (const grab of this.grabs.slice()) if (grab.body === body) this.release(grab.pointer);
+    for (const pointer of this.pointers_) {
+      if (pointer.hovered !== body) continue;
+      pointer.hovered = -1;
+      this.listener_.hoverChanged(pointer, -1);
+    }
   }
 
   private pick_(pointer: Pointer): boolean {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which body does a ray or a hand mean? Packed bounding spheres first, then the exact distance
+// Finds the body that a ray or a hand points at. Packed bounding spheres first, then the exact distance
 // function of the few that remain. A cone of tolerance lets thin things be caught by a finger.
 
 import type { Pickable } from "../scene/pickable.ts";

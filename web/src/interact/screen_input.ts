@@ -10,8 +10,8 @@ export interface ScreenInputHost {
   clickNothing(): void;
   /** Long press, double tap or right click on a body: what can be done with it? (css px) */
   menu(body: number, x: number, y: number): void;
-  /** Any sign of life, for what hides itself. */
-  stir(): void;
+  /** The user did something: controls that have hidden come back. */
+  active(): void;
 }
 
 const tapPixels = 8;
@@ -88,7 +88,7 @@ export class ScreenInput {
   }
 
   private down_(event: PointerEvent): void {
-    this.host_.stir();
+    this.host_.active();
     const touch = event.pointerType === "touch";
     // Only the first button of a mouse grabs; the others steer the camera while a grab goes on.
     if (!touch && this.fingers_.has(event.pointerId)) return;
@@ -121,7 +121,7 @@ export class ScreenInput {
   }
 
   private move_(event: PointerEvent): void {
-    this.host_.stir();
+    this.host_.active();
     const finger = this.fingers_.get(event.pointerId);
     if (event.pointerType !== "touch") {
       this.lastMouse_.x = event.clientX;
@@ -142,7 +142,7 @@ export class ScreenInput {
     const grab = finger.pointer.grab;
     if (grab !== null) {
       if (event.shiftKey) {
-        // Up is away. What is left of the move keeps the target under the pointer.
+        // Up moves the target away. The rest of the move keeps it under the pointer.
         finger.pointer.depth -= dy * 0.006 * Math.max(grab.distance, 0.3);
       }
       return;
@@ -215,7 +215,7 @@ export class ScreenInput {
 
   private wheel_(event: WheelEvent): void {
     event.preventDefault();
-    this.host_.stir();
+    this.host_.active();
     const lines = event.deltaMode === 1 ? 33 : 1;
     const amount = Math.min(Math.max(event.deltaY * lines, -240), 240);
     const grab = this.mouse.grab;

@@ -3,7 +3,7 @@
 // interruptible. One state serves all of them: a point, a distance and two angles.
 
 import { MathUtils, Vector3, type PerspectiveCamera } from "three";
-import type { Vec3 } from "../scene/shapes/shape.ts";
+import type { Vec3 } from "../protocol/generated.ts";
 
 const easeSeconds = 0.07;
 /** A returning view takes longer than a dragged one. */
@@ -30,7 +30,7 @@ export class Navigation {
   /** Right, up, forward in -1..1, from keys. */
   readonly walk = new Vector3();
   /** Walking three times as fast. */
-  hurrying = false;
+  walkingFast = false;
 
   private readonly camera_: PerspectiveCamera;
   private readonly goal_ = makeView();
@@ -98,7 +98,7 @@ export class Navigation {
     if (this.walk.lengthSq() > 0) {
       this.touch_();
       this.axes_(this.goal_);
-      const pace = (this.hurrying ? 4.5 : 1.5) * seconds;
+      const pace = (this.walkingFast ? 4.5 : 1.5) * seconds;
       this.awayOf_(this.goal_, this.direction_);
       this.goal_.pivot
         .addScaledVector(this.right_, this.walk.x * pace)

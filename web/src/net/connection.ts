@@ -4,11 +4,20 @@
 
 import {
   decodePosesInto, decodeServerMessage, encodeClientMessage, MessageType, messageTypeOf, PosesBuffer,
-  PROTOCOL_MAGIC, PROTOCOL_VERSION, type ClientMessage, type ServerMessage,
+  PROTOCOL_MAGIC, PROTOCOL_VERSION, type ClientMessage, type Role, type ServerMessage,
 } from "../protocol/generated.ts";
 
 /** connecting: first try; lost: was connected or never was, trying again; refused: the server said no. */
 export type LinkState = "connecting" | "connected" | "lost" | "refused";
+
+/** What a client asks for in its hello. */
+export interface JoinRequest {
+  /** Id of the world; empty: the server's first one. */
+  readonly world: string;
+  readonly role: Role;
+  /** What others see; may be empty. */
+  readonly name: string;
+}
 
 export interface ConnectionListener {
   /** A message other than poses and pong. */
@@ -36,7 +45,7 @@ export class Connection {
 
   private readonly url_: string;
   private readonly listener_: ConnectionListener;
-  private readonly name_: string;
+  private readonly request_: JoinRequest;
   private readonly poses_ = new PosesBuffer();
   private socket_: WebSocket | null = null;
   private delayMs_ = firstDelayMs;
@@ -46,14 +55,14 @@ export class Connection {
   private opened_ = false;
   private refusal_ = "";
 
-  constructor(url: string, name: string, listener: ConnectionListener) {
+  constructor(url: string, request: JoinRequest, listener: ConnectionListener) {
     this.url_ = url;
-    this.name_ = name;
+    this.request_ = request;
     this.listener_ = listener;
-    const hurry = () => this.hurry();
-    window.addEventListener("online", hurry);
+    const retryNow = () => this.retryNow();
+    window.addEventListener("online", retryNow);
     document.addEventListener("visibilitychange", () => {
-      if (document.visibilityState === "visible") hurry();
+      if (document.visibilityState === "visible") retryNow();
     });
   }
 
@@ -72,14 +81,14 @@ export class Connection {
       this.opened_ = true;
       this.heardMs_ = performance.now();
       this.sendNow_({
-        type: "hello", magic: PROTOCOL_MAGIC, version: PROTOCOL_VERSION, world: "", name: this.name_,
+        type: "hello", magic: PROTOCOL_MAGIC, version: PROTOCOL_VERSION, ...this.request_,
       });
     };
     socket.onmessage = (event: MessageEvent<unknown>) => this.receive_(event.data);
     socket.onclose = () => {
       if (this.socket_ === socket) this.lost_();
     };
-    this.ping_ = window.setInterval(() => this.beat_(), pingEveryMs);
+    this.ping_ = window.setInterval(() => this.checkAlive_(), pingEveryMs);
   }
 
   /** Sends when connected; returns whether it was sent. Nothing is queued for later: old gestures are stale. */
@@ -90,7 +99,7 @@ export class Connection {
   }
 
   /** Tries again at once instead of waiting for the back-off. */
-  hurry(): void {
+  retryNow(): void {
     if (this.retry_ === undefined) return;
     this.delayMs_ = firstDelayMs;
     window.clearTimeout(this.retry_);
@@ -102,7 +111,7 @@ export class Connection {
     if (this.socket_?.readyState === WebSocket.OPEN) this.socket_.send(encodeClientMessage(message));
   }
 
-  private beat_(): void {
+  private checkAlive_(): void {
     if (!this.opened_) return;
     if (performance.now() - this.heardMs_ > silentForMs) {
       this.lost_();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens on the page, told to everyone who listens: the overlay, the headset, sounds and flashes.
+// Tells listeners what happens on the page. Listeners are the overlay, the headset, sounds and flashes.
 
 import type { Grab, Pointer } from "../interact/gestures.ts";
 import type { LinkState } from "../net/connection.ts";
 import type { NoticeLevel, Vec3 } from "../protocol/generated.ts";
-import type { Change } from "../scene/world_model.ts";
+import type { Change } from "../world/world.ts";
 
 /** A card for a person. */
 export interface PageNotice {
@@ -17,12 +17,14 @@ export interface PageNotice {
   readonly key?: string;
 }
 
-/** All optional: a listener has the methods that it wants to be told by. */
+/** All methods are optional: a listener has those that it needs. */
 export interface PageListener {
   /** The first pictures are drawn: the page can be shown. */
   ready?(): void;
   /** Part of the world, the selection or the look changed. */
   changed?(what: Change | "selection"): void;
+  /** A body was destroyed. Its slot may hold another body from now on. */
+  bodyGone?(body: number): void;
   /** The connection to the server; `reason` is a sentence for a person, may be empty. */
   link?(state: LinkState, reason: string): void;
   notice?(notice: PageNotice): void;
@@ -47,6 +49,10 @@ export class Events implements Required<PageListener> {
 
   changed(what: Change | "selection"): void {
     for (const listener of this.listeners_) listener.changed?.(what);
+  }
+
+  bodyGone(body: number): void {
+    for (const listener of this.listeners_) listener.bodyGone?.(body);
   }
 
   link(state: LinkState, reason: string): void {

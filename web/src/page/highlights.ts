@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows what is pointed at, selected and held, by this user and by others: tints, outlines, and springs from hand to body.
+// Marks the bodies that this user and others point at, select and hold: tints, outlines, and springs from hand to body.
 
 import { Color, Vector3, type Group } from "three";
-import { NO_BODY } from "../protocol/generated.ts";
-import { Outline, type BodyView } from "../scene/body_view.ts";
+import type { BodyView } from "../scene/entities/body.ts";
 import type { Flashes } from "../scene/flashes.ts";
 import { HoldLines } from "../scene/hold_lines.ts";
 import { palette } from "../scene/materials.ts";
-import type { Change, WorldModel } from "../scene/world_model.ts";
-import type { PageListener } from "./events.ts";
+import { Outline } from "../scene/outline.ts";
+import type { World } from "../world/world.ts";
 import type { Selection } from "./selection.ts";
 import type { Session } from "./session.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
@@ -20,14 +19,13 @@ const mostOthers = 6;
 const confirmWithinMs = 1500;
 
 function makeOutline(bodies: BodyView, color: Color, thickness: number): Outline {
-  const outline = new Outline(color);
-  outline.material.thickness.value = thickness;
+  const outline = new Outline(color, thickness);
   bodies.addOutline(outline);
   return outline;
 }
 
-export class Highlights implements FramePart, PageListener {
-  private readonly world_: WorldModel;
+export class Highlights implements FramePart {
+  private readonly world_: World;
   private readonly bodies_: BodyView;
   private readonly session_: Session;
   private readonly selection_: Selection;
@@ -40,51 +38,47 @@ export class Highlights implements FramePart, PageListener {
   private readonly eye_ = new Vector3();
   private readonly point_ = new Float32Array(3);
 
-  constructor(world: WorldModel, bodies: BodyView, session: Session, selection: Selection, viewer: Viewer, flashes: Flashes) {
+  constructor(world: World, session: Session, selection: Selection, viewer: Viewer, flashes: Flashes) {
     this.world_ = world;
-    this.bodies_ = bodies;
+    this.bodies_ = world.entities.body;
     this.session_ = session;
     this.selection_ = selection;
     this.viewer_ = viewer;
     this.flashes_ = flashes;
-    this.selected_ = makeOutline(bodies, palette.selected, 0.0026);
-    this.hovered_ = makeOutline(bodies, palette.hoverOnLight, 0.0022);
-    for (let index = 0; index < mostOthers; index++) this.others_.push(makeOutline(bodies, new Color(), 0.0018));
+    this.selected_ = makeOutline(this.bodies_, palette.selected, 0.0026);
+    this.hovered_ = makeOutline(this.bodies_, palette.hoverOnLight, 0.0022);
+    for (let index = 0; index < mostOthers; index++) this.others_.push(makeOutline(this.bodies_, new Color(), 0.0018));
   }
 
   get root(): Group {
     return this.lines_.root;
   }
 
-  /** Outlines of what is pointed at stand out against either. */
+  /** The outline of a hovered body must stand out against either background. */
   setTheme(theme: "light" | "dark"): void {
     this.hovered_.material.color.copy(theme === "light" ? palette.hoverOnLight : palette.hoverOnDark);
   }
 
-  changed(what: Change | "selection"): void {
-    if (what === "clients") this.outlineOthers_();
-  }
-
-  decide(): void {
-    const { bodies_: bodies, selection_: selection } = this;
+  interact(): void {
+    const { hovered, selected, held } = this.selection_;
     this.viewer_.camera.getWorldPosition(this.eye_);
-    bodies.clearTints();
+    this.bodies_.clearTints();
     this.lines_.begin();
     this.markOthersHolds_();
     this.markOwnHolds_();
-    const { hovered, selected, held } = selection;
-    bodies.outline(this.hovered_, hovered);
-    // What is held is red all over: a line around it would only dim that.
-    bodies.outline(this.selected_, selected === hovered || selected === held ? -1 : selected);
+    this.outlineOthers_();
+    this.hovered_.body = hovered;
+    // A held body is red all over: an outline would only dim it.
+    this.selected_.body = selected === hovered || selected === held ? -1 : selected;
   }
 
-  warm(): void {
+  warmUp(): void {
     const { bodies_: bodies, point_: point } = this;
     const body = bodies.pickable[0];
     point.set(bodies.position.subarray(3 * body, 3 * body + 3));
     this.lines_.add(point, point, 0, this.eye_, 1);
     this.flashes_.effect("grab", point);
-    bodies.outline(this.hovered_, body);
+    this.hovered_.body = body;
   }
 
   draw(): void {
@@ -115,11 +109,12 @@ export class Highlights implements FramePart, PageListener {
   private outlineOthers_(): void {
     let used = 0;
     for (const client of this.world_.clients) {
-      if (client.client === this.session_.clientId || client.selected === NO_BODY || used === mostOthers) continue;
+      const body = this.bodies_.slotOf(client.selected);
+      if (client.client === this.session_.clientId || body < 0 || used === mostOthers) continue;
       const outline = this.others_[used++];
       outline.material.color.copy(others[client.client % others.length]);
-      this.bodies_.outline(outline, client.selected);
+      outline.body = body;
     }
-    for (; used < mostOthers; used++) this.bodies_.outline(this.others_[used], -1);
+    for (; used < mostOthers; used++) this.others_[used].body = -1;
   }
 }

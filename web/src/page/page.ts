@@ -3,34 +3,20 @@
 // README.md, "For XR". Overlay and headset name the parts that they need: `Pick<Page, "viewer" | "commands">`.
 
 import { Commands } from "../commands/commands.ts";
-import type { Gestures } from "../interact/gestures.ts";
+import type { JoinRequest } from "../net/connection.ts";
 import { Navigation } from "../navigate/navigation.ts";
-import { BodyView } from "../scene/body_view.ts";
+import { NoticeLevel } from "../protocol/generated.ts";
+import type { EntityView } from "../scene/entities/entity.ts";
 import { Flashes } from "../scene/flashes.ts";
-import { SparkView } from "../scene/spark_view.ts";
-import { StaticView } from "../scene/static_view.ts";
-import { TieView } from "../scene/tie_view.ts";
-import { WorldModel } from "../scene/world_model.ts";
+import { World } from "../world/world.ts";
 import { Events, type PageListener } from "./events.ts";
 import { Highlights } from "./highlights.ts";
 import { pageCommands, scriptCommands } from "./page_commands.ts";
+import type { PageParts } from "./page_parts.ts";
 import { Selection } from "./selection.ts";
-import { Session, type PoseTaker } from "./session.ts";
+import { Session } from "./session.ts";
 import { Sound } from "./sound.ts";
-import { smooth, Viewer, type FramePart } from "./viewer.ts";
-
-/** What the page is made of, but for its commands. */
-export interface PageParts {
-  readonly world: WorldModel;
-  readonly bodies: BodyView;
-  readonly session: Session;
-  readonly selection: Selection;
-  readonly gestures: Gestures;
-  readonly viewer: Viewer;
-  readonly navigation: Navigation;
-  readonly sound: Sound;
-  readonly events: Events;
-}
+import { Viewer, type FramePart } from "./viewer.ts";
 
 export interface Page extends PageParts {
   readonly commands: Commands;
@@ -39,35 +25,24 @@ export interface Page extends PageParts {
   start(): void;
 }
 
-export function makePage(canvas: HTMLCanvasElement, socketUrl: string, name: string): Page {
+export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: JoinRequest): Page {
   const events = new Events();
   const viewer = new Viewer(canvas);
-  const world = new WorldModel((change) => {
-    viewer.stir();
-    events.changed(change);
+  const world = new World({
+    changed: (change) => {
+      viewer.invalidate();
+      events.changed(change);
+    },
+    bodyGone: (body) => events.bodyGone(body),
+    warn: (title, text) => events.notice({ level: NoticeLevel.error, title, text, hint: "" }),
   });
-  const bodies = new BodyView(world);
-  const ties = new TieView(world, bodies.poses);
-  const statics = new StaticView(world);
-  const sparks = new SparkView();
   const flashes = new Flashes(viewer.camera);
   const sound = new Sound();
   const navigation = new Navigation(viewer.camera);
-  const poses: PoseTaker = {
-    takePoses: (frame, now, fresh) => {
-      const started = performance.now();
-      if (fresh) bodies.poses.clear();
-      bodies.poses.push(frame, now);
-      sparks.take(frame.sparks);
-      const { boxMin, boxMax } = frame;
-      if (frame.keyframe) viewer.stage.fit(boxMin[0], boxMin[1], boxMin[2], boxMax[0], boxMax[1], boxMax[2]);
-      viewer.timing.decodeMs = smooth(viewer.timing.decodeMs, performance.now() - started);
-    },
-  };
-  const session = new Session(socketUrl, name, world, poses, events, () => viewer.stir());
-  const selection = new Selection(world, bodies, session, viewer, events);
-  const highlights = new Highlights(world, bodies, session, selection, viewer, flashes);
-  const parts: PageParts = { world, bodies, session, selection, gestures: selection.gestures, viewer, navigation, sound, events };
+  const session = new Session(socketUrl, request, world, viewer, events);
+  const selection = new Selection(world, session, viewer, events);
+  const highlights = new Highlights(world, session, selection, viewer, flashes);
+  const parts: PageParts = { world, session, selection, gestures: selection.gestures, viewer, navigation, sound, events };
   const commands = new Commands();
   commands.add(...pageCommands(parts));
   const actions: PageListener = {
@@ -75,44 +50,42 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, name: str
       if (what === "actions") commands.script = scriptCommands(world.actions, parts);
     },
   };
-  events.add(actions, bodies, ties, statics, selection, highlights, flashes, sound, followSettings(parts));
-  viewer.add(bodies, selection, flyFlat(parts), highlights, ties, statics, sparks, flashes);
+  events.add(actions, selection, flashes, sound, applySettings(parts));
+  viewer.add(flatCamera(parts), selection, highlights, ...Object.values<EntityView<never>>(world.entities), flashes);
   return {
     ...parts,
     commands,
     setTheme: (theme) => {
-      viewer.stir();
+      viewer.invalidate();
       viewer.stage.setTheme(theme);
       highlights.setTheme(theme);
     },
     start: () => {
-      session.open();
-      viewer.start(() => bodies.pickableCount > 0, () => events.ready());
+      session.connection.open();
+      viewer.start(() => world.entities.body.pickableCount > 0, () => events.ready());
     },
   };
 }
 
 /** Ground and first view, as the script wants them. */
-function followSettings({ world, viewer, navigation }: PageParts): PageListener {
+function applySettings({ world, viewer, navigation }: PageParts): PageListener {
   let placed = false;
   return {
     changed: (what) => {
-      if (what !== "world") return;
-      const { ground, camera } = world.settings;
-      viewer.stage.setGround(ground);
-      navigation.ground = ground;
-      if (camera === null || placed) return;
-      navigation.setHome(camera.position, camera.target, true);
+      if (what !== "settings") return;
+      viewer.stage.setGround(world.ground);
+      navigation.ground = world.ground;
+      if (!placed) navigation.setHome(world.settings.cameraPosition, world.settings.cameraTarget, true);
       placed = true;
     },
   };
 }
 
 /** The camera of a flat screen; a headset has its own. */
-function flyFlat({ viewer, navigation }: PageParts): FramePart {
+function flatCamera({ viewer, navigation }: PageParts): FramePart {
   return {
     update: (seconds) => {
-      if (!viewer.presenting && navigation.update(seconds)) viewer.stir();
+      if (!viewer.presenting && navigation.update(seconds)) viewer.invalidate();
     },
   };
 }

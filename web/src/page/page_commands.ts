@@ -2,9 +2,8 @@
 // The page's own commands, in the order in which the bar, the help and the wrist panel show them. A new one is one entry here.
 
 import type { Choice, Command, Entry, ScriptCommand } from "../commands/command.ts";
-import { ControlCommand } from "../protocol/generated.ts";
-import type { ActionEntry } from "../scene/world_model.ts";
-import type { PageParts } from "./page.ts";
+import { ActionTarget, ControlCommand, ControllerButton, NoticeLevel, type ActionEntry } from "../protocol/generated.ts";
+import type { PageParts } from "./page_parts.ts";
 
 /** Times real time. */
 const speeds: readonly number[] = [0.1, 0.25, 0.5, 1, 2];
@@ -19,7 +18,7 @@ const signs = {
 };
 
 export function pageCommands({ world, session, selection, viewer, navigation, sound, events }: PageParts): Entry[] {
-  const say = (key: string, title: string) => events.notice({ level: 0, title, text: "", hint: "", key });
+  const say = (key: string, title: string) => events.notice({ level: NoticeLevel.info, title, text: "", hint: "", key });
   /** The next faster (1) or slower (-1) of the speeds on offer. */
   const changeSpeed = (direction: 1 | -1) => {
     const now = world.speed;
@@ -71,6 +70,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, so
       name: "slower",
       help: "slower, faster",
       keys: ["["],
+      repeats: true,
       places: ["panel"],
       narrow: true,
       title: () => "Slower",
@@ -82,6 +82,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, so
       name: "faster",
       help: "slower, faster",
       keys: ["]"],
+      repeats: true,
       places: ["panel"],
       narrow: true,
       title: () => "Faster",
@@ -127,7 +128,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, so
       active: () => viewer.stage.gridShown,
       run: () => {
         viewer.stage.gridShown = !viewer.stage.gridShown;
-        viewer.stir();
+        viewer.invalidate();
       },
     },
     {
@@ -168,19 +169,21 @@ export function pageCommands({ world, session, selection, viewer, navigation, so
   return commands;
 }
 
+const faceButtons = { [ControllerButton.none]: null, [ControllerButton.a]: "a", [ControllerButton.b]: "b" } as const;
+
 /** What the script offers, as commands. */
 export function scriptCommands(actions: readonly ActionEntry[], { session, selection }: PageParts): ScriptCommand[] {
   return actions.map((action): ScriptCommand => {
-    const onBody = action.on === "body";
+    const onBody = action.on === ActionTarget.body;
     const command: Command = {
       name: `action ${action.name}`,
       help: action.help,
       keys: action.key === "" ? [] : [action.key],
       title: () => action.label,
       offered: () => !onBody || selection.selected >= 0,
-      enabled: () => !onBody || selection.meant >= 0,
-      run: () => session.act(action.name, selection.meant),
+      enabled: () => !onBody || selection.actionBody >= 0,
+      run: () => session.act(action.name, selection.actionBody),
     };
-    return { ...command, onBody, button: action.button, runOn: (body) => session.act(action.name, body) };
+    return { ...command, onBody, button: faceButtons[action.button], runOn: (body) => session.act(action.name, body) };
   });
 }

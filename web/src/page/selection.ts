@@ -1,33 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user points at, has selected and holds; the server is told of selections and holds.
+// The bodies that the user points at, has selected and holds. Sends selections and holds to the server.
 
 import { Gestures, type GestureListener, type Grab, type Pointer } from "../interact/gestures.ts";
 import type { LinkState } from "../net/connection.ts";
 import type { Vec3 } from "../protocol/generated.ts";
-import type { BodyView } from "../scene/body_view.ts";
 import { usualLateness } from "../scene/pose_buffer.ts";
-import type { WorldModel } from "../scene/world_model.ts";
+import type { World } from "../world/world.ts";
 import type { Events, PageListener } from "./events.ts";
 import type { Session } from "./session.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
 
+type SelectionSession = Pick<Session, "clientId" | "idOf" | "select" | "send">;
+
 export class Selection implements GestureListener, FramePart, PageListener {
   readonly gestures: Gestures;
 
-  private readonly world_: WorldModel;
-  private readonly bodies_: BodyView;
-  private readonly session_: Session;
-  private readonly viewer_: Viewer;
+  private readonly world_: World;
+  private readonly session_: SelectionSession;
+  private readonly viewer_: Pick<Viewer, "invalidate">;
   private readonly events_: Events;
   private selected_ = -1;
 
-  constructor(world: WorldModel, bodies: BodyView, session: Session, viewer: Viewer, events: Events) {
+  constructor(world: World, session: SelectionSession, viewer: Pick<Viewer, "invalidate">, events: Events) {
     this.world_ = world;
-    this.bodies_ = bodies;
     this.session_ = session;
     this.viewer_ = viewer;
     this.events_ = events;
-    this.gestures = new Gestures(bodies, this);
+    this.gestures = new Gestures(world.entities.body, this);
   }
 
   /** This page's selected body, -1: none. */
@@ -48,8 +47,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
     return -1;
   }
 
-  /** What an action is about: the held, else the selected, else the hovered body, else -1. */
-  get meant(): number {
+  /** The body that an action is about: the held one; without it the selected, then the hovered one; -1: none. */
+  get actionBody(): number {
     if (this.held >= 0) return this.held;
     return this.selected_ >= 0 ? this.selected_ : this.hovered;
   }
@@ -57,7 +56,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
   /** Selects a body, -1: none. */
   select(body: number): void {
     if (body === this.selected_) return;
-    this.viewer_.stir();
+    this.viewer_.invalidate();
     this.selected_ = body;
     this.session_.select(body);
     this.events_.changed("selection");
@@ -65,7 +64,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
 
   /** Selects the next body that can be held, or the one before: for keyboards without a mouse. */
   selectNext(direction: 1 | -1): void {
-    const { pickable, pickableCount } = this.bodies_;
+    const { pickable, pickableCount } = this.world_.entities.body;
     if (pickableCount === 0) return;
     const at = pickable.subarray(0, pickableCount).indexOf(this.selected_);
     const next = at < 0 ? (direction > 0 ? 0 : pickableCount - 1) : (at + direction + pickableCount) % pickableCount;
@@ -90,16 +89,21 @@ export class Selection implements GestureListener, FramePart, PageListener {
   // --- FramePart
 
   update(): void {
-    this.hurryHeld_();
-    this.dropVanished_();
-    if (this.gestures.grabs.length > 0) this.viewer_.stir();
+    this.drawHeldAtOnce_();
+    if (this.gestures.grabs.length > 0) this.viewer_.invalidate();
   }
 
-  decide(): void {
+  interact(): void {
     this.gestures.updateAll();
   }
 
   // --- PageListener
+
+  /** Drops everything about the body, so that nothing passes to the next body in its slot. */
+  bodyGone(body: number): void {
+    this.gestures.forget(body);
+    if (this.selected_ === body) this.select(-1);
+  }
 
   link(state: LinkState): void {
     if (state !== "connected") this.gestures.releaseAll();
@@ -109,7 +113,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
   // --- GestureListener
 
   hoverChanged(pointer: Pointer, body: number): void {
-    this.viewer_.stir();
+    this.viewer_.invalidate();
     if (body >= 0) pointer.pulse(0.15, 12);
     this.events_.hover(pointer, body);
   }
@@ -117,7 +121,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
   grabStarted(grab: Grab): void {
     this.select(grab.body);
     this.session_.send({
-      type: "grabStart", hold: grab.hold, body: grab.body, localPoint: vec3(grab.localPoint), target: vec3(grab.target),
+      type: "grabStart", hold: grab.hold, body: this.session_.idOf(grab.body), localPoint: vec3(grab.localPoint), target: vec3(grab.target),
     });
     grab.pointer.pulse(0.6, 30);
     this.events_.grab(grab, "start");
@@ -138,25 +142,12 @@ export class Selection implements GestureListener, FramePart, PageListener {
 
   // --- inside
 
-  /** What is held, and all that is jointed to it, is drawn without delay: alone it would tear off its neighbors. */
-  private hurryHeld_(): void {
-    const goal = this.bodies_.poses.lateness.goal;
+  /** Draws held bodies and all bodies jointed to them without delay; a held body alone would tear off its neighbors. */
+  private drawHeldAtOnce_(): void {
+    const { poses, entities: { membership } } = this.world_;
+    const { goal } = poses.lateness;
     goal.fill(usualLateness);
-    for (const grab of this.gestures.grabs) {
-      goal[grab.body] = 0;
-      const articulate = this.world_.articulateOf.get(grab.body);
-      if (articulate === undefined) continue;
-      for (const entry of this.world_.articulates) if (entry.articulate === articulate) goal[entry.body] = 0;
-    }
-  }
-
-  private dropVanished_(): void {
-    const { bodies } = this.world_;
-    if (this.selected_ >= 0 && bodies.size > 0 && !bodies.has(this.selected_)) this.select(-1);
-    for (let index = this.gestures.grabs.length - 1; index >= 0; index--) {
-      const grab = this.gestures.grabs[index];
-      if (!bodies.has(grab.body)) this.gestures.releaseAll(grab.body);
-    }
+    for (const grab of this.gestures.grabs) membership.fillAlong(grab.body, goal, 0);
   }
 }
 

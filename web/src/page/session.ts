@@ -1,44 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// This page's place in a world: takes what the server says to where it belongs, and tells the server what the user asks for.
+// This page's membership in a world: passes the server's messages on, and sends the user's requests. A body is a slot on the
+// page and a whole id on the wire, so that a late request cannot reach another body in the same slot.
 
-import { Connection, type ConnectionListener, type LinkState } from "../net/connection.ts";
-import { type ControlCommand, NO_BODY, type ClientMessage, type PosesBuffer, type ServerMessage } from "../protocol/generated.ts";
-import type { WorldModel } from "../scene/world_model.ts";
+import { Connection, type ConnectionListener, type LinkState, type JoinRequest } from "../net/connection.ts";
+import type { ClientMessage, ControlCommand, Id, PosesBuffer, ServerMessage } from "../protocol/generated.ts";
+import type { World } from "../world/world.ts";
 import type { Events } from "./events.ts";
+import { smooth, type Viewer } from "./viewer.ts";
 
-/** Where pose frames go. */
-export interface PoseTaker {
-  /** `fresh`: the first frame of a connection; what came before is of another world. The buffer is only valid during the call. */
-  takePoses(poses: PosesBuffer, now: number, fresh: boolean): void;
-}
+const noId: Id = { slot: 0, generation: 0 };
 
 export class Session implements ConnectionListener {
   readonly connection: Connection;
 
-  private readonly world_: WorldModel;
-  private readonly poses_: PoseTaker;
+  private readonly world_: World;
+  private readonly viewer_: Viewer;
   private readonly events_: Events;
-  private readonly stir_: () => void;
-  private fresh_ = true;
 
-  /** `stir` is called whenever something is to be drawn anew. */
-  constructor(url: string, name: string, world: WorldModel, poses: PoseTaker, events: Events, stir: () => void) {
+  constructor(url: string, request: JoinRequest, world: World, viewer: Viewer, events: Events) {
     this.world_ = world;
-    this.poses_ = poses;
+    this.viewer_ = viewer;
     this.events_ = events;
-    this.stir_ = stir;
-    this.connection = new Connection(url, name, this);
+    this.connection = new Connection(url, request, this);
   }
 
   get clientId(): number {
     return this.connection.clientId;
   }
 
-  open(): void {
-    this.connection.open();
-  }
-
-  /** Sends when connected, else forgets it: old gestures are stale. */
+  /** Sends when connected; otherwise drops the message, because old gestures are stale. */
   send(message: ClientMessage): void {
     this.connection.send(message);
   }
@@ -50,61 +40,39 @@ export class Session implements ConnectionListener {
 
   /** Runs an action of the script on a body, -1: none. */
   act(name: string, body: number): void {
-    this.send({ type: "action", name, body: body < 0 ? NO_BODY : body });
+    this.send({ type: "action", name, body: this.idOf(body) });
   }
 
   /** Tells the server what this page has selected, -1: nothing. */
   select(body: number): void {
-    this.send({ type: "select", body: body < 0 ? NO_BODY : body });
+    this.send({ type: "select", body: this.idOf(body) });
+  }
+
+  /** The id of the body that is in a slot now; null for none. */
+  idOf(body: number): Id {
+    return this.world_.entities.body.idOf(body) ?? noId;
   }
 
   // --- ConnectionListener
 
   message(message: ServerMessage): void {
-    this.stir_();
-    switch (message.type) {
-      case "welcome":
-        this.fresh_ = true;
-        break;
-      case "scene":
-        this.takeScene_(message.key, message.json);
-        break;
-      case "structure":
-        this.world_.setStructure(message);
-        break;
-      case "clients":
-        this.world_.setClients(message.clients);
-        break;
-      case "notice":
-        this.events_.notice(message);
-        break;
-      case "effect":
-        this.events_.effect(message.kind, message.position);
-        break;
-      default:
-        break;
-    }
+    this.viewer_.invalidate();
+    if (message.type === "notice") this.events_.notice(message);
+    else if (message.type === "effect") this.events_.effect(message.kind, message.position);
+    else this.world_.take(message);
   }
 
   poses(poses: PosesBuffer, now: number): void {
-    if (poses.step !== this.world_.step || poses.holds.count > 0) this.stir_();
-    this.world_.setState(poses);
-    this.poses_.takePoses(poses, now, this.fresh_);
-    this.fresh_ = false;
+    const started = performance.now();
+    const { world_: world, viewer_: viewer } = this;
+    if (poses.step !== world.step || poses.holds.count > 0) viewer.invalidate();
+    world.takePoses(poses, now);
+    const { boxMin, boxMax } = poses;
+    if (poses.keyframe) viewer.stage.fit(boxMin[0], boxMin[1], boxMin[2], boxMax[0], boxMax[1], boxMax[2]);
+    viewer.timing.decodeMs = smooth(viewer.timing.decodeMs, performance.now() - started);
   }
 
   state(state: LinkState, reason: string): void {
     this.events_.link(state, reason);
-  }
-
-  private takeScene_(key: string, json: string): void {
-    try {
-      this.world_.setScene(key, json);
-    } catch (error) {
-      const text = error instanceof Error ? error.message : String(error);
-      this.events_.notice({
-        level: 2, title: `The scene's "${key}" cannot be drawn`, text, hint: "Look at the script's description of its shapes.",
-      });
-    }
   }
 }

@@ -6,18 +6,18 @@ import { Stage } from "../scene/stage.ts";
 import { allowAnisotropy } from "../scene/textures.ts";
 
 /**
- * A part of the page that does something each frame. A frame goes through all parts once for each stage, in the
- * order of the list: what is drawn is known before pointers are aimed, and gestures before anything is marked.
+ * A part of the page that does something each frame. A frame runs the stages below in this order, each of them for all
+ * parts: poses are known before pointers are aimed, and pointers before gestures are worked out.
  */
 export interface FramePart {
-  /** Works out what is drawn in this frame; `now` in ms of performance.now(). */
+  /** Works out the state to draw; `now` in ms of performance.now(). */
   update?(seconds: number, now: number): void;
   /** Aims pointers. */
   aim?(seconds: number, frame: XRFrame | null): void;
-  /** Works out gestures, and what follows from them. */
-  decide?(seconds: number): void;
-  /** Shows all that may appear later, once: no grab shall wait for a shader to be compiled. */
-  warm?(): void;
+  /** Works out gestures and marks bodies accordingly. */
+  interact?(seconds: number): void;
+  /** Shows one of everything that may appear later, so that its shader is compiled before the page is shown. */
+  warmUp?(): void;
   /** Writes what the renderer reads. */
   draw?(seconds: number, frame: XRFrame | null): void;
 }
@@ -34,9 +34,9 @@ export interface Timing {
   decodeMs: number;
 }
 
-/** After the last change the page goes on drawing for so long, until all easing has ended. */
+/** The page goes on drawing for this time after the last change, until all easing has ended. */
 const drawOnMs = 700;
-/** So many frames are drawn before the page is shown, with all that may appear later. */
+/** Number of warm-up frames before the page is shown. */
 const warmFrames = 3;
 const longestFrameMs = 100;
 
@@ -78,7 +78,7 @@ export class Viewer {
     return this.renderer.xr.isPresenting;
   }
 
-  /** A part takes its turn after those that were added before it; what it draws, its `root`, goes into the scene. */
+  /** Parts take their turns in the order in which they were added. A part's `root` is put into the scene. */
   add(...parts: readonly (FramePart & { readonly root?: Object3D })[]): void {
     for (const part of parts) {
       this.parts_.push(part);
@@ -93,15 +93,15 @@ export class Viewer {
     this.renderer.setAnimationLoop((now: number, frame?: XRFrame) => this.frame_(now, frame ?? null));
   }
 
-  /** Something is to be drawn anew: a page on which nothing changes does not draw, which spares batteries. */
-  stir(): void {
+  /** The picture is out of date. A page on which nothing changes does not draw, which spares batteries. */
+  invalidate(): void {
     this.drawUntil_ = performance.now() + drawOnMs;
   }
 
   /** Fits the drawing to a size in css px. */
   resize(width: number, height: number, pixelRatio: number): void {
     if (this.presenting) return;
-    this.stir();
+    this.invalidate();
     this.renderer.setPixelRatio(pixelRatio);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
@@ -117,12 +117,12 @@ export class Viewer {
     const seconds = Math.min(Math.max(elapsed, 0), longestFrameMs) / 1000;
     const { timing, parts_: parts } = this;
     timing.frameMs = smooth(timing.frameMs, Math.min(elapsed, 1000));
-    if (this.presenting) this.stir();
+    if (this.presenting) this.invalidate();
     for (const part of parts) part.update?.(seconds, started);
     for (const part of parts) part.aim?.(seconds, frame);
-    for (const part of parts) part.decide?.(seconds);
+    for (const part of parts) part.interact?.(seconds);
     const warming = this.warmed_ < warmFrames && this.worthShowing_();
-    if (warming) for (const part of parts) part.warm?.();
+    if (warming) for (const part of parts) part.warmUp?.();
     for (const part of parts) part.draw?.(seconds, frame);
     const scripted = performance.now();
     if (scripted < this.drawUntil_) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be pointed at and held, as packed data: what is drawn is what is picked.
+// The bodies that can be pointed at and held, as packed arrays. They are the arrays that are drawn, so that picks agree with the picture.
 
 import type { PlacedShape } from "./shapes/shape.ts";
 
-/** What can be picked, indexed by body slot; poses are those that are drawn at this moment. */
+/** Arrays are indexed by body slot; poses are those of the current picture. */
 export interface Pickable {
   readonly pickable: Uint32Array;
   readonly pickableCount: number;

@@ -9,7 +9,7 @@ const frameCount = 8;
 export const usualLateness = 1.5;
 const easeSeconds = 0.08;
 /** A slot beyond this is a mistake, not a reason to take gigabytes. */
-const mostSlots = 1 << 20;
+export const mostSlots = 1 << 20;
 
 interface Frame {
   /** Smoothed arrival on this page's clock, ms. */
@@ -77,10 +77,15 @@ export class PoseBuffer {
     }
   }
 
-  /** Forgets the frames (a new connection) but keeps what is drawn until the next one arrives. */
+  /** Forgets all frames (a new connection), but keeps the drawn poses until the next frame arrives. */
   clear(): void {
     this.count = 0;
     this.known.fill(0);
+  }
+
+  /** Forgets one body: the next body in its slot starts at its own first pose. */
+  forget(slot: number): void {
+    if (slot < this.capacity) this.known[slot] = 0;
   }
 
   /** Makes room for slots up to `slots` - 1. */
@@ -114,7 +119,7 @@ export class PoseBuffer {
     forEachPose(poses, this.set_);
   }
 
-  /** Works out what is drawn at `now` (ms); `seconds` since the call before. */
+  /** Works out the drawn poses at `now` (ms); `seconds` since the previous call. */
   sample(now: number, seconds: number): void {
     if (this.count === 0) return;
     const ease = 1 - Math.exp(-seconds / easeSeconds);

@@ -24,7 +24,7 @@ export class Keys {
     });
     window.addEventListener("keyup", (event) => {
       this.down_.delete(event.key.toLowerCase());
-      this.page_.navigation.hurrying = event.shiftKey;
+      this.page_.navigation.walkingFast = event.shiftKey;
       this.walk_();
     });
     window.addEventListener("blur", () => {
@@ -39,7 +39,7 @@ export class Keys {
     const walking = event.key.toLowerCase();
     if (walking in walkKeys && commands.scriptOfKey(event.key) === undefined) {
       this.down_.add(walking);
-      navigation.hurrying = event.shiftKey;
+      navigation.walkingFast = event.shiftKey;
       this.walk_();
       return;
     }

@@ -7,7 +7,7 @@ import type { LinkState } from "../net/connection.ts";
 import type { PageListener, PageNotice } from "../page/events.ts";
 import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
-import type { Change } from "../scene/world_model.ts";
+import type { Change } from "../world/world.ts";
 import { makeActionButton, makeBarItem, type BarItem } from "./buttons.ts";
 import { Cards, type CardLevel } from "./cards.ts";
 import { byId, keyName, make, placeNear } from "./dom.ts";
@@ -45,14 +45,14 @@ export class Overlay implements PageListener, FramePart {
   constructor(page: OverlayPage, canvas: HTMLCanvasElement) {
     this.page_ = page;
     this.canvas_ = canvas;
-    const stir = () => this.stir();
+    const showBar = () => this.showBar();
     page.commands.add(this.helpCommand_());
     page.commands.onChange(() => this.takeCommands_());
     this.takeCommands_();
     window.addEventListener("keydown", (event) => this.closeMenuByKey_(event), true);
     new Keys(page, () => {
       page.sound.wake();
-      stir();
+      showBar();
     });
     // After a click the keys go to the world again: space must not press the same button once more.
     byId("foot", HTMLElement).addEventListener("click", (event) => {
@@ -66,7 +66,7 @@ export class Overlay implements PageListener, FramePart {
     window.addEventListener("pointerdown", (event) => this.anyPress_(event), true);
     window.addEventListener("pointermove", (event) => {
       this.pointerAt_ = { x: event.clientX, y: event.clientY, touch: event.pointerType === "touch" };
-      stir();
+      showBar();
     }, true);
     const theme = matchMedia("(prefers-color-scheme: dark)");
     const applyTheme = () => page.setTheme(theme.matches ? "dark" : "light");
@@ -74,11 +74,11 @@ export class Overlay implements PageListener, FramePart {
     applyTheme();
     window.setInterval(() => this.refreshMeter_(), meterEveryMs);
     window.setTimeout(() => this.welcome_.classList.add("gone"), welcomeMs);
-    stir();
+    showBar();
   }
 
   /** Shows the bar again and lets it hide later. */
-  stir(): void {
+  showBar(): void {
     document.body.classList.remove("idle");
     window.clearTimeout(this.idle_);
     this.idle_ = window.setTimeout(() => {
@@ -104,7 +104,7 @@ export class Overlay implements PageListener, FramePart {
     );
     this.menu_.hidden = false;
     placeNear(this.menu_, x, y, 14);
-    this.stir();
+    this.showBar();
   }
 
   // --- PageListener
@@ -115,7 +115,7 @@ export class Overlay implements PageListener, FramePart {
 
   changed(what: Change | "selection"): void {
     const { title } = this.page_.world.settings;
-    if (what === "world") document.title = title === "" ? "Iota" : `${title} · Iota`;
+    if (what === "settings") document.title = title === "" ? "Iota" : `${title} · Iota`;
     if (what === "selection") {
       this.closeMenu_();
       this.refreshStrip_();
@@ -170,7 +170,7 @@ export class Overlay implements PageListener, FramePart {
     if (paused === this.paused_) return;
     this.paused_ = paused;
     this.refreshBar_();
-    this.stir();
+    this.showBar();
   }
 
   // --- inside
@@ -207,7 +207,7 @@ export class Overlay implements PageListener, FramePart {
   private anyPress_(event: PointerEvent): void {
     this.pointerAt_ = { x: event.clientX, y: event.clientY, touch: event.pointerType === "touch" };
     this.page_.sound.wake();
-    this.stir();
+    this.showBar();
     if (!this.menu_.hidden && !(event.target instanceof Node && this.menu_.contains(event.target))) this.closeMenu_();
   }
 
@@ -242,7 +242,7 @@ export class Overlay implements PageListener, FramePart {
       this.hint_.textContent = text;
       this.hint_.hidden = false;
     }
-    // A force is shown above the hand: below it hangs what is held.
+    // A force is shown above the hand, because the held body hangs below it.
     const lift = this.page_.gestures.grabs.length === 0 ? 0 : 62;
     placeNear(this.hint_, this.pointerAt_.x, this.pointerAt_.y - lift, this.pointerAt_.touch ? 36 : 16);
   }

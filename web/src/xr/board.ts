@@ -103,7 +103,7 @@ export class Board implements Plate {
     this.dirty_ = true;
   }
 
-  /** Gone at once: a session ends. */
+  /** Hides it without fading: a session ends. */
   hide(): void {
     this.shown = false;
     this.fade_ = 0;

@@ -13,7 +13,7 @@ type Side = "left" | "right";
 
 const walkSpeed = 1.2;
 const handAt = { left: new Vector3(-0.2, -0.26, -0.4), right: new Vector3(0.2, -0.24, -0.4) } as const;
-/** The ray of a hand meets the line of sight under the mouse at what lies there, or else at this distance, m. */
+/** Distance at which the ray of a hand meets the line of sight under the mouse where there is no body or panel, m. */
 const meetsAt = 1.6;
 /** A mouse is about so exact, as a tangent. */
 const tolerance = 0.012;
@@ -26,10 +26,10 @@ const stickKeys: Record<string, readonly [number, number]> = {
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
 };
 
-type DeskPage = Pick<Page, "viewer" | "bodies" | "commands">;
+type DeskPage = Pick<Page, "viewer" | "world" | "commands">;
 
 export class DeskControls implements FramePart {
-  /** Panels that the mouse may mean; set once they exist. */
+  /** Panels that the mouse may point at; set once they exist. */
   plates: readonly (Plate & { readonly ready: boolean })[] = [];
 
   private readonly page_: DeskPage;
@@ -196,7 +196,7 @@ export class DeskControls implements FramePart {
     const x = ((this.mouse_.x - eye * half) / half) * 2 - 1;
     const y = 1 - (this.mouse_.y / innerHeight) * 2;
     this.ray_.set(x * slope * (half / innerHeight), y * slope, -1).normalize();
-    // What is held stays as far away as it was.
+    // A held body keeps its distance.
     if (!this.pressed_) this.distance_ = this.look_(eye);
     this.ray_.multiplyScalar(this.distance_);
     this.ray_.x += (eye - 0.5) * ipd;
@@ -213,6 +213,6 @@ export class DeskControls implements FramePart {
     for (const plate of this.plates) {
       if (plate.ready && rayOnPlate(plate, this.origin_, this.direction_, this.spot_)) return this.spot_.distance;
     }
-    return pickRay(this.page_.bodies, this.origin_, this.direction_, tolerance, 50, this.hit_) ? this.hit_.distance : meetsAt;
+    return pickRay(this.page_.world.entities.body, this.origin_, this.direction_, tolerance, 50, this.hit_) ? this.hit_.distance : meetsAt;
   }
 }

@@ -7,7 +7,7 @@ import type { Viewer } from "../page/viewer.ts";
 import { DeskControls } from "./desk_controls.ts";
 
 const eyeHeight = 1.6;
-/** Narrower than in a headset, whose edges nobody looks at: on a flat picture they only stretch, rad. */
+/** rad. Narrower than in a headset: on a flat picture the edges of a wide view look stretched. */
 const fovy = 1.35;
 
 export interface Emulation {
@@ -16,7 +16,7 @@ export interface Emulation {
 }
 
 /** Installs the emulated headset as navigator.xr. Throws on a model it does not know. */
-export function emulate(page: Pick<Page, "viewer" | "bodies" | "commands">, canvas: HTMLCanvasElement, model: string): Emulation {
+export function emulate(page: Pick<Page, "viewer" | "world" | "commands">, canvas: HTMLCanvasElement, model: string): Emulation {
   if (model !== "quest3") throw new Error(`?emulate= knows quest3, not ${model}`);
   shadowClears(page.viewer.renderer.getContext() as WebGL2RenderingContext);
   const device = new XRDevice(metaQuest3, { stereoEnabled: true, fovy });

@@ -7,7 +7,7 @@ import type { LinkState } from "../net/connection.ts";
 import type { PageListener, PageNotice } from "../page/events.ts";
 import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
-import type { Change } from "../scene/world_model.ts";
+import type { Change } from "../world/world.ts";
 import type { Pointer } from "../interact/gestures.ts";
 import type { Board } from "./board.ts";
 import { ControllerView } from "./controllers.ts";
@@ -160,7 +160,7 @@ export class Headset implements PageListener, FramePart {
   // --- PageListener
 
   changed(what: Change | "selection"): void {
-    if (what === "world" || what === "look") this.panel.arrange();
+    if (what === "settings" || what === "look") this.panel.arrange();
     else this.panel.board.repaint();
   }
 
@@ -245,10 +245,10 @@ export class Headset implements PageListener, FramePart {
     rig.position.set(0, 0, 0);
     rig.rotation.set(0, 0, 0);
     rig.updateMatrixWorld();
-    this.page_.viewer.stir();
+    this.page_.viewer.invalidate();
   }
 
-  /** Says once a session how to take hold, for what the user has in hand. */
+  /** Explains once a session how to take hold, with hands or with controllers. */
   private greet_(hands: boolean): void {
     if (this.helped_) return;
     this.helped_ = true;
@@ -276,7 +276,7 @@ export class Headset implements PageListener, FramePart {
   private place_(): void {
     this.toPlace_ = false;
     const { world, viewer: { rig } } = this.page_;
-    standBefore(world.settings, this.headLocal_.elements, rig);
+    standBefore({ ...world.settings, ground: world.ground }, this.headLocal_.elements, rig);
     rig.updateMatrixWorld();
     this.panel.snap();
     this.readHead_();
@@ -290,7 +290,7 @@ export class Headset implements PageListener, FramePart {
     for (const input of this.inputs) input.lift(rig.matrixWorld);
   }
 
-  /** Who has but one hand needs it to press the panel, and does not wear it. */
+  /** The hand that wears the panel. A user with one hand needs it to press the panel, so the panel floats. */
   private wearer_(): Input | null {
     if (this.inputs.length < 2) return null;
     for (const input of this.inputs) if (input.hasBody && input.source.handedness === "left") return input;
@@ -298,10 +298,10 @@ export class Headset implements PageListener, FramePart {
   }
 
   private floor_(): number {
-    return this.page_.world.settings.ground ?? this.page_.viewer.rig.position.y;
+    return this.page_.world.ground ?? this.page_.viewer.rig.position.y;
   }
 
-  /** Finds the panel that a hand means, if any; presses it when a fingertip comes through. */
+  /** Finds the panel that a hand points at or touches; presses it when a fingertip goes through. */
   private aim_(input: Input): void {
     input.clearPanel();
     if (input.pointer.grab === null && input.tracked) {

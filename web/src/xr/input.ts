@@ -78,7 +78,7 @@ export class Input {
 
   pulse(strength: number, milliseconds: number): void {
     const actuator = this.source.gamepad?.hapticActuators?.[0] as { pulse?(value: number, duration: number): Promise<unknown> } | undefined;
-    // A headset without motors may refuse; that is no fault of the page.
+    // A headset without motors may refuse; the page cannot help that.
     actuator?.pulse?.(strength, milliseconds)?.catch(() => {});
   }
 
@@ -112,7 +112,7 @@ export class Input {
     at_.add(this.jointAt_(thumbTip, this.other_).applyMatrix4(rig)).multiplyScalar(0.5).toArray(pointer.tip);
   }
 
-  /** Means no panel, until one is found. */
+  /** Points at no panel until `aim` finds one. */
   clearPanel(): void {
     this.board = null;
     this.button = -1;

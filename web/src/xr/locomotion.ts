@@ -72,7 +72,7 @@ export class Locomotion {
     return this.aiming !== null && this.mode_ !== "stick";
   }
 
-  /** From a panel's button: shows this hand's arc and goes where its next pinch or trigger ends; again: never mind. */
+  /** Shows this hand's arc; the end of its next pinch or trigger teleports. Called again, it cancels. */
   arm(input: Input): void {
     this.aiming = this.armed ? null : input;
     this.mode_ = "aim";
@@ -115,7 +115,7 @@ export class Locomotion {
       const { x, y } = input.stick;
       const grab = input.pointer.grab;
       if (grab !== null) {
-        // The stick belongs to what is held, and must come to rest before it moves the user again.
+        // The stick moves the held body. It must come to rest before it moves the user again.
         input.stickFree = false;
         const push = Math.abs(y) < stickRest / 2 ? 0 : y * pushRate * Math.max(grab.distance + input.pointer.depth, 0.3) * seconds;
         input.pointer.depth = Math.min(Math.max(input.pointer.depth + push, nearestHold - grab.distance), farthestHold);

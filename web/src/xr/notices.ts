@@ -115,7 +115,7 @@ export class Notices {
     this.board.mesh.updateMatrixWorld(true);
   }
 
-  /** A press takes away what is not lasting. */
+  /** A press removes all cards that do not last. */
   private dismiss_(): void {
     this.cards_ = this.cards_.filter((card) => card.lasting);
     this.arrange_();
@@ -129,7 +129,7 @@ export class Notices {
     }
     const height = this.lay_(this.measure_, null);
     this.board.resize(width, height);
-    // What goes by itself lets rays through to the things behind it.
+    // Cards that disappear by themselves let rays through to the bodies behind them.
     this.board.buttons = this.cards_.some((card) => card.level > 0 && !card.lasting) ? [{ x: 0, y: 0, width, height }] : [];
   }
 

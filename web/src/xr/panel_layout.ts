@@ -12,9 +12,9 @@ export interface PanelButton extends Rect {
 }
 
 export interface Layout {
-  /** Those that can be pressed. */
+  /** Buttons that can be pressed. */
   readonly buttons: readonly PanelButton[];
-  /** Those that only show a value. */
+  /** Fields that only show a value. */
   readonly readings: readonly PanelButton[];
   /** px */
   readonly height: number;
@@ -36,7 +36,7 @@ function widthOf(command: Entry): number {
   return command.narrow === true ? narrow : row;
 }
 
-/** Spreads commands over a row. What is not offered now keeps its place, so that nothing jumps when it is. */
+/** Spreads commands over a row. A command that is not offered now keeps its place, so that the others do not jump. */
 function spread(commands: readonly Entry[], top: number): PanelButton[] {
   const widths = commands.map(widthOf);
   const fixed = widths.reduce((sum, width) => sum + width, 0);

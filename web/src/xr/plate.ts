@@ -75,7 +75,7 @@ const through = -0.06;
 
 /** One fingertip: presses once when it comes through the plate from the front, again only after it has left. */
 export class Poke {
-  /** The finger is in front and near enough to say which button it means. */
+  /** The finger is in front of the panel and so near that the button under it counts as touched. */
   near = false;
   private armed_ = false;
 

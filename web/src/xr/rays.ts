@@ -71,7 +71,7 @@ export class RayView {
     this.dot_.material.color.copy(input.board !== null ? palette.selected : white);
   }
 
-  /** Along the ray to what it means, m; 0: nothing. */
+  /** Distance along the ray to its target, m; 0: no target. */
   private lengthOf_(input: Input): number {
     const { pointer } = input;
     if (input.board !== null) return input.spot.distance;

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a user stands when a session starts: a step away from the thing, facing it. Pure numbers.
 
-import type { WorldSettings } from "../scene/world_model.ts";
+import type { Vec3 } from "../protocol/generated.ts";
+
+/** Of a world: where a script would have it seen from, and how high its ground is (m; null: none). */
+export interface Standing {
+  readonly cameraPosition: Readonly<Vec3>;
+  readonly cameraTarget: Readonly<Vec3>;
+  readonly ground: number | null;
+}
 
 /** The part of a rig that is set; three's Object3D is one. */
 export interface Rig {
@@ -20,9 +27,8 @@ const eyesAbove = 0.15;
  * Moves and turns the rig so that the head (its transform in the reference space, column by column)
  * comes to stand before the middle of the world's view, on the side of the script's camera.
  */
-export function standBefore(settings: WorldSettings, head: ArrayLike<number>, rig: Rig): void {
-  const target = settings.camera?.target ?? [0, 1, 0];
-  const camera = settings.camera?.position ?? [target[0], target[1], target[2] + 3];
+export function standBefore(settings: Standing, head: ArrayLike<number>, rig: Rig): void {
+  const { cameraPosition: camera, cameraTarget: target } = settings;
   let awayX = camera[0] - target[0];
   let awayZ = camera[2] - target[2];
   const far = Math.hypot(awayX, awayZ);

@@ -103,7 +103,7 @@ export class WristPanel {
   /** What it shows changes with what the server says; looked at without allocating, force a few times a second. */
   private read_(seconds: number): void {
     const { world, selection } = this.page_;
-    const body = selection.meant;
+    const body = selection.actionBody;
     let active = 0;
     for (const { command } of this.layout_.buttons) if (command.active?.() === true) active++;
     const grab = this.page_.gestures.grabs.at(-1);
@@ -151,15 +151,14 @@ export class WristPanel {
     context.font = `600 42px ${font}`;
     const middle = headHeight / 2 + 2;
     context.fillText(fitText(context, world.settings.title, 360), 36, middle);
-    const entry = this.body_ < 0 ? undefined : world.bodies.get(this.body_);
+    const body = world.entities.body.nameOf(this.body_);
     const grab = gestures.grabs.at(-1);
-    const body = entry === undefined ? "" : `${entry.className} ${entry.body}`;
     const text = grab === undefined
-      ? (entry === undefined ? "point at a part and take hold" : body)
+      ? (body === "" ? "point at a part and take hold" : body)
       : `${body} · ${this.newton_ < 0 ? "…" : (this.newton_ / 10).toFixed(this.newton_ < 100 ? 1 : 0)} N`;
     context.textAlign = "right";
     context.font = `36px ${font}`;
-    context.fillStyle = entry === undefined ? colors.faint : colors.calm;
+    context.fillStyle = body === "" ? colors.faint : colors.calm;
     context.fillText(fitText(context, text, 540), panelWidth - 36, middle);
   }
 

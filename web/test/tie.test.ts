@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Matrix4, Vector3, type InstancedMesh } from "three";
 import { describe, expect, it } from "vitest";
+import { NO_BODY, TieKind, type Anchor, type TieEntity } from "../src/protocol/generated.ts";
+import { TieView } from "../src/scene/entities/tie.ts";
+import { Styles } from "../src/scene/entities/style.ts";
 import { makeCoil } from "../src/scene/shapes/coil.ts";
 import { PoseBuffer } from "../src/scene/pose_buffer.ts";
-import { TieView } from "../src/scene/tie_view.ts";
-import { WorldModel } from "../src/scene/world_model.ts";
+import { id, part, style } from "./test_world.ts";
 
-const classes = { rope: { "*": { kind: "cylinder", sizes: [0.01], material: "rope" } }, spring: { "*": { kind: "cylinder", sizes: [0.02] } } };
+const rope = 0;
+const spring = 1;
 
-function ties(...entries: object[]): { view: TieView; poses: PoseBuffer; pieces: () => { middle: Vector3; length: number }[] } {
-  const model = new WorldModel(() => {});
+function ties(...entries: Omit<TieEntity, "id">[]): { view: TieView; poses: PoseBuffer; pieces: () => { middle: Vector3; length: number }[] } {
   const poses = new PoseBuffer();
   poses.reserve(2);
-  model.setScene("classes", JSON.stringify(classes));
-  model.setScene("ties", JSON.stringify(entries));
-  const view = new TieView(model, poses);
-  view.rebuild("");
+  const styles = new Styles((title) => expect.unreachable(title));
+  styles.create(style(rope, "rope", part("cylinder", [0.01, 0.1], { material: "rope" })));
+  styles.create(style(spring, "spring", part("cylinder", [0.02, 0.1])));
+  const view = new TieView(poses, styles);
+  entries.forEach((entry, slot) => view.create({ id: id(slot), ...entry }));
   const pieces = () => {
     const mesh = view.root.children[0] as InstancedMesh;
     mesh.geometry.computeBoundingBox();
@@ -32,11 +35,12 @@ function ties(...entries: object[]): { view: TieView; poses: PoseBuffer; pieces:
   return { view, poses, pieces };
 }
 
-const world = (x: number, y: number, z: number) => ({ body: null, point: [x, y, z] });
+const world = (x: number, y: number, z: number): Anchor => ({ body: NO_BODY, point: [x, y, z] });
+const ropeOf = (length: number) => ({ kind: TieKind.rope, style: rope, a: world(0, 0, 0), b: world(2, 0, 0), length });
 
 describe("ties", () => {
   it("a spring is as long as its ends are apart, wherever its body goes", () => {
-    const { view, poses, pieces } = ties({ kind: "spring", class: "spring", a: world(0, 1, 0), b: { body: 1, point: [0, 0.5, 0] }, length: 0.4 });
+    const { view, poses, pieces } = ties({ kind: TieKind.spring, style: spring, a: world(0, 1, 0), b: { body: 1, point: [0, 0.5, 0] }, length: 0.4 });
     view.draw();
     expect(pieces()[0].length).toBe(0); // its body has not been told of yet
     poses.known[1] = 1;
@@ -51,20 +55,24 @@ describe("ties", () => {
   });
 
   it("a taut rope is straight, a slack one hangs through by about its length", () => {
-    const taut = ties({ kind: "rope", class: "rope", a: world(0, 0, 0), b: world(2, 0, 0), length: 2 });
+    const taut = ties(ropeOf(2));
     taut.view.draw();
     for (const { middle } of taut.pieces()) expect(Math.abs(middle.y)).toBeLessThan(1e-9);
-    const slack = ties({ kind: "rope", class: "rope", a: world(0, 0, 0), b: world(2, 0, 0), length: 2.2 });
+    const slack = ties(ropeOf(2.2));
     slack.view.draw();
     const pieces = slack.pieces();
     expect(Math.min(...pieces.map(({ middle }) => middle.y))).toBeLessThan(-0.3);
   });
 
-  it("says what is wrong with a tie", () => {
-    const model = new WorldModel(() => {});
-    expect(() => model.setScene("ties", '[{"kind": "ghost"}]')).toThrow(/unknown kind of tie "ghost"/);
-    expect(() => model.setScene("ties", '[{"kind": "rope", "a": {"body": -1}, "b": {"body": null}}]')).toThrow(/slot/);
-    expect(model.ties).toEqual([]);
+  it("come and go one by one in one mesh, and the others stay where they are", () => {
+    const { view, pieces } = ties(ropeOf(2), ropeOf(2.2), ropeOf(2));
+    const [mesh] = view.root.children;
+    view.destroy(0);
+    view.create({ id: id(3), ...ropeOf(2.2) });
+    view.draw();
+    expect(view.root.children).toEqual([mesh]);
+    const lowest = (tie: number) => Math.min(...pieces().slice(12 * tie, 12 * tie + 12).map(({ middle }) => middle.y));
+    expect([0, 1, 2].map((tie) => lowest(tie) < -0.3)).toEqual([false, true, true]); // the last one took the first's place
   });
 
   it("a coil is as long and as wide as it was asked for", () => {

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/mat3.h"
+
+#include "binders.h"
+#include "names.h"
+#include "room_object.h"
+#include "shape_argument.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/tuple.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace iota::bindings {
+
+namespace {
+
+using Quat4 = std::tuple<double, double, double, double>;
+/// name, key, label, help, whether it is on a body, button ("a", "b" or "")
+using ActionTuple = std::tuple<std::string, std::string, std::string, std::string, bool, std::string>;
+
+net::Vec3f narrow(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+protocol::Quat narrow(const Quat4& q) {
+  const auto [x, y, z, w] = q;
+  return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w)};
+}
+
+protocol::Part make_part(const std::string& kind, const std::vector<float>& sizes, const std::string& look,
+                         const std::string& material, std::optional<std::uint32_t> color, const Vec3& offset,
+                         const Quat4& rotation, double turn, const std::vector<float>& vertices,
+                         const std::vector<std::uint32_t>& triangles) {
+  protocol::Part part;
+  part.look = look;
+  part.shape = {kind, sizes, vertices, triangles};
+  part.offset = narrow(offset);
+  part.rotation = narrow(rotation);
+  part.turn = static_cast<float>(turn);
+  part.material = material;
+  part.color = color.value_or(protocol::no_color);
+  return part;
+}
+
+void set_settings(RoomObject& self, const std::string& title, const std::vector<std::string>& looks,
+                  const std::string& look, const Vec3& camera_position, const Vec3& camera_target,
+                  std::optional<double> ground) {
+  self.use().set(protocol::WorldSettings{title, looks, look, narrow(camera_position), narrow(camera_target),
+                                         ground.has_value(), static_cast<float>(ground.value_or(0))});
+}
+
+/// Two digits: a page is not told of each flutter.
+float two_digits(double value) {
+  if (!(value > 0) || !std::isfinite(value)) return 0;
+  const double step = std::pow(10, std::floor(std::log10(value)) - 1);
+  return static_cast<float>(std::round(value / step) * step);
+}
+
+void set_state(RoomObject& self, bool paused, double speed, double step_ms, double dt) {
+  const protocol::WorldState state{paused, static_cast<float>(speed), two_digits(step_ms), dt};
+  if (self.state == state) return;
+  self.state = state;
+  self.use().set(state);
+}
+
+void set_actions(RoomObject& self, const std::vector<ActionTuple>& actions) {
+  protocol::Actions message;
+  for (const auto& [name, key, label, help, on_body, button] : actions) {
+    const auto target = on_body ? protocol::ActionTarget::body : protocol::ActionTarget::world;
+    const auto face = button == "a"   ? protocol::ControllerButton::a
+                      : button == "b" ? protocol::ControllerButton::b
+                                      : protocol::ControllerButton::none;
+    message.actions.push_back({name, key, label, help, target, face});
+  }
+  self.use().set(message);
+}
+
+void publish_changes(RoomObject& self, const PoseSnapshot& snapshot, const SceneChanges& changes) {
+  self.use().publish(snapshot, self.presenter.present(changes));
+  for (const ViewEvent& event : changes.events)
+    self.use().effect(event.kind == ViewEvent::Kind::join ? "join" : "break", narrow(event.position));
+}
+
+void publish(RoomObject& self, SystemObject& system) {
+  System& engine = system.use();
+  const SceneChanges changes = engine.take_scene_changes(self.presenter.needs_all(), self.presenter.assigned());
+  publish_changes(self, engine.poses(), changes);
+}
+
+// ---------------------------------------------------------------------------------------- a simulator of the script's
+
+/// slot, generation, kind, articulate, number of particles, lines from place to place, solids (shape, place, turn): all in
+/// the body's frame.
+using SimulatedBodyTuple =
+    std::tuple<std::uint32_t, std::uint32_t, std::string, std::uint32_t, std::uint32_t,
+               std::vector<std::pair<Vec3, Vec3>>, std::vector<std::tuple<nb::object, Vec3, Quat4>>>;
+using HoldTuple = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, Vec3, Vec3, double>;
+
+DrawnLine line_between(const Vec3& from, const Vec3& to) {
+  const double length = norm(to - from);
+  return {0.5 * (from + to), length > 0 ? shortest_turn({1, 0, 0}, (1 / length) * (to - from)) : Quaternion{}, length};
+}
+
+SceneChanges scene_of(const std::vector<SimulatedBodyTuple>& bodies, double extent) {
+  SceneChanges changes;
+  changes.extent = extent;
+  for (const auto& [slot, generation, kind, articulate, particles, lines, solids] : bodies) {
+    DrawnBody& body = changes.bodies.set.emplace_back();
+    body.id = {slot, generation};
+    body.is_new = false;
+    body.kind = from_word(kind_words, kind, "kind");
+    body.particles = particles;
+    for (const auto& [from, to] : lines) body.lines.push_back(line_between(from, to));
+    for (const auto& [shape, position, turn] : solids) {
+      const auto [x, y, z, w] = turn;
+      body.solids.push_back({to_shape(shape), position, {x, y, z, w}});
+    }
+    changes.memberships.push_back({slot, articulate});
+  }
+  return changes;
+}
+
+/// Of one that has changed, where `bodies` are given.
+void publish_simulated(RoomObject& self, std::optional<std::vector<SimulatedBodyTuple>> bodies, nb::handle slots,
+                       nb::handle places, const std::vector<HoldTuple>& holds, std::uint64_t step, double time,
+                       std::uint32_t structure_version, const Energy& energy, double gap, double extent) {
+  const nb::object as_array = nb::module_::import_("numpy").attr("ascontiguousarray");
+  const auto which =
+      nb::cast<nb::ndarray<const std::uint32_t, nb::c_contig, nb::device::cpu>>(as_array(slots, "uint32"));
+  const auto numbers = nb::cast<nb::ndarray<const float, nb::c_contig, nb::device::cpu>>(as_array(places, "float32"));
+  const std::size_t count = which.size();
+  if (which.ndim() != 1 || numbers.ndim() != 2 || numbers.shape(0) != count || numbers.shape(1) != 7)
+    throw nb::value_error("poses() must give slots of shape (n,) and places of shape (n, 7)");
+  PoseSnapshot snapshot;
+  snapshot.step = step, snapshot.time = time, snapshot.structure_version = structure_version;
+  snapshot.kinetic = static_cast<float>(energy.kinetic), snapshot.potential = static_cast<float>(energy.potential);
+  snapshot.gap = static_cast<float>(gap);
+  snapshot.bodies.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    snapshot.bodies[i].body = which.data()[i];
+    std::copy_n(numbers.data() + 7 * i, 3, snapshot.bodies[i].position);
+    std::copy_n(numbers.data() + 7 * i + 3, 4, snapshot.bodies[i].orientation);
+  }
+  for (const auto& [client, hold, body, point, target, force] : holds) {
+    HoldPose& pose = snapshot.holds.emplace_back();
+    pose.client = client, pose.hold = hold, pose.body = body, pose.force = static_cast<float>(force);
+    std::copy_n(narrow(point).data(), 3, pose.point);
+    std::copy_n(narrow(target).data(), 3, pose.target);
+  }
+  if (bodies)
+    publish_changes(self, snapshot, scene_of(*bodies, extent));
+  else
+    self.use().publish(snapshot);
+}
+
+/// The body that an event is on, or None once it is gone.
+nb::object body_of(RoomObject& self, const net::InputEvent& event, nb::object system) {
+  const std::optional<BodyId> body = self.presenter.body(event.body);
+  if (!body) return nb::none();
+  SystemObject* const object = to_system(system);
+  if (!object->use().contains(*body)) return nb::none();
+  return nb::cast(BodyHandle{std::move(system), object, *body});
+}
+
+/// The slot of the simulator's body that an event is on, or None once it is gone.
+std::optional<std::uint32_t> slot_of(RoomObject& self, const net::InputEvent& event) {
+  const std::optional<BodyId> body = self.presenter.body(event.body);
+  return body ? std::optional(body->slot) : std::nullopt;
+}
+
+}  // namespace
+
+void bind_room(nb::module_& module) {
+  nb::class_<protocol::Part>(module, "DrawnPart", "A shape at its place on a body, as pages are told of it.")
+      .def(
+          "__init__",
+          [](protocol::Part* self, const std::string& kind, const std::vector<float>& sizes, const std::string& look,
+             const std::string& material, std::optional<std::uint32_t> color, VectorArgument offset,
+             const Quat4& rotation, double turn, const std::vector<float>& vertices,
+             const std::vector<std::uint32_t>& triangles) {
+            new (self) protocol::Part(make_part(kind, sizes, look, material, color, to_vec3(offset, "offset"), rotation,
+                                                turn, vertices, triangles));
+          },
+          "kind"_a, "sizes"_a, nb::kw_only(), "look"_a = "*", "material"_a = "paint", "color"_a = nb::none(),
+          "offset"_a = nb::make_tuple(0, 0, 0), "rotation"_a = Quat4{0, 0, 0, 1}, "turn"_a = 0.0,
+          "vertices"_a = std::vector<float>{}, "triangles"_a = std::vector<std::uint32_t>{});
+
+  nb::class_<RoomObject>(module, "Room", "A world on a server. `World` drives it; a script hardly needs to.")
+      .def_prop_ro(
+          "world", [](RoomObject& self) { return self.use().world(); }, "Its id.")
+      .def(
+          "close",
+          [](RoomObject& self, nb::object system) {
+            self.room.reset();
+            SystemObject* object = nullptr;
+            if (nb::try_cast(system, object) && object) object->use().stop_watching_scene();
+          },
+          "system"_a, "Tells its pages that the world has ended; changes of its system are noted no more.")
+      .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a, "camera_position"_a,
+           "camera_target"_a, "ground"_a.none())
+      .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a)
+      .def("set_actions", &set_actions, "actions"_a,
+           "Tuples of name, key, label, help, whether it is on a body, and button.")
+      .def(
+          "set_class",
+          [](RoomObject& self, const std::string& name, std::vector<protocol::Part> parts) {
+            self.presenter.set_class(name, std::move(parts));
+          },
+          "name"_a, "parts"_a, "How bodies, or ties, of a class are drawn, in all looks.")
+      .def(
+          "assign",
+          [](RoomObject& self, const BodyHandle& body, const std::string& name, bool odd) {
+            self.presenter.assign(body.id, name, odd);
+          },
+          "body"_a, "name"_a, "odd"_a, "Gives a body the looks of a class.")
+      .def(
+          "assign_slot",
+          [](RoomObject& self, std::uint32_t slot, std::uint32_t generation, const std::string& name, bool odd) {
+            self.presenter.assign({slot, generation}, name, odd);
+          },
+          "slot"_a, "generation"_a, "name"_a, "odd"_a, "The same for a simulator's body.")
+      .def(
+          "set_statics",
+          [](RoomObject& self, std::vector<protocol::Part> parts) { self.presenter.set_statics(std::move(parts)); },
+          "parts"_a, "What is only drawn.")
+      .def("publish", &publish, "system"_a, "The newest poses of a system, and what has changed in it.")
+      .def("publish_simulated", &publish_simulated, "bodies"_a.none(), "slots"_a, "places"_a, "holds"_a, nb::kw_only(),
+           "step"_a, "time"_a, "structure_version"_a, "energy"_a, "gap"_a, "extent"_a,
+           "The same of a simulator of the script, see iota.Simulator; bodies: None where none has changed. Raises\n"
+           "ValueError for shapes of slots and places other than (n,) and (n, 7).")
+      .def_prop_ro(
+          "needs_all",
+          [](RoomObject& self) { return self.presenter.needs_all() || !self.presenter.assigned().empty(); },
+          "Whether a simulator's bodies have to be told next time though they have not changed.")
+      .def("body_of", &body_of, "event"_a, "system"_a,
+           nb::sig("def body_of(self, event: InputEvent, system: System) -> Body | None"),
+           "The body that an event is on; None once it is gone.")
+      .def("slot_of", &slot_of, "event"_a, "Of the simulator's body that an event is on; None once it is gone.")
+      .def(
+          "take_warnings", [](RoomObject& self) { return self.presenter.take_warnings(); },
+          "What could not be drawn as it is, since the last call.")
+      .def(
+          "notice",
+          [](RoomObject& self, std::uint32_t client, std::uint8_t level, const std::string& title,
+             const std::string& text, const std::string& hint) { self.use().notice(client, level, title, text, hint); },
+          "client"_a, "level"_a, "title"_a, "text"_a, "hint"_a = "",
+          "A card on one client's page, or on all (client 0). level: a NoticeLevel.")
+      .def(
+          "effect",
+          [](RoomObject& self, const std::string& kind, VectorArgument position) {
+            self.use().effect(kind, narrow(to_vec3(position, "position")));
+          },
+          "kind"_a, "position"_a, "Flash, sound and haptic pulse: 'break', 'join' or 'grab' at a place (m).")
+      .def(
+          "take_input", [](RoomObject& self) { return self.use().take_input(); },
+          "What happened since the last call, in order of arrival.");
+}
+
+}  // namespace iota::bindings

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "net/presenter.h"
+#include "net/server.h"
+
+#include <nanobind/nanobind.h>
+
+#include <memory>
+#include <utility>
+
+namespace iota::bindings {
+
+namespace nb = nanobind;
+
+/// What a Python `Server` holds.
+class ServerObject {
+ public:
+  explicit ServerObject(std::unique_ptr<net::Server> server) : server_(std::move(server)) {}
+
+  /// Throws ValueError once it is closed.
+  net::Server& use() {
+    if (!server_) throw nb::value_error("this server is closed");
+    return *server_;
+  }
+  void close() {
+    const nb::gil_scoped_release unlocked;  // it waits a moment for what is on its way
+    server_.reset();
+  }
+
+ private:
+  std::unique_ptr<net::Server> server_;
+};
+
+/// What a Python `Room` holds: a world on a server, and what its viewers have been told.
+struct RoomObject {
+  explicit RoomObject(std::unique_ptr<net::Room> opened) : room(std::move(opened)) {}
+
+  /// Throws ValueError once it is closed.
+  net::Room& use() {
+    if (!room) throw nb::value_error("this world is not on its server any more");
+    return *room;
+  }
+
+  std::unique_ptr<net::Room> room;
+  net::Presenter presenter;
+  protocol::WorldState state;  ///< that pages have been told of
+};
+
+void bind_room(nb::module_& module);
+
+}  // namespace iota::bindings

@@ -1,0 +1,1 @@
+../../build/quick/python/iota/_protocol.py

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A server that several worlds share."""
+
+from __future__ import annotations
+
+from iota import _core
+from iota.world import page
+
+
+class Server(_core.Server):
+    """Serves the page for several worlds on one port; each is given it by `World.serve` or `World.start`.
+
+    A page asks for a world by `world=ID` in its address, see `World.url`; without it, it is shown the first. hello_time: s,
+    from the upgrade of a connection to its first frame. Raises OSError where the port is taken.
+
+        server = iota.Server(port=8080)
+        for name, world in worlds.items():
+            print(world.start(server=server, id=name))
+    """
+
+    def __init__(self, host: str = "127.0.0.1", port: int = 8080, hello_time: float = 10.0) -> None:
+        folder, token = str(page.page_folder()), page.token()
+        super().__init__(host=host, port=port, page_folder=folder, token=token, hello_time=hello_time)

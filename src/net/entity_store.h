@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a world's viewers are told of its entities: the latest record of each, and which of them a client has not got yet.
+// A client that is behind is later sent each record once, as it is then; one that has just come is sent all.
+#pragma once
+
+#include "net/out_queue.h"
+
+#include <iota_protocol.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+namespace iota::net {
+
+inline constexpr std::size_t entity_kind_count = std::tuple_size_v<protocol::EntityKinds>;
+
+/// Place of a kind in protocol::EntityKinds.
+template <class Entity, std::size_t I = 0>
+constexpr std::uint8_t entity_kind() {
+  if constexpr (std::is_same_v<Entity, std::tuple_element_t<I, protocol::EntityKinds>>)
+    return I;
+  else
+    return entity_kind<Entity, I + 1>();
+}
+
+std::string_view entity_kind_name(std::uint8_t kind);
+
+/// Changes of entities, in order: records, and ids of what is gone.
+class EntityChanges {
+ public:
+  void set(std::uint8_t kind, protocol::Id id, std::span<const std::uint8_t> record);
+  void destroy(std::uint8_t kind, protocol::Id id);
+  bool empty() const { return items_.empty(); }
+
+  /// visit(kind, id, record): without a record the entity is gone.
+  template <class Visit>
+  void for_each(Visit visit) const {
+    for (const Item& item : items_) visit(item.kind, item.id, std::span(bytes_).subspan(item.begin, item.size));
+  }
+
+ private:
+  struct Item {
+    std::uint8_t kind = 0;
+    protocol::Id id;
+    std::size_t begin = 0, size = 0;
+  };
+  std::vector<Item> items_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+class EntityStore {
+ public:
+  void apply(const EntityChanges& changes);
+
+  /// Rises with each change of an entity.
+  std::uint64_t version() const { return version_; }
+  /// The messages that bring a client from `version` to the present; 0: one that knows nothing. Shared by all clients that
+  /// are equally far.
+  const std::vector<Frame>& frames_since(std::uint64_t version);
+  /// Of what is, or was last, in each slot of a kind.
+  std::span<const std::uint32_t> generations(std::uint8_t kind) const { return generations_[kind]; }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffff;
+  struct Entry {
+    std::uint8_t kind = 0;
+    protocol::Id id;
+    std::uint64_t version = 0;  ///< when it changed last
+    std::uint32_t older = none, newer = none;
+    std::vector<std::uint8_t> record;  ///< empty: gone
+  };
+  Entry& entry_at(std::uint8_t kind, std::uint32_t slot);
+  void move_to_newest(std::uint32_t index);
+
+  std::vector<Entry> entries_;
+  std::array<std::vector<std::uint32_t>, entity_kind_count> index_of_;     ///< by slot
+  std::array<std::vector<std::uint32_t>, entity_kind_count> generations_;  ///< by slot
+  std::uint32_t newest_ = none;
+  std::uint64_t version_ = 0;
+
+  std::uint64_t framed_from_ = 0, framed_to_ = 0;
+  std::vector<Frame> frames_;
+};
+
+}  // namespace iota::net

@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "net/presenter.h"
+
+#include "shape/shape.h"
+
+#include <iota/system.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace iota::net {
+namespace {
+
+/// Finer than a page shows. The same point of a body that has moved gives the same number, and is not told again.
+constexpr double least_length = 1e-6;
+constexpr std::size_t most_triangles = 50'000;
+constexpr std::size_t most_record_bytes = 8 << 20;
+constexpr double usual_thickness = 0.03;
+constexpr const char* every_look = "*";
+constexpr double of_body = 0.1;  // length of what is drawn as long as its body, m: any
+constexpr std::array tie_names{"spring", "rope", "rod"};
+
+/// 0 for what is not finite: a world that has gone wrong is shown as far as it can be.
+float rounded(double value) {
+  return std::isfinite(value) ? static_cast<float>(std::round(value / least_length) * least_length) + 0.0F : 0.0F;
+}
+protocol::Vec3 to_wire(const Vec3& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
+protocol::Quat to_wire(const Quaternion& q) { return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)}; }
+float size(double value) { return std::isfinite(value) ? static_cast<float>(value) : 0.0F; }
+
+/// Its name and its sizes, as in protocol/shapes.json; a mesh has vertices and triangles instead.
+protocol::Shape to_wire(const Shape& shape) {
+  protocol::Shape wire{std::string(shape::name(shape)), {}, {}, {}};
+  const std::size_t count = shape::size_names(shape).size();
+  const shape::Data data = shape::to_data(shape);
+  for (std::size_t i = 0; i < count; ++i) wire.sizes.push_back(size(data.sizes[i]));
+  const Mesh* const mesh = std::get_if<Mesh>(&shape);
+  if (mesh == nullptr) return wire;
+  for (const Vec3& v : mesh->vertices)
+    for (const double x : {v.x, v.y, v.z}) wire.vertices.push_back(size(x));
+  for (const auto& triangle : mesh->triangles)
+    wire.triangles.insert(wire.triangles.end(), triangle.begin(), triangle.end());
+  return wire;
+}
+
+protocol::Part make_part(std::string look, protocol::Shape shape, std::string material) {
+  protocol::Part part;
+  part.look = std::move(look), part.shape = std::move(shape), part.material = std::move(material);
+  part.rotation = {0, 0, 0, 1};
+  part.color = protocol::no_color;
+  return part;
+}
+
+protocol::BodyKind kind_of(BodyKind kind) {
+  switch (kind) {
+    case BodyKind::static_: return protocol::BodyKind::static_;
+    case BodyKind::scripted: return protocol::BodyKind::scripted;
+    case BodyKind::inactive: return protocol::BodyKind::inactive;
+    default: return protocol::BodyKind::dynamic;  // a resting one is drawn alike
+  }
+}
+
+protocol::TieKind kind_of(DrawnTie::Kind kind) {
+  return std::array{protocol::TieKind::spring, protocol::TieKind::rope,
+                    protocol::TieKind::rod}[static_cast<std::size_t>(kind)];
+}
+
+protocol::Anchor to_wire(const Anchor& anchor) {
+  return {anchor.body ? anchor.body.slot : protocol::no_body, to_wire(anchor.point)};
+}
+
+Vec3 rotated(const Quaternion& q, const Vec3& v) {
+  const Vec3 u{q.x, q.y, q.z}, t = 2 * cross(u, v);
+  return v + q.w * t + cross(u, t);
+}
+
+std::pair<Vec3, Box> box_around(const Mesh& mesh) {
+  Vec3 low = mesh.vertices.front(), high = low;
+  for (const Vec3& v : mesh.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  return {0.5 * (low + high), Box{high - low}};
+}
+
+/// The looks that a class has parts for, and the first part of each.
+std::vector<std::pair<std::string, const protocol::Part*>> first_parts(const std::vector<protocol::Part>& parts) {
+  std::vector<std::pair<std::string, const protocol::Part*>> first;
+  for (const protocol::Part& part : parts)
+    if (std::ranges::find(first, part.look, [](const auto& known) { return known.first; }) == first.end())
+      first.emplace_back(part.look, &part);
+  return first;
+}
+
+}  // namespace
+
+// ------------------------------------------------------------------------------------------------------- the script's
+
+void Presenter::set_class(const std::string& name, std::vector<protocol::Part> parts) {
+  const auto [place, is_new] = classes_.try_emplace(name);
+  Class& known = place->second;
+  if (!is_new && known.parts == parts) return;
+  known.is_solid = std::ranges::any_of(parts, [](const protocol::Part& part) { return part.shape.kind == "solid"; });
+  known.parts = std::move(parts);
+  // Bodies of a new class are yet to be assigned to it.
+  needs_all_ = needs_all_ || !is_new || std::ranges::find(tie_names, name) != tie_names.end();
+}
+
+void Presenter::assign(BodyId body, const std::string& name, bool odd) {
+  assignments_[body] = {name, odd};
+  assigned_.push_back(body);
+}
+
+void Presenter::set_statics(std::vector<protocol::Part> parts) {
+  statics_ = std::move(parts);
+  statics_changed_ = true;
+}
+
+// ------------------------------------------------------------------------------------------------------------ telling
+
+template <class Entity>
+void Presenter::tell(std::uint32_t slot, Entity entity, bool is_other) {
+  constexpr std::uint8_t kind = entity_kind<Entity>();
+  if (told_[kind].size() <= slot) told_[kind].resize(slot + std::size_t{1});
+  Told& known = told_[kind][slot];
+  if (!known.is_there || is_other) ++known.generation;
+  entity.id = {slot, known.generation};
+  std::vector<std::uint8_t> record;
+  protocol::append_record(entity, record);
+  known.is_listed = true;
+  if (known.is_there && known.record == record) return;
+  known.is_there = true;
+  out_.set(kind, entity.id, record);
+  known.record = std::move(record);
+}
+
+void Presenter::forget(std::uint8_t kind, std::uint32_t slot) {
+  if (slot >= told_[kind].size() || !told_[kind][slot].is_there) return;
+  Told& known = told_[kind][slot];
+  known.is_there = false;
+  known.record.clear();
+  out_.destroy(kind, {slot, known.generation});
+}
+
+template <class Entity>
+void Presenter::forget(std::uint32_t slot) {
+  forget(entity_kind<Entity>(), slot);
+}
+
+EntityChanges Presenter::present(const SceneChanges& changes) {
+  out_ = {};
+  if (changes.is_whole)
+    for (std::vector<Told>& kind : told_)
+      for (Told& known : kind) known.is_listed = false;
+  if (thickness_ == 0) choose_thickness(changes);
+  if (needs_all_) {
+    needs_all_ = false;
+    for (std::size_t kind = 0; kind < tie_names.size(); ++kind) {
+      const std::uint32_t before = tie_styles_[kind];
+      tie_styles_[kind] = use_tie_style(kind);
+      if (before != protocol::no_style) release_style(before);
+    }
+  }
+  assigned_.clear();
+  for (const DrawnBody& body : changes.bodies.set) present_body(body);
+  for (const auto& [body, articulate] : changes.memberships) tell(body, protocol::MembershipEntity{{}, articulate});
+  for (const DrawnTie& tie : changes.ties.set)
+    tell(tie.slot, protocol::TieEntity{{},
+                                       kind_of(tie.kind),
+                                       tie_styles_[static_cast<std::size_t>(tie.kind)],
+                                       size(std::max(tie.length, 0.0)),
+                                       to_wire(tie.a),
+                                       to_wire(tie.b)});
+  for (const DrawnJoint& joint : changes.joints.set)
+    tell(joint.slot, protocol::JointEntity{{}, joint.kind, to_wire(joint.a), to_wire(joint.b), to_wire(joint.axis)});
+  for (const DrawnNail& nail : changes.nails.set) tell(nail.slot, protocol::NailEntity{{}, to_wire(nail.at)});
+  for (const DrawnParticleSet& set : changes.particle_sets.set)
+    tell(set.slot, protocol::ParticleSetEntity{{}, set.active, set.capacity});
+  if (statics_changed_) present_statics();
+
+  for (const std::uint32_t slot : changes.bodies.gone) forget_body(slot);
+  for (const std::uint32_t slot : changes.ties.gone) forget<protocol::TieEntity>(slot);
+  for (const std::uint32_t slot : changes.joints.gone) forget<protocol::JointEntity>(slot);
+  for (const std::uint32_t slot : changes.nails.gone) forget<protocol::NailEntity>(slot);
+  for (const std::uint32_t slot : changes.particle_sets.gone) forget<protocol::ParticleSetEntity>(slot);
+  if (changes.is_whole) forget_unlisted();
+  return std::move(out_);
+}
+
+void Presenter::present_body(const DrawnBody& body) {
+  const std::uint32_t slot = body.id.slot;
+  if (bodies_.size() <= slot) bodies_.resize(slot + std::size_t{1});
+  DrawnAs& drawn = bodies_[slot];
+  const bool is_other = body.is_new || drawn.id != body.id;
+  const auto assignment = assignments_.find(body.id);
+  const bool is_assigned = assignment != assignments_.end();
+  const std::uint32_t style = style_of(body, is_assigned ? &assignment->second : nullptr);
+  const double length = body.particles == 2 && body.lines.size() == 1 ? body.lines[0].length : 0;
+  tell(slot, protocol::BodyEntity{{}, kind_of(body.kind), style, is_assigned && assignment->second.odd, size(length)},
+       is_other);
+  if (drawn.style != protocol::no_style) release_style(drawn.style);
+  drawn = {body.id, style};
+}
+
+void Presenter::forget_body(std::uint32_t slot) {
+  forget<protocol::BodyEntity>(slot);
+  forget<protocol::MembershipEntity>(slot);
+  if (slot >= bodies_.size() || bodies_[slot].style == protocol::no_style) return;
+  release_style(bodies_[slot].style);
+  bodies_[slot] = {};
+}
+
+void Presenter::present_statics() {
+  statics_changed_ = false;
+  for (std::uint32_t slot = 0; slot < statics_.size(); ++slot)
+    tell(slot, protocol::StaticShapeEntity{{}, statics_[slot]});
+  for (auto slot = static_cast<std::uint32_t>(statics_.size()); slot < told<protocol::StaticShapeEntity>().size();
+       ++slot)
+    forget<protocol::StaticShapeEntity>(slot);
+}
+
+/// After a list of everything: what it has left out is gone. Styles and static shapes are in no such list.
+void Presenter::forget_unlisted() {
+  for (std::uint32_t slot = 0; slot < bodies_.size(); ++slot)
+    if (!told<protocol::BodyEntity>()[slot].is_listed) forget_body(slot);
+  for (const std::uint8_t kind : {entity_kind<protocol::TieEntity>(), entity_kind<protocol::JointEntity>(),
+                                  entity_kind<protocol::NailEntity>(), entity_kind<protocol::ParticleSetEntity>()})
+    for (std::uint32_t slot = 0; slot < told_[kind].size(); ++slot)
+      if (!told_[kind][slot].is_listed) forget(kind, slot);
+}
+
+std::optional<BodyId> Presenter::body(protocol::Id id) const {
+  const std::vector<Told>& told = told_[entity_kind<protocol::BodyEntity>()];
+  if (id.slot >= told.size() || !told[id.slot].is_there || told[id.slot].generation != id.generation)
+    return std::nullopt;
+  return bodies_[id.slot].id;
+}
+
+protocol::Id Presenter::id_of(BodyId body) const {
+  const std::vector<Told>& told = told_[entity_kind<protocol::BodyEntity>()];
+  if (body.slot >= bodies_.size() || bodies_[body.slot].id != body || !told[body.slot].is_there) return {};
+  return {body.slot, told[body.slot].generation};
+}
+
+// ------------------------------------------------------------------------------------------------------------- styles
+
+/// In whole: the shapes of solids in the materials of the body's class, the class itself where that has shapes for it, and
+/// else what suits its particles.
+std::uint32_t Presenter::style_of(const DrawnBody& body, const Assignment* assignment) {
+  const auto named = assignment ? classes_.find(assignment->name) : classes_.end();
+  const Class* const own = named == classes_.end() ? nullptr : &named->second;
+  if (!body.solids.empty() && (!assignment || body.solids.size() > 1 || (own && own->is_solid)))
+    return use_style("(solid)", parts_of_solids(body, own));
+  if (assignment && !own) return protocol::no_style;
+  if (own && (body.particles <= 2 || !body.solids.empty()))
+    return own->is_solid ? protocol::no_style : use_style(assignment->name, own->parts);
+  if (body.particles == 1) return use_style("(particle)", {part_of_particle(body)});
+  if (body.particles == 2)
+    return use_style("(rod)", {make_part(every_look, to_wire(Capsule{thickness_, of_body}), "steel")});
+  return use_style("(body)", parts_along_lines(body, own));
+}
+
+std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, const Class* like) {
+  const protocol::Part paint = make_part(every_look, {}, "paint");
+  std::vector<protocol::Part> parts;
+  for (const auto& [look, first] :
+       like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_look), &paint}}) {
+    for (const DrawnSolid& solid : body.solids) {
+      const Mesh* const mesh = std::get_if<Mesh>(&solid.shape);
+      if (mesh && mesh->triangles.empty()) continue;
+      protocol::Part& part = parts.emplace_back(make_part(look, {}, first->material));
+      part.color = first->color;
+      part.offset = to_wire(solid.position);
+      part.rotation = to_wire(solid.orientation);
+      if (mesh && mesh->triangles.size() > most_triangles) {
+        const auto [center, box] = box_around(*mesh);
+        part.shape = to_wire(box);
+        part.offset = to_wire(solid.position + rotated(solid.orientation, center));
+        warnings_.push_back("the page draws meshes of at most " + std::to_string(most_triangles) +
+                            " triangles, that of body " + std::to_string(body.id.slot) + " has " +
+                            std::to_string(mesh->triangles.size()) +
+                            ": its box is drawn instead. Make it coarser, or give the body a class with another look");
+      } else {
+        part.shape = to_wire(solid.shape);
+      }
+    }
+  }
+  return parts;
+}
+
+/// Capsules along the lines of a body, as thick as the shapes of its class.
+std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, const Class* like) const {
+  const protocol::Part plain = make_part(every_look, to_wire(Capsule{thickness_, of_body}), "steel");
+  std::vector<protocol::Part> parts;
+  for (const auto& [look, first] :
+       like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_look), &plain}}) {
+    const std::vector<float>& sizes = first->shape.sizes;
+    // A torus is as thick as its tube, its second size.
+    const std::size_t thick = first->shape.kind == "torus" ? 1 : 0;
+    constexpr std::array round{"sphere", "cylinder", "capsule", "torus", "cone"};
+    const bool is_round = std::ranges::find(round, first->shape.kind) != round.end() && sizes.size() > thick;
+    const double radius = is_round && sizes[thick] > 0 ? sizes[thick] : thickness_;
+    const std::size_t before = parts.size();
+    const auto add = [&, first = first](protocol::Shape shape) -> protocol::Part& {
+      protocol::Part& part = parts.emplace_back(make_part(look, std::move(shape), first->material));
+      part.color = first->color;
+      return part;
+    };
+    for (const DrawnLine& line : body.lines) {
+      if (!(line.length > 0)) continue;
+      protocol::Part& part = add(to_wire(Capsule{radius, line.length}));
+      part.offset = to_wire(line.center);
+      part.rotation = to_wire(line.turn);
+    }
+    if (parts.size() == before) add(to_wire(Sphere{radius}));
+  }
+  return parts;
+}
+
+/// A ball; one with attributes has its radius and color, in steps, so that many share a style.
+protocol::Part Presenter::part_of_particle(const DrawnBody& body) const {
+  if (!body.attributes) return make_part(every_look, to_wire(Sphere{2 * thickness_}), "brass");
+  double radius = 2 * thickness_;
+  if (body.attributes->radius > 0) {
+    const double step = std::pow(10, std::floor(std::log10(body.attributes->radius)));
+    radius = std::round(body.attributes->radius / step) * step;
+  }
+  protocol::Part part = make_part(every_look, to_wire(Sphere{radius}), "paint");
+  part.color = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double share = std::round(std::clamp<double>(body.attributes->color[i], 0, 1) * 7);
+    part.color = part.color << 8 | static_cast<std::uint32_t>(share * 255 / 7);
+  }
+  return part;
+}
+
+std::uint32_t Presenter::use_tie_style(std::size_t kind) {
+  const auto own = classes_.find(tie_names[kind]);
+  if (own != classes_.end()) return use_style(tie_names[kind], own->second.parts);
+  switch (static_cast<DrawnTie::Kind>(kind)) {
+    case DrawnTie::Kind::spring:
+      return use_style(
+          "spring",
+          {make_part(every_look, to_wire(Torus{0.8 * thickness_, 0.12 * thickness_}), "steel")});
+    case DrawnTie::Kind::rope:
+      return use_style("rope", {make_part(every_look, to_wire(Cylinder{0.35 * thickness_, of_body}), "rope")});
+    default: return use_style("rod", {make_part(every_look, to_wire(Cylinder{0.4 * thickness_, of_body}), "steel")});
+  }
+}
+
+/// Slot of the style; each use has to be released.
+std::uint32_t Presenter::use_style(std::string_view name, const std::vector<protocol::Part>& parts) {
+  protocol::StyleEntity style{{}, std::string(name), parts};
+  std::vector<std::uint8_t> record;
+  protocol::append_record(style, record);
+  if (record.size() > most_record_bytes) {
+    warnings_.push_back("the class " + std::string(name) +
+                        " has more shapes than a page can be told: nothing is drawn for it");
+    return protocol::no_style;
+  }
+  const auto [known, is_new] = styles_.try_emplace(std::move(record));
+  if (is_new) {
+    if (free_styles_.empty()) {
+      known->second.slot = static_cast<std::uint32_t>(styles_by_slot_.size());
+      styles_by_slot_.push_back(known);
+    } else {
+      known->second.slot = free_styles_.back();
+      free_styles_.pop_back();
+      styles_by_slot_[known->second.slot] = known;
+    }
+    tell(known->second.slot, std::move(style));
+  }
+  ++known->second.uses;
+  return known->second.slot;
+}
+
+void Presenter::release_style(std::uint32_t slot) {
+  const auto style = styles_by_slot_[slot];
+  if (--style->second.uses > 0) return;
+  forget<protocol::StyleEntity>(slot);
+  styles_.erase(style);
+  free_styles_.push_back(slot);
+}
+
+/// A radius that suits rods of this system, taken once: from their middle length or, without rods, from the size of all.
+void Presenter::choose_thickness(const SceneChanges& changes) {
+  std::vector<double> lengths;
+  for (const DrawnBody& body : changes.bodies.set)
+    if (body.particles == 2 && body.lines.size() == 1) lengths.push_back(body.lines[0].length);
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::ranges::nth_element(lengths, middle);
+  if (middle != lengths.end() && *middle > 0)
+    thickness_ = 0.06 * *middle;
+  else
+    thickness_ = changes.extent > 0 ? 0.02 * changes.extent : usual_thickness;
+}
+
+}  // namespace iota::net

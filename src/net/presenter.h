@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// From what the engine reports of its bodies, and the looks that a script gave them, to the records of entities that viewers
+// are told. Remembers what it has told, so that only differences go out.
+#pragma once
+
+#include "net/entity_store.h"
+
+#include <iota/scene.h>
+#include <iota_protocol.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace iota::net {
+
+class Presenter {
+ public:
+  /// How bodies, or ties, of a class are drawn: its parts in all looks. A part of kind "solid" stands for the shape that a
+  /// body was given as, and says what that is made of. Changing a class needs all bodies anew.
+  void set_class(const std::string& name, std::vector<protocol::Part> parts);
+  /// Gives a body the looks of a class; the body has to be among the engine's next changes.
+  void assign(BodyId body, const std::string& name, bool odd);
+  /// Things that are only drawn.
+  void set_statics(std::vector<protocol::Part> parts);
+
+  /// Whether the next changes have to be whole.
+  bool needs_all() const { return needs_all_; }
+  /// Bodies that have to be among the next changes.
+  const std::vector<BodyId>& assigned() const { return assigned_; }
+
+  /// What viewers have to be told of the engine's changes.
+  EntityChanges present(const SceneChanges& changes);
+  /// Plain sentences about what could not be drawn as it is, since the last call.
+  std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+
+  /// The body that a viewer means; nothing when it is gone.
+  std::optional<BodyId> body(protocol::Id id) const;
+  /// What viewers call a body; null where they have not been told of it.
+  protocol::Id id_of(BodyId body) const;
+
+ private:
+  struct Told {
+    std::uint32_t generation = 0;
+    bool is_there = false, is_listed = false;
+    std::vector<std::uint8_t> record;
+  };
+  struct Class {
+    std::vector<protocol::Part> parts;
+    bool is_solid = false;
+  };
+  struct Assignment {
+    std::string name;
+    bool odd = false;
+  };
+  struct DrawnAs {
+    BodyId id;
+    std::uint32_t style = protocol::no_style;
+  };
+  struct Style {
+    std::uint32_t slot = 0, uses = 0;
+  };
+
+  /// Tells of an entity unless it is known as it is. Another thing than was in its slot gets a new generation.
+  template <class Entity>
+  void tell(std::uint32_t slot, Entity entity, bool is_other = false);
+  template <class Entity>
+  void forget(std::uint32_t slot);
+  void forget(std::uint8_t kind, std::uint32_t slot);
+  template <class Entity>
+  std::vector<Told>& told() {
+    return told_[entity_kind<Entity>()];
+  }
+
+  void present_body(const DrawnBody& body);
+  void forget_body(std::uint32_t slot);
+  void present_tie(const DrawnTie& tie);
+  void present_statics();
+  void forget_unlisted();
+
+  std::uint32_t style_of(const DrawnBody& body, const Assignment* assignment);
+  std::vector<protocol::Part> parts_of_solids(const DrawnBody& body, const Class* like);
+  std::vector<protocol::Part> parts_along_lines(const DrawnBody& body, const Class* like) const;
+  protocol::Part part_of_particle(const DrawnBody& body) const;
+  std::uint32_t use_tie_style(std::size_t kind);
+  std::uint32_t use_style(std::string_view name, const std::vector<protocol::Part>& parts);
+  void release_style(std::uint32_t slot);
+  void choose_thickness(const SceneChanges& changes);
+
+  std::map<std::string, Class, std::less<>> classes_;
+  std::map<BodyId, Assignment> assignments_;
+  std::vector<BodyId> assigned_;
+  std::vector<protocol::Part> statics_;
+  bool needs_all_ = true, statics_changed_ = false;
+  double thickness_ = 0;  ///< radius that suits rods of this system, m; 0: not known yet
+
+  std::array<std::vector<Told>, entity_kind_count> told_;  ///< by slot
+  std::vector<DrawnAs> bodies_;                            ///< by slot
+  std::map<std::vector<std::uint8_t>, Style> styles_;      ///< by their records
+  std::vector<std::map<std::vector<std::uint8_t>, Style>::iterator> styles_by_slot_;
+  std::vector<std::uint32_t> free_styles_;
+  std::array<std::uint32_t, 3> tie_styles_{protocol::no_style, protocol::no_style, protocol::no_style};
+
+  EntityChanges out_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace iota::net

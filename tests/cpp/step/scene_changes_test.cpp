@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a viewer is told step by step adds up to what there is.
+#include <gtest/gtest.h>
+#include <iota/scene.h>
+#include <iota/system.h>
+
+#include <map>
+#include <random>
+#include <string>
+
+namespace iota {
+namespace {
+
+/// A viewer that keeps what it is told, as text. Places within bodies are left out: edits that contradict each other bend
+/// bodies that they do not touch.
+class Viewer {
+ public:
+  void take(const SceneChanges& changes) {
+    if (changes.is_whole) bodies_.clear(), memberships_.clear(), ties_.clear(), joints_.clear(), nails_.clear();
+    for (const DrawnBody& body : changes.bodies.set) bodies_[body.id.slot] = text(body);
+    for (const Membership& m : changes.memberships) memberships_[m.body] = std::to_string(m.articulate);
+    for (const DrawnTie& tie : changes.ties.set)
+      ties_[tie.slot] = std::to_string(static_cast<int>(tie.kind)) + text(tie.length) + text(tie.a) + text(tie.b);
+    for (const DrawnJoint& joint : changes.joints.set) joints_[joint.slot] = joint.kind + text(joint.a) + text(joint.b);
+    for (const DrawnNail& nail : changes.nails.set) nails_[nail.slot] = text(nail.at);
+    for (const std::uint32_t slot : changes.bodies.gone) bodies_.erase(slot), memberships_.erase(slot);
+    for (const std::uint32_t slot : changes.ties.gone) ties_.erase(slot);
+    for (const std::uint32_t slot : changes.joints.gone) joints_.erase(slot);
+    for (const std::uint32_t slot : changes.nails.gone) nails_.erase(slot);
+  }
+  bool operator==(const Viewer&) const = default;
+  std::size_t bodies() const { return bodies_.size(); }
+
+  /// Where the two differ, for a failure.
+  std::string difference(const Viewer& other) const {
+    std::string out;
+    const auto compare = [&](const char* what, const Things& mine, const Things& theirs) {
+      for (const auto& [slot, thing] : mine)
+        if (const auto found = theirs.find(slot); found == theirs.end() || found->second != thing)
+          out += what + (" " + std::to_string(slot)) + ": " + thing + " instead of " +
+                 (found == theirs.end() ? "nothing" : found->second) + "\n";
+    };
+    for (const auto& [what, things] : {std::pair{"body", &Viewer::bodies_},
+                                       {"membership", &Viewer::memberships_},
+                                       {"tie", &Viewer::ties_},
+                                       {"joint", &Viewer::joints_},
+                                       {"nail", &Viewer::nails_}}) {
+      compare(what, this->*things, other.*things);
+      compare(what, other.*things, this->*things);
+    }
+    return out;
+  }
+
+ private:
+  using Things = std::map<std::uint32_t, std::string>;
+  static std::string text(double value) { return " " + std::to_string(std::lround(value * 1e4)); }
+  static std::string text(const Anchor& at) {
+    return " @" + std::to_string(at.body.slot) + "." + std::to_string(at.body.generation);
+  }
+  static std::string text(const DrawnBody& body) {
+    return std::to_string(body.id.generation) + " " + std::to_string(static_cast<int>(body.kind)) + " " +
+           std::to_string(body.particles) + " " + std::to_string(body.solids.size()) + " " +
+           std::to_string(body.lines.size());
+  }
+
+  Things bodies_, memberships_, ties_, joints_, nails_;
+};
+
+/// Edits at random; what an edit refuses is left out.
+class Editor {
+ public:
+  explicit Editor(std::uint32_t seed) : random_(seed) {}
+
+  void edit(System& system) {
+    try {
+      apply(system, random_() % 16);
+    } catch (const std::invalid_argument&) {
+    }
+  }
+
+ private:
+  template <class Ids>
+  auto any(const Ids& ids) {
+    return ids[random_() % ids.size()];
+  }
+  Vec3 place() {
+    std::uniform_real_distribution<double> at(-1, 1);
+    return {at(random_), at(random_), at(random_)};
+  }
+  void apply(System& system, std::uint32_t what) {
+    const auto particles = system.particles();
+    if (particles.size() < 12 || what < 3) {
+      const BodyId body = system.create_body();
+      const ParticleId p = system.create_particle(body, place()), q = system.create_particle(body, place());
+      if (what == 1) (void)system.create_cosmetic_bond(p, q);
+      return;
+    }
+    const ParticleId p = any(particles), q = any(particles);
+    switch (what) {
+      case 3: (void)system.combine(p, q); break;
+      case 4: (void)system.combine(system.body(p), system.body(q)); break;
+      case 5: (void)system.separate(p, q); break;
+      case 6: (void)system.separate(p, any(system.ring(p))); break;
+      case 7: system.destroy(p); break;
+      case 8: system.destroy(system.body(p)); break;
+      case 9: system.is_nailed(p) ? system.release(p) : system.nail(p); break;
+      case 10: (void)system.create_bond(p, q, SpringLaw{.stiffness = 1, .length = 0.5}); break;
+      case 11:
+        if (!system.bonds().empty()) system.destroy(any(system.bonds()));
+        break;
+      case 12:
+        (void)system.create_constraint(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = 3});
+        break;
+      case 13:
+        if (!system.constraints().empty()) system.set_active(any(system.constraints()), random_() % 2);
+        break;
+      case 14: system.set_kind(system.body(p), random_() % 2 ? BodyKind::static_ : BodyKind::dynamic); break;
+      case 15: system.set_active(system.body(p), random_() % 2); break;
+    }
+  }
+
+  std::mt19937 random_;
+};
+
+TEST(SceneChanges, what_is_told_edit_by_edit_adds_up_to_what_there_is) {
+  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+    System system;
+    Editor editor(seed);
+    Viewer viewer;
+    viewer.take(system.take_scene_changes());
+    const Snapshot start = system.snapshot();
+    for (int round = 0; round < 40; ++round) {
+      for (int edits = 0; edits < 3; ++edits) editor.edit(system);
+      if (round == 20) system.restore(start);
+      const SceneChanges changes = system.take_scene_changes();
+      EXPECT_EQ(changes.is_whole, round == 20);
+      viewer.take(changes);
+      Viewer fresh;
+      fresh.take(system.take_scene_changes(true));
+      ASSERT_TRUE(viewer == fresh) << "seed " << seed << ", round " << round << "\n" << viewer.difference(fresh);
+    }
+  }
+}
+
+TEST(SceneChanges, a_step_without_an_edit_tells_nothing) {
+  System system;
+  const BodyId body = system.create_body();
+  (void)system.create_particle(body, {0, 0, 0});
+  (void)system.take_scene_changes();
+  (void)system.step(0.01);
+  const SceneChanges changes = system.take_scene_changes();
+  EXPECT_FALSE(changes.is_whole);
+  EXPECT_TRUE(changes.bodies.set.empty() && changes.bodies.gone.empty() && changes.memberships.empty());
+}
+
+TEST(SceneChanges, a_cut_touches_its_own_bodies_and_the_articulate_of_the_smaller_side) {
+  System system;
+  std::vector<ParticleId> ends;
+  for (int i = 0; i < 1000; ++i) {
+    const BodyId link = system.create_body();
+    const ParticleId p = system.create_particle(link, {0.1 * i, 0, 0}),
+                     q = system.create_particle(link, {0.1 * i + 0.1, 0, 0});
+    if (!ends.empty()) (void)system.combine(ends.back(), p);
+    ends.push_back(q);
+  }
+  EXPECT_EQ(system.take_scene_changes().bodies.set.size(), 1000u);
+  const ParticleId cut = system.ring(ends[899])[1];
+  ASSERT_TRUE(system.separate(ends[899], cut).changed);
+  const SceneChanges changes = system.take_scene_changes();
+  EXPECT_LE(changes.bodies.set.size(), 2u);
+  EXPECT_EQ(changes.memberships.size(), 100u);
+  EXPECT_EQ(changes.events.size(), 1u);
+}
+
+TEST(SceneChanges, a_body_made_after_a_restore_is_new_though_its_id_was_in_use) {
+  System system;
+  (void)system.create_particle(system.create_body(), {0, 0, 0});
+  (void)system.take_scene_changes();
+  const Snapshot start = system.snapshot();
+  const BodyId first = system.create_body();
+  (void)system.create_particle(first, {1, 0, 0});
+  (void)system.take_scene_changes();
+  system.restore(start);
+  const BodyId second = system.create_body();
+  (void)system.create_particle(second, {2, 0, 0});
+  ASSERT_EQ(first, second);
+  const SceneChanges changes = system.take_scene_changes();
+  ASSERT_EQ(changes.bodies.set.size(), 2u);
+  EXPECT_FALSE(changes.bodies.set[0].is_new);
+  EXPECT_TRUE(changes.bodies.set[1].is_new);
+}
+
+TEST(SceneChanges, events_come_when_something_happens_and_not_when_it_is_called_off_or_undone) {
+  System system;
+  const auto point = [&](double x) { return system.create_particle(system.create_body(), {x, 0, 0}); };
+  const ParticleId p = point(0), q = point(1);
+  (void)system.take_scene_changes();
+  const auto kinds = [&] {
+    std::string out;
+    for (const ViewEvent& event : system.take_scene_changes().events)
+      out += event.kind == ViewEvent::Kind::join ? 'j' : 'b';
+    return out;
+  };
+  (void)system.combine(p, q, 0.05);
+  EXPECT_EQ(kinds(), "") << "not yet";
+  for (int i = 0; i < 10; ++i) (void)system.step(0.01);
+  EXPECT_EQ(kinds(), "j");
+  (void)system.separate(p, q);
+  EXPECT_EQ(kinds(), "b");
+  system.nail(p), system.nail(p), system.release(p);
+  EXPECT_EQ(kinds(), "jb");
+  system.begin_edit();
+  (void)system.combine(p, q);
+  (void)system.end_edit();
+  system.undo();
+  EXPECT_EQ(kinds(), "");
+}
+
+}  // namespace
+}  // namespace iota

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Generates the C++, Python and TypeScript sides of the protocol; see tools/generate_protocol.py."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+def fragment(name: str) -> str:
+    """Text of a file beside this one that is copied into the generated code."""
+    return (Path(__file__).parent / name).read_text(encoding="utf-8").rstrip("\n")

@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws all bodies: one instanced mesh for each part of each style, tints that ease, outlines. It also holds the packed data for
+// picking, so that a pick agrees with the picture. An edit touches only the instances of the bodies that it names.
+
+import { Group, type Color } from "three";
+import { BodyKind, type BodyEntity, type Id } from "../../protocol/generated.ts";
+import { InstancePool } from "../instance_pool.ts";
+import { materialOf } from "../materials.ts";
+import type { DrawnPart, Outline } from "../outline.ts";
+import type { Pickable } from "../pickable.ts";
+import { mostSlots, type PoseBuffer } from "../pose_buffer.ts";
+import type { Detail } from "../shapes/kind.ts";
+import { bodyReach, makeGeometry, placeShape, sizeOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
+import type { EntityView } from "./entity.ts";
+import type { Styles, StyleUser } from "./style.ts";
+
+/** Up to here bodies are few enough for round outlines; above, vertices cost too much. */
+const fineUpTo = 160;
+const growSeconds = 0.15;
+/** A new look starts from this size. */
+const regrownSize = 0.6;
+const tintSeconds = 0.07;
+/** Numbers of a placement: offset xyz, rotation xyzw, scale along x. */
+const placementSize = 8;
+
+/** All instances of one part of one style. */
+class Batch {
+  readonly pool: InstancePool;
+  private readonly shape_: Shape;
+  private detail_: Detail = "fine";
+  /** Of each instance in its body's frame. */
+  private placements_ = new Float32Array(placementSize);
+
+  /** Made for the first body's length: where all are alike, round ends and the lay of ropes stay unscaled. */
+  constructor(shape: Shape, root: Group) {
+    this.shape_ = shape;
+    this.pool = new InstancePool(makeGeometry(shape, this.detail_), materialOf(shape.material, shape.color), 16).addTo(root);
+  }
+
+  get placements(): Float32Array {
+    return this.placements_;
+  }
+
+  /** Returns the index of the new instance. */
+  add(body: number, { shape, offset, rotation }: PlacedShape): number {
+    const index = this.pool.add(body);
+    const room = placementSize * this.pool.members.length;
+    if (this.placements_.length < room) this.placements_ = grown(this.placements_, room);
+    this.placements_.set(offset, placementSize * index);
+    this.placements_.set(rotation, placementSize * index + 3);
+    this.placements_[placementSize * index + 7] = this.stretchOf_(shape);
+    if (this.detail_ === "fine" && this.pool.count > fineUpTo) {
+      this.detail_ = "coarse";
+      this.pool.setGeometry(makeGeometry(this.shape_, this.detail_));
+    }
+    return index;
+  }
+
+  /** Returns the body whose instance has taken the index, or -1. */
+  remove(index: number): number {
+    const last = this.pool.count - 1;
+    this.placements_.copyWithin(placementSize * index, placementSize * last, placementSize * (last + 1));
+    return this.pool.remove(index);
+  }
+
+  /** How much longer a shape is than the one that the geometry was made for; 1 for shapes without a length. */
+  private stretchOf_(shape: Shape): number {
+    const madeFor = sizeOf(this.shape_, "length");
+    return madeFor > 0 ? sizeOf(shape, "length") / madeFor : 1;
+  }
+}
+
+/** Where a part of a body is drawn. */
+class Instance implements DrawnPart {
+  readonly batch: Batch;
+  index: number;
+
+  constructor(batch: Batch, index: number) {
+    this.batch = batch;
+    this.index = index;
+  }
+
+  get mesh(): InstancePool["mesh"] {
+    return this.batch.pool.mesh;
+  }
+}
+
+interface Body {
+  entity: BodyEntity;
+  shapes: readonly PlacedShape[];
+  /** One for each shape. */
+  instances: readonly Instance[];
+}
+
+const noInstances: readonly Instance[] = [];
+const noShapes: readonly PlacedShape[] = [];
+
+export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
+  readonly root = new Group();
+  readonly poses: PoseBuffer;
+  pickable = new Uint32Array(0);
+  pickableCount = 0;
+  reach = new Float32Array(0);
+
+  private readonly styles_: Styles;
+  private readonly bodyGone_: (body: number) => void;
+  private readonly bodies_ = new Map<number, Body>();
+  /** By style: a batch for each of its parts. */
+  private readonly batches_ = new Map<number, Batch[]>();
+  private readonly outlines_: Outline[] = [];
+  /** Slots that are drawn, in order, and those of them that can be held: worked out anew after a change. */
+  private drawn_ = new Uint32Array(0);
+  private drawnCount_ = 0;
+  private dynamic_ = new Uint32Array(0);
+  private dynamicCount_ = 0;
+  private listed_ = true;
+  private grown_ = new Float32Array(0);
+  private tintGoal_ = new Float32Array(0);
+  private tintNow_ = new Float32Array(0);
+
+  /** `bodyGone` is called for each body that is destroyed, before its slot can be used again. */
+  constructor(poses: PoseBuffer, styles: Styles, bodyGone: (body: number) => void) {
+    this.poses = poses;
+    this.styles_ = styles;
+    this.bodyGone_ = bodyGone;
+    styles.addUser(this);
+  }
+
+  get position(): Float32Array {
+    return this.poses.position;
+  }
+
+  get rotation(): Float32Array {
+    return this.poses.rotation;
+  }
+
+  // --- EntityView
+
+  create(entity: BodyEntity): void {
+    const { slot } = entity.id;
+    if (slot >= mostSlots) throw new Error(`body ${slot} is not drawn: a page draws bodies with slots below ${mostSlots}`);
+    this.poses.reserve(slot + 1);
+    this.reserve_();
+    this.grown_[slot] = 0;
+    this.tintNow_[4 * slot + 3] = 0;
+    this.tintGoal_[4 * slot + 3] = 0;
+    const body: Body = { entity, shapes: noShapes, instances: noInstances };
+    this.bodies_.set(slot, body);
+    this.addInstances_(body);
+  }
+
+  change(entity: BodyEntity): void {
+    const body = this.bodies_.get(entity.id.slot);
+    if (body === undefined) return;
+    this.removeInstances_(body);
+    body.entity = entity;
+    this.addInstances_(body);
+  }
+
+  destroy(slot: number): void {
+    const body = this.bodies_.get(slot);
+    if (body === undefined) return;
+    this.removeInstances_(body);
+    this.bodies_.delete(slot);
+    this.poses.forget(slot);
+    for (const outline of this.outlines_) if (outline.body === slot) outline.body = -1;
+    this.bodyGone_(slot);
+  }
+
+  /** Interpolates poses; to be called before picking. */
+  update(seconds: number, now: number): void {
+    this.poses.sample(now, seconds);
+    if (!this.listed_) this.list_();
+    let count = 0;
+    for (let index = 0; index < this.dynamicCount_; index++) {
+      const body = this.dynamic_[index];
+      if (this.poses.known[body] === 1) this.pickable[count++] = body;
+    }
+    this.pickableCount = count;
+  }
+
+  /** Writes instance matrices and tints. */
+  draw(seconds: number): void {
+    const grow = seconds / growSeconds;
+    const ease = 1 - Math.exp(-seconds / tintSeconds);
+    const { known } = this.poses;
+    for (let index = 0; index < this.drawnCount_; index++) {
+      const body = this.drawn_[index];
+      if (known[body] === 1) this.grown_[body] = Math.min(1, this.grown_[body] + grow);
+      this.easeTint_(body, ease);
+    }
+    for (const batches of this.batches_.values()) for (const batch of batches) this.drawBatch_(batch);
+    for (const outline of this.outlines_) {
+      outline.follow(this.has(outline.body) ? (this.bodies_.get(outline.body)?.instances ?? noInstances) : noInstances);
+    }
+  }
+
+  // --- Pickable
+
+  /** None before the body's first pose has arrived. */
+  shapesOf(body: number): readonly PlacedShape[] {
+    return this.poses.known[body] === 1 ? (this.bodies_.get(body)?.shapes ?? noShapes) : noShapes;
+  }
+
+  // --- StyleUser
+
+  restyle(style: number): void {
+    const bodies = this.bodiesOf_(style);
+    for (const batch of this.batches_.get(style) ?? []) batch.pool.dispose();
+    this.batches_.delete(style);
+    for (const body of bodies) this.addInstances_(body);
+  }
+
+  restyleAll(): void {
+    for (const batches of this.batches_.values()) for (const batch of batches) batch.pool.dispose();
+    this.batches_.clear();
+    for (const body of this.bodies_.values()) {
+      this.grown_[body.entity.id.slot] = regrownSize;
+      this.addInstances_(body);
+    }
+  }
+
+  // --- for the rest of the page
+
+  /** Slots of all bodies, drawn or not. */
+  slots(): IterableIterator<number> {
+    return this.bodies_.keys();
+  }
+
+  /** Whether a body is drawn now. */
+  has(body: number): boolean {
+    return this.shapesOf(body).length > 0;
+  }
+
+  /** The whole id of a body, for the server; undefined when there is none in the slot. */
+  idOf(body: number): Id | undefined {
+    return this.bodies_.get(body)?.entity.id;
+  }
+
+  /** The slot of a body of this very generation, -1: it is not there. */
+  slotOf(id: Id): number {
+    return this.idOf(id.slot)?.generation === id.generation ? id.slot : -1;
+  }
+
+  /** "link 12"; empty when there is no such body. */
+  nameOf(body: number): string {
+    const entity = this.bodies_.get(body)?.entity;
+    return entity === undefined ? "" : `${this.styles_.nameOf(entity.style)} ${body}`;
+  }
+
+  addOutline(outline: Outline): void {
+    this.outlines_.push(outline);
+    this.root.add(outline.root);
+  }
+
+  /** Tint of a body for this frame; amount 0..1. Without a call a body eases back to its own color. */
+  setTint(body: number, color: Color, amount: number): void {
+    if (4 * body + 3 >= this.tintGoal_.length) return;
+    this.tintGoal_[4 * body] = color.r;
+    this.tintGoal_[4 * body + 1] = color.g;
+    this.tintGoal_[4 * body + 2] = color.b;
+    this.tintGoal_[4 * body + 3] = amount;
+  }
+
+  clearTints(): void {
+    for (let at = 3; at < this.tintGoal_.length; at += 4) this.tintGoal_[at] = 0;
+  }
+
+  // --- inside
+
+  /** Puts a body's parts into the batches of its style. */
+  private addInstances_(body: Body): void {
+    const { id: { slot }, style, kind, odd, length } = body.entity;
+    this.listed_ = false;
+    const shapes = kind === BodyKind.inactive ? [] : this.styles_.shapesOf(style);
+    if (shapes.length === 0) {
+      body.shapes = noShapes;
+      body.instances = noInstances;
+      return;
+    }
+    const placed = shapes.map((shape) => placeShape(shape, odd, length > 0 ? length : null));
+    const batches = this.batchesOf_(style, placed);
+    body.shapes = placed;
+    body.instances = placed.map((part, index) => new Instance(batches[index], batches[index].add(slot, part)));
+    this.reach[slot] = bodyReach(placed);
+  }
+
+  private removeInstances_(body: Body): void {
+    this.listed_ = false;
+    for (const { batch, index } of body.instances) {
+      const moved = this.bodies_.get(batch.remove(index));
+      const instance = moved?.instances.find((other) => other.batch === batch);
+      if (instance !== undefined) instance.index = index;
+    }
+    body.shapes = noShapes;
+    body.instances = noInstances;
+  }
+
+  /** Bodies that have, or wait for, a style. */
+  private bodiesOf_(style: number): readonly Body[] {
+    const drawn = this.batches_.get(style)?.at(0)?.pool;
+    if (drawn === undefined) return [...this.bodies_.values()].filter((body) => body.entity.style === style);
+    return Array.from(drawn.members.subarray(0, drawn.count), (slot) => this.bodies_.get(slot)).filter((body) => body !== undefined);
+  }
+
+  private batchesOf_(style: number, placed: readonly PlacedShape[]): readonly Batch[] {
+    let batches = this.batches_.get(style);
+    if (batches === undefined) {
+      batches = placed.map(({ shape }) => new Batch(shape, this.root));
+      this.batches_.set(style, batches);
+    }
+    return batches;
+  }
+
+  private list_(): void {
+    this.listed_ = true;
+    const count = this.bodies_.size;
+    if (this.drawn_.length < count) {
+      this.drawn_ = new Uint32Array(2 * count);
+      this.dynamic_ = new Uint32Array(2 * count);
+      this.pickable = new Uint32Array(2 * count);
+    }
+    this.drawnCount_ = this.dynamicCount_ = 0;
+    for (const [slot, body] of this.bodies_) {
+      if (body.instances.length === 0) continue;
+      this.drawn_[this.drawnCount_++] = slot;
+      if (body.entity.kind === BodyKind.dynamic) this.dynamic_[this.dynamicCount_++] = slot;
+    }
+  }
+
+  private drawBatch_({ pool, placements }: Batch): void {
+    const { position, rotation, known } = this.poses;
+    const { members, count, matrices, tints } = pool;
+    for (let index = 0; index < count; index++) {
+      const body = members[index];
+      const size = known[body] === 1 ? Math.max(this.grown_[body], 1e-3) : 0;
+      writeMatrix(position, rotation, body, placements, placementSize * index, size, matrices, 16 * index);
+      for (let channel = 0; channel < 4; channel++) tints[4 * index + channel] = this.tintNow_[4 * body + channel];
+    }
+    pool.upload();
+  }
+
+  private easeTint_(body: number, ease: number): void {
+    const at = 4 * body;
+    const goal = this.tintGoal_;
+    const now = this.tintNow_;
+    // A tint that fades out keeps its color; one that comes from nothing starts in its own.
+    if (goal[at + 3] > 0) {
+      const jump = now[at + 3] < 0.02 ? 1 : ease;
+      for (let channel = 0; channel < 3; channel++) now[at + channel] += (goal[at + channel] - now[at + channel]) * jump;
+    }
+    now[at + 3] += (goal[at + 3] - now[at + 3]) * ease;
+  }
+
+  private reserve_(): void {
+    const { capacity } = this.poses;
+    if (this.grown_.length >= capacity) return;
+    this.reach = grown(this.reach, capacity);
+    this.grown_ = grown(this.grown_, capacity);
+    this.tintGoal_ = grown(this.tintGoal_, 4 * capacity);
+    this.tintNow_ = grown(this.tintNow_, 4 * capacity);
+  }
+}
+
+function grown(array: Float32Array, length: number): Float32Array<ArrayBuffer> {
+  const larger = new Float32Array(length);
+  larger.set(array);
+  return larger;
+}
+
+/** Matrix of an instance from body pose and placement, written to out[at .. at + 15]. */
+function writeMatrix(
+  position: Float32Array, rotation: Float32Array, body: number,
+  placement: Float32Array, from: number, size: number, out: ArrayLike<number> & { [index: number]: number }, at: number,
+): void {
+  const bx = rotation[4 * body], by = rotation[4 * body + 1], bz = rotation[4 * body + 2], bw = rotation[4 * body + 3];
+  const ox = placement[from], oy = placement[from + 1], oz = placement[from + 2];
+  const lx = placement[from + 3], ly = placement[from + 4], lz = placement[from + 5], lw = placement[from + 6];
+  const tx = 2 * (by * oz - bz * oy), ty = 2 * (bz * ox - bx * oz), tz = 2 * (bx * oy - by * ox);
+  const x = bw * lx + bx * lw + by * lz - bz * ly;
+  const y = bw * ly - bx * lz + by * lw + bz * lx;
+  const z = bw * lz + bx * ly - by * lx + bz * lw;
+  const w = bw * lw - bx * lx - by * ly - bz * lz;
+  const sx = size * placement[from + 7];
+  out[at] = (1 - 2 * (y * y + z * z)) * sx;
+  out[at + 1] = 2 * (x * y + z * w) * sx;
+  out[at + 2] = 2 * (x * z - y * w) * sx;
+  out[at + 3] = 0;
+  out[at + 4] = 2 * (x * y - z * w) * size;
+  out[at + 5] = (1 - 2 * (x * x + z * z)) * size;
+  out[at + 6] = 2 * (y * z + x * w) * size;
+  out[at + 7] = 0;
+  out[at + 8] = 2 * (x * z + y * w) * size;
+  out[at + 9] = 2 * (y * z - x * w) * size;
+  out[at + 10] = (1 - 2 * (x * x + y * y)) * size;
+  out[at + 11] = 0;
+  out[at + 12] = position[3 * body] + ox + bw * tx + by * tz - bz * ty;
+  out[at + 13] = position[3 * body + 1] + oy + bw * ty + bz * tx - bx * tz;
+  out[at + 14] = position[3 * body + 2] + oz + bw * tz + bx * ty - by * tx;
+  out[at + 15] = 1;
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page does with entities of one kind. One file here for each kind, and one line in entity_list.ts.
+
+import type { Object3D } from "three";
+import type { Id } from "../../protocol/generated.ts";
+
+/** Every record of the schema has an id. */
+export interface Entity {
+  readonly id: Id;
+}
+
+/**
+ * Shows entities of one kind. Slots are unique among those that are alive: before a slot is used again, what was in it is
+ * destroyed. All else is optional.
+ */
+export interface EntityView<Record extends Entity> {
+  /** The drawn objects, if there are any. */
+  readonly root?: Object3D;
+  create(entity: Record): void;
+  /** The same entity is described anew. */
+  change(entity: Record): void;
+  destroy(slot: number): void;
+  /** Once a frame, before pointers are aimed; `now` in ms of performance.now(). */
+  update?(seconds: number, now: number): void;
+  /** Once a frame: writes what the renderer reads. */
+  draw?(seconds: number): void;
+}
+
+/** Keeps the records of a kind that is not drawn by itself. */
+export class EntityRecords<Record extends Entity> implements EntityView<Record> {
+  protected readonly records_ = new Map<number, Record>();
+
+  get size(): number {
+    return this.records_.size;
+  }
+
+  get(slot: number): Record | undefined {
+    return this.records_.get(slot);
+  }
+
+  create(entity: Record): void {
+    this.records_.set(entity.id.slot, entity);
+  }
+
+  change(entity: Record): void {
+    this.records_.set(entity.id.slot, entity);
+  }
+
+  destroy(slot: number): void {
+    this.records_.delete(slot);
+  }
+}

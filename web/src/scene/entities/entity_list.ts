@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one list of entity kinds: a kind of protocol/entities is one file beside this one and one line here.
+
+import type { EntityKind, EntityRecords } from "../../protocol/generated.ts";
+import type { PoseBuffer } from "../pose_buffer.ts";
+import { BodyView } from "./body.ts";
+import type { EntityView } from "./entity.ts";
+import { JointView } from "./joint.ts";
+import { Memberships } from "./membership.ts";
+import { NailView } from "./nail.ts";
+import { ParticleSetView } from "./particle_set.ts";
+import { StaticShapeView } from "./static_shape.ts";
+import { Styles } from "./style.ts";
+import { TieView } from "./tie.ts";
+
+/** What views ask of the page. */
+export interface EntityHost {
+  readonly poses: PoseBuffer;
+  /** A body is gone; called before its slot can be used again. */
+  bodyGone(body: number): void;
+  /** Something cannot be drawn: `title` says what, `text` why. */
+  warn(title: string, text: string): void;
+}
+
+/** A view for each kind of the schema: where one is missing, this file does not compile. */
+export type EntityViews = { readonly [K in EntityKind]: EntityView<EntityRecords[K]> };
+
+/** In the order in which their frames go: bodies are interpolated before what hangs on them is drawn. */
+export function makeEntityViews({ poses, bodyGone, warn }: EntityHost) {
+  const style = new Styles(warn);
+  return {
+    style,
+    body: new BodyView(poses, style, bodyGone),
+    membership: new Memberships(),
+    tie: new TieView(poses, style),
+    joint: new JointView(),
+    nail: new NailView(),
+    particleSet: new ParticleSetView(),
+    staticShape: new StaticShapeView(warn),
+  } satisfies EntityViews;
+}
+
+export type Entities = ReturnType<typeof makeEntityViews>;

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws what ties bodies together: springs as coils that stretch, ropes that sag when they are slack, rods.
+// A tie moves with its two ends, so nothing is sent for it but once.
+
+import { Group, Matrix4, Quaternion, Vector3 } from "three";
+import { NO_BODY, TieKind, type Anchor, type TieEntity } from "../../protocol/generated.ts";
+import { InstancePool } from "../instance_pool.ts";
+import { materialOf } from "../materials.ts";
+import type { PoseBuffer } from "../pose_buffer.ts";
+import { makeCoil } from "../shapes/coil.ts";
+import { makeGeometry, sizeOf, type Shape } from "../shapes/shape.ts";
+import { shapeKind } from "../shapes/shape_list.ts";
+import type { EntityView } from "./entity.ts";
+import type { Styles, StyleUser } from "./style.ts";
+
+/** Pieces of a rope: straight ones, that lie along a parabola when it is slack. */
+const ropePieces = 12;
+
+/** All ties of one kind and style. */
+interface Batch {
+  readonly style: number;
+  readonly pool: InstancePool;
+  /** That the geometry was made for, m. */
+  readonly length: number;
+}
+
+interface Tie {
+  entity: TieEntity;
+  /** Null: its style has no shape. */
+  batch: Batch | null;
+  index: number;
+}
+
+const along = new Vector3(1, 0, 0);
+
+export class TieView implements EntityView<TieEntity>, StyleUser {
+  readonly root = new Group();
+
+  private readonly poses_: PoseBuffer;
+  private readonly styles_: Styles;
+  private readonly ties_ = new Map<number, Tie>();
+  /** By style and kind. */
+  private readonly batches_ = new Map<string, Batch>();
+  private readonly from_ = new Vector3();
+  private readonly to_ = new Vector3();
+  private readonly start_ = new Vector3();
+  private readonly end_ = new Vector3();
+  private readonly direction_ = new Vector3();
+  private readonly size_ = new Vector3();
+  private readonly turn_ = new Quaternion();
+  private readonly matrix_ = new Matrix4();
+
+  constructor(poses: PoseBuffer, styles: Styles) {
+    this.poses_ = poses;
+    this.styles_ = styles;
+    styles.addUser(this);
+  }
+
+  // --- EntityView
+
+  create(entity: TieEntity): void {
+    const tie: Tie = { entity, batch: null, index: 0 };
+    this.ties_.set(entity.id.slot, tie);
+    this.add_(tie);
+  }
+
+  change(entity: TieEntity): void {
+    const tie = this.ties_.get(entity.id.slot);
+    if (tie === undefined) return;
+    this.remove_(tie);
+    tie.entity = entity;
+    this.add_(tie);
+  }
+
+  destroy(slot: number): void {
+    const tie = this.ties_.get(slot);
+    if (tie === undefined) return;
+    this.remove_(tie);
+    this.ties_.delete(slot);
+  }
+
+  draw(): void {
+    for (const tie of this.ties_.values()) if (tie.batch !== null) this.placePieces_(tie, tie.batch);
+    for (const { pool } of this.batches_.values()) pool.upload();
+  }
+
+  // --- StyleUser
+
+  restyle(style: number): void {
+    for (const [key, batch] of this.batches_) if (batch.style === style) this.dispose_(key, batch);
+    for (const tie of this.ties_.values()) if (tie.entity.style === style) this.add_(tie);
+  }
+
+  restyleAll(): void {
+    for (const [key, batch] of this.batches_) this.dispose_(key, batch);
+    for (const tie of this.ties_.values()) this.add_(tie);
+  }
+
+  // --- inside
+
+  private add_(tie: Tie): void {
+    const { id, style, kind } = tie.entity;
+    const shape = this.styles_.shapesOf(style).at(0);
+    tie.batch = null;
+    if (shape === undefined) return;
+    const key = `${style} ${kind}`;
+    tie.batch = this.batches_.get(key) ?? this.makeBatch_(tie.entity, shape);
+    this.batches_.set(key, tie.batch);
+    tie.index = tie.batch.pool.add(id.slot);
+  }
+
+  private remove_({ batch, index }: Tie): void {
+    if (batch === null) return;
+    const moved = this.ties_.get(batch.pool.remove(index));
+    if (moved !== undefined) moved.index = index;
+  }
+
+  private makeBatch_({ kind, style, length: atRest }: TieEntity, shape: Shape): Batch {
+    const rope = kind === TieKind.rope;
+    const pieces = rope ? ropePieces : 1;
+    const radius = sizeOf(shape, "radius");
+    const length = Math.max(atRest / pieces, 2 * radius);
+    // A spring's shape is one turn of it: a ring with its wire.
+    const geometry = kind === TieKind.spring
+      ? makeCoil(radius, sizeOf(shape, "tube") || 0.15 * radius, length)
+      : makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: [radius, length] }, "coarse");
+    const pool = new InstancePool(geometry, materialOf(shape.material, shape.color), 16, pieces).addTo(this.root);
+    return { style, pool, length };
+  }
+
+  private dispose_(key: string, batch: Batch): void {
+    batch.pool.dispose();
+    this.batches_.delete(key);
+  }
+
+  private placePieces_({ entity, index }: Tie, { pool: { mesh, pieces }, length: madeFor }: Batch): void {
+    const shown = this.calcEnd_(entity.a, this.from_) && this.calcEnd_(entity.b, this.to_);
+    const slack = entity.kind === TieKind.rope ? Math.max(0, entity.length - this.from_.distanceTo(this.to_)) : 0;
+    // Depth of the parabola of that length over a level span. Steep spans hang a little too deep, which does not show.
+    const sag = Math.sqrt(0.375 * slack * entity.length);
+    this.start_.copy(this.from_);
+    for (let piece = 1; piece <= pieces; piece++) {
+      const t = piece / pieces;
+      this.end_.lerpVectors(this.from_, this.to_, t);
+      this.end_.y -= 4 * sag * t * (1 - t);
+      this.direction_.subVectors(this.end_, this.start_);
+      const length = this.direction_.length();
+      if (shown && length > 1e-9) {
+        this.turn_.setFromUnitVectors(along, this.direction_.divideScalar(length));
+        this.start_.add(this.end_).multiplyScalar(0.5);
+        this.matrix_.compose(this.start_, this.turn_, this.size_.set(length / madeFor, 1, 1));
+      } else {
+        this.matrix_.makeScale(0, 0, 0);
+      }
+      mesh.setMatrixAt(index * pieces + piece - 1, this.matrix_);
+      this.start_.copy(this.end_);
+    }
+  }
+
+  /** World place of an end; false where its body is not known yet. */
+  private calcEnd_({ body, point }: Anchor, out: Vector3): boolean {
+    out.set(point[0], point[1], point[2]);
+    if (body === NO_BODY) return true;
+    if (this.poses_.known[body] !== 1) return false;
+    const { position, rotation } = this.poses_;
+    this.turn_.fromArray(rotation, 4 * body);
+    out.applyQuaternion(this.turn_);
+    out.x += position[3 * body];
+    out.y += position[3 * body + 1];
+    out.z += position[3 * body + 2];
+    return true;
+  }
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// One instanced mesh whose members come and go. It grows in place and is never made anew: what one member costs to add or to
+// remove does not depend on how many others there are.
+
+import { InstancedBufferAttribute, InstancedMesh, type BufferGeometry, type MeshStandardMaterial, type Object3D } from "three";
+
+export class InstancePool {
+  readonly mesh: InstancedMesh<BufferGeometry, MeshStandardMaterial>;
+  /** Slots of the members, in the order of their instances. */
+  members = new Uint32Array(0);
+  count = 0;
+  /** Instances of one member. */
+  readonly pieces: number;
+
+  private capacity_: number;
+  /** What of the arrays is in use, for the upload. */
+  private readonly matrixRange_ = { start: 0, count: 0 };
+  private readonly tintRange_ = { start: 0, count: 0 };
+
+  /** Room for `capacity` members of `pieces` instances each. The geometry is its own: it gets a `tint` for each instance. */
+  constructor(geometry: BufferGeometry, material: MeshStandardMaterial, capacity: number, pieces = 1) {
+    this.pieces = pieces;
+    this.capacity_ = Math.max(1, capacity);
+    this.members = new Uint32Array(this.capacity_);
+    this.mesh = new InstancedMesh(geometry, material, this.capacity_ * pieces);
+    this.mesh.count = 0;
+    // Bodies move each frame: a bounding sphere kept right would cost more than it culls.
+    this.mesh.frustumCulled = false;
+    this.mesh.castShadow = this.mesh.receiveShadow = true;
+    geometry.setAttribute("tint", new InstancedBufferAttribute(new Float32Array(4 * this.capacity_ * pieces), 4));
+  }
+
+  get matrices(): Float32Array {
+    return this.mesh.instanceMatrix.array as Float32Array;
+  }
+
+  /** rgb and amount of each instance. */
+  get tints(): Float32Array {
+    return this.mesh.geometry.getAttribute("tint").array as Float32Array;
+  }
+
+  /** Adds a member and returns its index; its instances are invisible until their matrices are written. */
+  add(slot: number): number {
+    if (this.count === this.capacity_) this.grow_();
+    const index = this.count++;
+    this.members[index] = slot;
+    this.mesh.count = this.count * this.pieces;
+    this.matrices.fill(0, 16 * index * this.pieces, 16 * (index + 1) * this.pieces);
+    return index;
+  }
+
+  /** Removes a member; the last one takes its index. Returns that one's slot, or -1 where nothing moved. */
+  remove(index: number): number {
+    const last = --this.count;
+    this.mesh.count = this.count * this.pieces;
+    if (index === last) return -1;
+    const { pieces, matrices } = this;
+    this.members[index] = this.members[last];
+    matrices.copyWithin(16 * index * pieces, 16 * last * pieces, 16 * (last + 1) * pieces);
+    return this.members[index];
+  }
+
+  /** To be called after the arrays were written. */
+  upload(): void {
+    const instances = this.count * this.pieces;
+    uploadRange(this.mesh.instanceMatrix, this.matrixRange_, 16 * instances);
+    uploadRange(this.mesh.geometry.getAttribute("tint") as InstancedBufferAttribute, this.tintRange_, 4 * instances);
+  }
+
+  /** Draws another geometry in place of the one before, which is disposed of. */
+  setGeometry(geometry: BufferGeometry): void {
+    const before = this.mesh.geometry;
+    geometry.setAttribute("tint", before.getAttribute("tint"));
+    this.mesh.geometry = geometry;
+    before.dispose();
+  }
+
+  /** Puts the mesh away for good. */
+  dispose(): void {
+    this.mesh.removeFromParent();
+    this.mesh.geometry.dispose();
+    this.mesh.dispose();
+  }
+
+  addTo(root: Object3D): this {
+    root.add(this.mesh);
+    return this;
+  }
+
+  private grow_(): void {
+    this.capacity_ *= 2;
+    const members = new Uint32Array(this.capacity_);
+    members.set(this.members);
+    this.members = members;
+    const instances = this.capacity_ * this.pieces;
+    this.mesh.instanceMatrix = larger(this.matrices, 16, instances);
+    this.mesh.geometry.setAttribute("tint", larger(this.tints, 4, instances));
+  }
+}
+
+/** The range is one object for all frames, which `addUpdateRange` would make anew each time. */
+function uploadRange(attribute: InstancedBufferAttribute, range: { start: number; count: number }, count: number): void {
+  range.count = count;
+  if (attribute.updateRanges.length === 0) attribute.updateRanges.push(range);
+  attribute.needsUpdate = true;
+}
+
+function larger(array: Float32Array, itemSize: number, count: number): InstancedBufferAttribute {
+  const grown = new Float32Array(itemSize * count);
+  grown.set(array);
+  return new InstancedBufferAttribute(grown, itemSize);
+}

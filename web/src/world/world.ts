@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// The world as the server described it: settings, state, entities and poses. It knows nothing of the rest of the page.
+
+import {
+  NO_BODY, type ActionEntry, type ClientEntry, type PosesBuffer, type ServerMessage, type WorldSettings,
+} from "../protocol/generated.ts";
+import { makeEntityViews, type Entities } from "../scene/entities/entity_list.ts";
+import { PoseBuffer } from "../scene/pose_buffer.ts";
+import { EntityStore } from "./entity_store.ts";
+
+/** One hand on one body as the server last told. */
+export interface Hold {
+  client: number;
+  hold: number;
+  body: number;
+  readonly point: Float32Array;
+  readonly target: Float32Array;
+  /** N. */
+  force: number;
+}
+
+/** Which part of the world changed; listeners redraw only that. */
+export type Change = "settings" | "actions" | "clients" | "look";
+
+/** Told of what happens in the world. */
+export interface WorldListener {
+  changed(what: Change): void;
+  /** A body is gone; called before its slot can be used again. */
+  bodyGone(body: number): void;
+  /** Something cannot be shown: `title` says what, `text` why. */
+  warn(title: string, text: string): void;
+}
+
+const noSettings: WorldSettings = {
+  type: "worldSettings", title: "", looks: [], look: "", cameraPosition: [0, 1, 3], cameraTarget: [0, 1, 0], hasGround: false, ground: 0,
+};
+
+export class World {
+  settings: Readonly<WorldSettings> = noSettings;
+  actions: readonly ActionEntry[] = [];
+  clients: readonly ClientEntry[] = [];
+  paused = false;
+  /** Times real time. */
+  speed = 1;
+  stepMs = 0;
+  step = 0;
+  /** Simulated, s. */
+  time = 0;
+  structureVersion = 0;
+  /** Largest hinge separation, m. */
+  gap = 0;
+  /** The first `holdCount` are valid; entries are reused. */
+  readonly holds: Hold[] = [];
+  holdCount = 0;
+  readonly poses = new PoseBuffer();
+  readonly entities: Entities;
+
+  private readonly store_: EntityStore;
+  private readonly listener_: WorldListener;
+  private look_ = "";
+  private lookChosen_ = false;
+  private joined_ = false;
+
+  constructor(listener: WorldListener) {
+    this.listener_ = listener;
+    const warn = (title: string, text: string) => listener.warn(title, text);
+    this.entities = makeEntityViews({ poses: this.poses, bodyGone: (body) => listener.bodyGone(body), warn });
+    this.store_ = new EntityStore(this.entities, warn);
+  }
+
+  /** Height of the ground, m; null: none. */
+  get ground(): number | null {
+    return this.settings.hasGround ? this.settings.ground : null;
+  }
+
+  /** Name of the look that this page draws. */
+  get look(): string {
+    return this.look_;
+  }
+
+  /** Draws the world in another of its looks, on this page only. */
+  setLook(look: string): void {
+    this.lookChosen_ = true;
+    this.showLook_(look);
+  }
+
+  /** Takes any message but poses; ignores messages that are not about the world. */
+  take(message: ServerMessage): void {
+    switch (message.type) {
+      case "welcome":
+        this.joined_ = true;
+        this.store_.beginPicture();
+        break;
+      case "worldSettings":
+        this.settings = message;
+        if (!this.lookChosen_ || !message.looks.includes(this.look_)) this.showLook_(message.look);
+        this.listener_.changed("settings");
+        break;
+      case "worldState":
+        this.paused = message.paused;
+        this.speed = message.speed;
+        this.stepMs = message.stepMs;
+        break;
+      case "actions":
+        this.actions = message.actions;
+        this.listener_.changed("actions");
+        break;
+      case "clients":
+        this.clients = message.clients;
+        this.listener_.changed("clients");
+        break;
+      case "entitiesSet":
+        this.store_.set(message);
+        break;
+      case "entitiesDestroyed":
+        this.store_.destroy(message);
+        break;
+      default:
+        break;
+    }
+  }
+
+  /** A pose frame, which is only valid during the call; allocates nothing. `now` in ms of performance.now(). */
+  takePoses(poses: PosesBuffer, now: number): void {
+    if (this.joined_) {
+      // The first frame of a connection comes after the whole picture, and what was drawn before may be of another time.
+      this.joined_ = false;
+      this.store_.endPicture();
+      this.poses.clear();
+    }
+    this.step = poses.step;
+    this.time = poses.time;
+    this.structureVersion = poses.structureVersion;
+    this.gap = poses.gap;
+    this.takeHolds_(poses);
+    this.poses.push(poses, now);
+    this.entities.particleSet.takeSparks(poses.sparks);
+  }
+
+  private showLook_(look: string): void {
+    if (look === this.look_) return;
+    this.look_ = look;
+    this.entities.style.showLook(look);
+    this.listener_.changed("look");
+  }
+
+  private takeHolds_({ holds: rows }: PosesBuffer): void {
+    while (this.holds.length < rows.count) {
+      this.holds.push({
+        client: 0, hold: 0, body: NO_BODY, point: new Float32Array(3), target: new Float32Array(3), force: 0,
+      });
+    }
+    this.holdCount = rows.count;
+    for (let row = 0; row < rows.count; row++) {
+      const hold = this.holds[row];
+      hold.client = rows.client[row];
+      hold.hold = rows.hold[row];
+      hold.body = rows.body[row];
+      hold.force = rows.force[row];
+      for (let axis = 0; axis < 3; axis++) {
+        hold.point[axis] = rows.point[3 * row + axis];
+        hold.target[axis] = rows.target[3 * row + axis];
+      }
+    }
+  }
+}

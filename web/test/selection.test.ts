@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+import { describe, expect, it } from "vitest";
+import { Pointer } from "../src/interact/gestures.ts";
+import { Events } from "../src/page/events.ts";
+import { Selection } from "../src/page/selection.ts";
+import type { ClientMessage, Id } from "../src/protocol/generated.ts";
+import { body, bodyEntity, id, part, style, TestWorld } from "./test_world.ts";
+
+/** A selection over two balls, 2 m apart on the x axis, and what it tells the server. */
+class Bench extends TestWorld {
+  readonly sent: ClientMessage[] = [];
+  readonly selection: Selection;
+  readonly pointer = new Pointer("mouse");
+
+  constructor() {
+    super();
+    const session = {
+      clientId: 1,
+      idOf: (slot: number): Id => this.world.entities.body.idOf(slot) ?? id(0, 0),
+      select: (slot: number) => this.sent.push({ type: "select", body: session.idOf(slot) }),
+      send: (message: ClientMessage) => this.sent.push(message),
+    };
+    this.selection = new Selection(this.world, session, { invalidate: () => {} }, new Events());
+    this.selection.gestures.add(this.pointer);
+    this.set("style", style(0, "ball", part("sphere", [0.2])));
+    this.set("body", bodyEntity(0, { id: id(0, 3) }), bodyEntity(1, { id: id(1, 5) }));
+    this.poses([body(0, 1), body(1, 3)]);
+    this.pointer.active = true;
+  }
+
+  override bodyGone(slot: number): void {
+    super.bodyGone(slot);
+    this.selection.bodyGone(slot);
+  }
+
+  aim(x: number): void {
+    this.pointer.origin.set([x, 0, 2]);
+    this.selection.interact();
+  }
+
+  press(pressed: boolean): void {
+    this.pointer.pressed = pressed;
+    this.selection.interact();
+  }
+}
+
+describe("the selection", () => {
+  it("names bodies to the server by slot and generation", () => {
+    const bench = new Bench();
+    bench.aim(3);
+    bench.press(true);
+    expect(bench.sent).toMatchObject([{ type: "select", body: id(1, 5) }, { type: "grabStart", body: id(1, 5) }]);
+  });
+
+  it("does not pass to another body that gets the slot of a selected one", () => {
+    const bench = new Bench();
+    bench.selection.select(1);
+    bench.set("body", bodyEntity(1, { id: id(1, 6) }));
+    expect(bench.selection.selected).toBe(-1);
+    expect(bench.sent.at(-1)).toEqual({ type: "select", body: id(0, 0) });
+  });
+
+  it("lets go of a body that is gone, and holds nothing of the one after it", () => {
+    const bench = new Bench();
+    bench.aim(3);
+    bench.press(true);
+    bench.set("body", bodyEntity(1, { id: id(1, 6) }));
+    bench.poses([body(1, 3)]);
+    expect(bench.selection.held).toBe(-1);
+    expect(bench.sent.filter((message) => message.type === "grabEnd")).toHaveLength(1);
+    bench.aim(3.1); // the hand goes on, closed
+    expect(bench.sent.filter((message) => message.type === "grabMove")).toEqual([]);
+  });
+
+  it("points at nothing where the body that was pointed at is gone", () => {
+    const bench = new Bench();
+    bench.aim(3);
+    expect(bench.selection.hovered).toBe(1);
+    bench.destroy("body", id(1, 5));
+    expect(bench.selection.hovered).toBe(-1);
+    expect(bench.selection.actionBody).toBe(-1);
+  });
+
+  it("names a body that took the slot of another by its own generation", () => {
+    const bench = new Bench();
+    bench.set("body", bodyEntity(1, { id: id(1, 6) }));
+    bench.poses([body(1, 3)]);
+    bench.aim(3);
+    bench.press(true);
+    expect(bench.sent.at(-1)).toMatchObject({ type: "grabStart", body: id(1, 6) });
+  });
+
+  it("goes from body to body, round and round", () => {
+    const bench = new Bench();
+    const selected: number[] = [];
+    for (let time = 0; time < 3; time++) {
+      bench.selection.selectNext(1);
+      selected.push(bench.selection.selected);
+    }
+    expect(selected).toEqual([0, 1, 0]);
+  });
+});

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+import { describe, expect, it } from "vitest";
+import { ActionTarget, BodyKind, ControllerButton, type WorldSettings } from "../src/protocol/generated.ts";
+import { body, bodyEntity, id, part, style, TestWorld } from "./test_world.ts";
+
+const link = style(0, "link",
+  part("capsule", [0.012, 0.1], { look: "rope", material: "rope" }),
+  part("torus", [0.03, 0.008, 0.05], { look: "chain", material: "steel", turn: Math.PI / 2 }));
+const weight = style(1, "weight", part("sphere", [0.1]));
+
+function settings(look: string): WorldSettings {
+  return {
+    type: "worldSettings", title: "chain", looks: ["rope", "chain"], look, cameraPosition: [0, 1, 3], cameraTarget: [0, 1, 0],
+    hasGround: false, ground: 0,
+  };
+}
+
+function told(): TestWorld {
+  const test = new TestWorld();
+  test.join();
+  test.world.take(settings("rope"));
+  test.set("style", link, weight);
+  test.set("body", bodyEntity(0), bodyEntity(7, { odd: true, length: 0.2 }), bodyEntity(9, { style: 1, kind: BodyKind.scripted }));
+  test.poses([body(0, 1), body(7, 2), body(9, 3)]);
+  return test;
+}
+
+describe("the world", () => {
+  it("gives each body its shapes in the look that is shown", () => {
+    const { world, changes } = told();
+    const { body: bodies } = world.entities;
+    expect(bodies.shapesOf(0)[0].shape.sizes[1]).toBeCloseTo(0.1, 6);
+    expect(bodies.shapesOf(7)[0].shape.sizes[1]).toBeCloseTo(0.2, 6);
+    world.setLook("chain");
+    expect(bodies.shapesOf(7)[0].rotation[0]).toBeCloseTo(Math.SQRT1_2, 5);
+    expect(bodies.shapesOf(9)[0].shape.kind.name).toBe("sphere");
+    world.setLook("never heard of");
+    expect(bodies.shapesOf(0)[0].shape.kind.name).toBe("capsule");
+    expect(changes).toEqual(["look", "settings", "look", "look"]);
+  });
+
+  it("names bodies by the script's classes and lets only dynamic ones be held", () => {
+    const { world } = told();
+    const { body: bodies } = world.entities;
+    expect(bodies.nameOf(7)).toBe("link 7");
+    expect(bodies.nameOf(8)).toBe("");
+    expect([...bodies.pickable.subarray(0, bodies.pickableCount)]).toEqual([0, 7]);
+  });
+
+  it("keeps what its own user chose when the script's look changes", () => {
+    const { world } = told();
+    world.take(settings("chain"));
+    expect(world.look).toBe("chain");
+    world.setLook("rope");
+    world.take(settings("chain"));
+    expect(world.look).toBe("rope");
+  });
+
+  it("says once what kind of entity it does not know, and shows all else", () => {
+    const test = told();
+    for (let time = 0; time < 3; time++) test.world.take({ type: "entitiesSet", kind: "hologram", records: new Uint8Array(5) });
+    test.world.take({ type: "entitiesDestroyed", kind: "hologram", ids: [id(1)] });
+    expect(test.warnings).toHaveLength(1);
+    expect(test.warnings[0]).toMatch(/hologram/);
+    expect(test.world.entities.body.has(0)).toBe(true);
+  });
+
+  it("leaves out a part that it cannot draw, and says why", () => {
+    const test = told();
+    test.set("style", { ...weight, parts: [part("blob", [1]), part("sphere", [0.2])] });
+    expect(test.warnings).toEqual([expect.stringMatching(/part of "weight".*"blob"/)]);
+    expect(test.world.entities.body.shapesOf(9)).toHaveLength(1);
+  });
+
+  it("knows which bodies hang together", () => {
+    const test = told();
+    test.set("membership", { id: id(0), articulate: 2 }, { id: id(7), articulate: 2 }, { id: id(9), articulate: 3 });
+    const { membership } = test.world.entities;
+    const marked = new Float32Array(10);
+    membership.fillAlong(7, marked, 1);
+    expect([marked[0], marked[7], marked[9]]).toEqual([1, 1, 0]);
+    test.destroy("membership", id(0));
+    expect(membership.articulateOf(0)).toBe(-1);
+  });
+
+  it("keeps joints, nails and particle sets, though it draws nothing for them", () => {
+    const test = told();
+    const anchor = { body: 0, point: [0, 0, 0] as [number, number, number] };
+    test.set("joint", { id: id(1), kind: "ball", a: anchor, b: anchor, axis: [0, 0, 0] });
+    test.set("nail", { id: id(2), at: anchor });
+    test.set("particleSet", { id: id(3), active: true, capacity: 100 });
+    const { joint, nail, particleSet } = test.world.entities;
+    expect([joint.get(1)?.kind, nail.get(2)?.at.body, particleSet.get(3)?.capacity]).toEqual(["ball", 0, 100]);
+    test.destroy("joint", id(1));
+    expect(joint.size).toBe(0);
+  });
+
+  it("after a lost connection draws on what is there, and drops what is told no more", () => {
+    const test = told();
+    const meshes = test.meshes();
+    test.join();
+    test.world.take(settings("rope"));
+    test.set("style", link, weight);
+    test.set("body", bodyEntity(0), bodyEntity(9, { style: 1, kind: BodyKind.scripted }));
+    expect(test.goneBodies).toEqual([]);
+    test.poses([body(0, 1), body(9, 3)]);
+    expect(test.goneBodies).toEqual([7]);
+    expect(test.meshes()).toEqual(meshes);
+  });
+
+  it("takes actions as they are told", () => {
+    const { world, changes } = told();
+    const action = { name: "break", key: "b", label: "break", help: "", on: ActionTarget.body, button: ControllerButton.a };
+    world.take({ type: "actions", actions: [action] });
+    expect(world.actions).toEqual([action]);
+    expect(changes.at(-1)).toBe("actions");
+  });
+});
