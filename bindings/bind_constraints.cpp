@@ -558,14 +558,15 @@ void bind_makers(nb::class_<SystemObject>& type) {
   };
   on_surface(
       "on_surface", ConstraintKind::surface,
-      "A particle stays on a surface of body (None: the world). surface: any shape but a Mesh, or a function of\n"
+      "A particle stays on a surface of body (None: the world). surface: a shape without sharp edges (a\n"
+      "box or cylinder with a rounding, no cone or mesh), or a function of\n"
       "x, y, z that is 0 on it, negative inside and about the distance (m) near it; `size`, m, is then that of what it describes. It must not use the system; where it raises or returns no\n"
       "finite number, the constraint is switched off and `step` raises ConstraintError. at, orientation: of the surface's\n"
       "frame, None: the body's.");
   on_surface("inside", ConstraintKind::inside,
-             "A particle stays on the inner side of a surface: as `on_surface`, one-sided.");
+             "A particle stays on the inner side of a surface: as `on_surface`, one-sided; edges may be sharp.");
   on_surface("outside", ConstraintKind::outside,
-             "A particle stays on the outer side of a surface: as `on_surface`, one-sided.");
+             "A particle stays on the outer side of a surface: as `on_surface`, one-sided; edges may be sharp.");
   type.def(
       "surface_to_surface",
       [](SystemObject& self, const BodyHandle& a, SurfaceArgument surface_a, const BodyHandle* b,

@@ -26,6 +26,7 @@ struct Box {
 /// Along x, from -length/2 to +length/2.
 struct Cylinder {
   double radius = 0.5, length = 1;
+  double rounding = 0;  ///< radius of its edges, at most its radius and half its length
   friend bool operator==(const Cylinder&, const Cylinder&) = default;
 };
 /// A cylinder along x with half spheres at its ends; `length` is that of the cylinder.

@@ -27,5 +27,5 @@ def from_json(data: dict[str, Any]) -> Shape:
     try:
         shape: Shape = KINDS[kind](**sizes)
     except TypeError:
-        raise ValueError(f"a {kind} has the sizes {', '.join(KINDS[kind].sizes)}, not {', '.join(sizes)}") from None
+        raise ValueError(f"a {kind} is described wrongly by {', '.join(sizes) or 'no sizes'}") from None
     return shape

@@ -324,7 +324,12 @@ std::uint32_t make_constraint(Model& model, const SurfaceConstraintData& spec) {
   c.particles.fill(none);
   c.particles[a_origin] = spec.particle.slot;
   c.surfaces[1] = spec.surface.data;
-  (void)make_surface(model, c.surfaces[1]);
+  const auto surface = make_surface(model, c.surfaces[1]);
+  // Round a sharp edge no step is short enough: a point that is held on it would gain or lose its speed there.
+  if (info(spec.kind).sign == 0 && surface->skin() > 0)
+    cannot(info(spec.kind).name,
+           "the shape has sharp edges, and a point that is held on them has no direction there; "
+           "give a box or cylinder a rounding, or keep the point inside or outside");
   make_frame(model, c, b, b_origin, spec.surface.position, spec.surface.orientation);
   return model.add_constraint(c);
 }

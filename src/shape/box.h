@@ -50,7 +50,8 @@ struct Traits<Box> {
       std::array<double, 3> slab{within(0), within(1), within(2)}, edge = slab;
       slab[k] = c[k] * c[k] + c[k] * r + r * r / 3;
       add(8 * r * c[i] * c[j], slab);
-      for (const std::size_t across : {i, j}) edge[across] = c[across] * c[across] + c[across] * r * 8 / (3 * pi) + r * r / 4;
+      for (const std::size_t across : {i, j})
+        edge[across] = c[across] * c[across] + c[across] * r * 8 / (3 * pi) + r * r / 4;
       add(2 * pi * r * r * c[k], edge);
     }
     const auto corner = [&](std::size_t k) { return c[k] * c[k] + 0.75 * c[k] * r + r * r / 5; };
@@ -69,8 +70,7 @@ struct Traits<Box> {
         gradient[i] = from.sign[i] * from.q[i] / from.length;
         for (int j = 0; j < 3; ++j)
           if (from.q[j] > 0)
-            l.hessian.m[i][j] =
-                bend * ((i == j ? 1 : 0) - gradient[i] * from.sign[j] * from.q[j] / from.length);
+            l.hessian.m[i][j] = bend * ((i == j ? 1 : 0) - gradient[i] * from.sign[j] * from.q[j] / from.length);
       }
       l.value = from.length - b.rounding;
     } else {

@@ -28,7 +28,8 @@ struct Traits<Cone> {
 
   static MassProperties mass(const Cone& c) {
     const double r2 = c.radius * c.radius, l2 = c.length * c.length;
-    return {std::numbers::pi / 3 * r2 * c.length, {-c.length / 4, 0, 0}, mean_squares(3 * l2 / 80, 0.15 * r2, 0.15 * r2)};
+    return {
+        std::numbers::pi / 3 * r2 * c.length, {-c.length / 4, 0, 0}, mean_squares(3 * l2 / 80, 0.15 * r2, 0.15 * r2)};
   }
   static Level level(const Cone& c, const Vec3& p) {
     const Meridian m(p);

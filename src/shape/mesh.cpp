@@ -40,7 +40,8 @@ void require_closed(const Mesh& mesh) {
 /// The point of triangle a b c that is nearest to p (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
 Vec3 closest_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+               d6 = dot(ac, cp);
   if (d1 <= 0 && d2 <= 0) return a;
   if (d3 >= 0 && d4 <= d3) return b;
   const double vc = d1 * d4 - d3 * d2;
@@ -82,7 +83,8 @@ Vec3 Traits<Mesh>::closest(const Mesh& mesh, const Vec3& p) {
 
 bool Traits<Mesh>::is_within(const Mesh& mesh, const Vec3& p) {
   double angle = 0;
-  for (const auto& [a, b, c] : mesh.triangles) angle += solid_angle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], p);
+  for (const auto& [a, b, c] : mesh.triangles)
+    angle += solid_angle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], p);
   return angle > 2 * std::numbers::pi;
 }
 

@@ -31,8 +31,8 @@ template <class S>
 void check_size(const Size<S, double>& size, double value) {
   if (size.range == Range::length_or_0 && value == 0) return;
   if (!(value >= shortest && value <= longest))
-    refuse("the ", size.name, " of ", spoken<S>(), " must be ",
-           size.range == Range::length_or_0 ? "0 or " : "", "between ", shortest, " and ", longest, " m, got ", value);
+    refuse("the ", size.name, " of ", spoken<S>(), " must be ", size.range == Range::length_or_0 ? "0 or " : "",
+           "between ", shortest, " and ", longest, " m, got ", value);
 }
 template <class S>
 void check_size(const Size<S, Vec3>& size, const Vec3& value) {
@@ -43,8 +43,8 @@ void check_size(const Size<S, Vec3>& size, const Vec3& value) {
   }
   for (const double v : {value.x, value.y, value.z})
     if (!(v >= shortest && v <= longest))
-      refuse("each number in the ", size.name, " of ", spoken<S>(), " must be between ", shortest, " and ",
-             longest, " m, got ", v);
+      refuse("each number in the ", size.name, " of ", spoken<S>(), " must be between ", shortest, " and ", longest,
+             " m, got ", v);
 }
 
 }  // namespace
@@ -55,9 +55,8 @@ Data to_data(const Shape& shape) {
   std::visit(
       [&]<class S>(S s) {
         std::size_t at = 0;
-        for_each_size<S>([&](const auto& size) {
-          for_each_number(s.*size.member, [&](double v) { data.sizes.at(at++) = v; });
-        });
+        for_each_size<S>(
+            [&](const auto& size) { for_each_number(s.*size.member, [&](double v) { data.sizes.at(at++) = v; }); });
         if constexpr (requires { Traits<S>::key(s); }) data.key = Traits<S>::key(s);
       },
       shape);
@@ -70,9 +69,8 @@ Shape from_data(const Data& data) {
   for_each_shape([&]<class S>(S s) {
     if (kind++ != data.kind) return;
     std::size_t at = 0;
-    for_each_size<S>([&](const auto& size) {
-      for_each_number(s.*size.member, [&](double& v) { v = data.sizes.at(at++); });
-    });
+    for_each_size<S>(
+        [&](const auto& size) { for_each_number(s.*size.member, [&](double& v) { v = data.sizes.at(at++); }); });
     shape = s;
   });
   if (!shape) refuse("there is no shape number ", data.kind, "; there are ", kind);

@@ -19,7 +19,8 @@ namespace iota::shape {
 /// All points within `tube` of the center line: with the distance d from it, phi = (d^2 - tube^2) / 2 tube.
 template <>
 struct Traits<Torus> {
-  static constexpr std::string_view name = "torus", doc = "A ring in the x-y plane, or with `stretch` a link of a chain.";
+  static constexpr std::string_view name = "torus",
+                                    doc = "A ring in the x-y plane, or with `stretch` a link of a chain.";
   static constexpr std::tuple sizes{
       Size{"radius", &Torus::radius, Range::length, "of its center line, m"},
       Size{"tube", &Torus::tube, Range::length, "radius of its wire, m"},

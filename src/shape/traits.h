@@ -54,12 +54,12 @@ template <class S>
 concept Known = requires(const S& s, const Vec3& p) {
   { Traits<S>::name } -> std::convertible_to<std::string_view>;
   { Traits<S>::doc } -> std::convertible_to<std::string_view>;
-  Traits<S>::sizes;                                                 ///< tuple of Size: those that are plain numbers
-  { Traits<S>::check(s) };                                          ///< throws where sizes, each valid, do not go together
-  { Traits<S>::closest(s, p) } -> std::same_as<Vec3>;               ///< the nearest point of the surface
-  { Traits<S>::is_within(s, p) } -> std::convertible_to<bool>;      ///< inside, or on the surface
-  { Traits<S>::support(s, p) } -> std::same_as<Vec3>;               ///< a farthest point along p, which is not zero
-  { Traits<S>::scale(s) } -> std::convertible_to<double>;           ///< a length to measure violations by, m
+  Traits<S>::sizes;                                             ///< tuple of Size: those that are plain numbers
+  { Traits<S>::check(s) };                                      ///< throws where sizes, each valid, do not go together
+  { Traits<S>::closest(s, p) } -> std::same_as<Vec3>;           ///< the nearest point of the surface
+  { Traits<S>::is_within(s, p) } -> std::convertible_to<bool>;  ///< inside, or on the surface
+  { Traits<S>::support(s, p) } -> std::same_as<Vec3>;           ///< a farthest point along p, which is not zero
+  { Traits<S>::scale(s) } -> std::convertible_to<double>;       ///< a length to measure violations by, m
 };
 
 /// It has a volume, and so a mass: mass(s).

@@ -367,7 +367,8 @@ void System::Implementation::apply(const SetKind& c) {
   const BodyKind before = model.bodies[slot].kind;
   if (before == c.kind) return;
   if (model::is_free(c.kind) && is_endless(model, slot))
-    throw std::invalid_argument(text("body ", slot, " is a half-space, which has no mass: it can only be static or scripted"));
+    throw std::invalid_argument(
+        text("body ", slot, " is a half-space, which has no mass: it can only be static or scripted"));
   if (c.kind == BodyKind::resting) {
     if (before != BodyKind::dynamic)
       throw std::invalid_argument(text("only dynamic bodies can rest; body ", slot, " is none: make it dynamic first"));

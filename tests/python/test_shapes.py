@@ -51,7 +51,7 @@ def test_a_shape_comes_back_from_json(shape: iota.Shape) -> None:
 def test_a_description_that_is_no_shape_is_refused() -> None:
     with pytest.raises(ValueError, match=r"must be one of sphere, box, .* not 'blob'"):
         shapes.from_json({"kind": "blob"})
-    with pytest.raises(ValueError, match="a box has the sizes size, rounding, not width"):
+    with pytest.raises(ValueError, match="a box is described wrongly by width"):
         shapes.from_json({"kind": "box", "width": 3})
     with pytest.raises(ValueError, match="the radius of a sphere must be between"):
         shapes.from_json({"kind": "sphere", "radius": -1})
@@ -98,11 +98,13 @@ def test_any_shape_is_a_look() -> None:
     assert looks.sphere(0.1).of_length(3).shape == iota.Sphere(0.1)
 
 
-def test_a_point_stays_on_the_finite_cylinder_that_is_drawn() -> None:
+def test_a_point_stays_on_the_cylinder_that_is_drawn() -> None:
     system = iota.System(gravity=(0, 0, 0))
     bead = system.body().particle((0.2, 0.5, 0), mass=1, velocity=(0, 0, 2))
-    system.on_surface(bead, iota.Cylinder(0.5, 1))
+    system.on_surface(bead, iota.Cylinder(0.5, 1, rounding=0.1))
     for _ in range(400):
         system.step(0.01)
     assert math.hypot(bead.position.y, bead.position.z) == pytest.approx(0.5, abs=1e-6)
     assert abs(bead.velocity) == pytest.approx(2, rel=1e-9)
+    with pytest.raises(ValueError, match="has sharp edges"):
+        system.on_surface(bead, iota.Cylinder(0.5, 1))

@@ -30,6 +30,7 @@ EXAMPLES = (
     lambda s: iota.Mesh.convex_hull([(0, 0, 0), (s, 0, 0), (0, 2 * s, 0), (0, 0, s), (s, 0, s), (0, 2 * s, s)]),
     lambda s: iota.Ellipsoid((s, 2 * s, 3 * s)),
     lambda s: iota.Ellipsoid((3 * s, 3 * s, s)),
+    lambda s: iota.Cylinder(0.6 * s, 1.5 * s, 0.2 * s),
     lambda s: iota.HalfSpace((1, 2, -0.5)),
     lambda s: iota.Cone(0.6 * s, 1.5 * s),
     lambda s: iota.Cone(2 * s, 0.5 * s),

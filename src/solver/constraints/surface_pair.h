@@ -33,8 +33,8 @@ struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
 
  private:
   struct Contact {
-    Vec3 p, q, normal;  // of A, in A's frame
-    double gap;         // between the surfaces, without skins
+    Vec3 p, q, normal;     // of A, in A's frame
+    double gap;            // between the surfaces, without skins
     Vec3 place, gradient;  // of q and of phi_B, in B's frame
   };
   Contact find(const Vec3* e, const Vec3& near) const;

@@ -29,6 +29,7 @@ std::vector<Shape> examples(double s) {
           Box{{s, s, s}, 0.5 * s},
           Cylinder{0.5 * s, 2 * s},
           Cylinder{s, 0.3 * s},
+          Cylinder{0.6 * s, 1.5 * s, 0.2 * s},
           Capsule{0.5 * s, 1.5 * s},
           Torus{s, 0.3 * s},
           Torus{s, 0.3 * s, 1.2 * s},
@@ -171,8 +172,9 @@ TEST_P(EveryShape, has_its_farthest_points_and_bounds_round_all_of_its_points) {
       for (const Vec3& p : on) ASSERT_LE(dot(p, d), dot(far, d) + 1e-9 * s);
     }
     for (const Vec3& p : on) {
-      for (const auto& [low, at, high] : {std::array{box.low.x, p.x, box.high.x}, std::array{box.low.y, p.y, box.high.y},
-                                          std::array{box.low.z, p.z, box.high.z}}) {
+      for (const auto& [low, at, high] :
+           {std::array{box.low.x, p.x, box.high.x}, std::array{box.low.y, p.y, box.high.y},
+            std::array{box.low.z, p.z, box.high.z}}) {
         ASSERT_LE(low, at + 1e-9 * s);
         ASSERT_LE(at, high + 1e-9 * s);
       }
@@ -249,10 +251,11 @@ TEST_P(EveryShape, is_filled_evenly_by_births) {
 
 TEST(Shape, refuses_sizes_out_of_range_and_sizes_that_do_not_go_together) {
   const double nan = std::nan("");
-  for (const Shape& bad : {Shape{Sphere{0}}, Shape{Sphere{nan}}, Shape{Box{{1, -1, 1}}}, Shape{Box{{1, 1, 1}, 0.6}},
-                           Shape{Box{{1, 1, 1}, -0.1}}, Shape{Cylinder{1, 0}}, Shape{Capsule{INFINITY, 1}},
-                           Shape{Torus{0.1, 0.2}}, Shape{Torus{1, 0.2, nan}}, Shape{Ellipsoid{{1, 1, 1e-10}}},
-                           Shape{HalfSpace{{0, 0, 0}}}, Shape{HalfSpace{{1, nan, 0}}}, Shape{Cone{1, -1}}})
+  for (const Shape& bad :
+       {Shape{Sphere{0}}, Shape{Sphere{nan}}, Shape{Box{{1, -1, 1}}}, Shape{Box{{1, 1, 1}, 0.6}},
+        Shape{Box{{1, 1, 1}, -0.1}}, Shape{Cylinder{1, 0}}, Shape{Cylinder{1, 1, 0.6}}, Shape{Capsule{INFINITY, 1}},
+        Shape{Torus{0.1, 0.2}}, Shape{Torus{1, 0.2, nan}}, Shape{Ellipsoid{{1, 1, 1e-10}}}, Shape{HalfSpace{{0, 0, 0}}},
+        Shape{HalfSpace{{1, nan, 0}}}, Shape{Cone{1, -1}}})
     EXPECT_THROW(check(bad), std::invalid_argument) << name(bad);
   try {
     check(Ellipsoid{{1, 0, 1}});
@@ -262,11 +265,15 @@ TEST(Shape, refuses_sizes_out_of_range_and_sizes_that_do_not_go_together) {
   }
 }
 
-TEST(Shape, of_rounded_edges_lies_between_the_sharp_one_and_a_ball) {
+TEST(Shape, of_edges_rounded_away_is_a_ball_or_a_capsule) {
   const MassProperties ball = mass_properties(Sphere{0.5}), rounded = mass_properties(Box{{1, 1, 1}, 0.5});
   EXPECT_NEAR(rounded.volume, ball.volume, 1e-14);
   EXPECT_NEAR(rounded.mean_squares[1].y, ball.mean_squares[1].y, 1e-15);
   EXPECT_NEAR(mass_properties(Box{{1, 1, 1}, 1e-8}).volume, 1, 1e-12);
+  const MassProperties can = mass_properties(Cylinder{0.5, 3, 0.5}), capsule = mass_properties(Capsule{0.5, 2});
+  EXPECT_NEAR(can.volume, capsule.volume, 1e-14);
+  EXPECT_NEAR(can.mean_squares[0].x, capsule.mean_squares[0].x, 1e-14);
+  EXPECT_NEAR(can.mean_squares[1].y, capsule.mean_squares[1].y, 1e-14);
   const MassProperties link = mass_properties(Torus{1, 0.2, 1e-8}), ring = mass_properties(Torus{1, 0.2});
   EXPECT_NEAR(link.mean_squares[0].x, ring.mean_squares[0].x, 1e-7);
 }
@@ -279,7 +286,8 @@ TEST(Shape, has_the_sizes_that_the_protocol_lists) {
   for_each_shape([&](const Shape& shape) {
     std::string sizes;
     for (const std::string& size : size_names(shape)) sizes += (sizes.empty() ? "\"" : ", \"") + size + "\"";
-    listed += (listed.empty() ? "" : ",\n") + ("    { \"name\": \"" + std::string(name(shape)) + "\", \"sizes\": [" + sizes + "] }");
+    listed += (listed.empty() ? "" : ",\n") +
+              ("    { \"name\": \"" + std::string(name(shape)) + "\", \"sizes\": [" + sizes + "] }");
   });
   EXPECT_NE(text.str().find("\"shapes\": [\n" + listed + "\n  ]"), std::string::npos) << listed;
 }

@@ -151,8 +151,8 @@ const shape::Surface& random_surface(Random& random, bool convex = false) {
       make_surface(Box{{0.8, 1.0, 1.2}, 0.35}),
       make_surface(HalfSpace{{0.3, 1, 0.2}}),
       make_surface(Torus{0.7, 0.3}),
-      std::make_shared<shape::FunctionSurface>(
-          [](const Vec3& p) { return p.y - 0.1 * std::sin(p.x) * std::sin(p.z); }, 1.0)};
+      std::make_shared<shape::FunctionSurface>([](const Vec3& p) { return p.y - 0.1 * std::sin(p.x) * std::sin(p.z); },
+                                               1.0)};
   return *surfaces[static_cast<std::size_t>(random.whole(0, convex ? 3 : 6))];
 }
 

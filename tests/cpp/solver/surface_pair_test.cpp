@@ -40,7 +40,8 @@ TEST(SurfacePair, has_the_gap_of_closed_forms_at_sharp_edges_corners_and_tips) {
         << "a corner";
     EXPECT_NEAR(gap(Cylinder{0.5, 1}, Sphere{0.1}, {0.5 + 0.1 + d, 0.2, 0}), d, 1e-9) << "an end";
     EXPECT_NEAR(gap(Cylinder{0.5, 1}, Sphere{0.1}, {0.1, 0.5 + 0.1 + d, 0}), d, 1e-9) << "the side";
-    EXPECT_NEAR(gap(Cylinder{0.5, 1}, Sphere{0.1}, (far + 0.1 + d) / std::sqrt(2.0) * Vec3{1, 0, 1}), d, 1e-9) << "a rim";
+    EXPECT_NEAR(gap(Cylinder{0.5, 1}, Sphere{0.1}, (far + 0.1 + d) / std::sqrt(2.0) * Vec3{1, 0, 1}), d, 1e-9)
+        << "a rim";
     EXPECT_NEAR(gap(Cone{0.5, 1}, Sphere{0.1}, {0.5 + 0.1 + d, 0, 0}), d, 1e-9) << "the tip";
     EXPECT_NEAR(gap(Cone{0.5, 1}, HalfSpace{{1, 0, 0}}, {-0.5 - d, 0, 0}), d, 1e-9) << "the base on a wall";
   }

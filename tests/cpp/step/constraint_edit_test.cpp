@@ -48,9 +48,8 @@ struct JointedWorld {
     return o;
   }
   Surface any_surface() {
-    const Shape shapes[] = {HalfSpace{point()}, Sphere{uniform(0.1, 2)}, Ellipsoid{{2, 1, 1.4}},
-                            Box{{1, 2, 1}},     Cylinder{0.5, 1},        Capsule{0.3, 1},
-                            Torus{1, 0.2},      Cone{0.5, 1}};
+    const Shape shapes[] = {HalfSpace{point()}, Sphere{uniform(0.1, 2)}, Ellipsoid{{2, 1, 1.4}}, Box{{1, 2, 1}},
+                            Cylinder{0.5, 1},   Capsule{0.3, 1},         Torus{1, 0.2},          Cone{0.5, 1}};
     return {shapes[index(std::size(shapes))], point(), {}};
   }
 

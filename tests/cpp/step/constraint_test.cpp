@@ -442,11 +442,14 @@ TEST(Surface, every_shape_holds_a_point_where_it_says) {
   const struct {
     std::variant<Shape, SurfaceFunction> shape;
     Vec3 on;  // in the shape's frame
-  } cases[] = {
-      {HalfSpace{{0, 0, 1}}, {3, 2, 0}}, {Sphere{0.5}, {0, 0.5, 0}},
-      {Ellipsoid{{2, 4, 6}}, {0, 0, 3}}, {Box{{2, 4, 6}}, {0.1, 0.2, 3}},
-      {Cylinder{0.5, 1}, {0.3, 0, 0.5}}, {Cone{0.5, 1}, {-0.5, 0.2, 0.1}}, {Capsule{0.5, 1}, {1, 0, 0}},
-      {Torus{1, 0.25}, {0, 1.25, 0}},    {SurfaceFunction{[](const Vec3& r) { return r.y - r.x * r.x; }}, {1, 1, 0}}};
+  } cases[] = {{HalfSpace{{0, 0, 1}}, {3, 2, 0}},
+               {Sphere{0.5}, {0, 0.5, 0}},
+               {Ellipsoid{{2, 4, 6}}, {0, 0, 3}},
+               {Box{{2, 4, 6}, 0.2}, {0.1, 0.2, 3}},
+               {Cylinder{0.5, 1, 0.1}, {0.3, 0, 0.5}},
+               {Capsule{0.5, 1}, {1, 0, 0}},
+               {Torus{1, 0.25}, {0, 1.25, 0}},
+               {SurfaceFunction{[](const Vec3& r) { return r.y - r.x * r.x; }}, {1, 1, 0}}};
   const Quaternion turn{0, 0, std::sin(0.3), std::cos(0.3)};  // by 0.6 about z
   for (const auto& [shape, on] : cases) {
     System system{SystemOptions{.gravity = {}}};
@@ -457,6 +460,23 @@ TEST(Surface, every_shape_holds_a_point_where_it_says) {
     run(system, 0.1, 1.0 / 60);
     EXPECT_LT(system.state(c).gap, 1e-9) << shape.index();
     EXPECT_NEAR(norm(system.position(p) - at - x), 0, 1e-6) << shape.index() << ": it was there already";
+  }
+}
+
+TEST(Surface, with_sharp_edges_keeps_a_point_on_one_side_only) {
+  for (const Shape& shape : {Shape{Box{}}, Shape{Cylinder{}}, Shape{Cone{}}}) {
+    System system{SystemOptions{.gravity = {}}};
+    const ParticleId p = system.create_particle(system.create_body(), {-0.2, 0, 0}, 1, {1.3, 0.4, 0.7});
+    EXPECT_THROW(system.create_constraint(SurfaceSpec{.particle = p, .surface = {shape, {}, {}}}),
+                 std::invalid_argument);
+    system.create_constraint(SurfaceSpec{.kind = ConstraintKind::inside, .particle = p, .surface = {shape, {}, {}}});
+    const double start = system.energy().kinetic;
+    for (int i = 0; i < 300; ++i) {
+      (void)system.step(0.01);
+      ASSERT_LE(system.energy().kinetic, start * (1 + 1e-9));
+      const Vec3 x = system.position(p);
+      ASSERT_LE(std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}), 0.5 + 1e-6);
+    }
   }
 }
 

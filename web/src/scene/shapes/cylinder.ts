@@ -3,20 +3,21 @@ import { layRope } from "./rope.ts";
 import type { Kind } from "./kind.ts";
 import { arc, bevel, revolve, tilesAlong, type ProfilePoint } from "./sweep.ts";
 
-/** Along x, with flat ends. */
+/** Along x, with flat ends; its edges rounded by arcs of `rounding`. */
 export const cylinder: Kind = {
   name: "cylinder",
-  sizes: ["radius", "length"],
+  sizes: ["radius", "length", "rounding"],
   distance({ sizes }, x, y, z) {
-    const side = Math.hypot(y, z) - sizes[0];
-    const end = Math.abs(x) - sizes[1] / 2;
-    return Math.min(Math.max(side, end), 0) + Math.hypot(Math.max(side, 0), Math.max(end, 0));
+    const side = Math.hypot(y, z) - sizes[0] + sizes[2];
+    const end = Math.abs(x) - sizes[1] / 2 + sizes[2];
+    return Math.min(Math.max(side, end), 0) + Math.hypot(Math.max(side, 0), Math.max(end, 0)) - sizes[2];
   },
   reach: ({ sizes: [radius, length] }) => Math.hypot(length / 2, radius),
-  draw({ sizes: [radius, length] }, detail, material) {
-    const edge = bevel * Math.min(2 * radius, length);
+  draw({ sizes: [radius, length, rounding] }, detail, material) {
+    const least = Math.min(2 * radius, length);
+    const edge = Math.max(rounding, bevel * least);
     const half = length / 2 - edge;
-    const steps = detail === "fine" ? 3 : 1;
+    const steps = Math.ceil((detail === "fine" ? 3 : 1) * (1 + 4 * (rounding / least)));
     const profile: ProfilePoint[] = [{ x: -length / 2, r: 0, nx: -1, nr: 0 }];
     arc(profile, -half, radius - edge, edge, 0, Math.PI / 2, steps);
     arc(profile, half, radius - edge, edge, Math.PI / 2, Math.PI, steps);
