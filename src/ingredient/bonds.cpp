@@ -40,9 +40,8 @@ void Bonds::build(const IslandMap& map, Problem& problem) {
 void Bonds::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
   const auto for_each = [&]<class Force>(auto load) {
     auto& forces = problem.pool_of<Force>().items;
-    for_each_item_of<Force>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
-      load(forces[i], model.bonds[key.slot].parameters);
-    });
+    for_each_item_of<Force>(
+        owner, problem, [&](std::size_t i, solver::ItemKey key) { load(forces[i], model.bonds[key.slot].parameters); });
   };
   for_each.operator()<solver::SpringForce>([](solver::SpringForce& spring, const auto& p) {
     spring.stiffness = p[0], spring.damping = p[1], spring.length = p[2];

@@ -24,9 +24,8 @@ void Closings::build(const IslandMap& map, Problem& problem) {
   if (model.closings.size() == 0) return;
   std::vector<std::uint32_t> slots;
   for (const std::uint32_t body : map.bodies)
-    model.for_each_particle_of(body, [&](std::uint32_t p) {
-      model.for_each_closing_of(p, [&](std::uint32_t c) { slots.push_back(c); });
-    });
+    model.for_each_particle_of(
+        body, [&](std::uint32_t p) { model.for_each_closing_of(p, [&](std::uint32_t c) { slots.push_back(c); }); });
   sort_unique(slots);
   for (const std::uint32_t slot : slots) {
     const model::Closing& c = model.closings[slot];

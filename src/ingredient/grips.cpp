@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/grips.h"
 
+#include "math/mat3.h"
+
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -98,6 +100,73 @@ bool Grips::holds(const Model& model, std::uint32_t particle) {
   model.grips.for_each(
       [&](std::uint32_t, const model::Grip& g) { any = any || g.body == model.particles[particle].body; });
   return any;
+}
+
+Vec3 Grips::point(const Model& model, const model::Grip& grip) {
+  Vec3 sum;
+  for (std::uint32_t i = 0; i < grip.count; ++i) sum += grip.weights[i] * model.position(grip.points[i]);
+  return sum;
+}
+
+void Grips::anchor(const Model& model, model::Grip& grip, const Vec3& point) {
+  const model::Body& body = model.bodies[grip.body];
+  grip.count = body.rank;
+  grip.points.fill(0), grip.weights.fill(0);
+  const Vec3 origin = model.position(body.basis[0]);
+  std::array<Vec3, 3> vectors;
+  for (int i = 0; i < body.rank; ++i) {
+    grip.points[i] = body.basis[i];
+    if (i > 0) vectors[i - 1] = model.position(body.basis[i]) - origin;
+  }
+  Mat3 gram;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors[i], vectors[j]);
+  const Vec3 r = point - origin;
+  Vec3 c = solve_semidefinite(gram, {dot(vectors[0], r), dot(vectors[1], r), dot(vectors[2], r)}, 1e-12);
+  if (body.rank == 2) c.x = std::clamp(c.x, 0.0, 1.0);
+  grip.weights = {1 - c.x - c.y - c.z, c.x, c.y, c.z};
+}
+
+Grips::Memory Grips::remember(const Model& model, std::span<const std::uint32_t> bodies) {
+  Memory held;
+  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
+    if (std::find(bodies.begin(), bodies.end(), g.body) == bodies.end()) return;
+    const Vec3 place = point(model, g);
+    std::uint32_t nearest = none;
+    double least = 0;
+    model.for_each_particle_of(g.body, [&](std::uint32_t p) {
+      const double distance = norm(model.position(p) - place);
+      if (nearest == none || distance < least) nearest = p, least = distance;
+    });
+    held.push_back({slot, place, model.particles.id(nearest), model.bodies.id(g.body)});
+  });
+  return held;
+}
+
+void Grips::follow(Model& model, const Memory& held) {
+  for (const Held& before : held) {
+    if (!model.grips.is_alive(before.grip)) continue;
+    model::Grip& grip = model.grips[before.grip];
+    if (const auto particle = model.survivor_of(before.nearest)) {
+      grip.body = model.particles[particle->slot].body;
+    } else if (const auto body = model.survivor_of(before.body)) {
+      grip.body = body->slot;
+    } else {
+      model.grips.destroy(before.grip);
+      continue;
+    }
+    anchor(model, grip, before.point);
+    model.touch_locally(grip.body);
+  }
+}
+
+void Grips::follow_bases(Model& model) {
+  model.grips.for_each([&](std::uint32_t, model::Grip& g) {
+    const model::Body& body = model.bodies[g.body];
+    const bool same =
+        g.count == body.rank && std::equal(body.basis.begin(), body.basis.begin() + body.rank, g.points.begin());
+    if (!same) anchor(model, g, point(model, g));
+  });
 }
 
 }  // namespace iota::ingredient

@@ -16,6 +16,23 @@ class Grips : public NoAnswers {
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
   static bool holds(const Model&, std::uint32_t particle);
 
+  /// A grip stays where it is, on the body of the particle that was nearest to it.
+  struct Held {
+    std::uint32_t grip;
+    Vec3 point;
+    ParticleId nearest;
+    BodyId body;
+  };
+  using Memory = std::vector<Held>;
+  static Memory remember(const Model&, std::span<const std::uint32_t> bodies);
+  static void follow(Model&, const Memory&);
+  static void follow_bases(Model&);
+
+  static Vec3 point(const Model&, const model::Grip&);  ///< where it holds, world frame
+  /// Hangs a grip on the point of its body nearest to `point` (world frame): the span of the body's basis, for a rod
+  /// between its ends.
+  static void anchor(const Model&, model::Grip&, const Vec3& point);
+
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;

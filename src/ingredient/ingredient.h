@@ -33,7 +33,7 @@ struct NoAnswers {
   template <class Archive>
   static void archive(Model&, Archive&) {}
   static void validate(const Model&, model::Audit&) {}
-  /// Energy that the motion of points does not keep by itself, and momentum.
+  /// Its share of kinetic and potential energy, and of momentum.
   static void add_energy(const Scope&, Energies&) {}
   static void add_momentum(const Scope&, Momenta&) {}
   /// The largest gap of its constraints, m.
@@ -42,6 +42,14 @@ struct NoAnswers {
   static void add_loads(const LastStep&, std::uint32_t /*body*/, LoadReader&) {}
   /// Whether it keeps a particle that is a body by itself from flying freely.
   static bool holds(const Model&, std::uint32_t /*particle*/) { return false; }
+
+  /// What it has to know from before an edit of some bodies to follow that afterwards.
+  struct Memory {};
+  static Memory remember(const Model&, std::span<const std::uint32_t> /*bodies*/) { return {}; }
+  /// Since then particles may have been absorbed, bodies joined, torn apart or destroyed.
+  static void follow(Model&, const Memory&) {}
+  /// Bodies may have other bases, in the same places.
+  static void follow_bases(Model&) {}
   ///@}
 
   /// @name Building and stepping
@@ -94,43 +102,46 @@ struct NoAnswers {
 
 /// What is asked of every ingredient about the model.
 template <class I>
-concept ModelIngredient =
-    requires(Model& model, const Model& seen, Writer& writer, Reader& reader, model::Audit& audit, const Scope& scope,
-             Energies& energies, Momenta& momenta, const LastStep& step, LoadReader& loads, std::uint32_t slot) {
-      I::archive(model, writer);
-      I::archive(model, reader);
-      I::validate(seen, audit);
-      I::add_energy(scope, energies);
-      I::add_momentum(scope, momenta);
-      { I::worst_gap(seen) } -> std::same_as<double>;
-      I::add_loads(step, slot, loads);
-      { I::holds(seen, slot) } -> std::same_as<bool>;
-    };
+concept ModelIngredient = requires(Model& model, const Model& seen, Writer& writer, Reader& reader, model::Audit& audit,
+                                   const Scope& scope, Energies& energies, Momenta& momenta, const LastStep& step,
+                                   LoadReader& loads, std::uint32_t slot, std::span<const std::uint32_t> bodies) {
+  I::archive(model, writer);
+  I::archive(model, reader);
+  I::validate(seen, audit);
+  I::add_energy(scope, energies);
+  I::add_momentum(scope, momenta);
+  { I::worst_gap(seen) } -> std::same_as<double>;
+  I::add_loads(step, slot, loads);
+  { I::holds(seen, slot) } -> std::same_as<bool>;
+  { I::remember(seen, bodies) } -> std::same_as<typename I::Memory>;
+  I::follow(model, I::remember(seen, bodies));
+  I::follow_bases(model);
+};
 
 /// What the stages of a step ask of an ingredient of an island.
 template <class I>
-concept IslandIngredient = std::default_initializable<I> && std::movable<I> &&
-                           requires(I& own, const I& fixed, Model& model, const Model& seen, const IslandNodes& nodes,
-                                    const IslandMap& map, Problem& problem, const Problem& solved,
-                                    solver::ItemKey key, double h, bool moved) {
-                             own.build(map, problem);
-                             own.leave(map);
-                             own.load(seen, nodes, h, problem);
-                             { own.after_step(model, h, problem) } -> std::same_as<double>;
-                             fixed.store(model, nodes, h, solved);
-                             fixed.refresh(model, nodes, moved);
-                             { fixed.meets_pinned(seen) } -> std::same_as<bool>;
-                             { fixed.virtual_energy(seen) } -> std::same_as<double>;
-                             { fixed.name_of_row(seen, key) } -> std::same_as<std::string>;
-                             fixed.accept_assigned(model, nodes);
-                             { fixed.prescribes_motion(seen, nodes) } -> std::same_as<bool>;
-                             { fixed.velocity_jump(solved, h) } -> std::same_as<double>;
-                             fixed.impose_velocities(problem, h);
-                             fixed.impose_positions(problem);
-                             { fixed.wakes(seen, nodes) } -> std::same_as<bool>;
-                             { fixed.keeps_awake(solved) } -> std::same_as<bool>;
-                             fixed.put_to_rest(model, solved);
-                           };
+concept IslandIngredient =
+    std::default_initializable<I> && std::movable<I> &&
+    requires(I& own, const I& fixed, Model& model, const Model& seen, const IslandNodes& nodes, const IslandMap& map,
+             Problem& problem, const Problem& solved, solver::ItemKey key, double h, bool moved) {
+      own.build(map, problem);
+      own.leave(map);
+      own.load(seen, nodes, h, problem);
+      { own.after_step(model, h, problem) } -> std::same_as<double>;
+      fixed.store(model, nodes, h, solved);
+      fixed.refresh(model, nodes, moved);
+      { fixed.meets_pinned(seen) } -> std::same_as<bool>;
+      { fixed.virtual_energy(seen) } -> std::same_as<double>;
+      { fixed.name_of_row(seen, key) } -> std::same_as<std::string>;
+      fixed.accept_assigned(model, nodes);
+      { fixed.prescribes_motion(seen, nodes) } -> std::same_as<bool>;
+      { fixed.velocity_jump(solved, h) } -> std::same_as<double>;
+      fixed.impose_velocities(problem, h);
+      fixed.impose_positions(problem);
+      { fixed.wakes(seen, nodes) } -> std::same_as<bool>;
+      { fixed.keeps_awake(solved) } -> std::same_as<bool>;
+      fixed.put_to_rest(model, solved);
+    };
 
 /// visit(index, key) for the items of one type that an owner has added.
 template <class Item, class Visit>

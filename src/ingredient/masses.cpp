@@ -83,8 +83,9 @@ void Masses::add_body(const IslandMap& map, std::uint32_t body, Problem& problem
   const Model& model = map.model;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     const model::Particle& particle = model.particles[p];
+    const Term own{map.node_of(p), 1.0};
     if (!particle.is_marker())
-      add_mass(used(map.nodes_of(p)), particle.mass, problem);
+      add_mass(model.is_unknown(particle) ? std::span(&own, 1) : used(map.nodes_of(p)), particle.mass, problem);
     else if (model.is_unknown(particle) && model.ring_mass(particle.ring) == 0)
       add_virtual_mass(map, p, problem);
   });

@@ -157,12 +157,6 @@ void Model::prefer_unknowns(std::uint32_t body_slot) {
     in_shape = in_shape && std::abs(norm(position(body.basis[j]) - position(body.basis[i])) - length) < 1e-9 * longest;
   }
   if (!outside || !in_shape) return;
-  grips.for_each([&](std::uint32_t, Grip& g) {  // they hang on basis points
-    if (g.body != body_slot) return;
-    const Vec3 point = grip_point(*this, g);
-    rebuild_basis(body_slot);
-    anchor_grip(*this, g, point);
-  });
   rebuild_basis(body_slot);
 }
 

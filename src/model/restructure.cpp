@@ -2,8 +2,6 @@
 #include "model/restructure.h"
 #include "model/solid.h"
 
-#include "math/mat3.h"
-
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -125,9 +123,6 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
     absorb_particle(model, twin, moved, report);
     model.twins.create(absorbed);
   }
-  model.grips.for_each([&](std::uint32_t, Grip& g) {
-    if (g.body == b) g.body = a;
-  });
   model.join_articulates(model.bodies[a].articulate, model.bodies[b].articulate);
   const BodyId retired = model.bodies.id(b), survivor = model.bodies.id(a);
   model.record_survivor(retired, survivor);
@@ -373,10 +368,6 @@ void destroy_particle(Model& model, std::uint32_t particle) {
   const std::uint32_t body = model.particles[particle].body;
   const bool massive = !model.particles[particle].is_marker();
   if (massive && massive_count(model, body) == 1) return destroy_body(model, body);
-  std::vector<std::pair<std::uint32_t, Vec3>> held;  // hands stay where they hold
-  model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
-    if (massive && g.body == body) held.push_back({slot, grip_point(model, g)});
-  });
   destroy_uses(model, particle);
   std::vector<std::uint32_t> apart = ring_neighbors(model, particle);
   model.remove_particle(particle);
@@ -386,7 +377,6 @@ void destroy_particle(Model& model, std::uint32_t particle) {
   if (!massive) return;
   model.rebuild_basis(body);
   destroy_stray_markers(model, body, model.notes);
-  for (const auto& [slot, point] : held) anchor_grip(model, model.grips[slot], point);
 }
 
 void destroy_body(Model& model, std::uint32_t body) {
@@ -398,35 +388,7 @@ void destroy_body(Model& model, std::uint32_t body) {
     apart.push_back(body);
     split_where_apart(model, apart);
   }
-  model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
-    if (g.body == body) model.grips.destroy(slot);
-  });
   model.remove_body(body);
-}
-
-Vec3 grip_point(const Model& model, const Grip& grip) {
-  Vec3 sum;
-  for (std::uint32_t i = 0; i < grip.count; ++i) sum += grip.weights[i] * model.position(grip.points[i]);
-  return sum;
-}
-
-void anchor_grip(const Model& model, Grip& grip, const Vec3& point) {
-  const Body& body = model.bodies[grip.body];
-  grip.count = body.rank;
-  grip.points.fill(0), grip.weights.fill(0);
-  const Vec3 origin = model.position(body.basis[0]);
-  std::array<Vec3, 3> vectors;
-  for (int i = 0; i < body.rank; ++i) {
-    grip.points[i] = body.basis[i];
-    if (i > 0) vectors[i - 1] = model.position(body.basis[i]) - origin;
-  }
-  Mat3 gram;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors[i], vectors[j]);
-  const Vec3 r = point - origin;
-  Vec3 c = solve_semidefinite(gram, {dot(vectors[0], r), dot(vectors[1], r), dot(vectors[2], r)}, 1e-12);
-  if (body.rank == 2) c.x = std::clamp(c.x, 0.0, 1.0);
-  grip.weights = {1 - c.x - c.y - c.z, c.x, c.y, c.z};
 }
 
 }  // namespace iota::model

@@ -46,9 +46,4 @@ void end_settled_closings(Model&, std::vector<std::string>& notes);
 /// Splits the articulate of `bodies` wherever they no longer hang together.
 void split_where_apart(Model&, std::span<const std::uint32_t> bodies);
 
-/// Hangs a grip on the point of its body nearest to `point` (world frame): the span of the body's basis, for a rod
-/// between its ends.
-void anchor_grip(const Model&, Grip&, const Vec3& point);
-Vec3 grip_point(const Model&, const Grip&);
-
 }  // namespace iota::model

@@ -51,17 +51,6 @@ std::uint32_t split_off(Model& model, std::uint32_t body, std::vector<std::uint3
   torn = hand_over(model.inertia_pairs, from.first_inertia, to.first_inertia, own, [&](const InertiaPair& i) {
            return std::pair{contains(leaving, i.p) + contains(leaving, i.q), 2};
          }) > 0;
-  model.grips.for_each([&](std::uint32_t, Grip& g) {  // a hand goes on holding the piece that it is at
-    if (g.body != body) return;
-    const Vec3 point = grip_point(model, g);
-    std::uint32_t nearest = none;
-    double distance = 0;
-    model.for_each_particle_of(body, [&](std::uint32_t p) {
-      const double d = norm(model.position(p) - point);
-      if (nearest == none || d < distance) nearest = p, distance = d;
-    });
-    if (contains(leaving, nearest)) g.body = own;
-  });
   for (const std::uint32_t p : leaving) {
     model.take_from_body(p);
     model.add_to_body(p, own);

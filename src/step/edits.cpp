@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each command does, and the physics that a structural edit owes.
+#include "ingredient/followers.h"
 #include "ingredient/joint_readings.h"
 #include "ingredient/quantities.h"
 #include "math/mat3.h"
@@ -152,7 +153,8 @@ GripId System::Implementation::apply(const step::CreateGrip& c) {
   grip.client = c.options.client, grip.hold = c.options.hold;
   grip.frequency = c.options.frequency, grip.max_acceleration = c.options.max_acceleration;
   grip.target = c.target;
-  model::anchor_grip(model, grip, model.center_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point));
+  const Vec3 place = model.center_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point);
+  ingredient::Grips::anchor(model, grip, place);
   model.touch_locally(body);
   return model.grips.create(grip);
 }
@@ -235,7 +237,7 @@ RestructureReport System::Implementation::restructure(std::span<const std::uint3
                                                       EditFunction edit) {
   RestructureReport report;
   report.articulates_before = model.articulates.size();
-  const std::vector<HeldPoint> held = held_points(edited);
+  const ingredient::Followers followers(model, edited);
   // Nothing beyond what bonds tie to the edited bodies can move or change its velocity.
   std::vector<std::uint32_t> affected;
   if (!gentle) affected = model.tied_bodies(edited);
@@ -249,7 +251,7 @@ RestructureReport System::Implementation::restructure(std::span<const std::uint3
       for (const BodyId body : report.created_bodies) bodies.push_back(body.slot);
       end_settled_constraints(model, bodies, report.notes);
     }
-    hold_again(held);
+    followers.follow(model);
     structure_changed();
   }
   report.articulates_after = model.articulates.size();
@@ -282,23 +284,6 @@ System::Implementation::Conserved System::Implementation::conserved(std::span<co
   const ingredient::Energies energies = ingredient::calc_energies(model, bodies);
   const ingredient::Momenta momenta = ingredient::calc_momenta(model, bodies);
   return {energies.kinetic, energies.potential, momenta.linear, momenta.angular};
-}
-
-std::vector<System::Implementation::HeldPoint> System::Implementation::held_points(
-    std::span<const std::uint32_t> bodies) const {
-  std::vector<HeldPoint> held;
-  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
-    if (std::find(bodies.begin(), bodies.end(), g.body) != bodies.end()) held.push_back({slot, grip_point(model, g)});
-  });
-  return held;
-}
-
-void System::Implementation::hold_again(const std::vector<HeldPoint>& held) {
-  for (const auto& [slot, point] : held) {
-    if (!model.grips.is_alive(slot)) continue;
-    anchor_grip(model, model.grips[slot], point);
-    model.touch_locally(model.grips[slot].body);
-  }
 }
 
 void System::Implementation::settle(std::span<const std::uint32_t> bodies, bool positions, RestructureReport& report) {
@@ -515,14 +500,16 @@ void System::Implementation::apply(const step::Release& c) {
 
 // Destroying takes what there was: mass, momentum and energy go with it.
 void System::Implementation::apply(const step::Destroy<BodyId>& c) {
-  destroy_body(model, require(c.id));
+  const ingredient::Followers followers(model, std::array{require(c.id)});
+  destroy_body(model, c.id.slot);
+  followers.follow(model);
   structure_changed();
 }
 void System::Implementation::apply(const step::Destroy<ParticleId>& c) {
   const std::uint32_t particle = require(c.id);
-  const std::vector<HeldPoint> held = held_points(std::array{model.particles[particle].body});
+  const ingredient::Followers followers(model, std::array{model.particles[particle].body});
   destroy_particle(model, particle);
-  hold_again(held);
+  followers.follow(model);
   structure_changed();
 }
 RestructureReport System::Implementation::apply(const step::Destroy<CosmeticBondId>& c) {

@@ -159,10 +159,6 @@ struct System::Implementation {
   };
   /// Of these bodies and the springs between them; those no longer alive count as nothing.
   Conserved conserved(std::span<const std::uint32_t> bodies) const;
-  /// What a hand holds stays where it holds it, whatever becomes of the body.
-  using HeldPoint = std::pair<std::uint32_t, Vec3>;
-  std::vector<HeldPoint> held_points(std::span<const std::uint32_t> bodies) const;
-  void hold_again(const std::vector<HeldPoint>&);
   /// Projects positions and velocities of the islands that the bodies are in.
   void settle(std::span<const std::uint32_t> bodies, bool positions, RestructureReport&);
   /// Displacements and moved masses change momenta; a rigid motion of all that hangs together with the bodies gives them

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "step/islands.h"
 
+#include "ingredient/followers.h"
+
 #include <algorithm>
 
 namespace iota::step {
@@ -74,6 +76,7 @@ bool Islands::follow(Model& model, std::uint32_t old_leader) {
   ingredient::sort_unique(change_.bodies);
   change_.rings = touched_.local.rings;
   for (const std::uint32_t body : change_.bodies) make_ready(model, body);
+  ingredient::follow_bases(model);
   if (!island.follow(model, members_, change_, node_of_ring_)) return false;
 
   auto holder = std::move(island_of_leader_[old_leader]);
@@ -186,6 +189,7 @@ void Islands::build_fresh(Model& model, const Parallel& parallel) {
     for (std::uint32_t a = leader; a != none; a = next_member_[a])
       model.for_each_body_of(a, [&](std::uint32_t body) { make_ready(model, body); });
   }
+  ingredient::follow_bases(model);
   parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
     std::vector<std::uint32_t> members;
     for (std::uint32_t a = fresh_[i]; a != none; a = next_member_[a]) members.push_back(a);

@@ -283,7 +283,7 @@ PoseSnapshot System::poses() const {
   m.grips.for_each([&](std::uint32_t, const model::Grip& g) {
     HoldPose& hold = snapshot.holds.emplace_back();
     hold.client = g.client, hold.hold = g.hold, hold.body = g.body;
-    put(hold.point, grip_point(m, g));
+    put(hold.point, ingredient::Grips::point(m, g));
     put(hold.target, g.target);
     hold.force = static_cast<float>(norm(g.force));
   });

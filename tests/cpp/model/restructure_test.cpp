@@ -142,19 +142,13 @@ TEST_F(RestructureClosing, ends_without_a_trace_when_it_is_called_off) {
   EXPECT_EQ(model.particles[p].uses + model.particles[q].uses, 0u);
 }
 
-TEST_F(RestructureDestroy, a_body_takes_its_bonds_grips_and_hinges_with_it) {
+TEST_F(RestructureDestroy, a_body_takes_its_bonds_and_hinges_with_it) {
   const auto chain = m.chain(3);
   Bond bond;
   bond.p = m.particle(chain[1], 1), bond.q = m.particle(chain[2], 1);
   model.add_bond(bond);
-  Grip grip;
-  grip.body = chain[1];
-  anchor_grip(model, grip, {1.25, 3, 0});
-  EXPECT_EQ(grip_point(model, grip), (Vec3{1.25, 0, 0})) << "the nearest place between its ends";
-  model.grips.create(grip);
   destroy_body(model, chain[1]);
   EXPECT_EQ(model.bonds.size(), 0u);
-  EXPECT_EQ(model.grips.size(), 0u);
   EXPECT_EQ(model.articulates.size(), 2u);
   EXPECT_EQ(model.rings.size(), 4u);
 }

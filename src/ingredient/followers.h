@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/ingredient_list.h"
+
+#include <span>
+#include <tuple>
+
+namespace iota::ingredient {
+
+/// Takes ingredients along over an edit of some bodies that may absorb, tear apart or destroy what they hang on: made
+/// before the edit, asked to follow after it.
+class Followers {
+ public:
+  Followers(const Model& model, std::span<const std::uint32_t> bodies) {
+    for_each_type<Ingredients>(
+        [&]<class I>() { std::get<Remembered<I>>(memories_).memory = I::remember(model, bodies); });
+  }
+  void follow(Model& model) const {
+    for_each_type<Ingredients>([&]<class I>() { I::follow(model, std::get<Remembered<I>>(memories_).memory); });
+  }
+
+ private:
+  template <class I>
+  struct Remembered {
+    typename I::Memory memory;
+  };
+  template <class List>
+  struct Memories;
+  template <class... I>
+  struct Memories<std::tuple<I...>> {
+    using Type = std::tuple<Remembered<I>...>;
+  };
+  Memories<Ingredients>::Type memories_;
+};
+
+/// Bodies may have got other bases since ingredients chose the points that they hang on.
+inline void follow_bases(Model& model) {
+  for_each_type<Ingredients>([&]<class I>() { I::follow_bases(model); });
+}
+
+}  // namespace iota::ingredient
