@@ -123,7 +123,7 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
     // A spring's shape is one turn of it: a ring with its wire.
     const geometry = kind === TieKind.spring
       ? makeCoil(radius, sizeOf(shape, "tube") || 0.15 * radius, length)
-      : makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: [radius, length] }, "coarse");
+      : makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: rope ? [radius, length] : [radius, length, 0] }, "coarse");
     const pool = new InstancePool(geometry, materialOf(shape.material, shape.color), 16, pieces).addTo(this.root);
     return { style, pool, length };
   }
