@@ -1,1 +1,0 @@
-../../build/quick/python/iota/_protocol.py
