@@ -86,10 +86,10 @@ void Model::take_from_ring(std::uint32_t particle) {
   const std::uint32_t ring = particles[particle].ring;
   unlink(particles, rings[ring], particle, &Particle::next_in_ring, &Particle::previous_in_ring);
   particles[particle].ring = none;
+  scene.rings.note(ring);  // its nail is drawn at its first particle
   if (rings[ring].count > 0) return;
   nails.erase(ring), pushes.erase(ring);
   rings.destroy(ring);
-  scene.rings.note(ring);
 }
 
 void Model::enter_articulate(std::uint32_t body, std::uint32_t articulate) {
