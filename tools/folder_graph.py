@@ -58,7 +58,7 @@ def python_imports_of(path: Path, tree: Path) -> Iterator[str]:
             continue
         for name in names:
             package, *rest = name.split(".")
-            if package == tree.name and (rest[:1] != ["_core"]):
+            if package == tree.name and not (rest and rest[0].startswith("_")):
                 yield module_folder(tree, rest)
 
 

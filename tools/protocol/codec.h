@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 namespace detail {
 
 /// Whether `text` is well-formed UTF-8 (no overlong forms, no surrogates).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 const encoder = new TextEncoder();
 const decoder = new TextDecoder('utf-8', { fatal: true, ignoreBOM: true });
 const NO_BYTES = new DataView(new ArrayBuffer(0));

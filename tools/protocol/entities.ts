@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** The kind that a message names; undefined where this page does not know it: its records are then to be left out. */
 export function entityKindOf(name: string): EntityKind | undefined {
   return entityKindsByName.get(name);

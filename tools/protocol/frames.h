@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 template <class Variant, class Message>
 Decoded<Variant> decode_as(std::span<const std::uint8_t> bytes) {
   Reader in(bytes);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 const ROTATION_STEP = Math.SQRT2 / 1023;
 
 /** Unit quaternion (x y z w) of a packed rotation, written to out[offset .. offset + 3]. */
