@@ -14,20 +14,22 @@ void Model::touch(std::uint32_t articulate, Touch what) {
   touch_of_[articulate] = std::max(touch_of_[articulate], what);
 }
 
+namespace {
+constexpr std::size_t most_local_changes = 1024;  // after more of them islands are built anew
+}
+
 void Model::touch_locally(std::uint32_t body) {
-  constexpr std::size_t most = 1024;  // more changes than this make islands be built anew
-  const bool few = local_change_.bodies.size() < most;
+  const bool few = local_change_.bodies.size() < most_local_changes;
   if (few) local_change_.bodies.push_back(body);
   scene.bodies.note(body);
   touch(bodies[body].articulate, few ? locally : anything);
 }
 
 void Model::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
-  for_each_in_ring(ring, [&](std::uint32_t p) {
-    scene.bodies.note(particles[p].body);
-    touch_locally(particles[p].body);
-  });
-  local_change_.rings.push_back({ring, split_from});
+  // Without room the bodies of the ring are in islands that are built anew, and nobody asks for the ring.
+  if (local_change_.bodies.size() < most_local_changes || rings[ring].count == 0)
+    local_change_.rings.push_back({ring, split_from});
+  for_each_in_ring(ring, [&](std::uint32_t p) { touch_locally(particles[p].body); });
 }
 
 void Model::take_touched(Touched& taken) {
