@@ -97,13 +97,20 @@ struct GripOptions {
 /// A whole system in bytes: everything but the functions of scripted bonds.
 struct Snapshot {
   std::vector<std::byte> bytes;
+  friend bool operator==(const Snapshot&, const Snapshot&) = default;
 };
 
 /// A snapshot and all that happened since: replaying it gives the same hash after every step.
 struct Recording {
   Snapshot start;
-  std::vector<std::byte> commands;
+  std::vector<std::byte> commands;    ///< one after the other, each as its number and its fields
   std::vector<std::uint64_t> hashes;  ///< one per step
+
+  /// For a file: with a mark, the version of the format and a checksum.
+  std::vector<std::byte> to_bytes() const;
+  /// Throws std::invalid_argument for bytes that `to_bytes` did not make, or that were cut short or damaged since.
+  static Recording from_bytes(std::span<const std::byte>);
+  friend bool operator==(const Recording&, const Recording&) = default;
 };
 
 class System {
@@ -450,6 +457,8 @@ class System {
   void start_recording();
   Recording stop_recording();
   /// Restores the recording's start and repeats it; returns the number of the first step whose hash differs, if any.
+  /// Throws std::invalid_argument for a damaged recording: before anything has changed where bytes are no command, else
+  /// after the last command that could be done.
   std::optional<std::uint64_t> replay(const Recording&);
   ///@}
 

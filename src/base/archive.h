@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -15,14 +16,15 @@ class Writer {
  public:
   explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}
   template <class T>
-  void value(T& v) {
+  void value(const T& v) {
     static_assert(std::is_trivially_copyable_v<T>);
     append(&v, sizeof v);
   }
+  /// The number of elements, then their bytes.
   template <class T>
-  void vector(std::vector<T>& v) {
-    auto count = static_cast<std::uint64_t>(v.size());
-    value(count);
+  void vector(const std::vector<T>& v) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    value(static_cast<std::uint64_t>(v.size()));
     append(v.data(), v.size() * sizeof(T));
   }
   void fail() {}
@@ -40,7 +42,7 @@ class Writer {
 /// Reads the bytes of a Writer. After the first value that does not fit, `ok()` is false and every value reads as zero.
 class Reader {
  public:
-  explicit Reader(const std::vector<std::byte>& bytes) : bytes_(bytes) {}
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
   template <class T>
   void value(T& v) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -48,23 +50,28 @@ class Reader {
   }
   template <class T>
   void vector(std::vector<T>& v) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    v.resize(count(sizeof(T)));
+    take(v.data(), v.size() * sizeof(T));
+  }
+  /// How many items of at least `item_size` bytes follow; a number that the bytes left cannot hold is refused before
+  /// anything is allocated for it.
+  std::size_t count(std::size_t item_size) {
     std::uint64_t count = 0;
     value(count);
-    if (count > (bytes_.size() - position_) / sizeof(T)) {
-      fail();
-      count = 0;
-    }
-    v.resize(count);
-    take(v.data(), count * sizeof(T));
+    if (count <= remaining() / item_size) return count;
+    fail();
+    return 0;
   }
   void fail() { ok_ = false; }
   bool ok() const { return ok_; }
   bool at_end() const { return position_ == bytes_.size(); }
+  std::size_t remaining() const { return bytes_.size() - position_; }
 
  private:
   void take(void* data, std::size_t size) {
     if (size == 0) return;
-    if (!ok_ || size > bytes_.size() - position_) {
+    if (!ok_ || size > remaining()) {
       ok_ = false;
       std::memset(data, 0, size);
       return;
@@ -72,7 +79,7 @@ class Reader {
     std::memcpy(data, bytes_.data() + position_, size);
     position_ += size;
   }
-  const std::vector<std::byte>& bytes_;
+  std::span<const std::byte> bytes_;
   std::size_t position_ = 0;
   bool ok_ = true;
 };

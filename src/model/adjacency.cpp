@@ -145,6 +145,15 @@ void Model::unlink_place(std::uint32_t slot, std::uint32_t place) {
   touch_particle(c.particles[place]);
 }
 
+void Model::set_bond_active(std::uint32_t slot, bool active) {
+  Bond& bond = bonds[slot];
+  if (bond.active == static_cast<std::uint8_t>(active)) return;
+  bond.active = active;
+  bond.broken = 0;
+  ++bonds_revision, ++structure_version;
+  for (const std::uint32_t end : {bond.p, bond.q}) touch_particle(end);
+}
+
 void Model::mute_bonds_of(std::uint32_t particle) {
   ++members_revision;
   for_each_bond_of(particle, [&](std::uint32_t b) {

@@ -290,7 +290,7 @@ ConstraintGeometry make_geometry(const Model& model, const Constraint& c) {
   return made;
 }
 
-std::uint32_t make_constraint(Model& model, const PathData& spec, std::span<const Vec3> points) {
+std::uint32_t make_constraint(Model& model, const PathSpec& spec) {
   const Side b = spec.body ? Side(model, spec.body.slot) : Side();
   require_frame(info(ConstraintKind::path).name, b);
   Constraint c;
@@ -298,9 +298,9 @@ std::uint32_t make_constraint(Model& model, const PathData& spec, std::span<cons
   c.breaks = spec.breaks;
   c.particles.fill(none);
   c.particles[a_origin] = spec.particle.slot;
-  c.curve.kind = spec.kind, c.curve.closed = spec.closed, c.curve.rounding = spec.rounding;
+  c.curve.kind = spec.curve, c.curve.closed = spec.closed, c.curve.rounding = spec.rounding;
   const Vec3 origin = b.is_world() ? Vec3{} : model.center_of_mass(b.body);
-  std::vector<Vec3> local(points.begin(), points.end());
+  std::vector<Vec3> local = spec.points;
   for (Vec3& p : local) p -= origin;
   const auto curve = make_curve(c.curve, local);  // refuses bad points before anything changes
   make_frame(model, c, b, b_origin, origin, {});

@@ -122,15 +122,6 @@ struct PlacedSurface {
   Vec3 position;
   Quaternion orientation;
 };
-struct PathData {
-  ParticleId particle;
-  BodyId body;
-  CurveKind kind;
-  bool closed;
-  double rounding;
-  CoordinateOptions slide;
-  BreakLimits breaks;
-};
 struct SurfaceConstraintData {
   ConstraintKind kind;
   ParticleId particle;
@@ -149,7 +140,7 @@ struct SurfacePairData {
 /// cannot hold a place or direction that the kind needs.
 std::uint32_t make_constraint(Model&, const JointSpec&);
 std::uint32_t make_constraint(Model&, const DistanceSpec&);
-std::uint32_t make_constraint(Model&, const PathData&, std::span<const Vec3> points);
+std::uint32_t make_constraint(Model&, const PathSpec&);
 std::uint32_t make_constraint(Model&, const SurfaceConstraintData&);
 std::uint32_t make_constraint(Model&, const SurfacePairData&);
 /// The geometry of a constraint from its data; throws std::invalid_argument for sizes and points that make none.

@@ -446,6 +446,7 @@ class Model {
     const Particle& p = particles[particle];
     return !p.inactive && bodies[p.body].kind != BodyKind::inactive;
   }
+  void set_bond_active(std::uint32_t bond, bool active);  ///< true repairs a broken one
   void mute_bonds_of(std::uint32_t particle);  ///< after it has changed whether it acts
 
   /// Held in place by a nail or by a static or scripted body in its ring.

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/seal.h"
+
+#include "base/archive.h"
+
+#include <bit>
+#include <stdexcept>
+#include <string>
+
+namespace iota {
+
+static_assert(std::endian::native == std::endian::little, "sealed bytes are in the machine's own byte order");
+
+namespace {
+
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+  Hasher hasher;
+  hasher.bytes(bytes.data(), bytes.size());
+  return hasher.result();
+}
+
+[[noreturn]] void refuse(const Seal& seal, const char* why) {
+  throw std::invalid_argument("this is not a " + std::string(seal.name) + ": " + why);
+}
+
+}  // namespace
+
+std::vector<std::byte> seal(const Seal& seal, std::span<const std::byte> content) {
+  std::vector<std::byte> bytes;
+  bytes.reserve(sizeof seal.mark + content.size() + 16);
+  Writer writer(bytes);
+  writer.value(seal.mark), writer.value(static_cast<std::uint64_t>(content.size()));
+  bytes.insert(bytes.end(), content.begin(), content.end());
+  writer.value(checksum(bytes));
+  return bytes;
+}
+
+std::span<const std::byte> unseal(const Seal& seal, std::span<const std::byte> bytes) {
+  Reader reader(bytes);
+  std::array<char, 8> mark;
+  std::uint64_t size = 0, expected = 0;
+  reader.value(mark), reader.value(size);
+  if (mark != seal.mark) refuse(seal, "it does not start as one of this version of Iota");
+  if (!reader.ok() || reader.remaining() < sizeof expected || size != reader.remaining() - sizeof expected)
+    refuse(seal, "its length is wrong, it may have been cut short");
+  const auto content = bytes.subspan(sizeof mark + sizeof size, size);
+  Reader(bytes.last(sizeof expected)).value(expected);
+  if (checksum(bytes.first(bytes.size() - sizeof expected)) != expected) refuse(seal, "its checksum is wrong");
+  return content;
+}
+
+}  // namespace iota

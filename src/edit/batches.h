@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/editor.h"
+
+/// Commands that make one edit of several, and take edits back.
+namespace iota::edit {
+
+struct BeginEdit {};
+struct EndEdit {};
+struct CancelEdit {};
+struct Undo {};
+struct Redo {};
+
+void apply(Editor&, const BeginEdit&);
+RestructureReport apply(Editor&, const EndEdit&);
+void apply(Editor&, const CancelEdit&);
+bool apply(Editor&, const Undo&);
+bool apply(Editor&, const Redo&);
+
+}  // namespace iota::edit

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/bodies.h"
+
+#include "edit/checks.h"
+#include "edit/constraints.h"
+#include "edit/nails.h"
+#include "edit/settle.h"
+#include "ingredient/followers.h"
+#include "math/mat3.h"
+#include "model/solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace iota::edit {
+
+using model::none;
+
+namespace {
+
+Mat3 to_mat3(const Matrix3& rows) {
+  Mat3 m;
+  for (int i = 0; i < 3; ++i) m.m[i][0] = rows[i].x, m.m[i][1] = rows[i].y, m.m[i][2] = rows[i].z;
+  return m;
+}
+
+/// Of a body whose shape has no volume: four points that stand for a cube of 1 m give it a frame.
+constexpr MassProperties frame_only{1, {}, {{{1.0 / 12, 0, 0}, {0, 1.0 / 12, 0}, {0, 0, 1.0 / 12}}}};
+
+}  // namespace
+
+BodyId apply(Editor& e, const CreateBody& c) {
+  model::Model& model = e.model;
+  require_not_negative("damping", c.options.damping);
+  const std::uint32_t body = model.make_body(c.options.kind, c.options.damping);
+  e.structure_changed();
+  return model.bodies.id(body);
+}
+
+BodyId apply(Editor& e, const CreateSolid& c) {
+  model::Model& model = e.model;
+  const SolidOptions& o = c.options;
+  shape::check(c.shape);
+  const bool can_move = o.kind != BodyKind::static_ && o.kind != BodyKind::scripted;
+  const MassProperties properties = can_move || shape::is_solid(c.shape) ? mass_properties(c.shape) : frame_only;
+  if (std::isnan(o.mass)) require_positive("density", o.density);
+  const double mass = std::isnan(o.mass) ? o.density * properties.volume : o.mass;
+  require_not_negative("damping", o.damping);
+  require_mass("mass", mass);
+  require_finite("position", o.position);
+  require_finite("velocity", o.velocity);
+  require_finite("spin", o.spin);
+  for (const Vec3& a : o.attachments) require_finite("each attachment", a);
+  const model::SolidPose pose{o.position, require_quaternion("orientation", o.orientation)};
+
+  const std::uint32_t body = model.make_body(o.kind, o.damping);
+  model::Solid solid;
+  solid.shape = shape::to_data(c.shape);
+  if (const auto* mesh = std::get_if<Mesh>(&c.shape)) e.meshes.try_emplace(solid.shape.key, *mesh);
+  add_solid(model, body, solid, mass, properties.center, to_mat3(properties.mean_squares), pose);
+  const Vec3 center = model.center_of_mass(body);
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model::Ring& ring = model.rings[model.particles[p].ring];
+    ring.velocity = o.velocity + cross(o.spin, ring.position - center);
+  });
+  e.structure_changed();
+  const BodyId id = model.bodies.id(body);
+  for (const Vec3& a : o.attachments) (void)apply(e, CreateAttachment{id, o.position + rotate(pose.orientation, a)});
+  return id;
+}
+
+ParticleId apply(Editor& e, const CreateAttachment& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  require_finite("position", c.position);
+  if (model.bodies[body].first_solid == none)
+    throw std::invalid_argument(text("create_attachment is for bodies given by shape, but body ", body,
+                                     " is made of particles alone: use create_particle"));
+  std::uint32_t solid = none;
+  double nearest = 0;
+  model.for_each_solid_of(body, [&](std::uint32_t s) {
+    const double distance = norm(solid_pose(model, s).position - c.position);
+    if (is_untouched(model, s) && (solid == none || distance < nearest)) solid = s, nearest = distance;
+  });
+  if (solid == none)
+    throw std::invalid_argument(
+        text("create_attachment: something is hinged, nailed or bonded to the own four points of "
+             "body ",
+             body, ", which therefore cannot give; use attachments for that"));
+  const std::uint32_t particle = attach(model, solid, c.position);
+  // Velocities of the mid-point rule are rigid on the average only, so a new basis may carry the others differently.
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (model.is_unknown(model.particles[p])) return;
+    model::Ring& ring = model.rings[model.particles[p].ring];
+    std::tie(ring.position, ring.velocity) = model.carried(p);
+  });
+  e.mark_velocity_dirty(particle);
+  e.structure_changed();
+  return model.particles.id(particle);
+}
+
+void apply(Editor& e, const SetRod& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  require_mass("mass", c.mass);
+  if (!(c.radius > 0 && c.radius <= 1e9))
+    throw std::invalid_argument(text("radius must be above 0 and at most 1e9 m, got ", c.radius));
+  std::vector<std::uint32_t> massive;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (!model.particles[p].is_marker()) massive.push_back(p);
+  });
+  if (massive.size() != 2)
+    throw std::invalid_argument(
+        text("set_rod needs a body of exactly two massive particles, body ", body, " has ", massive.size()));
+  const std::uint32_t p = massive[0], q = massive[1];
+  const double length = norm(model.position(q) - model.position(p));
+  require_positive("the distance of the rod's two particles", length);
+  // Mass [A B; B A] as two point masses A+B = m/2 and a pair -B |v_p - v_q|^2 / 2, where A-B = 2 It/L^2.
+  const double transverse = c.mass * (3 * c.radius * c.radius + length * length) / 12;
+  const double sum = c.mass / 2, difference = 2 * transverse / (length * length);
+  model.remove_inertia_of(body, none);
+  for (const std::uint32_t end : {p, q}) model.particles[end].mass = sum;
+  model::InertiaPair pair{body, none, p, q, -(sum - difference) / 2};
+  model.bodies[body].first_inertia = model.inertia_pairs.create(pair).slot;
+  model.touch_body(body);
+}
+
+// --- kind -------------------------------------------------------------------------------------------------------------
+
+namespace {
+
+void put_to_rest(Editor& e, std::uint32_t body) {
+  model::Model& model = e.model;
+  e.islands.update(model, e.parallel);
+  const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
+  const std::uint32_t articulate = model.bodies[body].articulate;
+  if (const step::Island* const island = e.islands.of_articulate(articulate))
+    island->put_to_rest(model);
+  else
+    step::FreeParticles::put_to_rest(model, articulate);
+  for (const std::uint32_t b : affected) {
+    model::Articulate& a = model.articulates[model.bodies[b].articulate];
+    a.disturbed = a.jolted = 0;
+  }
+}
+
+}  // namespace
+
+void apply(Editor& e, const SetKind& c) {
+  model::Model& model = e.model;
+  const std::uint32_t slot = e.require(c.body);
+  const BodyKind before = model.bodies[slot].kind;
+  if (before == c.kind) return;
+  if (c.kind == BodyKind::resting) {
+    if (before != BodyKind::dynamic)
+      throw std::invalid_argument(text("only dynamic bodies can rest; body ", slot, " is not: make it dynamic first"));
+    return put_to_rest(e, slot);
+  }
+  if (model::is_free(c.kind) && is_endless(model, slot))
+    throw std::invalid_argument(
+        text("body ", slot, " is a half-space, which has no mass: it can only be static or scripted"));
+  if (before == BodyKind::resting) {
+    for (const std::uint32_t b : model.tied_bodies(std::array{slot})) {
+      if (model.bodies[b].kind == BodyKind::resting) model.bodies[b].kind = BodyKind::dynamic;
+      model.articulates[model.bodies[b].articulate].disturbed = 1;
+    }
+    if (c.kind == BodyKind::dynamic) return;
+  }
+  const auto change = [&] {
+    model::Body& body = model.bodies[slot];
+    if (c.kind == BodyKind::inactive) body.kind_before = body.kind;
+    body.kind = c.kind;
+    if (c.kind != BodyKind::dynamic) model.spins.erase(slot);
+    if (c.kind == BodyKind::dynamic && before != BodyKind::inactive) model.rebuild_basis(slot);  // rigid as it was put
+    model.for_each_particle_of(slot, [&](std::uint32_t p) {
+      model.mute_bonds_of(p);
+      model::Ring& ring = model.rings[model.particles[p].ring];
+      if (c.kind != BodyKind::dynamic && (c.kind != BodyKind::inactive || ring.count == 1))
+        ring.velocity = ring.acceleration = {};
+    });
+    model.touch_body(slot);
+    model.articulates[body.articulate].jolted = 1;
+  };
+  if (before == BodyKind::inactive) {  // what it is hinged to may have gone elsewhere meanwhile
+    Restructuring restored(e, {{slot}}, Restructuring::Kind::moving);
+    change();
+    restored.report.changed = true;
+    (void)restored.finish({true, true});
+    return;
+  }
+  change();
+  e.structure_changed();
+}
+
+// --- motion -----------------------------------------------------------------------------------------------------------
+
+void apply(Editor& e, const SetBodyDamping& c) {
+  model::Model& model = e.model;
+  require_not_negative("damping", c.per_second);
+  const std::uint32_t body = e.require(c.body);
+  model.bodies[body].damping = c.per_second;
+  model.touch_locally(body);
+}
+
+namespace {
+
+void require_particles(const model::Model& model, std::uint32_t body) {
+  if (model.bodies[body].count == 0) throw std::invalid_argument(text("body ", body, " has no particles to move"));
+}
+
+template <class Motion>
+void add_motion(Editor& e, std::uint32_t body, Motion motion) {
+  model::Model& model = e.model;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model::Ring& ring = model.rings[model.particles[p].ring];
+    ring.velocity += motion(ring.position);
+  });
+  e.mark_velocity_dirty(model.bodies[body].first);
+}
+
+/// Points on a line have no inertia about it: there is nothing that could keep such a spin. A rod has.
+void require_can_spin(const model::Model& model, std::uint32_t slot, const Vec3& spin) {
+  constexpr double along = 1e-6;  // of the spin: round-off
+  const model::Body& body = model.bodies[slot];
+  if (body.rank > 2 || spin == Vec3{} || model.axial_inertia(slot) > 0) return;
+  const Vec3 axis = model.position(body.basis[body.rank - 1]) - model.position(body.basis[0]);
+  if (body.rank == 2 && std::abs(dot(spin, axis)) <= along * norm(spin) * norm(axis)) return;
+  throw std::invalid_argument(
+      text("set_angular_velocity: the particles of body ", slot,
+           body.rank == 2 ? " are on one line, about which they have no inertia and cannot spin" : " are at one place",
+           "; a body given by shape can, or a rod (set_rod)"));
+}
+
+}  // namespace
+
+// The whole articulate moves as if it were rigid, so that no joint notices.
+void apply(Editor& e, const SetPose& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  require_finite("position", c.position);
+  const Quaternion wanted = require_quaternion("orientation", c.orientation);
+  require_particles(model, body);
+  e.orientations.refresh(e.model);
+  const Quaternion& q = model.bodies[body].orientation;
+  const Quaternion turn = multiply(wanted, {-q.x, -q.y, -q.z, q.w});
+  const Vec3 center = model.center_of_mass(body);
+  const auto moved = [&](const Vec3& x) { return c.position + rotate(turn, x - center); };
+  const std::uint32_t articulate = model.bodies[body].articulate;
+  if (model.bodies[body].kind == BodyKind::scripted) {
+    model.for_each_particle_of(
+        body, [&](std::uint32_t p) { apply(e, Nail{model.particles.id(p), false, moved(model.position(p))}); });
+    return;
+  }
+  std::vector<std::uint32_t> rings;
+  double mass = 0;
+  Vec3 momentum;
+  model.for_each_body_of(articulate, [&](std::uint32_t b) {
+    model.for_each_particle_of(b, [&](std::uint32_t p) {
+      rings.push_back(model.particles[p].ring);
+      mass += model.particles[p].mass, momentum += model.particles[p].mass * model.velocity(p);
+    });
+  });
+  std::sort(rings.begin(), rings.end());
+  rings.erase(std::unique(rings.begin(), rings.end()), rings.end());
+  const Vec3 mean = (1 / mass) * momentum;  // velocities turn along, so that momentum and kinetic energy stay
+  for (const std::uint32_t slot : rings) {
+    model::Ring& ring = model.rings[slot];
+    ring.position = moved(ring.position);
+    ring.velocity = mean + rotate(turn, ring.velocity - mean);
+    // Of a static body's rings too, or what is tied to it would bring it back.
+    if (model::Nail* const nail = model.nails.find(slot))
+      nail->position = nail->position_before = moved(nail->position);
+  }
+  model.for_each_body_of(articulate, [&](std::uint32_t b) { refresh_coordinates_of(model, b); });
+  model.bodies[body].orientation = wanted;
+  e.orientations.forget();
+  e.mark_velocity_dirty(model.bodies[body].first);
+}
+
+void apply(Editor& e, const SetBodyVelocity& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  require_finite("velocity", c.value);
+  require_particles(model, body);
+  const Vec3 change = c.value - body_velocity(model, body);
+  add_motion(e, body, [&](const Vec3&) { return change; });
+}
+
+void apply(Editor& e, const SetAngularVelocity& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  require_finite("angular velocity", c.value);
+  require_particles(model, body);
+  require_can_spin(model, body, c.value);
+  const Vec3 change = c.value - body_angular_velocity(model, body), center = model.center_of_mass(body);
+  add_motion(e, body, [&](const Vec3& x) { return cross(change, x - center); });
+  if (!(model.axial_inertia(body) > 0)) return;
+  constexpr double round_off = 1e-12;
+  const double spin = dot(c.value, model.rod_axis(body));
+  model.set_spin(body, std::abs(spin) > round_off * norm(c.value) ? spin : 0);
+}
+
+// Mass, momentum and energy go with it.
+void apply(Editor& e, const Destroy<BodyId>& c) {
+  const std::uint32_t body = e.require(c.id);
+  const ingredient::Followers followers(e.model, {{body}});
+  destroy_body(e.model, body);
+  followers.follow(e.model);
+  e.structure_changed();
+}
+
+}  // namespace iota::edit

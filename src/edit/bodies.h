@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/editor.h"
+
+/// Commands that make, move, switch and destroy bodies.
+namespace iota::edit {
+
+struct CreateBody {
+  BodyOptions options;
+};
+struct CreateSolid {
+  Shape shape;
+  SolidOptions options;
+};
+struct CreateAttachment {
+  BodyId body;
+  Vec3 position;
+};
+struct SetRod {
+  BodyId body;
+  double mass, radius;
+};
+struct SetKind {
+  static constexpr std::string_view queued_as = "set_kind";
+  BodyId body;
+  BodyKind kind;
+};
+struct SetBodyDamping {
+  BodyId body;
+  double per_second;
+};
+struct SetPose {
+  BodyId body;
+  Vec3 position;
+  Quaternion orientation;
+};
+struct SetBodyVelocity {
+  BodyId body;
+  Vec3 value;
+};
+struct SetAngularVelocity {
+  BodyId body;
+  Vec3 value;
+};
+
+BodyId apply(Editor&, const CreateBody&);
+BodyId apply(Editor&, const CreateSolid&);
+ParticleId apply(Editor&, const CreateAttachment&);
+void apply(Editor&, const SetRod&);
+void apply(Editor&, const SetKind&);
+void apply(Editor&, const SetBodyDamping&);
+void apply(Editor&, const SetPose&);
+void apply(Editor&, const SetBodyVelocity&);
+void apply(Editor&, const SetAngularVelocity&);
+void apply(Editor&, const Destroy<BodyId>&);
+
+}  // namespace iota::edit

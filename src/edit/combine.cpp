@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/combine.h"
+
+#include "edit/checks.h"
+#include "edit/settle.h"
+
+namespace iota::edit {
+
+RestructureReport apply(Editor& e, const CombineParticles& c) {
+  model::Model& model = e.model;
+  const std::uint32_t p = e.require(c.p), q = e.require(c.q);
+  require_not_negative("over", c.over);
+  const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
+  const double distance = norm(model.position(q) - model.position(p));
+  const bool unrelated = body_p != body_q && model.particles[p].ring != model.particles[q].ring;
+  if (c.over > 0 && unrelated && distance > 1e-9) {
+    require_can_meet(model, p, q);
+    if (closing_between(model, p, q) != model::none)
+      throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));
+    Restructuring change(e, std::array{body_p, body_q}, Restructuring::Kind::moving);
+    (void)model.add_closing({{p, q}, distance, c.over, 0, 0});
+    model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
+    change.report.changed = true;
+    return change.finish({.jolted = true});
+  }
+  const model::Ring& ring_p = model.rings[model.particles[p].ring];
+  const model::Ring& ring_q = model.rings[model.particles[q].ring];
+  const bool gentle = unrelated && ring_p.position == ring_q.position && ring_p.velocity == ring_q.velocity &&
+                      !(ring_p.nailed && ring_q.nailed);
+  const Vec3 middle = 0.5 * (ring_p.position + ring_q.position);
+  Restructuring change(e, std::array{body_p, body_q},
+                       gentle ? Restructuring::Kind::gentle : Restructuring::Kind::moving);
+  return change.finish(combine_particles(model, p, q, change.report), {ViewEvent::Kind::join, middle});
+}
+
+RestructureReport apply(Editor& e, const CombineBodies& c) {
+  model::Model& model = e.model;
+  const std::uint32_t a = e.require(c.a), b = e.require(c.b);
+  for (const std::uint32_t body : {a, b})
+    if (model.bodies[body].count == 0) throw std::invalid_argument(text("combine: body ", body, " has no particles"));
+  const Vec3 middle = 0.5 * (model.center_of_mass(a) + model.center_of_mass(b));
+  Restructuring change(e, std::array{a, b}, Restructuring::Kind::moving);
+  return change.finish(combine_bodies(model, a, b, change.report), {ViewEvent::Kind::join, middle});
+}
+
+RestructureReport call_off(Editor& e, std::uint32_t closing) {
+  model::Model& model = e.model;
+  const model::Closing& c = model.closings[closing];
+  Restructuring change(e, std::array{model.particles[c.p].body, model.particles[c.q].body},
+                       Restructuring::Kind::moving);
+  model::call_off(model, closing);
+  change.report.changed = true;
+  return change.finish({.jolted = true});
+}
+
+}  // namespace iota::edit

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/attributes.h"
+#include "edit/batches.h"
+#include "edit/bodies.h"
+#include "edit/bonds.h"
+#include "edit/combine.h"
+#include "edit/constraints.h"
+#include "edit/emitters.h"
+#include "edit/fields.h"
+#include "edit/grips.h"
+#include "edit/laws.h"
+#include "edit/nails.h"
+#include "edit/particles.h"
+#include "edit/separate.h"
+#include "edit/settings.h"
+
+#include <variant>
+
+namespace iota::edit {
+
+/// A step is a command too, since recordings hold it; src/step applies it.
+struct Step {
+  double dt;
+};
+
+// One per line, to avoid merge conflicts. Recordings name a command by its place: change the version of their format when
+// the list changes (door.cpp).
+// clang-format off
+using Command = std::variant<
+    Step,
+    SetGravity,
+    SetMode,
+    SetSolver,
+    SetDamping,
+    SetRest,
+    CreateBody,
+    CreateSolid,
+    CreateAttachment,
+    SetRod,
+    SetKind,
+    SetBodyDamping,
+    SetPose,
+    SetBodyVelocity,
+    SetAngularVelocity,
+    Destroy<BodyId>,
+    CreateParticle,
+    SetPosition,
+    SetVelocity,
+    SetMass,
+    ApplyForce,
+    SetParticleActive,
+    SetParticleBreakForce,
+    Destroy<ParticleId>,
+    SetAttributes,
+    SetOrientation,
+    SetSpin,
+    ApplyTorque,
+    SetMoment,
+    SetSpinDamping,
+    Align,
+    CreateEmitter,
+    SetEmitterActive,
+    SetRate,
+    MoveEmitter,
+    Destroy<EmitterId>,
+    CombineParticles,
+    CombineBodies,
+    Separate,
+    SeparatePart,
+    CreateCosmeticBond,
+    Destroy<CosmeticBondId>,
+    Nail,
+    Release,
+    CreateGrip,
+    MoveGrip,
+    Destroy<GripId>,
+    CreateJoint,
+    CreateDistance,
+    CreatePath,
+    CreateSurface,
+    CreateSurfacePair,
+    SetConstraintActive,
+    SetCoordinate,
+    SetLength,
+    SetBreakLimits,
+    Destroy<ConstraintId>,
+    CreateLaw,
+    Destroy<LawId>,
+    CreateBond,
+    SetBondParameter,
+    SetBondActive,
+    SetBondBreakForce,
+    Destroy<BondId>,
+    CreateGroup,
+    SetMember,
+    Destroy<GroupId>,
+    CreateField,
+    SetFieldParameter,
+    SetFieldActive,
+    Destroy<FieldId>,
+    CreatePairs,
+    SetPairsParameter,
+    SetPairsActive,
+    Destroy<PairsId>,
+    BeginEdit,
+    EndEdit,
+    CancelEdit,
+    Undo,
+    Redo>;
+// clang-format on
+
+/// Whether a command may be asked for during a step; it is then applied right after it. Such a command says how users
+/// call it (`queued_as`).
+template <class C>
+inline constexpr bool is_queueable = requires { C::queued_as; };
+
+/// What users call the queueable commands, each once: "combine, separate, ...".
+std::string queued_edits();
+
+}  // namespace iota::edit

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/constraints.h"
+
+#include "edit/checks.h"
+#include "ingredient/joint_readings.h"
+#include "ingredient/joint_rows.h"
+#include "math/mat3.h"
+
+#include <cmath>
+
+namespace iota::edit {
+
+using model::none;
+
+namespace {
+
+const char* name_of(JointCoordinate which) {
+  return std::array{"angle", "slide", "second angle"}[static_cast<std::size_t>(which)];
+}
+
+void require_options(std::string_view name, const CoordinateOptions& o) {
+  if (!(o.lower <= o.upper))
+    throw std::invalid_argument(text(name, " limits: lower must not be above upper, got ", o.lower, " and ", o.upper));
+  if (o.lower == std::numeric_limits<double>::infinity() || o.upper == -std::numeric_limits<double>::infinity())
+    throw std::invalid_argument(text(name, " limits leave no place, got ", o.lower, " and ", o.upper));
+  require_number("motor_speed", o.motor_speed);
+  if (!(o.motor_max >= 0)) throw std::invalid_argument(text("motor_max must be zero or more, got ", o.motor_max));
+  require_not_negative("friction", o.friction);
+  require_not_negative("stiffness", o.stiffness);
+  require_not_negative("damping", o.damping);
+  require_number("rest", o.rest);
+}
+
+void require_limits(const BreakLimits& limits) {
+  require_break_force(limits.force);
+  require_break_force(limits.torque, "break_torque");
+}
+
+void require_surface(const model::PlacedSurface& surface) {
+  if (surface.data.function == 0) shape::check(shape::from_data(surface.data.shape));
+  require_finite("position of the surface", surface.position);
+  const Quaternion& q = surface.orientation;
+  const double size = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!(std::abs(size - 1) < 1e-6))
+    throw std::invalid_argument(
+        text("orientation of the surface must be a unit quaternion x y z w, got length ", size));
+}
+
+/// Calls a surface's function once, for what would otherwise only show in the next step. point: world frame.
+void require_function(const model::Model& model, const model::PlacedSurface& surface, const Vec3& point) {
+  const auto found = model.surface_functions.find(surface.data.function);
+  if (found == model.surface_functions.end()) return;
+  const Quaternion& q = surface.orientation;
+  const shape::FunctionSurface function(found->second.phi, found->second.size);
+  (void)function.at(rotate({-q.x, -q.y, -q.z, q.w}, point - surface.position));
+  if (!function.failure().empty())
+    throw std::invalid_argument(text("the function of a surface ", function.failure(), ", at ", text_of(point)));
+}
+
+/// After making or changing a constraint: its island is made anew, its velocities are projected before the next step, and
+/// a gap closes there.
+void constraint_changed(Editor& e, std::uint32_t constraint) {
+  model::Model& model = e.model;
+  const model::Constraint& c = model.constraints[constraint];
+  for (const int place : {model::a_origin, model::b_origin})
+    if (c.particles[place] != none) model.touch_particle(c.particles[place]), e.mark_velocity_dirty(c.particles[place]);
+  e.structure_changed();
+}
+
+/// Wakes bodies at rest that a changed motor or rope must move.
+void wake(Editor& e, std::uint32_t constraint) {
+  model::Model& model = e.model;
+  for (const int side : {0, 1}) {
+    const std::uint32_t body = body_of_side(model, model.constraints[constraint], side);
+    if (body != none && model.bodies[body].kind == BodyKind::resting) return constraint_changed(e, constraint);
+  }
+}
+
+ConstraintId made(Editor& e, std::uint32_t slot) {
+  model::Model& model = e.model;
+  ingredient::start_contact(model, slot);
+  constraint_changed(e, slot);
+  return model.constraints.id(slot);
+}
+
+}  // namespace
+
+void refresh_coordinates_of(model::Model& model, std::uint32_t body) {
+  if (model.constraints.size() == 0) return;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model.for_each_constraint_of(p, [&](std::uint32_t c, int) { ingredient::refresh_coordinates(model, c); });
+  });
+}
+
+ConstraintId apply(Editor& e, const CreateJoint& c) {
+  model::Model& model = e.model;
+  const model::ConstraintKindInfo& kind = model::info(c.spec.kind);
+  if (kind.form != model::ConstraintKindInfo::Form::joint)
+    throw std::invalid_argument(text("a ", kind.name, " joins two particles, not bodies"));
+  (void)e.require(c.spec.a);
+  if (c.spec.b) (void)e.require(c.spec.b);
+  if (c.spec.a == c.spec.b)
+    throw std::invalid_argument(text(kind.name, ": needs two bodies, got body ", c.spec.a.slot, " twice"));
+  for (const BodyId body : {c.spec.a, c.spec.b})
+    if (body && model.bodies[body.slot].count == 0)
+      throw std::invalid_argument(text(kind.name, ": body ", body.slot, " has no particles"));
+  require_finite("at", c.spec.at);
+  for (const Vec3& axis : {c.spec.axis, c.spec.second_axis}) require_finite("axis", axis);
+  if (!(norm(c.spec.axis) > 0)) throw std::invalid_argument("axis must have a direction, got zero length");
+  const std::array options{&c.spec.angle, &c.spec.slide, &c.spec.second_angle};
+  for (const JointCoordinate which : joint_coordinates) {
+    const CoordinateOptions& o = *options[static_cast<std::size_t>(which)];
+    require_options(name_of(which), o);
+    if (!has_coordinate(c.spec.kind, which) && ingredient::rows_of(o) != ingredient::RowsOf{})
+      throw std::invalid_argument(text("a ", kind.name, " joint has no ", name_of(which),
+                                       " for limits, motors, friction or springs to act on"));
+  }
+  require_limits(c.spec.breaks);
+  return made(e, make_constraint(model, c.spec));
+}
+
+ConstraintId apply(Editor& e, const CreateDistance& c) {
+  if (model::info(c.spec.kind).form != model::ConstraintKindInfo::Form::distance)
+    throw std::invalid_argument(text("a ", model::info(c.spec.kind).name, " is not a rod or rope"));
+  (void)e.require(c.spec.p), (void)e.require(c.spec.q);
+  require_limits(c.spec.breaks);
+  return made(e, make_constraint(e.model, c.spec));
+}
+
+ConstraintId apply(Editor& e, const CreatePath& c) {
+  model::Model& model = e.model;
+  const std::uint32_t particle = e.require(c.spec.particle);
+  if (c.spec.body && e.require(c.spec.body) == model.particles[particle].body)
+    throw std::invalid_argument(text("path: particle ", particle, " is of the body that holds the path"));
+  for (const Vec3& point : c.spec.points) require_finite("each point of the path", point);
+  require_number("rounding", c.spec.rounding);
+  require_options("slide", c.spec.slide);
+  require_limits(c.spec.breaks);
+  return made(e, make_constraint(model, c.spec));
+}
+
+ConstraintId apply(Editor& e, const CreateSurface& c) {
+  model::Model& model = e.model;
+  const char* const name = model::info(c.spec.kind).name;
+  if (model::info(c.spec.kind).form != model::ConstraintKindInfo::Form::surface)
+    throw std::invalid_argument(text("a ", name, " is not between a particle and a surface"));
+  const std::uint32_t particle = e.require(c.spec.particle);
+  if (c.spec.body && e.require(c.spec.body) == model.particles[particle].body)
+    throw std::invalid_argument(text(name, ": particle ", particle, " is of the body that holds the surface"));
+  require_surface(c.spec.surface);
+  require_function(model, c.spec.surface, model.position(particle));
+  require_limits(c.spec.breaks);
+  return made(e, make_constraint(model, c.spec));
+}
+
+ConstraintId apply(Editor& e, const CreateSurfacePair& c) {
+  model::Model& model = e.model;
+  const char* const name = model::info(c.spec.kind).name;
+  if (model::info(c.spec.kind).form != model::ConstraintKindInfo::Form::surface_pair)
+    throw std::invalid_argument(text("a ", name, " is not between two surfaces"));
+  (void)e.require(c.spec.a);
+  if (c.spec.b) (void)e.require(c.spec.b);
+  if (c.spec.a == c.spec.b)
+    throw std::invalid_argument(text(name, ": needs two bodies, got body ", c.spec.a.slot, " twice"));
+  for (const model::PlacedSurface& surface : c.spec.surfaces) require_surface(surface);
+  for (const std::size_t i : {0, 1}) require_function(model, c.spec.surfaces[i], c.spec.surfaces[1 - i].position);
+  require_limits(c.spec.breaks);
+  return made(e, make_constraint(model, c.spec));
+}
+
+void apply(Editor& e, const SetConstraintActive& c) {
+  model::Model& model = e.model;
+  const std::uint32_t slot = e.require(c.constraint);
+  model::Constraint& constraint = model.constraints[slot];
+  constraint.broken = 0;
+  if (constraint.active == static_cast<std::uint8_t>(c.active)) return;
+  constraint.active = c.active;
+  if (c.active) model.make_geometry_anew(slot);  // a surface that has failed gets another chance
+  ingredient::refresh_coordinates(model, slot);
+  constraint.multipliers.fill(0), constraint.efforts = {}, constraint.gap = 0;
+  constraint_changed(e, slot);
+}
+
+void apply(Editor& e, const SetCoordinate& c) {
+  const std::uint32_t slot = e.require(c.constraint);
+  model::Constraint& constraint = e.model.constraints[slot];
+  const model::ConstraintKindInfo& kind = model::info(constraint.kind);
+  const char* const name = name_of(c.coordinate);
+  if (!has_coordinate(constraint.kind, c.coordinate))
+    throw std::invalid_argument(text("a ", kind.name, " has no ", name));
+  require_options(name, c.options);
+  CoordinateOptions& options = constraint.options[static_cast<std::size_t>(c.coordinate)];
+  const bool same_rows = ingredient::rows_of(options) == ingredient::rows_of(c.options);
+  options = c.options;
+  if (same_rows) return wake(e, slot);
+  const ingredient::RowsOf rows = ingredient::rows_of(options);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!rows[i]) constraint.efforts[static_cast<std::size_t>(c.coordinate)][i] = 0;
+  constraint_changed(e, slot);
+}
+
+void apply(Editor& e, const SetLength& c) {
+  model::Model& model = e.model;
+  const std::uint32_t slot = e.require(c.constraint);
+  if (model::info(model.constraints[slot].kind).form != model::ConstraintKindInfo::Form::distance)
+    throw std::invalid_argument("only rods and ropes have a length");
+  if (!(c.value > 1e-9 && c.value <= 1e9))
+    throw std::invalid_argument(text("length must be between 1e-9 and 1e9 m, got ", c.value));
+  model.constraints[slot].length = c.value;
+  model.scene.constraints.note(slot);
+  wake(e, slot);
+}
+
+void apply(Editor& e, const SetBreakLimits& c) {
+  const std::uint32_t slot = e.require(c.constraint);
+  require_limits(c.limits);
+  e.model.constraints[slot].breaks = c.limits;
+}
+
+void apply(Editor& e, const Destroy<ConstraintId>& c) {
+  model::Model& model = e.model;
+  const std::uint32_t slot = e.require(c.id);
+  for (const model::SurfaceData& surface : model.constraints[slot].surfaces)
+    e.drop_function(model.surface_functions, surface.function);
+  destroy_constraint(model, slot);
+  e.structure_changed();
+}
+
+}  // namespace iota::edit

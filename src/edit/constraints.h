@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/editor.h"
+
+namespace iota::edit {
+
+struct CreateJoint {
+  JointSpec spec;
+};
+struct CreateDistance {
+  DistanceSpec spec;
+};
+struct CreatePath {
+  PathSpec spec;
+};
+struct CreateSurface {
+  model::SurfaceConstraintData spec;
+};
+struct CreateSurfacePair {
+  model::SurfacePairData spec;
+};
+struct SetConstraintActive {
+  static constexpr std::string_view queued_as = "set_active";
+  ConstraintId constraint;
+  bool active;
+};
+struct SetCoordinate {
+  static constexpr std::string_view queued_as = "set_coordinate";
+  ConstraintId constraint;
+  JointCoordinate coordinate;
+  CoordinateOptions options;
+};
+struct SetLength {
+  static constexpr std::string_view queued_as = "set_length";
+  ConstraintId constraint;
+  double value;
+};
+struct SetBreakLimits {
+  ConstraintId constraint;
+  BreakLimits limits;
+};
+
+ConstraintId apply(Editor&, const CreateJoint&);
+ConstraintId apply(Editor&, const CreateDistance&);
+ConstraintId apply(Editor&, const CreatePath&);
+ConstraintId apply(Editor&, const CreateSurface&);
+ConstraintId apply(Editor&, const CreateSurfacePair&);
+void apply(Editor&, const SetConstraintActive&);
+void apply(Editor&, const SetCoordinate&);
+void apply(Editor&, const SetLength&);
+void apply(Editor&, const SetBreakLimits&);
+void apply(Editor&, const Destroy<ConstraintId>&);
+
+/// Brings the coordinates of a body's joints up to date with places that were assigned.
+void refresh_coordinates_of(model::Model&, std::uint32_t body);
+
+}  // namespace iota::edit

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/door.h"
+
+#include "base/seal.h"
+#include "base/text.h"
+#include "ingredient/quantities.h"
+
+namespace iota::edit {
+
+std::string queued_edits() {
+  std::vector<std::string_view> names;
+  const auto add = [&]<class C>() {
+    if constexpr (is_queueable<C>)
+      if (std::find(names.begin(), names.end(), C::queued_as) == names.end()) names.push_back(C::queued_as);
+  };
+  [&]<std::size_t... i>(std::index_sequence<i...>) {
+    (add.template operator()<std::variant_alternative_t<i, Command>>(), ...);
+  }(std::make_index_sequence<std::variant_size_v<Command>>{});
+  std::sort(names.begin(), names.end());
+  std::string list;
+  for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  return list;
+}
+
+void Door::refuse_in_step() {
+  throw std::logic_error("while the system steps, only " + queued_edits() +
+                         " may be asked for; they are applied right after the step");
+}
+
+void Door::apply_queue(StepReport& report) {
+  if (queue_.empty()) return;
+  report.edits.emplace();
+  report.edits->articulates_before = editor_.model.articulates.size();
+  ingredient::begin_edits(editor_.model);
+  const double before = editor_.held.book().edits;
+  const std::uint32_t version = editor_.model.structure_version;
+  std::vector<Command> edits;
+  edits.swap(queue_);
+  const auto apply_one = [&]<class C>(const C& command) {
+    if constexpr (!is_queueable<C>)
+      return;
+    else if constexpr (std::is_same_v<decltype(apply(editor_, command)), RestructureReport>)
+      add_report(*report.edits, apply(editor_, command));
+    else
+      apply(editor_, command);
+  };
+  for (const Command& edit : edits) {
+    try {
+      std::visit(apply_one, edit);
+    } catch (const std::exception& error) {
+      report.warnings.push_back(std::string("an edit asked for during the step could not be made: ") + error.what());
+    }
+  }
+  report.edits->changed = editor_.model.structure_version != version;
+  report.edits->articulates_after = editor_.model.articulates.size();
+  report.edits->structure_version = editor_.model.structure_version;
+  editor_.held.note_change();
+  report.edits->energy_change = editor_.held.book().edits - before;
+}
+
+void Door::start_recording() {
+  editor_.forget_history();  // a replay would not have it
+  recording_ = Recording{editor_.snapshot(), {}, {}};
+  editor_.keeps_functions = true;
+}
+
+Recording Door::stop_recording() {
+  if (!recording_) throw std::logic_error("stop_recording: nothing is being recorded");
+  Recording recording = std::move(*recording_);
+  recording_.reset();
+  editor_.keeps_functions = false;
+  return recording;
+}
+
+void Door::record_step(const Step& step) {
+  if (!recording_) return;
+  record(step);
+  recording_->hashes.push_back(editor_.model.hash());
+}
+
+namespace {
+
+/// Calls visit(number, command) for each command of a recording.
+template <class Visit>
+void for_each_command(const Recording& recording, Visit visit) {
+  Reader reader(recording.commands);
+  for (std::size_t number = 1; !reader.at_end(); ++number) {
+    Command command;
+    serialize(reader, command);
+    if (!reader.ok())
+      throw std::invalid_argument(text("replay: command ", number, " of the recording is cut short or damaged"));
+    visit(number, command);
+  }
+}
+
+struct KeepFunctions {
+  explicit KeepFunctions(Editor& editor) : editor(editor) { editor.keeps_functions = true; }
+  ~KeepFunctions() { editor.keeps_functions = false; }
+  Editor& editor;
+};
+
+}  // namespace
+
+std::optional<std::uint64_t> Door::replay(const Recording& recording,
+                                          const std::function<void(const Command&)>& execute) {
+  for_each_command(recording, [](std::size_t, const Command&) {});  // refused before anything changes
+  editor_.restore(recording.start);
+  editor_.forget_history();
+  const KeepFunctions keep(editor_);
+  std::size_t steps = 0;
+  std::optional<std::uint64_t> differs;
+  for_each_command(recording, [&](std::size_t number, const Command& command) {
+    if (differs) return;
+    try {
+      execute(command);
+    } catch (const std::logic_error& error) {
+      throw std::invalid_argument(text("replay: command ", number, " cannot be applied: ", error.what()));
+    }
+    if (!std::holds_alternative<Step>(command)) return;
+    if (steps >= recording.hashes.size() || editor_.model.hash() != recording.hashes[steps++])
+      differs = editor_.model.step;
+  });
+  return differs;
+}
+
+}  // namespace iota::edit
+
+namespace iota {
+
+namespace {
+
+constexpr Seal recording_seal{{'I', 'O', 'T', 'A', 'R', 'E', 'C', '2'}, "recording"};
+
+}  // namespace
+
+std::vector<std::byte> Recording::to_bytes() const {
+  std::vector<std::byte> content;
+  Writer writer(content);
+  writer.vector(start.bytes), writer.vector(commands), writer.vector(hashes);
+  return seal(recording_seal, content);
+}
+
+Recording Recording::from_bytes(std::span<const std::byte> bytes) {
+  Reader reader(unseal(recording_seal, bytes));
+  Recording recording;
+  reader.vector(recording.start.bytes), reader.vector(recording.commands), reader.vector(recording.hashes);
+  if (!reader.ok() || !reader.at_end()) throw std::invalid_argument("this is not a recording: its parts do not fit");
+  return recording;
+}
+
+}  // namespace iota

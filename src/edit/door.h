@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/commands.h"
+
+#include <functional>
+
+namespace iota::edit {
+
+/// The one way in: every command passes through `execute`, from a user's call, a queue or a recording.
+class Door {
+ public:
+  explicit Door(Editor& editor) : editor_(editor) {}
+
+  /// Applies a command and records it. During a step a queueable one waits for the end of the step, and any other throws
+  /// std::logic_error.
+  template <class C>
+  auto execute(const C& command);
+
+  /// @name Steps
+  ///@{
+  bool is_stepping() const { return is_stepping_; }
+  [[noreturn]] static void refuse_in_step();
+  void begin_step() { is_stepping_ = true; }
+  void end_step() { is_stepping_ = false; }
+  /// Applies what was asked for during the step, in order, as one edit.
+  void apply_queue(StepReport&);
+  ///@}
+
+  /// @name Recordings
+  ///@{
+  bool is_recording() const { return recording_.has_value(); }
+  void start_recording();
+  Recording stop_recording();
+  /// A step that has just been made.
+  void record_step(const Step&);
+  /// Restores the start and calls execute(command) for each command that follows. Returns the number of the first step
+  /// whose hash differs, if any. Throws std::invalid_argument for a damaged recording: before anything has changed where
+  /// bytes are not a command, else after the last command that could be applied.
+  std::optional<std::uint64_t> replay(const Recording&, const std::function<void(const Command&)>& execute);
+  ///@}
+
+ private:
+  template <class C>
+  void record(const C& command);
+
+  Editor& editor_;
+  bool is_stepping_ = false;
+  std::vector<Command> queue_;  // asked for during the step
+  std::optional<Recording> recording_;
+};
+
+// --- definitions --------------------------------------------------------------------------------------------------------
+
+template <class C>
+auto Door::execute(const C& command) {
+  using Result = decltype(apply(editor_, command));
+  if (is_stepping_) {
+    if constexpr (is_queueable<C>) {
+      queue_.push_back(command);
+      if constexpr (std::is_same_v<Result, RestructureReport>) {
+        RestructureReport report;
+        report.queued = true;
+        return report;
+      } else {
+        static_assert(std::is_void_v<Result>, "the caller of a queued command cannot get its result");
+        return;
+      }
+    } else {
+      refuse_in_step();
+    }
+  }
+  editor_.held.note_change();
+  editor_.model.has_edits = 1;
+  if constexpr (std::is_void_v<Result>) {
+    apply(editor_, command);
+    record(command);
+  } else {
+    Result result = apply(editor_, command);
+    if constexpr (std::is_same_v<Result, RestructureReport>)
+      if (editor_.batch) editor_.batch->add(result);
+    record(command);
+    return result;
+  }
+}
+
+template <class C>
+void Door::record(const C& command) {
+  if (!recording_) return;
+  Writer writer(recording_->commands);
+  writer.value(static_cast<std::uint8_t>(Command(std::in_place_type<C>).index()));
+  serialize(writer, command);
+}
+
+}  // namespace iota::edit

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/editor.h"
+
+#include "base/seal.h"
+#include "base/text.h"
+#include "ingredient/tables.h"
+
+namespace iota::edit {
+
+namespace {
+
+constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '4'}, "snapshot"};
+
+template <class Table, class IdType>
+std::uint32_t slot_of(const Table& table, std::string_view kind, IdType id,
+                      const std::optional<IdType>& survivor = std::nullopt) {
+  if (table.contains(id)) return id.slot;
+  if (!id) throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
+  if (survivor)
+    throw StaleIdError(text(kind, " ", id.slot, " is gone: it was absorbed by ", kind, " ", survivor->slot));
+  throw StaleIdError(text(kind, " ", id.slot, " is gone: it was destroyed"));
+}
+
+}  // namespace
+
+std::uint32_t require(const model::Model& m, BodyId id) { return slot_of(m.bodies, "body", id, m.survivor_of(id)); }
+std::uint32_t require(const model::Model& m, ParticleId id) {
+  return slot_of(m.particles, "particle", id, m.survivor_of(id));
+}
+std::uint32_t require(const model::Model& m, BondId id) { return slot_of(m.bonds, "bond", id); }
+std::uint32_t require(const model::Model& m, CosmeticBondId id) {
+  return slot_of(m.cosmetic_bonds, "cosmetic bond", id);
+}
+std::uint32_t require(const model::Model& m, LawId id) { return slot_of(m.laws, "law", id); }
+std::uint32_t require(const model::Model& m, GroupId id) { return slot_of(m.groups, "group", id); }
+std::uint32_t require(const model::Model& m, FieldId id) { return slot_of(m.fields, "field", id); }
+std::uint32_t require(const model::Model& m, PairsId id) { return slot_of(m.pairs, "pairwise force", id); }
+std::uint32_t require(const model::Model& m, ConstraintId id) { return slot_of(m.constraints, "constraint", id); }
+std::uint32_t require(const model::Model& m, GripId id) { return slot_of(m.grips, "grip", id); }
+std::uint32_t require(const model::Model& m, EmitterId id) { return slot_of(m.emitters, "emitter", id); }
+
+void Editor::mark_velocity_dirty(std::uint32_t particle) {
+  model::Articulate& a = model.articulates[model.bodies[model.particles[particle].body].articulate];
+  a.jolted = a.disturbed = 1;
+}
+
+Snapshot Editor::snapshot() {
+  std::vector<std::byte> content;
+  Writer writer(content);
+  ingredient::archive(model, writer);
+  // A restored system builds its islands from what is saved; so does this one, or replays would differ in the last bits.
+  islands.renew();
+  keys_saved_below_ = held.functions.next_key;
+  return {seal(snapshot_seal, content)};
+}
+
+void Editor::restore(const Snapshot& snapshot) {
+  Reader reader(unseal(snapshot_seal, snapshot.bytes));
+  model::Model restored;
+  ingredient::archive(restored, reader);
+  if (!reader.ok() || !reader.at_end())
+    throw std::invalid_argument("restore: the snapshot is of another build of Iota");
+  restored.surface_functions = std::move(model.surface_functions);
+  if (model.scene.is_on()) restored.scene.watch();
+  model = std::move(restored);
+  model.make_geometries();
+  islands.forget();
+  held.forget();
+  orientations.forget();
+}
+
+}  // namespace iota::edit

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/parallel.h"
+#include "base/serialize.h"
+#include "edit/history.h"
+#include "held/held_forces.h"
+#include "island/islands.h"
+#include "model/model.h"
+#include "read/orientations.h"
+
+#include <iota/system.h>
+
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace iota {
+
+template <>
+struct LastEnumerator<IntegrationMode> : std::integral_constant<IntegrationMode, IntegrationMode::accurate> {};
+template <>
+struct LastEnumerator<BodyKind> : std::integral_constant<BodyKind, BodyKind::resting> {};
+template <>
+struct LastEnumerator<ConstraintKind> : std::integral_constant<ConstraintKind, ConstraintKind::apart> {};
+template <>
+struct LastEnumerator<JointCoordinate> : std::integral_constant<JointCoordinate, JointCoordinate::second_angle> {};
+template <>
+struct LastEnumerator<CurveKind> : std::integral_constant<CurveKind, CurveKind::polyline> {};
+
+}  // namespace iota
+
+/// Everything that changes a system is a command: a struct of serializable fields, and a function `apply` that checks what
+/// it is given, throws before anything has changed, and else changes the model. Commands are queued during a step,
+/// recorded and replayed (door.h). A new command is declared beside its kin, defined there, and added to commands.h.
+namespace iota::edit {
+
+/// Slot of a living thing. Throws StaleIdError, which says what became of it.
+std::uint32_t require(const model::Model&, BodyId);
+std::uint32_t require(const model::Model&, ParticleId);
+std::uint32_t require(const model::Model&, BondId);
+std::uint32_t require(const model::Model&, CosmeticBondId);
+std::uint32_t require(const model::Model&, LawId);
+std::uint32_t require(const model::Model&, GroupId);
+std::uint32_t require(const model::Model&, FieldId);
+std::uint32_t require(const model::Model&, PairsId);
+std::uint32_t require(const model::Model&, ConstraintId);
+std::uint32_t require(const model::Model&, GripId);
+std::uint32_t require(const model::Model&, EmitterId);
+
+/// What commands work on.
+struct Editor {
+  Editor(model::Model& model, step::Islands& islands, held::HeldForces& held, read::Orientations& orientations,
+         const Parallel& parallel)
+      : model(model), islands(islands), held(held), orientations(orientations), parallel(parallel) {}
+
+  model::Model& model;
+  step::Islands& islands;
+  held::HeldForces& held;
+  read::Orientations& orientations;
+  const Parallel& parallel;
+
+  std::map<std::uint64_t, Mesh> meshes;  ///< for drawing, by content; not part of the saved state
+  std::optional<Batch> batch;            ///< that has been begun
+  History undo, redo;
+  /// Set while a replay may bring back what is destroyed: its functions are then kept.
+  bool keeps_functions = false;
+
+  /// Slot of a living thing. Throws StaleIdError, which says what became of it.
+  template <class IdType>
+  std::uint32_t require(IdType id) const {
+    return edit::require(model, id);
+  }
+  void structure_changed() { ++model.structure_version; }
+  /// Notes that velocities were assigned to a particle, or something else that constraints may not agree with: they are
+  /// projected before the next step. Wakes what rests.
+  void mark_velocity_dirty(std::uint32_t particle);
+
+  /// Drops a function whose user was destroyed, unless a restore or a replay may bring the user back.
+  template <class Function>
+  void drop_function(std::map<std::uint64_t, Function>& functions, std::uint64_t key) {
+    if (!keeps_functions && key >= keys_saved_below_) functions.erase(key);
+  }
+
+  Snapshot snapshot();
+  /// Throws std::invalid_argument for bytes that are not a snapshot; nothing has changed then.
+  void restore(const Snapshot&);
+  void forget_history() { batch.reset(), undo.clear(), redo.clear(); }
+
+ private:
+  std::uint64_t keys_saved_below_ = 0;  // of functions: what the latest snapshot may name
+};
+
+template <class IdType>
+struct Destroy {
+  static constexpr std::string_view queued_as = "destroy";
+  IdType id;
+};
+
+}  // namespace iota::edit

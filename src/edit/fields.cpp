@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/fields.h"
+
+#include "edit/checks.h"
+#include "edit/law_checks.h"
+
+#include <cmath>
+
+namespace iota::edit {
+
+// --- groups -----------------------------------------------------------------------------------------------------------
+
+GroupId apply(Editor& e, const CreateGroup& c) {
+  model::Model& model = e.model;
+  if (c.name.empty()) throw std::invalid_argument("a group needs a name");
+  if (model.groups.size() == static_cast<std::uint32_t>(max_groups))
+    throw std::invalid_argument(text("a system has at most ", max_groups, " groups"));
+  model::Group group;
+  put_text(group.name, c.name, "the name of a group");
+  model.groups.for_each([&](std::uint32_t, const model::Group& g) {
+    if (g.name == group.name) throw std::invalid_argument(text("there is a group '", c.name, "' already"));
+  });
+  return model.groups.create(group);
+}
+
+void apply(Editor& e, const SetMember& c) {
+  model::Model& model = e.model;
+  const std::uint32_t bit = 1u << e.require(c.group);
+  std::uint32_t& groups = model.particles[e.require(c.particle)].groups;
+  groups = c.member ? groups | bit : groups & ~bit;
+  ++model.members_revision;
+}
+
+void apply(Editor& e, const Destroy<GroupId>& c) {
+  model::Model& model = e.model;
+  const std::uint32_t slot = e.require(c.id);
+  const auto refuse = [&](const char* what, std::uint32_t user) {
+    throw std::invalid_argument(text("the group ", model.groups[slot].name.data(), " cannot be destroyed: ", what, " ",
+                                     user, " acts on it; destroy that first"));
+  };
+  model.fields.for_each([&](std::uint32_t f, const model::Field& field) {
+    if (field.group == slot) refuse("field", f);
+  });
+  model.pairs.for_each([&](std::uint32_t p, const model::Pairs& pairs) {
+    if (pairs.group == slot) refuse("pairwise force", p);
+  });
+  model.particles.for_each(
+      [&](std::uint32_t p, const model::Particle&) { model.particles[p].groups &= ~(1u << slot); });
+  model.groups.destroy(slot);
+  ++model.members_revision;
+}
+
+// --- fields -----------------------------------------------------------------------------------------------------------
+
+namespace {
+
+laws::Range range_of(const model::Field& field, std::uint32_t index) {
+  return field.kind == model::FieldKind::listed ? laws::field_law_parameters(field.number)[index].range
+                                                : laws::Range::any;
+}
+
+std::string list_of_fields() {
+  std::string list;
+  for (std::uint32_t i = 0; i < laws::field_law_count; ++i)
+    list += (i ? ", " : "") + std::string(laws::field_law_name(i));
+  return list;
+}
+
+model::Field make_field(const CreateField& c) {
+  model::Field field;
+  put_text(field.name, c.name, "the name of a field");
+  if (c.function == 0 && c.text.find('=') == std::string::npos) {
+    field.number = laws::find_field_law(c.text);
+    if (field.number == laws::field_law_count)
+      throw std::invalid_argument(text("no field is called '", c.text, "'. Predefined are ", list_of_fields(),
+                                       "; an expression says 'fx = ...; fy = ...; fz = ...'"));
+    if (c.name.empty()) put_text(field.name, c.text, "the name of a field");
+    for (const laws::Parameter& p : laws::field_law_parameters(field.number)) {
+      put_text(field.names[field.parameter_count], p.name, "the name of a parameter");
+      field.parameters[field.parameter_count++] = p.standard;
+    }
+    for (const LawParameter& p : c.parameters)
+      field.parameters[require_parameter(field.name.data(), field.names, field.parameter_count, p.name)] = p.value;
+  } else {
+    put_parameters(field.names, field.parameters, field.parameter_count, c.parameters, laws::FieldLaw::variables);
+    field.kind = c.function == 0 ? model::FieldKind::expression : model::FieldKind::function;
+    field.function = c.function;
+    put_text(field.text, c.text, "the text of a field");
+  }
+  for (std::uint32_t i = 0; i < field.parameter_count; ++i)
+    require_in_range(field.names[i].data(), range_of(field, i), field.parameters[i]);
+  field.replaces_gravity = c.replaces_gravity;
+  return field;
+}
+
+}  // namespace
+
+FieldId apply(Editor& e, const CreateField& c) {
+  model::Model& model = e.model;
+  model::Field field = make_field(c);
+  field.group = c.group ? e.require(c.group) : model::none;
+  return model.fields.id(model.make_field(field));
+}
+
+void apply(Editor& e, const SetFieldParameter& c) {
+  model::Field& field = e.model.fields[e.require(c.field)];
+  if (c.index >= field.parameter_count) throw std::invalid_argument("set_parameter: no such parameter");
+  require_in_range(field.names[c.index].data(), range_of(field, c.index), c.value);
+  field.parameters[c.index] = c.value;
+}
+
+void apply(Editor& e, const SetFieldActive& c) { e.model.fields[e.require(c.field)].active = c.active; }
+
+void apply(Editor& e, const Destroy<FieldId>& c) {
+  model::Model& model = e.model;
+  const std::uint32_t slot = e.require(c.id);
+  e.drop_function(e.held.functions.of_fields, model.fields[slot].function);
+  model.fields.destroy(slot);
+}
+
+// --- pairwise forces --------------------------------------------------------------------------------------------------
+
+PairsId apply(Editor& e, const CreatePairs& c) {
+  model::Model& model = e.model;
+  const std::uint32_t slot = e.require(c.law);
+  const model::Law& law = model.laws[slot];
+  require_positive("cutoff", c.cutoff);
+  if (!law.has_derivative())
+    throw std::invalid_argument(text("pairwise forces take a predefined law or an expression, not the law ", slot));
+  model::Pairs pairs;
+  pairs.law = slot, pairs.cutoff = c.cutoff, pairs.group = c.group ? e.require(c.group) : model::none;
+  for (std::uint32_t i = 0; i < law.parameter_count; ++i) {
+    if (std::isnan(c.parameters[i]))
+      throw std::invalid_argument(text("pairwise forces need a value for ", law.parameters[i].data()));
+    require_parameter_value(law, i, c.parameters[i]);
+  }
+  pairs.parameters = c.parameters;
+  ++model.laws[slot].uses;
+  return model.pairs.create(pairs);
+}
+
+void apply(Editor& e, const SetPairsParameter& c) {
+  model::Model& model = e.model;
+  model::Pairs& pairs = model.pairs[e.require(c.pairs)];
+  set_parameter(model.laws[pairs.law], pairs.parameters, c.index, c.value);
+}
+
+void apply(Editor& e, const SetPairsActive& c) { e.model.pairs[e.require(c.pairs)].active = c.active; }
+
+void apply(Editor& e, const Destroy<PairsId>& c) {
+  model::Model& model = e.model;
+  const std::uint32_t slot = e.require(c.id);
+  --model.laws[model.pairs[slot].law].uses;
+  model.pairs.destroy(slot);
+}
+
+}  // namespace iota::edit

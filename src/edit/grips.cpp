@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/grips.h"
+
+#include "edit/checks.h"
+#include "ingredient/grips.h"
+#include "math/mat3.h"
+
+namespace iota::edit {
+
+GripId apply(Editor& e, const CreateGrip& c) {
+  model::Model& model = e.model;
+  const std::uint32_t body = e.require(c.body);
+  require_finite("local_point", c.local_point);
+  require_finite("target", c.target);
+  require_positive("frequency", c.options.frequency);
+  require_positive("max_acceleration", c.options.max_acceleration);
+  if (model.bodies[body].count == 0) throw std::invalid_argument(text("body ", body, " has no particles to hold"));
+  e.orientations.refresh(model);
+  model::Grip grip;
+  grip.body = body;
+  grip.client = c.options.client, grip.hold = c.options.hold;
+  grip.frequency = c.options.frequency, grip.max_acceleration = c.options.max_acceleration;
+  grip.target = c.target;
+  const Vec3 place = model.center_of_mass(body) + rotate(model.bodies[body].orientation, c.local_point);
+  ingredient::Grips::anchor(model, grip, place);
+  model.touch_locally(body);
+  return model.grips.create(grip);
+}
+
+void apply(Editor& e, const MoveGrip& c) {
+  require_finite("target", c.target);
+  e.model.grips[e.require(c.grip)].target = c.target;
+}
+
+void apply(Editor& e, const Destroy<GripId>& c) {
+  model::Model& model = e.model;
+  const std::uint32_t grip = e.require(c.id);
+  model.touch_locally(model.grips[grip].body);
+  model.grips.destroy(grip);
+}
+
+}  // namespace iota::edit

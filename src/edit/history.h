@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.h"
+
+#include <iota/system.h>
+
+#include <deque>
+
+namespace iota::edit {
+
+/// Edits that are reported, and undone, as one.
+class Batch {
+ public:
+  Batch(const model::Model&, Snapshot before);
+
+  void add(const RestructureReport&);
+  /// One report of everything.
+  RestructureReport finish(const model::Model&);
+
+  int depth = 1;  ///< of batches within it
+  Snapshot before;
+
+ private:
+  RestructureReport report_;
+  std::vector<BodyId> bodies_;  // alive at the start, in order of slots
+  std::vector<ParticleId> particles_;
+  std::uint32_t version_;
+  double edit_energy_;
+};
+
+/// One report out of several.
+void add_report(RestructureReport& sum, const RestructureReport& report);
+
+/// States to go back or forward to, newest last: at most `most` of them, of `most_bytes` together.
+class History {
+ public:
+  static constexpr std::size_t most = 64, most_bytes = std::size_t{256} << 20;
+  void push(Snapshot);
+  std::optional<Snapshot> pop();
+  void clear() { states_.clear(), bytes_ = 0; }
+  std::size_t size() const { return states_.size(); }
+
+ private:
+  std::deque<Snapshot> states_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace iota::edit

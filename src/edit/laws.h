@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/editor.h"
+
+namespace iota {
+
+template <>
+struct LastEnumerator<model::LawKind> : std::integral_constant<model::LawKind, model::LawKind::batch> {};
+
+}  // namespace iota
+
+namespace iota::edit {
+
+struct CreateLaw {
+  model::LawKind kind;  ///< expression, radial or batch
+  std::string name, text;
+  std::vector<LawParameter> parameters;
+  std::uint64_t function;  ///< key of the code, where it is code
+};
+
+LawId apply(Editor&, const CreateLaw&);
+void apply(Editor&, const Destroy<LawId>&);
+
+}  // namespace iota::edit

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/separate.h"
+
+#include "edit/checks.h"
+#include "edit/settle.h"
+
+namespace iota::edit {
+
+RestructureReport apply(Editor& e, const Separate& c) {
+  model::Model& model = e.model;
+  const std::uint32_t p = e.require(c.p), q = e.require(c.q);
+  const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
+  bool gentle = p == q ? model.bodies[body_p].first_inertia == model::none  // half the mass at one end changes the rod
+                       : body_p != body_q && model.particles[p].ring == model.particles[q].ring;
+  model.for_each_in_ring(model.particles[q].ring, [&](std::uint32_t r) { gentle = gentle && model.follows_basis(r); });
+  const Vec3 place = model.position(q);
+  Restructuring change(e, std::array{body_p, body_q},
+                       gentle ? Restructuring::Kind::gentle : Restructuring::Kind::moving);
+  model::Edit owed = separate_particles(model, p, q, change.report);
+  owed.jolted = !gentle;
+  return change.finish(owed, {ViewEvent::Kind::break_, place});
+}
+
+RestructureReport apply(Editor& e, const SeparatePart& c) {
+  const std::uint32_t body = e.require(c.body);
+  Restructuring change(e, {{body}}, Restructuring::Kind::moving);
+  RestructureReport report = change.finish(separate_part(e.model, body, c.part, change.report));
+  for (const BodyId created : report.created_bodies)
+    e.model.scene.note(ViewEvent::Kind::break_, e.model.center_of_mass(created.slot));
+  return report;
+}
+
+CosmeticBondId apply(Editor& e, const CreateCosmeticBond& c) {
+  model::Model& model = e.model;
+  const std::uint32_t p = e.require(c.p), q = e.require(c.q);
+  if (p == q) throw std::invalid_argument(text("a cosmetic bond needs two particles, got particle ", p, " twice"));
+  if (model.particles[p].body != model.particles[q].body)
+    throw std::invalid_argument(text("a cosmetic bond joins particles of one body; particle ", p, " is of body ",
+                                     model.particles[p].body, ", particle ", q, " of body ", model.particles[q].body));
+  e.structure_changed();
+  return model.cosmetic_bonds.id(model.add_cosmetic_bond({{p, q}}));
+}
+
+RestructureReport apply(Editor& e, const Destroy<CosmeticBondId>& c) {
+  model::Model& model = e.model;
+  const std::uint32_t bond = e.require(c.id);
+  const auto [p, q] = std::pair(model.cosmetic_bonds[bond].p, model.cosmetic_bonds[bond].q);
+  const Vec3 middle = 0.5 * (model.position(p) + model.position(q));
+  Restructuring change(e, {{model.particles[p].body}}, Restructuring::Kind::moving);
+  RestructureReport report = change.finish(break_cosmetic_bond(model, bond, change.report));
+  if (!report.created_bodies.empty()) model.scene.note(ViewEvent::Kind::break_, middle);
+  return report;
+}
+
+}  // namespace iota::edit

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/settings.h"
+
+#include "edit/checks.h"
+#include "edit/law_checks.h"
+
+#include <iota/solver.h>
+
+namespace iota::edit {
+
+void apply(Editor& e, const SetGravity& c) {
+  model::Model& model = e.model;
+  require_finite("gravity", c.value);
+  model.gravity = c.value;
+  model.articulates.for_each([](std::uint32_t, model::Articulate& a) { a.disturbed = 1; });
+}
+
+void apply(Editor& e, const SetMode& c) { e.model.mode = c.mode; }
+
+void apply(Editor& e, const SetSolver& c) {
+  if (c.name.empty() || c.name.size() > max_solver_name)
+    throw std::invalid_argument(
+        text("set_solver: a name has 1 to ", max_solver_name, " characters, not \"", c.name, "\""));
+  std::array<char, 32> name{};
+  if (c.name != "direct") put_text(name, c.name, "the name of a solver");
+  try {
+    if (name[0] != 0) (void)make_solver(c.name);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(text(error.what(), "; or \"direct\", the system's own"));
+  }
+  e.model.solver = name;
+}
+
+void apply(Editor& e, const SetDamping& c) {
+  require_not_negative("damping", c.per_second);
+  e.model.damping = c.per_second;
+}
+
+void apply(Editor& e, const SetRest& c) {
+  model::Model& model = e.model;
+  require_not_negative("rest.after", c.options.after);
+  require_not_negative("rest.speed", c.options.speed);
+  model.rest_after = c.options.after, model.rest_speed = c.options.speed;
+}
+
+}  // namespace iota::edit

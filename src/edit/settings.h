@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/editor.h"
+
+/// Commands about the system as a whole.
+namespace iota::edit {
+
+struct SetGravity {
+  Vec3 value;
+};
+struct SetMode {
+  IntegrationMode mode;
+};
+struct SetSolver {
+  std::string name;
+};
+struct SetDamping {
+  double per_second;
+};
+struct SetRest {
+  RestOptions options;
+};
+
+void apply(Editor&, const SetGravity&);
+void apply(Editor&, const SetMode&);
+void apply(Editor&, const SetSolver&);
+void apply(Editor&, const SetDamping&);
+void apply(Editor&, const SetRest&);
+
+}  // namespace iota::edit

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "model/model.h"
+
+#include <array>
+#include <vector>
+
+namespace iota::held {
+
+/// Bonds of one law in the order of their slots, and room for their numbers as arrays. Nothing here is saved.
+struct BondBatch {
+  std::uint32_t law = 0;
+  std::vector<std::uint32_t> bonds;
+  std::vector<BondId> ids;
+  std::vector<double> r, v, m_p, m_q, force, drag;
+  std::vector<Vec3> direction, rate;                                                               // from p to q
+  std::array<std::vector<double>, laws::max_parameters> parameters;                                // one array each
+  std::array<const double*, laws::max_parameters> columns{};                                       // where those begin
+  std::vector<double> position_p, position_q, velocity_p, velocity_q, parameter_rows, force_rows;  // of functions
+
+  /// Numbers of all its bonds, with positions `ahead` seconds on.
+  void load(const model::Model&, double ahead);
+  void load_rows(const model::Model&, double ahead);
+  /// The numbers that `load` took, at a time, without arrays for results.
+  laws::PairBatch loaded(double time);
+  /// Of all its bonds now, J; only for laws with a derivative. Uses the arrays.
+  double energy(const model::Model&);
+};
+
+/// Which bonds are taken once a step and held, and which implicit ones have to be watched; by law.
+struct BondBatches {
+  void update(const model::Model&);
+  void forget() { seen_revision = ~0ull; }
+
+  std::vector<BondBatch> held, watched;
+  std::vector<std::uint32_t> breakable;  ///< bonds that act and break beyond some force
+  std::uint64_t seen_revision = ~0ull;
+};
+
+}  // namespace iota::held

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fields and pairwise forces, taken once a step and held.
+#include "base/text.h"
+#include "held/chunks.h"
+#include "held/held_forces.h"
+#include "laws/force_limit.h"
+
+#include <cmath>
+
+namespace iota::held {
+
+void HeldForces::take_fields(StepReport& report) {
+  if (model_.fields.size() == 0 && model_.pairs.size() == 0) return;
+  sets_.update(model_);
+  const double ahead = look_ahead(report.dt);
+  for (std::uint32_t slot = 0; slot < model_.fields.slot_count(); ++slot)
+    if (model_.fields.is_alive(slot) && model_.fields[slot].active)
+      take_field(slot, loaded_set(model_.fields[slot].group, ahead), report);
+  for (std::uint32_t slot = 0; slot < model_.pairs.slot_count(); ++slot)
+    if (model_.pairs.is_alive(slot) && model_.pairs[slot].active)
+      take_pairs(slot, loaded_set(model_.pairs[slot].group, ahead), report);
+  for (const auto& set : sets_.sets)
+    if (set->is_loaded) set->unload(model_, parallel_);
+}
+
+ParticleSet& HeldForces::loaded_set(std::uint32_t group, double ahead) {
+  ParticleSet& set = sets_.of(model_, group);
+  if (!set.is_loaded) set.load(model_, ahead, parallel_);
+  return set;
+}
+
+void HeldForces::take_field(std::uint32_t slot, ParticleSet& set, StepReport& report) {
+  const model::Field& field = model_.fields[slot];
+  const std::size_t n = set.rings.size();
+  set.force_rows.resize(3 * n);
+  if (field.kind == model::FieldKind::function) {
+    if (!call_field(slot, set, report)) return;
+  } else {
+    const laws::FieldLaw& law = model_.compiled_field(slot);
+    in_chunks(n, parallel_, [&](std::size_t first, std::size_t last) {
+      law.evaluate(set.arrays, first, last - first, model_.time, report.dt, field.parameters.data(),
+                   set.force_rows.data() + 3 * first);
+    });
+  }
+  std::size_t bad = 0, first_bad = 0;
+  const double* f = set.force_rows.data();
+  for (std::size_t i = 0; i < n; ++i, f += 3) {
+    if (!laws::is_force(f[0], f[1], f[2])) [[unlikely]] {
+      if (bad++ == 0) first_bad = i;
+      continue;
+    }
+    set.arrays.fx[i] += f[0], set.arrays.fy[i] += f[1], set.arrays.fz[i] += f[2];
+  }
+  if (bad > 0)
+    report.warnings.push_back(text("field ", slot, field.name[0] ? " (" : "", field.name.data(),
+                                   field.name[0] ? ")" : "", " gives no finite force on particle ",
+                                   set.ids[first_bad].slot, bad > 1 ? text(" and ", bad - 1, " more") : "",
+                                   "; there it gives none"));
+}
+
+bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& report) {
+  const model::Field field = model_.fields[slot];
+  const auto fail = [&](const std::string& why) {
+    model_.fields[slot].active = 0;
+    report.warnings.push_back(text("field ", slot, field.name[0] ? " (" : "", field.name.data(),
+                                   field.name[0] ? ")" : "", why, "; the field is switched off"));
+    return false;
+  };
+  const auto function = functions.of_fields.find(field.function);
+  if (function == functions.of_fields.end()) return fail(" has no function in this system");
+  const std::size_t n = set.rings.size();
+  set.position_rows.resize(3 * n), set.velocity_rows.resize(3 * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    double *const x = set.position_rows.data() + 3 * i, *const v = set.velocity_rows.data() + 3 * i;
+    x[0] = set.arrays.x[i], x[1] = set.arrays.y[i], x[2] = set.arrays.z[i];
+    v[0] = set.arrays.vx[i], v[1] = set.arrays.vy[i], v[2] = set.arrays.vz[i];
+  }
+  try {
+    function->second({n, model_.time, report.dt, set.position_rows.data(), set.velocity_rows.data(), set.arrays.m.data(),
+                      set.ids.data(), set.force_rows.data()});
+    return true;
+  } catch (const std::exception& error) {
+    return fail(std::string(" raised: ") + error.what());
+  } catch (...) {
+    return fail(" raised");
+  }
+}
+
+void HeldForces::take_pairs(std::uint32_t slot, ParticleSet& set, StepReport& report) {
+  const model::Pairs& pairs = model_.pairs[slot];
+  const auto bad = sets_.sum(slot).add_forces(set.arrays, set.family, model_.compiled(pairs.law),
+                                                      pairs.parameters.data(), pairs.cutoff, model_.time, parallel_);
+  if (bad.count > 0)
+    report.warnings.push_back(text("pairwise force ", slot, " gives no finite force between particles ",
+                                   set.ids[bad.i].slot, " and ", set.ids[bad.j].slot,
+                                   bad.count > 1 ? text(" and ", bad.count - 1, " more pairs") : "",
+                                   "; there it gives none"));
+}
+
+}  // namespace iota::held

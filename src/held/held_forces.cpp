@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "held/held_forces.h"
+
+#include "ingredient/quantities.h"
+
+#include <cmath>
+
+namespace iota::held {
+
+void HeldForces::begin_step(StepReport& report) {
+  book_edits();
+  in_step_ = true;
+  take_laws(report);
+  take_scripts(report);
+  take_fields(report);
+}
+
+void HeldForces::end_step() {
+  in_step_ = false;
+  const double before = model_.held_energy;
+  model_.held_energy = calc_energy();
+  model_.external_work += model_.held_energy - before;
+}
+
+// Held forces act best in the middle of the step. With the mid-point rule, positions half a step ahead make that the
+// leapfrog scheme, which neither gains nor loses energy in the long run; forces at the start of the step would pump energy in.
+double HeldForces::look_ahead(double h) const { return model_.steps_to_end_point() ? 0 : h / 2; }
+
+const std::vector<std::uint32_t>& HeldForces::breakable_bonds() {
+  batches_.update(model_);
+  return batches_.breakable;
+}
+
+void HeldForces::forget() {
+  batches_.forget(), sets_.forget();
+  energy_is_known_ = false;
+}
+
+double HeldForces::energy() {
+  if (energy_is_known_ || in_step_) return energy_;
+  sets_.update(model_);  // and have all of them loaded anew
+  return calc_energy();
+}
+
+double HeldForces::calc_energy() {
+  double sum = 0;
+  batches_.update(model_);
+  for (BondBatch& batch : batches_.held)
+    if (model_.laws[batch.law].has_derivative()) sum += batch.energy(model_);
+  for (const auto& set : sets_.sets)
+    if (set->is_loaded) set->follow(model_);
+  model_.fields.for_each([&](std::uint32_t slot, const model::Field& f) {
+    if (f.active && f.kind != model::FieldKind::function && model_.compiled_field(slot).has_energy())
+      sum += model_.compiled_field(slot).energy(loaded_set(f.group, 0).arrays, model_.time, f.parameters.data());
+  });
+  model_.pairs.for_each([&](std::uint32_t slot, const model::Pairs& p) {
+    if (!p.active || !model_.compiled(p.law).has_energy()) return;
+    const ParticleSet& set = loaded_set(p.group, 0);
+    sum += sets_.sum(slot).energy(set.arrays, set.family, model_.compiled(p.law), p.parameters.data(), p.cutoff,
+                                          model_.time, parallel_);
+  });
+  energy_ = sum, energy_is_known_ = true;
+  return sum;
+}
+
+void HeldForces::book_edits() {
+  const double now = energy();
+  model_.edit_energy += now - model_.held_energy;
+  model_.held_energy = now;
+}
+
+Energy HeldForces::book() {
+  const double held = energy();
+  const ingredient::Energies now = ingredient::calc_energies(model_);
+  return {now.kinetic, now.potential + held, model_.dissipated, model_.external_work,
+          ingredient::energy_of_edits(model_) + held - model_.held_energy};
+}
+
+double HeldForces::energy_of_pairs(std::uint32_t slot) const {
+  const model::Pairs& pairs = model_.pairs[slot];
+  ParticleSet set;  // of its own: this may be asked for while others are in use
+  set.group = pairs.group;
+  set.find(model_);
+  set.load(model_, 0, parallel_);
+  return neighbors::PairSum().energy(set.arrays, set.family, model_.compiled(pairs.law), pairs.parameters.data(),
+                                     pairs.cutoff, model_.time, parallel_);
+}
+
+}  // namespace iota::held

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/parallel.h"
+#include "held/bond_batches.h"
+#include "held/functions.h"
+#include "held/particle_sets.h"
+
+#include <iota/reports.h>
+
+namespace iota::held {
+
+/// Forces that are taken once a step and held over it: scripted bonds, laws that are code, any law on request, fields and
+/// pairwise forces; and their energy. A function that raises, or a force that is not finite, is switched off and named in
+/// the report of the step.
+class HeldForces {
+ public:
+  HeldForces(model::Model& model, const Parallel& parallel) : model_(model), parallel_(parallel) {}
+
+  Functions functions;
+
+  /// Adds all held forces to the pushes of the next step, whose length is report.dt. From here to `end_step` the energy is
+  /// that of the start of the step.
+  void begin_step(StepReport&);
+  /// Books the work of the step.
+  void end_step();
+
+  /// On a bond's first particle, N: of an implicit bond here and now, of a held one in the last step.
+  Vec3 force(std::uint32_t bond) const;
+  /// Bonds that act and break beyond some force.
+  const std::vector<std::uint32_t>& breakable_bonds();
+
+  /// @name Energy, J: of bonds, fields and pairs whose law has one. It is potential energy like that of a spring that is
+  /// solved for, but no solver knows it, so it is booked here:
+  /// - the change by edits since the last step is found at the start of the next one;
+  /// - the change in a step is taken off the work of the held forces, which their island books as external. What is left
+  ///   there is the error of holding, and is small where the step is short beside the swing.
+  ///@{
+  double energy();
+  void book_edits();
+  Energy book();  ///< all of the system's energy book
+  double energy_of_pairs(std::uint32_t pairs) const;
+  ///@}
+
+  /// Evaluates without applying; returns for how many. See Laws::rehearse.
+  std::size_t rehearse_law(std::uint32_t law, double h);
+  std::size_t rehearse_field(std::uint32_t field, double h);
+  std::size_t rehearse_pairs(std::uint32_t pairs, double h);
+
+  void note_change() { energy_is_known_ = false; }  ///< by a command
+  void forget();                                    ///< the state was replaced
+
+ private:
+  double look_ahead(double h) const;
+  void take_laws(StepReport&);
+  void take_law(BondBatch&, StepReport&);
+  void take_batch_function(BondBatch&, StepReport&);
+  void take_scripts(StepReport&);
+  void watch_implicit_law(BondBatch&, StepReport&);
+  bool has_function(const model::Law&) const;
+  bool require_function(const BondBatch&, StepReport&);  ///< switches the bonds of a law off whose code is missing
+  void evaluate(BondBatch&, double time) const;
+  void call(BondBatch&) const;  ///< the function of a law for all its bonds; it may throw
+  void add_force(std::uint32_t bond, const Vec3& on_p);
+  void switch_off(std::uint32_t bond, const std::string& why, StepReport&);
+
+  void take_fields(StepReport&);
+  void take_field(std::uint32_t field, ParticleSet&, StepReport&);
+  bool call_field(std::uint32_t field, ParticleSet&, StepReport&);
+  void take_pairs(std::uint32_t pairs, ParticleSet&, StepReport&);
+  ParticleSet& loaded_set(std::uint32_t group, double ahead);
+
+  double calc_energy();
+
+  model::Model& model_;
+  const Parallel& parallel_;
+  BondBatches batches_;
+  ParticleSets sets_;
+  bool in_step_ = false;
+  bool energy_is_known_ = false;  // since the last command
+  double energy_ = 0;
+};
+
+}  // namespace iota::held

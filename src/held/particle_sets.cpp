@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "held/particle_sets.h"
+
+#include "held/chunks.h"
+
+namespace iota::held {
+
+void ParticleSet::find(const model::Model& model) {
+  rings.clear(), family.clear(), ids.clear(), is_pushed.clear();
+  std::vector<std::uint8_t> seen(model.rings.slot_count(), 0);
+  model.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
+    if (group != model::none && !(p.groups >> group & 1)) return;
+    if (!model.acts(slot) || p.is_marker() || seen[p.ring]) return;
+    seen[p.ring] = 1;
+    rings.push_back(p.ring), family.push_back(p.body), ids.push_back(model.particles.id(slot));
+    is_pushed.push_back(model::is_free(model.bodies[p.body].kind));
+  });
+  arrays.resize(rings.size());
+}
+
+void ParticleSet::load(const model::Model& model, double ahead, const Parallel& parallel) {
+  in_chunks(rings.size(), parallel, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const model::Ring& ring = model.rings[rings[i]];
+      const Vec3 x = ring.position + ahead * ring.velocity;
+      arrays.x[i] = x.x, arrays.y[i] = x.y, arrays.z[i] = x.z;
+      arrays.vx[i] = ring.velocity.x, arrays.vy[i] = ring.velocity.y, arrays.vz[i] = ring.velocity.z;
+      double mass = 0;
+      for (std::uint32_t p = ring.first; p != model::none; p = model.particles[p].next_in_ring)
+        mass += model.particles[p].mass;
+      arrays.m[i] = mass;
+      arrays.fx[i] = arrays.fy[i] = arrays.fz[i] = 0;
+    }
+  });
+  is_loaded = true;
+}
+
+void ParticleSet::unload(model::Model& model, const Parallel& parallel) const {
+  for (std::size_t i = 0; i < rings.size(); ++i)  // here, since making room is not for many threads
+    if (is_pushed[i]) (void)model.pushes.make(rings[i]);
+  in_chunks(rings.size(), parallel, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      if (is_pushed[i]) model.pushes.at(rings[i]).force += Vec3{arrays.fx[i], arrays.fy[i], arrays.fz[i]};
+  });
+}
+
+void ParticleSets::update(const model::Model& model) {
+  if (seen_structure == model.structure_version && seen_members == model.members_revision) {
+    for (auto& set : sets) set->is_loaded = false;
+    return;
+  }
+  forget();
+  seen_structure = model.structure_version, seen_members = model.members_revision;
+}
+
+ParticleSet& ParticleSets::of(const model::Model& model, std::uint32_t group) {
+  for (auto& set : sets)
+    if (set->group == group) return *set;
+  sets.push_back(std::make_unique<ParticleSet>());
+  sets.back()->group = group;
+  sets.back()->find(model);
+  return *sets.back();
+}
+
+neighbors::PairSum& ParticleSets::sum(std::uint32_t pairs) {
+  if (sums.size() <= pairs) sums.resize(pairs + 1);
+  if (!sums[pairs]) sums[pairs] = std::make_unique<neighbors::PairSum>();
+  return *sums[pairs];
+}
+
+void ParticleSet::follow(const model::Model& model) {
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    const Vec3& x = model.rings[rings[i]].position;
+    arrays.x[i] = x.x, arrays.y[i] = x.y, arrays.z[i] = x.z;
+  }
+}
+
+}  // namespace iota::held

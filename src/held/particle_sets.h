@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/parallel.h"
+#include "model/model.h"
+#include "neighbors/pair_sum.h"
+
+#include <memory>
+#include <vector>
+
+namespace iota::held {
+
+/// The particles that a field or a pairwise force acts on, as arrays; what is hinged together is one row, with all its mass.
+struct ParticleSet {
+  std::uint32_t group = model::none;  ///< none: all
+  std::vector<std::uint32_t> rings, family;
+  std::vector<ParticleId> ids;          ///< the first of each ring
+  std::vector<std::uint8_t> is_pushed;  ///< not those of static and scripted bodies, which only act on others
+  laws::ParticleArrays arrays;
+  std::vector<double> position_rows, velocity_rows, force_rows;  // for fields
+  bool is_loaded = false;
+
+  void find(const model::Model&);
+  /// The state with positions `ahead` seconds on, and no forces.
+  void load(const model::Model&, double ahead, const Parallel&);
+  /// Positions of now; the rest stays as it was loaded.
+  void follow(const model::Model&);
+  /// Adds the forces to what acts on the rings during the next step.
+  void unload(model::Model&, const Parallel&) const;
+};
+
+/// All sets in use, and the pairs found among them. Nothing here is saved.
+struct ParticleSets {
+  void update(const model::Model&);
+  void forget() { sets.clear(), sums.clear(), seen_structure = seen_members = ~0ull; }
+  ParticleSet& of(const model::Model&, std::uint32_t group);
+  neighbors::PairSum& sum(std::uint32_t pairs);
+
+  std::vector<std::unique_ptr<ParticleSet>> sets;
+  std::vector<std::unique_ptr<neighbors::PairSum>> sums;  // by slot of the pairwise force
+  std::uint64_t seen_structure = ~0ull, seen_members = ~0ull;
+};
+
+}  // namespace iota::held

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "island/free_particles.h"
+
+#include "ingredient/ingredient_list.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace iota::step {
+
+using model::Model;
+
+bool FreeParticles::is_free(const Model& model, std::uint32_t articulate) {
+  const model::Articulate& a = model.articulates[articulate];
+  if (a.count != 1) return false;
+  const model::Body& body = model.bodies[a.first];
+  if (body.count != 1 || !model::is_free(body.kind)) return false;
+  const model::Particle& p = model.particles[body.first];
+  const model::Ring& ring = model.rings[p.ring];
+  if (ring.count != 1 || ring.nailed || !(p.mass > 0)) return false;
+  bool held = false;
+  ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() { held = held || I::holds(model, body.first); });
+  return !held;
+}
+
+void FreeParticles::set(std::uint32_t articulate, bool free) {
+  if (articulates_.size() <= articulate) {
+    if (!free) return;
+    articulates_.resize(articulate + 1, 0);
+  }
+  is_old_ = is_old_ || articulates_[articulate] || free;
+  articulates_[articulate] = free;
+}
+
+void FreeParticles::refresh(const Model& model) {
+  if (!is_old_) return;
+  is_old_ = false;
+  in_order_.clear();
+  for (std::uint32_t a = 0; a < articulates_.size(); ++a) {
+    if (!articulates_[a]) continue;
+    const std::uint32_t body = model.articulates[a].first, particle = model.bodies[body].first;
+    in_order_.push_back({a, body, particle, model.particles[particle].ring});
+  }
+}
+
+void FreeParticles::put_to_rest(Model& model, std::uint32_t articulate) {
+  model::Body& body = model.bodies[model.articulates[articulate].first];
+  model::Ring& ring = model.rings[model.particles[body.first].ring];
+  body.kind = BodyKind::resting;
+  ring.velocity = ring.acceleration = {};
+}
+
+void FreeParticles::wake(Model& model, std::uint32_t articulate) {
+  model::Articulate& a = model.articulates[articulate];
+  a.slow_time = 0;
+  if (model.bodies[a.first].kind == BodyKind::resting) model.bodies[a.first].kind = BodyKind::dynamic;
+}
+
+std::size_t FreeParticles::size(const Model& model) {
+  refresh(model);
+  return in_order_.size();
+}
+
+solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Parallel& parallel) {
+  refresh(model);
+  constexpr std::size_t chunk = 4096;  // sums are over chunks, so that they do not depend on the number of threads
+  const std::size_t chunks = (in_order_.size() + chunk - 1) / chunk;
+  shares_.assign(chunks, {});
+  const bool robust = model.steps_to_end_point();
+  const Vec3 gravity = model.acting_gravity();
+  parallel.for_each(chunks, 1, [&](std::size_t c) {
+    Share share;
+    for (std::size_t i = c * chunk; i < std::min(in_order_.size(), (c + 1) * chunk); ++i) {
+      const Place& place = in_order_[i];
+      model::Ring& ring = model.rings[place.ring];
+      model::Push* const push = model.pushes.find(place.ring);
+      if (push) push->before = std::exchange(push->force, Vec3{});
+      const Vec3 force = push ? push->before : Vec3{};
+      if (model.bodies[place.body].kind == BodyKind::resting) {
+        if (force == Vec3{}) {
+          ++share.resting;
+          continue;
+        }
+        wake(model, place.articulate);
+      }
+      const double mass = model.particles[place.particle].mass;
+      const double damping = model.damping + model.bodies[place.body].damping;
+      const Vec3 before = ring.velocity;
+      const Vec3 gained = h * ((1 / mass) * force + gravity);
+      const Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
+      constexpr double absurd = 1e12;  // m/s: squares of more are no energies any more
+      if (!(dot(after, after) < absurd * absurd) || !is_finite(moved))
+          [[unlikely]] {  // an absurd force: the particle stays where it is, and that is told
+        share.lost = true;
+        continue;
+      }
+      ring.velocity = after;
+      ring.position += moved;
+      share.work += dot(force, moved);
+      if (robust) share.dissipated += 0.5 * mass * dot(gained, gained);
+      const bool pushed = force != Vec3{};
+      if (damping > 0) {
+        const double left = std::exp(-damping * h);
+        share.dissipated += 0.5 * mass * dot(ring.velocity, ring.velocity) * (1 - left * left);
+        ring.velocity *= left;
+      }
+      ring.acceleration = (1 / h) * (ring.velocity - before);
+      if (model.rest_after > 0) {
+        const double speed2 = dot(ring.velocity, ring.velocity);
+        double& slow_time = model.articulates[place.articulate].slow_time;
+        slow_time = !pushed && speed2 < model.rest_speed * model.rest_speed ? slow_time + h : 0;
+        if (slow_time >= model.rest_after) {
+          share.dissipated += 0.5 * mass * speed2;
+          put_to_rest(model, place.articulate);
+          ++share.resting;
+        }
+      }
+    }
+    shares_[c] = share;
+  });
+  solver::AdvanceReport report;
+  resting_ = 0;
+  for (const Share& share : shares_) {
+    resting_ += share.resting;
+    report.dissipated += share.dissipated, report.external_work += share.work;
+    report.converged = report.converged && !share.lost;
+  }
+  return report;
+}
+
+}  // namespace iota::step

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "island/island.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace iota::step {
+
+using model::is_free;
+using model::Model;
+using model::none;
+using model::Ring;
+
+namespace {
+
+solver::Care care_of(IntegrationMode mode) {
+  switch (mode) {
+    case IntegrationMode::plausible: return solver::Care::plausible();
+    case IntegrationMode::robust: return solver::Care::robust();
+    case IntegrationMode::energy_keeping: return solver::Care::energy_keeping();
+    case IntegrationMode::accurate: return solver::Care::accurate();
+  }
+  return {};
+}
+
+}  // namespace
+
+void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
+                      std::vector<std::uint32_t>& node_of_ring) {
+  *this = Island{};
+  nodes_.build(model, articulates, node_of_ring);
+  idle_ = std::none_of(nodes_.bodies.begin(), nodes_.bodies.end(),
+                       [&](std::uint32_t b) { return is_free(model.bodies[b].kind); });
+  problem_.add_nodes(nodes_.size());
+  std::uint8_t owner = 0;
+  for_each_ingredient([&](auto& i) { i.owner = ++owner; });
+  const ingredient::IslandMap map(model, nodes_, nodes_.bodies, node_of_ring);
+  for_each_ingredient([&](auto& i) { i.build(map, problem_); });
+  integrator_.compile(problem_);
+  for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
+}
+
+void Island::carry_along(Model& model) {
+  for_each_ingredient([&](const auto& i) { i.accept_assigned(model, nodes_); });
+  bool differs = false;
+  std::vector<Vec3> impulses;
+  for (std::size_t i = 0; i < nodes_.carried.size(); ++i) {
+    const std::uint32_t p = nodes_.carried[i];
+    const Vec3 v = model.velocity(p), ahead = v - model.carried(p).second;
+    if (norm(ahead) <= 1e-12 * norm(v)) continue;
+    if (!differs) impulses.assign(nodes_.size(), Vec3{});
+    differs = true;
+    for (const auto& [node, weight] : nodes_.carriers[i])
+      if (weight != 0) impulses[node] += (weight * model.particles[p].mass) * ahead;
+  }
+  if (differs && !idle_) {
+    load(model, 0);
+    integrator_.project_velocities(problem_, 0, impulses);
+    return store_projection(model, false);
+  }
+  store_carried(model);
+  for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, false); });  // a new basis has its places elsewhere
+}
+
+void Island::load(const Model& model, double h) {
+  problem_.gravity = model.acting_gravity();
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Ring& r = model.rings[nodes_.rings[i]];
+    problem_.position[i] = r.position;
+    problem_.velocity[i] = r.velocity;
+  }
+  for_each_ingredient([&](auto& i) { i.load(model, nodes_, h, problem_); });
+}
+
+void Island::store_carried(Model& model) const {
+  for (const std::uint32_t p : nodes_.carried) {
+    Ring& r = model.rings[model.particles[p].ring];
+    std::tie(r.position, r.velocity) = model.carried(p);
+  }
+}
+
+void Island::store_step(Model& model, double h) const {
+  const auto put = [&](std::uint32_t ring, const Vec3& position, const Vec3& velocity) {
+    Ring& r = model.rings[ring];
+    r.acceleration = (1 / h) * (velocity - r.velocity);
+    r.position = position, r.velocity = velocity;
+  };
+  for (std::size_t i = 0; i < nodes_.size(); ++i) put(nodes_.rings[i], problem_.position[i], problem_.velocity[i]);
+  for (const std::uint32_t p : nodes_.carried) {
+    const auto [position, velocity] = model.carried(p);
+    put(model.particles[p].ring, position, velocity);
+  }
+  for_each_ingredient([&](const auto& i) { i.store(model, nodes_, h, problem_); });
+}
+
+void Island::store_projection(Model& model, bool moved) const {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    Ring& r = model.rings[nodes_.rings[i]];
+    r.position = problem_.position[i], r.velocity = problem_.velocity[i];
+  }
+  store_carried(model);
+  for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, moved); });
+}
+
+void Island::use_solver(const std::array<char, 32>& name) {
+  struct Missing final : Solver {
+    Ending search(NonlinearProblem&, std::span<double>, const SolverOptions&) override { return {}; }
+  };
+  if (name == solver_name_) return;
+  solver_name_ = name;
+  solver_.reset();
+  if (name[0] != 0) {
+    try {
+      solver_ = make_solver(name.data());
+    } catch (const std::exception&) {  // a snapshot of another process: reported as one that finds nothing
+      solver_ = std::make_unique<Missing>();
+    }
+  }
+  integrator_.set_external(solver_.get());
+  if (solver_) integrator_.compile(problem_);  // it asks for unknowns without gaps, which an island that follows has
+}
+
+bool Island::is_driven(const Model& model) const {
+  return any_ingredient([&](const auto& i) { return i.prescribes_motion(model, nodes_); });
+}
+
+double Island::velocity_jump(double h) const {
+  double largest = 0;
+  for_each_ingredient([&](const auto& i) { largest = std::max(largest, i.velocity_jump(problem_, h)); });
+  return largest;
+}
+
+void Island::impose_velocities(double h) {
+  for_each_ingredient([&](const auto& i) { i.impose_velocities(problem_, h); });
+}
+
+double Island::virtual_energy(const Model& model) const {
+  double sum = 0;
+  for_each_ingredient([&](const auto& i) { sum += i.virtual_energy(model); });
+  return sum;
+}
+
+bool Island::meets_pinned(const Model& model) const {
+  return !any_ingredient([&](const auto& i) { return !i.meets_pinned(model); });
+}
+
+model::Articulate& Island::articulate(Model& model) const {
+  return model.articulates[model.bodies[nodes_.bodies.front()].articulate];
+}
+
+solver::AdvanceReport Island::advance_idle(Model& model, double h) {
+  solver::AdvanceReport report;
+  if (!is_driven(model)) return report;
+  load(model, h);
+  const auto energy = [&] { return problem_.kinetic_energy() + problem_.potential_energy(problem_.position.data()); };
+  report.external_work -= energy();
+  impose_velocities(h);
+  for_each_ingredient([&](const auto& i) { i.impose_positions(problem_); });
+  report.external_work += energy();
+  store_step(model, h);
+  return report;
+}
+
+solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mode) {
+  if (idle_) return advance_idle(model, h);
+  if (skip_if_asleep(model)) return {};
+  load(model, h);
+  use_solver(model.solver);
+  const double virtual_before = virtual_energy(model);
+  double given = 0;  // by prescribed velocities at once, J
+  // The mid-point rule would carry a jump of a prescribed velocity along for ever, as a ringing of the reactions.
+  if (velocity_jump(h) > 1e-9) {
+    given -= problem_.kinetic_energy();
+    impose_velocities(h);
+    integrator_.project_velocities(problem_, h);
+    given += problem_.kinetic_energy();
+  }
+  model::Articulate& memory = articulate(model);
+  problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
+  auto report = integrator_.advance(problem_, h, care_of(mode));
+  memory.standing_gap = problem_.standing_gap, memory.standing_steps = problem_.standing_steps;
+  if (velocity_jump(h) > 0) {  // where there was no solution
+    given -= problem_.kinetic_energy();
+    impose_velocities(h);
+    given += problem_.kinetic_energy();
+  }
+  report.external_work += given;
+  double dissipated = 0;
+  for_each_ingredient([&](auto& i) { dissipated += i.after_step(model, h, problem_); });
+  report.dissipated += dissipated;
+  store_step(model, h);
+  report.dissipated += virtual_energy(model) - virtual_before;
+  report.converged = report.converged && meets_pinned(model);
+  update_sleep_timer(model, h, report);
+  return report;
+}
+
+bool Island::project(Model& model, bool positions) {
+  if (!nodes_.bodies.empty()) articulate(model).standing_gap = 0;  // try again
+  load(model, 0);
+  bool met = true;
+  if (idle_) {
+    std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
+  } else {
+    met = !positions || integrator_.project_positions(problem_);
+    integrator_.project_velocities(problem_);
+  }
+  store_projection(model, positions && !idle_);
+  return met;
+}
+
+}  // namespace iota::step

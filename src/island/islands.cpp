@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "island/islands.h"
+
+#include "ingredient/followers.h"
+
+#include <algorithm>
+
+namespace iota::step {
+
+using model::Model;
+using model::none;
+
+void Islands::forget() {
+  island_of_leader_.clear(), leader_of_.clear(), next_member_.clear(), is_waiting_.clear();
+  followed_.clear();
+  free_particles_.forget();
+  knows_all_ = false, order_is_old_ = true;
+}
+
+// Its articulates wait for a new one.
+void Islands::drop(std::uint32_t leader) {
+  island_of_leader_[leader].reset();
+  std::erase_if(followed_, [&](const Followed& f) { return f.leader == leader; });
+  for (std::uint32_t a = leader; a != none; a = next_member_[a]) {
+    leader_of_[a] = none;
+    if (!is_waiting_[a]) is_waiting_[a] = 1, waiting_.push_back(a);
+  }
+}
+
+// With all that share an island with it.
+void Islands::put_on_waiting_list(std::uint32_t articulate) {
+  if (leader_of_[articulate] != none)
+    drop(leader_of_[articulate]);
+  else if (!is_waiting_[articulate])
+    is_waiting_[articulate] = 1, waiting_.push_back(articulate);
+}
+
+// `members_` become one island.
+void Islands::set_members(std::uint32_t leader) {
+  for (std::size_t m = 0; m < members_.size(); ++m) {
+    free_particles_.set(members_[m], false);
+    leader_of_[members_[m]] = leader;
+    next_member_[members_[m]] = m + 1 < members_.size() ? members_[m + 1] : none;
+  }
+}
+
+// The articulates of an island's bodies go into `members_`. False if they have other bodies, too, or are many.
+bool Islands::find_members(const Island& island, const Model& model) {
+  constexpr std::size_t most = 16;
+  members_.clear();
+  std::size_t expected = 0;
+  for (const std::uint32_t body : island.bodies()) {
+    if (!model.bodies.is_alive(body)) return false;
+    const std::uint32_t a = model.bodies[body].articulate;
+    if (!members_.empty() && members_.back() == a) continue;
+    if (std::find(members_.begin(), members_.end(), a) != members_.end()) continue;
+    if (members_.size() == most) return false;
+    members_.push_back(a);
+    expected += model.articulates[a].count;
+  }
+  std::sort(members_.begin(), members_.end());
+  return expected == island.bodies().size();
+}
+
+// An island of which nothing changed but a few bodies may follow. It then also holds what has been cut off.
+bool Islands::follow(Model& model, std::uint32_t old_leader) {
+  constexpr std::size_t smallest = 256;  // points: smaller ones are built anew in less than 0.1 ms
+  Island& island = *island_of_leader_[old_leader];
+  if (island.size() < smallest || !find_members(island, model)) return false;
+  const auto is_member = [&](std::uint32_t a) { return std::binary_search(members_.begin(), members_.end(), a); };
+  for (std::size_t i = 0; i < touched_.articulates.size(); ++i)
+    if (!touched_.only_locally[i] && is_member(touched_.articulates[i])) return false;
+  change_.bodies.clear();
+  for (const std::uint32_t body : touched_.local.bodies)
+    if (model.bodies.is_alive(body) && is_member(model.bodies[body].articulate)) change_.bodies.push_back(body);
+  ingredient::sort_unique(change_.bodies);
+  change_.rings = touched_.local.rings;
+  for (const std::uint32_t body : change_.bodies) make_ready(model, body);
+  ingredient::follow_bases(model);
+  if (!island.follow(model, members_, change_, node_of_ring_)) return false;
+
+  auto holder = std::move(island_of_leader_[old_leader]);
+  for (std::uint32_t a = old_leader; a != none; a = next_member_[a]) leader_of_[a] = none;
+  const std::uint32_t leader = members_.front();
+  set_members(leader);
+  island_of_leader_[leader] = std::move(holder);
+  std::erase_if(followed_, [&](const Followed& f) { return f.leader == old_leader; });
+  followed_.push_back({leader, model.step});
+  return true;
+}
+
+// What has been cut off gets an island of its own when things have calmed down.
+bool Islands::is_due(const Followed& followed, const Model& model) const {
+  constexpr std::uint64_t calm = 120;  // steps
+  return renew_ || (followed.step + calm <= model.step && next_member_[followed.leader] != none);
+}
+
+// What an island takes for granted and adds to tables, which is not for many threads.
+void Islands::make_ready(Model& model, std::uint32_t body) {
+  model.prefer_unknowns(body);
+  const BodyKind kind = model.bodies[body].kind;
+  if (kind == BodyKind::static_ || kind == BodyKind::scripted)
+    model.for_each_particle_of(body, [&](std::uint32_t p) { (void)model.nails.make(model.particles[p].ring); });
+}
+
+bool Islands::update(Model& model, const Parallel& parallel) {
+  model.take_touched(touched_);
+  if (!knows_all_) {
+    touched_.articulates.clear();
+    model.articulates.for_each([&](std::uint32_t a, const model::Articulate&) { touched_.articulates.push_back(a); });
+    touched_.only_locally.assign(touched_.articulates.size(), 0);
+    knows_all_ = true;
+  }
+  const bool any_is_due =
+      std::any_of(followed_.begin(), followed_.end(), [&](const Followed& f) { return is_due(f, model); });
+  if (touched_.articulates.empty() && !any_is_due) return false;
+  order_is_old_ = true;
+  const std::size_t slots = model.articulates.slot_count();
+  island_of_leader_.resize(slots), leader_of_.resize(slots, none), next_member_.resize(slots, none);
+  is_waiting_.resize(slots, 0);
+  node_of_ring_.resize(model.rings.slot_count(), none);
+
+  follow_or_drop_touched(model);
+  gather_waiting(model);
+  build_fresh(model, parallel);
+  return !fresh_.empty();
+}
+
+// 1. What was touched, and all that shared an island with it, is without one, unless the island can follow.
+void Islands::follow_or_drop_touched(Model& model) {
+  waiting_.clear();
+  for (const Followed& f : std::vector<Followed>(followed_))
+    if (is_due(f, model)) put_on_waiting_list(f.leader);
+  renew_ = false;
+  for (std::size_t i = 0; i < touched_.articulates.size(); ++i)
+    if (!touched_.only_locally[i]) put_on_waiting_list(touched_.articulates[i]);
+  std::vector<Island*> done;
+  for (std::size_t i = 0; i < touched_.articulates.size(); ++i) {
+    const std::uint32_t a = touched_.articulates[i];
+    if (!touched_.only_locally[i] || leader_of_[a] == none) continue;
+    Island* const island = island_of_leader_[leader_of_[a]].get();
+    if (std::find(done.begin(), done.end(), island) != done.end()) continue;
+    if (follow(model, leader_of_[a]))
+      done.push_back(island);
+    else
+      put_on_waiting_list(a);
+  }
+  for (const std::uint32_t a : touched_.articulates)  // made by a cut that no island followed
+    if (leader_of_[a] == none) put_on_waiting_list(a);
+}
+
+// 2. Articulates that implicit bonds and constraints tie together are solved together: a search from each that waits.
+void Islands::gather_waiting(const Model& model) {
+  fresh_.clear();
+  for (std::size_t i = 0; i < waiting_.size(); ++i) {
+    if (!is_waiting_[waiting_[i]]) continue;  // an earlier search has found it
+    const bool alive = model.articulates.is_alive(waiting_[i]);
+    const bool free = alive && FreeParticles::is_free(model, waiting_[i]);
+    free_particles_.set(waiting_[i], free);
+    is_waiting_[waiting_[i]] = 0;
+    if (!alive || free) continue;
+    members_.assign(1, waiting_[i]);
+    for (std::size_t next = 0; next < members_.size(); ++next)
+      model.for_each_body_of(members_[next], [&](std::uint32_t body) {
+        model.for_each_particle_of(body, [&](std::uint32_t p) {
+          const auto reach = [&](std::uint32_t far) {
+            const std::uint32_t a = model.bodies[far].articulate;
+            if (leader_of_[a] != none) drop(leader_of_[a]);
+            if (free_particles_.contains(a)) free_particles_.set(a, false), is_waiting_[a] = 1;  // no longer free
+            if (is_waiting_[a]) is_waiting_[a] = 0, members_.push_back(a);
+          };
+          model.for_each_bond_of(p, [&](std::uint32_t b) {
+            const model::Bond& bond = model.bonds[b];
+            if (bond.ties()) reach(model.particles[bond.p == p ? bond.q : bond.p].body);
+          });
+          model.for_each_body_tied_to(p, reach);
+        });
+      });
+    std::sort(members_.begin(), members_.end());  // so that the result does not depend on the order of discovery
+    set_members(members_.front());
+    fresh_.push_back(members_.front());
+  }
+}
+
+// 3. Each is built by itself, so at once where there are many.
+void Islands::build_fresh(Model& model, const Parallel& parallel) {
+  for (const std::uint32_t leader : fresh_) {
+    island_of_leader_[leader] = std::make_unique<Island>();
+    for (std::uint32_t a = leader; a != none; a = next_member_[a])
+      model.for_each_body_of(a, [&](std::uint32_t body) { make_ready(model, body); });
+  }
+  ingredient::follow_bases(model);
+  parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
+    std::vector<std::uint32_t> members;
+    for (std::uint32_t a = fresh_[i]; a != none; a = next_member_[a]) members.push_back(a);
+    Island& island = *island_of_leader_[fresh_[i]];
+    island.assemble(model, members, node_of_ring_);
+    island.carry_along(model);
+  });
+}
+
+std::span<Island* const> Islands::all() {
+  if (order_is_old_) {
+    in_order_.clear();
+    total_size_ = largest_size_ = 0;
+    for (const auto& island : island_of_leader_) {
+      if (!island) continue;
+      in_order_.push_back(island.get());
+      total_size_ += island->size();
+      largest_size_ = std::max(largest_size_, island->size());
+    }
+    order_is_old_ = false;
+  }
+  return in_order_;
+}
+
+std::size_t Islands::grain(const Parallel& parallel) {
+  (void)all();
+  // A second thread takes about 20 us to join in; a point takes about a quarter of one. Where one island is most of the
+  // work there is nothing to share out.
+  constexpr std::size_t worthwhile = 400;  // points
+  if (parallel.threads() == 1 || total_size_ - largest_size_ < worthwhile) return in_order_.size();
+  return std::max<std::size_t>(1, in_order_.size() * 64 / total_size_);
+}
+
+}  // namespace iota::step

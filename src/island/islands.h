@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/parallel.h"
+#include "island/free_particles.h"
+#include "island/island.h"
+
+namespace iota::step {
+
+/// All islands of a model, re-made only where articulates or what ties them changed: an edit costs what it touches.
+class Islands {
+ public:
+  /// True where any was made, which may put carried particles a little otherwise.
+  bool update(model::Model&, const Parallel&);
+  void forget();
+  /// From the next update on every island is as if it had just been built from the model.
+  void renew() { renew_ = true; }
+  /// In the order of the lowest slot among their articulates, so that a restored model has the same.
+  std::span<Island* const> all();
+  /// How many islands a thread should take in one go: all where threads would not pay.
+  std::size_t grain(const Parallel&);
+  /// Null for a free particle.
+  Island* of_articulate(std::uint32_t articulate) const {
+    const std::uint32_t leader = leader_of_[articulate];
+    return leader == model::none ? nullptr : island_of_leader_[leader].get();
+  }
+  FreeParticles& free_particles() { return free_particles_; }
+
+ private:
+  struct Followed {
+    std::uint32_t leader;
+    std::uint64_t step;  // of the last time
+  };
+
+  void drop(std::uint32_t leader);
+  void put_on_waiting_list(std::uint32_t articulate);
+  void set_members(std::uint32_t leader);
+  bool find_members(const Island&, const model::Model&);
+  bool follow(model::Model&, std::uint32_t leader);
+  static void make_ready(model::Model&, std::uint32_t body);
+  bool is_due(const Followed&, const model::Model&) const;
+  void follow_or_drop_touched(model::Model&);
+  void gather_waiting(const model::Model&);
+  void build_fresh(model::Model&, const Parallel&);
+
+  // All by articulate slot. The leader of an island is the lowest of its articulates.
+  std::vector<std::unique_ptr<Island>> island_of_leader_;
+  std::vector<std::uint32_t> leader_of_;
+  std::vector<std::uint32_t> next_member_;  // list of the articulates of one island, from its leader on
+  std::vector<std::uint8_t> is_waiting_;    // to be put into an island
+  model::Model::Touched touched_;
+  std::vector<std::uint32_t> waiting_, members_, fresh_;
+  model::Model::LocalChange change_;  // of the island that follows
+  std::vector<Followed> followed_;    // islands that have followed
+  bool renew_ = false;
+  std::vector<Island*> in_order_;
+  std::size_t total_size_ = 0, largest_size_ = 0;  // of those in order, points
+  std::vector<std::uint32_t> node_of_ring_;
+  FreeParticles free_particles_;
+  bool knows_all_ = false, order_is_old_ = true;
+};
+
+}  // namespace iota::step

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Islands that fall asleep and wake: whole ones, since what hangs together moves together.
+#include "island/island.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace iota::step {
+
+using model::is_free;
+using model::Model;
+
+bool Island::is_asleep(const Model& model) const {
+  const auto first = std::find_if(nodes_.bodies.begin(), nodes_.bodies.end(),
+                                  [&](std::uint32_t b) { return is_free(model.bodies[b].kind); });
+  return first != nodes_.bodies.end() && model.bodies[*first].kind == BodyKind::resting;
+}
+
+bool Island::skip_if_asleep(Model& model) {
+  const bool disturbed = std::exchange(disturbed_, false);
+  if (!disturbed) {
+    if (!is_asleep(model)) return false;
+    if (!any_ingredient([&](const auto& i) { return i.wakes(model, nodes_); })) return true;
+  }
+  for (const std::uint32_t b : nodes_.bodies)
+    if (model.bodies[b].kind == BodyKind::resting) model.bodies[b].kind = BodyKind::dynamic;
+  articulate(model).slow_time = 0;
+  return false;
+}
+
+void Island::update_sleep_timer(Model& model, double h, solver::AdvanceReport& report) const {
+  if (!(model.rest_after > 0)) return;
+  const double limit = model.rest_speed * model.rest_speed;
+  const auto is_slow = [&](const Vec3& v) { return dot(v, v) < limit; };
+  const bool slow = !any_ingredient([&](const auto& i) { return i.keeps_awake(problem_); }) &&
+                    std::all_of(problem_.velocity.begin(), problem_.velocity.end(), is_slow);
+  double& slow_time = articulate(model).slow_time;
+  slow_time = slow ? slow_time + h : 0;
+  if (slow_time < model.rest_after) return;
+  report.dissipated += problem_.kinetic_energy();
+  put_to_rest(model);
+}
+
+void Island::put_to_rest(Model& model) const {
+  for (const std::uint32_t b : nodes_.bodies)
+    if (is_free(model.bodies[b].kind)) model.bodies[b].kind = BodyKind::resting;
+  for_each_ingredient([&](const auto& i) { i.put_to_rest(model, problem_); });
+  nodes_.for_each_ring(model,
+                       [&](std::uint32_t ring) { model.rings[ring].velocity = model.rings[ring].acceleration = {}; });
+}
+
+}  // namespace iota::step

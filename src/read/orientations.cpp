@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "read/orientations.h"
+
+#include "math/mat3.h"
+#include "model/solid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::read {
+
+using model::none;
+
+namespace {
+
+Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
+  const double length = norm(v);
+  return length > 1e-12 ? (1 / length) * v : otherwise;
+}
+
+}  // namespace
+
+void Orientations::refresh(model::Model& model) {
+  const std::uint64_t now = model.step << 32 | model.structure_version;
+  if (now == made_for_) return;
+  made_for_ = now;
+
+  model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
+    if (b.first_solid != none) {
+      b.orientation = solid_pose(model, b.first_solid).orientation;
+      return;
+    }
+    if (b.rank < 2) {  // a ball may know how it is turned
+      const std::uint32_t a = b.rank > 0 ? model.particles[b.basis[0]].attributes : none;
+      if (a != none && model.attributes[a].oriented) b.orientation = model.attributes[a].orientation;
+      return;
+    }
+    const Vec3 x0 = model.position(b.basis[0]);
+    const Vec3 old_x = rotate(b.orientation, {1, 0, 0});
+    const Vec3 x = unit_or(model.position(b.basis[1]) - x0, old_x);
+    if (b.rank == 2) {  // carry the frame along by the smallest turn, and about itself by what it has spun
+      b.orientation = normalized(multiply(shortest_turn(old_x, x), b.orientation));
+      if (model::RodSpin* const spin = model.spins.find(slot)) {
+        const double sign = dot(x, model.rod_axis(slot)) < 0 ? -1 : 1;
+        b.orientation = normalized(multiply(axis_angle(x, sign * (spin->angle - spin->drawn)), b.orientation));
+        spin->drawn = spin->angle;
+      }
+      return;
+    }
+    const Vec3 in_plane = model.position(b.basis[2]) - x0;
+    const Vec3 y = unit_or(in_plane - dot(in_plane, x) * x, any_perpendicular(x));
+    b.orientation = from_axes(x, y, cross(x, y));
+  });
+
+  // Smallest turns add up to a twist between neighbors after a round trip. Rods are let back towards the frame of the
+  // rod they hang on, a little each time and never near a fold, so that chain links neither drift nor flip.
+  constexpr double share = 0.15, largest_turn = 0.15;
+  model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
+    if (b.rank != 2 || model.spins.has(slot)) return;
+    std::uint32_t upper = slot;
+    model.for_each_in_ring(model.particles[b.basis[0]].ring, [&](std::uint32_t p) {
+      const std::uint32_t other = model.particles[p].body;
+      if (other < upper && model.bodies[other].rank == 2) upper = other;
+    });
+    if (upper == slot) return;
+    const Quaternion& u = model.bodies[upper].orientation;
+    const Vec3 ux = rotate(u, {1, 0, 0}), x = rotate(b.orientation, {1, 0, 0});
+    if (dot(ux, x) < -0.7) return;
+    const Vec3 wanted = rotate(shortest_turn(ux, x), rotate(u, {0, 1, 0})), y = rotate(b.orientation, {0, 1, 0});
+    const double twist = std::atan2(dot(cross(y, wanted), x), dot(y, wanted));
+    b.orientation =
+        normalized(multiply(axis_angle(x, std::clamp(share * twist, -largest_turn, largest_turn)), b.orientation));
+  });
+}
+
+}  // namespace iota::read

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// One step of the whole system, stage by stage; `docs/architecture.md` tells the same story.
+#include "step/stepper.h"
+
+#include "base/text.h"
+#include "ingredient/quantities.h"
+#include "step/breaking.h"
+#include "step/closings.h"
+#include "step/lifetimes.h"
+
+#include <algorithm>
+
+namespace iota::step {
+
+StepReport Stepper::step(double dt) {
+  if (!(dt > 0 && dt <= 1)) throw std::invalid_argument(text("step: dt must be above 0 and at most 1 s, got ", dt));
+  StepReport report;
+  report.dt = dt;
+  door_.begin_step();
+  take_held_forces(report);
+  update_islands();
+  advance_islands(report);
+  door_.end_step();
+  apply_edits(report);
+  fill(report);
+  return report;
+}
+
+// 1. Functions of the script, and other forces that are held, at the state at the start of the step.
+void Stepper::take_held_forces(StepReport& report) { editor_.held.begin_step(report); }
+
+// 2. Islands whose structure changed are analyzed anew; velocities that were assigned are made consistent.
+void Stepper::update_islands() {
+  model::Model& model = editor_.model;
+  Islands& islands = editor_.islands;
+  dirty_.clear(), disturbed_.clear();
+  model.articulates.for_each([&](std::uint32_t slot, model::Articulate& a) {
+    if (a.jolted) dirty_.push_back(slot);
+    if (a.disturbed) disturbed_.push_back(slot);
+    a.jolted = a.disturbed = 0;
+  });
+  if (islands.update(model, editor_.parallel) || !dirty_.empty()) model.has_edits = 1;
+  for (const std::uint32_t articulate : disturbed_) {
+    if (Island* const island = islands.of_articulate(articulate))
+      island->disturb();
+    else
+      FreeParticles::wake(model, articulate);
+  }
+  for (const std::uint32_t articulate : dirty_)
+    if (Island* const island = islands.of_articulate(articulate)) (void)island->project(model, false);
+  if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
+}
+
+// 3. Every island by itself, on as many threads as pay; reports are added up in a fixed order.
+void Stepper::advance_islands(StepReport& report) {
+  model::Model& model = editor_.model;
+  Islands& islands = editor_.islands;
+  const auto all = islands.all();
+  advanced_.resize(all.size());
+  editor_.parallel.for_each(all.size(), islands.grain(editor_.parallel),
+                            [&](std::size_t i) { advanced_[i] = all[i]->advance(model, report.dt, model.mode); });
+  int solves = 0, iterations = 0, handed_back = 0;
+  for (const auto* island : all)
+    if (island->is_asleep(model)) report.resting += static_cast<std::uint32_t>(island->body_count());
+  advanced_.push_back(islands.free_particles().advance(model, report.dt, editor_.parallel));
+  report.resting += islands.free_particles().resting();
+  for (const solver::AdvanceReport& r : advanced_) {
+    solves += r.solves, iterations += r.iterations, handed_back += r.handed_back;
+    report.iterations_max = std::max(report.iterations_max, r.iterations_max);
+    report.substeps_max = std::max(report.substeps_max, r.substeps);
+    report.fallbacks += r.fallbacks;
+    report.unconverged += !r.converged;
+    model.dissipated += r.dissipated;
+    model.external_work += r.external_work;
+    model.edit_energy += r.closing_energy;
+  }
+  if (handed_back > 0)
+    report.warnings.push_back(text("the solver ", model.solver.data(), " found no root in ", handed_back, " of ",
+                                   solves, " solves; the built-in one took over"));
+  report.iterations_mean = solves ? static_cast<double>(iterations) / solves : 0;
+  model.time += report.dt, model.last_dt = report.dt;
+  ++model.step;
+}
+
+namespace {
+
+/// Forces act for one step, also on points that cannot move: kept, they would act at once when such a body becomes dynamic.
+void drop_forces_on_pinned_points(model::Model& model) {
+  model.pushes.for_each([&](std::uint32_t ring, const model::Push& push) {
+    if (push.force == Vec3{}) return;
+    bool is_free = true;
+    model.for_each_in_ring(ring, [&](std::uint32_t p) {
+      is_free = is_free && model::is_free(model.bodies[model.particles[p].body].kind);
+    });
+    if (!is_free) model.pushes.at(ring).force = {};
+  });
+}
+
+}  // namespace
+
+// 4. Edits: what failed, what broke and particles that have met; then what was asked for during the step, in order.
+void Stepper::apply_edits(StepReport& report) {
+  drop_forces_on_pinned_points(editor_.model);
+  editor_.held.end_step();
+  switch_off_failed_surfaces(editor_, report);
+  update_lifetimes(editor_, report);
+  break_overloaded(editor_, report);
+  finish_closings(editor_, report);
+  door_.apply_queue(report);
+  if (editor_.model.has_edits) editor_.held.note_change(), editor_.held.book_edits();
+}
+
+// 5. The report.
+void Stepper::fill(StepReport& report) {
+  model::Model& model = editor_.model;
+  report.warnings.insert(report.warnings.end(), model.notes.begin(), model.notes.end());
+  model.notes.clear();
+  report.step = model.step;
+  report.time = model.time;
+  report.worst_gap = ingredient::worst_gap(model);
+  const ingredient::Energies energies = ingredient::calc_energies(model);
+  ingredient::book_edits(model, energies.total());
+  report.energy = {energies.kinetic, energies.potential + editor_.held.energy(), model.dissipated,
+                   model.external_work, model.edit_energy};
+  report.articulates = model.articulates.size();
+  report.structure_version = model.structure_version;
+}
+
+}  // namespace iota::step

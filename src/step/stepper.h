@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/door.h"
+
+namespace iota::step {
+
+/// One step of the whole system.
+class Stepper {
+ public:
+  Stepper(edit::Editor& editor, edit::Door& door) : editor_(editor), door_(door) {}
+
+  /// Advances by dt seconds. Throws std::invalid_argument for another dt than 0 < dt <= 1, and nothing else.
+  StepReport step(double dt);
+
+ private:
+  // The stages, in their order; stepper.cpp says what each does.
+  void take_held_forces(StepReport&);
+  void update_islands();
+  void advance_islands(StepReport&);
+  void apply_edits(StepReport&);
+  void fill(StepReport&);
+
+  edit::Editor& editor_;
+  edit::Door& door_;
+  // Of the step at hand, kept for their room.
+  std::vector<solver::AdvanceReport> advanced_;      // of each island
+  std::vector<std::uint32_t> dirty_, disturbed_;  // articulates: velocities to project, sleepers to wake
+};
+
+}  // namespace iota::step

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/door.h"
+#include "step/stepper.h"
+
+#include <iota/system.h>
+
+namespace iota {
+
+/// The parts of a system. Each knows those above it in this list.
+struct Core {
+  model::Model model;
+  Parallel parallel;
+  step::Islands islands;
+  held::HeldForces held{model, parallel};
+  read::Orientations orientations;
+  edit::Editor editor{model, islands, held, orientations, parallel};
+  edit::Door door{editor};
+  step::Stepper stepper{editor, door};
+
+  /// The one way to change anything.
+  template <class C>
+  auto execute(const C& command) {
+    if constexpr (std::is_same_v<C, edit::Step>) {
+      if (door.is_stepping()) edit::Door::refuse_in_step();
+      const StepReport report = stepper.step(command.dt);
+      door.record_step(command);
+      return report;
+    } else {
+      return door.execute(command);
+    }
+  }
+
+  /// Slot of a living thing. Throws StaleIdError, which says what became of it.
+  template <class IdType>
+  std::uint32_t slot(IdType id) const {
+    return edit::require(model, id);
+  }
+};
+
+struct System::Implementation : Core {};
+
+}  // namespace iota

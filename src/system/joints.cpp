@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/joint_readings.h"
+#include "system/core.h"
+
+#include <tuple>
+
+namespace iota {
+
+namespace {
+
+/// A surface as plain data; its function, if it has one, is kept under the next key.
+model::PlacedSurface place(Core& core, const Surface& surface) {
+  model::PlacedSurface placed{{}, surface.position, surface.orientation};
+  if (const auto* shape = std::get_if<Shape>(&surface.shape)) {
+    placed.data.shape = shape::to_data(*shape);
+    return placed;
+  }
+  const SurfaceFunction& function = std::get<SurfaceFunction>(surface.shape);
+  if (!function.phi) throw std::invalid_argument("a function surface needs a function");
+  placed.data.function = core.held.functions.next_key++;
+  core.model.surface_functions[placed.data.function] = function;
+  return placed;
+}
+
+template <class Specify>
+ConstraintId create_with_functions(Core& core, Specify specify) {
+  const std::uint64_t first = core.held.functions.next_key;
+  try {
+    return core.execute(specify());
+  } catch (...) {  // refused: nothing uses its functions
+    auto& functions = core.model.surface_functions;
+    functions.erase(functions.lower_bound(first), functions.end());
+    throw;
+  }
+}
+
+}  // namespace
+
+ConstraintId System::create_constraint(const JointSpec& spec) { return implementation_->execute(edit::CreateJoint{spec}); }
+
+ConstraintId System::create_constraint(const DistanceSpec& spec) {
+  return implementation_->execute(edit::CreateDistance{spec});
+}
+
+ConstraintId System::create_constraint(const PathSpec& spec) { return implementation_->execute(edit::CreatePath{spec}); }
+
+ConstraintId System::create_constraint(const SurfaceSpec& spec) {
+  return create_with_functions(*implementation_, [&] {
+    return edit::CreateSurface{
+        {spec.kind, spec.particle, spec.body, place(*implementation_, spec.surface), spec.breaks}};
+  });
+}
+
+ConstraintId System::create_constraint(const SurfacePairSpec& spec) {
+  return create_with_functions(*implementation_, [&] {
+    return edit::CreateSurfacePair{{spec.kind,
+                                    spec.a,
+                                    spec.b,
+                                    {place(*implementation_, spec.surface_a), place(*implementation_, spec.surface_b)},
+                                    spec.breaks}};
+  });
+}
+
+void System::destroy(ConstraintId id) { implementation_->execute(edit::Destroy<ConstraintId>{id}); }
+
+void System::set_active(ConstraintId id, bool active) { implementation_->execute(edit::SetConstraintActive{id, active}); }
+
+void System::set_coordinate(ConstraintId id, JointCoordinate coordinate, const CoordinateOptions& options) {
+  implementation_->execute(edit::SetCoordinate{id, coordinate, options});
+}
+
+void System::set_length(ConstraintId id, double value) { implementation_->execute(edit::SetLength{id, value}); }
+
+void System::set_break_limits(ConstraintId id, const BreakLimits& limits) {
+  implementation_->execute(edit::SetBreakLimits{id, limits});
+}
+
+const CoordinateOptions& System::coordinate(ConstraintId id, JointCoordinate coordinate) const {
+  const model::Constraint& c = implementation_->model.constraints[implementation_->slot(id)];
+  return c.options[static_cast<std::size_t>(coordinate)];
+}
+
+ConstraintState System::state(ConstraintId id) const {
+  const model::Model& m = implementation_->model;
+  const std::uint32_t slot = implementation_->slot(id);
+  const model::Constraint& c = m.constraints[slot];
+  ConstraintState state;
+  state.kind = c.kind;
+  const auto body_id = [&](int side) {
+    const std::uint32_t body = body_of_side(m, c, side);
+    return body == model::none ? BodyId{} : m.bodies.id(body);
+  };
+  state.a = body_id(0), state.b = body_id(1);
+  state.active = c.active, state.broken = c.broken;
+  const ingredient::Reaction reaction = ingredient::calc_reaction(m, slot);
+  state.position = reaction.position, state.force = reaction.force, state.torque = reaction.torque;
+  for (const int axis : {model::a_axis, model::b_axis}) {
+    if (!c.has(axis)) continue;
+    const Vec3 d =
+        position_of(m, c, axis) - position_of(m, c, axis < model::b_origin ? model::a_origin : model::b_origin);
+    state.axis = (1 / norm(d)) * d;
+    break;
+  }
+  state.gap = is_in_force(m, c) ? c.gap : 0, state.length = c.length;
+  for (const JointCoordinate which : joint_coordinates) {
+    const auto i = static_cast<std::size_t>(which);
+    if (!has_coordinate(c.kind, which)) continue;
+    std::tie(state.coordinate[i], state.speed[i]) = ingredient::calc_coordinate(m, slot, which);
+    for (const double multiplier : c.efforts[i]) state.effort[i] -= multiplier;
+  }
+  return state;
+}
+
+BreakLimits System::break_limits(ConstraintId id) const {
+  return implementation_->model.constraints[implementation_->slot(id)].breaks;
+}
+
+std::vector<ParticleId> System::particles(ConstraintId id) const {
+  const model::Model& m = implementation_->model;
+  std::vector<ParticleId> ids;
+  for (const std::uint32_t p : m.constraints[implementation_->slot(id)].particles)
+    if (p != model::none) ids.push_back(m.particles.id(p));
+  return ids;
+}
+
+std::vector<ConstraintId> System::constraints() const { return implementation_->model.constraints.ids(); }
+
+bool System::contains(ConstraintId id) const { return implementation_->model.constraints.contains(id); }
+
+}  // namespace iota

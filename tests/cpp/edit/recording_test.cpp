@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands as bytes: what is written is read back, and damaged recordings are refused without harm.
+#include "edit/commands.h"
+
+#include <gtest/gtest.h>
+#include <iota/system.h>
+
+#include <random>
+
+namespace iota {
+namespace {
+
+using Random = std::mt19937_64;
+
+/// Any value that serialize can write.
+template <class T>
+void fill(T& v, Random& random) {
+  if constexpr (std::is_same_v<T, bool>) {
+    v = random() % 2 == 1;
+  } else if constexpr (std::is_enum_v<T>) {
+    v = static_cast<T>(random() % (static_cast<std::size_t>(LastEnumerator<T>::value) + 1));
+  } else if constexpr (std::is_floating_point_v<T>) {
+    v = std::uniform_real_distribution<T>(-1e3, 1e3)(random);
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    v = static_cast<T>(random());
+  } else if constexpr (detail::is_array<T>) {
+    for (auto& item : v) fill(item, random);
+  } else if constexpr (detail::is_list<T>) {
+    v.resize(random() % 5);
+    for (auto& item : v) fill(item, random);
+  } else if constexpr (detail::is_variant<T>) {
+    detail::emplace(v, random() % std::variant_size_v<T>);
+    std::visit([&](auto& item) { fill(item, random); }, v);
+  } else {
+    for_each_field(v, [&](auto& field) { fill(field, random); });
+  }
+}
+
+template <class T>
+std::vector<std::byte> bytes_of(const T& v) {
+  std::vector<std::byte> bytes;
+  Writer writer(bytes);
+  serialize(writer, v);
+  return bytes;
+}
+
+TEST(Command, comes_back_from_its_bytes) {
+  Random random(7);
+  [&]<std::size_t... i>(std::index_sequence<i...>) {
+    const auto check = [&](edit::Command command) {
+      for (int repeat = 0; repeat < 20; ++repeat) {
+        std::visit([&](auto& c) { fill(c, random); }, command);
+        const std::vector<std::byte> bytes = bytes_of(command);
+        Reader reader(bytes);
+        edit::Command back;
+        serialize(reader, back);
+        ASSERT_TRUE(reader.ok() && reader.at_end()) << "command " << command.index();
+        ASSERT_EQ(back.index(), command.index());
+        ASSERT_EQ(bytes_of(back), bytes) << "command " << command.index();
+      }
+    };
+    (check(edit::Command(std::in_place_index<i>)), ...);
+  }(std::make_index_sequence<std::variant_size_v<edit::Command>>{});
+}
+
+TEST(Command, of_unknown_number_or_enumerator_is_not_read) {
+  const auto is_read = [](std::vector<std::byte> bytes) {
+    Reader reader(bytes);
+    edit::Command command;
+    serialize(reader, command);
+    return reader.ok();
+  };
+  std::vector<std::byte> bytes = bytes_of(edit::Command(edit::SetMode{IntegrationMode::robust}));
+  ASSERT_TRUE(is_read(bytes));
+  bytes.back() = std::byte{255};
+  EXPECT_FALSE(is_read(bytes));
+  bytes = bytes_of(edit::Command(edit::BeginEdit{}));
+  bytes.front() = std::byte{std::variant_size_v<edit::Command>};
+  EXPECT_FALSE(is_read(bytes));
+  // A string that claims to be longer than all that follows.
+  bytes = bytes_of(edit::Command(edit::CreateGroup{"a"}));
+  bytes[7] = std::byte{255};
+  EXPECT_FALSE(is_read(bytes));
+}
+
+// --- damaged recordings -------------------------------------------------------------------------------------------------
+
+BodyId make_rod(System& system, double x) {
+  const BodyId body = system.create_body();
+  system.create_particle(body, {x, 0, 0});
+  system.create_particle(body, {x + 1, 0, 0}, 2);
+  return body;
+}
+
+BodyId make_tetrahedron(System& system, double x) {
+  const BodyId body = make_rod(system, x);
+  system.create_particle(body, {x, 1, 0});
+  system.create_particle(body, {x, 0, 1});
+  return body;
+}
+
+void record_bodies(System& system) {
+  system.set_gravity({0, -1, 0});
+  system.set_mode(IntegrationMode::robust);
+  system.set_solver("direct");
+  system.set_rest({1, 0.1});
+  const BodyId rod = make_rod(system, 0);
+  system.set_rod(rod, 1, 0.1);
+  system.set_angular_velocity(rod, {1, 0, 0});
+  const BodyId box = system.create_body(Box{}, {.position = {0, 3, 0}, .attachments = {{0, 0, 1}}});
+  system.create_body(convex_hull(std::array{Vec3{}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}));
+  system.create_attachment(box, {0, 4, 0});
+  system.set_pose(box, {1, 3, 0}, {0, 0, 1, 1});
+  system.set_velocity(box, {1, 0, 0});
+  system.set_damping(box, 0.1);
+  system.set_kind(rod, BodyKind::static_);
+  system.set_position(system.particles(rod)[0], {-1, 0, 0});
+  system.set_mass(system.particles(rod)[0], 3);
+  (void)system.step(0.01);
+  system.set_active(box, false);
+  system.set_damping(0.1);
+}
+
+void record_forces(System& system) {
+  const BodyId a = make_rod(system, 0), b = make_rod(system, 3);
+  const ParticleId p = system.particles(a)[1], q = system.particles(b)[0];
+  const LawId law = system.create_law("energy = k * r^2", {"square", {{"k", 3}}});
+  const BondId bond = system.create_bond(p, q, SharedLaw{law, {{"k", 2}}, true});
+  system.create_bond(p, system.particles(b)[1], SpringLaw{});
+  system.set_parameter(bond, "k", 4);
+  system.set_break_force(bond, 1e3);
+  const LawId code = system.create_law([](double r, double, double, const double*) { return -r; });
+  system.create_bond(p, q, SharedLaw{code, {}, {}});
+  system.create_law([](const BondBatch&) {});
+  const GroupId group = system.create_group("some");
+  system.add(group, p);
+  const FieldId wind = system.create_field("wind", {.group = group});
+  system.create_field("fx = y; fy = 0; fz = 0");
+  system.create_field([](const ParticleBatch&) {});
+  const PairsId pairs = system.create_pairs({system.find_law("soft_repulsion"), {{"length", 2}}, {}}, {.cutoff = 2});
+  (void)system.step(0.01);
+  system.set_active(wind, false), system.set_active(pairs, false), system.set_active(bond, false);
+  system.set_parameter(wind, system.parameters(wind)[0].name, 2);
+  system.remove(group, p), system.destroy(pairs), system.destroy(bond), system.destroy(law);
+  (void)system.step(0.01);
+}
+
+void record_constraints(System& system) {
+  const BodyId a = make_tetrahedron(system, 0), b = make_tetrahedron(system, 2), c = make_tetrahedron(system, 4);
+  const ParticleId p = system.particles(a)[0], q = system.particles(b)[0];
+  const ConstraintId joint = system.create_constraint(
+      JointSpec{.kind = ConstraintKind::revolute, .a = a, .b = b, .at = {1.5, 0, 0}, .breaks = {1e6, 1e6}});
+  const ConstraintId rope = system.create_constraint(DistanceSpec{ConstraintKind::rope, p, q});
+  system.create_constraint(PathSpec{.particle = p, .points = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}});
+  system.create_constraint(SurfaceSpec{ConstraintKind::outside, p, {}, {Box{}, {0, -2, 0}}});
+  system.create_constraint(SurfacePairSpec{ConstraintKind::apart, c, {}, {Sphere{}, {4, 0, 0}}, {Plane{}, {0, -2, 0}}});
+  (void)system.step(0.01);
+  system.set_coordinate(joint, JointCoordinate::angle, {.lower = -1, .upper = 1, .motor_speed = 1, .motor_max = 2});
+  system.set_length(rope, 3);
+  system.set_active(joint, false), system.set_break_limits(rope, {1, 1}), system.set_break_force(p, 1);
+  (void)system.step(0.01);
+  system.destroy(rope);
+}
+
+void record_emitters(System& system) {
+  const EmitterId emitter =
+      system.create_emitter({.rate = 300, .source = Capsule{}, .velocity_spread = 1, .curve = {{0, 1}, {1, 2}}});
+  const ParticleId p = system.particles(make_rod(system, 0))[0];
+  system.set_orientation(p, {0, 0, 1, 1});
+  system.set_spin(p, {0, 1, 0});
+  system.apply_torque(p, {1, 0, 0});
+  system.set_moment(p, 2);
+  system.set_spin_damping(p, 1);
+  system.align(p, {1, 1, 0}, 2, 1);
+  system.set_attributes(p, {.lifetime = 0.015, .radius = 0.1});
+  (void)system.step(0.01);
+  system.set_rate(emitter, 10);
+  (void)system.step(0.01);
+  system.destroy(emitter);
+  (void)system.step(0.01);
+}
+
+void record_edits(System& system) {
+  const BodyId a = make_tetrahedron(system, 0), b = make_rod(system, 1), c = make_rod(system, 2.5);
+  const ParticleId p = system.particles(a)[1], q = system.particles(b)[0], r = system.particles(b)[1];
+  system.create_cosmetic_bond(p, system.particles(a)[0]);
+  system.begin_edit();
+  system.combine(p, q);
+  system.combine(r, system.particles(c)[0], 0.015);
+  system.end_edit();
+  system.nail(system.particles(a)[0], {0, 1, 0});
+  const GripId grip = system.create_grip(c, {}, {3, 3, 0});
+  (void)system.step(0.01);
+  system.move_grip(grip, {3, 4, 0});
+  (void)system.step(0.01);
+  system.separate(p, q);
+  system.combine(a, b);
+  system.separate(a, b);
+  system.release(system.particles(a)[0]);
+  system.apply_force(p, {1, 0, 0});
+  system.set_active(r, false);
+  system.undo(), system.redo();
+  system.begin_edit(), system.cancel_edit();
+  system.destroy(grip), system.destroy(r), system.destroy(c);
+  (void)system.step(0.01);
+}
+
+/// One to four bytes that are other ones, missing or too many; or the end is.
+void damage(std::vector<std::byte>& bytes, Random& random) {
+  for (auto left = 1 + random() % 4; left > 0 && !bytes.empty(); --left) {
+    const auto at = bytes.begin() + static_cast<std::ptrdiff_t>(random() % bytes.size());
+    switch (random() % 8) {
+      case 0: bytes.erase(at); break;
+      case 1: bytes.insert(at, std::byte{static_cast<unsigned char>(random())}); break;
+      case 2: bytes.resize(random() % bytes.size()); break;
+      case 3: *at = std::byte{255}; break;
+      case 4: *at = std::byte{static_cast<unsigned char>(random() % 80)}; break;
+      default: *at ^= std::byte{1} << (random() % 8); break;
+    }
+  }
+}
+
+/// Twenty thousand in all.
+class DamagedRecording : public testing::TestWithParam<void (*)(System&)> {};
+INSTANTIATE_TEST_SUITE_P(Of, DamagedRecording,
+                         testing::Values(record_bodies, record_forces, record_constraints, record_emitters,
+                                         record_edits));
+
+TEST_P(DamagedRecording, leaves_a_whole_system) {
+  System system({.threads = 1});
+  system.start_recording();
+  GetParam()(system);
+  const Recording recording = system.stop_recording();
+  ASSERT_EQ(system.replay(recording), std::nullopt);
+  Random random(1);
+  int refused = 0, done = 0;
+  for (int n = 0; n < 4000; ++n) {
+    Recording damaged = recording;
+    damage(damaged.commands, random);
+    try {
+      (void)system.replay(damaged);
+      ++done;
+    } catch (const std::invalid_argument&) {
+      ++refused;
+    }
+    ASSERT_TRUE(system.validate().empty()) << system.validate().front() << ", damaged recording " << n;
+  }
+  EXPECT_GT(refused, 400);
+  EXPECT_GT(done, 400);
+}
+
+TEST(Replay, of_a_recording_cut_short_changes_nothing) {
+  System system;
+  system.start_recording();
+  record_edits(system);
+  Recording recording = system.stop_recording();
+  const std::uint64_t before = system.state_hash();
+  recording.commands.pop_back();
+  EXPECT_THROW((void)system.replay(recording), std::invalid_argument);
+  EXPECT_EQ(system.state_hash(), before);
+}
+
+TEST(Recording, with_any_bit_of_its_file_flipped_is_refused) {
+  System system;
+  system.start_recording();
+  make_rod(system, 0);
+  (void)system.step(0.01);
+  const Recording recording = system.stop_recording();
+  std::vector<std::byte> bytes = recording.to_bytes();
+  EXPECT_EQ(Recording::from_bytes(bytes), recording);
+  Random random(3);
+  for (int n = 0; n < 200; ++n) {
+    const std::size_t at = random() % bytes.size();
+    const std::byte bit = std::byte{1} << (random() % 8);
+    bytes[at] ^= bit;
+    EXPECT_THROW((void)Recording::from_bytes(bytes), std::invalid_argument) << "byte " << at;
+    bytes[at] ^= bit;
+  }
+  bytes.pop_back();
+  EXPECT_THROW((void)Recording::from_bytes(bytes), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace iota
