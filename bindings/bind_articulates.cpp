@@ -15,15 +15,15 @@ constexpr const char* doc =
 struct ArticulateView {
   BodyHandle body;
 
-  std::uint32_t number() const { return body.use().articulate(body.id); }
+  std::uint32_t number() const { return body.use().bodies().articulate(body.id); }
   std::vector<BodyHandle> bodies() const {
     System& engine = body.use();
-    std::vector<BodyId> own = engine.bodies();
-    std::erase_if(own, [&, number = number()](const BodyId id) { return engine.articulate(id) != number; });
+    std::vector<BodyId> own = engine.bodies().ids();
+    std::erase_if(own, [&, number = number()](const BodyId id) { return engine.bodies().articulate(id) != number; });
     return wrap_all<BodyHandle>(body.system_object, body.system, own);
   }
   bool contains(const BodyHandle& other) const {
-    return other.system == body.system && other.use().articulate(other.id) == number();
+    return other.system == body.system && other.use().bodies().articulate(other.id) == number();
   }
 };
 
@@ -31,7 +31,7 @@ BodyHandle& holder_of(ArticulateView& articulate) { return articulate.body; }
 
 std::vector<ArticulateView> all(nb::handle_t<SystemObject> self) {
   std::vector<ArticulateView> out;
-  for (const auto& members : nb::inst_ptr<SystemObject>(self)->use().articulates())
+  for (const auto& members : nb::inst_ptr<SystemObject>(self)->use().bodies().articulates())
     out.push_back({handle_of(self, members.front())});
   return out;
 }
@@ -49,8 +49,8 @@ void bind_articulates(nb::module_& module) {
       .def_prop_ro("number", &ArticulateView::number,
                    "Equal for bodies that hang together now; given anew after edits.")
       .def_prop_rw(
-          "active", [](const ArticulateView& self) { return self.body.use().is_active(self.body.id); },
-          [](const ArticulateView& self, bool active) { self.body.use().set_articulate_active(self.body.id, active); },
+          "active", [](const ArticulateView& self) { return self.body.use().bodies().is_active(self.body.id); },
+          [](const ArticulateView& self, bool active) { self.body.use().bodies().set_articulate_active(self.body.id, active); },
           "False switches all its bodies off; see `Body.active`.")
       .def(
           "__eq__",

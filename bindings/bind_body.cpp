@@ -37,8 +37,8 @@ nb::tuple to_tuple(const Quaternion& q) { return nb::make_tuple(q.x, q.y, q.z, q
 std::string repr(const BodyHandle& self) {
   if (!self.is_alive()) return stale_repr("Body", self);
   const System& engine = self.system->engine;
-  return "<Body " + std::to_string(self.id.slot) + ": " + to_word(kind_words, engine.kind(self.id)) + ", " +
-         std::to_string(engine.particles(self.id).size()) + " particles>";
+  return "<Body " + std::to_string(self.id.slot) + ": " + to_word(kind_words, engine.bodies().kind(self.id)) + ", " +
+         std::to_string(engine.bodies().particles(self.id).size()) + " particles>";
 }
 
 /// Without a shape a body has no mass and is nowhere yet: its particles say where and how fast.
@@ -70,7 +70,7 @@ void bind_making(nb::class_<SystemObject>& system) {
         finite_not_negative(damping, "damping", "1/s");
         if (shape.is_none()) {
           refuse_without_shape(mass, position, orientation, velocity, spin, attachments);
-          return handle_of(self, engine.create_body({to_kind(kind), damping}));
+          return handle_of(self, engine.bodies().create({to_kind(kind), damping}));
         }
         SolidOptions options;
         options.kind = to_kind(kind), options.damping = damping;
@@ -80,7 +80,7 @@ void bind_making(nb::class_<SystemObject>& system) {
         options.orientation = to_quaternion(orientation, "orientation");
         options.velocity = to_vec3(velocity, "velocity"), options.spin = to_vec3(spin, "spin");
         for (nb::handle place : attachments) options.attachments.push_back(to_vec3({place}, "each attachment"));
-        return handle_of(self, engine.create_body(to_shape(shape), options));
+        return handle_of(self, engine.bodies().create(to_shape(shape), options));
       },
       "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(), "density"_a = 1000.0,
       "mass"_a = nb::none(), "position"_a = zero, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0),
@@ -109,34 +109,34 @@ void bind_body(nb::module_& module) {
   type.def_prop_ro(
           "particles",
           [](const BodyHandle& self) {
-            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().particles(self.id));
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().bodies().particles(self.id));
           },
           nb::sig("def particles(self) -> list[Particle]"), "In the order in which they were made.")
       .def_prop_ro(
-          "is_spark", [](const BodyHandle& self) { return self.use().is_spark(self.id); },
+          "is_spark", [](const BodyHandle& self) { return self.use().viewer().is_spark(self.id); },
           "A particle that an emitter bore and that nothing ties: viewers see a dot that they cannot hold.")
       .def_prop_rw(
-          "kind", [](const BodyHandle& self) { return KindWord{to_word(kind_words, self.use().kind(self.id))}; },
-          [](const BodyHandle& self, const KindWord& kind) { self.use().set_kind(self.id, to_kind(kind)); },
+          "kind", [](const BodyHandle& self) { return KindWord{to_word(kind_words, self.use().bodies().kind(self.id))}; },
+          [](const BodyHandle& self, const KindWord& kind) { self.use().bodies().set_kind(self.id, to_kind(kind)); },
           "'dynamic', 'static', 'scripted', 'inactive' or 'resting'. A resting body sleeps with all that hangs together with\n"
           "it, and wakes when something touches it.")
       .def_prop_rw(
-          "active", [](const BodyHandle& self) { return self.use().is_active(self.id); },
-          [](const BodyHandle& self, bool active) { self.use().set_active(self.id, active); },
+          "active", [](const BodyHandle& self) { return self.use().bodies().is_active(self.id); },
+          [](const BodyHandle& self, bool active) { self.use().bodies().set_active(self.id, active); },
           "False: kind 'inactive'; its bonds do not act. Active again, it is what it was before, at rest where it was left,\n"
           "and its hinges close.")
       .def_prop_rw(
-          "damping", [](const BodyHandle& self) { return self.use().damping(self.id); },
+          "damping", [](const BodyHandle& self) { return self.use().bodies().damping(self.id); },
           [](const BodyHandle& self, double value) {
-            between_steps(self, "damping = ...").set_damping(self.id, finite_not_negative(value, "damping", "1/s"));
+            between_steps(self, "damping = ...").bodies().set_damping(self.id, finite_not_negative(value, "damping", "1/s"));
           },
           "1/s, adds to the system's.")
       .def_prop_ro(
-          "mass", [](const BodyHandle& self) { return self.use().mass(self.id); }, "kg")
+          "mass", [](const BodyHandle& self) { return self.use().bodies().mass(self.id); }, "kg")
       .def_prop_ro(
-          "center_of_mass", [](const BodyHandle& self) { return self.use().center_of_mass(self.id); }, "m")
+          "center_of_mass", [](const BodyHandle& self) { return self.use().bodies().center_of_mass(self.id); }, "m")
       .def_prop_ro(
-          "orientation", [](const BodyHandle& self) { return to_tuple(self.use().orientation(self.id)); },
+          "orientation", [](const BodyHandle& self) { return to_tuple(self.use().bodies().orientation(self.id)); },
           nb::sig("def orientation(self) -> tuple[float, float, float, float]"),
           "Of the drawn frame: unit quaternion x y z w that turns body-frame vectors into the world frame. For a body\n"
           "given by shape it is the shape's frame.")
@@ -145,8 +145,8 @@ void bind_body(nb::module_& module) {
           [](const BodyHandle& self, VectorArgument position, nb::object orientation) {
             System& engine = between_steps(self, "set_pose");
             const Quaternion turn =
-                orientation.is_none() ? engine.orientation(self.id) : to_quaternion(orientation, "orientation");
-            engine.set_pose(self.id, to_vec3(position, "position"), turn);
+                orientation.is_none() ? engine.bodies().orientation(self.id) : to_quaternion(orientation, "orientation");
+            engine.bodies().set_pose(self.id, to_vec3(position, "position"), turn);
           },
           "position"_a, "orientation"_a = nb::none(),
           nb::sig("def set_pose(self, position: Vec3 | collections.abc.Sequence[float], orientation: "
@@ -154,32 +154,32 @@ void bind_body(nb::module_& module) {
           "Moves it, and rigidly with it all that hangs on it, nails included. A scripted body arrives at the end of the\n"
           "next step. position: of the center of mass, m. orientation: quaternion x y z w, None for the present one.")
       .def_prop_ro(
-          "inertia", [](const BodyHandle& self) { return to_array(self.use().inertia(self.id)); },
+          "inertia", [](const BodyHandle& self) { return to_array(self.use().bodies().inertia(self.id)); },
           nb::sig("def inertia(self) -> numpy.typing.NDArray[numpy.float64]"),
           "(3, 3), about the center of mass, world axes, kg m^2.")
       .def_prop_rw(
-          "velocity", [](const BodyHandle& self) { return self.use().velocity(self.id); },
+          "velocity", [](const BodyHandle& self) { return self.use().bodies().velocity(self.id); },
           [](const BodyHandle& self, VectorArgument v) {
-            between_steps(self, "velocity = ...").set_velocity(self.id, to_vec3(v, "velocity"));
+            between_steps(self, "velocity = ...").bodies().set_velocity(self.id, to_vec3(v, "velocity"));
           },
           "Of the center of mass, m/s.")
       .def_prop_rw(
-          "angular_velocity", [](const BodyHandle& self) { return self.use().angular_velocity(self.id); },
+          "angular_velocity", [](const BodyHandle& self) { return self.use().bodies().angular_velocity(self.id); },
           [](const BodyHandle& self, VectorArgument v) {
-            between_steps(self, "angular_velocity = ...").set_angular_velocity(self.id, to_vec3(v, "angular_velocity"));
+            between_steps(self, "angular_velocity = ...").bodies().set_angular_velocity(self.id, to_vec3(v, "angular_velocity"));
           },
           "rad/s, world axes. It has no part along what has no inertia, and assigning one raises ValueError: one point, or\n"
           "points on a line without `set_rod`. Assigning keeps the velocity of the center; what joints do not allow of it is projected out by the next step.")
       .def_prop_ro(
-          "angular_momentum", [](const BodyHandle& self) { return self.use().angular_momentum(self.id); },
+          "angular_momentum", [](const BodyHandle& self) { return self.use().bodies().angular_momentum(self.id); },
           "About its center of mass, kg m^2/s.")
       .def_prop_ro(
-          "solids", [](const BodyHandle& self) { return self.use().solids(self.id); },
+          "solids", [](const BodyHandle& self) { return self.use().bodies().solids(self.id); },
           "What it was given as; several once bodies were combined, none for a body of particles alone.")
       .def_prop_ro(
           "attachments",
           [](const BodyHandle& self) {
-            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().attachments(self.id));
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().bodies().attachments(self.id));
           },
           nb::sig("def attachments(self) -> list[Particle]"),
           "Its particles except for a solid's own four points, in the order in which they were made.")
@@ -187,7 +187,7 @@ void bind_body(nb::module_& module) {
           "attachment",
           [](const BodyHandle& self, VectorArgument position) {
             System& engine = between_steps(self, "attachment(...)");
-            return sibling(self, engine.create_attachment(self.id, to_vec3(position, "position")));
+            return sibling(self, engine.bodies().create_attachment(self.id, to_vec3(position, "position")));
           },
           "position"_a, nb::sig("def attachment(self, position: Vec3 | collections.abc.Sequence[float]) -> Particle"),
           "A further particle of a body given by shape, anywhere (world, m). Mass, center, inertia and motion of the body\n"
@@ -197,14 +197,14 @@ void bind_body(nb::module_& module) {
           [](const BodyHandle& self, double mass, double radius) {
             finite_positive(mass, "mass", "kg");
             finite_not_negative(radius, "radius", "m");
-            between_steps(self, "set_rod").set_rod(self.id, mass, radius);
+            between_steps(self, "set_rod").bodies().set_rod(self.id, mass, radius);
           },
           "mass"_a, "radius"_a,
           "Gives a body of exactly two particles the mass (kg) and inertia of a solid cylinder (radius in m) between them.\n"
           "What `angular_velocity` gives it about its axis it keeps: nothing on the axis can turn it. Raises ValueError for\n"
           "any other number of particles.")
       .def(
-          "destroy", [](const BodyHandle& self) { self.use().destroy(self.id); },
+          "destroy", [](const BodyHandle& self) { self.use().bodies().destroy(self.id); },
           "Removes it with its particles and their bonds.")
       .def("__repr__", &repr);
 }

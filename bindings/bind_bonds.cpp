@@ -43,7 +43,7 @@ void check_ends(const SystemObject& self, const ParticleHandle& p, const Particl
 nb::object function_called(const System& engine, const std::string& word) {
   if (word.find('=') != std::string::npos) return {};
   try {
-    (void)engine.find_law(word);
+    (void)engine.laws().find(word);
     return {};
   } catch (const std::invalid_argument&) {
   }
@@ -83,9 +83,9 @@ BondHandle make_bond(SystemObject& self, const ParticleHandle& p, const Particle
     throw nb::type_error(
         ("law must be a predefined law, an expression, a Law or a function, not " + describe(law)).c_str());
   }
-  const BondId id = engine.create_bond(p.id, q.id, std::move(engine_law));
+  const BondId id = engine.bonds().create(p.id, q.id, std::move(engine_law));
   if (function) function->bond = id;
-  if (std::isfinite(break_force)) engine.set_break_force(id, break_force);
+  if (std::isfinite(break_force)) engine.bonds().set_break_force(id, break_force);
   return sibling(p, id);
 }
 
@@ -93,23 +93,23 @@ void set_parameters(const BondHandle& self, const nb::kwargs& keywords) {
   System& engine = self.use();
   self.system->use_between_steps("set of a bond");
   const std::vector<LawParameter> changes = to_parameters(keywords);
-  const auto [p, q] = engine.ends(self.id);
-  const double distance = norm(engine.position(q) - engine.position(p));
-  std::vector<LawParameter> before = engine.parameters(self.id);
+  const auto [p, q] = engine.bonds().ends(self.id);
+  const double distance = norm(engine.particles().position(q) - engine.particles().position(p));
+  std::vector<LawParameter> before = engine.bonds().parameters(self.id);
   try {
     for (const LawParameter& c : changes)
-      engine.set_parameter(self.id, c.name, std::isnan(c.value) ? distance : c.value);
+      engine.bonds().set_parameter(self.id, c.name, std::isnan(c.value) ? distance : c.value);
   } catch (...) {  // all or none
-    for (const LawParameter& b : before) engine.set_parameter(self.id, b.name, b.value);
+    for (const LawParameter& b : before) engine.bonds().set_parameter(self.id, b.name, b.value);
     throw;
   }
 }
 
 std::string repr(const BondHandle& self) {
   if (!self.is_alive()) return stale_repr("Bond", self);
-  const auto [p, q] = self.system->engine.ends(self.id);
+  const auto [p, q] = self.system->engine.bonds().ends(self.id);
   return "<Bond " + std::to_string(self.id.slot) + " between particles " + std::to_string(p.slot) + " and " +
-         std::to_string(q.slot) + (self.system->engine.is_active(self.id) ? ">" : ", switched off>");
+         std::to_string(q.slot) + (self.system->engine.bonds().is_active(self.id) ? ">" : ", switched off>");
 }
 
 void bind_bond(nb::module_& module) {
@@ -130,40 +130,40 @@ void bind_bond(nb::module_& module) {
       .def_prop_ro(
           "ends",
           [](const BondHandle& self) {
-            const auto [p, q] = self.use().ends(self.id);
+            const auto [p, q] = self.use().bonds().ends(self.id);
             return std::make_pair(sibling(self, p), sibling(self, q));
           },
           "The two particles.")
       .def_prop_rw(
-          "active", [](const BondHandle& self) { return self.use().is_active(self.id); },
-          [](const BondHandle& self, bool active) { self.use().set_active(self.id, active); },
+          "active", [](const BondHandle& self) { return self.use().bonds().is_active(self.id); },
+          [](const BondHandle& self, bool active) { self.use().bonds().set_active(self.id, active); },
           "False while it is switched off or broken; True repairs it.")
       .def_prop_ro(
-          "force", [](const BondHandle& self) { return self.use().force(self.id); },
+          "force", [](const BondHandle& self) { return self.use().bonds().force(self.id); },
           "On its first particle, N (the second gets the opposite): of an implicit bond here and now, of a held one in the "
           "last step.")
       .def_prop_rw(
-          "break_force", [](const BondHandle& self) { return self.use().break_force(self.id); },
+          "break_force", [](const BondHandle& self) { return self.use().bonds().break_force(self.id); },
           [](const BondHandle& self, double force) {
             self.use();
-            self.system->use_between_steps("break_force = ...").set_break_force(self.id, force);
+            self.system->use_between_steps("break_force = ...").bonds().set_break_force(self.id, force);
           },
           "N; beyond it the bond is switched off at the end of a step: see `System.broken`. inf: never.")
       .def_prop_ro(
-          "broken", [](const BondHandle& self) { return self.use().is_broken(self.id); },
+          "broken", [](const BondHandle& self) { return self.use().bonds().is_broken(self.id); },
           "By a load beyond break_force.")
       .def_prop_ro(
-          "law", [](const BondHandle& self) { return sibling(self, self.use().law(self.id)); }, "Its Law.")
+          "law", [](const BondHandle& self) { return sibling(self, self.use().bonds().law(self.id)); }, "Its Law.")
       .def_prop_ro(
-          "implicit", [](const BondHandle& self) { return self.use().is_implicit(self.id); },
+          "implicit", [](const BondHandle& self) { return self.use().bonds().is_implicit(self.id); },
           "Whether it is solved together with the joints; else it is taken once a step and held.")
       .def_prop_ro(
-          "parameters", [](const BondHandle& self) { return to_dict(self.use().parameters(self.id)); },
+          "parameters", [](const BondHandle& self) { return to_dict(self.use().bonds().parameters(self.id)); },
           nb::sig("def parameters(self) -> dict[str, float]"), "A copy; change them with `set`.")
       .def("set", &set_parameters, "parameters"_a, nb::sig("def set(self, **parameters: float | None) -> None"),
            "Changes parameters of its law; None is the distance now.\n\n    bond.set(stiffness=500, length=None)")
       .def(
-          "destroy", [](const BondHandle& self) { self.use().destroy(self.id); }, "Removes it.")
+          "destroy", [](const BondHandle& self) { self.use().bonds().destroy(self.id); }, "Removes it.")
       .def("__repr__", &repr);
 }
 
@@ -209,7 +209,7 @@ void bind_cosmetic_bond(nb::module_& module) {
           "cosmetic_bond",
           [](SystemObject& self, const ParticleHandle& p, const ParticleHandle& q) {
             check_ends(self, p, q, "cosmetic_bond");
-            return sibling(p, self.use_between_steps("cosmetic_bond(...)").create_cosmetic_bond(p.id, q.id));
+            return sibling(p, self.use_between_steps("cosmetic_bond(...)").cosmetic_bonds().create(p.id, q.id));
           },
           "p"_a, "q"_a, "A new line to be drawn between two particles of one body.");
   def_identity(type);
@@ -219,21 +219,21 @@ void bind_cosmetic_bond(nb::module_& module) {
       .def_prop_ro(
           "ends",
           [](const CosmeticBondHandle& self) {
-            const auto [p, q] = self.use().ends(self.id);
+            const auto [p, q] = self.use().cosmetic_bonds().ends(self.id);
             return std::make_pair(sibling(self, p), sibling(self, q));
           },
           "The two particles.")
       .def(
           "destroy",
           [](const CosmeticBondHandle& self) {
-            return RestructureResult{self.system_object, self.system, self.use().destroy(self.id)};
+            return RestructureResult{self.system_object, self.system, self.use().cosmetic_bonds().destroy(self.id)};
           },
           "Removes it. Where that disconnects its body's cosmetic bonds the rigid body falls into two pieces: one with the\n"
           "bond's first end, which stays this body, and one with the second. Particles that hang on neither end go with the\n"
           "nearer piece; a solid and its attachments are one piece. Velocities stay.")
       .def("__repr__", [](const CosmeticBondHandle& self) {
         if (!self.is_alive()) return stale_repr("CosmeticBond", self);
-        const auto [p, q] = self.use().ends(self.id);
+        const auto [p, q] = self.use().cosmetic_bonds().ends(self.id);
         return "<CosmeticBond " + std::to_string(self.id.slot) + " between particles " + std::to_string(p.slot) + " and " +
                std::to_string(q.slot) + ">";
       });

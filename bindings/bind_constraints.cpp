@@ -104,7 +104,7 @@ ConstraintHandle make_joint(SystemObject& self, JointSpec spec, const BodyHandle
   spec.a = a.id;
   if (b) spec.b = b->id;
   if (at.value) spec.at = to_vec3(at, "at");
-  return {a.system_object, a.system, self.use_between_steps("making a joint").create_constraint(spec)};
+  return {a.system_object, a.system, self.use_between_steps("making a joint").joints().create(spec)};
 }
 
 ConstraintHandle make_distance(SystemObject& self, ConstraintKind kind, const ParticleHandle& p,
@@ -116,7 +116,7 @@ ConstraintHandle make_distance(SystemObject& self, ConstraintKind kind, const Pa
   spec.kind = kind, spec.p = p.id, spec.q = q.id;
   if (length) spec.length = *length;
   spec.breaks = to_limits(break_force, infinity);
-  return {p.system_object, p.system, self.use_between_steps("making a rod or rope").create_constraint(spec)};
+  return {p.system_object, p.system, self.use_between_steps("making a rod or rope").joints().create(spec)};
 }
 
 // --- curves and surfaces ----------------------------------------------------------------------------------------------
@@ -172,11 +172,11 @@ Surface to_surface(SystemObject& self, nb::handle shape, nb::handle at, nb::hand
   if (!at.is_none())
     surface.position = to_vec3({at}, "at");
   else if (body)
-    surface.position = body->use().center_of_mass(body->id);
+    surface.position = body->use().bodies().center_of_mass(body->id);
   if (!orientation.is_none())
     surface.orientation = to_quaternion(orientation);
   else if (body)
-    surface.orientation = body->use().orientation(body->id);
+    surface.orientation = body->use().bodies().orientation(body->id);
   return surface;
 }
 
@@ -187,8 +187,8 @@ struct CoordinateView {
   JointCoordinate which;
 
   std::size_t index() const { return static_cast<std::size_t>(which); }
-  CoordinateOptions options() const { return joint.use().coordinate(joint.id, which); }
-  void set(const CoordinateOptions& options) const { joint.use().set_coordinate(joint.id, which, options); }
+  CoordinateOptions options() const { return joint.use().joints().coordinate(joint.id, which); }
+  void set(const CoordinateOptions& options) const { joint.use().joints().set_coordinate(joint.id, which, options); }
 };
 
 ConstraintHandle& holder_of(CoordinateView& coordinate) { return coordinate.joint; }
@@ -197,16 +197,16 @@ void bind_coordinate(nb::module_& module) {
   nb::class_<CoordinateView>(module, "JointCoordinate", coordinate_doc, nb::type_slots(handle_slots<CoordinateView>))
       .def_prop_ro(
           "value",
-          [](const CoordinateView& self) { return self.joint.use().state(self.joint.id).coordinate[self.index()]; },
+          [](const CoordinateView& self) { return self.joint.use().joints().state(self.joint.id).coordinate[self.index()]; },
           "rad, counted on through full turns, or m.")
       .def("__float__",
-           [](const CoordinateView& self) { return self.joint.use().state(self.joint.id).coordinate[self.index()]; })
+           [](const CoordinateView& self) { return self.joint.use().joints().state(self.joint.id).coordinate[self.index()]; })
       .def_prop_ro(
-          "speed", [](const CoordinateView& self) { return self.joint.use().state(self.joint.id).speed[self.index()]; },
+          "speed", [](const CoordinateView& self) { return self.joint.use().joints().state(self.joint.id).speed[self.index()]; },
           "rad/s or m/s")
       .def_prop_ro(
           "effort",
-          [](const CoordinateView& self) { return self.joint.use().state(self.joint.id).effort[self.index()]; },
+          [](const CoordinateView& self) { return self.joint.use().joints().state(self.joint.id).effort[self.index()]; },
           "By stops, motor, friction and spring along it on a in the last step, N m or N.")
       .def_prop_rw(
           "limits",
@@ -256,7 +256,7 @@ void bind_coordinate(nb::module_& module) {
           },
           nb::for_setter(nb::arg("spring").none()), "(stiffness, damping, rest) or a stiffness; None for none.")
       .def("__repr__", [](const CoordinateView& self) {
-        const ConstraintState state = self.joint.use().state(self.joint.id);
+        const ConstraintState state = self.joint.use().joints().state(self.joint.id);
         const bool is_slide = self.which == JointCoordinate::slide;
         return std::string("<") + coordinate_names[self.index()] + " " +
                std::to_string(state.coordinate[self.index()]) + (is_slide ? " m>" : " rad>");
@@ -265,7 +265,7 @@ void bind_coordinate(nb::module_& module) {
 
 CoordinateView coordinate_of(const ConstraintHandle& self, JointCoordinate which) {
   (void)self.use();
-  const ConstraintKind kind = self.system->engine.state(self.id).kind;
+  const ConstraintKind kind = self.system->engine.joints().state(self.id).kind;
   if (!has_coordinate(kind, which)) {
     const std::string text =
         "a " + to_word(constraint_words, kind) + " has no " + coordinate_names[static_cast<std::size_t>(which)];
@@ -279,7 +279,7 @@ CoordinateView coordinate_of(const ConstraintHandle& self, JointCoordinate which
 
 template <class Member>
 auto read(Member ConstraintState::* member) {
-  return [member](const ConstraintHandle& self) { return self.use().state(self.id).*member; };
+  return [member](const ConstraintHandle& self) { return self.use().joints().state(self.id).*member; };
 }
 
 nb::object body_or_none(const ConstraintHandle& self, BodyId id) {
@@ -293,7 +293,7 @@ System& between_steps(const ConstraintHandle& self, const char* what) {
 
 std::string repr(const ConstraintHandle& self) {
   if (!self.is_alive()) return stale_repr("Constraint", self);
-  const ConstraintState state = self.system->engine.state(self.id);
+  const ConstraintState state = self.system->engine.joints().state(self.id);
   return "<Constraint " + std::to_string(self.id.slot) + ": " + to_word(constraint_words, state.kind) + " of body " +
          std::to_string(state.a.slot) + " and " + (state.b ? "body " + std::to_string(state.b.slot) : "the world") +
          (state.broken   ? ", broken>"
@@ -310,23 +310,23 @@ void bind_handle(nb::module_& module) {
           "False once it was destroyed or had nothing left to hold.")
       .def_prop_ro(
           "kind",
-          [](const ConstraintHandle& self) { return to_word(constraint_words, self.use().state(self.id).kind); },
+          [](const ConstraintHandle& self) { return to_word(constraint_words, self.use().joints().state(self.id).kind); },
           "'revolute', 'rope' ...")
       .def_prop_ro(
-          "a", [](const ConstraintHandle& self) { return body_or_none(self, self.use().state(self.id).a); },
+          "a", [](const ConstraintHandle& self) { return body_or_none(self, self.use().joints().state(self.id).a); },
           nb::sig("def a(self) -> Body"))
       .def_prop_ro(
-          "b", [](const ConstraintHandle& self) { return body_or_none(self, self.use().state(self.id).b); },
+          "b", [](const ConstraintHandle& self) { return body_or_none(self, self.use().joints().state(self.id).b); },
           nb::sig("def b(self) -> Body | None"), "None: the world.")
       .def_prop_ro(
           "particles",
           [](const ConstraintHandle& self) {
-            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().particles(self.id));
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().joints().particles(self.id));
           },
           nb::sig("def particles(self) -> list[Particle]"), "Those that it refers to, its own markers included.")
       .def_prop_rw(
           "active", read(&ConstraintState::active),
-          [](const ConstraintHandle& self, bool active) { self.use().set_active(self.id, active); },
+          [](const ConstraintHandle& self, bool active) { self.use().joints().set_active(self.id, active); },
           "False while it is switched off or broken; True repairs it, and bodies go back to how they were joined.")
       .def_prop_ro("broken", read(&ConstraintState::broken), "By a load beyond break_force or break_torque.")
       .def_prop_ro("position", read(&ConstraintState::position), "Where it acts on a, m.")
@@ -337,7 +337,7 @@ void bind_handle(nb::module_& module) {
       .def_prop_rw(
           "length", read(&ConstraintState::length),
           [](const ConstraintHandle& self, double length) {
-            self.use().set_length(self.id, finite_positive(length, "length", "m"));
+            self.use().joints().set_length(self.id, finite_positive(length, "length", "m"));
           },
           "Of a rod or rope, m.")
       .def_prop_ro("angle", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::angle); })
@@ -347,21 +347,21 @@ void bind_handle(nb::module_& module) {
           [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::second_angle); },
           "Of a universal joint, about b's axis.")
       .def_prop_rw(
-          "break_force", [](const ConstraintHandle& self) { return self.use().break_limits(self.id).force; },
+          "break_force", [](const ConstraintHandle& self) { return self.use().joints().break_limits(self.id).force; },
           [](const ConstraintHandle& self, double force) {
             between_steps(self, "break_force = ...")
-                .set_break_limits(self.id, {force, self.system->engine.break_limits(self.id).torque});
+                .joints().set_break_limits(self.id, {force, self.system->engine.joints().break_limits(self.id).torque});
           },
           "N; inf: never.")
       .def_prop_rw(
-          "break_torque", [](const ConstraintHandle& self) { return self.use().break_limits(self.id).torque; },
+          "break_torque", [](const ConstraintHandle& self) { return self.use().joints().break_limits(self.id).torque; },
           [](const ConstraintHandle& self, double torque) {
             between_steps(self, "break_torque = ...")
-                .set_break_limits(self.id, {self.system->engine.break_limits(self.id).force, torque});
+                .joints().set_break_limits(self.id, {self.system->engine.joints().break_limits(self.id).force, torque});
           },
           "N m; inf: never.")
       .def(
-          "destroy", [](const ConstraintHandle& self) { self.use().destroy(self.id); }, "Removes it.")
+          "destroy", [](const ConstraintHandle& self) { self.use().joints().destroy(self.id); }, "Removes it.")
       .def("__repr__", &repr);
 }
 
@@ -527,7 +527,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
         if (rounding) spec.rounding = finite_not_negative(*rounding, "rounding", "m");
         spec.slide = to_options({limits, motor, friction, spring});
         spec.breaks = to_limits(break_force, infinity);
-        return ConstraintHandle{p.system_object, p.system, self.use_between_steps("on_path").create_constraint(spec)};
+        return ConstraintHandle{p.system_object, p.system, self.use_between_steps("on_path").joints().create(spec)};
       },
       "p"_a, "path"_a, "body"_a.none() = nb::none(), nb::kw_only(), "closed"_a = false, "smooth"_a = true,
       "rounding"_a.none() = nb::none(), "interval"_a = Pair{0, 1}, "samples"_a = 256, "limits"_a.none() = nb::none(),
@@ -595,7 +595,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
       "constraints",
       [](nb::handle_t<SystemObject> self) {
         SystemObject* object = nb::inst_ptr<SystemObject>(self);
-        return wrap_all<ConstraintHandle>(nb::borrow(self), object, object->use().constraints());
+        return wrap_all<ConstraintHandle>(nb::borrow(self), object, object->use().joints().ids());
       },
       nb::sig("def constraints(self) -> list[Constraint]"), "In order of slots.");
   type.def_prop_ro(

@@ -24,7 +24,7 @@ void bind_edits(nb::module_& module) {
       .def(
           "__enter__",
           [](nb::handle_t<EditScope> self) {
-            nb::inst_ptr<EditScope>(self)->system->use_between_steps("edit").begin_edit();
+            nb::inst_ptr<EditScope>(self)->system->use_between_steps("edit").edits().begin();
             return nb::borrow(self);
           },
           nb::sig("def __enter__(self) -> Edit"))
@@ -32,11 +32,11 @@ void bind_edits(nb::module_& module) {
           "__exit__",
           [](EditScope& self, nb::handle type, nb::handle, nb::handle) {
             System& engine = self.system->use_between_steps("edit");
-            if (!engine.is_editing()) return;
+            if (!engine.edits().is_open()) return;
             if (type.is_none())
-              self.report = engine.end_edit();
+              self.report = engine.edits().end();
             else
-              engine.cancel_edit();
+              engine.edits().cancel();
           },
           "type"_a.none(), "value"_a.none(), "traceback"_a.none(),
           nb::sig("def __exit__(self, type: object, value: object, traceback: object) -> None"))
@@ -57,12 +57,12 @@ void bind_edits(nb::module_& module) {
           },
           nb::sig("def edit(self) -> Edit"), scope_doc)
       .def(
-          "undo", [](SystemObject& self) { return self.use_between_steps("undo").undo(); },
+          "undo", [](SystemObject& self) { return self.use_between_steps("undo").edits().undo(); },
           "Goes back to just before the last batch of edits, time included; handles from then are good again. A batch is\n"
           "kept as the whole state before it: at most 64, and 256 MiB, are. `restore` and `start_recording` forget them.\n"
           "False when there is none.")
       .def(
-          "redo", [](SystemObject& self) { return self.use_between_steps("redo").redo(); },
+          "redo", [](SystemObject& self) { return self.use_between_steps("redo").edits().redo(); },
           "Undoes the last `undo`. False when there is none, or something was edited since.")
       .def_prop_ro(
           "step_edits",
@@ -73,8 +73,8 @@ void bind_edits(nb::module_& module) {
             return RestructureResult{nb::borrow(self), object, *object->step_edits};
           },
           "One report of all edits that were asked for during the last step and made right after it; None without any.")
-      .def_prop_ro("undo_count", [](SystemObject& self) { return self.use().undo_count(); })
-      .def_prop_ro("redo_count", [](SystemObject& self) { return self.use().redo_count(); });
+      .def_prop_ro("undo_count", [](SystemObject& self) { return self.use().edits().undo_count(); })
+      .def_prop_ro("redo_count", [](SystemObject& self) { return self.use().edits().redo_count(); });
 }
 
 }  // namespace iota::bindings

@@ -72,7 +72,7 @@ EmitterHandle make_emitter(nb::handle_t<SystemObject> self, double rate, nb::obj
   o.lifetime_spread = finite_not_negative(lifetime_spread, "lifetime_spread", "s");
   o.mass = finite_positive(mass, "mass", "kg"), o.damping = finite_not_negative(damping, "damping", "1/s");
   o.max_count = max_count, o.curve = to_curve(curve), o.seed = seed;
-  return handle_of(self, nb::inst_ptr<SystemObject>(self)->use_between_steps("emitter(...)").create_emitter(o));
+  return handle_of(self, nb::inst_ptr<SystemObject>(self)->use_between_steps("emitter(...)").emitters().create(o));
 }
 
 void bind_emitter(nb::module_& module) {
@@ -102,40 +102,40 @@ void bind_emitter(nb::module_& module) {
   };
   type.def_prop_ro("alive", [](const EmitterHandle& self) { return self.is_alive(); })
       .def_prop_rw(
-          "active", [](const EmitterHandle& self) { return self.use().is_active(self.id); },
-          [](const EmitterHandle& self, bool on) { self.use().set_active(self.id, on); }, "False: no births.")
+          "active", [](const EmitterHandle& self) { return self.use().emitters().is_active(self.id); },
+          [](const EmitterHandle& self, bool on) { self.use().emitters().set_active(self.id, on); }, "False: no births.")
       .def_prop_rw(
-          "rate", [](const EmitterHandle& self) { return self.use().rate(self.id); },
+          "rate", [](const EmitterHandle& self) { return self.use().emitters().rate(self.id); },
           [checked](const EmitterHandle& self, double value) {
-            checked(self, "rate = ...").set_rate(self.id, finite_not_negative(value, "rate", "1/s"));
+            checked(self, "rate = ...").emitters().set_rate(self.id, finite_not_negative(value, "rate", "1/s"));
           },
           "Births a second.")
       .def_prop_ro(
-          "count", [](const EmitterHandle& self) { return self.use().count(self.id); }, "Its particles alive now.")
+          "count", [](const EmitterHandle& self) { return self.use().emitters().count(self.id); }, "Its particles alive now.")
       .def_prop_ro(
-          "born", [](const EmitterHandle& self) { return self.use().born(self.id); }, "How many so far.")
+          "born", [](const EmitterHandle& self) { return self.use().emitters().born(self.id); }, "How many so far.")
       .def_prop_ro(
           "particles",
           [](const EmitterHandle& self) {
-            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().particles(self.id));
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().emitters().particles(self.id));
           },
           nb::sig("def particles(self) -> list[Particle]"))
       .def(
           "move",
           [checked](const EmitterHandle& self, VectorArgument position, nb::object orientation) {
             checked(self, "move")
-                .move_emitter(self.id, to_vec3(position, "position"), to_quaternion(orientation, "orientation"));
+                .emitters().move(self.id, to_vec3(position, "position"), to_quaternion(orientation, "orientation"));
           },
           "position"_a, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0),
           nb::sig("def move(self, position: Vec3 | collections.abc.Sequence[float], orientation: "
                   "collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0)) -> None"),
           "Moves its source: m, quaternion x y z w.")
       .def(
-          "destroy", [](const EmitterHandle& self) { self.use().destroy(self.id); },
+          "destroy", [](const EmitterHandle& self) { self.use().emitters().destroy(self.id); },
           "Its particles live on, with the look they have.")
       .def("__repr__", [](const EmitterHandle& self) {
         return self.is_alive() ? "<Emitter " + std::to_string(self.id.slot) + ": " +
-                                     std::to_string(self.system->engine.count(self.id)) + " particles>"
+                                     std::to_string(self.system->engine.emitters().count(self.id)) + " particles>"
                                : stale_repr("Emitter", self);
       });
 }
@@ -148,37 +148,37 @@ System& between_steps(const ParticleHandle& self, const char* what) {
 
 void bind_attributes(nb::class_<ParticleHandle>& type) {
   type.def_prop_ro(
-          "has_attributes", [](const ParticleHandle& self) { return self.use().has_attributes(self.id); },
+          "has_attributes", [](const ParticleHandle& self) { return self.use().particles().has_attributes(self.id); },
           "Whether age, lifetime, radius, color or orientation were ever given to it.")
       .def_prop_ro(
-          "age", [](const ParticleHandle& self) { return self.use().attributes(self.id).age; },
+          "age", [](const ParticleHandle& self) { return self.use().particles().attributes(self.id).age; },
           "s, since its birth or since it was given a lifetime or look; 0 for all others.")
       .def_prop_rw(
-          "lifetime", [](const ParticleHandle& self) { return self.use().attributes(self.id).lifetime; },
+          "lifetime", [](const ParticleHandle& self) { return self.use().particles().attributes(self.id).lifetime; },
           [](const ParticleHandle& self, double value) {
             System& engine = between_steps(self, "lifetime = ...");
-            ParticleAttributes attributes = engine.attributes(self.id);
+            ParticleAttributes attributes = engine.particles().attributes(self.id);
             attributes.lifetime = value;
-            engine.set_attributes(self.id, attributes);
+            engine.particles().set_attributes(self.id, attributes);
           },
           "s: it is destroyed, with its bonds, in the step in which its age reaches it. math.inf for never.")
       .def_prop_rw(
-          "radius", [](const ParticleHandle& self) { return self.use().attributes(self.id).radius; },
+          "radius", [](const ParticleHandle& self) { return self.use().particles().attributes(self.id).radius; },
           [](const ParticleHandle& self, double value) {
             System& engine = between_steps(self, "radius = ...");
-            ParticleAttributes attributes = engine.attributes(self.id);
+            ParticleAttributes attributes = engine.particles().attributes(self.id);
             attributes.radius = finite_not_negative(value, "radius", "m");
-            engine.set_attributes(self.id, attributes);
+            engine.particles().set_attributes(self.id, attributes);
           },
           "m, for drawing and for forces that ask for it; 0 where nobody said. An emitted particle's is on its emitter's\n"
           "curve.")
       .def_prop_rw(
-          "color", [](const ParticleHandle& self) { return from_color(self.use().attributes(self.id).color); },
+          "color", [](const ParticleHandle& self) { return from_color(self.use().particles().attributes(self.id).color); },
           [](const ParticleHandle& self, nb::object value) {
             System& engine = between_steps(self, "color = ...");
-            ParticleAttributes attributes = engine.attributes(self.id);
+            ParticleAttributes attributes = engine.particles().attributes(self.id);
             attributes.color = to_color(value, "color");
-            engine.set_attributes(self.id, attributes);
+            engine.particles().set_attributes(self.id, attributes);
           },
           nb::for_getter(nb::sig("def color(self) -> tuple[float, float, float, float]")),
           nb::for_setter(nb::sig("def color(self, value: collections.abc.Sequence[float], /) -> None")),
@@ -186,42 +186,42 @@ void bind_attributes(nb::class_<ParticleHandle>& type) {
 }
 
 void bind_orientation(nb::class_<ParticleHandle>& type) {
-  type.def_prop_ro("is_oriented", [](const ParticleHandle& self) { return self.use().is_oriented(self.id); })
+  type.def_prop_ro("is_oriented", [](const ParticleHandle& self) { return self.use().particles().is_oriented(self.id); })
       .def_prop_rw(
-          "orientation", [](const ParticleHandle& self) { return from_quaternion(self.use().orientation(self.id)); },
+          "orientation", [](const ParticleHandle& self) { return from_quaternion(self.use().particles().orientation(self.id)); },
           [](const ParticleHandle& self, nb::object value) {
-            between_steps(self, "orientation = ...").set_orientation(self.id, to_quaternion(value, "orientation"));
+            between_steps(self, "orientation = ...").particles().set_orientation(self.id, to_quaternion(value, "orientation"));
           },
           nb::for_getter(nb::sig("def orientation(self) -> tuple[float, float, float, float]")),
           nb::for_setter(nb::sig("def orientation(self, value: collections.abc.Sequence[float], /) -> None")),
           "Quaternion x y z w. Assigning makes it an oriented particle: it turns like a ball of its radius (0.05 m where it\n"
           "has none), by itself, whatever body it is in.")
       .def_prop_ro(
-          "normal", [](const ParticleHandle& self) { return self.use().normal(self.id); },
+          "normal", [](const ParticleHandle& self) { return self.use().particles().normal(self.id); },
           "Its preferred direction: its local z in the world frame.")
       .def_prop_rw(
-          "spin", [](const ParticleHandle& self) { return self.use().spin(self.id); },
+          "spin", [](const ParticleHandle& self) { return self.use().particles().spin(self.id); },
           [](const ParticleHandle& self, VectorArgument value) {
-            between_steps(self, "spin = ...").set_spin(self.id, to_vec3(value, "spin"));
+            between_steps(self, "spin = ...").particles().set_spin(self.id, to_vec3(value, "spin"));
           },
           "rad/s, world axes; constant in free flight.")
       .def_prop_rw(
-          "moment", [](const ParticleHandle& self) { return self.use().moment(self.id); },
+          "moment", [](const ParticleHandle& self) { return self.use().particles().moment(self.id); },
           [](const ParticleHandle& self, double value) {
-            between_steps(self, "moment = ...").set_moment(self.id, finite_positive(value, "moment", "kg m^2"));
+            between_steps(self, "moment = ...").particles().set_moment(self.id, finite_positive(value, "moment", "kg m^2"));
           },
           "Of inertia, kg m^2.")
       .def(
           "apply_torque",
           [](const ParticleHandle& self, VectorArgument torque) {
-            between_steps(self, "apply_torque").apply_torque(self.id, to_vec3(torque, "torque"));
+            between_steps(self, "apply_torque").particles().apply_torque(self.id, to_vec3(torque, "torque"));
           },
           "torque"_a, "Adds a torque (N m) during the next step only.")
       .def(
           "align",
           [](const ParticleHandle& self, VectorArgument direction, double stiffness, double damping) {
             between_steps(self, "align")
-                .align(self.id, to_vec3(direction, "direction"), finite_not_negative(stiffness, "stiffness", "N m"),
+                .particles().align(self.id, to_vec3(direction, "direction"), finite_not_negative(stiffness, "stiffness", "N m"),
                        finite_not_negative(damping, "damping", "N m s"));
           },
           "direction"_a, "stiffness"_a = 1.0, "damping"_a = 0.0,
@@ -233,9 +233,9 @@ void bind_orientation(nb::class_<ParticleHandle>& type) {
 template <class Fill>
 nb::object array_of(SystemObject& self, std::size_t width, Fill fill) {
   System& engine = self.use();
-  const auto particles = engine.particles();
+  const auto particles = engine.particles().ids();
   auto* numbers = new double[particles.size() * width + 1];
-  for (std::size_t i = 0; i < particles.size(); ++i) fill(engine.attributes(particles[i]), numbers + i * width);
+  for (std::size_t i = 0; i < particles.size(); ++i) fill(engine.particles().attributes(particles[i]), numbers + i * width);
   nb::capsule owner(numbers, [](void* p) noexcept { delete[] static_cast<double*>(p); });
   if (width == 1) return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(numbers, {particles.size()}, owner));
   return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<2>>(numbers, {particles.size(), width}, owner));

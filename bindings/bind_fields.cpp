@@ -125,13 +125,13 @@ FieldHandle make_field(nb::handle_t<SystemObject> self, nb::object field, nb::ha
   FieldOptions options{name, to_field_parameters(keywords), to_group(group, system), replaces_gravity};
   FieldId id;
   if (nb::isinstance<nb::str>(field)) {
-    id = engine.create_field(nb::cast<std::string>(field), options);
+    id = engine.fields().create(nb::cast<std::string>(field), options);
   } else if (const std::uintptr_t address = address_of(field)) {
     using Code = void (*)(std::int64_t count, double t, const double* position, const double* velocity,
                           const double* mass, double* force);
     if (name.empty()) options.name = function_name(field).substr(0, 31);
     id =
-        engine.create_field(FieldFunction([code = reinterpret_cast<Code>(address)](const ParticleBatch& b) {
+        engine.fields().create(FieldFunction([code = reinterpret_cast<Code>(address)](const ParticleBatch& b) {
                               code(static_cast<std::int64_t>(b.count), b.time, b.position, b.velocity, b.mass, b.force);
                             }),
                             options);
@@ -140,7 +140,7 @@ FieldHandle make_field(nb::handle_t<SystemObject> self, nb::object field, nb::ha
     if (name.empty()) options.name = function_name(field).substr(0, 31);
     auto function = std::make_shared<ScriptFunction>(ScriptFunction{field, "field " + options.name});
     system->keep(function);
-    id = engine.create_field(make_field_function(system, function), options);
+    id = engine.fields().create(make_field_function(system, function), options);
   } else {
     throw nb::type_error(
         ("field must be a predefined field, an expression or a function of arrays, not " + describe(field)).c_str());
@@ -165,19 +165,19 @@ PairsHandle make_pair_force(nb::handle_t<SystemObject> self, nb::object law, dou
   } else {
     throw nb::type_error(("law must be a predefined law, an expression or a Law, not " + describe(law)).c_str());
   }
-  return handle_of(self, engine.create_pairs(shared, {cutoff, to_group(group, system)}));
+  return handle_of(self, engine.pairs().create(shared, {cutoff, to_group(group, system)}));
 }
 
 /// All or none of several changes.
 template <class HandleType>
 void set_all(const HandleType& self, const std::vector<LawParameter>& changes) {
-  System& engine = self.use();
+  auto view = view_of(self.use(), self.id);
   self.system->use_between_steps("set");
-  const std::vector<LawParameter> before = engine.parameters(self.id);
+  const std::vector<LawParameter> before = view.parameters(self.id);
   try {
-    for (const LawParameter& c : changes) engine.set_parameter(self.id, c.name, c.value);
+    for (const LawParameter& c : changes) view.set_parameter(self.id, c.name, c.value);
   } catch (...) {
-    for (const LawParameter& b : before) engine.set_parameter(self.id, b.name, b.value);
+    for (const LawParameter& b : before) view.set_parameter(self.id, b.name, b.value);
     throw;
   }
 }
@@ -189,13 +189,13 @@ void def_force(nb::class_<HandleType>& type) {
   type.def_prop_ro(
           "alive", [](const HandleType& self) { return self.is_alive(); }, "False once it was destroyed.")
       .def_prop_rw(
-          "active", [](const HandleType& self) { return self.use().is_active(self.id); },
-          [](const HandleType& self, bool active) { self.use().set_active(self.id, active); },
+          "active", [](const HandleType& self) { return view_of(self.use(), self.id).is_active(self.id); },
+          [](const HandleType& self, bool active) { view_of(self.use(), self.id).set_active(self.id, active); },
           "False while it is switched off.")
       .def_prop_ro(
-          "parameters", [](const HandleType& self) { return to_dict(self.use().parameters(self.id)); },
+          "parameters", [](const HandleType& self) { return to_dict(view_of(self.use(), self.id).parameters(self.id)); },
           nb::sig("def parameters(self) -> dict[str, float]"), "A copy; change them with `set`.")
-      .def("destroy", [](const HandleType& self) { self.use().destroy(self.id); }, "Removes it.");
+      .def("destroy", [](const HandleType& self) { view_of(self.use(), self.id).destroy(self.id); }, "Removes it.");
 }
 
 template <class Add>
@@ -212,7 +212,7 @@ void each_particle(const GroupHandle& self, const nb::args& particles, const cha
     } else if (nb::try_cast<const BodyHandle*>(item, body) && body) {
       body->use();
       if (body->system != self.system) throw nb::value_error("a group takes bodies of its own system");
-      for (const ParticleId p : engine.particles(body->id)) add(engine, p);
+      for (const ParticleId p : engine.bodies().particles(body->id)) add(engine, p);
     } else {
       throw nb::type_error(("a group takes particles and bodies, not " + describe(item)).c_str());
     }
@@ -227,18 +227,18 @@ void bind_group(nb::module_& module) {
           "group",
           [](nb::handle_t<SystemObject> self, const std::string& name) {
             return handle_of(self,
-                             nb::inst_ptr<SystemObject>(self)->use_between_steps("group(...)").create_group(name));
+                             nb::inst_ptr<SystemObject>(self)->use_between_steps("group(...)").groups().create(name));
           },
           "name"_a, make_group_doc);
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const GroupHandle& self) { return self.is_alive(); }, "False once it was destroyed.")
-      .def_prop_ro("name", [](const GroupHandle& self) { return self.use().name(self.id); })
+      .def_prop_ro("name", [](const GroupHandle& self) { return self.use().groups().name(self.id); })
       .def(
           "add",
           [](const GroupHandle& self, const nb::args& members) {
             each_particle(self, members, "add to a group",
-                          [&](System& engine, ParticleId p) { engine.add(self.id, p); });
+                          [&](System& engine, ParticleId p) { engine.groups().add(self.id, p); });
           },
           "members"_a, nb::sig("def add(self, *members: Particle | Body) -> None"),
           "Takes in particles, and all particles of bodies.")
@@ -246,29 +246,29 @@ void bind_group(nb::module_& module) {
           "remove",
           [](const GroupHandle& self, const nb::args& members) {
             each_particle(self, members, "remove from a group",
-                          [&](System& engine, ParticleId p) { engine.remove(self.id, p); });
+                          [&](System& engine, ParticleId p) { engine.groups().remove(self.id, p); });
           },
           "members"_a, nb::sig("def remove(self, *members: Particle | Body) -> None"),
           "Lets them go; those that are not in it are passed over.")
       .def("__contains__",
            [](const GroupHandle& self, const ParticleHandle& particle) {
              particle.use();
-             return particle.system == self.system && self.use().contains(self.id, particle.id);
+             return particle.system == self.system && self.use().groups().contains(self.id, particle.id);
            })
-      .def("__len__", [](const GroupHandle& self) { return self.use().particles(self.id).size(); })
+      .def("__len__", [](const GroupHandle& self) { return self.use().groups().particles(self.id).size(); })
       .def_prop_ro(
           "particles",
           [](const GroupHandle& self) {
-            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().particles(self.id));
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().groups().particles(self.id));
           },
           "In the order of slots.")
       .def(
-          "destroy", [](const GroupHandle& self) { self.use().destroy(self.id); },
+          "destroy", [](const GroupHandle& self) { self.use().groups().destroy(self.id); },
           "Removes the group, not the particles. Raises ValueError while a force acts on it.")
       .def("__repr__", [](const GroupHandle& self) {
         if (!self.is_alive()) return stale_repr("Group", self);
-        return "<Group '" + self.system->engine.name(self.id) + "' of " +
-               std::to_string(self.system->engine.particles(self.id).size()) + " particles>";
+        return "<Group '" + self.system->engine.groups().name(self.id) + "' of " +
+               std::to_string(self.system->engine.groups().particles(self.id).size()) + " particles>";
       });
 }
 
@@ -283,7 +283,7 @@ void bind_field(nb::module_& module) {
                    "name: str = '', **parameters: float | Vec3 | collections.abc.Sequence[float]) -> Field"),
            make_field_doc);
   def_force(type);
-  type.def_prop_ro("name", [](const FieldHandle& self) { return self.use().name(self.id); })
+  type.def_prop_ro("name", [](const FieldHandle& self) { return self.use().fields().name(self.id); })
       .def(
           "set",
           [](const FieldHandle& self, const nb::kwargs& keywords) { set_all(self, to_field_parameters(keywords)); },
@@ -292,7 +292,7 @@ void bind_field(nb::module_& module) {
           "Changes parameters.\n\n    wind.set(velocity=(5, 0, 0))")
       .def("__repr__", [](const FieldHandle& self) {
         if (!self.is_alive()) return stale_repr("Field", self);
-        const std::string name = self.system->engine.name(self.id);
+        const std::string name = self.system->engine.fields().name(self.id);
         return "<Field " + std::to_string(self.id.slot) + (name.empty() ? ">" : " " + name + ">");
       });
 }
@@ -307,12 +307,12 @@ void bind_pair_force(nb::module_& module) {
            make_pair_force_doc);
   def_force(type);
   type.def_prop_ro(
-          "law", [](const PairsHandle& self) { return sibling(self, self.use().law(self.id)); }, "Its Law.")
+          "law", [](const PairsHandle& self) { return sibling(self, self.use().pairs().law(self.id)); }, "Its Law.")
       .def_prop_ro(
-          "cutoff", [](const PairsHandle& self) { return self.use().cutoff(self.id); }, "m")
+          "cutoff", [](const PairsHandle& self) { return self.use().pairs().cutoff(self.id); }, "m")
       .def_prop_ro(
           "energy",
-          [](const PairsHandle& self) { return self.use(), self.system->use_between_steps("energy").energy(self.id); },
+          [](const PairsHandle& self) { return self.use(), self.system->use_between_steps("energy").pairs().energy(self.id); },
           "Of all pairs within the cut-off, now, J; not part of `System.energy`, which counts these forces as external.")
       .def(
           "set", [](const PairsHandle& self, const nb::kwargs& keywords) { set_all(self, to_parameters(keywords)); },
@@ -320,21 +320,24 @@ void bind_pair_force(nb::module_& module) {
       .def("__repr__", [](const PairsHandle& self) {
         if (!self.is_alive()) return stale_repr("PairForce", self);
         const System& engine = self.system->engine;
-        return "<PairForce " + std::to_string(self.id.slot) + " " + engine.name(engine.law(self.id)) + ">";
+        return "<PairForce " + std::to_string(self.id.slot) + " " + engine.laws().name(engine.pairs().law(self.id)) + ">";
       });
 }
 
 }  // namespace
 
 void def_fields(nb::class_<SystemObject>& system) {
-  const auto def_list = [&]<class HandleType>(const char* name, const char* type, auto list, HandleType) {
+  const auto def_list = [&]<class HandleType>(const char* name, const char* type, HandleType) {
     system.def_prop_ro(
-        name, [list](SystemObject& self) { return wrap_all<HandleType>(nb::find(&self), &self, (self.use().*list)()); },
+        name,
+        [](SystemObject& self) {
+          return wrap_all<HandleType>(nb::find(&self), &self, view_of(self.use(), HandleType{}.id).ids());
+        },
         nb::sig((std::string("def ") + name + "(self) -> list[" + type + "]").c_str()), "In the order of slots.");
   };
-  def_list("groups", "Group", &System::groups, GroupHandle{});
-  def_list("fields", "Field", &System::fields, FieldHandle{});
-  def_list("pair_forces", "PairForce", &System::all_pairs, PairsHandle{});
+  def_list("groups", "Group", GroupHandle{});
+  def_list("fields", "Field", FieldHandle{});
+  def_list("pair_forces", "PairForce", PairsHandle{});
   system.def(
       "rehearse",
       [](SystemObject& self, nb::handle force, double dt) -> std::size_t {
@@ -343,9 +346,9 @@ void def_fields(nb::class_<SystemObject>& system) {
         const FieldHandle* field = nullptr;
         const PairsHandle* pairs = nullptr;
         self.failures.clear();
-        if (nb::try_cast<const LawHandle*>(force, law) && law) return engine.rehearse(law->id, dt);
-        if (nb::try_cast<const FieldHandle*>(force, field) && field) return engine.rehearse(field->id, dt);
-        if (nb::try_cast<const PairsHandle*>(force, pairs) && pairs) return engine.rehearse(pairs->id, dt);
+        if (nb::try_cast<const LawHandle*>(force, law) && law) return engine.laws().rehearse(law->id, dt);
+        if (nb::try_cast<const FieldHandle*>(force, field) && field) return engine.fields().rehearse(field->id, dt);
+        if (nb::try_cast<const PairsHandle*>(force, pairs) && pairs) return engine.pairs().rehearse(pairs->id, dt);
         throw nb::type_error(("rehearse takes a Law, a Field or a PairForce, not " + describe(force)).c_str());
       },
       "force"_a, "dt"_a = 1.0 / 120,

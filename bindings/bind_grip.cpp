@@ -30,8 +30,8 @@ void bind_grip(nb::module_& module) {
             body.use();
             if (body.system != &self) throw nb::value_error("grip: the body belongs to another system");
             System& engine = self.use_between_steps("grip(...)");
-            const Vec3 goal = target ? to_vec3(*target, "target") : engine.center_of_mass(body.id);
-            return sibling(body, engine.create_grip(body.id, point, goal, options));
+            const Vec3 goal = target ? to_vec3(*target, "target") : engine.bodies().center_of_mass(body.id);
+            return sibling(body, engine.grips().create(body.id, point, goal, options));
           },
           "body"_a, "local_point"_a = nb::make_tuple(0.0, 0.0, 0.0), "target"_a.none() = nb::none(), nb::kw_only(),
           "client"_a = 0, "hold"_a = 0, "frequency"_a = GripOptions{}.frequency,
@@ -44,11 +44,11 @@ void bind_grip(nb::module_& module) {
           "move",
           [](const GripHandle& self, VectorArgument target) {
             self.use();
-            self.system->use_between_steps("move").move_grip(self.id, to_vec3(target, "target"));
+            self.system->use_between_steps("move").grips().move(self.id, to_vec3(target, "target"));
           },
           "target"_a, "Moves its target (world, m).")
       .def(
-          "destroy", [](const GripHandle& self) { self.use().destroy(self.id); }, "Lets go.")
+          "destroy", [](const GripHandle& self) { self.use().grips().destroy(self.id); }, "Lets go.")
       .def("__repr__", [](const GripHandle& self) {
         return self.is_alive() ? "<Grip " + std::to_string(self.id.slot) + ">" : stale_repr("Grip", self);
       });

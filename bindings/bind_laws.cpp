@@ -82,7 +82,7 @@ void bind_batch(nb::module_& module) {
           "parameters",
           [](const BondsView& self) {
             const BondBatch& b = self.use();
-            const auto names = self.system->engine.parameters(self.law);
+            const auto names = self.system->engine.laws().parameters(self.law);
             nb::dict all;
             for (std::size_t k = 0; k < names.size(); ++k) {
               std::vector<double> column(b.count);
@@ -133,19 +133,19 @@ LawHandle make_law(nb::handle_t<SystemObject> self, nb::object law, const std::s
   if (nb::isinstance<nb::str>(law)) {
     const std::string text = nb::cast<std::string>(law);
     if (text.find('=') == std::string::npos && options.parameters.empty())
-      id = engine.find_law(text);
+      id = engine.laws().find(text);
     else
-      id = engine.create_law(text, options);
+      id = engine.laws().create(text, options);
   } else if (const std::uintptr_t address = address_of(law)) {
     if (name.empty()) options.name = function_name(law).substr(0, 31);
-    id = engine.create_law(code_at(address, signature), options);
+    id = engine.laws().create(code_at(address, signature), options);
     system->code.push_back(law);
   } else if (PyCallable_Check(law.ptr())) {
     if (name.empty()) options.name = function_name(law).substr(0, 31);
     auto function = std::make_shared<ScriptFunction>(ScriptFunction{law, "law " + options.name});
     auto own_id = std::make_shared<LawId>();
     system->keep(function);
-    id = engine.create_law(make_batch_function(system, function, own_id), options);
+    id = engine.laws().create(make_batch_function(system, function, own_id), options);
     *own_id = id;
   } else {
     throw nb::type_error(
@@ -198,19 +198,19 @@ nb::dict to_dict(const std::vector<LawParameter>& parameters) {
 }
 
 LawId law_of_text(SystemObject& system, const std::string& text, const std::vector<LawParameter>& parameters) {
-  if (text.find('=') == std::string::npos) return system.engine.find_law(text);
+  if (text.find('=') == std::string::npos) return system.engine.laws().find(text);
   std::string key = text;
   for (const LawParameter& p : parameters) key += '\n' + p.name;
   // A restore may have taken the law away, or put another in its place.
   const auto known = system.written_laws.find(key);
-  if (known != system.written_laws.end() && system.engine.contains(known->second) &&
-      system.engine.expression(known->second) == text) {
-    const auto theirs = system.engine.parameters(known->second);
+  if (known != system.written_laws.end() && system.engine.laws().contains(known->second) &&
+      system.engine.laws().expression(known->second) == text) {
+    const auto theirs = system.engine.laws().parameters(known->second);
     if (std::equal(theirs.begin(), theirs.end(), parameters.begin(), parameters.end(),
                    [](const auto& a, const auto& b) { return a.name == b.name; }))
       return known->second;
   }
-  return system.written_laws[key] = system.engine.create_law(text, {"", parameters});
+  return system.written_laws[key] = system.engine.laws().create(text, {"", parameters});
 }
 
 void bind_laws(nb::module_& module) {
@@ -226,24 +226,24 @@ void bind_laws(nb::module_& module) {
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const LawHandle& self) { return self.is_alive(); }, "False once it was destroyed.")
-      .def_prop_ro("name", [](const LawHandle& self) { return self.use().name(self.id); })
+      .def_prop_ro("name", [](const LawHandle& self) { return self.use().laws().name(self.id); })
       .def_prop_ro(
-          "kind", [](const LawHandle& self) { return self.use().kind(self.id); },
+          "kind", [](const LawHandle& self) { return self.use().laws().kind(self.id); },
           nb::sig("def kind(self) -> typing.Literal['predefined', 'expression', 'function', 'compiled', 'arrays']"),
           "How it is written; 'function': of one bond each.")
       .def_prop_ro(
-          "text", [](const LawHandle& self) { return self.use().expression(self.id); },
+          "text", [](const LawHandle& self) { return self.use().laws().expression(self.id); },
           "The expression; empty for code.")
       .def_prop_ro(
-          "parameters", [](const LawHandle& self) { return to_dict(self.use().parameters(self.id)); },
+          "parameters", [](const LawHandle& self) { return to_dict(self.use().laws().parameters(self.id)); },
           nb::sig("def parameters(self) -> dict[str, float | None]"),
           "The values that bonds have unless they say otherwise; None is the distance of the ends.")
       .def(
-          "destroy", [](const LawHandle& self) { self.use().destroy(self.id); },
+          "destroy", [](const LawHandle& self) { self.use().laws().destroy(self.id); },
           "Removes it. Raises ValueError while bonds have it, and for a predefined law.")
       .def("__repr__", [](const LawHandle& self) {
         if (!self.is_alive()) return stale_repr("Law", self);
-        const std::string name = self.system->engine.name(self.id), text = self.system->engine.expression(self.id);
+        const std::string name = self.system->engine.laws().name(self.id), text = self.system->engine.laws().expression(self.id);
         return "<Law " + std::to_string(self.id.slot) + (name.empty() ? "" : " " + name) +
                (text.empty() ? "" : ": " + text) + ">";
       });

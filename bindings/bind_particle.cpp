@@ -22,8 +22,8 @@ constexpr const char* make_doc =
 std::string repr(const ParticleHandle& self) {
   if (!self.is_alive()) return stale_repr("Particle", self);
   const System& engine = self.system->engine;
-  return "<Particle " + std::to_string(self.id.slot) + " of body " + std::to_string(engine.body(self.id).slot) +
-         " at " + describe(engine.position(self.id)) + ">";
+  return "<Particle " + std::to_string(self.id.slot) + " of body " + std::to_string(engine.particles().body(self.id).slot) +
+         " at " + describe(engine.particles().position(self.id)) + ">";
 }
 
 System& between_steps(const ParticleHandle& self, const char* what) {
@@ -49,10 +49,10 @@ std::pair<std::vector<BodyHandle>, std::vector<ParticleHandle>> make_bodies(nb::
   bodies.reserve(counts.size()), particles.reserve(total);
   std::size_t next = 0;
   for (const std::uint32_t count : counts) {
-    bodies.push_back(handle_of(system, engine.create_body()));
+    bodies.push_back(handle_of(system, engine.bodies().create()));
     for (const std::size_t end = next + count; next < end; ++next) {
       const auto row = [next](const Rows& rows) { return Vec3{rows(next, 0), rows(next, 1), rows(next, 2)}; };
-      const ParticleId id = engine.create_particle(bodies.back().id, row(position), mass(next), row(velocity));
+      const ParticleId id = engine.particles().create(bodies.back().id, row(position), mass(next), row(velocity));
       particles.push_back(handle_of(system, id));
     }
   }
@@ -65,26 +65,26 @@ void bind_nails(nb::class_<ParticleHandle>& type) {
           [](const ParticleHandle& self, std::optional<VectorArgument> position) {
             System& engine = self.use();
             if (position)
-              engine.nail(self.id, to_vec3(*position, "position"));
+              engine.particles().nail(self.id, to_vec3(*position, "position"));
             else
-              engine.nail(self.id);
+              engine.particles().nail(self.id);
           },
           "position"_a = nb::none(),
           "Holds it where it is, or at a place (m). Called again with another place, it moves the nail.")
       .def(
-          "release", [](const ParticleHandle& self) { self.use().release(self.id); }, "Takes its nail out.")
-      .def_prop_ro("is_nailed", [](const ParticleHandle& self) { return self.use().is_nailed(self.id); })
+          "release", [](const ParticleHandle& self) { self.use().particles().release(self.id); }, "Takes its nail out.")
+      .def_prop_ro("is_nailed", [](const ParticleHandle& self) { return self.use().particles().is_nailed(self.id); })
       .def_prop_ro(
-          "nail_force", [](const ParticleHandle& self) { return self.use().nail_force(self.id); },
+          "nail_force", [](const ParticleHandle& self) { return self.use().particles().nail_force(self.id); },
           "By the nail on the particle in the last step, N.")
       .def_prop_ro(
-          "hinge_force", [](const ParticleHandle& self) { return self.use().hinge_force(self.id); },
+          "hinge_force", [](const ParticleHandle& self) { return self.use().particles().hinge_force(self.id); },
           "On its body by all that shares or nails its place in the last step, N: what the hinge carries. A force applied\n"
           "to the shared particle itself counts as held by all its bodies alike.")
       .def_prop_rw(
-          "break_force", [](const ParticleHandle& self) { return self.use().break_force(self.id); },
+          "break_force", [](const ParticleHandle& self) { return self.use().particles().break_force(self.id); },
           [](const ParticleHandle& self, double force) {
-            between_steps(self, "break_force = ...").set_break_force(self.id, force);
+            between_steps(self, "break_force = ...").particles().set_break_force(self.id, force);
           },
           "Beyond this hinge_force (N; inf: never) it leaves its hinge or nail: see `System.broken`.");
 }
@@ -102,7 +102,7 @@ void bind_particle(nb::module_& module) {
             if (mass != 0) finite_positive(mass, "mass", "kg");
             self.use();
             System& engine = self.system->use_between_steps("particle(...)");
-            return sibling(self, engine.create_particle(self.id, place, mass, speed));
+            return sibling(self, engine.particles().create(self.id, place, mass, speed));
           },
           "position"_a = nb::make_tuple(0.0, 0.0, 0.0), "mass"_a = 1.0, "velocity"_a = nb::make_tuple(0.0, 0.0, 0.0),
           make_doc);
@@ -113,45 +113,45 @@ void bind_particle(nb::module_& module) {
   def_survival(type, "def survivor(self) -> Particle | None");
   bind_nails(type);
   type.def_prop_ro(
-          "body", [](const ParticleHandle& self) { return sibling(self, self.use().body(self.id)); },
+          "body", [](const ParticleHandle& self) { return sibling(self, self.use().particles().body(self.id)); },
           "The body that it is a point of.")
       .def_prop_ro(
           "ring",
           [](const ParticleHandle& self) {
-            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().ring(self.id));
+            return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().particles().ring(self.id));
           },
           "Every particle hinged with it, itself included.")
       .def_prop_rw(
-          "position", [](const ParticleHandle& self) { return self.use().position(self.id); },
+          "position", [](const ParticleHandle& self) { return self.use().particles().position(self.id); },
           [](const ParticleHandle& self, VectorArgument v) {
-            between_steps(self, "position = ...").set_position(self.id, to_vec3(v, "position"));
+            between_steps(self, "position = ...").particles().set_position(self.id, to_vec3(v, "position"));
           },
           "m. Assigning moves the whole ring; its bodies take the new distances as their rigid ones.")
       .def_prop_rw(
-          "velocity", [](const ParticleHandle& self) { return self.use().velocity(self.id); },
+          "velocity", [](const ParticleHandle& self) { return self.use().particles().velocity(self.id); },
           [](const ParticleHandle& self, VectorArgument v) {
-            between_steps(self, "velocity = ...").set_velocity(self.id, to_vec3(v, "velocity"));
+            between_steps(self, "velocity = ...").particles().set_velocity(self.id, to_vec3(v, "velocity"));
           },
           "m/s. What a rigid body cannot have of it is projected out by the next step.")
       .def_prop_rw(
-          "mass", [](const ParticleHandle& self) { return self.use().mass(self.id); },
+          "mass", [](const ParticleHandle& self) { return self.use().particles().mass(self.id); },
           [](const ParticleHandle& self, double value) {
-            between_steps(self, "mass = ...").set_mass(self.id, finite_positive(value, "mass", "kg"));
+            between_steps(self, "mass = ...").particles().set_mass(self.id, finite_positive(value, "mass", "kg"));
           },
           "Its own share, kg; 0 only for markers, made so. A ring weighs the sum of its particles.")
       .def_prop_rw(
-          "active", [](const ParticleHandle& self) { return self.use().is_active(self.id); },
-          [](const ParticleHandle& self, bool active) { self.use().set_active(self.id, active); },
+          "active", [](const ParticleHandle& self) { return self.use().particles().is_active(self.id); },
+          [](const ParticleHandle& self, bool active) { self.use().particles().set_active(self.id, active); },
           "False: its bonds do not act, and of its mass only a millionth, so that its body keeps its shape; its hinges and\n"
           "nails hold on.")
       .def(
           "apply_force",
           [](const ParticleHandle& self, VectorArgument force) {
-            between_steps(self, "apply_force").apply_force(self.id, to_vec3(force, "force"));
+            between_steps(self, "apply_force").particles().apply_force(self.id, to_vec3(force, "force"));
           },
           "force"_a, "Adds a force (N) during the next step only.")
       .def(
-          "destroy", [](const ParticleHandle& self) { self.use().destroy(self.id); },
+          "destroy", [](const ParticleHandle& self) { self.use().particles().destroy(self.id); },
           "Removes it with its bonds; its body too if it was the last one.")
       .def("__repr__", &repr);
 }

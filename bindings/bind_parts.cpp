@@ -13,7 +13,7 @@ struct PartView {
 
   System& use() const { return body.use(); }
   std::vector<ParticleHandle> particles() const {
-    return wrap_all<ParticleHandle>(body.system_object, body.system, use().particles(body.id, part));
+    return wrap_all<ParticleHandle>(body.system_object, body.system, use().bodies().particles(body.id, part));
   }
 };
 
@@ -36,28 +36,28 @@ void bind_parts(nb::module_& module) {
           "mass",
           [](const PartView& self) {
             double mass = 0;
-            for (const ParticleId p : self.use().particles(self.body.id, self.part)) mass += self.use().mass(p);
+            for (const ParticleId p : self.use().bodies().particles(self.body.id, self.part)) mass += self.use().particles().mass(p);
             return mass;
           },
           "kg")
       .def_prop_ro(
-          "net_force", [](const PartView& self) { return self.use().net_force(self.body.id, self.part); },
+          "net_force", [](const PartView& self) { return self.use().bodies().net_force(self.body.id, self.part); },
           "In the last step, what holds it to the rest of the body included, N.")
       .def_prop_ro(
-          "net_torque", [](const PartView& self) { return self.use().net_torque(self.body.id, self.part); },
+          "net_torque", [](const PartView& self) { return self.use().bodies().net_torque(self.body.id, self.part); },
           "About its own center of mass, N m.")
       .def_prop_ro(
-          "outside_force", [](const PartView& self) { return self.use().outside_force(self.body.id, self.part); },
+          "outside_force", [](const PartView& self) { return self.use().bodies().outside_force(self.body.id, self.part); },
           "What acted on it from outside of the whole body in the last step, N. net_force less this is what the other\n"
           "parts do to it: the load on the lock.")
       .def_prop_ro(
-          "outside_torque", [](const PartView& self) { return self.use().outside_torque(self.body.id, self.part); },
+          "outside_torque", [](const PartView& self) { return self.use().bodies().outside_torque(self.body.id, self.part); },
           "Of those forces, about its own center of mass, N m.")
       .def(
           "separate",
           [](const PartView& self) {
             return RestructureResult{self.body.system_object, self.body.system,
-                                     self.use().separate(self.body.id, self.part)};
+                                     self.use().edits().separate(self.body.id, self.part)};
           },
           "Makes it a body of its own again, with the hinges that combining had made rigid: it is the first of the\n"
           "report's created_bodies.")
@@ -77,20 +77,20 @@ void bind_parts(nb::module_& module) {
           "parts",
           [](const BodyHandle& self) {
             std::vector<PartView> parts;
-            for (const BodyId part : self.use().parts(self.id)) parts.push_back({self, part});
+            for (const BodyId part : self.use().bodies().parts(self.id)) parts.push_back({self, part});
             return parts;
           },
           nb::sig("def parts(self) -> list[Part]"),
           "What it was combined from, itself and what it absorbed: each can be asked for its forces, or be separated again.")
       .def_prop_ro(
-          "net_force", [](const BodyHandle& self) { return self.use().net_force(self.id); },
+          "net_force", [](const BodyHandle& self) { return self.use().bodies().net_force(self.id); },
           "Sum of all forces from outside in the last step, N: mass times acceleration.")
       .def_prop_ro(
-          "net_torque", [](const BodyHandle& self) { return self.use().net_torque(self.id); },
+          "net_torque", [](const BodyHandle& self) { return self.use().bodies().net_torque(self.id); },
           "Sum of their moments about the center of mass, N m.");
   auto particle = nb::borrow<nb::class_<ParticleHandle>>(module.attr("Particle"));
   particle.def_prop_ro(
-      "net_force", [](const ParticleHandle& self) { return self.use().net_force(self.id); },
+      "net_force", [](const ParticleHandle& self) { return self.use().particles().net_force(self.id); },
       "All that acted on its share of mass in the last step, N.");
 }
 

@@ -29,22 +29,22 @@ constexpr const char* separate_doc =
 
 /// Moves all that is hinged to q, as one rigid thing, so that q comes to be where p is.
 void bring(System& engine, ParticleId q, ParticleId p) {
-  const BodyId body = engine.body(q);
-  const Vec3 way = engine.position(p) - engine.position(q);
+  const BodyId body = engine.particles().body(q);
+  const Vec3 way = engine.particles().position(p) - engine.particles().position(q);
   if (way == Vec3{}) return;
-  const std::uint32_t articulate = engine.articulate(body);
+  const std::uint32_t articulate = engine.bodies().articulate(body);
   const auto refuse = [&](const std::string& why) {
     throw nb::value_error(("combine: " + name_of(q) + " cannot be brought to " + name_of(p) + ": " + why).c_str());
   };
-  if (engine.articulate(engine.body(p)) == articulate) refuse("they hang together already");
-  for (const BodyId other : engine.bodies()) {
-    if (engine.articulate(other) != articulate) continue;
-    if (const BodyKind kind = engine.kind(other); kind == BodyKind::static_ || kind == BodyKind::scripted)
+  if (engine.bodies().articulate(engine.particles().body(p)) == articulate) refuse("they hang together already");
+  for (const BodyId other : engine.bodies().ids()) {
+    if (engine.bodies().articulate(other) != articulate) continue;
+    if (const BodyKind kind = engine.bodies().kind(other); kind == BodyKind::static_ || kind == BodyKind::scripted)
       refuse(name_of(other) + " is " + to_word(kind_words, kind));
-    for (const ParticleId held : engine.particles(other))
-      if (engine.is_nailed(held)) refuse(name_of(held) + " is nailed");
+    for (const ParticleId held : engine.bodies().particles(other))
+      if (engine.particles().is_nailed(held)) refuse(name_of(held) + " is nailed");
   }
-  engine.set_pose(body, engine.center_of_mass(body) + way, engine.orientation(body));
+  engine.bodies().set_pose(body, engine.bodies().center_of_mass(body) + way, engine.bodies().orientation(body));
 }
 
 RestructureResult combine_particles(const ParticleHandle& p, const ParticleHandle& q, double over,
@@ -57,9 +57,9 @@ RestructureResult combine_particles(const ParticleHandle& p, const ParticleHandl
   if (keeps_first && over > 0) throw nb::value_error("keep='first' takes no time: over must be 0");
   q.use();
   System& engine = p.use();
-  const double distance = norm(engine.position(p.id) - engine.position(q.id));
+  const double distance = norm(engine.particles().position(p.id) - engine.particles().position(q.id));
   if (keeps_first) bring(p.system->use_between_steps("combine with keep='first'"), q.id, p.id);
-  RestructureResult result{p.system_object, p.system, engine.combine(p.id, q.id, over)};
+  RestructureResult result{p.system_object, p.system, engine.edits().combine(p.id, q.id, over)};
   if (keeps_first) result.report.closed_distance = distance;
   return result;
 }
@@ -67,13 +67,13 @@ RestructureResult combine_particles(const ParticleHandle& p, const ParticleHandl
 RestructureResult combine_bodies(const BodyHandle& a, const BodyHandle& b) {
   check_one_system(a, b, "combine");
   b.use();
-  return {a.system_object, a.system, a.use().combine(a.id, b.id)};
+  return {a.system_object, a.system, a.use().edits().combine(a.id, b.id)};
 }
 
 RestructureResult separate(const ParticleHandle& p, const ParticleHandle& q) {
   check_one_system(p, q, "separate");
   q.use();
-  return {p.system_object, p.system, p.use().separate(p.id, q.id)};
+  return {p.system_object, p.system, p.use().edits().separate(p.id, q.id)};
 }
 
 template <class HandleType, class Read>
@@ -89,8 +89,8 @@ std::vector<std::pair<ParticleHandle, ParticleHandle>> cosmetic_lines(nb::handle
   SystemObject* object = nb::inst_ptr<SystemObject>(self);
   System& engine = object->use();
   std::vector<std::pair<ParticleHandle, ParticleHandle>> out;
-  for (const CosmeticBondId bond : engine.cosmetic_bonds()) {
-    const auto [p, q] = engine.ends(bond);
+  for (const CosmeticBondId bond : engine.cosmetic_bonds().ids()) {
+    const auto [p, q] = engine.cosmetic_bonds().ends(bond);
     out.push_back({{nb::borrow(self), object, p}, {nb::borrow(self), object, q}});
   }
   return out;
@@ -111,11 +111,11 @@ void bind_restructuring(nb::module_& module) {
 
   nb::object system = module.attr("System");
   auto type = nb::borrow<nb::class_<SystemObject>>(system);
-  type.def_prop_ro("bodies", all_of<BodyHandle>([](System& engine) { return engine.bodies(); }), "In order of slots.")
-      .def_prop_ro("particles", all_of<ParticleHandle>([](System& engine) { return engine.particles(); }),
+  type.def_prop_ro("bodies", all_of<BodyHandle>([](System& engine) { return engine.bodies().ids(); }), "In order of slots.")
+      .def_prop_ro("particles", all_of<ParticleHandle>([](System& engine) { return engine.particles().ids(); }),
                    "In order of slots: the order of the rows of `positions`.")
-      .def_prop_ro("bonds", all_of<BondHandle>([](System& engine) { return engine.bonds(); }), "In order of slots.")
-      .def_prop_ro("cosmetic_bonds", all_of<CosmeticBondHandle>([](System& engine) { return engine.cosmetic_bonds(); }),
+      .def_prop_ro("bonds", all_of<BondHandle>([](System& engine) { return engine.bonds().ids(); }), "In order of slots.")
+      .def_prop_ro("cosmetic_bonds", all_of<CosmeticBondHandle>([](System& engine) { return engine.cosmetic_bonds().ids(); }),
                    "In order of slots.")
       .def_prop_ro("cosmetic_lines", &cosmetic_lines, "The ends of all cosmetic bonds.");
 }

@@ -83,8 +83,8 @@ void publish_changes(RoomObject& self, const PoseSnapshot& snapshot, const Scene
 
 void publish(RoomObject& self, SystemObject& system) {
   System& engine = system.use();
-  const SceneChanges changes = engine.take_scene_changes(self.presenter.needs_all(), self.presenter.assigned());
-  publish_changes(self, engine.poses(), changes);
+  const SceneChanges changes = engine.viewer().take_scene_changes(self.presenter.needs_all(), self.presenter.assigned());
+  publish_changes(self, engine.viewer().poses(), changes);
 }
 
 // ---------------------------------------------------------------------------------------- a simulator of the script's
@@ -158,7 +158,7 @@ nb::object body_of(RoomObject& self, const net::InputEvent& event, nb::object sy
   const std::optional<BodyId> body = self.presenter.body(event.body);
   if (!body) return nb::none();
   SystemObject* const object = to_system(system);
-  if (!object->use().contains(*body)) return nb::none();
+  if (!object->use().bodies().contains(*body)) return nb::none();
   return nb::cast(BodyHandle{std::move(system), object, *body});
 }
 
@@ -193,7 +193,7 @@ void bind_room(nb::module_& module) {
           [](RoomObject& self, nb::object system) {
             self.room.reset();
             SystemObject* object = nullptr;
-            if (nb::try_cast(system, object) && object) object->use().stop_watching_scene();
+            if (nb::try_cast(system, object) && object) object->use().viewer().stop_watching_scene();
           },
           "system"_a, "Tells its pages that the world has ended; changes of its system are noted no more.")
       .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a, "camera_position"_a,

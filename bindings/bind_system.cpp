@@ -45,16 +45,16 @@ std::vector<double> rows(nb::handle values, std::size_t count, const char* name)
 
 template <class Read>
 nb::object read_rows(System& engine, Read read) {
-  std::vector<double> numbers(3 * engine.particles().size());
-  (engine.*read)(numbers);
+  std::vector<double> numbers(3 * engine.particles().ids().size());
+  (engine.particles().*read)(numbers);
   return nb::cast(make_vector3_array(std::move(numbers)));
 }
 
-void assign_rows(System& engine, nb::handle values, const char* name, void (System::*assign)(ParticleId, const Vec3&)) {
-  const std::vector<ParticleId> particles = engine.particles();
+void assign_rows(System& engine, nb::handle values, const char* name, void (Particles::*assign)(ParticleId, const Vec3&)) {
+  const std::vector<ParticleId> particles = engine.particles().ids();
   const std::vector<double> numbers = rows(values, particles.size(), name);
   for (std::size_t i = 0; i < particles.size(); ++i)
-    (engine.*assign)(particles[i], Vec3{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]});
+    (engine.particles().*assign)(particles[i], Vec3{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]});
 }
 
 void bind_settings(nb::class_<SystemObject>& type) {
@@ -110,7 +110,7 @@ void bind_readings(nb::class_<SystemObject>& type) {
           "time", [](SystemObject& self) { return self.use().time(); }, "Simulated time, s.")
       .def_prop_ro("step_count", [](SystemObject& self) { return self.use().step_count(); })
       .def_prop_ro(
-          "scene_version", [](SystemObject& self) { return self.use().scene_version(); },
+          "scene_version", [](SystemObject& self) { return self.use().viewer().scene_version(); },
           "As structure_version, but births and deaths of sparks do not count: what a page's list of bodies depends on.")
       .def_prop_ro(
           "structure_version", [](SystemObject& self) { return self.use().structure_version(); },
@@ -125,24 +125,24 @@ void bind_readings(nb::class_<SystemObject>& type) {
           "worst_gap", [](SystemObject& self) { return self.use().worst_gap(); },
           "Largest hinge separation or rigidity error, m.")
       .def_prop_ro(
-          "articulate_count", [](SystemObject& self) { return self.use().articulate_count(); },
+          "articulate_count", [](SystemObject& self) { return self.use().bodies().articulate_count(); },
           "Number of groups of bodies that hang together.")
       .def_prop_ro(
-          "closing_count", [](SystemObject& self) { return self.use().closing_count(); },
+          "closing_count", [](SystemObject& self) { return self.use().edits().closing_count(); },
           "Particles still on their way to each other after `combine(p, q, over)`.")
       .def_prop_rw(
-          "positions", [](SystemObject& self) { return read_rows(self.use(), &System::read_positions); },
+          "positions", [](SystemObject& self) { return read_rows(self.use(), &Particles::read_positions); },
           [](SystemObject& self, nb::handle values) {
-            assign_rows(self.use_between_steps("positions = ..."), values, "positions", &System::set_position);
+            assign_rows(self.use_between_steps("positions = ..."), values, "positions", &Particles::set_position);
           },
           nb::for_getter(nb::sig("def positions(self) -> numpy.typing.NDArray[numpy.float64]")),
           nb::for_setter(nb::sig("def positions(self, value: numpy.typing.ArrayLike, /) -> None")),
           "Places of all particles, m: float64, shape (n, 3), in the order of `particles`. A copy; assign to set\n"
           "them. Particles of one ring move together, so the last of them decides.")
       .def_prop_rw(
-          "velocities", [](SystemObject& self) { return read_rows(self.use(), &System::read_velocities); },
+          "velocities", [](SystemObject& self) { return read_rows(self.use(), &Particles::read_velocities); },
           [](SystemObject& self, nb::handle values) {
-            assign_rows(self.use_between_steps("velocities = ..."), values, "velocities", &System::set_velocity);
+            assign_rows(self.use_between_steps("velocities = ..."), values, "velocities", &Particles::set_velocity);
           },
           nb::for_getter(nb::sig("def velocities(self) -> numpy.typing.NDArray[numpy.float64]")),
           nb::for_setter(nb::sig("def velocities(self, value: numpy.typing.ArrayLike, /) -> None")),
@@ -153,7 +153,7 @@ void bind_poses(nb::class_<SystemObject>& type) {
   type.def(
       "poses",
       [](SystemObject& self) {
-        const PoseSnapshot snapshot = self.use().poses();
+        const PoseSnapshot snapshot = self.use().viewer().poses();
         const std::size_t count = snapshot.bodies.size();
         auto* slots = new std::uint32_t[count];
         auto* places = new float[count * 7];
@@ -208,16 +208,16 @@ void bind_time(nb::class_<SystemObject>& type) {
           "state_hash", [](SystemObject& self) { return self.use().state_hash(); },
           "64 bits of the whole state: equal for equal runs.")
       .def(
-          "start_recording", [](SystemObject& self) { self.use_between_steps("start_recording").start_recording(); },
+          "start_recording", [](SystemObject& self) { self.use_between_steps("start_recording").record().start(); },
           "Notes all edits and inputs from here on, and the hash after each step.")
       .def(
           "stop_recording",
-          [](SystemObject& self) { return self.use_between_steps("stop_recording").stop_recording(); },
+          [](SystemObject& self) { return self.use_between_steps("stop_recording").record().stop(); },
           "The Recording since `start_recording`.")
       .def(
           "replay",
           [](SystemObject& self, const Recording& recording) {
-            return self.use_between_steps("replay").replay(recording);
+            return self.use_between_steps("replay").record().replay(recording);
           },
           "recording"_a,
           "Restores the recording's start and repeats it. Returns the number of the first step whose hash differs, None\n"
@@ -262,8 +262,8 @@ void bind_system(nb::module_& module) {
   def_fields(type);
   type.def("__repr__", [](SystemObject& self) {
     if (self.owner != std::this_thread::get_id()) return std::string("<System of another thread>");
-    return "<System: " + std::to_string(self.engine.bodies().size()) + " bodies in " +
-           std::to_string(self.engine.articulate_count()) + " articulates at " + std::to_string(self.engine.time()) +
+    return "<System: " + std::to_string(self.engine.bodies().ids().size()) + " bodies in " +
+           std::to_string(self.engine.bodies().articulate_count()) + " articulates at " + std::to_string(self.engine.time()) +
            " s>";
   });
 }

@@ -108,7 +108,7 @@ void def_survival(nb::class_<HandleType>& type, const char* survivor_signature) 
       .def_prop_ro(
           "survivor",
           [](const HandleType& self) -> nb::object {
-            const auto id = self.system->use().survivor_of(self.id);
+            const auto id = view_of(self.system->use(), self.id).survivor_of(self.id);
             return id ? nb::cast(sibling(self, *id)) : nb::object(nb::none());
           },
           nb::sig(survivor_signature),

@@ -42,7 +42,7 @@ std::string engine_text(const Touch& touch, const std::string& otherwise) {
 
 template <class HandleType>
 [[noreturn]] void raise_stale_with_survivor(const HandleType& handle, const std::string& text) {
-  const auto survivor = handle.system->engine.survivor_of(handle.id);
+  const auto survivor = view_of(handle.system->engine, handle.id).survivor_of(handle.id);
   raise_stale_as(text, survivor ? nb::cast(sibling(handle, *survivor)) : nb::object(nb::none()));
 }
 
@@ -61,17 +61,17 @@ void register_errors() {
 
 void raise_stale(const BodyHandle& handle) {
   raise_stale_with_survivor(
-      handle, engine_text([&] { (void)handle.system->engine.mass(handle.id); }, name_of(handle.id) + " is gone"));
+      handle, engine_text([&] { (void)handle.system->engine.bodies().mass(handle.id); }, name_of(handle.id) + " is gone"));
 }
 
 void raise_stale(const ParticleHandle& handle) {
   raise_stale_with_survivor(
-      handle, engine_text([&] { (void)handle.system->engine.position(handle.id); }, name_of(handle.id) + " is gone"));
+      handle, engine_text([&] { (void)handle.system->engine.particles().position(handle.id); }, name_of(handle.id) + " is gone"));
 }
 
 void raise_stale(const BondHandle& handle) {
   raise_stale_as(
-      engine_text([&] { (void)handle.system->engine.is_active(handle.id); }, name_of(handle.id) + " is gone"),
+      engine_text([&] { (void)handle.system->engine.bonds().is_active(handle.id); }, name_of(handle.id) + " is gone"),
       nb::none());
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vector_argument.h"
+#include "views.h"
 
 #include <iota/system.h>
 
@@ -180,7 +181,7 @@ ConstraintId SystemObject::create_surface_constraint(const Spec& spec) {
   const auto functions_of_it = std::exchange(new_surfaces, {});
   const std::size_t known = failures.size();
   try {
-    const ConstraintId constraint = engine.create_constraint(spec);
+    const ConstraintId constraint = engine.joints().create(spec);
     for (const auto& function : functions_of_it) function->constraint = constraint;
     return constraint;
   } catch (...) {
@@ -210,14 +211,14 @@ void SystemObject::guard(const std::shared_ptr<ScriptFunction>& source, BondId b
 
 template <class IdType>
 bool Handle<IdType>::is_alive() const {
-  return system != nullptr && system->use().contains(id);
+  return system != nullptr && view_of(system->use(), id).contains(id);
 }
 
 template <class IdType>
 System& Handle<IdType>::use() const {
   if (!system) throw nb::value_error("this handle was cleared by the garbage collector");
   System& engine = system->use();
-  if (!engine.contains(id)) raise_stale(*this);
+  if (!view_of(engine, id).contains(id)) raise_stale(*this);
   return engine;
 }
 

@@ -29,14 +29,14 @@ inline Chain make_chain(System& system, const ChainOptions& o) {
   Chain chain;
   for (int i = 0; i < o.links; ++i) {
     const double mass = o.link_mass * (i + 1 == o.links ? o.heavy_end : 1);
-    const BodyId link = system.create_body();
+    const BodyId link = system.bodies().create();
     chain.links.push_back(link);
-    chain.upper.push_back(system.create_particle(link, o.top + (i * o.link_length) * o.direction, mass / 2));
-    chain.lower.push_back(system.create_particle(link, o.top + ((i + 1) * o.link_length) * o.direction, mass / 2));
-    if (o.rods) system.set_rod(link, mass, o.radius);
-    if (i > 0) (void)system.combine(chain.lower[i - 1], chain.upper[i]);
+    chain.upper.push_back(system.particles().create(link, o.top + (i * o.link_length) * o.direction, mass / 2));
+    chain.lower.push_back(system.particles().create(link, o.top + ((i + 1) * o.link_length) * o.direction, mass / 2));
+    if (o.rods) system.bodies().set_rod(link, mass, o.radius);
+    if (i > 0) (void)system.edits().combine(chain.lower[i - 1], chain.upper[i]);
   }
-  if (o.nailed) system.nail(chain.upper.front());
+  if (o.nailed) system.particles().nail(chain.upper.front());
   return chain;
 }
 

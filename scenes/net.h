@@ -31,16 +31,16 @@ inline Net make_net(System& system, const NetOptions& o) {
     return o.corner + o.link_length * Vec3{static_cast<double>(column), 0, static_cast<double>(row)};
   };
   const auto link = [&](std::size_t row, std::size_t column, std::size_t to_row, std::size_t to_column) {
-    const BodyId body = system.create_body();
+    const BodyId body = system.bodies().create();
     net.links.push_back(body);
-    const ParticleId ends[2] = {system.create_particle(body, place(row, column), o.link_mass / 2),
-                                system.create_particle(body, place(to_row, to_column), o.link_mass / 2)};
-    if (o.rods) system.set_rod(body, o.link_mass, o.radius);
+    const ParticleId ends[2] = {system.particles().create(body, place(row, column), o.link_mass / 2),
+                                system.particles().create(body, place(to_row, to_column), o.link_mass / 2)};
+    if (o.rods) system.bodies().set_rod(body, o.link_mass, o.radius);
     const std::size_t at[2] = {row * side + column, to_row * side + to_column};
     for (int end = 0; end < 2; ++end) {
       ParticleId& knot = net.knots[at[end]];
       if (knot)
-        (void)system.combine(knot, ends[end]);
+        (void)system.edits().combine(knot, ends[end]);
       else
         knot = ends[end];
     }
@@ -50,8 +50,8 @@ inline Net make_net(System& system, const NetOptions& o) {
       if (column + 1 < side) link(row, column, row, column + 1);
       if (row + 1 < side) link(row, column, row + 1, column);
     }
-  system.nail(net.knots.front());
-  system.nail(net.knots[side - 1]);
+  system.particles().nail(net.knots.front());
+  system.particles().nail(net.knots[side - 1]);
   return net;
 }
 

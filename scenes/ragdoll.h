@@ -19,20 +19,20 @@ struct Ragdoll {
 inline Ragdoll make_ragdoll(System& system, const Vec3& at) {
   Ragdoll doll;
   const auto plate = [&](std::array<Vec3, 3> corners, double mass) {
-    const BodyId body = system.create_body();
+    const BodyId body = system.bodies().create();
     doll.bodies.push_back(body);
     std::array<ParticleId, 3> particles;
-    for (int i = 0; i < 3; ++i) particles[i] = system.create_particle(body, at + corners[i], mass / 3);
+    for (int i = 0; i < 3; ++i) particles[i] = system.particles().create(body, at + corners[i], mass / 3);
     return particles;
   };
   /// A rod from the particle `inner`, to which it is hinged, to `end`; returns its far particle.
   const auto rod = [&](ParticleId inner, const Vec3& end, double mass) {
-    const BodyId body = system.create_body();
+    const BodyId body = system.bodies().create();
     doll.bodies.push_back(body);
-    const ParticleId near = system.create_particle(body, system.position(inner), mass / 2);
-    const ParticleId far = system.create_particle(body, at + end, mass / 2);
-    system.set_rod(body, mass, 0.05);
-    (void)system.combine(inner, near);
+    const ParticleId near = system.particles().create(body, system.particles().position(inner), mass / 2);
+    const ParticleId far = system.particles().create(body, at + end, mass / 2);
+    system.bodies().set_rod(body, mass, 0.05);
+    (void)system.edits().combine(inner, near);
     doll.hinges.push_back({inner, near});
     return far;
   };
@@ -40,7 +40,7 @@ inline Ragdoll make_ragdoll(System& system, const Vec3& at) {
   const ParticleId waist = rod(pelvis[0], {0, 0.25, 0.02}, 8);
   const ParticleId ribs = rod(waist, {0, 0.38, 0}, 8);
   const auto chest = plate({{{0, 0.38, 0}, {-0.18, 0.5, 0}, {0.18, 0.5, 0}}}, 14);
-  (void)system.combine(ribs, chest[0]);
+  (void)system.edits().combine(ribs, chest[0]);
   doll.hinges.push_back({ribs, chest[0]});
   const ParticleId neck = rod(chest[0], {0, 0.6, 0}, 2);
   (void)rod(neck, {0, 0.8, 0}, 5);

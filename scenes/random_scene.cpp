@@ -94,7 +94,7 @@ class Player {
   }
 
   void edit(const Deed& deed, Dice& dice) {
-    std::vector<ParticleId> particles = system_.particles();
+    std::vector<ParticleId> particles = system_.particles().ids();
     if (particles.empty() && deed.kind != DeedKind::make_body) return;
     const auto pick = [&](std::uint32_t n) { return n == newest ? particles.back() : particles[n % particles.size()]; };
     const ParticleId p = particles.empty() ? ParticleId{} : pick(deed.a),
@@ -114,14 +114,14 @@ class Player {
       }
       case DeedKind::make_solid: make_solid(p, dice); break;
       case DeedKind::make_link: {
-        const Vec3 from = system_.position(p);
+        const Vec3 from = system_.particles().position(p);
         Vec3 along = dice.point(1);
         along = (dice.uniform(0.05, 0.4) / (norm(along) + 1e-3)) * along;
         link(p, from, from + along, dice);
         break;
       }
       case DeedKind::bridge: {
-        const Vec3 from = system_.position(p), to = system_.position(q);
+        const Vec3 from = system_.particles().position(p), to = system_.particles().position(q);
         if (norm(to - from) < 1e-3) break;
         call("combine", link(p, from, to, dice), q, 0);
         break;
@@ -132,9 +132,9 @@ class Player {
       case DeedKind::combine_slowly:
         if (may_meet(p, q, dice)) call("combine", p, q, dice.uniform(0.02, 0.3));
         break;
-      case DeedKind::combine_bodies: call("combine_bodies", system_.body(p), system_.body(q)); break;
+      case DeedKind::combine_bodies: call("combine_bodies", system_.particles().body(p), system_.particles().body(q)); break;
       case DeedKind::cut: {
-        const std::vector<ParticleId> ring = system_.ring(p);
+        const std::vector<ParticleId> ring = system_.particles().ring(p);
         if (ring.size() > 1) call("separate", p, ring[dice.below(static_cast<std::uint32_t>(ring.size()))]);
         break;
       }
@@ -143,7 +143,7 @@ class Player {
         break;
       case DeedKind::nail: call("nail", p); break;
       case DeedKind::move_nail:
-        if (system_.is_nailed(p)) call("move_nail", p, system_.position(p) + dice.point(0.2));
+        if (system_.particles().is_nailed(p)) call("move_nail", p, system_.particles().position(p) + dice.point(0.2));
         break;
       case DeedKind::release: call("release", p); break;
       case DeedKind::spring:
@@ -166,7 +166,7 @@ class Player {
         break;
       case DeedKind::surface: make_surface(p, dice); break;
       case DeedKind::path: {
-        const Vec3 from = system_.position(p);
+        const Vec3 from = system_.particles().position(p);
         const CurveKind curve = dice.below(2) == 0 ? CurveKind::spline : CurveKind::polyline;
         const Vec3 before = from - dice.point(0.5), next = from + dice.point(0.5), last = from + dice.point(1);
         const double friction = dice.below(2) == 0 ? 0 : dice.uniform(0, 5);
@@ -174,25 +174,25 @@ class Player {
         break;
       }
       case DeedKind::switch_constraint: {
-        const std::vector<ConstraintId> all = system_.constraints();
+        const std::vector<ConstraintId> all = system_.joints().ids();
         if (all.empty()) break;
         const ConstraintId constraint = all[deed.a % all.size()];
-        call("switch_constraint", constraint, system_.state(constraint).active ? 0 : 1);
+        call("switch_constraint", constraint, system_.joints().state(constraint).active ? 0 : 1);
         break;
       }
       case DeedKind::destroy_constraint: {
-        const std::vector<ConstraintId> all = system_.constraints();
+        const std::vector<ConstraintId> all = system_.joints().ids();
         if (!all.empty()) call("destroy_constraint", all[deed.a % all.size()]);
         break;
       }
       case DeedKind::destroy_bond: {
-        const std::vector<BondId> bonds = system_.bonds();
+        const std::vector<BondId> bonds = system_.bonds().ids();
         if (!bonds.empty()) call("destroy_bond", bonds[deed.a % bonds.size()]);
         break;
       }
       case DeedKind::grip: {
-        const Vec3 target = system_.position(p) + dice.point(0.5);
-        call("grip", system_.body(p), dice.point(0.1), target);
+        const Vec3 target = system_.particles().position(p) + dice.point(0.5);
+        call("grip", system_.particles().body(p), dice.point(0.1), target);
         break;
       }
       case DeedKind::move_grip:
@@ -207,11 +207,11 @@ class Player {
       case DeedKind::set_kind: {
         constexpr std::array kinds{BodyKind::dynamic,  BodyKind::dynamic,  BodyKind::static_,
                                    BodyKind::scripted, BodyKind::inactive, BodyKind::resting};
-        call("set_kind", system_.body(p), number(kinds[dice.below(kinds.size())]));
+        call("set_kind", system_.particles().body(p), number(kinds[dice.below(kinds.size())]));
         break;
       }
       case DeedKind::destroy_particle: call("destroy_particle", p); break;
-      case DeedKind::destroy_body: call("destroy_body", system_.body(p)); break;
+      case DeedKind::destroy_body: call("destroy_body", system_.particles().body(p)); break;
       case DeedKind::set_mode:
         call("set_mode", number(dice.below(2) == 0 ? IntegrationMode::robust : IntegrationMode::energy_keeping));
         break;
@@ -227,13 +227,13 @@ class Player {
 
   /// Particles of bodies that hang together already can seldom meet; one pair in eight may try.
   bool may_meet(ParticleId p, ParticleId q, Dice& dice) const {
-    return dice.below(8) == 0 || system_.articulate(system_.body(p)) != system_.articulate(system_.body(q));
+    return dice.below(8) == 0 || system_.bodies().articulate(system_.particles().body(p)) != system_.bodies().articulate(system_.particles().body(q));
   }
 
   /// A two-point body whose first end is combined with p; returns its second end.
   ParticleId link(ParticleId p, const Vec3& from, const Vec3& to, Dice& dice) {
     const double mass = dice.mass();
-    const Vec3 velocity = system_.velocity(p);
+    const Vec3 velocity = system_.particles().velocity(p);
     call("body");
     const BodyId body = watched_.body;
     call("particle", body, from, mass, velocity);
@@ -255,7 +255,7 @@ class Player {
                                                               {"torus", {size, 0.2 * size, 0}}}};
     const auto& [shape, sizes] = shapes[dice.below(4)];
     call("solid", shape, sizes, mass, position, velocity, spin, Vec3{size, 0, 0}, Vec3{-size, 0.5 * size, 0.2 * size});
-    call("combine", p, system_.attachments(watched_.body).front(), 0);
+    call("combine", p, system_.bodies().attachments(watched_.body).front(), 0);
   }
 
   void make_joint(ParticleId p, ParticleId q, Dice& dice) {
@@ -263,15 +263,15 @@ class Player {
                                ConstraintKind::cylindrical, ConstraintKind::prismatic, ConstraintKind::orientation,
                                ConstraintKind::weld};
     const ConstraintKind kind = kinds[dice.below(kinds.size())];
-    const BodyId b = dice.below(4) == 0 ? BodyId{} : system_.body(q);
-    const Vec3 at = system_.position(p) + dice.point(0.05), axis = dice.point(1);
+    const BodyId b = dice.below(4) == 0 ? BodyId{} : system_.particles().body(q);
+    const Vec3 at = system_.particles().position(p) + dice.point(0.05), axis = dice.point(1);
     CoordinateOptions angle, slide;
     for (CoordinateOptions* coordinate : {&angle, &slide}) {
       if (dice.below(4) == 0) coordinate->lower = -dice.uniform(0, 1), coordinate->upper = dice.uniform(0, 1);
       if (dice.below(4) == 0) coordinate->friction = dice.uniform(0, 5);
       if (dice.below(4) == 0) coordinate->stiffness = dice.uniform(0, 100), coordinate->damping = dice.uniform(0, 1);
     }
-    call("joint", number(kind), system_.body(p), b, at, axis, angle.lower, angle.upper, angle.friction, angle.stiffness,
+    call("joint", number(kind), system_.particles().body(p), b, at, axis, angle.lower, angle.upper, angle.friction, angle.stiffness,
          angle.damping, slide.lower, slide.upper, slide.friction, slide.stiffness, slide.damping);
   }
 
@@ -283,7 +283,7 @@ class Player {
     Vec3 away = dice.point(1);
     away = (radius / (norm(away) + 1e-9)) * away;
     const double part = kind == ConstraintKind::surface ? 1 : kind == ConstraintKind::inside ? 0.5 : 1.5;
-    const Vec3 place = system_.position(p);
+    const Vec3 place = system_.particles().position(p);
     if (dice.below(2) == 0)
       call("on_sphere", number(kind), p, place + part * away, radius);
     else

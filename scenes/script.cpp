@@ -63,16 +63,16 @@ void WatchedSystem::perform(const std::string& line) {
   const auto particle_id = [&] { return words.id<ParticleId>(); };
   const auto body_id = [&] { return words.id<BodyId>(); };
   if (verb == "body") {
-    body = s.create_body();
+    body = s.bodies().create();
   } else if (verb == "particle") {
     const BodyId of = body_id();
     const Vec3 position = words.vector();
     const double mass = words.number();
-    particle = s.create_particle(of, position, mass, words.vector());
+    particle = s.particles().create(of, position, mass, words.vector());
   } else if (verb == "rod") {
     const BodyId of = body_id();
     const double mass = words.number();
-    s.set_rod(of, mass, words.number());
+    s.bodies().set_rod(of, mass, words.number());
   } else if (verb == "solid") {
     const std::string shape = words.word();
     const Vec3 size = words.vector();
@@ -81,49 +81,49 @@ void WatchedSystem::perform(const std::string& line) {
     options.velocity = words.vector(), options.spin = words.vector();
     options.attachments = {words.vector()};
     options.attachments.push_back(words.vector());
-    body = shape == "box"        ? s.create_body(Box{size}, options)
-           : shape == "sphere"   ? s.create_body(Sphere{size.x}, options)
-           : shape == "cylinder" ? s.create_body(Cylinder{size.x, size.y}, options)
-                                 : s.create_body(Torus{size.x, size.y}, options);
+    body = shape == "box"        ? s.bodies().create(Box{size}, options)
+           : shape == "sphere"   ? s.bodies().create(Sphere{size.x}, options)
+           : shape == "cylinder" ? s.bodies().create(Cylinder{size.x, size.y}, options)
+                                 : s.bodies().create(Torus{size.x, size.y}, options);
   } else if (verb == "combine") {
     const ParticleId p = particle_id(), q = particle_id();
-    (void)s.combine(p, q, words.number());
+    (void)s.edits().combine(p, q, words.number());
   } else if (verb == "combine_bodies") {
     const BodyId a = body_id();
-    (void)s.combine(a, body_id());
+    (void)s.edits().combine(a, body_id());
   } else if (verb == "separate") {
     const ParticleId p = particle_id();
-    (void)s.separate(p, particle_id());
+    (void)s.edits().separate(p, particle_id());
   } else if (verb == "nail") {
-    s.nail(particle_id());
+    s.particles().nail(particle_id());
   } else if (verb == "move_nail") {
     const ParticleId p = particle_id();
-    s.nail(p, words.vector());
+    s.particles().nail(p, words.vector());
     disturbed_ = true;
   } else if (verb == "release") {
-    s.release(particle_id());
+    s.particles().release(particle_id());
   } else if (verb == "spring") {
     const ParticleId p = particle_id(), q = particle_id();
     const double stiffness = words.number();
-    s.create_bond(p, q, SpringLaw{.stiffness = stiffness, .damping = words.number()});
+    s.bonds().create(p, q, SpringLaw{.stiffness = stiffness, .damping = words.number()});
   } else if (verb == "drag") {
     const ParticleId p = particle_id(), q = particle_id();
-    s.create_bond(p, q, DragLaw{words.number()});
+    s.bonds().create(p, q, DragLaw{words.number()});
   } else if (verb == "law") {
     const ParticleId p = particle_id(), q = particle_id();
-    s.create_bond(p, q, SharedLaw{.law = s.find_law(words.word())});
+    s.bonds().create(p, q, SharedLaw{.law = s.laws().find(words.word())});
   } else if (verb == "destroy_bond") {
-    s.destroy(words.id<BondId>());
+    s.bonds().destroy(words.id<BondId>());
   } else if (verb == "joint") {
     JointSpec joint{.kind = static_cast<ConstraintKind>(words.integer())};
     joint.a = body_id(), joint.b = body_id(), joint.at = words.vector(), joint.axis = words.vector();
     joint.angle = coordinate(words), joint.slide = coordinate(words);
-    s.create_constraint(joint);
+    s.joints().create(joint);
     jointed_ = true;
   } else if (verb == "distance") {
     DistanceSpec spec{.kind = static_cast<ConstraintKind>(words.integer())};
     spec.p = particle_id(), spec.q = particle_id();
-    s.create_constraint(spec);
+    s.joints().create(spec);
     jointed_ = true;
   } else if (verb == "on_sphere" || verb == "on_plane") {
     SurfaceSpec spec{.kind = static_cast<ConstraintKind>(words.integer()), .particle = particle_id()};
@@ -132,47 +132,47 @@ void WatchedSystem::perform(const std::string& line) {
       spec.surface.shape = Sphere{words.number()};
     else
       spec.surface.shape = HalfSpace{words.vector()};
-    s.create_constraint(spec);
+    s.joints().create(spec);
     jointed_ = true;
   } else if (verb == "path") {
     PathSpec path{.particle = particle_id(), .curve = static_cast<CurveKind>(words.integer())};
     path.slide.friction = words.number();
     while (!words.at_end()) path.points.push_back(words.vector());
-    s.create_constraint(path);
+    s.joints().create(path);
     jointed_ = true;
   } else if (verb == "switch_constraint") {
     const auto constraint = words.id<ConstraintId>();
-    s.set_active(constraint, words.integer() != 0);
+    s.joints().set_active(constraint, words.integer() != 0);
   } else if (verb == "destroy_constraint") {
-    s.destroy(words.id<ConstraintId>());
+    s.joints().destroy(words.id<ConstraintId>());
   } else if (verb == "grip") {
     const BodyId of = body_id();
     const Vec3 local = words.vector();
-    grips_.push_back(s.create_grip(of, local, words.vector()));
+    grips_.push_back(s.grips().create(of, local, words.vector()));
     disturbed_ = true;
   } else if (verb == "move_grip") {
     const auto grip = words.id<GripId>();
-    s.move_grip(grip, words.vector());
+    s.grips().move(grip, words.vector());
   } else if (verb == "let_go") {
-    s.destroy(words.id<GripId>());
+    s.grips().destroy(words.id<GripId>());
   } else if (verb == "push") {
     const ParticleId p = particle_id();
-    s.apply_force(p, words.vector());
+    s.particles().apply_force(p, words.vector());
     disturbed_ = true;
   } else if (verb == "set_velocity") {
     const ParticleId p = particle_id();
-    s.set_velocity(p, words.vector());
+    s.particles().set_velocity(p, words.vector());
   } else if (verb == "set_mass") {
     const ParticleId p = particle_id();
-    s.set_mass(p, words.number());
+    s.particles().set_mass(p, words.number());
   } else if (verb == "set_kind") {
     const BodyId of = body_id();
-    s.set_kind(of, static_cast<BodyKind>(words.integer()));
+    s.bodies().set_kind(of, static_cast<BodyKind>(words.integer()));
     disturbed_ = true;
   } else if (verb == "destroy_particle") {
-    s.destroy(particle_id());
+    s.particles().destroy(particle_id());
   } else if (verb == "destroy_body") {
-    s.destroy(body_id());
+    s.bodies().destroy(body_id());
   } else if (verb == "set_mode") {
     s.set_mode(static_cast<IntegrationMode>(words.integer()));
   } else {
@@ -235,7 +235,7 @@ std::optional<std::string> WatchedSystem::check() const {
 }
 
 void WatchedSystem::forget_dead_grips() {
-  std::erase_if(grips_, [&](GripId grip) { return !system_.contains(grip); });
+  std::erase_if(grips_, [&](GripId grip) { return !system_.grips().contains(grip); });
 }
 
 std::optional<std::string> play(std::string_view lines, Tally& tally) {

@@ -60,13 +60,13 @@ struct Zigzag {
   explicit Zigzag(int count) {
     const auto joint = [](int i) { return Vec3{0.07 * i, 0.07 * (i % 2), 0.03 * (i % 3)}; };
     for (int i = 0; i < count; ++i) {
-      links.push_back(system.create_body());
-      upper.push_back(system.create_particle(links.back(), joint(i), 0.05));
-      lower.push_back(system.create_particle(links.back(), joint(i + 1), 0.05));
-      system.set_rod(links.back(), 0.1, 0.005);
-      if (i > 0) (void)system.combine(lower[static_cast<std::size_t>(i) - 1], upper.back());
+      links.push_back(system.bodies().create());
+      upper.push_back(system.particles().create(links.back(), joint(i), 0.05));
+      lower.push_back(system.particles().create(links.back(), joint(i + 1), 0.05));
+      system.bodies().set_rod(links.back(), 0.1, 0.005);
+      if (i > 0) (void)system.edits().combine(lower[static_cast<std::size_t>(i) - 1], upper.back());
     }
-    system.nail(upper.front());
+    system.particles().nail(upper.front());
   }
 };
 
@@ -79,9 +79,9 @@ void edit_by_hand(benchmark::State& state, Scene scene) {
   System& system = chain.system;
   const auto links = static_cast<std::size_t>(count);
   if (scene == Scene::held)
-    (void)system.create_grip(chain.links[links / 3], {}, system.center_of_mass(chain.links[links / 3]));
+    (void)system.grips().create(chain.links[links / 3], {}, system.bodies().center_of_mass(chain.links[links / 3]));
   if (scene == Scene::damped)
-    for (std::size_t i = 0; i < links; i += 10) system.set_damping(chain.links[i], 0.5);
+    for (std::size_t i = 0; i < links; i += 10) system.bodies().set_damping(chain.links[i], 0.5);
   for (int i = 0; i < 10; ++i) (void)system.step(1e-4);
 
   EditTimes times(system);
@@ -91,18 +91,18 @@ void edit_by_hand(benchmark::State& state, Scene scene) {
     const ParticleId upper = chain.lower[at - 1], lower = chain.upper[at];
     const ParticleId end = chain.lower[at + 20], other_end = chain.lower[at + 40];
     const BodyId link = chain.links[random() % links];
-    const Vec3 place = system.center_of_mass(link);
+    const Vec3 place = system.bodies().center_of_mass(link);
     GripId grip;
     times.measure("step", [] {});
-    (void)system.orientation(link);  // as drawing the last frame has done
-    times.measure("grab", [&] { grip = system.create_grip(link, {}, place); });
+    (void)system.bodies().orientation(link);  // as drawing the last frame has done
+    times.measure("grab", [&] { grip = system.grips().create(link, {}, place); });
     times.measure("held_step", [] {});
-    times.measure("move", [&] { system.move_grip(grip, place + Vec3{0, 0, 1e-4}); });
-    times.measure("close", [&] { (void)system.combine(end, other_end, 0.1); });
-    times.measure("call_off", [&] { (void)system.separate(end, other_end); });
-    times.measure("cut", [&] { (void)system.separate(upper, lower); });
-    times.measure("rejoin", [&] { (void)system.combine(upper, lower); });
-    times.measure("let_go", [&] { system.destroy(grip); });
+    times.measure("move", [&] { system.grips().move(grip, place + Vec3{0, 0, 1e-4}); });
+    times.measure("close", [&] { (void)system.edits().combine(end, other_end, 0.1); });
+    times.measure("call_off", [&] { (void)system.edits().separate(end, other_end); });
+    times.measure("cut", [&] { (void)system.edits().separate(upper, lower); });
+    times.measure("rejoin", [&] { (void)system.edits().combine(upper, lower); });
+    times.measure("let_go", [&] { system.grips().destroy(grip); });
   }
   times.report(state);
 }

@@ -21,14 +21,14 @@ void particles(benchmark::State& state, bool written) {
   std::mt19937 random(1);
   const auto number = [&] { return std::uniform_real_distribution(-1.0, 1.0)(random); };
   for (int i = 0; i < n; ++i)
-    system.create_particle(system.create_body(),
+    system.particles().create(system.bodies().create(),
                            spacing * Vec3{double(i % side), double(i / side % side), double(i / side / side)} +
                                0.05 * Vec3{number(), number(), number()},
                            1, Vec3{number(), number(), number()});
   const std::vector<LawParameter> parameters{{"depth", 1}, {"size", 1}};
-  const LawId law = written ? system.create_law("energy = 4*depth*((size/r)^12 - (size/r)^6)", {"", parameters})
-                            : system.find_law("lennard_jones");
-  system.create_pairs({law, parameters, {}}, {.cutoff = cutoff});
+  const LawId law = written ? system.laws().create("energy = 4*depth*((size/r)^12 - (size/r)^6)", {"", parameters})
+                            : system.laws().find("lennard_jones");
+  system.pairs().create({law, parameters, {}}, {.cutoff = cutoff});
   for (int i = 0; i < 20; ++i) (void)system.step(0.004);
   for (auto _ : state) benchmark::DoNotOptimize(system.step(0.004));
   state.counters["particle_steps/s"] =
@@ -40,7 +40,7 @@ BENCHMARK_CAPTURE(particles, expression, true)->Arg(16)->Arg(32)->Unit(benchmark
 void free_fall(benchmark::State& state) {
   System system;
   system.set_threads(1);
-  for (int i = 0; i < 32768; ++i) system.create_particle(system.create_body(), {0.1 * i, 0, 0});
+  for (int i = 0; i < 32768; ++i) system.particles().create(system.bodies().create(), {0.1 * i, 0, 0});
   for (int i = 0; i < 3; ++i) (void)system.step(0.004);
   for (auto _ : state) benchmark::DoNotOptimize(system.step(0.004));
   state.counters["particle_steps/s"] =
@@ -55,15 +55,15 @@ void bonds(benchmark::State& state, int way, bool implicit) {
   constexpr int n = 4096;
   std::vector<ParticleId> p;
   for (int i = 0; i < 2 * n; ++i)
-    p.push_back(system.create_particle(system.create_body(), {0.1 * (i / 2), 0.1 * (i % 2), 0}));
+    p.push_back(system.particles().create(system.bodies().create(), {0.1 * (i / 2), 0.1 * (i % 2), 0}));
   const std::vector<LawParameter> parameters{{"k", 10}, {"r0", 0.1}};
-  const LawId laws[] = {system.find_law("spring"), system.create_law("energy = 0.5*k*(r - r0)^2", {"", parameters}),
-                        system.create_law(+[](double r, double, double, const double* q) { return -q[0] * (r - q[1]); },
+  const LawId laws[] = {system.laws().find("spring"), system.laws().create("energy = 0.5*k*(r - r0)^2", {"", parameters}),
+                        system.laws().create(+[](double r, double, double, const double* q) { return -q[0] * (r - q[1]); },
                                           {"", parameters})};
   for (int i = 0; i < n; ++i) {
     SharedLaw law{laws[way], {}, implicit};
     if (way == 0) law.parameters = {{"stiffness", 10}, {"length", 0.1}};
-    system.create_bond(p[2 * i], p[2 * i + 1], law);
+    system.bonds().create(p[2 * i], p[2 * i + 1], law);
   }
   for (int i = 0; i < 5; ++i) (void)system.step(0.004);
   for (auto _ : state) benchmark::DoNotOptimize(system.step(0.004));

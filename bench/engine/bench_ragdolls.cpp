@@ -17,7 +17,7 @@ namespace {
 std::vector<scenes::Ragdoll> make_crowd(System& system, int count) {
   std::vector<scenes::Ragdoll> crowd;
   for (int i = 0; i < count; ++i) crowd.push_back(scenes::make_ragdoll(system, {2.0 * (i % 32), 3, 2.0 * (i / 32)}));
-  for (scenes::Ragdoll& doll : crowd) system.nail(doll.hinges[5].second);  // each hangs by a shoulder and swings
+  for (scenes::Ragdoll& doll : crowd) system.particles().nail(doll.hinges[5].second);  // each hangs by a shoulder and swings
   return crowd;
 }
 
@@ -83,8 +83,8 @@ void separate_combine(benchmark::State& state) {
   for (auto _ : state) {
     const scenes::Ragdoll& doll = crowd[random() % crowd.size()];
     const auto& [inner, outer] = doll.hinges[random() % doll.hinges.size()];
-    benchmark::DoNotOptimize(system.separate(inner, outer));
-    benchmark::DoNotOptimize(system.combine(inner, outer));
+    benchmark::DoNotOptimize(system.edits().separate(inner, outer));
+    benchmark::DoNotOptimize(system.edits().combine(inner, outer));
   }
   state.counters["pairs_per_s"] = benchmark::Counter(1, benchmark::Counter::kIsIterationInvariantRate);
 }

@@ -20,8 +20,8 @@ void separate_combine(benchmark::State& state) {
   const auto middle = static_cast<std::size_t>(links / 2);
   const ParticleId upper = chain.parts.lower[middle - 1], lower = chain.parts.upper[middle];
   for (auto _ : state) {
-    benchmark::DoNotOptimize(chain.system.separate(upper, lower));
-    benchmark::DoNotOptimize(chain.system.combine(upper, lower));
+    benchmark::DoNotOptimize(chain.system.edits().separate(upper, lower));
+    benchmark::DoNotOptimize(chain.system.edits().combine(upper, lower));
   }
   state.counters["us_per_edit"] =
       benchmark::Counter(2e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -38,9 +38,9 @@ void step_after_edit(benchmark::State& state, bool edit) {
   const ParticleId upper = chain.parts.lower[middle - 1], lower = chain.parts.upper[middle];
   constexpr double h = 1e-4;  // so short that the halves hardly part, and that every step costs about the same
   for (auto _ : state) {
-    if (edit) benchmark::DoNotOptimize(chain.system.separate(upper, lower));
+    if (edit) benchmark::DoNotOptimize(chain.system.edits().separate(upper, lower));
     benchmark::DoNotOptimize(chain.system.step(h));
-    if (edit) benchmark::DoNotOptimize(chain.system.combine(upper, lower));
+    if (edit) benchmark::DoNotOptimize(chain.system.edits().combine(upper, lower));
     benchmark::DoNotOptimize(chain.system.step(h));
   }
   state.counters["us_per_link_step"] =
@@ -65,10 +65,10 @@ void cut_and_rejoin(benchmark::State& state) {
     const double start = now_ms();
     (void)chain.system.step(h);
     const double plain = now_ms();
-    (void)chain.system.separate(upper, lower);
+    (void)chain.system.edits().separate(upper, lower);
     (void)chain.system.step(h);
     const double cut = now_ms();
-    (void)chain.system.combine(upper, lower);
+    (void)chain.system.edits().combine(upper, lower);
     (void)chain.system.step(h);
     const double rejoined = now_ms();
     step_ms.push_back(plain - start), cut_ms.push_back(cut - plain), rejoin_ms.push_back(rejoined - cut);

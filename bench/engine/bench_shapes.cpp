@@ -17,32 +17,32 @@ const char* name_of(IntegrationMode mode) { return mode == IntegrationMode::robu
 void make_rigid_chain(System& system, int links) {
   ParticleId last;
   for (int i = 0; i < links; ++i) {
-    const BodyId body = system.create_body();
+    const BodyId body = system.bodies().create();
     const double x = 0.1 * i;
-    const ParticleId first = system.create_particle(body, {x, 0, 0}, 0.025);
-    const ParticleId end = system.create_particle(body, {x + 0.1, 0, 0}, 0.025);
-    (void)system.create_particle(body, {x + 0.05, 0.03, 0}, 0.025);
-    (void)system.create_particle(body, {x + 0.05, 0, 0.03}, 0.025);
+    const ParticleId first = system.particles().create(body, {x, 0, 0}, 0.025);
+    const ParticleId end = system.particles().create(body, {x + 0.1, 0, 0}, 0.025);
+    (void)system.particles().create(body, {x + 0.05, 0.03, 0}, 0.025);
+    (void)system.particles().create(body, {x + 0.05, 0, 0.03}, 0.025);
     if (i > 0)
-      (void)system.combine(last, first);
+      (void)system.edits().combine(last, first);
     else
-      system.nail(first);
+      system.particles().nail(first);
     last = end;
   }
 }
 
 /// A body of `hinges` points with a link hinged to each.
 void make_hub(System& system, int hinges) {
-  const BodyId hub = system.create_body();
+  const BodyId hub = system.bodies().create();
   for (int i = 0; i < hinges; ++i) {
     const double angle = 6.283185307179586 * i / hinges, radius = 1 + 0.2 * (i % 3);
     const Vec3 at{radius * std::cos(angle), 0.1 * (i % 5), radius * std::sin(angle)};
-    const ParticleId on_hub = system.create_particle(hub, at, 0.01);
-    const BodyId link = system.create_body();
-    const ParticleId top = system.create_particle(link, at, 0.05);
-    (void)system.create_particle(link, at + Vec3{0, -0.3, 0.05}, 0.05);
-    (void)system.combine(on_hub, top);
-    if (i == 0) system.nail(on_hub);
+    const ParticleId on_hub = system.particles().create(hub, at, 0.01);
+    const BodyId link = system.bodies().create();
+    const ParticleId top = system.particles().create(link, at, 0.05);
+    (void)system.particles().create(link, at + Vec3{0, -0.3, 0.05}, 0.05);
+    (void)system.edits().combine(on_hub, top);
+    if (i == 0) system.particles().nail(on_hub);
   }
 }
 

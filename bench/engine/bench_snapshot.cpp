@@ -56,7 +56,7 @@ BENCHMARK(hash)->Name("snapshot/hash")->Arg(64)->Arg(4096);
 void poses(benchmark::State& state) {
   const int links = static_cast<int>(state.range(0));
   const Chain chain = falling_chain(links);
-  for (auto _ : state) benchmark::DoNotOptimize(chain.system.poses());
+  for (auto _ : state) benchmark::DoNotOptimize(chain.system.viewer().poses());
   count(state, links);
 }
 BENCHMARK(poses)->Name("snapshot/poses")->Arg(64)->Arg(4096);

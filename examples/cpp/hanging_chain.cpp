@@ -19,14 +19,14 @@ int main() {
   iota::System system;
   std::vector<Link> chain;
   for (int i = 0; i < links; ++i) {
-    const iota::BodyId body = system.create_body();
-    const iota::ParticleId upper = system.create_particle(body, {i * link_length, 0, 0});
-    const iota::ParticleId lower = system.create_particle(body, {(i + 1) * link_length, 0, 0});
-    system.set_rod(body, link_mass, radius);
-    if (!chain.empty()) system.combine(chain.back().lower, upper);
+    const iota::BodyId body = system.bodies().create();
+    const iota::ParticleId upper = system.particles().create(body, {i * link_length, 0, 0});
+    const iota::ParticleId lower = system.particles().create(body, {(i + 1) * link_length, 0, 0});
+    system.bodies().set_rod(body, link_mass, radius);
+    if (!chain.empty()) system.edits().combine(chain.back().lower, upper);
     chain.push_back({upper, lower});
   }
-  system.nail(chain.front().upper);
+  system.particles().nail(chain.front().upper);
 
   double worst_gap = 0;
   const auto run = [&](double seconds) {
@@ -39,14 +39,14 @@ int main() {
   run(3);
   const Link& above = chain[links / 2 - 1];
   const Link& below = chain[links / 2];
-  system.separate(above.lower, below.upper);
-  std::printf("cut at %.1f s: %u articulates\n", system.time(), system.articulate_count());
+  system.edits().separate(above.lower, below.upper);
+  std::printf("cut at %.1f s: %u articulates\n", system.time(), system.bodies().articulate_count());
   run(0.5);
-  system.combine(above.lower, below.upper);
-  std::printf("joined at %.1f s: %u articulates\n", system.time(), system.articulate_count());
+  system.edits().combine(above.lower, below.upper);
+  std::printf("joined at %.1f s: %u articulates\n", system.time(), system.bodies().articulate_count());
   run(3);
 
-  const iota::Vec3 end = system.position(chain.back().lower);
+  const iota::Vec3 end = system.particles().position(chain.back().lower);
   std::printf("the free end is at (%.3f, %.3f, %.3f) m after %.1f s\n", end.x, end.y, end.z, system.time());
   std::printf("worst gap: %.3g m\n", worst_gap);
   return worst_gap < 1e-9 ? 0 : 1;

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iota/attributes.h>
+#include <iota/ids.h>
 #include <iota/shapes.h>
 #include <iota/vec3.h>
+#include <iota/view.h>
 
-#include <array>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace iota {
-
-/// Red, green, blue, opacity; 0 to 1.
-using Color = std::array<float, 4>;
 
 /// How an emitted particle looks at one point of its life.
 struct AttributeKey {
@@ -39,12 +37,23 @@ struct EmitterOptions {
   std::uint64_t seed = 1;           ///< equal seeds, equal particles
 };
 
-/// Optional attributes of a particle.
-struct ParticleAttributes {
-  double age = 0;                                             ///< s
-  double lifetime = std::numeric_limits<double>::infinity();  ///< s
-  double radius = 0;                                          ///< m; 0: not given
-  Color color{1, 1, 1, 1};
+/// Sources of particles that live for a time.
+class Emitters : public View {
+ public:
+  explicit Emitters(Core& core) : View(core) {}
+
+  EmitterId create(const EmitterOptions& options);
+  void destroy(EmitterId);  ///< its particles live on
+  bool contains(EmitterId) const;
+
+  bool is_active(EmitterId) const;
+  void set_active(EmitterId, bool);
+  double rate(EmitterId) const;
+  void set_rate(EmitterId, double per_second);
+  void move(EmitterId, const Vec3& position, const Quaternion& orientation);
+  std::uint32_t count(EmitterId) const;  ///< alive now
+  std::uint64_t born(EmitterId) const;   ///< so far
+  std::vector<ParticleId> particles(EmitterId) const;
 };
 
 }  // namespace iota

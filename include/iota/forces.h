@@ -80,7 +80,7 @@ struct ScriptedLaw {
   std::string name;  ///< for reports
 };
 
-/// A law of `System::create_law` or `System::find_law`, with parameters that differ from the law's own.
+/// A law of `Laws::create` or `Laws::find`, with parameters that differ from the law's own.
 struct SharedLaw {
   LawId law;
   std::vector<LawParameter> parameters;

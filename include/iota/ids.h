@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <stdexcept>
 
 namespace iota {
 
@@ -16,6 +17,11 @@ struct Id {
 
   explicit operator bool() const { return generation != 0; }
   friend auto operator<=>(const Id&, const Id&) = default;
+};
+
+/// An id whose object is gone; the text says what became of it.
+struct StaleIdError : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
 };
 
 using BodyId = Id<struct BodyKindTag>;

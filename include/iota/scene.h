@@ -15,7 +15,7 @@
 /// frame of a body is that of its pose.
 namespace iota {
 
-enum class BodyKind : std::uint8_t;  // of system.h
+enum class BodyKind : std::uint8_t;  // of bodies.h
 
 /// A solid that a body was given as.
 struct DrawnSolid {

@@ -39,6 +39,4 @@ struct Core {
   }
 };
 
-struct System::Implementation : Core {};
-
 }  // namespace iota

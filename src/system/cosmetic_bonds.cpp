@@ -3,21 +3,21 @@
 
 namespace iota {
 
-CosmeticBondId System::create_cosmetic_bond(ParticleId p, ParticleId q) {
-  return implementation_->execute(edit::CreateCosmeticBond{p, q});
+CosmeticBondId CosmeticBonds::create(ParticleId p, ParticleId q) {
+  return core_.execute(edit::CreateCosmeticBond{p, q});
 }
 
-RestructureReport System::destroy(CosmeticBondId id) {
-  return implementation_->execute(edit::Destroy<CosmeticBondId>{id});
+RestructureReport CosmeticBonds::destroy(CosmeticBondId id) {
+  return core_.execute(edit::Destroy<CosmeticBondId>{id});
 }
 
-bool System::contains(CosmeticBondId id) const { return implementation_->model.cosmetic_bonds.contains(id); }
+bool CosmeticBonds::contains(CosmeticBondId id) const { return core_.model.cosmetic_bonds.contains(id); }
 
-std::vector<CosmeticBondId> System::cosmetic_bonds() const { return implementation_->model.cosmetic_bonds.ids(); }
+std::vector<CosmeticBondId> CosmeticBonds::ids() const { return core_.model.cosmetic_bonds.ids(); }
 
-std::pair<ParticleId, ParticleId> System::ends(CosmeticBondId id) const {
-  const model::Model& m = implementation_->model;
-  const model::CosmeticBond& b = m.cosmetic_bonds[implementation_->slot(id)];
+std::pair<ParticleId, ParticleId> CosmeticBonds::ends(CosmeticBondId id) const {
+  const model::Model& m = core_.model;
+  const model::CosmeticBond& b = m.cosmetic_bonds[core_.slot(id)];
   return {m.particles.id(b.p), m.particles.id(b.q)};
 }
 

@@ -3,36 +3,36 @@
 
 namespace iota {
 
-void System::begin_edit() { implementation_->execute(edit::BeginEdit{}); }
+void Edits::begin() { core_.execute(edit::BeginEdit{}); }
 
-RestructureReport System::end_edit() { return implementation_->execute(edit::EndEdit{}); }
+RestructureReport Edits::end() { return core_.execute(edit::EndEdit{}); }
 
-void System::cancel_edit() { implementation_->execute(edit::CancelEdit{}); }
+void Edits::cancel() { core_.execute(edit::CancelEdit{}); }
 
-bool System::is_editing() const { return implementation_->editor.batch.has_value(); }
+bool Edits::is_open() const { return core_.editor.batch.has_value(); }
 
-bool System::undo() { return implementation_->execute(edit::Undo{}); }
+bool Edits::undo() { return core_.execute(edit::Undo{}); }
 
-bool System::redo() { return implementation_->execute(edit::Redo{}); }
+bool Edits::redo() { return core_.execute(edit::Redo{}); }
 
-std::size_t System::undo_count() const { return implementation_->editor.undo.size(); }
+std::size_t Edits::undo_count() const { return core_.editor.undo.size(); }
 
-std::size_t System::redo_count() const { return implementation_->editor.redo.size(); }
+std::size_t Edits::redo_count() const { return core_.editor.redo.size(); }
 
-RestructureReport System::separate(BodyId body, BodyId part) {
-  return implementation_->execute(edit::SeparatePart{body, part});
+RestructureReport Edits::separate(BodyId body, BodyId part) {
+  return core_.execute(edit::SeparatePart{body, part});
 }
 
-RestructureReport System::combine(ParticleId p, ParticleId q, double over) {
-  return implementation_->execute(edit::CombineParticles{p, q, over});
+RestructureReport Edits::combine(ParticleId p, ParticleId q, double over) {
+  return core_.execute(edit::CombineParticles{p, q, over});
 }
 
-RestructureReport System::combine(BodyId a, BodyId b) { return implementation_->execute(edit::CombineBodies{a, b}); }
+RestructureReport Edits::combine(BodyId a, BodyId b) { return core_.execute(edit::CombineBodies{a, b}); }
 
-RestructureReport System::separate(ParticleId p, ParticleId q) {
-  return implementation_->execute(edit::Separate{p, q});
+RestructureReport Edits::separate(ParticleId p, ParticleId q) {
+  return core_.execute(edit::Separate{p, q});
 }
 
-std::uint32_t System::closing_count() const { return implementation_->model.closings.size(); }
+std::uint32_t Edits::closing_count() const { return core_.model.closings.size(); }
 
 }  // namespace iota

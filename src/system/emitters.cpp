@@ -3,39 +3,39 @@
 
 namespace iota {
 
-EmitterId System::create_emitter(const EmitterOptions& options) {
-  return implementation_->execute(edit::CreateEmitter{options});
+EmitterId Emitters::create(const EmitterOptions& options) {
+  return core_.execute(edit::CreateEmitter{options});
 }
 
-void System::destroy(EmitterId id) { implementation_->execute(edit::Destroy<EmitterId>{id}); }
+void Emitters::destroy(EmitterId id) { core_.execute(edit::Destroy<EmitterId>{id}); }
 
-void System::set_active(EmitterId id, bool active) { implementation_->execute(edit::SetEmitterActive{id, active}); }
+void Emitters::set_active(EmitterId id, bool active) { core_.execute(edit::SetEmitterActive{id, active}); }
 
-void System::set_rate(EmitterId id, double per_second) { implementation_->execute(edit::SetRate{id, per_second}); }
+void Emitters::set_rate(EmitterId id, double per_second) { core_.execute(edit::SetRate{id, per_second}); }
 
-void System::move_emitter(EmitterId id, const Vec3& position, const Quaternion& orientation) {
-  implementation_->execute(edit::MoveEmitter{id, position, orientation});
+void Emitters::move(EmitterId id, const Vec3& position, const Quaternion& orientation) {
+  core_.execute(edit::MoveEmitter{id, position, orientation});
 }
 
-bool System::contains(EmitterId id) const { return implementation_->model.emitters.contains(id); }
+bool Emitters::contains(EmitterId id) const { return core_.model.emitters.contains(id); }
 
-bool System::is_active(EmitterId id) const {
-  return implementation_->model.emitters[implementation_->slot(id)].active;
+bool Emitters::is_active(EmitterId id) const {
+  return core_.model.emitters[core_.slot(id)].active;
 }
 
-double System::rate(EmitterId id) const { return implementation_->model.emitters[implementation_->slot(id)].rate; }
+double Emitters::rate(EmitterId id) const { return core_.model.emitters[core_.slot(id)].rate; }
 
-std::uint32_t System::count(EmitterId id) const {
-  return implementation_->model.emitters[implementation_->slot(id)].alive;
+std::uint32_t Emitters::count(EmitterId id) const {
+  return core_.model.emitters[core_.slot(id)].alive;
 }
 
-std::uint64_t System::born(EmitterId id) const {
-  return implementation_->model.emitters[implementation_->slot(id)].born;
+std::uint64_t Emitters::born(EmitterId id) const {
+  return core_.model.emitters[core_.slot(id)].born;
 }
 
-std::vector<ParticleId> System::particles(EmitterId id) const {
-  const model::Model& m = implementation_->model;
-  const std::uint32_t slot = implementation_->slot(id);
+std::vector<ParticleId> Emitters::particles(EmitterId id) const {
+  const model::Model& m = core_.model;
+  const std::uint32_t slot = core_.slot(id);
   std::vector<ParticleId> ids;
   m.attributes.for_each([&](std::uint32_t, const model::Attributes& a) {
     if (a.emitter == slot) ids.push_back(m.particles.id(a.particle));

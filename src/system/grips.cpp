@@ -3,14 +3,14 @@
 
 namespace iota {
 
-void System::destroy(GripId id) { implementation_->execute(edit::Destroy<GripId>{id}); }
+void Grips::destroy(GripId id) { core_.execute(edit::Destroy<GripId>{id}); }
 
-GripId System::create_grip(BodyId body, const Vec3& local_point, const Vec3& target, const GripOptions& options) {
-  return implementation_->execute(edit::CreateGrip{body, local_point, target, options});
+GripId Grips::create(BodyId body, const Vec3& local_point, const Vec3& target, const GripOptions& options) {
+  return core_.execute(edit::CreateGrip{body, local_point, target, options});
 }
 
-void System::move_grip(GripId grip, const Vec3& target) { implementation_->execute(edit::MoveGrip{grip, target}); }
+void Grips::move(GripId grip, const Vec3& target) { core_.execute(edit::MoveGrip{grip, target}); }
 
-bool System::contains(GripId id) const { return implementation_->model.grips.contains(id); }
+bool Grips::contains(GripId id) const { return core_.model.grips.contains(id); }
 
 }  // namespace iota

@@ -3,38 +3,38 @@
 
 namespace iota {
 
-GroupId System::create_group(std::string_view name) {
-  return implementation_->execute(edit::CreateGroup{std::string(name)});
+GroupId Groups::create(std::string_view name) {
+  return core_.execute(edit::CreateGroup{std::string(name)});
 }
 
-void System::add(GroupId group, ParticleId particle) {
-  implementation_->execute(edit::SetMember{group, particle, true});
+void Groups::add(GroupId group, ParticleId particle) {
+  core_.execute(edit::SetMember{group, particle, true});
 }
 
-void System::remove(GroupId group, ParticleId particle) {
-  implementation_->execute(edit::SetMember{group, particle, false});
+void Groups::remove(GroupId group, ParticleId particle) {
+  core_.execute(edit::SetMember{group, particle, false});
 }
 
-void System::destroy(GroupId id) { implementation_->execute(edit::Destroy<GroupId>{id}); }
+void Groups::destroy(GroupId id) { core_.execute(edit::Destroy<GroupId>{id}); }
 
-bool System::contains(GroupId id) const { return implementation_->model.groups.contains(id); }
+bool Groups::contains(GroupId id) const { return core_.model.groups.contains(id); }
 
-bool System::contains(GroupId group, ParticleId particle) const {
-  const std::uint32_t bit = 1u << implementation_->slot(group);
-  return implementation_->model.particles[implementation_->slot(particle)].groups & bit;
+bool Groups::contains(GroupId group, ParticleId particle) const {
+  const std::uint32_t bit = 1u << core_.slot(group);
+  return core_.model.particles[core_.slot(particle)].groups & bit;
 }
 
-std::string System::name(GroupId id) const {
-  return implementation_->model.groups[implementation_->slot(id)].name.data();
+std::string Groups::name(GroupId id) const {
+  return core_.model.groups[core_.slot(id)].name.data();
 }
 
-std::vector<GroupId> System::groups() const { return implementation_->model.groups.ids(); }
+std::vector<GroupId> Groups::ids() const { return core_.model.groups.ids(); }
 
-std::vector<ParticleId> System::particles(GroupId group) const {
-  const std::uint32_t bit = 1u << implementation_->slot(group);
+std::vector<ParticleId> Groups::particles(GroupId group) const {
+  const std::uint32_t bit = 1u << core_.slot(group);
   std::vector<ParticleId> list;
-  implementation_->model.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
-    if (p.groups & bit) list.push_back(implementation_->model.particles.id(slot));
+  core_.model.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
+    if (p.groups & bit) list.push_back(core_.model.particles.id(slot));
   });
   return list;
 }

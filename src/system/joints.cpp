@@ -36,53 +36,53 @@ ConstraintId create_with_functions(Core& core, Specify specify) {
 
 }  // namespace
 
-ConstraintId System::create_constraint(const JointSpec& spec) { return implementation_->execute(edit::CreateJoint{spec}); }
+ConstraintId Joints::create(const JointSpec& spec) { return core_.execute(edit::CreateJoint{spec}); }
 
-ConstraintId System::create_constraint(const DistanceSpec& spec) {
-  return implementation_->execute(edit::CreateDistance{spec});
+ConstraintId Joints::create(const DistanceSpec& spec) {
+  return core_.execute(edit::CreateDistance{spec});
 }
 
-ConstraintId System::create_constraint(const PathSpec& spec) { return implementation_->execute(edit::CreatePath{spec}); }
+ConstraintId Joints::create(const PathSpec& spec) { return core_.execute(edit::CreatePath{spec}); }
 
-ConstraintId System::create_constraint(const SurfaceSpec& spec) {
-  return create_with_functions(*implementation_, [&] {
+ConstraintId Joints::create(const SurfaceSpec& spec) {
+  return create_with_functions(core_, [&] {
     return edit::CreateSurface{
-        {spec.kind, spec.particle, spec.body, place(*implementation_, spec.surface), spec.breaks}};
+        {spec.kind, spec.particle, spec.body, place(core_, spec.surface), spec.breaks}};
   });
 }
 
-ConstraintId System::create_constraint(const SurfacePairSpec& spec) {
-  return create_with_functions(*implementation_, [&] {
+ConstraintId Joints::create(const SurfacePairSpec& spec) {
+  return create_with_functions(core_, [&] {
     return edit::CreateSurfacePair{{spec.kind,
                                     spec.a,
                                     spec.b,
-                                    {place(*implementation_, spec.surface_a), place(*implementation_, spec.surface_b)},
+                                    {place(core_, spec.surface_a), place(core_, spec.surface_b)},
                                     spec.breaks}};
   });
 }
 
-void System::destroy(ConstraintId id) { implementation_->execute(edit::Destroy<ConstraintId>{id}); }
+void Joints::destroy(ConstraintId id) { core_.execute(edit::Destroy<ConstraintId>{id}); }
 
-void System::set_active(ConstraintId id, bool active) { implementation_->execute(edit::SetConstraintActive{id, active}); }
+void Joints::set_active(ConstraintId id, bool active) { core_.execute(edit::SetConstraintActive{id, active}); }
 
-void System::set_coordinate(ConstraintId id, JointCoordinate coordinate, const CoordinateOptions& options) {
-  implementation_->execute(edit::SetCoordinate{id, coordinate, options});
+void Joints::set_coordinate(ConstraintId id, JointCoordinate coordinate, const CoordinateOptions& options) {
+  core_.execute(edit::SetCoordinate{id, coordinate, options});
 }
 
-void System::set_length(ConstraintId id, double value) { implementation_->execute(edit::SetLength{id, value}); }
+void Joints::set_length(ConstraintId id, double value) { core_.execute(edit::SetLength{id, value}); }
 
-void System::set_break_limits(ConstraintId id, const BreakLimits& limits) {
-  implementation_->execute(edit::SetBreakLimits{id, limits});
+void Joints::set_break_limits(ConstraintId id, const BreakLimits& limits) {
+  core_.execute(edit::SetBreakLimits{id, limits});
 }
 
-const CoordinateOptions& System::coordinate(ConstraintId id, JointCoordinate coordinate) const {
-  const model::Constraint& c = implementation_->model.constraints[implementation_->slot(id)];
+CoordinateOptions Joints::coordinate(ConstraintId id, JointCoordinate coordinate) const {
+  const model::Constraint& c = core_.model.constraints[core_.slot(id)];
   return c.options[static_cast<std::size_t>(coordinate)];
 }
 
-ConstraintState System::state(ConstraintId id) const {
-  const model::Model& m = implementation_->model;
-  const std::uint32_t slot = implementation_->slot(id);
+ConstraintState Joints::state(ConstraintId id) const {
+  const model::Model& m = core_.model;
+  const std::uint32_t slot = core_.slot(id);
   const model::Constraint& c = m.constraints[slot];
   ConstraintState state;
   state.kind = c.kind;
@@ -111,20 +111,20 @@ ConstraintState System::state(ConstraintId id) const {
   return state;
 }
 
-BreakLimits System::break_limits(ConstraintId id) const {
-  return implementation_->model.constraints[implementation_->slot(id)].breaks;
+BreakLimits Joints::break_limits(ConstraintId id) const {
+  return core_.model.constraints[core_.slot(id)].breaks;
 }
 
-std::vector<ParticleId> System::particles(ConstraintId id) const {
-  const model::Model& m = implementation_->model;
+std::vector<ParticleId> Joints::particles(ConstraintId id) const {
+  const model::Model& m = core_.model;
   std::vector<ParticleId> ids;
-  for (const std::uint32_t p : m.constraints[implementation_->slot(id)].particles)
+  for (const std::uint32_t p : m.constraints[core_.slot(id)].particles)
     if (p != model::none) ids.push_back(m.particles.id(p));
   return ids;
 }
 
-std::vector<ConstraintId> System::constraints() const { return implementation_->model.constraints.ids(); }
+std::vector<ConstraintId> Joints::ids() const { return core_.model.constraints.ids(); }
 
-bool System::contains(ConstraintId id) const { return implementation_->model.constraints.contains(id); }
+bool Joints::contains(ConstraintId id) const { return core_.model.constraints.contains(id); }
 
 }  // namespace iota

@@ -4,33 +4,32 @@
 
 namespace iota {
 
-std::size_t System::rehearse(LawId id, double dt) {
-  return implementation_->held.rehearse_law(implementation_->slot(id), dt);
+std::size_t Laws::rehearse(LawId id, double dt) {
+  return core_.held.rehearse_law(core_.slot(id), dt);
 }
 
-LawId System::create_law(LawBody body, const LawOptions& options) {
-  Core& core = *implementation_;
+LawId Laws::create(LawBody body, const LawOptions& options) {
   edit::CreateLaw command{model::LawKind::expression, options.name, {}, options.parameters, 0};
   if (const auto* expression = std::get_if<std::string>(&body)) {
     command.text = *expression;
-    return core.execute(command);
+    return core_.execute(command);
   }
   held::Functions::Law function;
   if (const auto* radial = std::get_if<RadialFunction>(&body)) function.radial = *radial;
   if (auto* batch = std::get_if<BatchFunction>(&body)) function.batch = std::move(*batch);
   if (!function.radial && !function.batch) throw std::invalid_argument("a law needs a function, got none");
-  held::Functions& functions = core.held.functions;
+  held::Functions& functions = core_.held.functions;
   command.kind = function.radial ? model::LawKind::radial : model::LawKind::batch;
   command.function = functions.next_key;
-  const LawId id = core.execute(command);
+  const LawId id = core_.execute(command);
   functions.of_laws[functions.next_key++] = std::move(function);
   return id;
 }
 
-LawId System::find_law(std::string_view name) const {
+LawId Laws::find(std::string_view name) const {
   const std::uint32_t number = laws::find_pair_law(name);
-  if (number < laws::pair_law_count) return implementation_->model.laws.id(number);
-  const auto& made = implementation_->model.laws;
+  if (number < laws::pair_law_count) return core_.model.laws.id(number);
+  const auto& made = core_.model.laws;
   LawId found;
   std::vector<std::string> known;
   made.for_each([&](std::uint32_t slot, const model::Law& law) {
@@ -50,25 +49,25 @@ LawId System::find_law(std::string_view name) const {
                                    "; an expression says 'energy = ...' or 'force = ...'"));
 }
 
-void System::destroy(LawId id) { implementation_->execute(edit::Destroy<LawId>{id}); }
+void Laws::destroy(LawId id) { core_.execute(edit::Destroy<LawId>{id}); }
 
-bool System::contains(LawId id) const { return implementation_->model.laws.contains(id); }
+bool Laws::contains(LawId id) const { return core_.model.laws.contains(id); }
 
-std::string System::name(LawId id) const {
-  return implementation_->model.laws[implementation_->slot(id)].name.data();
+std::string Laws::name(LawId id) const {
+  return core_.model.laws[core_.slot(id)].name.data();
 }
 
-std::string_view System::kind(LawId id) const {
+std::string_view Laws::kind(LawId id) const {
   constexpr std::string_view words[] = {"predefined", "expression", "function", "compiled", "arrays"};
-  return words[static_cast<std::size_t>(implementation_->model.laws[implementation_->slot(id)].kind)];
+  return words[static_cast<std::size_t>(core_.model.laws[core_.slot(id)].kind)];
 }
 
-std::string System::expression(LawId id) const {
-  return implementation_->model.laws[implementation_->slot(id)].text.data();
+std::string Laws::expression(LawId id) const {
+  return core_.model.laws[core_.slot(id)].text.data();
 }
 
-std::vector<LawParameter> System::parameters(LawId id) const {
-  const model::Law& law = implementation_->model.laws[implementation_->slot(id)];
+std::vector<LawParameter> Laws::parameters(LawId id) const {
+  const model::Law& law = core_.model.laws[core_.slot(id)];
   return edit::list_parameters(law, law.standard);
 }
 

@@ -4,48 +4,48 @@
 
 namespace iota {
 
-PairsId System::create_pairs(const SharedLaw& shared, const PairsOptions& options) {
-  const model::Law& law = implementation_->model.laws[implementation_->slot(shared.law)];
+PairsId Pairs::create(const SharedLaw& shared, const PairsOptions& options) {
+  const model::Law& law = core_.model.laws[core_.slot(shared.law)];
   if (shared.implicit.value_or(false))
     throw std::invalid_argument("pairwise forces are taken once a step and held: they cannot be implicit");
   edit::CreatePairs command{shared.law, options.group.value_or(GroupId{}), options.cutoff, law.standard};
   for (const LawParameter& p : shared.parameters) command.parameters[edit::require_parameter(law, p.name)] = p.value;
-  return implementation_->execute(command);
+  return core_.execute(command);
 }
 
-void System::destroy(PairsId id) { implementation_->execute(edit::Destroy<PairsId>{id}); }
+void Pairs::destroy(PairsId id) { core_.execute(edit::Destroy<PairsId>{id}); }
 
-bool System::contains(PairsId id) const { return implementation_->model.pairs.contains(id); }
+bool Pairs::contains(PairsId id) const { return core_.model.pairs.contains(id); }
 
-bool System::is_active(PairsId id) const { return implementation_->model.pairs[implementation_->slot(id)].active; }
+bool Pairs::is_active(PairsId id) const { return core_.model.pairs[core_.slot(id)].active; }
 
-void System::set_active(PairsId id, bool active) { implementation_->execute(edit::SetPairsActive{id, active}); }
+void Pairs::set_active(PairsId id, bool active) { core_.execute(edit::SetPairsActive{id, active}); }
 
-LawId System::law(PairsId id) const {
-  const model::Model& m = implementation_->model;
-  return m.laws.id(m.pairs[implementation_->slot(id)].law);
+LawId Pairs::law(PairsId id) const {
+  const model::Model& m = core_.model;
+  return m.laws.id(m.pairs[core_.slot(id)].law);
 }
 
-double System::cutoff(PairsId id) const { return implementation_->model.pairs[implementation_->slot(id)].cutoff; }
+double Pairs::cutoff(PairsId id) const { return core_.model.pairs[core_.slot(id)].cutoff; }
 
-std::vector<LawParameter> System::parameters(PairsId id) const {
-  const model::Model& m = implementation_->model;
-  const model::Pairs& pairs = m.pairs[implementation_->slot(id)];
+std::vector<LawParameter> Pairs::parameters(PairsId id) const {
+  const model::Model& m = core_.model;
+  const model::Pairs& pairs = m.pairs[core_.slot(id)];
   return edit::list_parameters(m.laws[pairs.law], pairs.parameters);
 }
 
-void System::set_parameter(PairsId id, std::string_view name, double value) {
-  const model::Model& m = implementation_->model;
-  const std::uint32_t index = edit::require_parameter(m.laws[m.pairs[implementation_->slot(id)].law], name);
-  implementation_->execute(edit::SetPairsParameter{id, index, value});
+void Pairs::set_parameter(PairsId id, std::string_view name, double value) {
+  const model::Model& m = core_.model;
+  const std::uint32_t index = edit::require_parameter(m.laws[m.pairs[core_.slot(id)].law], name);
+  core_.execute(edit::SetPairsParameter{id, index, value});
 }
 
-std::vector<PairsId> System::all_pairs() const { return implementation_->model.pairs.ids(); }
+std::vector<PairsId> Pairs::ids() const { return core_.model.pairs.ids(); }
 
-double System::energy(PairsId id) const { return implementation_->held.energy_of_pairs(implementation_->slot(id)); }
+double Pairs::energy(PairsId id) const { return core_.held.energy_of_pairs(core_.slot(id)); }
 
-std::size_t System::rehearse(PairsId id, double dt) {
-  return implementation_->held.rehearse_pairs(implementation_->slot(id), dt);
+std::size_t Pairs::rehearse(PairsId id, double dt) {
+  return core_.held.rehearse_pairs(core_.slot(id), dt);
 }
 
 }  // namespace iota

@@ -20,7 +20,7 @@ constexpr std::uint32_t slot_of_distance(std::uint32_t constraint) { return 2 * 
 
 class SceneDescriber {
  public:
-  SceneDescriber(const System& system, const model::Model& model) : system_(system), model_(model) {}
+  explicit SceneDescriber(Core& core) : core_(core), model_(core.model) {}
 
   /// Everything that there is.
   SceneChanges describe_all() {
@@ -114,12 +114,12 @@ class SceneDescriber {
     drawn.kind = body.kind;
     drawn.particles = body.count;
     const Quaternion& q = body.orientation;
-    for (SolidView& solid : system_.solids(drawn.id))
+    for (SolidView& solid : Bodies(core_).solids(drawn.id))
       drawn.solids.push_back({std::move(solid.shape), point_in(slot, solid.position),
                               multiply({-q.x, -q.y, -q.z, q.w}, solid.orientation)});
     if (body.count == 1) {
       const ParticleId only = model_.particles.id(body.first);
-      if (system_.has_attributes(only)) drawn.attributes = system_.attributes(only);
+      if (Particles(core_).has_attributes(only)) drawn.attributes = Particles(core_).attributes(only);
     } else {
       add_lines(slot, drawn);
     }
@@ -163,14 +163,14 @@ class SceneDescriber {
     const bool is_tie = is_there && (kind == ConstraintKind::rod || kind == ConstraintKind::rope);
     if (is_tie) {
       const model::Constraint& c = model_.constraints[slot];
-      const std::vector<ParticleId> ends = system_.particles(model_.constraints.id(slot));
+      const std::vector<ParticleId> ends = Joints(core_).particles(model_.constraints.id(slot));
       const auto tie = kind == ConstraintKind::rod ? DrawnTie::Kind::rod : DrawnTie::Kind::rope;
       changes_.ties.set.push_back({slot_of_distance(slot), tie, c.length, anchor(ends[0].slot), anchor(ends[1].slot)});
     } else {
       changes_.ties.gone.push_back(slot_of_distance(slot));
     }
     if (is_there && !is_tie) {
-      const ConstraintState state = system_.state(model_.constraints.id(slot));
+      const ConstraintState state = Joints(core_).state(model_.constraints.id(slot));
       const std::uint32_t b = state.b ? state.b.slot : none;
       changes_.joints.set.push_back({slot, model::info(kind).name, anchor(state.a.slot, state.position),
                                      anchor(b, state.position), into_body(state.a.slot, state.axis)});
@@ -190,19 +190,19 @@ class SceneDescriber {
     changes_.particle_sets.set.push_back({slot, emitter.active != 0, emitter.max_count});
   }
 
-  const System& system_;
+  Core& core_;
   const model::Model& model_;
   SceneChanges changes_;
 };
 
 }  // namespace
 
-SceneChanges System::take_scene_changes(bool whole, std::span<const BodyId> also) {
-  implementation_->orientations.refresh(implementation_->model);
-  model::Model& model = implementation_->model;
+SceneChanges Viewer::take_scene_changes(bool whole, std::span<const BodyId> also) {
+  core_.orientations.refresh(core_.model);
+  model::Model& model = core_.model;
   for (const BodyId body : also)
     if (model.bodies.contains(body)) model.scene.bodies.note(body.slot);
-  SceneDescriber describer(*this, model);
+  SceneDescriber describer(core_);
   SceneChanges changes = whole || model.scene.is_whole ? describer.describe_all() : describer.describe_changed();
   changes.events = std::move(model.scene.events);
   model.scene.clear();
@@ -210,6 +210,6 @@ SceneChanges System::take_scene_changes(bool whole, std::span<const BodyId> also
   return changes;
 }
 
-void System::stop_watching_scene() { implementation_->model.scene = {}; }
+void Viewer::stop_watching_scene() { core_.model.scene = {}; }
 
 }  // namespace iota

@@ -8,8 +8,8 @@
 namespace iota {
 
 Diagnosis System::diagnose(BodyId id) const {
-  const model::Model& model = implementation_->model;
-  const std::uint32_t body = implementation_->slot(id);
+  const model::Model& model = core_->model;
+  const std::uint32_t body = core_->slot(id);
   std::vector<std::uint32_t> articulates;
   for (const std::uint32_t b : model.tied_bodies(std::span(&body, 1)))
     articulates.push_back(model.bodies[b].articulate);
@@ -23,11 +23,11 @@ Diagnosis System::diagnose(BodyId id) const {
   return island.diagnose(model);
 }
 
-RestOptions System::rest() const { return {implementation_->model.rest_after, implementation_->model.rest_speed}; }
+RestOptions System::rest() const { return {core_->model.rest_after, core_->model.rest_speed}; }
 
-void System::set_rest(const RestOptions& options) { implementation_->execute(edit::SetRest{options}); }
+void System::set_rest(const RestOptions& options) { core_->execute(edit::SetRest{options}); }
 
-System::System(const SystemOptions& options) : implementation_(std::make_unique<Implementation>()) {
+System::System(const SystemOptions& options) : core_(std::make_unique<Core>()) {
   set_threads(options.threads);
   set_gravity(options.gravity);
   set_damping(options.damping);
@@ -41,61 +41,63 @@ System::System(System&&) noexcept = default;
 
 System& System::operator=(System&&) noexcept = default;
 
-void System::set_gravity(const Vec3& value) { implementation_->execute(edit::SetGravity{value}); }
+void System::set_gravity(const Vec3& value) { core_->execute(edit::SetGravity{value}); }
 
-void System::set_mode(IntegrationMode mode) { implementation_->execute(edit::SetMode{mode}); }
+void System::set_mode(IntegrationMode mode) { core_->execute(edit::SetMode{mode}); }
 
-void System::set_solver(std::string_view name) { implementation_->execute(edit::SetSolver{std::string(name)}); }
+void System::set_solver(std::string_view name) { core_->execute(edit::SetSolver{std::string(name)}); }
 
-void System::set_damping(double per_second) { implementation_->execute(edit::SetDamping{per_second}); }
+void System::set_damping(double per_second) { core_->execute(edit::SetDamping{per_second}); }
 
-int System::threads() const { return implementation_->parallel.threads(); }
+int System::threads() const { return core_->parallel.threads(); }
 
 void System::set_threads(int threads) {
-  if (implementation_->door.is_stepping()) throw std::logic_error("set_threads: not while the system steps");
-  implementation_->parallel = Parallel(threads);
+  if (core_->door.is_stepping()) throw std::logic_error("set_threads: not while the system steps");
+  core_->parallel = Parallel(threads);
 }
 
-StepReport System::step(double dt) { return implementation_->execute(edit::Step{dt}); }
+StepReport System::step(double dt) { return core_->execute(edit::Step{dt}); }
 
-Vec3 System::gravity() const { return implementation_->model.gravity; }
+Vec3 System::gravity() const { return core_->model.gravity; }
 
 std::string System::solver() const {
-  const char* const name = implementation_->model.solver.data();
+  const char* const name = core_->model.solver.data();
   return *name ? name : "direct";
 }
 
-IntegrationMode System::mode() const { return implementation_->model.mode; }
+IntegrationMode System::mode() const { return core_->model.mode; }
 
-double System::damping() const { return implementation_->model.damping; }
+double System::damping() const { return core_->model.damping; }
 
-double System::time() const { return implementation_->model.time; }
+double System::time() const { return core_->model.time; }
 
-std::uint64_t System::step_count() const { return implementation_->model.step; }
+std::uint64_t System::step_count() const { return core_->model.step; }
 
-std::uint32_t System::structure_version() const { return implementation_->model.structure_version; }
+std::uint32_t System::structure_version() const { return core_->model.structure_version; }
 
-Vec3 System::momentum() const { return ingredient::calc_momenta(implementation_->model).linear; }
+Vec3 System::momentum() const { return ingredient::calc_momenta(core_->model).linear; }
 
-Vec3 System::angular_momentum() const { return ingredient::calc_momenta(implementation_->model).angular; }
+Vec3 System::angular_momentum() const { return ingredient::calc_momenta(core_->model).angular; }
 
-double System::worst_gap() const { return ingredient::worst_gap(implementation_->model); }
+double System::worst_gap() const { return ingredient::worst_gap(core_->model); }
 
-bool System::is_stepping() const { return implementation_->door.is_stepping(); }
+std::string System::queued_edits() { return edit::queued_edits(); }
 
-std::vector<std::string> System::validate() const { return ingredient::validate(implementation_->model); }
+bool System::is_stepping() const { return core_->door.is_stepping(); }
 
-std::uint64_t System::state_hash() const { return implementation_->model.hash(); }
+std::vector<std::string> System::validate() const { return ingredient::validate(core_->model); }
 
-Energy System::energy() const { return implementation_->held.book(); }
+std::uint64_t System::state_hash() const { return core_->model.hash(); }
 
-Snapshot System::snapshot() const { return implementation_->editor.snapshot(); }
+Energy System::energy() const { return core_->held.book(); }
+
+Snapshot System::snapshot() const { return core_->editor.snapshot(); }
 
 void System::restore(const Snapshot& snapshot) {
-  if (implementation_->door.is_stepping()) throw std::logic_error("restore: not while the system steps");
-  if (implementation_->door.is_recording()) throw std::logic_error("restore: stop the recording first");
-  implementation_->editor.restore(snapshot);
-  implementation_->editor.forget_history();
+  if (core_->door.is_stepping()) throw std::logic_error("restore: not while the system steps");
+  if (core_->door.is_recording()) throw std::logic_error("restore: stop the recording first");
+  core_->editor.restore(snapshot);
+  core_->editor.forget_history();
 }
 
 }  // namespace iota

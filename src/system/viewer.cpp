@@ -4,13 +4,13 @@
 
 namespace iota {
 
-PoseSnapshot System::poses() const { return read::poses(implementation_->model, implementation_->held, implementation_->orientations); }
+PoseSnapshot Viewer::poses() const { return read::poses(core_.model, core_.held, core_.orientations); }
 
-std::uint32_t System::scene_version() const { return read::scene_version(implementation_->model); }
+std::uint32_t Viewer::scene_version() const { return read::scene_version(core_.model); }
 
-bool System::is_spark(BodyId id) const {
-  const std::uint32_t first = implementation_->model.bodies[implementation_->slot(id)].first;
-  return first != model::none && implementation_->model.is_spark(first);
+bool Viewer::is_spark(BodyId id) const {
+  const std::uint32_t first = core_.model.bodies[core_.slot(id)].first;
+  return first != model::none && core_.model.is_spark(first);
 }
 
 }  // namespace iota

@@ -60,13 +60,13 @@ void print_net(const char* name, int n) {
   System system;
   std::vector<ParticleId> knot(static_cast<std::size_t>(n * n));
   const auto join = [&](int a, const Vec3& x, int b, const Vec3& y) {
-    const BodyId rod = system.create_body();
-    const ParticleId ends[] = {system.create_particle(rod, x, 0.1), system.create_particle(rod, y, 0.1)};
+    const BodyId rod = system.bodies().create();
+    const ParticleId ends[] = {system.particles().create(rod, x, 0.1), system.particles().create(rod, y, 0.1)};
     const int at[] = {a, b};
     for (int k = 0; k < 2; ++k) {
       ParticleId& here = knot[static_cast<std::size_t>(at[k])];
       if (here)
-        (void)system.combine(here, ends[k]);
+        (void)system.edits().combine(here, ends[k]);
       else
         here = ends[k];
     }
@@ -79,10 +79,10 @@ void print_net(const char* name, int n) {
     }
   for (int i = 0; i + 1 < n; ++i) {
     const auto a = static_cast<std::size_t>(i * n + i), b = static_cast<std::size_t>((i + 1) * n + i + 1);
-    system.create_bond(knot[a], knot[b], SpringLaw{.stiffness = 50, .damping = 0.5});
+    system.bonds().create(knot[a], knot[b], SpringLaw{.stiffness = 50, .damping = 0.5});
   }
-  system.nail(knot.front());
-  system.nail(knot[static_cast<std::size_t>(n - 1)]);
+  system.particles().nail(knot.front());
+  system.particles().nail(knot[static_cast<std::size_t>(n - 1)]);
   print(name, system, 60, 1.0 / 60);
 }
 
@@ -93,21 +93,21 @@ void print_bodies() {
   BodyId last;
   ParticleId end;
   for (int i = 0; i < 12; ++i) {
-    const BodyId body = system.create_body();
+    const BodyId body = system.bodies().create();
     const Vec3 center{0.5 * i, 0.2 * random.uniform(-1, 1), 0};
     ParticleId first;
     for (int k = 0; k < 5; ++k) {
       const Vec3 place = center + 0.3 * random.point(), velocity = random.point();
       const double mass = random.uniform(0.1, 2);
-      const ParticleId p = system.create_particle(body, place, mass, velocity);
+      const ParticleId p = system.particles().create(body, place, mass, velocity);
       if (k == 0) first = p;
-      if (k == 0 && i > 0) (void)system.combine(end, first);
+      if (k == 0 && i > 0) (void)system.edits().combine(end, first);
       if (k == 4) end = p;
     }
     last = body;
   }
-  system.nail(system.particles().front());
-  system.create_grip(last, {0.1, 0, 0}, {3, 1, 2});
+  system.particles().nail(system.particles().ids().front());
+  system.grips().create(last, {0.1, 0, 0}, {3, 1, 2});
   print("bodies", system, 200, 1.0 / 120);
 }
 
@@ -122,32 +122,32 @@ void print_joints(const char* name, IntegrationMode mode) {
   for (int i = 0; i < 12; ++i) {
     const Vec3 place{0.5 * i, 1 + 0.05 * (i % 3), 0.02 * i};
     const BodyId body =
-        system.create_body(shapes[i % 5], {.density = 200,
+        system.bodies().create(shapes[i % 5], {.density = 200,
                                            .position = place,
                                            .orientation = {0, 0.05 * i, 0, std::sqrt(1 - 0.0025 * i * i)},
                                            .spin = {0.1, 0.2 * i, 0},
                                            .attachments = {{0.1, 0, 0}}});
-    const ParticleId attached = system.attachments(body).front();
+    const ParticleId attached = system.bodies().attachments(body).front();
     if (i > 0 && i % 4 != 0) {
       JointSpec joint{
           .kind = kinds[i % 6], .a = last, .b = body, .at = place - Vec3{0.25, 0, 0}, .axis = {0, 0.6, 0.8}};
       if (has_coordinate(joint.kind, JointCoordinate::angle))
         joint.angle.lower = -0.3, joint.angle.upper = 0.4, joint.angle.friction = 0.1;
       if (has_coordinate(joint.kind, JointCoordinate::slide)) joint.slide.motor_speed = 0.2, joint.slide.motor_max = 5;
-      (void)system.create_constraint(joint);
+      (void)system.joints().create(joint);
     } else if (i > 0) {
-      (void)system.create_constraint(
+      (void)system.joints().create(
           DistanceSpec{.kind = i % 8 ? ConstraintKind::rope : ConstraintKind::rod, .p = end, .q = attached});
     }
-    if (i == 0) system.nail(attached);
+    if (i == 0) system.particles().nail(attached);
     last = body, end = attached;
   }
   PathSpec path{.particle = end};
-  for (int i = 0; i < 8; ++i) path.points.push_back(system.position(end) + Vec3{0.1 * i, -0.05 * i * i, 0.02 * i});
-  (void)system.create_constraint(path);
-  for (const ParticleId p : system.particles())
-    if (system.mass(p) == 0)
-      (void)system.create_constraint(
+  for (int i = 0; i < 8; ++i) path.points.push_back(system.particles().position(end) + Vec3{0.1 * i, -0.05 * i * i, 0.02 * i});
+  (void)system.joints().create(path);
+  for (const ParticleId p : system.particles().ids())
+    if (system.particles().mass(p) == 0)
+      (void)system.joints().create(
           SurfaceSpec{.kind = ConstraintKind::outside, .particle = p, .surface = {HalfSpace{}, {0, 0.2, 0}, {}}});
   print(name, system, 120, 1.0 / 120);
 }
@@ -155,21 +155,21 @@ void print_joints(const char* name, IntegrationMode mode) {
 /// Many bodies on threads, with laws that are expressions.
 void print_crowd(const char* name, int threads) {
   System system({.threads = threads});
-  const LawId law = system.create_law("energy = k * (r - l)^2 / 2 + c * exp(-r) * sin(3 * r)",
+  const LawId law = system.laws().create("energy = k * (r - l)^2 / 2 + c * exp(-r) * sin(3 * r)",
                                       {.name = "bumpy", .parameters = {{"k", 30}, {"l", 0.3}, {"c", 2}}});
-  const LawId pair = system.find_law("lennard_jones");
+  const LawId pair = system.laws().find("lennard_jones");
   for (int c = 0; c < 60; ++c) {
     const auto chain = scenes::make_chain(
         system,
         {.links = 8, .nailed = c % 2 == 0, .top = {0.7 * (c % 8), 0, 0.7 * (c / 8)}, .direction = {0.6, 0.8, 0}});
-    system.create_bond(chain.upper[0], chain.lower[5], SharedLaw{law, {}, {}});
-    system.create_bond(chain.upper[1], chain.lower[7], SharedLaw{pair, {}, c % 3 != 0});
+    system.bonds().create(chain.upper[0], chain.lower[5], SharedLaw{law, {}, {}});
+    system.bonds().create(chain.upper[1], chain.lower[7], SharedLaw{pair, {}, c % 3 != 0});
   }
   print(name, system, 60, 1.0 / 120, [](System& s, Random& random, int) {
-    const auto particles = s.particles();
+    const auto particles = s.particles().ids();
     const ParticleId p = particles[random.index(particles.size())], q = particles[random.index(particles.size())];
     try {
-      random.index(2) ? (void)s.combine(p, q, 0.05) : (void)s.separate(p, s.ring(p).back());
+      random.index(2) ? (void)s.edits().combine(p, q, 0.05) : (void)s.edits().separate(p, s.particles().ring(p).back());
     } catch (const std::invalid_argument&) {  // closing already
     }
   });
@@ -180,36 +180,36 @@ void print_restless(IntegrationMode mode, const char* name) {
   System system({.mode = mode, .damping = 0.1});
   scenes::make_chain(system, {.links = 12});
   for (int i = 0; i < 8; ++i) {
-    const BodyId body = system.create_body();
-    for (int k = 0; k <= i % 5; ++k) system.create_particle(body, Vec3{0.3 * i, 0.2 * k, 0.1 * (k * i % 3)}, 0.2 + k);
+    const BodyId body = system.bodies().create();
+    for (int k = 0; k <= i % 5; ++k) system.particles().create(body, Vec3{0.3 * i, 0.2 * k, 0.1 * (k * i % 3)}, 0.2 + k);
   }
   print(name, system, 300, 1.0 / 60, [](System& s, Random& random, int step) {
-    const auto particles = s.particles();
+    const auto particles = s.particles().ids();
     const ParticleId p = particles[random.index(particles.size())], q = particles[random.index(particles.size())];
     try {
       switch (random.index(12)) {
         case 0:
-        case 1: (void)s.combine(p, q); break;
-        case 2: (void)s.combine(p, q, 0.1); break;
+        case 1: (void)s.edits().combine(p, q); break;
+        case 2: (void)s.edits().combine(p, q, 0.1); break;
         case 3:
         case 4: {
-          const auto ring = s.ring(p);
-          (void)s.separate(p, ring[random.index(ring.size())]);
+          const auto ring = s.particles().ring(p);
+          (void)s.edits().separate(p, ring[random.index(ring.size())]);
           break;
         }
-        case 5: (void)s.separate(p, q); break;
-        case 6: (void)s.combine(s.body(p), s.body(q)); break;
-        case 7: s.is_nailed(p) ? s.release(p) : s.nail(p); break;
-        case 8: s.create_bond(p, q, SpringLaw{.stiffness = 20, .damping = 0.2}); break;
-        case 9: s.set_velocity(p, random.point()); break;
+        case 5: (void)s.edits().separate(p, q); break;
+        case 6: (void)s.edits().combine(s.particles().body(p), s.particles().body(q)); break;
+        case 7: s.particles().is_nailed(p) ? s.particles().release(p) : s.particles().nail(p); break;
+        case 8: s.bonds().create(p, q, SpringLaw{.stiffness = 20, .damping = 0.2}); break;
+        case 9: s.particles().set_velocity(p, random.point()); break;
         case 10:
-          if (const auto bonds = s.bonds(); !bonds.empty()) s.destroy(bonds[random.index(bonds.size())]);
+          if (const auto bonds = s.bonds().ids(); !bonds.empty()) s.bonds().destroy(bonds[random.index(bonds.size())]);
           break;
         default: {
-          const BodyId body = s.create_body();
+          const BodyId body = s.bodies().create();
           for (int k = 0; k <= step % 5; ++k) {
             const Vec3 place = random.point();  // one after the other: compilers order arguments as they like
-            s.create_particle(body, place, random.uniform(0.01, 10));
+            s.particles().create(body, place, random.uniform(0.01, 10));
           }
         }
       }
@@ -226,15 +226,15 @@ void print_cloud() {
   std::vector<ParticleId> particles;
   for (int i = 0; i < 5000; ++i) {
     const Vec3 place = 6 * random.point(), velocity = random.point();
-    particles.push_back(system.create_particle(system.create_body(), place, random.uniform(0.5, 2), velocity));
+    particles.push_back(system.particles().create(system.bodies().create(), place, random.uniform(0.5, 2), velocity));
   }
   const LawId law =
-      system.create_law("energy = a*exp(-r)*(r - 1)^2 + 0.1*cos(3*r); force = -tanh(v)", {"", {{"a", 5}}});
+      system.laws().create("energy = a*exp(-r)*(r - 1)^2 + 0.1*cos(3*r); force = -tanh(v)", {"", {{"a", 5}}});
   for (std::size_t i = 0; i < 200; i += 2)
-    system.create_bond(particles[i], particles[i + 1], SharedLaw{law, {}, i % 4 == 0});
-  system.create_field("current", {"", {{"drag", 0.3}}, {}, false});
-  system.create_field("fx = -0.1*x*pow(abs(x), 0.3); fy = 9.81*m - 0.1*y; fz = -log(1 + z^2)*sign(z)");
-  system.create_pairs({system.find_law("morse"), {{"length", 0.3}, {"width", 4}}, {}}, {.cutoff = 0.9});
+    system.bonds().create(particles[i], particles[i + 1], SharedLaw{law, {}, i % 4 == 0});
+  system.fields().create("current", {"", {{"drag", 0.3}}, {}, false});
+  system.fields().create("fx = -0.1*x*pow(abs(x), 0.3); fy = 9.81*m - 0.1*y; fz = -log(1 + z^2)*sign(z)");
+  system.pairs().create({system.laws().find("morse"), {{"length", 0.3}, {"width", 4}}, {}}, {.cutoff = 0.9});
   print("cloud", system, 50, 1.0 / 120);
 }
 

@@ -13,15 +13,15 @@ TEST(EditBatch, has_one_report_for_all) {
   const auto chain = scenes::make_chain(system, {.links = 6});
   (void)system.step(0.01);
   const double energy = system.energy().edits;
-  system.begin_edit();
-  const BodyId ball = system.create_body(Sphere{0.1}, {.attachments = {{0, 0, 0}}});
-  (void)system.separate(chain.lower[1], chain.upper[2]);
-  system.begin_edit();  // part of the batch
-  (void)system.separate(chain.lower[3], chain.upper[4]);
-  system.destroy(chain.links[5]);
-  EXPECT_FALSE(system.end_edit().changed);
-  (void)system.combine(chain.links[2], chain.links[3]);
-  const RestructureReport report = system.end_edit();
+  system.edits().begin();
+  const BodyId ball = system.bodies().create(Sphere{0.1}, {.attachments = {{0, 0, 0}}});
+  (void)system.edits().separate(chain.lower[1], chain.upper[2]);
+  system.edits().begin();  // part of the batch
+  (void)system.edits().separate(chain.lower[3], chain.upper[4]);
+  system.bodies().destroy(chain.links[5]);
+  EXPECT_FALSE(system.edits().end().changed);
+  (void)system.edits().combine(chain.links[2], chain.links[3]);
+  const RestructureReport report = system.edits().end();
   EXPECT_TRUE(report.changed);
   EXPECT_EQ(report.created_bodies, std::vector<BodyId>{ball});
   EXPECT_EQ(report.created_particles.size(), 5u);
@@ -33,7 +33,7 @@ TEST(EditBatch, has_one_report_for_all) {
   EXPECT_EQ(report.articulates_after, 4u);
   EXPECT_NE(report.energy_change, 0);
   EXPECT_DOUBLE_EQ(report.energy_change, system.energy().edits - energy);
-  EXPECT_THROW((void)system.end_edit(), std::logic_error);
+  EXPECT_THROW((void)system.edits().end(), std::logic_error);
 }
 
 TEST(EditBatch, undo_and_redo_give_the_same_hash) {
@@ -41,24 +41,24 @@ TEST(EditBatch, undo_and_redo_give_the_same_hash) {
   const auto chain = scenes::make_chain(system, {.links = 6});
   for (int i = 0; i < 10; ++i) (void)system.step(0.01);
   const std::uint64_t before = system.state_hash();
-  system.begin_edit();
-  (void)system.separate(chain.lower[1], chain.upper[2]);
-  system.destroy(chain.links[5]);
-  (void)system.end_edit();
+  system.edits().begin();
+  (void)system.edits().separate(chain.lower[1], chain.upper[2]);
+  system.bodies().destroy(chain.links[5]);
+  (void)system.edits().end();
   for (int i = 0; i < 5; ++i) (void)system.step(0.01);
   const std::uint64_t after = system.state_hash();
-  EXPECT_TRUE(system.undo());
+  EXPECT_TRUE(system.edits().undo());
   EXPECT_EQ(system.state_hash(), before);
-  EXPECT_TRUE(system.contains(chain.links[5]));
+  EXPECT_TRUE(system.bodies().contains(chain.links[5]));
   EXPECT_TRUE(system.validate().empty());
-  EXPECT_FALSE(system.undo());
-  EXPECT_TRUE(system.redo());
+  EXPECT_FALSE(system.edits().undo());
+  EXPECT_TRUE(system.edits().redo());
   EXPECT_EQ(system.state_hash(), after);
-  EXPECT_FALSE(system.redo());
-  EXPECT_TRUE(system.undo());
-  system.begin_edit();  // a new edit ends the way forward
-  (void)system.end_edit();
-  EXPECT_EQ(system.redo_count(), 0u);
+  EXPECT_FALSE(system.edits().redo());
+  EXPECT_TRUE(system.edits().undo());
+  system.edits().begin();  // a new edit ends the way forward
+  (void)system.edits().end();
+  EXPECT_EQ(system.edits().redo_count(), 0u);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
 }
 
@@ -66,37 +66,37 @@ TEST(EditBatch, a_canceled_one_never_was) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 3});
   const std::uint64_t before = system.state_hash();
-  system.begin_edit();
-  system.destroy(chain.links[1]);
-  EXPECT_THROW((void)system.undo(), std::logic_error);
-  system.cancel_edit();
+  system.edits().begin();
+  system.bodies().destroy(chain.links[1]);
+  EXPECT_THROW((void)system.edits().undo(), std::logic_error);
+  system.edits().cancel();
   EXPECT_EQ(system.state_hash(), before);
-  EXPECT_EQ(system.undo_count(), 0u);
+  EXPECT_EQ(system.edits().undo_count(), 0u);
 }
 
 TEST(EditBatch, keeps_so_many_and_forgets_the_oldest) {
   System system;
   for (int i = 0; i < 100; ++i) {
-    system.begin_edit();
-    (void)system.create_body(Box{});
-    (void)system.end_edit();
+    system.edits().begin();
+    (void)system.bodies().create(Box{});
+    (void)system.edits().end();
   }
-  EXPECT_EQ(system.undo_count(), 64u);
-  while (system.undo()) {
+  EXPECT_EQ(system.edits().undo_count(), 64u);
+  while (system.edits().undo()) {
   }
-  EXPECT_EQ(system.bodies().size(), 36u);
+  EXPECT_EQ(system.bodies().ids().size(), 36u);
 }
 
 TEST(EditBatch, edits_asked_for_during_a_step_are_reported_as_one) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 4});
-  const BodyId ball = system.create_body();
-  const ParticleId p = system.create_particle(ball, {0, 1, 0});
+  const BodyId ball = system.bodies().create();
+  const ParticleId p = system.particles().create(ball, {0, 1, 0});
   bool asked = false;
-  (void)system.create_bond(p, chain.lower[3], ScriptedLaw{[&](const BondState&) {
+  (void)system.bonds().create(p, chain.lower[3], ScriptedLaw{[&](const BondState&) {
                              if (!asked) {
-                               (void)system.separate(chain.lower[0], chain.upper[1]);
-                               (void)system.combine(chain.links[1], chain.links[2]);
+                               (void)system.edits().separate(chain.lower[0], chain.upper[1]);
+                               (void)system.edits().combine(chain.links[1], chain.links[2]);
                                asked = true;
                              }
                              return Vec3{};
@@ -112,17 +112,17 @@ TEST(EditBatch, edits_asked_for_during_a_step_are_reported_as_one) {
 TEST(EditBatch, batches_and_undo_are_recorded_and_replayed) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 4});
-  system.start_recording();
+  system.record().start();
   (void)system.step(0.01);
-  system.begin_edit();
-  (void)system.separate(chain.lower[1], chain.upper[2]);
-  (void)system.end_edit();
+  system.edits().begin();
+  (void)system.edits().separate(chain.lower[1], chain.upper[2]);
+  (void)system.edits().end();
   for (int i = 0; i < 3; ++i) (void)system.step(0.01);
-  (void)system.undo();
+  (void)system.edits().undo();
   for (int i = 0; i < 3; ++i) (void)system.step(0.01);
-  (void)system.redo();
+  (void)system.edits().redo();
   (void)system.step(0.01);
-  EXPECT_EQ(system.replay(system.stop_recording()), std::nullopt);
+  EXPECT_EQ(system.record().replay(system.record().stop()), std::nullopt);
 }
 
 }  // namespace

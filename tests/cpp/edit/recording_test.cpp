@@ -86,16 +86,16 @@ TEST(Command, of_unknown_number_or_enumerator_is_not_read) {
 // --- damaged recordings -------------------------------------------------------------------------------------------------
 
 BodyId make_rod(System& system, double x) {
-  const BodyId body = system.create_body();
-  system.create_particle(body, {x, 0, 0});
-  system.create_particle(body, {x + 1, 0, 0}, 2);
+  const BodyId body = system.bodies().create();
+  system.particles().create(body, {x, 0, 0});
+  system.particles().create(body, {x + 1, 0, 0}, 2);
   return body;
 }
 
 BodyId make_tetrahedron(System& system, double x) {
   const BodyId body = make_rod(system, x);
-  system.create_particle(body, {x, 1, 0});
-  system.create_particle(body, {x, 0, 1});
+  system.particles().create(body, {x, 1, 0});
+  system.particles().create(body, {x, 0, 1});
   return body;
 }
 
@@ -105,103 +105,103 @@ void record_bodies(System& system) {
   system.set_solver("direct");
   system.set_rest({1, 0.1});
   const BodyId rod = make_rod(system, 0);
-  system.set_rod(rod, 1, 0.1);
-  system.set_angular_velocity(rod, {1, 0, 0});
-  const BodyId box = system.create_body(Box{}, {.position = {0, 3, 0}, .attachments = {{0, 0, 1}}});
-  system.create_body(convex_hull(std::array{Vec3{}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}));
-  system.create_attachment(box, {0, 4, 0});
-  system.set_pose(box, {1, 3, 0}, {0, 0, 1, 1});
-  system.set_velocity(box, {1, 0, 0});
-  system.set_damping(box, 0.1);
-  system.set_kind(rod, BodyKind::static_);
-  system.set_position(system.particles(rod)[0], {-1, 0, 0});
-  system.set_mass(system.particles(rod)[0], 3);
+  system.bodies().set_rod(rod, 1, 0.1);
+  system.bodies().set_angular_velocity(rod, {1, 0, 0});
+  const BodyId box = system.bodies().create(Box{}, {.position = {0, 3, 0}, .attachments = {{0, 0, 1}}});
+  system.bodies().create(convex_hull(std::array{Vec3{}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}));
+  system.bodies().create_attachment(box, {0, 4, 0});
+  system.bodies().set_pose(box, {1, 3, 0}, {0, 0, 1, 1});
+  system.bodies().set_velocity(box, {1, 0, 0});
+  system.bodies().set_damping(box, 0.1);
+  system.bodies().set_kind(rod, BodyKind::static_);
+  system.particles().set_position(system.bodies().particles(rod)[0], {-1, 0, 0});
+  system.particles().set_mass(system.bodies().particles(rod)[0], 3);
   (void)system.step(0.01);
-  system.set_active(box, false);
+  system.bodies().set_active(box, false);
   system.set_damping(0.1);
 }
 
 void record_forces(System& system) {
   const BodyId a = make_rod(system, 0), b = make_rod(system, 3);
-  const ParticleId p = system.particles(a)[1], q = system.particles(b)[0];
-  const LawId law = system.create_law("energy = k * r^2", {"square", {{"k", 3}}});
-  const BondId bond = system.create_bond(p, q, SharedLaw{law, {{"k", 2}}, true});
-  system.create_bond(p, system.particles(b)[1], SpringLaw{});
-  system.set_parameter(bond, "k", 4);
-  system.set_break_force(bond, 1e3);
-  const LawId code = system.create_law([](double r, double, double, const double*) { return -r; });
-  system.create_bond(p, q, SharedLaw{code, {}, {}});
-  system.create_law([](const BondBatch&) {});
-  const GroupId group = system.create_group("some");
-  system.add(group, p);
-  const FieldId wind = system.create_field("wind", {.group = group});
-  system.create_field("fx = y; fy = 0; fz = 0");
-  system.create_field([](const ParticleBatch&) {});
-  const PairsId pairs = system.create_pairs({system.find_law("soft_repulsion"), {{"length", 2}}, {}}, {.cutoff = 2});
+  const ParticleId p = system.bodies().particles(a)[1], q = system.bodies().particles(b)[0];
+  const LawId law = system.laws().create("energy = k * r^2", {"square", {{"k", 3}}});
+  const BondId bond = system.bonds().create(p, q, SharedLaw{law, {{"k", 2}}, true});
+  system.bonds().create(p, system.bodies().particles(b)[1], SpringLaw{});
+  system.bonds().set_parameter(bond, "k", 4);
+  system.bonds().set_break_force(bond, 1e3);
+  const LawId code = system.laws().create([](double r, double, double, const double*) { return -r; });
+  system.bonds().create(p, q, SharedLaw{code, {}, {}});
+  system.laws().create([](const BondBatch&) {});
+  const GroupId group = system.groups().create("some");
+  system.groups().add(group, p);
+  const FieldId wind = system.fields().create("wind", {.group = group});
+  system.fields().create("fx = y; fy = 0; fz = 0");
+  system.fields().create([](const ParticleBatch&) {});
+  const PairsId pairs = system.pairs().create({system.laws().find("soft_repulsion"), {{"length", 2}}, {}}, {.cutoff = 2});
   (void)system.step(0.01);
-  system.set_active(wind, false), system.set_active(pairs, false), system.set_active(bond, false);
-  system.set_parameter(wind, system.parameters(wind)[0].name, 2);
-  system.remove(group, p), system.destroy(pairs), system.destroy(bond), system.destroy(law);
+  system.fields().set_active(wind, false), system.pairs().set_active(pairs, false), system.bonds().set_active(bond, false);
+  system.fields().set_parameter(wind, system.fields().parameters(wind)[0].name, 2);
+  system.groups().remove(group, p), system.pairs().destroy(pairs), system.bonds().destroy(bond), system.laws().destroy(law);
   (void)system.step(0.01);
 }
 
 void record_constraints(System& system) {
   const BodyId a = make_tetrahedron(system, 0), b = make_tetrahedron(system, 2), c = make_tetrahedron(system, 4);
-  const ParticleId p = system.particles(a)[0], q = system.particles(b)[0];
-  const ConstraintId joint = system.create_constraint(
+  const ParticleId p = system.bodies().particles(a)[0], q = system.bodies().particles(b)[0];
+  const ConstraintId joint = system.joints().create(
       JointSpec{.kind = ConstraintKind::revolute, .a = a, .b = b, .at = {1.5, 0, 0}, .breaks = {1e6, 1e6}});
-  const ConstraintId rope = system.create_constraint(DistanceSpec{ConstraintKind::rope, p, q});
-  system.create_constraint(PathSpec{.particle = p, .points = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}});
-  system.create_constraint(SurfaceSpec{ConstraintKind::outside, p, {}, {Box{}, {0, -2, 0}}});
-  system.create_constraint(SurfacePairSpec{ConstraintKind::apart, c, {}, {Sphere{}, {4, 0, 0}}, {Plane{}, {0, -2, 0}}});
+  const ConstraintId rope = system.joints().create(DistanceSpec{ConstraintKind::rope, p, q});
+  system.joints().create(PathSpec{.particle = p, .points = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}});
+  system.joints().create(SurfaceSpec{ConstraintKind::outside, p, {}, {Box{}, {0, -2, 0}}});
+  system.joints().create(SurfacePairSpec{ConstraintKind::apart, c, {}, {Sphere{}, {4, 0, 0}}, {HalfSpace{}, {0, -2, 0}}});
   (void)system.step(0.01);
-  system.set_coordinate(joint, JointCoordinate::angle, {.lower = -1, .upper = 1, .motor_speed = 1, .motor_max = 2});
-  system.set_length(rope, 3);
-  system.set_active(joint, false), system.set_break_limits(rope, {1, 1}), system.set_break_force(p, 1);
+  system.joints().set_coordinate(joint, JointCoordinate::angle, {.lower = -1, .upper = 1, .motor_speed = 1, .motor_max = 2});
+  system.joints().set_length(rope, 3);
+  system.joints().set_active(joint, false), system.joints().set_break_limits(rope, {1, 1}), system.particles().set_break_force(p, 1);
   (void)system.step(0.01);
-  system.destroy(rope);
+  system.joints().destroy(rope);
 }
 
 void record_emitters(System& system) {
   const EmitterId emitter =
-      system.create_emitter({.rate = 300, .source = Capsule{}, .velocity_spread = 1, .curve = {{0, 1}, {1, 2}}});
-  const ParticleId p = system.particles(make_rod(system, 0))[0];
-  system.set_orientation(p, {0, 0, 1, 1});
-  system.set_spin(p, {0, 1, 0});
-  system.apply_torque(p, {1, 0, 0});
-  system.set_moment(p, 2);
-  system.set_spin_damping(p, 1);
-  system.align(p, {1, 1, 0}, 2, 1);
-  system.set_attributes(p, {.lifetime = 0.015, .radius = 0.1});
+      system.emitters().create({.rate = 300, .source = Capsule{}, .velocity_spread = 1, .curve = {{0, 1}, {1, 2}}});
+  const ParticleId p = system.bodies().particles(make_rod(system, 0))[0];
+  system.particles().set_orientation(p, {0, 0, 1, 1});
+  system.particles().set_spin(p, {0, 1, 0});
+  system.particles().apply_torque(p, {1, 0, 0});
+  system.particles().set_moment(p, 2);
+  system.particles().set_spin_damping(p, 1);
+  system.particles().align(p, {1, 1, 0}, 2, 1);
+  system.particles().set_attributes(p, {.lifetime = 0.015, .radius = 0.1});
   (void)system.step(0.01);
-  system.set_rate(emitter, 10);
+  system.emitters().set_rate(emitter, 10);
   (void)system.step(0.01);
-  system.destroy(emitter);
+  system.emitters().destroy(emitter);
   (void)system.step(0.01);
 }
 
 void record_edits(System& system) {
   const BodyId a = make_tetrahedron(system, 0), b = make_rod(system, 1), c = make_rod(system, 2.5);
-  const ParticleId p = system.particles(a)[1], q = system.particles(b)[0], r = system.particles(b)[1];
-  system.create_cosmetic_bond(p, system.particles(a)[0]);
-  system.begin_edit();
-  system.combine(p, q);
-  system.combine(r, system.particles(c)[0], 0.015);
-  system.end_edit();
-  system.nail(system.particles(a)[0], {0, 1, 0});
-  const GripId grip = system.create_grip(c, {}, {3, 3, 0});
+  const ParticleId p = system.bodies().particles(a)[1], q = system.bodies().particles(b)[0], r = system.bodies().particles(b)[1];
+  system.cosmetic_bonds().create(p, system.bodies().particles(a)[0]);
+  system.edits().begin();
+  system.edits().combine(p, q);
+  system.edits().combine(r, system.bodies().particles(c)[0], 0.015);
+  system.edits().end();
+  system.particles().nail(system.bodies().particles(a)[0], {0, 1, 0});
+  const GripId grip = system.grips().create(c, {}, {3, 3, 0});
   (void)system.step(0.01);
-  system.move_grip(grip, {3, 4, 0});
+  system.grips().move(grip, {3, 4, 0});
   (void)system.step(0.01);
-  system.separate(p, q);
-  system.combine(a, b);
-  system.separate(a, b);
-  system.release(system.particles(a)[0]);
-  system.apply_force(p, {1, 0, 0});
-  system.set_active(r, false);
-  system.undo(), system.redo();
-  system.begin_edit(), system.cancel_edit();
-  system.destroy(grip), system.destroy(r), system.destroy(c);
+  system.edits().separate(p, q);
+  system.edits().combine(a, b);
+  system.edits().separate(a, b);
+  system.particles().release(system.bodies().particles(a)[0]);
+  system.particles().apply_force(p, {1, 0, 0});
+  system.particles().set_active(r, false);
+  system.edits().undo(), system.edits().redo();
+  system.edits().begin(), system.edits().cancel();
+  system.grips().destroy(grip), system.particles().destroy(r), system.bodies().destroy(c);
   (void)system.step(0.01);
 }
 
@@ -228,17 +228,17 @@ INSTANTIATE_TEST_SUITE_P(Of, DamagedRecording,
 
 TEST_P(DamagedRecording, leaves_a_whole_system) {
   System system({.threads = 1});
-  system.start_recording();
+  system.record().start();
   GetParam()(system);
-  const Recording recording = system.stop_recording();
-  ASSERT_EQ(system.replay(recording), std::nullopt);
+  const Recording recording = system.record().stop();
+  ASSERT_EQ(system.record().replay(recording), std::nullopt);
   Random random(1);
   int refused = 0, done = 0;
   for (int n = 0; n < 4000; ++n) {
     Recording damaged = recording;
     damage(damaged.commands, random);
     try {
-      (void)system.replay(damaged);
+      (void)system.record().replay(damaged);
       ++done;
     } catch (const std::invalid_argument&) {
       ++refused;
@@ -251,21 +251,21 @@ TEST_P(DamagedRecording, leaves_a_whole_system) {
 
 TEST(Replay, of_a_recording_cut_short_changes_nothing) {
   System system;
-  system.start_recording();
+  system.record().start();
   record_edits(system);
-  Recording recording = system.stop_recording();
+  Recording recording = system.record().stop();
   const std::uint64_t before = system.state_hash();
   recording.commands.pop_back();
-  EXPECT_THROW((void)system.replay(recording), std::invalid_argument);
+  EXPECT_THROW((void)system.record().replay(recording), std::invalid_argument);
   EXPECT_EQ(system.state_hash(), before);
 }
 
 TEST(Recording, with_any_bit_of_its_file_flipped_is_refused) {
   System system;
-  system.start_recording();
+  system.record().start();
   make_rod(system, 0);
   (void)system.step(0.01);
-  const Recording recording = system.stop_recording();
+  const Recording recording = system.record().stop();
   std::vector<std::byte> bytes = recording.to_bytes();
   EXPECT_EQ(Recording::from_bytes(bytes), recording);
   Random random(3);

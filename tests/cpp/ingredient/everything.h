@@ -31,60 +31,60 @@ struct Everything {
   Everything() {
     System system;
     const auto slot = [](auto id) { return id.slot; };
-    const ParticleId alone = system.create_particle(system.create_body(), {9, 9, 9});
+    const ParticleId alone = system.particles().create(system.bodies().create(), {9, 9, 9});
     loner = slot(alone);
 
     // A short chain on a nail, of rods, one of which spins.
     std::vector<ParticleId> upper, lower;
     std::vector<BodyId> links;
     for (int i = 0; i < 3; ++i) {
-      links.push_back(system.create_body());
-      upper.push_back(system.create_particle(links[i], {double(i), 0, 0}));
-      lower.push_back(system.create_particle(links[i], {i + 1.0, 0, 0}));
-      system.set_rod(links[i], 1, 0.1);
-      if (i > 0) (void)system.combine(lower[i - 1], upper[i]);
+      links.push_back(system.bodies().create());
+      upper.push_back(system.particles().create(links[i], {double(i), 0, 0}));
+      lower.push_back(system.particles().create(links[i], {i + 1.0, 0, 0}));
+      system.bodies().set_rod(links[i], 1, 0.1);
+      if (i > 0) (void)system.edits().combine(lower[i - 1], upper[i]);
     }
-    system.nail(upper[0]);
-    system.set_angular_velocity(links[2], {3, 0, 0});
-    system.set_break_force(upper[1], 1e6);
+    system.particles().nail(upper[0]);
+    system.bodies().set_angular_velocity(links[2], {3, 0, 0});
+    system.particles().set_break_force(upper[1], 1e6);
     hinged = slot(upper[1]), hinge_partner = slot(lower[0]), rod = slot(links[2]);
 
     // A body of four corners and a particle that is not in its basis, with a cosmetic bond and a group.
-    const BodyId four = system.create_body();
+    const BodyId four = system.bodies().create();
     std::vector<ParticleId> corners;
     for (const Vec3& x : {Vec3{0, 5, 0}, Vec3{1, 5, 0}, Vec3{0, 6, 0}, Vec3{0, 5, 1}})
-      corners.push_back(system.create_particle(four, x));
-    const ParticleId middle = system.create_particle(four, {0.3, 5.3, 0});
+      corners.push_back(system.particles().create(four, x));
+    const ParticleId middle = system.particles().create(four, {0.3, 5.3, 0});
     inner = slot(middle), corner = slot(corners[0]), corners_body = slot(four);
-    cosmetic = slot(system.create_cosmetic_bond(corners[0], corners[1]));
-    const GroupId group = system.create_group("corners");
-    system.add(group, corners[0]);
-    field = slot(system.create_field("fx = m", {.group = group}));
-    pairs = slot(system.create_pairs({system.find_law("soft_repulsion"), {{"length", 0.5}}, {}}, {.cutoff = 0.5}));
+    cosmetic = slot(system.cosmetic_bonds().create(corners[0], corners[1]));
+    const GroupId group = system.groups().create("corners");
+    system.groups().add(group, corners[0]);
+    field = slot(system.fields().create("fx = m", {.group = group}));
+    pairs = slot(system.pairs().create({system.laws().find("soft_repulsion"), {{"length", 0.5}}, {}}, {.cutoff = 0.5}));
 
     // A solid on a joint, in a hand.
-    const BodyId solid = system.create_body(Box{{0.2, 0.3, 0.4}}, {.position = {0, 5, 3}});
-    (void)system.create_attachment(solid, {0, 5.2, 3});
+    const BodyId solid = system.bodies().create(Box{{0.2, 0.3, 0.4}}, {.position = {0, 5, 3}});
+    (void)system.bodies().create_attachment(solid, {0, 5.2, 3});
     joint = slot(
-        system.create_constraint(JointSpec{.kind = ConstraintKind::revolute, .a = solid, .b = four, .at = {0, 5, 1}}));
-    grip = slot(system.create_grip(solid, {}, {1, 1, 1}));
+        system.joints().create(JointSpec{.kind = ConstraintKind::revolute, .a = solid, .b = four, .at = {0, 5, 1}}));
+    grip = slot(system.grips().create(solid, {}, {1, 1, 1}));
     box = slot(solid);
 
     // Bonds of both kinds; two on their way to each other; one rigid body that was two.
-    bond = slot(system.create_bond(alone, corners[1], SpringLaw{}));
-    (void)system.create_bond(alone, corners[2], SpringLaw{});
-    scripted = slot(system.create_bond(alone, lower[2], ScriptedLaw{[](const BondState&) { return Vec3{}; }}));
-    const ParticleId left = system.create_particle(system.create_body(), {-5, 0, 0}),
-                     right = system.create_particle(system.create_body(), {-6, 0, 0});
-    (void)system.combine(left, right, 10);
-    const ParticleId one = system.create_particle(system.create_body(), {-9, 0, 0}),
-                     two = system.create_particle(system.create_body(), {-9, 0, 0});
-    system.create_particle(system.body(two), {-9, 1, 0});
-    (void)system.combine(one, two), (void)system.combine(one, two);
+    bond = slot(system.bonds().create(alone, corners[1], SpringLaw{}));
+    (void)system.bonds().create(alone, corners[2], SpringLaw{});
+    scripted = slot(system.bonds().create(alone, lower[2], ScriptedLaw{[](const BondState&) { return Vec3{}; }}));
+    const ParticleId left = system.particles().create(system.bodies().create(), {-5, 0, 0}),
+                     right = system.particles().create(system.bodies().create(), {-6, 0, 0});
+    (void)system.edits().combine(left, right, 10);
+    const ParticleId one = system.particles().create(system.bodies().create(), {-9, 0, 0}),
+                     two = system.particles().create(system.bodies().create(), {-9, 0, 0});
+    system.particles().create(system.particles().body(two), {-9, 1, 0});
+    (void)system.edits().combine(one, two), (void)system.edits().combine(one, two);
 
-    system.create_emitter({.rate = 240});
+    system.emitters().create({.rate = 240});
     (void)system.step(1.0 / 60);
-    system.apply_force(alone, {1, 0, 0});
+    system.particles().apply_force(alone, {1, 0, 0});
     model = model_of(system);
   }
 };

@@ -31,43 +31,43 @@ struct Contraption {
     ParticleId last{};
     Vec3 at;
     for (int i = 0; i < 4; ++i) {  // a chain of rods
-      const BodyId rod = system.create_body();
+      const BodyId rod = system.bodies().create();
       const Vec3 end = at + Vec3{random(0.3, 0.6), random(-0.3, 0.3), random(-0.3, 0.3)};
-      const ParticleId p = system.create_particle(rod, at), q = system.create_particle(rod, end);
-      system.set_rod(rod, random(0.5, 2), 0.05);
+      const ParticleId p = system.particles().create(rod, at), q = system.particles().create(rod, end);
+      system.bodies().set_rod(rod, random(0.5, 2), 0.05);
       if (i == 0)
-        system.nail(p);
+        system.particles().nail(p);
       else
-        (void)system.combine(last, p);
+        (void)system.edits().combine(last, p);
       bodies.push_back(rod), last = q, at = end;
     }
     // A locked pair of blocks on the last rod, a third block on a motor hinge.
     const auto block = [&](const Vec3& center) {
-      return system.create_body(
+      return system.bodies().create(
           Box{{0.4, 0.2, 0.3}},
           {.mass = random(0.5, 2), .position = center, .attachments = {{-0.2, 0, 0}, {0.2, 0.1, 0}, {0, 0.1, 0.15}}});
     };
     const BodyId first = block(at + Vec3{0.2, 0, 0}), second = block(at + Vec3{0.6, -0.1, 0});
-    (void)system.combine(last, system.attachments(first)[0]);
-    free_ends = {system.attachments(first)[2], system.attachments(second)[2]};
-    (void)system.combine(first, second);
+    (void)system.edits().combine(last, system.bodies().attachments(first)[0]);
+    free_ends = {system.bodies().attachments(first)[2], system.bodies().attachments(second)[2]};
+    (void)system.edits().combine(first, second);
     const BodyId third = block(at + Vec3{0.2, -0.4, 0});
-    system.create_constraint(JointSpec{.a = first,
+    system.joints().create(JointSpec{.a = first,
                                        .b = third,
                                        .at = at + Vec3{0.2, -0.2, 0},
                                        .axis = {0, 0, 1},
                                        .angle = {.motor_speed = 2, .motor_max = 0.5, .stiffness = 3, .damping = 0.1}});
-    const ParticleId low = system.attachments(third)[2];
-    system.create_bond(low, free_ends[0], SpringLaw{50, 1, 0.3});
-    system.create_bond(free_ends[1], low, DragLaw{0.4});
-    const BodyId ball = system.create_body();
-    const ParticleId weight = system.create_particle(ball, at + Vec3{0.3, -0.9, 0.1});
-    system.create_bond(weight, low, SpringLaw{20, 0, 0.4});
+    const ParticleId low = system.bodies().attachments(third)[2];
+    system.bonds().create(low, free_ends[0], SpringLaw{50, 1, 0.3});
+    system.bonds().create(free_ends[1], low, DragLaw{0.4});
+    const BodyId ball = system.bodies().create();
+    const ParticleId weight = system.particles().create(ball, at + Vec3{0.3, -0.9, 0.1});
+    system.bonds().create(weight, low, SpringLaw{20, 0, 0.4});
     bodies.insert(bodies.end(), {first, third, ball});
-    system.set_damping(third, random(0, 1));
+    system.bodies().set_damping(third, random(0, 1));
     const double violence = mode == IntegrationMode::robust ? 1 : 0.1;
-    (void)system.create_grip(first, {0.1, 0, 0}, at + somewhere(0.3 * violence));
-    system.set_angular_velocity(bodies[1], violence * (somewhere(2) + Vec3{40, 0, 0}));
+    (void)system.grips().create(first, {0.1, 0, 0}, at + somewhere(0.3 * violence));
+    system.bodies().set_angular_velocity(bodies[1], violence * (somewhere(2) + Vec3{40, 0, 0}));
   }
 };
 
@@ -80,17 +80,17 @@ TEST(Loads, from_outside_are_mass_times_acceleration) {
       const double tolerance = mode == IntegrationMode::robust ? 1e-3 : 0.1;
       int checked = 0;
       for (int i = 0; i < 40; ++i) {
-        for (const ParticleId p : c.free_ends) c.system.apply_force(p, {1, -2, 0.5});
+        for (const ParticleId p : c.free_ends) c.system.particles().apply_force(p, {1, -2, 0.5});
         const StepReport report = c.system.step(1e-3);
         if (report.substeps_max > 1 || report.fallbacks > 0) continue;  // multipliers are of the last sub-step
         ++checked;
         double scale = 1;
-        for (const BodyId body : c.bodies) scale = std::max(scale, norm(c.system.net_force(body)));
+        for (const BodyId body : c.bodies) scale = std::max(scale, norm(c.system.bodies().net_force(body)));
         for (const BodyId body : c.bodies) {
-          const Vec3 force = c.system.outside_force(body, {}), torque = c.system.outside_torque(body, {});
-          ASSERT_LT(norm(force - c.system.net_force(body)), tolerance * scale)
+          const Vec3 force = c.system.bodies().outside_force(body, {}), torque = c.system.bodies().outside_torque(body, {});
+          ASSERT_LT(norm(force - c.system.bodies().net_force(body)), tolerance * scale)
               << "seed " << seed << " step " << i << " body " << body.slot;
-          ASSERT_LT(norm(torque - c.system.net_torque(body)), tolerance * scale)
+          ASSERT_LT(norm(torque - c.system.bodies().net_torque(body)), tolerance * scale)
               << "seed " << seed << " step " << i << " body " << body.slot;
         }
       }
@@ -103,8 +103,8 @@ TEST(Loads, of_one_hinge_add_up_to_zero) {
   for (int i = 0; i < 20; ++i) {
     (void)c.system.step(1e-3);
     for (std::size_t b = 0; b + 1 < 4; ++b) {
-      const ParticleId q = c.system.particles(c.bodies[b])[1], p = c.system.particles(c.bodies[b + 1])[0];
-      EXPECT_LT(norm(c.system.hinge_force(q) + c.system.hinge_force(p)), 1e-9);
+      const ParticleId q = c.system.bodies().particles(c.bodies[b])[1], p = c.system.bodies().particles(c.bodies[b + 1])[0];
+      EXPECT_LT(norm(c.system.particles().hinge_force(q) + c.system.particles().hinge_force(p)), 1e-9);
     }
   }
 }

@@ -105,18 +105,18 @@ TEST(Rod, has_the_period_of_a_solid_cylinder) {
   // A compound pendulum at a small angle: omega^2 = m g (L/2) / (It + m L^2/4).
   System system;
   const double length = 0.5, radius = 0.1, mass = 2, angle = 1e-3;
-  const BodyId rod = system.create_body();
-  const ParticleId top = system.create_particle(rod, {0, 0, 0});
-  const ParticleId end = system.create_particle(rod, {length * std::sin(angle), -length * std::cos(angle), 0});
-  system.set_rod(rod, mass, radius);
-  system.nail(top);
+  const BodyId rod = system.bodies().create();
+  const ParticleId top = system.particles().create(rod, {0, 0, 0});
+  const ParticleId end = system.particles().create(rod, {length * std::sin(angle), -length * std::cos(angle), 0});
+  system.bodies().set_rod(rod, mass, radius);
+  system.particles().nail(top);
   const double inertia = mass * (3 * radius * radius + length * length) / 12 + mass * length * length / 4;
   const double period = 2 * std::acos(-1.0) * std::sqrt(inertia / (mass * 9.81 * length / 2));
   const double dt = period / 400;
   for (int i = 0; i < 400; ++i) (void)system.step(dt);
-  EXPECT_NEAR(system.position(end).x, length * std::sin(angle), 1e-3 * length * angle);
+  EXPECT_NEAR(system.particles().position(end).x, length * std::sin(angle), 1e-3 * length * angle);
   for (int i = 0; i < 200; ++i) (void)system.step(dt);
-  EXPECT_NEAR(system.position(end).x, -length * std::sin(angle), 1e-3 * length * angle);
+  EXPECT_NEAR(system.particles().position(end).x, -length * std::sin(angle), 1e-3 * length * angle);
 }
 
 }  // namespace

@@ -26,17 +26,17 @@ struct JointedWorld {
     for (int i = 0; i < 10; ++i) add_body();
   }
   void add_body() {
-    const BodyId body = system.create_body({.kind = index(8) == 0 ? BodyKind::static_ : BodyKind::dynamic});
+    const BodyId body = system.bodies().create({.kind = index(8) == 0 ? BodyKind::static_ : BodyKind::dynamic});
     const std::size_t count = 1 + index(5);
     for (std::size_t i = 0; i < count; ++i)
-      system.create_particle(body, point(), std::pow(10, uniform(-1, 1)), point());
+      system.particles().create(body, point(), std::pow(10, uniform(-1, 1)), point());
   }
   BodyId any_body() {
-    const auto all = system.bodies();
+    const auto all = system.bodies().ids();
     return all[index(all.size())];
   }
   ParticleId any_particle() {
-    const auto all = system.particles();
+    const auto all = system.particles().ids();
     return all[index(all.size())];
   }
   CoordinateOptions any_options() {
@@ -66,11 +66,11 @@ struct JointedWorld {
     switch (kind) {
       case ConstraintKind::rod:
       case ConstraintKind::rope:
-        system.create_constraint(
+        system.joints().create(
             DistanceSpec{.kind = kind, .p = any_particle(), .q = any_particle(), .breaks = breaks});
         break;
       case ConstraintKind::path:
-        system.create_constraint(PathSpec{.particle = any_particle(),
+        system.joints().create(PathSpec{.particle = any_particle(),
                                           .body = world_or_body,
                                           .curve = index(2) ? CurveKind::spline : CurveKind::polyline,
                                           .points = {point(), point(), point(), point()},
@@ -81,26 +81,26 @@ struct JointedWorld {
       case ConstraintKind::surface:
       case ConstraintKind::inside:
       case ConstraintKind::outside:
-        system.create_constraint(SurfaceSpec{kind, any_particle(), world_or_body, any_surface(), breaks});
+        system.joints().create(SurfaceSpec{kind, any_particle(), world_or_body, any_surface(), breaks});
         break;
       case ConstraintKind::touching:
       case ConstraintKind::apart:
-        system.create_constraint(SurfacePairSpec{kind, any_body(), world_or_body, any_convex(), any_convex(), breaks});
+        system.joints().create(SurfacePairSpec{kind, any_body(), world_or_body, any_convex(), any_convex(), breaks});
         break;
       default: {
         const BodyId a = any_body();
         JointSpec spec{.kind = kind, .a = a, .b = world_or_body, .axis = point(), .breaks = breaks};
-        spec.at = index(2) ? system.position(system.particles(a)[0]) : point();
+        spec.at = index(2) ? system.particles().position(system.bodies().particles(a)[0]) : point();
         if (has_coordinate(kind, JointCoordinate::angle)) spec.angle = any_options();
         if (has_coordinate(kind, JointCoordinate::slide)) spec.slide = any_options();
-        system.create_constraint(spec);
+        system.joints().create(spec);
       }
     }
     ++made;
   }
 
   void edit() {
-    const auto constraints = system.constraints();
+    const auto constraints = system.joints().ids();
     const ParticleId p = any_particle(), q = any_particle();
     try {
       switch (index(14)) {
@@ -109,30 +109,30 @@ struct JointedWorld {
         case 2:
         case 3:
         case 4: make_constraint(); break;
-        case 5: (void)system.combine(p, q); break;
-        case 6: (void)system.separate(p, q); break;
-        case 7: (void)system.combine(system.body(p), system.body(q)); break;
-        case 8: system.is_nailed(p) ? system.release(p) : index(4) == 0 ? system.nail(p) : void(); break;
+        case 5: (void)system.edits().combine(p, q); break;
+        case 6: (void)system.edits().separate(p, q); break;
+        case 7: (void)system.edits().combine(system.particles().body(p), system.particles().body(q)); break;
+        case 8: system.particles().is_nailed(p) ? system.particles().release(p) : index(4) == 0 ? system.particles().nail(p) : void(); break;
         case 9:
-          if (!constraints.empty()) system.destroy(constraints[index(constraints.size())]);
+          if (!constraints.empty()) system.joints().destroy(constraints[index(constraints.size())]);
           break;
         case 10:
-          if (!constraints.empty()) system.set_active(constraints[index(constraints.size())], index(2) == 0);
+          if (!constraints.empty()) system.joints().set_active(constraints[index(constraints.size())], index(2) == 0);
           break;
         case 11:
           if (!constraints.empty()) {
             const auto which = static_cast<JointCoordinate>(index(2));
-            system.set_coordinate(constraints[index(constraints.size())], which, any_options());
+            system.joints().set_coordinate(constraints[index(constraints.size())], which, any_options());
           }
           break;
-        case 12: (void)system.create_particle(system.body(p), system.position(q), 0); break;
+        case 12: (void)system.particles().create(system.particles().body(p), system.particles().position(q), 0); break;
         default:
-          if (system.bodies().size() > 8) index(2) ? system.destroy(p) : system.destroy(system.body(q));
+          if (system.bodies().ids().size() > 8) index(2) ? system.particles().destroy(p) : system.bodies().destroy(system.particles().body(q));
       }
     } catch (const std::invalid_argument&) {
       ++refused;
     }
-    while (system.bodies().size() < 6) add_body();
+    while (system.bodies().ids().size() < 6) add_body();
   }
 };
 
@@ -147,12 +147,12 @@ TEST(RandomConstraints, keep_the_structure_whole_and_finite_through_random_edits
       const Energy before = world.system.energy();
       const StepReport report = world.system.step(1.0 / 60);
       ASSERT_TRUE(std::isfinite(report.energy.total())) << "seed " << seed << " edit " << i;
-      for (const ParticleId p : world.system.particles())
-        ASSERT_TRUE(is_finite(world.system.position(p)) && is_finite(world.system.velocity(p)))
+      for (const ParticleId p : world.system.particles().ids())
+        ASSERT_TRUE(is_finite(world.system.particles().position(p)) && is_finite(world.system.particles().velocity(p)))
             << "seed " << seed << " edit " << i;
       ASSERT_LT(report.energy.kinetic, 1e4 + 100 * before.kinetic) << "seed " << seed << " edit " << i;
-      for (const ConstraintId c : world.system.constraints())
-        ASSERT_TRUE(is_finite(world.system.state(c).force)) << "seed " << seed << " edit " << i;
+      for (const ConstraintId c : world.system.joints().ids())
+        ASSERT_TRUE(is_finite(world.system.joints().state(c).force)) << "seed " << seed << " edit " << i;
     }
     made += world.made;
   }
@@ -161,14 +161,14 @@ TEST(RandomConstraints, keep_the_structure_whole_and_finite_through_random_edits
 
 TEST(RandomConstraints, replay_to_the_same_bits) {
   JointedWorld world(7, IntegrationMode::energy_keeping);
-  world.system.start_recording();
+  world.system.record().start();
   for (int i = 0; i < 60; ++i) {
     world.edit();
     (void)world.system.step(1.0 / 60);
   }
-  const Recording recording = world.system.stop_recording();
+  const Recording recording = world.system.record().stop();
   System other;
-  EXPECT_EQ(other.replay(recording), std::nullopt);
+  EXPECT_EQ(other.record().replay(recording), std::nullopt);
   EXPECT_EQ(other.state_hash(), world.system.state_hash());
 }
 

@@ -17,11 +17,11 @@ constexpr double g = 9.81;
 
 /// A solid block as eight equal corner masses: inertia m (b^2 + c^2) / 4 about each axis through its center.
 BodyId make_block(System& system, const Vec3& center, const Vec3& size, double mass, const Vec3& velocity = {}) {
-  const BodyId body = system.create_body();
+  const BodyId body = system.bodies().create();
   for (const double x : {-0.5, 0.5})
     for (const double y : {-0.5, 0.5})
       for (const double z : {-0.5, 0.5})
-        system.create_particle(body, center + Vec3{x * size.x, y * size.y, z * size.z}, mass / 8, velocity);
+        system.particles().create(body, center + Vec3{x * size.x, y * size.y, z * size.z}, mass / 8, velocity);
   return body;
 }
 
@@ -52,19 +52,19 @@ TEST(Revolute, a_block_on_an_axle_swings_as_a_physical_pendulum) {
   const Vec3 center{d * std::sin(angle), -d * std::cos(angle), 0};
   const BodyId block = make_block(system, center, {0.2, 0.4, 0.3}, 2);
   const ConstraintId joint =
-      system.create_constraint(JointSpec{.kind = ConstraintKind::revolute, .a = block, .at = {}, .axis = {0, 0, 1}});
+      system.joints().create(JointSpec{.kind = ConstraintKind::revolute, .a = block, .at = {}, .axis = {0, 0, 1}});
   const double inertia = 2 * ((0.2 * 0.2 + 0.4 * 0.4) / 4 + d * d);
   const double period = 2 * pi * std::sqrt(inertia / (2 * g * d)) * (1 + angle * angle / 16);
-  double last = system.state(joint).coordinate[0] + angle, crossings = 0, first = 0, latest = 0;
+  double last = system.joints().state(joint).coordinate[0] + angle, crossings = 0, first = 0, latest = 0;
   run(system, 6, 1e-3, [&](const StepReport& report) {
-    const ConstraintState state = system.state(joint);
+    const ConstraintState state = system.joints().state(joint);
     const double now = state.coordinate[0] + angle;
     if (last < 0 && now >= 0) {
       latest = report.time - 1e-3 * now / (now - last);
       if (++crossings == 1) first = latest;
     }
     last = now;
-    EXPECT_NEAR(system.center_of_mass(block).z, 0, 1e-9);
+    EXPECT_NEAR(system.bodies().center_of_mass(block).z, 0, 1e-9);
     EXPECT_LT(state.gap, 1e-9);
   });
   ASSERT_GT(crossings, 2);
@@ -75,9 +75,9 @@ TEST(Revolute, its_reaction_at_rest_is_the_weight_and_its_moment) {
   System system;
   const BodyId block = make_block(system, {0.3, 0, 0}, {0.2, 0.2, 0.2}, 2);
   const ConstraintId joint =
-      system.create_constraint(JointSpec{.kind = ConstraintKind::revolute, .a = block, .at = {}, .axis = {1, 0, 0}});
+      system.joints().create(JointSpec{.kind = ConstraintKind::revolute, .a = block, .at = {}, .axis = {1, 0, 0}});
   run(system, 0.5, 1.0 / 120);
-  const ConstraintState state = system.state(joint);
+  const ConstraintState state = system.joints().state(joint);
   EXPECT_NEAR(norm(state.force - Vec3{0, 2 * g, 0}), 0, 1e-5);
   EXPECT_NEAR(norm(state.torque - Vec3{0, 0, 0.3 * 2 * g}), 0, 1e-5);
 }
@@ -86,15 +86,15 @@ TEST(Weld, a_cantilever_carries_m_g_l) {
   System system;
   const BodyId root = make_block(system, {0, 0, 0}, {0.2, 0.2, 0.2}, 1);
   const BodyId beam = make_block(system, {0.6, 0, 0}, {1, 0.1, 0.1}, 3);
-  const ConstraintId wall = system.create_constraint(JointSpec{.kind = ConstraintKind::weld, .a = root, .at = {}});
+  const ConstraintId wall = system.joints().create(JointSpec{.kind = ConstraintKind::weld, .a = root, .at = {}});
   const ConstraintId weld =
-      system.create_constraint(JointSpec{.kind = ConstraintKind::weld, .a = beam, .b = root, .at = {0.1, 0, 0}});
+      system.joints().create(JointSpec{.kind = ConstraintKind::weld, .a = beam, .b = root, .at = {0.1, 0, 0}});
   run(system, 0.5, 1.0 / 120);
-  EXPECT_NEAR(norm(system.state(weld).force - Vec3{0, 3 * g, 0}), 0, 1e-5);
-  EXPECT_NEAR(norm(system.state(weld).torque - Vec3{0, 0, 3 * g * 0.5}), 0, 1e-5);
-  EXPECT_NEAR(norm(system.state(wall).force - Vec3{0, 4 * g, 0}), 0, 1e-5);
-  EXPECT_NEAR(norm(system.state(wall).torque - Vec3{0, 0, 3 * g * 0.6}), 0, 1e-5);
-  EXPECT_NEAR(norm(system.center_of_mass(beam) - Vec3{0.6, 0, 0}), 0, 1e-9);
+  EXPECT_NEAR(norm(system.joints().state(weld).force - Vec3{0, 3 * g, 0}), 0, 1e-5);
+  EXPECT_NEAR(norm(system.joints().state(weld).torque - Vec3{0, 0, 3 * g * 0.5}), 0, 1e-5);
+  EXPECT_NEAR(norm(system.joints().state(wall).force - Vec3{0, 4 * g, 0}), 0, 1e-5);
+  EXPECT_NEAR(norm(system.joints().state(wall).torque - Vec3{0, 0, 3 * g * 0.6}), 0, 1e-5);
+  EXPECT_NEAR(norm(system.bodies().center_of_mass(beam) - Vec3{0.6, 0, 0}), 0, 1e-9);
 }
 
 TEST(Ball, two_blocks_keep_a_common_point_and_their_momenta) {
@@ -102,8 +102,8 @@ TEST(Ball, two_blocks_keep_a_common_point_and_their_momenta) {
   const BodyId a = make_block(system, {-0.5, 0, 0}, {0.8, 0.2, 0.3}, 1, {0, 1, 0});
   const BodyId b = make_block(system, {0.5, 0, 0}, {0.8, 0.3, 0.2}, 2, {0, 0, 1});
   const Vec3 momentum = system.momentum(), spin = system.angular_momentum();
-  const ConstraintId ball = system.create_constraint(JointSpec{.kind = ConstraintKind::ball, .a = a, .b = b, .at = {}});
-  run(system, 2, 1.0 / 120, [&](const StepReport&) { EXPECT_LT(system.state(ball).gap, 1e-9); });
+  const ConstraintId ball = system.joints().create(JointSpec{.kind = ConstraintKind::ball, .a = a, .b = b, .at = {}});
+  run(system, 2, 1.0 / 120, [&](const StepReport&) { EXPECT_LT(system.joints().state(ball).gap, 1e-9); });
   EXPECT_NEAR(norm(system.momentum() - momentum), 0, 1e-11);
   EXPECT_NEAR(norm(system.angular_momentum() - spin), 0, 1e-10);
 }
@@ -113,39 +113,39 @@ TEST(Prismatic, a_block_on_an_incline_accelerates_by_g_sin) {
   const double slope = 0.5;
   const Vec3 down{std::cos(slope), -std::sin(slope), 0};
   const BodyId block = make_block(system, {0.1, 0.2, 0.3}, {0.2, 0.1, 0.3}, 2);
-  const ConstraintId joint = system.create_constraint(
+  const ConstraintId joint = system.joints().create(
       JointSpec{.kind = ConstraintKind::prismatic, .a = block, .at = {0, 0.2, 0}, .axis = down});
   run(system, 1, 1.0 / 120);
-  const ConstraintState state = system.state(joint);
+  const ConstraintState state = system.joints().state(joint);
   EXPECT_NEAR(state.speed[1], g * std::sin(slope), 1e-6);
   EXPECT_NEAR(state.coordinate[1], g * std::sin(slope) / 2, 0.05);
-  EXPECT_NEAR(norm(system.center_of_mass(block) - Vec3{0.1, 0.2, 0.3} - state.coordinate[1] * down), 0, 1e-8);
+  EXPECT_NEAR(norm(system.bodies().center_of_mass(block) - Vec3{0.1, 0.2, 0.3} - state.coordinate[1] * down), 0, 1e-8);
 }
 
 TEST(Prismatic, a_bead_of_one_particle_slides_on_a_straight_wire) {
   System system;
-  const BodyId bead = system.create_body();
-  const ParticleId p = system.create_particle(bead, {1, 2, 3}, 0.5);
-  const ConstraintId wire = system.create_constraint(
+  const BodyId bead = system.bodies().create();
+  const ParticleId p = system.particles().create(bead, {1, 2, 3}, 0.5);
+  const ConstraintId wire = system.joints().create(
       JointSpec{.kind = ConstraintKind::prismatic, .a = bead, .at = {1, 2, 3}, .axis = {1, -1, 0}});
   run(system, 1, 1.0 / 120);
-  EXPECT_NEAR(system.position(p).z, 3, 1e-9);
-  EXPECT_NEAR(system.position(p).x - 1, 2 - system.position(p).y, 1e-9);
-  EXPECT_NEAR(system.state(wire).speed[1], g * std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(system.particles().position(p).z, 3, 1e-9);
+  EXPECT_NEAR(system.particles().position(p).x - 1, 2 - system.particles().position(p).y, 1e-9);
+  EXPECT_NEAR(system.joints().state(wire).speed[1], g * std::sqrt(0.5), 1e-6);
 }
 
 TEST(Cylindrical, slides_and_turns_independently) {
   System system;
   const BodyId block = make_block(system, {0, 0, 0}, {0.2, 0.3, 0.4}, 2);
   const ConstraintId joint =
-      system.create_constraint(JointSpec{.kind = ConstraintKind::cylindrical, .a = block, .at = {}, .axis = {0, 1, 0}});
-  const auto particles = system.particles(block);
+      system.joints().create(JointSpec{.kind = ConstraintKind::cylindrical, .a = block, .at = {}, .axis = {0, 1, 0}});
+  const auto particles = system.bodies().particles(block);
   for (std::size_t i = 0; i < 8; ++i) {
-    const Vec3 x = system.position(particles[i]);
-    system.set_velocity(particles[i], cross(Vec3{0, 3, 0}, x));
+    const Vec3 x = system.particles().position(particles[i]);
+    system.particles().set_velocity(particles[i], cross(Vec3{0, 3, 0}, x));
   }
   run(system, 1, 1.0 / 240);
-  const ConstraintState state = system.state(joint);
+  const ConstraintState state = system.joints().state(joint);
   EXPECT_NEAR(state.speed[0], 3, 1e-8);
   EXPECT_NEAR(state.coordinate[0], 3, 1e-2);
   EXPECT_NEAR(state.speed[1], -g, 1e-6);
@@ -159,26 +159,26 @@ TEST(Universal, keeps_its_axes_perpendicular_and_transmits_the_known_ratio) {
   const Vec3 out_axis{std::cos(beta), 0, std::sin(beta)};
   const BodyId in = make_block(system, {-0.5, 0, 0}, {0.6, 0.1, 0.1}, 1);
   const BodyId out = make_block(system, 0.5 * out_axis, {0.6, 0.1, 0.1}, 1);
-  const ConstraintId in_bearing = system.create_constraint(JointSpec{.kind = ConstraintKind::revolute,
+  const ConstraintId in_bearing = system.joints().create(JointSpec{.kind = ConstraintKind::revolute,
                                                                      .a = in,
                                                                      .at = {-0.5, 0, 0},
                                                                      .axis = {1, 0, 0},
                                                                      .angle = {.motor_speed = 2, .motor_max = 1e3}});
-  const ConstraintId out_bearing = system.create_constraint(
+  const ConstraintId out_bearing = system.joints().create(
       JointSpec{.kind = ConstraintKind::revolute, .a = out, .at = 0.5 * out_axis, .axis = out_axis});
   const ConstraintId cross_joint =
-      system.create_constraint(JointSpec{.kind = ConstraintKind::universal,
+      system.joints().create(JointSpec{.kind = ConstraintKind::universal,
                                          .a = in,
                                          .b = out,
                                          .at = {},
                                          .axis = {0, 1, 0},
                                          .second_axis = {-std::sin(beta), 0, std::cos(beta)}});
   run(system, 4, 1.0 / 240, [&](const StepReport&) {
-    EXPECT_LT(system.state(cross_joint).gap, 1e-8);
-    const double input = system.state(in_bearing).coordinate[0], output = system.state(out_bearing).coordinate[0];
+    EXPECT_LT(system.joints().state(cross_joint).gap, 1e-8);
+    const double input = system.joints().state(in_bearing).coordinate[0], output = system.joints().state(out_bearing).coordinate[0];
     EXPECT_NEAR(std::sin(output) * std::cos(input), std::sin(input) * std::cos(output) * std::cos(beta), 1e-6);
   });
-  EXPECT_NEAR(system.state(in_bearing).coordinate[0], 8, 0.05);
+  EXPECT_NEAR(system.joints().state(in_bearing).coordinate[0], 8, 0.05);
 }
 
 TEST(Universal, both_its_angles_are_those_that_its_two_axes_have_turned_by) {
@@ -186,11 +186,11 @@ TEST(Universal, both_its_angles_are_those_that_its_two_axes_have_turned_by) {
   for (const double phi : {-1.2, 0.0, 0.4, 3.0})
     for (const double psi : {-0.9, 0.0, 0.7, 2.5}) {
       System system{SystemOptions{.gravity = {}}};
-      const BodyId block = system.create_body(Box{{1, 2, 3}});
-      const ConstraintId joint = system.create_constraint(
+      const BodyId block = system.bodies().create(Box{{1, 2, 3}});
+      const ConstraintId joint = system.joints().create(
           JointSpec{.kind = ConstraintKind::universal, .a = block, .axis = first, .second_axis = second});
-      system.set_pose(block, {}, multiply(axis_angle(second, psi), axis_angle(first, phi)));
-      const auto angles = system.state(joint).coordinate;
+      system.bodies().set_pose(block, {}, multiply(axis_angle(second, psi), axis_angle(first, phi)));
+      const auto angles = system.joints().state(joint).coordinate;
       EXPECT_NEAR(std::remainder(angles[0] - phi, 2 * std::numbers::pi), 0, 1e-12);
       EXPECT_NEAR(std::remainder(angles[2] - psi, 2 * std::numbers::pi), 0, 1e-12);
     }
@@ -198,95 +198,95 @@ TEST(Universal, both_its_angles_are_those_that_its_two_axes_have_turned_by) {
 
 TEST(Universal, each_angle_has_its_own_motor_and_stops) {
   System system{SystemOptions{.gravity = {}}};
-  const BodyId block = system.create_body(Box{{1, 0.2, 0.3}}, {.mass = 1});
-  const ConstraintId joint = system.create_constraint(JointSpec{.kind = ConstraintKind::universal,
+  const BodyId block = system.bodies().create(Box{{1, 0.2, 0.3}}, {.mass = 1});
+  const ConstraintId joint = system.joints().create(JointSpec{.kind = ConstraintKind::universal,
                                                                 .a = block,
                                                                 .axis = {1, 0, 0},
                                                                 .second_axis = {0, 1, 0},
                                                                 .angle = {.motor_speed = 2, .motor_max = 50},
                                                                 .second_angle = {.upper = 0.5}});
-  system.set_angular_velocity(block, {0, 1, 0});
+  system.bodies().set_angular_velocity(block, {0, 1, 0});
   double largest = 0;
   run(system, 1.5, 1.0 / 240,
-      [&](const StepReport&) { largest = std::max(largest, system.state(joint).coordinate[2]); });
-  const ConstraintState state = system.state(joint);
+      [&](const StepReport&) { largest = std::max(largest, system.joints().state(joint).coordinate[2]); });
+  const ConstraintState state = system.joints().state(joint);
   EXPECT_NEAR(state.coordinate[0], 3, 0.02);
   EXPECT_NEAR(state.speed[0], 2, 1e-4);
   EXPECT_NEAR(largest, 0.5, 1e-3) << "it swings to its stop, and no further";
-  system.set_coordinate(joint, JointCoordinate::second_angle, {.motor_speed = -0.5, .motor_max = 50});
+  system.joints().set_coordinate(joint, JointCoordinate::second_angle, {.motor_speed = -0.5, .motor_max = 50});
   run(system, 1, 1.0 / 240, [](const StepReport&) {});
-  EXPECT_NEAR(system.state(joint).speed[2], -0.5, 1e-6);
+  EXPECT_NEAR(system.joints().state(joint).speed[2], -0.5, 1e-6);
 }
 
 TEST(Orientation, a_block_falls_freely_without_turning) {
   System system;
   const BodyId block = make_block(system, {0, 0, 0}, {0.2, 0.3, 0.4}, 2);
-  system.create_constraint(JointSpec{.kind = ConstraintKind::orientation, .a = block});
-  const auto particles = system.particles(block);
-  const Vec3 arm = system.position(particles[7]) - system.position(particles[0]);
+  system.joints().create(JointSpec{.kind = ConstraintKind::orientation, .a = block});
+  const auto particles = system.bodies().particles(block);
+  const Vec3 arm = system.particles().position(particles[7]) - system.particles().position(particles[0]);
   for (int i = 0; i < 120; ++i) {
-    system.apply_force(particles[7], {1, 0, 0});
+    system.particles().apply_force(particles[7], {1, 0, 0});
     (void)system.step(1.0 / 120);
   }
-  EXPECT_NEAR(norm(system.position(particles[7]) - system.position(particles[0]) - arm), 0, 1e-9);
+  EXPECT_NEAR(norm(system.particles().position(particles[7]) - system.particles().position(particles[0]) - arm), 0, 1e-9);
   EXPECT_NEAR(system.momentum().x, 1, 1e-9);
 }
 
 TEST(Rod, two_points_keep_their_distance_and_it_tells_the_centripetal_force) {
   System system{SystemOptions{.gravity = {}}};
-  const BodyId a = system.create_body(), b = system.create_body();
-  const ParticleId p = system.create_particle(a, {1, 0, 0}, 2, {0, 3, 0}),
-                   q = system.create_particle(b, {-1, 0, 0}, 2, {0, -3, 0});
-  const ConstraintId rod = system.create_constraint(DistanceSpec{.kind = ConstraintKind::rod, .p = p, .q = q});
-  run(system, 1, 1e-3, [&](const StepReport&) { EXPECT_NEAR(norm(system.position(p) - system.position(q)), 2, 1e-9); });
-  EXPECT_NEAR(norm(system.state(rod).force), 2 * 9.0, 1e-3);
+  const BodyId a = system.bodies().create(), b = system.bodies().create();
+  const ParticleId p = system.particles().create(a, {1, 0, 0}, 2, {0, 3, 0}),
+                   q = system.particles().create(b, {-1, 0, 0}, 2, {0, -3, 0});
+  const ConstraintId rod = system.joints().create(DistanceSpec{.kind = ConstraintKind::rod, .p = p, .q = q});
+  run(system, 1, 1e-3, [&](const StepReport&) { EXPECT_NEAR(norm(system.particles().position(p) - system.particles().position(q)), 2, 1e-9); });
+  EXPECT_NEAR(norm(system.joints().state(rod).force), 2 * 9.0, 1e-3);
 }
 
 TEST(Rope, is_slack_in_flight_and_then_taut) {
   System system;
-  const BodyId anchor = system.create_body({.kind = BodyKind::static_}), ball = system.create_body();
-  const ParticleId p = system.create_particle(anchor, {0, 0, 0}),
-                   q = system.create_particle(ball, {0, 0, 0}, 1, {1, 0, 0});
+  const BodyId anchor = system.bodies().create({.kind = BodyKind::static_}), ball = system.bodies().create();
+  const ParticleId p = system.particles().create(anchor, {0, 0, 0}),
+                   q = system.particles().create(ball, {0, 0, 0}, 1, {1, 0, 0});
   const ConstraintId rope =
-      system.create_constraint(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = 1});
+      system.joints().create(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = 1});
   bool was_slack = false, was_taut = false;
   run(system, 3, 1.0 / 240, [&](const StepReport& report) {
-    const Vec3 x = system.position(q);
+    const Vec3 x = system.particles().position(q);
     EXPECT_LT(norm(x), 1 + 1e-8);
     if (report.time < 0.3) {
       was_slack = true;
       EXPECT_NEAR(x.x, report.time, 1e-9);
-      EXPECT_NEAR(norm(system.state(rope).force), 0, 1e-9);
+      EXPECT_NEAR(norm(system.joints().state(rope).force), 0, 1e-9);
     }
-    if (norm(x) > 1 - 1e-7) was_taut = was_taut || norm(system.state(rope).force) > 1;
+    if (norm(x) > 1 - 1e-7) was_taut = was_taut || norm(system.joints().state(rope).force) > 1;
   });
   EXPECT_TRUE(was_slack && was_taut);
 }
 
 TEST(Rope, can_be_hauled_in) {
   System system;
-  const BodyId anchor = system.create_body({.kind = BodyKind::static_}), ball = system.create_body();
-  const ParticleId p = system.create_particle(anchor, {0, 0, 0}), q = system.create_particle(ball, {0, -1, 0});
+  const BodyId anchor = system.bodies().create({.kind = BodyKind::static_}), ball = system.bodies().create();
+  const ParticleId p = system.particles().create(anchor, {0, 0, 0}), q = system.particles().create(ball, {0, -1, 0});
   const ConstraintId rope =
-      system.create_constraint(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = 1});
+      system.joints().create(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = 1});
   for (int i = 0; i < 100; ++i) {
-    system.set_length(rope, 1 - 0.005 * i);
+    system.joints().set_length(rope, 1 - 0.005 * i);
     (void)system.step(0.01);
   }
-  EXPECT_NEAR(system.position(q).y, -0.505, 1e-3);
+  EXPECT_NEAR(system.particles().position(q).y, -0.505, 1e-3);
 }
 
 TEST(Motor, reaches_its_speed_and_a_weak_one_stalls) {
   for (const double strength : {100.0, 0.5}) {
     System system;
     const BodyId block = make_block(system, {0.5, 0, 0}, {0.2, 0.2, 0.2}, 1);
-    const ConstraintId joint = system.create_constraint(
+    const ConstraintId joint = system.joints().create(
         JointSpec{.kind = ConstraintKind::revolute,
                   .a = block,
                   .axis = {0, 0, 1},
                   .angle = {.motor_speed = 2, .motor_max = strength, .friction = strength < 1 ? 5.0 : 0}});
     run(system, 2, 1.0 / 240);
-    const ConstraintState state = system.state(joint);
+    const ConstraintState state = system.joints().state(joint);
     if (strength > 1) {
       EXPECT_NEAR(state.speed[0], 2, 1e-4);
       EXPECT_NEAR(state.coordinate[0], 4, 0.02);
@@ -300,26 +300,26 @@ TEST(Motor, reaches_its_speed_and_a_weak_one_stalls) {
 TEST(Motor, a_strong_one_does_not_ring_about_its_speed) {
   System system;  // energy keeping
   const BodyId block = make_block(system, {0.5, 0, 0}, {0.2, 0.2, 0.2}, 1);
-  const ConstraintId joint = system.create_constraint(JointSpec{
+  const ConstraintId joint = system.joints().create(JointSpec{
       .kind = ConstraintKind::revolute, .a = block, .axis = {0, 0, 1}, .angle = {.motor_speed = 3, .motor_max = 1e4}});
   int step = 0;
   run(system, 1, 1.0 / 120, [&](const StepReport&) {
-    if (++step == 60) system.set_coordinate(joint, JointCoordinate::angle, {.motor_speed = -2, .motor_max = 1e4});
-    EXPECT_NEAR(system.state(joint).speed[0], step <= 60 ? 3 : -2, 0.01) << step;
+    if (++step == 60) system.joints().set_coordinate(joint, JointCoordinate::angle, {.motor_speed = -2, .motor_max = 1e4});
+    EXPECT_NEAR(system.joints().state(joint).speed[0], step <= 60 ? 3 : -2, 0.01) << step;
   });
 }
 
 TEST(Limit, stops_a_swinging_block) {
   System system;
   const BodyId block = make_block(system, {0.5, 0, 0}, {0.2, 0.2, 0.2}, 1);
-  const ConstraintId joint = system.create_constraint(JointSpec{
+  const ConstraintId joint = system.joints().create(JointSpec{
       .kind = ConstraintKind::revolute, .a = block, .axis = {0, 0, 1}, .angle = {.lower = -0.7, .upper = 0.3}});
   run(system, 2, 1.0 / 240, [&](const StepReport&) {
-    EXPECT_GT(system.state(joint).coordinate[0], -0.7 - 1e-7);
-    EXPECT_LT(system.state(joint).coordinate[0], 0.3 + 1e-7);
+    EXPECT_GT(system.joints().state(joint).coordinate[0], -0.7 - 1e-7);
+    EXPECT_LT(system.joints().state(joint).coordinate[0], 0.3 + 1e-7);
   });
-  EXPECT_NEAR(system.state(joint).coordinate[0], -0.7, 1e-6);
-  EXPECT_NEAR(system.state(joint).effort[0], 0.5 * g * std::cos(0.7), 1e-3);
+  EXPECT_NEAR(system.joints().state(joint).coordinate[0], -0.7, 1e-6);
+  EXPECT_NEAR(system.joints().state(joint).effort[0], 0.5 * g * std::cos(0.7), 1e-3);
 }
 
 TEST(Friction, a_block_on_an_incline_sticks_below_the_threshold_and_slides_above) {
@@ -327,14 +327,14 @@ TEST(Friction, a_block_on_an_incline_sticks_below_the_threshold_and_slides_above
     System system;
     const double slope = 0.5;  // m g sin = 9.4 N
     const BodyId block = make_block(system, {0, 0, 0}, {0.2, 0.1, 0.3}, 2);
-    const ConstraintId joint = system.create_constraint(JointSpec{.kind = ConstraintKind::prismatic,
+    const ConstraintId joint = system.joints().create(JointSpec{.kind = ConstraintKind::prismatic,
                                                                   .a = block,
                                                                   .at = {},
                                                                   .axis = {std::cos(slope), -std::sin(slope), 0},
                                                                   .slide = {.friction = friction}});
     run(system, 1, 1.0 / 240);
     const double pull = 2 * g * std::sin(slope);
-    EXPECT_NEAR(system.state(joint).speed[1], friction > pull ? 0 : (pull - friction) / 2, 1e-5);
+    EXPECT_NEAR(system.joints().state(joint).speed[1], friction > pull ? 0 : (pull - friction) / 2, 1e-5);
   }
 }
 
@@ -342,11 +342,11 @@ TEST(Spring, a_torsion_spring_has_its_period) {
   System system{SystemOptions{.gravity = {}}};
   const BodyId block = make_block(system, {0, 0, 0}, {0.2, 0.4, 0.3}, 2);
   const double inertia = 2 * (0.2 * 0.2 + 0.4 * 0.4) / 4, stiffness = 5;
-  const ConstraintId joint = system.create_constraint(JointSpec{
+  const ConstraintId joint = system.joints().create(JointSpec{
       .kind = ConstraintKind::revolute, .a = block, .axis = {0, 0, 1}, .angle = {.stiffness = stiffness, .rest = 0.3}});
   const double omega = std::sqrt(stiffness / inertia);
   run(system, 2, 1e-3, [&](const StepReport& report) {
-    EXPECT_NEAR(system.state(joint).coordinate[0], 0.3 - 0.3 * std::cos(omega * report.time), 1e-3);
+    EXPECT_NEAR(system.joints().state(joint).coordinate[0], 0.3 - 0.3 * std::cos(omega * report.time), 1e-3);
   });
 }
 
@@ -359,14 +359,14 @@ std::vector<Vec3> circle(double radius, int count) {
 
 TEST(Path, a_bead_on_a_vertical_circle_is_a_pendulum) {
   System system;
-  const BodyId bead = system.create_body();
+  const BodyId bead = system.bodies().create();
   const double amplitude = 0.2;
-  const ParticleId p = system.create_particle(bead, {std::sin(amplitude), -std::cos(amplitude), 0}, 0.5);
-  const ConstraintId path = system.create_constraint(PathSpec{.particle = p, .points = circle(1, 64), .closed = true});
+  const ParticleId p = system.particles().create(bead, {std::sin(amplitude), -std::cos(amplitude), 0}, 0.5);
+  const ConstraintId path = system.joints().create(PathSpec{.particle = p, .points = circle(1, 64), .closed = true});
   const double period = 2 * pi / std::sqrt(g) * (1 + amplitude * amplitude / 16);
   double last = amplitude, crossings = 0, first = 0, latest = 0;
   run(system, 8, 1e-3, [&](const StepReport& report) {
-    const Vec3 x = system.position(p);
+    const Vec3 x = system.particles().position(p);
     EXPECT_NEAR(norm(x), 1, 1e-6) << "as round as the spline through 64 points";
     if (last < 0 && x.x >= 0) {
       latest = report.time - 1e-3 * x.x / (x.x - last);
@@ -376,8 +376,8 @@ TEST(Path, a_bead_on_a_vertical_circle_is_a_pendulum) {
   });
   ASSERT_GT(crossings, 2);
   EXPECT_NEAR((latest - first) / (crossings - 1), period, 2e-4 * period);
-  const ConstraintState state = system.state(path);
-  const Vec3 x = system.position(p), v = system.velocity(p);
+  const ConstraintState state = system.joints().state(path);
+  const Vec3 x = system.particles().position(p), v = system.particles().velocity(p);
   EXPECT_NEAR(norm(state.force), 0.5 * (g * -x.y + dot(v, v)), 0.02) << "normal force";
   EXPECT_NEAR(std::abs(state.speed[1]), norm(v), 1e-5);
 }
@@ -386,42 +386,42 @@ TEST(Path, a_bead_on_a_parabola_keeps_its_energy_and_stops_at_its_end) {
   System system;
   std::vector<Vec3> points;
   for (int i = -10; i <= 10; ++i) points.push_back({0.1 * i, 0.01 * i * i, 0.2});
-  const BodyId bead = system.create_body();
-  const ParticleId p = system.create_particle(bead, {-0.5, 0.25, 0.2}, 2);
-  const ConstraintId path = system.create_constraint(PathSpec{.particle = p, .points = points});
+  const BodyId bead = system.bodies().create();
+  const ParticleId p = system.particles().create(bead, {-0.5, 0.25, 0.2}, 2);
+  const ConstraintId path = system.joints().create(PathSpec{.particle = p, .points = points});
   run(system, 2, 1.0 / 240, [&](const StepReport& report) {
-    const Vec3 x = system.position(p);
+    const Vec3 x = system.particles().position(p);
     EXPECT_NEAR(x.y, x.x * x.x, 2e-3);
     EXPECT_NEAR(report.energy.total(), 2 * g * 0.25, 5e-3);
   });
-  EXPECT_GT(system.state(path).coordinate[1], 0);
-  system.set_velocity(p, {20, 0, 0});
-  run(system, 1, 1.0 / 240, [&](const StepReport&) { EXPECT_LT(system.position(p).x, 1 + 1e-6); });
+  EXPECT_GT(system.joints().state(path).coordinate[1], 0);
+  system.particles().set_velocity(p, {20, 0, 0});
+  run(system, 1, 1.0 / 240, [&](const StepReport&) { EXPECT_LT(system.particles().position(p).x, 1 + 1e-6); });
 }
 
 TEST(Path, a_corner_of_a_polyline_is_no_hiccup) {
   System system{SystemOptions{.gravity = {}}};
-  const ParticleId p = system.create_particle(system.create_body(), {0.5, 0, 0}, 1, {2, 0, 0});
-  system.create_constraint(PathSpec{.particle = p,
+  const ParticleId p = system.particles().create(system.bodies().create(), {0.5, 0, 0}, 1, {2, 0, 0});
+  system.joints().create(PathSpec{.particle = p,
                                     .curve = CurveKind::polyline,
                                     .points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                                     .closed = true});
   run(system, 5, 1.0 / 120, [&](const StepReport& report) {
     EXPECT_EQ(report.fallbacks, 0);
-    EXPECT_NEAR(norm(system.velocity(p)), 2, 0.02);
+    EXPECT_NEAR(norm(system.particles().velocity(p)), 2, 0.02);
   });
 }
 
 TEST(Path, moves_with_its_body_and_pushes_it) {
   System system{SystemOptions{.gravity = {}}};
   const BodyId rail = make_block(system, {0, 0, 0}, {2, 0.1, 0.1}, 3);
-  const ParticleId p = system.create_particle(system.create_body(), {-1, 0, 0}, 1, {1, 0.5, 0.2});
-  const ConstraintId path = system.create_constraint(PathSpec{.particle = p,
+  const ParticleId p = system.particles().create(system.bodies().create(), {-1, 0, 0}, 1, {1, 0.5, 0.2});
+  const ConstraintId path = system.joints().create(PathSpec{.particle = p,
                                                               .body = rail,
                                                               .points = {{-1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}},
                                                               .slide = {.motor_speed = 1, .motor_max = 0.1}});
   const Vec3 momentum = system.momentum(), spin = system.angular_momentum();
-  run(system, 1, 1.0 / 120, [&](const StepReport&) { EXPECT_LT(system.state(path).gap, 1e-8); });
+  run(system, 1, 1.0 / 120, [&](const StepReport&) { EXPECT_LT(system.joints().state(path).gap, 1e-8); });
   EXPECT_NEAR(norm(system.momentum() - momentum), 0, 1e-10);
   EXPECT_NEAR(norm(system.angular_momentum() - spin), 0, 1e-3) << "a path's normals are no quadratic: second order";
 }
@@ -430,11 +430,11 @@ TEST(Surface, a_point_on_a_sphere_is_a_spherical_pendulum) {
   System system;
   const double polar = 0.8, speed = std::sqrt(g * std::sin(polar) * std::tan(polar));  // a conical one
   const ParticleId p =
-      system.create_particle(system.create_body(), {std::sin(polar), -std::cos(polar), 0}, 1, {0, 0, speed});
-  system.create_constraint(SurfaceSpec{.particle = p, .surface = {Sphere{1}, {}, {}}});
+      system.particles().create(system.bodies().create(), {std::sin(polar), -std::cos(polar), 0}, 1, {0, 0, speed});
+  system.joints().create(SurfaceSpec{.particle = p, .surface = {Sphere{1}, {}, {}}});
   run(system, 4, 1.0 / 240, [&](const StepReport&) {
-    EXPECT_NEAR(norm(system.position(p)), 1, 1e-8);
-    EXPECT_NEAR(system.position(p).y, -std::cos(polar), 2e-4);
+    EXPECT_NEAR(norm(system.particles().position(p)), 1, 1e-8);
+    EXPECT_NEAR(system.particles().position(p).y, -std::cos(polar), 2e-4);
   });
 }
 
@@ -455,26 +455,26 @@ TEST(Surface, every_shape_holds_a_point_where_it_says) {
     System system{SystemOptions{.gravity = {}}};
     const Vec3 at{1, 2, 3};
     const Vec3 x{std::cos(0.6) * on.x - std::sin(0.6) * on.y, std::sin(0.6) * on.x + std::cos(0.6) * on.y, on.z};
-    const ParticleId p = system.create_particle(system.create_body(), at + x);
-    const ConstraintId c = system.create_constraint(SurfaceSpec{.particle = p, .surface = {shape, at, turn}});
+    const ParticleId p = system.particles().create(system.bodies().create(), at + x);
+    const ConstraintId c = system.joints().create(SurfaceSpec{.particle = p, .surface = {shape, at, turn}});
     run(system, 0.1, 1.0 / 60);
-    EXPECT_LT(system.state(c).gap, 1e-9) << shape.index();
-    EXPECT_NEAR(norm(system.position(p) - at - x), 0, 1e-6) << shape.index() << ": it was there already";
+    EXPECT_LT(system.joints().state(c).gap, 1e-9) << shape.index();
+    EXPECT_NEAR(norm(system.particles().position(p) - at - x), 0, 1e-6) << shape.index() << ": it was there already";
   }
 }
 
 TEST(Surface, with_sharp_edges_keeps_a_point_on_one_side_only) {
   for (const Shape& shape : {Shape{Box{}}, Shape{Cylinder{}}, Shape{Cone{}}}) {
     System system{SystemOptions{.gravity = {}}};
-    const ParticleId p = system.create_particle(system.create_body(), {-0.2, 0, 0}, 1, {1.3, 0.4, 0.7});
-    EXPECT_THROW(system.create_constraint(SurfaceSpec{.particle = p, .surface = {shape, {}, {}}}),
+    const ParticleId p = system.particles().create(system.bodies().create(), {-0.2, 0, 0}, 1, {1.3, 0.4, 0.7});
+    EXPECT_THROW(system.joints().create(SurfaceSpec{.particle = p, .surface = {shape, {}, {}}}),
                  std::invalid_argument);
-    system.create_constraint(SurfaceSpec{.kind = ConstraintKind::inside, .particle = p, .surface = {shape, {}, {}}});
+    system.joints().create(SurfaceSpec{.kind = ConstraintKind::inside, .particle = p, .surface = {shape, {}, {}}});
     const double start = system.energy().kinetic;
     for (int i = 0; i < 300; ++i) {
       (void)system.step(0.01);
       ASSERT_LE(system.energy().kinetic, start * (1 + 1e-9));
-      const Vec3 x = system.position(p);
+      const Vec3 x = system.particles().position(p);
       ASSERT_LE(std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}), 0.5 + 1e-6);
     }
   }
@@ -482,35 +482,35 @@ TEST(Surface, with_sharp_edges_keeps_a_point_on_one_side_only) {
 
 TEST(Inside, a_ball_in_a_bowl_falls_meets_it_without_bouncing_and_slides_to_rest_at_the_bottom) {
   System system{SystemOptions{.damping = 0.5}};
-  const ParticleId p = system.create_particle(system.create_body(), {0.5, 0, 0});
-  const ConstraintId bowl = system.create_constraint(
+  const ParticleId p = system.particles().create(system.bodies().create(), {0.5, 0, 0});
+  const ConstraintId bowl = system.joints().create(
       SurfaceSpec{.kind = ConstraintKind::inside, .particle = p, .surface = {Sphere{1}, {}, {}}});
   const double fall = std::sqrt(2 * std::sqrt(0.75) / g);
   run(system, 20, 1.0 / 120, [&](const StepReport& report) {
-    EXPECT_LT(norm(system.position(p)), 1 + 1e-7);
+    EXPECT_LT(norm(system.particles().position(p)), 1 + 1e-7);
     if (report.time < 0.9 * fall) {
-      EXPECT_NEAR(system.position(p).x, 0.5, 1e-9);
+      EXPECT_NEAR(system.particles().position(p).x, 0.5, 1e-9);
     }
     if (report.time > 1.1 * fall && report.time < 3 * fall) {
-      const Vec3 x = system.position(p);
+      const Vec3 x = system.particles().position(p);
       EXPECT_GT(norm(x), 0.99) << "no bounce";
     }
   });
-  EXPECT_NEAR(system.position(p).y, -1, 1e-3);
-  EXPECT_NEAR(system.state(bowl).force.y, g, 1e-2);
+  EXPECT_NEAR(system.particles().position(p).y, -1, 1e-3);
+  EXPECT_NEAR(system.joints().state(bowl).force.y, g, 1e-2);
 }
 
 TEST(Outside, a_point_rolls_off_a_ball_where_it_should) {
   // It leaves a smooth sphere at a third of the radius down.
   System system;
-  const ParticleId p = system.create_particle(system.create_body(), {0.02, std::sqrt(1 - 4e-4), 0});
-  const ConstraintId ball = system.create_constraint(
+  const ParticleId p = system.particles().create(system.bodies().create(), {0.02, std::sqrt(1 - 4e-4), 0});
+  const ConstraintId ball = system.joints().create(
       SurfaceSpec{.kind = ConstraintKind::outside, .particle = p, .surface = {Sphere{1}, {}, {}}});
   double left_at = 0;
   run(system, 2, 1e-3, [&](const StepReport&) {
-    EXPECT_GT(norm(system.position(p)), 1 - 1e-8);
-    if (left_at == 0 && norm(system.state(ball).force) == 0 && system.velocity(p).y < -0.1)
-      left_at = system.position(p).y;
+    EXPECT_GT(norm(system.particles().position(p)), 1 - 1e-8);
+    if (left_at == 0 && norm(system.joints().state(ball).force) == 0 && system.particles().velocity(p).y < -0.1)
+      left_at = system.particles().position(p).y;
   });
   EXPECT_NEAR(left_at, 2.0 / 3, 0.01);
 }
@@ -519,84 +519,84 @@ TEST(SurfacePair, a_ball_rests_on_a_plane_and_another_on_it) {
   System system{SystemOptions{.damping = 1}};
   const auto ball = [&](double y) { return make_block(system, {0, y, 0}, {0.3, 0.3, 0.3}, 1); };
   const BodyId lower = ball(0.6), upper = ball(1.7);
-  const ConstraintId floor = system.create_constraint(SurfacePairSpec{
+  const ConstraintId floor = system.joints().create(SurfacePairSpec{
       .a = lower, .b = {}, .surface_a = {Sphere{0.5}, {0, 0.6, 0}, {}}, .surface_b = {HalfSpace{}, {}, {}}});
-  const ConstraintId contact = system.create_constraint(SurfacePairSpec{.a = upper,
+  const ConstraintId contact = system.joints().create(SurfacePairSpec{.a = upper,
                                                                         .b = lower,
                                                                         .surface_a = {Sphere{0.5}, {0, 1.7, 0}, {}},
                                                                         .surface_b = {Sphere{0.5}, {0, 0.6, 0}, {}}});
   run(system, 4, 1.0 / 120);
-  EXPECT_NEAR(system.center_of_mass(lower).y, 0.5, 1e-6);
-  EXPECT_NEAR(system.center_of_mass(upper).y, 1.5, 1e-6);
-  EXPECT_NEAR(system.state(floor).force.y, 2 * g, 1e-4);
-  EXPECT_NEAR(system.state(contact).force.y, g, 1e-4);
+  EXPECT_NEAR(system.bodies().center_of_mass(lower).y, 0.5, 1e-6);
+  EXPECT_NEAR(system.bodies().center_of_mass(upper).y, 1.5, 1e-6);
+  EXPECT_NEAR(system.joints().state(floor).force.y, 2 * g, 1e-4);
+  EXPECT_NEAR(system.joints().state(contact).force.y, g, 1e-4);
 }
 
 TEST(SurfacePair, a_ball_held_to_a_slope_slides_down_it) {
   System system;
   const BodyId ball = make_block(system, {0, 0.5, 0}, {0.3, 0.3, 0.3}, 1);
   const double slope = 0.4;
-  const ConstraintId contact = system.create_constraint(
+  const ConstraintId contact = system.joints().create(
       SurfacePairSpec{.kind = ConstraintKind::touching,
                       .a = ball,
                       .b = {},
                       .surface_a = {Sphere{0.5}, {0, 0.5, 0}, {}},
                       .surface_b = {HalfSpace{{std::sin(slope), std::cos(slope), 0}}, {0, 0, 0}, {}}});
-  run(system, 1, 1.0 / 240, [&](const StepReport&) { EXPECT_LT(system.state(contact).gap, 1e-8); });
+  run(system, 1, 1.0 / 240, [&](const StepReport&) { EXPECT_LT(system.joints().state(contact).gap, 1e-8); });
   EXPECT_NEAR(norm(system.momentum()), g * std::sin(slope), 0.01);
-  EXPECT_NEAR(norm(system.state(contact).force), g * std::cos(slope), 1e-3);
+  EXPECT_NEAR(norm(system.joints().state(contact).force), g * std::cos(slope), 1e-3);
 }
 
 TEST(Markers, of_a_joint_that_were_put_to_use_outlive_it) {
   System system;
   const BodyId block = make_block(system, {}, {1, 1, 1}, 8);
-  const ConstraintId joint = system.create_constraint(JointSpec{.a = block, .at = {}});
-  const auto markers = system.particles(joint);
+  const ConstraintId joint = system.joints().create(JointSpec{.a = block, .at = {}});
+  const auto markers = system.joints().particles(joint);
   ASSERT_EQ(markers.size(), 3u);
-  (void)system.combine(markers[1], system.particles(block)[0]);  // it has a mass now
-  system.nail(markers[2]);
-  system.destroy(joint);
-  EXPECT_FALSE(system.contains(markers[0]));
-  EXPECT_TRUE(system.contains(markers[1]) && system.contains(markers[2]));
-  EXPECT_NEAR(system.mass(block), 8, 1e-12);
+  (void)system.edits().combine(markers[1], system.bodies().particles(block)[0]);  // it has a mass now
+  system.particles().nail(markers[2]);
+  system.joints().destroy(joint);
+  EXPECT_FALSE(system.particles().contains(markers[0]));
+  EXPECT_TRUE(system.particles().contains(markers[1]) && system.particles().contains(markers[2]));
+  EXPECT_NEAR(system.bodies().mass(block), 8, 1e-12);
   EXPECT_EQ(system.validate(), std::vector<std::string>{});
 }
 
 TEST(Break, a_rope_snaps_when_its_load_is_too_much_and_the_report_names_it) {
   System system;
-  const BodyId anchor = system.create_body({.kind = BodyKind::static_}), ball = system.create_body();
-  const ParticleId p = system.create_particle(anchor, {}), q = system.create_particle(ball, {0, -1, 0}, 2);
-  const ConstraintId rope = system.create_constraint(
+  const BodyId anchor = system.bodies().create({.kind = BodyKind::static_}), ball = system.bodies().create();
+  const ParticleId p = system.particles().create(anchor, {}), q = system.particles().create(ball, {0, -1, 0}, 2);
+  const ConstraintId rope = system.joints().create(
       DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .breaks = {.force = 2.1 * g}});
   run(system, 0.5, 1.0 / 120, [&](const StepReport& report) { EXPECT_TRUE(report.broken.empty()); });
-  system.apply_force(q, {0, -1, 0});
+  system.particles().apply_force(q, {0, -1, 0});
   EXPECT_TRUE(system.step(1.0 / 120).broken.empty());
-  system.apply_force(q, {0, -4, 0});
+  system.particles().apply_force(q, {0, -4, 0});
   const StepReport report = system.step(1.0 / 120);
   ASSERT_EQ(report.broken.size(), 1u);
   EXPECT_EQ(report.broken[0].constraint, rope);
   EXPECT_NEAR(report.broken[0].force, 2 * g + 4, 2) << "a mean of this step's and the last one's";
-  EXPECT_TRUE(system.state(rope).broken);
+  EXPECT_TRUE(system.joints().state(rope).broken);
   run(system, 0.5, 1.0 / 120);
-  EXPECT_LT(system.position(q).y, -2);
-  system.set_length(rope, 3), system.set_active(rope, true);
+  EXPECT_LT(system.particles().position(q).y, -2);
+  system.joints().set_length(rope, 3), system.joints().set_active(rope, true);
   run(system, 2, 1.0 / 120);
-  EXPECT_FALSE(system.state(rope).broken && norm(system.position(q)) < 3.1) << "it holds again, or snaps again";
+  EXPECT_FALSE(system.joints().state(rope).broken && norm(system.particles().position(q)) < 3.1) << "it holds again, or snaps again";
 }
 
 TEST(Break, a_weld_gives_way_to_a_moment) {
   System system;
   const BodyId beam = make_block(system, {0.5, 0, 0}, {1, 0.1, 0.1}, 1);
-  const ConstraintId weld = system.create_constraint(
+  const ConstraintId weld = system.joints().create(
       JointSpec{.kind = ConstraintKind::weld, .a = beam, .at = {}, .breaks = {.torque = 0.6 * g}});
   EXPECT_TRUE(system.step(1.0 / 120).broken.empty());
   for (int i = 0; i < 10; ++i) (void)system.step(1.0 / 120);
-  ASSERT_FALSE(system.state(weld).broken);
-  system.set_mass(system.particles(beam)[7], 1);  // 0.625 kg m more
+  ASSERT_FALSE(system.joints().state(weld).broken);
+  system.particles().set_mass(system.bodies().particles(beam)[7], 1);  // 0.625 kg m more
   int broken = 0;
   for (int i = 0; i < 10; ++i) broken += static_cast<int>(system.step(1.0 / 120).broken.size());
   EXPECT_EQ(broken, 1);
-  EXPECT_FALSE(system.state(weld).active);
+  EXPECT_FALSE(system.joints().state(weld).active);
 }
 
 TEST(HingeForce, of_a_hanging_chain_is_the_weight_below_it) {
@@ -604,12 +604,12 @@ TEST(HingeForce, of_a_hanging_chain_is_the_weight_below_it) {
     for (const bool by_field : {false, true}) {
       System system{SystemOptions{.mode = mode, .damping = 5}};
       const auto chain = scenes::make_chain(system, {.links = 5, .link_mass = 0.4, .direction = {0, -1, 0}});
-      if (by_field) system.create_field("uniform", {.parameters = {{"acceleration_y", -g}}, .replaces_gravity = true});
+      if (by_field) system.fields().create("uniform", {.parameters = {{"acceleration_y", -g}}, .replaces_gravity = true});
       for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 120);
       for (std::size_t i = 0; i < 5; ++i) {
         const double below = 0.4 * g * static_cast<double>(5 - i);
-        EXPECT_NEAR(norm(system.hinge_force(chain.upper[i]) - Vec3{0, below, 0}), 0, 1e-6) << i;
-        EXPECT_NEAR(norm(system.hinge_force(chain.lower[i]) - Vec3{0, -(below - 0.4 * g), 0}), 0, 1e-6) << i;
+        EXPECT_NEAR(norm(system.particles().hinge_force(chain.upper[i]) - Vec3{0, below, 0}), 0, 1e-6) << i;
+        EXPECT_NEAR(norm(system.particles().hinge_force(chain.lower[i]) - Vec3{0, -(below - 0.4 * g), 0}), 0, 1e-6) << i;
       }
     }
 }
@@ -619,16 +619,16 @@ TEST(HingeForce, of_bodies_in_flight_is_what_their_motion_takes) {
   System system{SystemOptions{.gravity = {0, -3, 0}}};
   const BodyId a = make_block(system, {-0.5, 0, 0}, {0.8, 0.2, 0.3}, 1, {0, 1, 0});
   const BodyId b = make_block(system, {0.5, 0, 0}, {0.8, 0.3, 0.2}, 2, {0, 0, 1});
-  const ParticleId p = system.create_particle(a, {0, 0, 0}, 0), q = system.create_particle(b, {0, 0, 0}, 0.2);
-  (void)system.combine(p, q);
+  const ParticleId p = system.particles().create(a, {0, 0, 0}, 0), q = system.particles().create(b, {0, 0, 0}, 0.2);
+  (void)system.edits().combine(p, q);
   (void)system.step(1e-3);
   for (int i = 0; i < 300; ++i) {
-    const Vec3 before_a = system.velocity(a), before_b = system.velocity(b);
+    const Vec3 before_a = system.bodies().velocity(a), before_b = system.bodies().velocity(b);
     (void)system.step(1e-3);
-    const Vec3 needs_a = system.mass(a) * (1e3 * (system.velocity(a) - before_a) - Vec3{0, -3, 0});
-    const Vec3 needs_b = system.mass(b) * (1e3 * (system.velocity(b) - before_b) - Vec3{0, -3, 0});
-    ASSERT_NEAR(norm(system.hinge_force(p) - needs_a), 0, 1e-3 * (0.1 + norm(needs_a))) << i;
-    ASSERT_NEAR(norm(system.hinge_force(q) - needs_b), 0, 1e-3 * (0.1 + norm(needs_b))) << i;
+    const Vec3 needs_a = system.bodies().mass(a) * (1e3 * (system.bodies().velocity(a) - before_a) - Vec3{0, -3, 0});
+    const Vec3 needs_b = system.bodies().mass(b) * (1e3 * (system.bodies().velocity(b) - before_b) - Vec3{0, -3, 0});
+    ASSERT_NEAR(norm(system.particles().hinge_force(p) - needs_a), 0, 1e-3 * (0.1 + norm(needs_a))) << i;
+    ASSERT_NEAR(norm(system.particles().hinge_force(q) - needs_b), 0, 1e-3 * (0.1 + norm(needs_b))) << i;
   }
 }
 
@@ -636,32 +636,32 @@ TEST(HingeForce, tells_springs_and_constraints_from_hinges) {
   System system{SystemOptions{.mode = IntegrationMode::robust, .damping = 20}};
   const BodyId upper = make_block(system, {0, 1, 0}, {0.2, 1, 0.2}, 1);
   const BodyId lower = make_block(system, {0, 0, 0}, {0.2, 1, 0.2}, 3);
-  const ParticleId p = system.create_particle(upper, {0, 0.5, 0}, 0), q = system.create_particle(lower, {0, 0.5, 0}, 0);
-  system.create_constraint(JointSpec{.kind = ConstraintKind::weld, .a = upper, .at = {0, 1.5, 0}});
-  (void)system.combine(p, q);
-  const ParticleId hook = system.create_particle(system.create_body({.kind = BodyKind::static_}), {0, 2, 0});
-  system.create_bond(q, hook, SpringLaw{.stiffness = 10, .length = 0.5});  // pulls q up with 10 N
+  const ParticleId p = system.particles().create(upper, {0, 0.5, 0}, 0), q = system.particles().create(lower, {0, 0.5, 0}, 0);
+  system.joints().create(JointSpec{.kind = ConstraintKind::weld, .a = upper, .at = {0, 1.5, 0}});
+  (void)system.edits().combine(p, q);
+  const ParticleId hook = system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {0, 2, 0});
+  system.bonds().create(q, hook, SpringLaw{.stiffness = 10, .length = 0.5});  // pulls q up with 10 N
   for (int i = 0; i < 240; ++i) (void)system.step(1.0 / 120);
-  EXPECT_NEAR(norm(system.hinge_force(q) - Vec3{0, 3 * g - 10, 0}), 0, 1e-4);
-  EXPECT_NEAR(norm(system.hinge_force(p) + Vec3{0, 3 * g - 10, 0}), 0, 1e-4);
+  EXPECT_NEAR(norm(system.particles().hinge_force(q) - Vec3{0, 3 * g - 10, 0}), 0, 1e-4);
+  EXPECT_NEAR(norm(system.particles().hinge_force(p) + Vec3{0, 3 * g - 10, 0}), 0, 1e-4);
 }
 
 TEST(Break, a_hinge_and_a_nail_give_way_to_their_loads) {
   System system{SystemOptions{.damping = 5}};
   const auto chain = scenes::make_chain(system, {.links = 4, .link_mass = 1, .direction = {0, -1, 0}});
-  system.set_break_force(chain.upper[2], 2.5 * g);
-  system.set_break_force(chain.upper[0], 2.5 * g);
+  system.particles().set_break_force(chain.upper[2], 2.5 * g);
+  system.particles().set_break_force(chain.upper[0], 2.5 * g);
   const StepReport report = system.step(1.0 / 120);
   ASSERT_EQ(report.broken.size(), 1u) << "the nail bears 4 g; below it nothing is overloaded";
   EXPECT_EQ(report.broken[0].particle, chain.upper[0]);
-  EXPECT_FALSE(system.is_nailed(chain.upper[0]));
-  system.nail(chain.upper[0]), system.set_break_force(chain.upper[0], 100 * g);
+  EXPECT_FALSE(system.particles().is_nailed(chain.upper[0]));
+  system.particles().nail(chain.upper[0]), system.particles().set_break_force(chain.upper[0], 100 * g);
   for (int i = 0; i < 30; ++i) (void)system.step(1.0 / 120);
-  system.apply_force(chain.lower[3], {0, -2 * g, 0});
+  system.particles().apply_force(chain.lower[3], {0, -2 * g, 0});
   const StepReport torn = system.step(1.0 / 120);
   ASSERT_EQ(torn.broken.size(), 1u);
   EXPECT_EQ(torn.broken[0].particle, chain.upper[2]);
-  EXPECT_EQ(system.ring(chain.upper[2]).size(), 1u);
+  EXPECT_EQ(system.particles().ring(chain.upper[2]).size(), 1u);
   EXPECT_EQ(system.validate(), std::vector<std::string>{});
 }
 

@@ -15,18 +15,18 @@ std::vector<BodyId> make_parallelogram(System& system, int couplers, double lean
   std::vector<BodyId> bars;
   std::vector<std::pair<ParticleId, ParticleId>> ends;
   const auto bar = [&](const Vec3& a, const Vec3& b) {
-    bars.push_back(system.create_body());
-    const ParticleId p = system.create_particle(bars.back(), a), q = system.create_particle(bars.back(), b);
+    bars.push_back(system.bodies().create());
+    const ParticleId p = system.particles().create(bars.back(), a), q = system.particles().create(bars.back(), b);
     ends.push_back({p, q});
   };
   bar({0, 0, 0}, {lean, 1, 0});
   bar({1, 0, 0}, {1 + lean, 1, 0});
   for (int i = 0; i < couplers; ++i) {
     bar({lean, 1, 0}, {1 + lean, 1, 0});
-    (void)system.combine(ends[0].second, ends.back().first);
-    (void)system.combine(ends[1].second, ends.back().second);
+    (void)system.edits().combine(ends[0].second, ends.back().first);
+    (void)system.edits().combine(ends[1].second, ends.back().second);
   }
-  system.nail(ends[0].first), system.nail(ends[1].first);
+  system.particles().nail(ends[0].first), system.particles().nail(ends[1].first);
   return bars;
 }
 
@@ -51,11 +51,11 @@ TEST(Diagnosis, counts_the_degrees_of_freedom_of_a_hanging_chain) {
 
 TEST(Diagnosis, of_a_free_body_gives_it_six_degrees_of_freedom) {
   System system;
-  const BodyId body = system.create_body();
-  for (int i = 0; i < 6; ++i) system.create_particle(body, {std::cos(i * 1.0), std::sin(2.0 * i), 0.3 * i * i});
+  const BodyId body = system.bodies().create();
+  for (int i = 0; i < 6; ++i) system.particles().create(body, {std::cos(i * 1.0), std::sin(2.0 * i), 0.3 * i * i});
   EXPECT_EQ(system.diagnose(body).degrees_of_freedom, 6u);
-  const BodyId point = system.create_body();
-  system.create_particle(point, {5, 0, 0});
+  const BodyId point = system.bodies().create();
+  system.particles().create(point, {5, 0, 0});
   const Diagnosis d = system.diagnose(point);
   EXPECT_EQ(d.degrees_of_freedom, 3u);
   EXPECT_EQ(d.rows, 0u);
@@ -91,8 +91,8 @@ TEST(Diagnosis, finds_a_fully_extended_linkage_nearly_singular) {
   // A chain between two nails, a millionth short of taut: the rows nearly repeat each other.
   System system;
   const auto chain = scenes::make_chain(system, {.links = 2, .link_length = 1});
-  system.set_position(chain.lower[0], {1, -1e-4, 0});
-  system.nail(chain.lower[1]);
+  system.particles().set_position(chain.lower[0], {1, -1e-4, 0});
+  system.particles().nail(chain.lower[1]);
   const Diagnosis d = system.diagnose(chain.links[0]);
   EXPECT_EQ(d.redundancy, 0u);
   EXPECT_GT(d.condition, 1e3);
@@ -101,19 +101,19 @@ TEST(Diagnosis, finds_a_fully_extended_linkage_nearly_singular) {
 
   System taut;
   const auto straight = scenes::make_chain(taut, {.links = 2, .link_length = 1});
-  taut.nail(straight.lower[1]);
+  taut.particles().nail(straight.lower[1]);
   EXPECT_EQ(taut.diagnose(straight.links[0]).redundancy, 1u);
 }
 
 TEST(Diagnosis, names_joints) {
   System system;
-  const BodyId a = system.create_body(), b = system.create_body();
+  const BodyId a = system.bodies().create(), b = system.bodies().create();
   for (const BodyId body : {a, b})
     for (const Vec3& x : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
-      system.create_particle(body, body == a ? x : x + Vec3{0.1, 0.2, 0.3});
-  const ConstraintId hinge = system.create_constraint(JointSpec{.kind = ConstraintKind::revolute, .a = a, .b = b});
+      system.particles().create(body, body == a ? x : x + Vec3{0.1, 0.2, 0.3});
+  const ConstraintId hinge = system.joints().create(JointSpec{.kind = ConstraintKind::revolute, .a = a, .b = b});
   EXPECT_EQ(system.diagnose(a).degrees_of_freedom, 7u);
-  (void)system.create_constraint(JointSpec{.kind = ConstraintKind::ball, .a = a, .b = b});
+  (void)system.joints().create(JointSpec{.kind = ConstraintKind::ball, .a = a, .b = b});
   const Diagnosis d = system.diagnose(b);
   EXPECT_EQ(d.degrees_of_freedom, 7u);
   EXPECT_EQ(d.redundancy, 3u);
@@ -134,8 +134,8 @@ TEST(Diagnosis, refuses_what_is_gone_or_too_large) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 700});
   EXPECT_THROW((void)system.diagnose(chain.links[0]), std::invalid_argument);
-  const BodyId gone = system.create_body();
-  system.destroy(gone);
+  const BodyId gone = system.bodies().create();
+  system.bodies().destroy(gone);
   EXPECT_THROW((void)system.diagnose(gone), StaleIdError);
 }
 

@@ -16,17 +16,17 @@ double book(const System& system) {
 
 struct Plate {
   System system{SystemOptions{.gravity = {}}};
-  BodyId body = system.create_body();
+  BodyId body = system.bodies().create();
   std::vector<ParticleId> points;
   Plate() {  // five points: the fifth is carried by the other four
     for (const Vec3& x : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{0.3, 0.2, 0.1}})
-      points.push_back(system.create_particle(body, x, 2));
+      points.push_back(system.particles().create(body, x, 2));
   }
 };
 
 TEST(AssignedVelocity, of_a_carried_particle_keeps_its_momentum_and_the_book) {
   Plate plate;
-  plate.system.set_velocity(plate.points[4], {3, -1, 2});
+  plate.system.particles().set_velocity(plate.points[4], {3, -1, 2});
   const Vec3 momentum = plate.system.momentum(), spin = plate.system.angular_momentum();
   const double before = book(plate.system);
   (void)plate.system.step(1e-3);
@@ -38,29 +38,29 @@ TEST(AssignedVelocity, of_a_carried_particle_keeps_its_momentum_and_the_book) {
 
 TEST(EnergyBook, adds_up_when_masses_and_kinds_change) {
   Plate plate;
-  for (const ParticleId p : plate.points) plate.system.set_velocity(p, {1, 2, 0});
+  for (const ParticleId p : plate.points) plate.system.particles().set_velocity(p, {1, 2, 0});
   (void)plate.system.step(1e-2);
   const double before = book(plate.system);
-  plate.system.set_mass(plate.points[1], 7);
+  plate.system.particles().set_mass(plate.points[1], 7);
   EXPECT_NEAR(book(plate.system), before, 1e-12);
   (void)plate.system.step(1e-2);
   EXPECT_NEAR(book(plate.system), before, 1e-9);
-  plate.system.set_kind(plate.body, BodyKind::static_);
+  plate.system.bodies().set_kind(plate.body, BodyKind::static_);
   EXPECT_EQ(plate.system.energy().kinetic, 0);
   EXPECT_NEAR(book(plate.system), before, 1e-9);
-  plate.system.set_kind(plate.body, BodyKind::scripted);
-  plate.system.set_position(plate.points[0], {0, 0.5, 0});
+  plate.system.bodies().set_kind(plate.body, BodyKind::scripted);
+  plate.system.particles().set_position(plate.points[0], {0, 0.5, 0});
   (void)plate.system.step(1e-2);
   EXPECT_NEAR(book(plate.system), before, 1e-9) << "what the script carries is external work";
 }
 
 TEST(Rod, with_too_little_mass_at_an_end_has_no_motion_of_negative_energy) {
   System system{SystemOptions{.gravity = {}}};
-  const BodyId rod = system.create_body();
-  const ParticleId p = system.create_particle(rod, {0, 0, 0}), q = system.create_particle(rod, {1, 0, 0});
-  system.set_rod(rod, 6, 0.01);
-  system.set_mass(p, 0.01);
-  system.set_velocity(p, {0, -1, 0}), system.set_velocity(q, {0, 0.01, 0});
+  const BodyId rod = system.bodies().create();
+  const ParticleId p = system.particles().create(rod, {0, 0, 0}), q = system.particles().create(rod, {1, 0, 0});
+  system.bodies().set_rod(rod, 6, 0.01);
+  system.particles().set_mass(p, 0.01);
+  system.particles().set_velocity(p, {0, -1, 0}), system.particles().set_velocity(q, {0, 0.01, 0});
   EXPECT_GT(system.energy().kinetic, 0);
   const double before = book(system);
   for (int i = 0; i < 100; ++i) (void)system.step(1.0 / 60);
@@ -70,15 +70,15 @@ TEST(Rod, with_too_little_mass_at_an_end_has_no_motion_of_negative_energy) {
 
 TEST(Rod, whose_end_is_shared_with_a_twin_that_leaves_stays_whole) {
   System system{SystemOptions{.gravity = {}}};
-  const BodyId rod = system.create_body();
-  const ParticleId p = system.create_particle(rod, {0, 0, 0}), q = system.create_particle(rod, {1, 0, 0});
-  system.set_rod(rod, 6, 0.01);
-  system.set_velocity(p, {0, -1, 0}), system.set_velocity(q, {0, 2, 1});
+  const BodyId rod = system.bodies().create();
+  const ParticleId p = system.particles().create(rod, {0, 0, 0}), q = system.particles().create(rod, {1, 0, 0});
+  system.bodies().set_rod(rod, 6, 0.01);
+  system.particles().set_velocity(p, {0, -1, 0}), system.particles().set_velocity(q, {0, 2, 1});
   (void)system.step(1e-2);
   const double before = book(system);
-  const ParticleId twin = system.separate(p, p).created_particles.front();
-  (void)system.separate(p, twin);  // a body of its own, hinged to p
-  (void)system.separate(p, twin);  // and free
+  const ParticleId twin = system.edits().separate(p, p).created_particles.front();
+  (void)system.edits().separate(p, twin);  // a body of its own, hinged to p
+  (void)system.edits().separate(p, twin);  // and free
   for (int i = 0; i < 100; ++i) {
     (void)system.step(1.0 / 60);
     ASSERT_GT(system.energy().kinetic, 0);
@@ -89,13 +89,13 @@ TEST(Rod, whose_end_is_shared_with_a_twin_that_leaves_stays_whole) {
 
 TEST(Combine, with_a_static_body_brings_the_other_one_to_it) {
   System system;
-  const BodyId wall = system.create_body({.kind = BodyKind::static_}), link = system.create_body();
-  const ParticleId hook = system.create_particle(wall, {0, 1, 0}, 0.001);
-  system.create_particle(wall, {2, 1, 0}, 0.001);
-  const ParticleId eye = system.create_particle(link, {0.3, 0.8, 0}, 100);
-  system.create_particle(link, {0.3, 0.2, 0}, 100);
-  (void)system.combine(eye, hook);
-  EXPECT_LT(norm(system.position(eye) - Vec3{0, 1, 0}), 1e-9);
+  const BodyId wall = system.bodies().create({.kind = BodyKind::static_}), link = system.bodies().create();
+  const ParticleId hook = system.particles().create(wall, {0, 1, 0}, 0.001);
+  system.particles().create(wall, {2, 1, 0}, 0.001);
+  const ParticleId eye = system.particles().create(link, {0.3, 0.8, 0}, 100);
+  system.particles().create(link, {0.3, 0.2, 0}, 100);
+  (void)system.edits().combine(eye, hook);
+  EXPECT_LT(norm(system.particles().position(eye) - Vec3{0, 1, 0}), 1e-9);
   for (int i = 0; i < 60; ++i) EXPECT_EQ(system.step(1.0 / 60).unconverged, 0);
   EXPECT_LT(system.worst_gap(), 1e-9);
 }
@@ -104,32 +104,32 @@ TEST(StaticBody, does_not_creep_under_a_load) {
   System system{SystemOptions{.mode = IntegrationMode::robust}};
   const auto chain =
       scenes::make_chain(system, {.links = 100, .nailed = false, .heavy_end = 1e6, .direction = {0, -1, 0}});
-  const ParticleId hook = system.create_particle(system.create_body({.kind = BodyKind::static_}), {0, 0, 0}, 1e-3);
-  (void)system.combine(hook, chain.upper[0]);
+  const ParticleId hook = system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {0, 0, 0}, 1e-3);
+  (void)system.edits().combine(hook, chain.upper[0]);
   for (int i = 0; i < 600; ++i) (void)system.step(1.0 / 60);
-  EXPECT_LT(norm(system.position(hook)), 3e-8);  // as far as the nails' relative compliance of 1e-12 gives under 1e6 N
+  EXPECT_LT(norm(system.particles().position(hook)), 3e-8);  // as far as the nails' relative compliance of 1e-12 gives under 1e6 N
 }
 
 TEST(Combine, of_particles_that_do_not_give_way_is_refused_and_changes_nothing) {
   System system;
-  const BodyId wall = system.create_body({.kind = BodyKind::static_}), link = system.create_body();
-  const ParticleId hook = system.create_particle(wall, {0, 1, 0}), eye = system.create_particle(link, {0.3, 0.8, 0});
-  system.nail(eye);
+  const BodyId wall = system.bodies().create({.kind = BodyKind::static_}), link = system.bodies().create();
+  const ParticleId hook = system.particles().create(wall, {0, 1, 0}), eye = system.particles().create(link, {0.3, 0.8, 0});
+  system.particles().nail(eye);
   const auto hash = system.state_hash();
-  EXPECT_THROW((void)system.combine(hook, eye), std::invalid_argument);
-  EXPECT_THROW((void)system.combine(eye, hook, 0.5), std::invalid_argument);
-  EXPECT_THROW(system.nail(hook, {0, 2, 0}), std::invalid_argument);
+  EXPECT_THROW((void)system.edits().combine(hook, eye), std::invalid_argument);
+  EXPECT_THROW((void)system.edits().combine(eye, hook, 0.5), std::invalid_argument);
+  EXPECT_THROW(system.particles().nail(hook, {0, 2, 0}), std::invalid_argument);
   EXPECT_EQ(system.state_hash(), hash);
-  system.release(eye);
-  EXPECT_NO_THROW((void)system.combine(hook, eye));
+  system.particles().release(eye);
+  EXPECT_NO_THROW((void)system.edits().combine(hook, eye));
 }
 
 TEST(Conflict, between_two_nails_on_one_link_is_no_solution) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 1, .link_length = 0.3});
-  system.nail(chain.lower[0]);
+  system.particles().nail(chain.lower[0]);
   EXPECT_EQ(system.step(1.0 / 60).unconverged, 0);
-  system.nail(chain.lower[0], {0.5, 0, 0});
+  system.particles().nail(chain.lower[0], {0.5, 0, 0});
   const StepReport report = system.step(1.0 / 60);
   EXPECT_NEAR(report.worst_gap, 0.2, 1e-9);
   EXPECT_EQ(report.unconverged, 1);
@@ -141,11 +141,11 @@ TEST(Rod, ends_when_its_two_ends_are_hinged_together_and_a_rope_hangs_on) {
       System system;
       const auto a = scenes::make_chain(system, {.links = 2, .top = {0, 0, 0}});
       const auto b = scenes::make_chain(system, {.links = 2, .top = {0, -0.3, 0}, .direction = {0.8, 0.6, 0}});
-      (void)system.create_constraint(DistanceSpec{.kind = kind, .p = a.lower[1], .q = b.lower[1]});
+      (void)system.joints().create(DistanceSpec{.kind = kind, .p = a.lower[1], .q = b.lower[1]});
       (void)system.step(1.0 / 60);
-      (void)system.combine(a.lower[1], b.lower[1], over);
+      (void)system.edits().combine(a.lower[1], b.lower[1], over);
       for (int i = 0; i < 30; ++i) (void)system.step(1.0 / 60);
-      EXPECT_EQ(system.constraints().size(), kind == ConstraintKind::rope ? 1u : 0u);
+      EXPECT_EQ(system.joints().ids().size(), kind == ConstraintKind::rope ? 1u : 0u);
       EXPECT_EQ(system.validate(), std::vector<std::string>{});
       const StepReport report = system.step(1.0 / 60);
       EXPECT_LT(report.worst_gap, 1e-6);
@@ -157,41 +157,41 @@ TEST(Rod, ends_when_others_hinge_its_two_ends_together) {
   System system;
   const auto a = scenes::make_chain(system, {.links = 2, .top = {0, 0, 0}});
   const auto b = scenes::make_chain(system, {.links = 2, .top = {0, -0.1, 0}, .direction = {0.8, 0.6, 0}});
-  (void)system.create_constraint(DistanceSpec{.kind = ConstraintKind::rod, .p = a.upper[1], .q = b.upper[1]});
-  const RestructureReport report = system.combine(a.lower[0], b.lower[0]);
-  EXPECT_TRUE(system.constraints().empty());
+  (void)system.joints().create(DistanceSpec{.kind = ConstraintKind::rod, .p = a.upper[1], .q = b.upper[1]});
+  const RestructureReport report = system.edits().combine(a.lower[0], b.lower[0]);
+  EXPECT_TRUE(system.joints().ids().empty());
   EXPECT_EQ(report.notes.size(), 1u);
   EXPECT_LT(system.step(1.0 / 60).worst_gap, 1e-6);
 }
 
 TEST(Gap, between_two_nails_is_told_and_is_nobodys_where_nobody_can_move_or_is_there) {
   System system;
-  const BodyId still = system.create_body(), other = system.create_body();
-  const ParticleId p = system.create_particle(still, {0, 0, 0}), q = system.create_particle(other, {1, 0, 0});
-  const ConstraintId rod = system.create_constraint(DistanceSpec{.kind = ConstraintKind::rod, .p = p, .q = q});
-  system.nail(p), system.nail(q);
+  const BodyId still = system.bodies().create(), other = system.bodies().create();
+  const ParticleId p = system.particles().create(still, {0, 0, 0}), q = system.particles().create(other, {1, 0, 0});
+  const ConstraintId rod = system.joints().create(DistanceSpec{.kind = ConstraintKind::rod, .p = p, .q = q});
+  system.particles().nail(p), system.particles().nail(q);
   EXPECT_EQ(system.step(0.01).unconverged, 0);
-  system.nail(q, {1.5, 0, 0});
+  system.particles().nail(q, {1.5, 0, 0});
   EXPECT_EQ(system.step(0.01).unconverged, 1);
   EXPECT_GT(system.worst_gap(), 0.4);
-  EXPECT_GT(system.state(rod).gap, 0.4);
+  EXPECT_GT(system.joints().state(rod).gap, 0.4);
   for (const BodyKind kind : {BodyKind::inactive, BodyKind::scripted}) {
-    system.set_kind(other, kind);
-    if (kind == BodyKind::scripted) system.set_kind(still, BodyKind::static_);
+    system.bodies().set_kind(other, kind);
+    if (kind == BodyKind::scripted) system.bodies().set_kind(still, BodyKind::static_);
     const StepReport report = system.step(0.01);
     EXPECT_EQ(report.unconverged, 0);
     EXPECT_LT(report.worst_gap, 1e-12);
-    EXPECT_EQ(system.state(rod).gap, 0);
-    EXPECT_EQ(system.state(rod).force, Vec3{});
+    EXPECT_EQ(system.joints().state(rod).gap, 0);
+    EXPECT_EQ(system.joints().state(rod).force, Vec3{});
   }
 }
 
 TEST(Law, that_is_infinite_where_its_ends_meet_leaves_the_energy_book_finite) {
   System system;
   const auto chain = scenes::make_chain(system, {.links = 3});
-  const ParticleId lone = system.create_particle(system.create_body(), {0.4, 0.2, 0});
-  system.create_bond(chain.lower[2], lone, SharedLaw{.law = system.find_law("gravity")});
-  (void)system.combine(chain.lower[2], lone);
+  const ParticleId lone = system.particles().create(system.bodies().create(), {0.4, 0.2, 0});
+  system.bonds().create(chain.lower[2], lone, SharedLaw{.law = system.laws().find("gravity")});
+  (void)system.edits().combine(chain.lower[2], lone);
   EXPECT_TRUE(std::isfinite(book(system)));
   (void)system.step(1.0 / 60);
   EXPECT_TRUE(std::isfinite(book(system)));
@@ -200,10 +200,10 @@ TEST(Law, that_is_infinite_where_its_ends_meet_leaves_the_energy_book_finite) {
 TEST(Path, with_sharp_bends_makes_up_no_energy) {
   for (const double speed : {5.0, 20.0, 60.0}) {
     System system{SystemOptions{.gravity = {}}};
-    const ParticleId bead = system.create_particle(system.create_body(), {0, 0, 0}, 1, {speed, 0, 0});
+    const ParticleId bead = system.particles().create(system.bodies().create(), {0, 0, 0}, 1, {speed, 0, 0});
     PathSpec path{.particle = bead, .curve = CurveKind::polyline, .closed = true, .rounding = 0.05};
     path.points = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0.3, 0}, {0.5, 0.8, 0}, {-1, 0.5, 0}};
-    (void)system.create_constraint(path);
+    (void)system.joints().create(path);
     (void)system.step(1.0 / 240);
     const double start = system.energy().total();
     double highest = 0;
@@ -214,9 +214,9 @@ TEST(Path, with_sharp_bends_makes_up_no_energy) {
 
 TEST(Grip, hangs_on_what_is_left_when_a_particle_that_it_holds_is_destroyed) {
   Plate plate;
-  const GripId grip = plate.system.create_grip(plate.body, {0.1, 0, 0}, {1, 1, 1});
-  plate.system.destroy(plate.points[3]);
-  EXPECT_TRUE(plate.system.contains(grip));
+  const GripId grip = plate.system.grips().create(plate.body, {0.1, 0, 0}, {1, 1, 1});
+  plate.system.particles().destroy(plate.points[3]);
+  EXPECT_TRUE(plate.system.grips().contains(grip));
   EXPECT_EQ(plate.system.validate(), std::vector<std::string>{});
   for (int i = 0; i < 30; ++i) (void)plate.system.step(1.0 / 60);
   EXPECT_EQ(plate.system.validate(), std::vector<std::string>{});

@@ -15,14 +15,14 @@ std::vector<ParticleId> scatter(System& system, int count, unsigned seed, double
   const auto number = [&] { return std::uniform_real_distribution(-1.0, 1.0)(random); };
   std::vector<ParticleId> list;
   for (int i = 0; i < count; ++i)
-    list.push_back(system.create_particle(system.create_body(), size * Vec3{number(), number(), number()},
+    list.push_back(system.particles().create(system.bodies().create(), size * Vec3{number(), number(), number()},
                                           0.5 + 0.4 * number(), speed * Vec3{number(), number(), number()}));
   return list;
 }
 
 std::vector<double> positions(const System& system) {
-  std::vector<double> all(3 * system.particles().size());
-  system.read_positions(all);
+  std::vector<double> all(3 * system.particles().ids().size());
+  system.particles().read_positions(all);
   return all;
 }
 
@@ -35,12 +35,12 @@ TEST(FreeParticles, move_as_the_solver_moves_them) {
     for (const bool held : {false, true}) {
       System system(SystemOptions{.mode = mode, .damping = 0.1});
       const auto particles = scatter(system, 20, 3);
-      system.set_damping(system.body(particles[3]), 0.5);
+      system.bodies().set_damping(system.particles().body(particles[3]), 0.5);
       if (held)  // bonds without force: they bring the particles into islands
-        for (int i = 0; i < 20; i += 2) system.create_bond(particles[i], particles[i + 1], DragLaw{0});
-      system.create_field("fx = -3*x; fy = -3*y + 0.1*vx; fz = m*sin(t)");
+        for (int i = 0; i < 20; i += 2) system.bonds().create(particles[i], particles[i + 1], DragLaw{0});
+      system.fields().create("fx = -3*x; fy = -3*y + 0.1*vx; fz = m*sin(t)");
       for (int i = 0; i < 200; ++i) {
-        if (i % 10 == 0) system.apply_force(particles[5], {1, 2, 3});
+        if (i % 10 == 0) system.particles().apply_force(particles[5], {1, 2, 3});
         const StepReport report = system.step(1.0 / 120);
         ASSERT_EQ(report.unconverged, 0);
         ASSERT_NEAR(book(report.energy), book(system.energy()), 1e-12);
@@ -64,23 +64,23 @@ TEST(FreeParticles, are_taken_into_islands_and_let_go_again) {
     ASSERT_EQ(system.validate(), std::vector<std::string>{});
   };
   run();
-  const BondId bond = system.create_bond(particles[0], particles[1], SpringLaw{});
+  const BondId bond = system.bonds().create(particles[0], particles[1], SpringLaw{});
   run();
-  system.set_active(bond, false);
+  system.bonds().set_active(bond, false);
   run();
-  system.set_active(bond, true);
-  system.combine(particles[2], particles[3]);
+  system.bonds().set_active(bond, true);
+  system.edits().combine(particles[2], particles[3]);
   run();
-  system.separate(particles[2], particles[3]);
-  system.destroy(bond);
+  system.edits().separate(particles[2], particles[3]);
+  system.bonds().destroy(bond);
   run();
-  const GripId grip = system.create_grip(system.body(particles[4]), {}, {0, 0, 0});
+  const GripId grip = system.grips().create(system.particles().body(particles[4]), {}, {0, 0, 0});
   run();
   EXPECT_GT(system.energy().external_work, -1e9);
-  system.destroy(grip);
-  system.nail(particles[5]);
+  system.grips().destroy(grip);
+  system.particles().nail(particles[5]);
   run();
-  system.release(particles[5]);
+  system.particles().release(particles[5]);
   const Snapshot saved = system.snapshot();
   run();
   const std::uint64_t hash = system.state_hash();
@@ -92,15 +92,15 @@ TEST(FreeParticles, are_taken_into_islands_and_let_go_again) {
 TEST(FreeParticles, pushed_by_an_absurd_force_stay_where_they_are) {
   System system;
   const auto particles = scatter(system, 2, 4);
-  const Vec3 before = system.position(particles[0]);
-  system.apply_force(particles[0], {1e9, 0, 0});
+  const Vec3 before = system.particles().position(particles[0]);
+  system.particles().apply_force(particles[0], {1e9, 0, 0});
   (void)system.step(0.01);
-  EXPECT_NE(system.position(particles[0]), before);
-  const Vec3 there = system.position(particles[0]);
-  const FieldId field = system.create_field("fx = f", {.parameters = {{"f", 1e29}}});
+  EXPECT_NE(system.particles().position(particles[0]), before);
+  const Vec3 there = system.particles().position(particles[0]);
+  const FieldId field = system.fields().create("fx = f", {.parameters = {{"f", 1e29}}});
   EXPECT_GT(system.step(0.01).unconverged, 0);
-  EXPECT_EQ(system.position(particles[0]), there);
-  system.set_parameter(field, "f", 1.5e308);
+  EXPECT_EQ(system.particles().position(particles[0]), there);
+  system.fields().set_parameter(field, "f", 1.5e308);
   const StepReport report = system.step(0.01);
   EXPECT_EQ(report.warnings.size(), 1u) << "this is no force";
   EXPECT_TRUE(std::isfinite(report.energy.kinetic));
@@ -111,7 +111,7 @@ TEST(Field, uniform_is_gravity_and_can_replace_it) {
   FieldOptions options;
   options.parameters = {{"acceleration_y", -9.81}};
   options.replaces_gravity = true;
-  const FieldId field = replaced.create_field("uniform", options);
+  const FieldId field = replaced.fields().create("uniform", options);
   for (System* const s : {&plain, &replaced}) {
     (void)scatter(*s, 3, 5);
     scenes::make_chain(*s, {.links = 5});
@@ -119,50 +119,50 @@ TEST(Field, uniform_is_gravity_and_can_replace_it) {
   }
   const auto a = positions(plain), b = positions(replaced);
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-7);
-  replaced.set_active(field, false);
-  const double before = replaced.velocity(replaced.particles()[0]).y;
+  replaced.fields().set_active(field, false);
+  const double before = replaced.particles().velocity(replaced.particles().ids()[0]).y;
   (void)replaced.step(0.01);
-  EXPECT_NEAR(replaced.velocity(replaced.particles()[0]).y - before, 0.5, 1e-9) << "gravity is back";
+  EXPECT_NEAR(replaced.particles().velocity(replaced.particles().ids()[0]).y - before, 0.5, 1e-9) << "gravity is back";
 }
 
 TEST(Field, acts_on_its_group_only) {
   System system(SystemOptions{.gravity = {}});
   const auto particles = scatter(system, 4, 6, 1, 0);
-  const GroupId group = system.create_group("leaves");
-  system.add(group, particles[1]);
-  system.add(group, particles[2]);
+  const GroupId group = system.groups().create("leaves");
+  system.groups().add(group, particles[1]);
+  system.groups().add(group, particles[2]);
   FieldOptions options;
   options.group = group;
   options.parameters = {{"velocity_x", 5}, {"drag", 1e9}};
-  const FieldId wind = system.create_field("wind", options);
+  const FieldId wind = system.fields().create("wind", options);
   (void)system.step(0.01);
-  EXPECT_EQ(system.velocity(particles[0]), Vec3{});
-  EXPECT_NEAR(system.velocity(particles[1]).x, 5, 1e-9) << "as fast as the wind, no faster";
-  system.remove(group, particles[1]);
-  system.set_parameter(wind, "velocity_x", 7);
+  EXPECT_EQ(system.particles().velocity(particles[0]), Vec3{});
+  EXPECT_NEAR(system.particles().velocity(particles[1]).x, 5, 1e-9) << "as fast as the wind, no faster";
+  system.groups().remove(group, particles[1]);
+  system.fields().set_parameter(wind, "velocity_x", 7);
   (void)system.step(0.01);
-  EXPECT_NEAR(system.velocity(particles[1]).x, 5, 1e-9);
-  EXPECT_NEAR(system.velocity(particles[2]).x, 7, 1e-9);
-  EXPECT_EQ(system.particles(group), std::vector<ParticleId>{particles[2]});
-  EXPECT_THROW(system.destroy(group), std::invalid_argument);
-  system.destroy(wind);
-  system.destroy(group);
-  EXPECT_FALSE(system.contains(group));
+  EXPECT_NEAR(system.particles().velocity(particles[1]).x, 5, 1e-9);
+  EXPECT_NEAR(system.particles().velocity(particles[2]).x, 7, 1e-9);
+  EXPECT_EQ(system.groups().particles(group), std::vector<ParticleId>{particles[2]});
+  EXPECT_THROW(system.groups().destroy(group), std::invalid_argument);
+  system.fields().destroy(wind);
+  system.groups().destroy(group);
+  EXPECT_FALSE(system.groups().contains(group));
   EXPECT_EQ(system.validate(), std::vector<std::string>{});
 }
 
 TEST(Field, of_a_well_keeps_an_orbit_closed) {
   for (const std::string text : {"well", "written"}) {
     System system(SystemOptions{.gravity = {}});
-    const ParticleId p = system.create_particle(system.create_body(), {1, 0, 0}, 3, {0, 1, 0});
+    const ParticleId p = system.particles().create(system.bodies().create(), {1, 0, 0}, 3, {0, 1, 0});
     if (text == "well")
-      system.create_field("well", {"", {{"strength", 1}, {"softening", 0}}, {}, false});
+      system.fields().create("well", {"", {{"strength", 1}, {"softening", 0}}, {}, false});
     else
-      system.create_field("r = sqrt(x^2 + y^2 + z^2); fx = -m*x/r^3; fy = -m*y/r^3; fz = -m*z/r^3");
+      system.fields().create("r = sqrt(x^2 + y^2 + z^2); fx = -m*x/r^3; fy = -m*y/r^3; fz = -m*z/r^3");
     const double turn = 2 * 3.14159265358979323846;
     for (int i = 0; i < 20 * 500; ++i) (void)system.step(turn / 500);
-    EXPECT_NEAR(norm(system.position(p)), 1, 1e-4) << "twenty turns";
-    EXPECT_NEAR(system.position(p).x, 1, 5e-3) << "twenty turns";
+    EXPECT_NEAR(norm(system.particles().position(p)), 1, 1e-4) << "twenty turns";
+    EXPECT_NEAR(system.particles().position(p).x, 1, 5e-3) << "twenty turns";
   }
 }
 
@@ -171,7 +171,7 @@ TEST(Field, a_function_sees_all_its_particles_and_is_switched_off_when_it_throws
   const auto particles = scatter(system, 3, 8, 1, 0);
   bool angry = false;
   std::size_t seen = 0;
-  const FieldId field = system.create_field(FieldFunction([&](const ParticleBatch& b) {
+  const FieldId field = system.fields().create(FieldFunction([&](const ParticleBatch& b) {
                                               if (angry) throw std::runtime_error("enough");
                                               seen = b.count;
                                               for (std::size_t i = 0; i < 3 * b.count; ++i) b.force[i] = b.mass[i / 3];
@@ -179,24 +179,24 @@ TEST(Field, a_function_sees_all_its_particles_and_is_switched_off_when_it_throws
                                             {"push", {}, {}, false});
   (void)system.step(0.5);
   EXPECT_EQ(seen, 3u);
-  EXPECT_NEAR(norm(system.velocity(particles[1]) - Vec3{0.5, 0.5, 0.5}), 0, 1e-12);
+  EXPECT_NEAR(norm(system.particles().velocity(particles[1]) - Vec3{0.5, 0.5, 0.5}), 0, 1e-12);
   angry = true;
   const StepReport report = system.step(0.5);
   EXPECT_EQ(report.warnings, std::vector<std::string>{"field 0 (push) raised: enough; the field is switched off"});
-  EXPECT_FALSE(system.is_active(field));
+  EXPECT_FALSE(system.fields().is_active(field));
   EXPECT_TRUE(system.step(0.5).warnings.empty());
 }
 
 TEST(Field, without_a_finite_force_says_where) {
   System system(SystemOptions{.gravity = {}});
-  const ParticleId good = system.create_particle(system.create_body(), {1, 0, 0});
-  const ParticleId bad = system.create_particle(system.create_body(), {0, 0, 0});
-  system.create_field("fx = 1/x", {"pole", {}, {}, false});
+  const ParticleId good = system.particles().create(system.bodies().create(), {1, 0, 0});
+  const ParticleId bad = system.particles().create(system.bodies().create(), {0, 0, 0});
+  system.fields().create("fx = 1/x", {"pole", {}, {}, false});
   const StepReport report = system.step(0.1);
   EXPECT_EQ(report.warnings,
             std::vector<std::string>{"field 0 (pole) gives no finite force on particle 1; there it gives none"});
-  EXPECT_NEAR(system.velocity(good).x, 0.1, 1e-12);
-  EXPECT_EQ(system.velocity(bad), Vec3{});
+  EXPECT_NEAR(system.particles().velocity(good).x, 0.1, 1e-12);
+  EXPECT_EQ(system.particles().velocity(bad), Vec3{});
 }
 
 TEST(Pairs, a_lennard_jones_fluid_keeps_its_energy) {
@@ -205,12 +205,12 @@ TEST(Pairs, a_lennard_jones_fluid_keeps_its_energy) {
   for (int i = 0; i < 216; ++i) {
     const Vec3 place{1.15 * (i % 6), 1.15 * (i / 6 % 6), 1.15 * (i / 36)};
     const auto number = [&] { return std::uniform_real_distribution(-0.5, 0.5)(random); };
-    system.create_particle(system.create_body(), place, 1, {number(), number(), number()});
+    system.particles().create(system.bodies().create(), place, 1, {number(), number(), number()});
   }
-  const PairsId pairs = system.create_pairs({system.find_law("lennard_jones"), {}, {}}, {.cutoff = 6});
+  const PairsId pairs = system.pairs().create({system.laws().find("lennard_jones"), {}, {}}, {.cutoff = 6});
   const Vec3 momentum = system.momentum();
   const double start = system.energy().total();
-  EXPECT_DOUBLE_EQ(system.energy().potential, system.energy(pairs));
+  EXPECT_DOUBLE_EQ(system.energy().potential, system.pairs().energy(pairs));
   double drift = 0;
   for (int i = 0; i < 400; ++i) {
     const StepReport report = system.step(0.004);
@@ -227,43 +227,43 @@ TEST(Pairs, are_the_same_written_restored_and_replayed) {
     System system(SystemOptions{.gravity = {}});
     (void)scatter(system, 200, 10, 1, 0.2);
     const LawId law = written
-                          ? system.create_law("energy = 0.5*k*where(r < d, r - d, 0)^2", {"", {{"k", 30}, {"d", 0.4}}})
-                          : system.find_law("soft_repulsion");
+                          ? system.laws().create("energy = 0.5*k*where(r < d, r - d, 0)^2", {"", {{"k", 30}, {"d", 0.4}}})
+                          : system.laws().find("soft_repulsion");
     SharedLaw shared{law, {}, {}};
     if (!written) shared.parameters = {{"stiffness", 30}, {"length", 0.4}};
-    system.start_recording();
-    system.create_pairs(shared, {.cutoff = 0.4});
+    system.record().start();
+    system.pairs().create(shared, {.cutoff = 0.4});
     for (int i = 0; i < 50; ++i) (void)system.step(0.01);
     const Snapshot middle = system.snapshot();
     for (int i = 0; i < 50; ++i) (void)system.step(0.01);
     ends.push_back(positions(system));
     const std::uint64_t hash = system.state_hash();
-    const Recording recording = system.stop_recording();
+    const Recording recording = system.record().stop();
     System other;
     other.restore(middle);
     for (int i = 0; i < 50; ++i) (void)other.step(0.01);
     EXPECT_EQ(other.state_hash(), hash) << "the list of neighbors is no hidden state";
-    EXPECT_EQ(other.replay(recording), std::nullopt);
+    EXPECT_EQ(other.record().replay(recording), std::nullopt);
   }
   for (std::size_t i = 0; i < ends[0].size(); ++i) EXPECT_NEAR(ends[0][i], ends[1][i], 1e-10);
 }
 
 TEST(Pairs, leave_out_points_of_one_body_and_push_nothing_static) {
   System system(SystemOptions{.gravity = {}});
-  const BodyId rod = system.create_body(), wall = system.create_body({.kind = BodyKind::static_});
-  const ParticleId a = system.create_particle(rod, {0, 0, 0}), b = system.create_particle(rod, {0.1, 0, 0});
-  const ParticleId post = system.create_particle(wall, {0.3, 0, 0});
-  SharedLaw law{system.find_law("coulomb"), {{"strength", 1}}, {}};
-  system.create_pairs(law, {.cutoff = 1});
+  const BodyId rod = system.bodies().create(), wall = system.bodies().create({.kind = BodyKind::static_});
+  const ParticleId a = system.particles().create(rod, {0, 0, 0}), b = system.particles().create(rod, {0.1, 0, 0});
+  const ParticleId post = system.particles().create(wall, {0.3, 0, 0});
+  SharedLaw law{system.laws().find("coulomb"), {{"strength", 1}}, {}};
+  system.pairs().create(law, {.cutoff = 1});
   (void)system.step(0.01);
   EXPECT_NEAR(system.momentum().x, -0.01 * (1 / 0.09 + 1 / 0.04), 1e-9);
-  EXPECT_EQ(system.position(post).x, 0.3);
-  EXPECT_NEAR(norm(system.position(b) - system.position(a)), 0.1, 1e-12);
+  EXPECT_EQ(system.particles().position(post).x, 0.3);
+  EXPECT_NEAR(norm(system.particles().position(b) - system.particles().position(a)), 0.1, 1e-12);
 }
 
 TEST(Groups, and_forces_refuse_bad_input) {
   System system;
-  const ParticleId p = system.create_particle(system.create_body(), {});
+  const ParticleId p = system.particles().create(system.bodies().create(), {});
   const std::uint64_t hash = system.state_hash();
   const auto refuses = [](auto call, const std::string& words) {
     try {
@@ -273,26 +273,26 @@ TEST(Groups, and_forces_refuse_bad_input) {
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
   };
-  refuses([&] { system.create_group(""); }, "needs a name");
-  refuses([&] { system.create_group(std::string(40, 'x')); }, "shorter than 32");
-  refuses([&] { system.create_field("wnd"); }, "no field is called 'wnd'");
-  refuses([&] { system.create_field("fx = q"); }, "unknown name 'q'");
-  refuses([&] { system.create_field("gx = 1"); }, "defines 'energy' (J), or 'fx', 'fy' or 'fz'");
-  refuses([&] { system.create_field("wind", {"", {{"drag", -1}}, {}, false}); }, "drag must be zero or more");
-  refuses([&] { system.create_field("wind", {"", {{"drga", 1}}, {}, false}); }, "did you mean 'drag'");
-  refuses([&] { system.create_field("wind", {"", {{"drag", NAN}}, {}, false}); }, "drag");
-  refuses([&] { system.create_field(FieldFunction{}); }, "needs a function");
-  const SharedLaw morse{system.find_law("morse"), {}, {}};
-  refuses([&] { system.create_pairs(morse, {.cutoff = 1}); }, "need a value for length");
-  refuses([&] { system.create_pairs({system.find_law("coulomb"), {}, {}}, {.cutoff = 0}); }, "cutoff must be positive");
-  refuses([&] { system.create_pairs({system.find_law("coulomb"), {}, {}}, {.cutoff = NAN}); }, "cutoff");
+  refuses([&] { system.groups().create(""); }, "needs a name");
+  refuses([&] { system.groups().create(std::string(40, 'x')); }, "shorter than 32");
+  refuses([&] { system.fields().create("wnd"); }, "no field is called 'wnd'");
+  refuses([&] { system.fields().create("fx = q"); }, "unknown name 'q'");
+  refuses([&] { system.fields().create("gx = 1"); }, "defines 'energy' (J), or 'fx', 'fy' or 'fz'");
+  refuses([&] { system.fields().create("wind", {"", {{"drag", -1}}, {}, false}); }, "drag must be zero or more");
+  refuses([&] { system.fields().create("wind", {"", {{"drga", 1}}, {}, false}); }, "did you mean 'drag'");
+  refuses([&] { system.fields().create("wind", {"", {{"drag", NAN}}, {}, false}); }, "drag");
+  refuses([&] { system.fields().create(FieldFunction{}); }, "needs a function");
+  const SharedLaw morse{system.laws().find("morse"), {}, {}};
+  refuses([&] { system.pairs().create(morse, {.cutoff = 1}); }, "need a value for length");
+  refuses([&] { system.pairs().create({system.laws().find("coulomb"), {}, {}}, {.cutoff = 0}); }, "cutoff must be positive");
+  refuses([&] { system.pairs().create({system.laws().find("coulomb"), {}, {}}, {.cutoff = NAN}); }, "cutoff");
   EXPECT_EQ(system.state_hash(), hash);
-  const GroupId group = system.create_group("a");
-  refuses([&] { system.create_group("a"); }, "already");
-  for (int i = 1; i < 32; ++i) system.create_group("g" + std::to_string(i));
-  refuses([&] { system.create_group("one more"); }, "at most 32");
-  system.destroy(group);
-  EXPECT_THROW(system.add(group, p), StaleIdError);
+  const GroupId group = system.groups().create("a");
+  refuses([&] { system.groups().create("a"); }, "already");
+  for (int i = 1; i < 32; ++i) system.groups().create("g" + std::to_string(i));
+  refuses([&] { system.groups().create("one more"); }, "at most 32");
+  system.groups().destroy(group);
+  EXPECT_THROW(system.groups().add(group, p), StaleIdError);
 }
 
 }  // namespace

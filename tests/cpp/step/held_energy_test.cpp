@@ -33,18 +33,18 @@ struct Swarm {
     for (int i = 0; i < 27; ++i) {
       const Vec3 place{i % 3 + 0.1 * number(), i / 3 % 3 + 0.1 * number(), i / 9 + 0.1 * number()};
       points.push_back(
-          system.create_particle(system.create_body(), place, 1 + number(), {number(), number(), number()}));
+          system.particles().create(system.bodies().create(), place, 1 + number(), {number(), number(), number()}));
     }
-    const BodyId rod = system.create_body();
-    points.push_back(system.create_particle(rod, {5, 0, 0}));
-    points.push_back(system.create_particle(rod, {6, 0, 0}));
+    const BodyId rod = system.bodies().create();
+    points.push_back(system.particles().create(rod, {5, 0, 0}));
+    points.push_back(system.particles().create(rod, {6, 0, 0}));
     pairs =
-        system.create_pairs({system.find_law("coulomb"), {{"strength", 0.3}, {"softening", 0.2}}, {}}, {.cutoff = 50});
-    well = system.create_field("well", {.parameters = {{"center_x", 1}, {"strength", 3}, {"softening", 1}}});
-    system.create_field("attractor", {.parameters = {{"strength", 0.7}, {"range", 3}}});
-    system.create_field("energy = 0.5*k*(x^2 + 2*y^2) + m*g*z; fx = -0*vx", {.parameters = {{"k", 0.4}, {"g", 0.3}}});
-    bond = system.create_bond(points[0], points[27],
-                              SharedLaw{system.find_law("spring"), {{"stiffness", 2}, {"length", 1}}, false});
+        system.pairs().create({system.laws().find("coulomb"), {{"strength", 0.3}, {"softening", 0.2}}, {}}, {.cutoff = 50});
+    well = system.fields().create("well", {.parameters = {{"center_x", 1}, {"strength", 3}, {"softening", 1}}});
+    system.fields().create("attractor", {.parameters = {{"strength", 0.7}, {"range", 3}}});
+    system.fields().create("energy = 0.5*k*(x^2 + 2*y^2) + m*g*z; fx = -0*vx", {.parameters = {{"k", 0.4}, {"g", 0.3}}});
+    bond = system.bonds().create(points[0], points[27],
+                              SharedLaw{system.laws().find("spring"), {{"stiffness", 2}, {"length", 1}}, false});
   }
   Energy step(double h) {
     const StepReport report = system.step(h);
@@ -84,21 +84,21 @@ TEST(HeldEnergy, errors_are_of_second_order) {
 
 TEST(HeldEnergy, of_what_is_known_in_closed_form) {
   System system{{.gravity = {0, -2, 0}}};
-  const ParticleId p = system.create_particle(system.create_body(), {3, 4, 0}, 2);
-  const ParticleId q = system.create_particle(system.create_body(), {0, 0, 12}, 3);
+  const ParticleId p = system.particles().create(system.bodies().create(), {3, 4, 0}, 2);
+  const ParticleId q = system.particles().create(system.bodies().create(), {0, 0, 12}, 3);
   const double gravity = 2 * 2 * 4.0;
   EXPECT_DOUBLE_EQ(system.energy().potential, gravity);
   const FieldId uniform =
-      system.create_field("uniform", {.parameters = {{"acceleration_x", -5}}, .replaces_gravity = true});
+      system.fields().create("uniform", {.parameters = {{"acceleration_x", -5}}, .replaces_gravity = true});
   EXPECT_DOUBLE_EQ(system.energy().potential, 2 * 5 * 3) << "it replaces gravity";
-  system.set_active(uniform, false);
+  system.fields().set_active(uniform, false);
   EXPECT_DOUBLE_EQ(system.energy().potential, gravity);
-  const FieldId well = system.create_field("well", {.parameters = {{"strength", 7}, {"softening", 0}}});
+  const FieldId well = system.fields().create("well", {.parameters = {{"strength", 7}, {"softening", 0}}});
   EXPECT_DOUBLE_EQ(system.energy().potential, gravity - 7 * (2 / 5.0 + 3 / 12.0));
-  system.destroy(well);
-  system.create_pairs({system.find_law("gravity"), {{"strength", 11}}, {}}, {.cutoff = 20});
+  system.fields().destroy(well);
+  system.pairs().create({system.laws().find("gravity"), {{"strength", 11}}, {}}, {.cutoff = 20});
   EXPECT_DOUBLE_EQ(system.energy().potential, gravity - 11 * 2 * 3 / 13.0);
-  system.create_bond(p, q, SharedLaw{system.find_law("spring"), {{"stiffness", 4}, {"length", 10}}, false});
+  system.bonds().create(p, q, SharedLaw{system.laws().find("spring"), {{"stiffness", 4}, {"length", 10}}, false});
   EXPECT_DOUBLE_EQ(system.energy().potential, gravity - 11 * 2 * 3 / 13.0 + 0.5 * 4 * 9);
   EXPECT_NEAR(book(system.energy()), 0, 1e-12) << "all this was made by edits";
 }
@@ -114,52 +114,52 @@ TEST(HeldEnergy, what_edits_change_is_booked_as_theirs) {
       ASSERT_TRUE(s.validate().empty());
     };
     check("nothing");
-    s.set_position(swarm.points[0], {9, 9, 9}), check("moved");
-    s.set_mass(swarm.points[1], 4), check("heavier");
-    s.set_parameter(swarm.well, "strength", 5), check("another parameter of a field");
-    s.set_parameter(swarm.pairs, "strength", 0.1), check("another parameter of a pair");
-    s.set_parameter(swarm.bond, "stiffness", 20), check("another parameter of a bond");
-    s.set_active(swarm.well, false), check("a field switched off");
-    s.set_active(swarm.bond, false), check("a bond switched off");
-    s.set_active(swarm.bond, true), check("and on");
-    s.create_particle(s.create_body(), {2, -3, 0}), check("born");
-    s.destroy(swarm.points[3]), check("destroyed");
-    (void)s.combine(swarm.points[5], swarm.points[6]), check("combined");
-    s.nail(swarm.points[8]), check("nailed");
+    s.particles().set_position(swarm.points[0], {9, 9, 9}), check("moved");
+    s.particles().set_mass(swarm.points[1], 4), check("heavier");
+    s.fields().set_parameter(swarm.well, "strength", 5), check("another parameter of a field");
+    s.pairs().set_parameter(swarm.pairs, "strength", 0.1), check("another parameter of a pair");
+    s.bonds().set_parameter(swarm.bond, "stiffness", 20), check("another parameter of a bond");
+    s.fields().set_active(swarm.well, false), check("a field switched off");
+    s.bonds().set_active(swarm.bond, false), check("a bond switched off");
+    s.bonds().set_active(swarm.bond, true), check("and on");
+    s.particles().create(s.bodies().create(), {2, -3, 0}), check("born");
+    s.particles().destroy(swarm.points[3]), check("destroyed");
+    (void)s.edits().combine(swarm.points[5], swarm.points[6]), check("combined");
+    s.particles().nail(swarm.points[8]), check("nailed");
     s.set_gravity({1, -2, 3}), check("another gravity");
-    s.set_kind(s.body(swarm.points[9]), BodyKind::static_), check("static");
-    s.set_kind(s.body(swarm.points[10]), BodyKind::inactive), check("inactive");
-    s.create_emitter({.rate = 400, .lifetime = 0.1, .mass = 0.1});
+    s.bodies().set_kind(s.particles().body(swarm.points[9]), BodyKind::static_), check("static");
+    s.bodies().set_kind(s.particles().body(swarm.points[10]), BodyKind::inactive), check("inactive");
+    s.emitters().create({.rate = 400, .lifetime = 0.1, .mass = 0.1});
     for (int i = 0; i < 100; ++i) check("births and deaths");
-    s.destroy(swarm.pairs), check("no pairs");
+    s.pairs().destroy(swarm.pairs), check("no pairs");
   }
 }
 
 TEST(HeldEnergy, is_part_of_what_a_batch_of_edits_changes) {
   Swarm swarm;
   const double before = swarm.system.energy().total();
-  swarm.system.begin_edit();
-  swarm.system.set_position(swarm.points[0], {9, 9, 9});
-  const RestructureReport report = swarm.system.end_edit();
+  swarm.system.edits().begin();
+  swarm.system.particles().set_position(swarm.points[0], {9, 9, 9});
+  const RestructureReport report = swarm.system.edits().end();
   EXPECT_NEAR(report.energy_change, swarm.system.energy().total() - before, 1e-12);
   EXPECT_GT(std::abs(report.energy_change), 1);
-  EXPECT_TRUE(swarm.system.undo());
+  EXPECT_TRUE(swarm.system.edits().undo());
   EXPECT_EQ(swarm.system.energy().total(), before);
 }
 
 TEST(HeldEnergy, is_the_same_to_the_bit_in_replay_and_after_restore) {
   Swarm swarm;
-  swarm.system.start_recording();
+  swarm.system.record().start();
   for (int i = 0; i < 20; ++i) (void)swarm.step(0.002);
-  swarm.system.set_position(swarm.points[0], {4, 4, 4});
+  swarm.system.particles().set_position(swarm.points[0], {4, 4, 4});
   for (int i = 0; i < 20; ++i) {
     (void)swarm.system.step(0.002);
     if (i % 3 == 0) (void)swarm.system.energy();  // looking changes nothing
-    if (i == 7) swarm.system.set_parameter(swarm.well, "strength", 2);
+    if (i == 7) swarm.system.fields().set_parameter(swarm.well, "strength", 2);
   }
-  const Recording recording = swarm.system.stop_recording();
+  const Recording recording = swarm.system.record().stop();
   System other;
-  EXPECT_EQ(other.replay(recording), std::nullopt);
+  EXPECT_EQ(other.record().replay(recording), std::nullopt);
   Swarm restored;
   restored.system.restore(swarm.system.snapshot());
   EXPECT_EQ(restored.system.energy().total(), swarm.system.energy().total());
@@ -173,12 +173,12 @@ TEST(HeldEnergy, may_be_looked_at_from_a_force_and_is_then_that_of_the_start) {
   Swarm looked, plain;
   double seen = 0, of_pairs = 0;
   for (Swarm* s : {&looked, &plain})
-    s->system.create_field(FieldFunction([&, s](const ParticleBatch& batch) {
+    s->system.fields().create(FieldFunction([&, s](const ParticleBatch& batch) {
       std::fill_n(batch.force, 3 * batch.count, 0.0);
-      if (s == &looked) seen = s->system.energy().potential, of_pairs = s->system.energy(s->pairs);
+      if (s == &looked) seen = s->system.energy().potential, of_pairs = s->system.pairs().energy(s->pairs);
     }));
   for (int i = 0; i < 5; ++i) {
-    const double start = looked.system.energy().potential, pairs = looked.system.energy(looked.pairs);
+    const double start = looked.system.energy().potential, pairs = looked.system.pairs().energy(looked.pairs);
     (void)looked.system.step(0.002), (void)plain.system.step(0.002);
     EXPECT_EQ(seen, start);
     EXPECT_EQ(of_pairs, pairs);

@@ -26,12 +26,12 @@ struct BusyChain {
   void edit() {
     if (cuts.size() < 3 && random() % 2) {
       const std::size_t link = 2 + random() % 497;
-      if (system.ring(chain.upper[link]).size() < 2) return;
-      (void)system.separate(chain.lower[link - 1], chain.upper[link]);
+      if (system.particles().ring(chain.upper[link]).size() < 2) return;
+      (void)system.edits().separate(chain.lower[link - 1], chain.upper[link]);
       cuts.push_back(link);
     } else if (!cuts.empty()) {
       const std::size_t which = random() % cuts.size();
-      (void)system.combine(chain.lower[cuts[which] - 1], chain.upper[cuts[which]]);
+      (void)system.edits().combine(chain.lower[cuts[which] - 1], chain.upper[cuts[which]]);
       cuts.erase(cuts.begin() + static_cast<std::ptrdiff_t>(which));
     }
   }
@@ -50,24 +50,24 @@ struct MixedChain {
     constexpr int links = 300;
     const auto joint = [](int i) { return Vec3{0.07 * i, 0.07 * (i % 2), 0.03 * (i % 3)}; };  // a straight one is singular
     for (int i = 0; i < links; ++i) {
-      chain.links.push_back(system.create_body());
-      chain.upper.push_back(system.create_particle(chain.links.back(), joint(i), 0.05));
-      chain.lower.push_back(system.create_particle(chain.links.back(), joint(i + 1), 0.05));
+      chain.links.push_back(system.bodies().create());
+      chain.upper.push_back(system.particles().create(chain.links.back(), joint(i), 0.05));
+      chain.lower.push_back(system.particles().create(chain.links.back(), joint(i + 1), 0.05));
       if (i % 40 == 20) {  // a plate, and a particle that it carries
-        (void)system.create_particle(chain.links.back(), joint(i) + Vec3{0, 0, 0.05}, 0.02);
-        (void)system.create_particle(chain.links.back(), joint(i + 1) + Vec3{0, 0, 0.05}, 0.02);
+        (void)system.particles().create(chain.links.back(), joint(i) + Vec3{0, 0, 0.05}, 0.02);
+        (void)system.particles().create(chain.links.back(), joint(i + 1) + Vec3{0, 0, 0.05}, 0.02);
       } else {
-        system.set_rod(chain.links.back(), 0.1, 0.005);
+        system.bodies().set_rod(chain.links.back(), 0.1, 0.005);
       }
-      if (i % 7 == 0) system.set_damping(chain.links.back(), 0.3);
-      if (i > 0) (void)system.combine(chain.lower[i - 1], chain.upper[i]);
+      if (i % 7 == 0) system.bodies().set_damping(chain.links.back(), 0.3);
+      if (i > 0) (void)system.edits().combine(chain.lower[i - 1], chain.upper[i]);
     }
-    system.nail(chain.upper[0]);
-    const ParticleId hook = system.create_particle(system.create_body({.kind = BodyKind::static_}),
-                                                   system.position(chain.lower[299]) + Vec3{0, 0.2, 0});
-    (void)system.create_constraint(
+    system.particles().nail(chain.upper[0]);
+    const ParticleId hook = system.particles().create(system.bodies().create({.kind = BodyKind::static_}),
+                                                   system.particles().position(chain.lower[299]) + Vec3{0, 0.2, 0});
+    (void)system.joints().create(
         DistanceSpec{.kind = ConstraintKind::rope, .p = hook, .q = chain.lower[299], .length = 0.5});
-    (void)system.create_bond(chain.lower[100], chain.lower[140],
+    (void)system.bonds().create(chain.lower[100], chain.lower[140],
                              SpringLaw{.stiffness = 40, .damping = 0.5, .length = 3});
     (void)system.step(1.0 / 240);
   }
@@ -77,24 +77,24 @@ struct MixedChain {
     const std::size_t link = 2 + random() % 280;
     switch (choice[random() % choice.size()]) {
       case cut:
-        if (system.ring(chain.upper[link]).size() > 1) (void)system.separate(chain.lower[link - 1], chain.upper[link]);
+        if (system.particles().ring(chain.upper[link]).size() > 1) (void)system.edits().separate(chain.lower[link - 1], chain.upper[link]);
         return;
       case close:
         if (loops.size() > 2) return;
-        (void)system.combine(chain.lower[link], chain.lower[link + 10], 0.5);
+        (void)system.edits().combine(chain.lower[link], chain.lower[link + 10], 0.5);
         return loops.push_back(link);
       case call_off:
         if (loops.empty()) return;
-        (void)system.separate(chain.lower[loops.back()], chain.lower[loops.back() + 10]);
+        (void)system.edits().separate(chain.lower[loops.back()], chain.lower[loops.back() + 10]);
         return loops.pop_back();
-      case grab: return grips.push_back(system.create_grip(chain.links[link], {}, system.position(chain.upper[link])));
+      case grab: return grips.push_back(system.grips().create(chain.links[link], {}, system.particles().position(chain.upper[link])));
       case let_go:
         if (grips.empty()) return;
-        system.destroy(grips.front());
+        system.grips().destroy(grips.front());
         grips.erase(grips.begin());
         return;
-      case damp: return system.set_damping(chain.links[link], random() % 2 ? 0.5 : 0);
-      case nail: system.is_nailed(chain.upper[150]) ? system.release(chain.upper[150]) : system.nail(chain.upper[150]);
+      case damp: return system.bodies().set_damping(chain.links[link], random() % 2 ? 0.5 : 0);
+      case nail: system.particles().is_nailed(chain.upper[150]) ? system.particles().release(chain.upper[150]) : system.particles().nail(chain.upper[150]);
     }
   }
 };
@@ -104,7 +104,7 @@ template <class World>
 double difference(const World& a, const World& b) {
   double farthest = 0;
   for (const ParticleId p : a.chain.lower)
-    farthest = std::max(farthest, norm(a.system.position(p) - b.system.position(p)));
+    farthest = std::max(farthest, norm(a.system.particles().position(p) - b.system.particles().position(p)));
   return farthest;
 }
 
@@ -142,11 +142,11 @@ TEST(FollowingIsland, gives_the_same_with_grips_closings_nails_joints_and_dampin
 TEST(FollowingIsland, keeps_a_rope_beside_a_cut) {
   const auto make = [](System& system, ConstraintId& rope) {
     auto chain = scenes::make_chain(system, {.links = 300});
-    const ParticleId hook = system.create_particle(system.create_body({.kind = BodyKind::static_}), {30, 0.2, 0});
-    rope = system.create_constraint(
+    const ParticleId hook = system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {30, 0.2, 0});
+    rope = system.joints().create(
         DistanceSpec{.kind = ConstraintKind::rope, .p = hook, .q = chain.upper[299], .length = 0.5});
     for (int i = 0; i < 5; ++i) (void)system.step(1.0 / 120);
-    (void)system.separate(chain.lower[298], chain.upper[299]);
+    (void)system.edits().separate(chain.lower[298], chain.upper[299]);
     return chain;
   };
   System followed{SystemOptions{.mode = IntegrationMode::robust}}, renewed{SystemOptions{.mode = IntegrationMode::robust}};
@@ -157,29 +157,29 @@ TEST(FollowingIsland, keeps_a_rope_beside_a_cut) {
   for (int i = 0; i < 100; ++i) {
     (void)renewed.snapshot();  // builds its islands anew; the other's follows the cut
     (void)followed.step(1.0 / 120), (void)renewed.step(1.0 / 120);
-    ASSERT_LT(norm(followed.position(end) - Vec3{30, 0.2, 0}), 0.5 + 1e-8) << "step " << i;
-    ASSERT_LT(norm(followed.position(end) - renewed.position(end)), 1e-7) << "step " << i;
+    ASSERT_LT(norm(followed.particles().position(end) - Vec3{30, 0.2, 0}), 0.5 + 1e-8) << "step " << i;
+    ASSERT_LT(norm(followed.particles().position(end) - renewed.particles().position(end)), 1e-7) << "step " << i;
   }
-  EXPECT_GT(norm(followed.state(rope).force), 0);
+  EXPECT_GT(norm(followed.joints().state(rope).force), 0);
 }
 
 TEST(FollowingIsland, replays_to_the_same_bits_from_a_snapshot_amid_the_cuts) {
   BusyChain world(true);
   for (int i = 0; i < 5; ++i) world.edit(), (void)world.system.step(1.0 / 240);
-  world.system.start_recording();
+  world.system.record().start();
   for (int i = 0; i < 30; ++i) world.edit(), (void)world.system.step(1.0 / 240);
-  const Recording recording = world.system.stop_recording();
+  const Recording recording = world.system.record().stop();
   System other;
-  EXPECT_EQ(other.replay(recording), std::nullopt);
+  EXPECT_EQ(other.record().replay(recording), std::nullopt);
 }
 
 TEST(FollowingIsland, ends_with_an_island_for_each_piece) {
   BusyChain world(true);
-  (void)world.system.separate(world.chain.lower[249], world.chain.upper[250]);
+  (void)world.system.edits().separate(world.chain.lower[249], world.chain.upper[250]);
   for (int i = 0; i < 130; ++i) (void)world.system.step(1.0 / 240);  // a fall of the free half is exact only by itself
-  const Vec3 v = world.system.velocity(world.chain.lower[499]);
+  const Vec3 v = world.system.particles().velocity(world.chain.lower[499]);
   EXPECT_LT(v.y, -1) << "the cut-off half falls";
-  EXPECT_EQ(world.system.articulate_count(), 2u);
+  EXPECT_EQ(world.system.bodies().articulate_count(), 2u);
 }
 
 }  // namespace

@@ -21,13 +21,13 @@ struct Sleeper {
   System system{{.damping = 4, .rest = {.after = 0.5, .speed = 0.01}}};
   scenes::Chain chain = scenes::make_chain(system, {.links = 4, .direction = {0.6, -0.8, 0}});
   void wait() {
-    for (int i = 0; i < 2000 && system.kind(chain.links[0]) != BodyKind::resting; ++i) (void)system.step(0.01);
-    ASSERT_EQ(system.kind(chain.links[0]), BodyKind::resting);
+    for (int i = 0; i < 2000 && system.bodies().kind(chain.links[0]) != BodyKind::resting; ++i) (void)system.step(0.01);
+    ASSERT_EQ(system.bodies().kind(chain.links[0]), BodyKind::resting);
   }
   /// Whether the next steps move it.
   bool wakes() {
     (void)system.step(0.01);
-    return system.kind(chain.links[3]) == BodyKind::dynamic;
+    return system.bodies().kind(chain.links[3]) == BodyKind::dynamic;
   }
 };
 
@@ -38,9 +38,9 @@ TEST(Resting, what_is_slow_for_a_while_falls_asleep_as_a_whole) {
   StepReport report = s.system.step(0.01);
   EXPECT_EQ(report.resting, 4u);
   EXPECT_EQ(report.energy.kinetic, 0);
-  const Vec3 end = s.system.position(s.chain.lower[3]);
+  const Vec3 end = s.system.particles().position(s.chain.lower[3]);
   for (int i = 0; i < 100; ++i) report = s.system.step(0.01);
-  EXPECT_EQ(s.system.position(s.chain.lower[3]), end);
+  EXPECT_EQ(s.system.particles().position(s.chain.lower[3]), end);
   EXPECT_EQ(report.iterations_max, 0);  // nothing was solved
   EXPECT_NEAR(book(s.system), start, 1e-9);
 }
@@ -49,7 +49,7 @@ TEST(Resting, sleep_is_for_those_who_ask_for_it) {
   System system({.damping = 4});
   const auto chain = scenes::make_chain(system, {.links = 2, .direction = {0, -1, 0}});
   for (int i = 0; i < 300; ++i) (void)system.step(0.01);
-  EXPECT_EQ(system.kind(chain.links[0]), BodyKind::dynamic);
+  EXPECT_EQ(system.bodies().kind(chain.links[0]), BodyKind::dynamic);
 }
 
 TEST(Resting, a_pendulum_does_not_fall_asleep_where_it_turns_back) {
@@ -57,7 +57,7 @@ TEST(Resting, a_pendulum_does_not_fall_asleep_where_it_turns_back) {
   const auto chain = scenes::make_chain(system, {.links = 1, .link_length = 1});
   for (int i = 0; i < 1000; ++i) {
     (void)system.step(0.01);
-    ASSERT_EQ(system.kind(chain.links[0]), BodyKind::dynamic);
+    ASSERT_EQ(system.bodies().kind(chain.links[0]), BodyKind::dynamic);
   }
 }
 
@@ -69,17 +69,17 @@ TEST(Resting, whatever_touches_it_wakes_it) {
     touch(s);
     return s.wakes();
   };
-  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.apply_force(s.chain.lower[2], {0.1, 0, 0}); }));
-  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.set_velocity(s.chain.lower[2], {0.1, 0, 0}); }));
-  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.nail(s.chain.upper[0], {0.1, 0, 0}); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.particles().apply_force(s.chain.lower[2], {0.1, 0, 0}); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.particles().set_velocity(s.chain.lower[2], {0.1, 0, 0}); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.particles().nail(s.chain.upper[0], {0.1, 0, 0}); }));
   EXPECT_TRUE(wakes([](Sleeper& s) { s.system.set_gravity({1, -9, 0}); }));
-  EXPECT_TRUE(wakes([](Sleeper& s) { (void)s.system.create_grip(s.chain.links[1], {}, {1, 1, 1}); }));
-  EXPECT_TRUE(wakes([](Sleeper& s) { (void)s.system.separate(s.chain.lower[0], s.chain.upper[1]); }));
-  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.set_mass(s.chain.lower[3], 5); }));
-  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.set_kind(s.chain.links[0], BodyKind::dynamic); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { (void)s.system.grips().create(s.chain.links[1], {}, {1, 1, 1}); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { (void)s.system.edits().separate(s.chain.lower[0], s.chain.upper[1]); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.particles().set_mass(s.chain.lower[3], 5); }));
+  EXPECT_TRUE(wakes([](Sleeper& s) { s.system.bodies().set_kind(s.chain.links[0], BodyKind::dynamic); }));
   EXPECT_TRUE(wakes([](Sleeper& s) {
-    const BodyId ball = s.system.create_body(Sphere{0.1}, {.position = {2, 0, 0}, .attachments = {{0, 0, 0}}});
-    (void)s.system.create_bond(s.system.attachments(ball)[0], s.chain.lower[1], SpringLaw{});
+    const BodyId ball = s.system.bodies().create(Sphere{0.1}, {.position = {2, 0, 0}, .attachments = {{0, 0, 0}}});
+    (void)s.system.bonds().create(s.system.bodies().attachments(ball)[0], s.chain.lower[1], SpringLaw{});
   }));
 }
 
@@ -88,67 +88,67 @@ TEST(Resting, bodies_are_put_to_rest_by_hand_with_all_that_hangs_on_them) {
   const auto chain = scenes::make_chain(system, {.links = 3});
   (void)system.step(0.01);
   const double start = book(system);
-  system.set_kind(chain.links[1], BodyKind::resting);
+  system.bodies().set_kind(chain.links[1], BodyKind::resting);
   (void)system.step(0.01);
-  for (const BodyId link : chain.links) EXPECT_EQ(system.kind(link), BodyKind::resting);
+  for (const BodyId link : chain.links) EXPECT_EQ(system.bodies().kind(link), BodyKind::resting);
   EXPECT_NEAR(book(system), start, 1e-12);
-  system.set_kind(chain.links[2], BodyKind::dynamic);
+  system.bodies().set_kind(chain.links[2], BodyKind::dynamic);
   (void)system.step(0.01);
-  for (const BodyId link : chain.links) EXPECT_EQ(system.kind(link), BodyKind::dynamic);
-  EXPECT_LT(system.velocity(chain.lower[2]).y, -0.05);
-  const BodyId fixed = system.create_body({.kind = BodyKind::static_});
-  EXPECT_THROW(system.set_kind(fixed, BodyKind::resting), std::invalid_argument);
+  for (const BodyId link : chain.links) EXPECT_EQ(system.bodies().kind(link), BodyKind::dynamic);
+  EXPECT_LT(system.particles().velocity(chain.lower[2]).y, -0.05);
+  const BodyId fixed = system.bodies().create({.kind = BodyKind::static_});
+  EXPECT_THROW(system.bodies().set_kind(fixed, BodyKind::resting), std::invalid_argument);
 }
 
 TEST(Resting, a_sleeper_stays_asleep_through_snapshot_and_replay) {
   Sleeper s;
   s.wait();
-  s.system.start_recording();
+  s.system.record().start();
   for (int i = 0; i < 10; ++i) (void)s.system.step(0.01);
-  s.system.apply_force(s.chain.lower[2], {0.1, 0, 0});
+  s.system.particles().apply_force(s.chain.lower[2], {0.1, 0, 0});
   for (int i = 0; i < 200; ++i) (void)s.system.step(0.01);
-  EXPECT_EQ(s.system.replay(s.system.stop_recording()), std::nullopt);
-  EXPECT_EQ(s.system.kind(s.chain.links[0]), BodyKind::resting);
+  EXPECT_EQ(s.system.record().replay(s.system.record().stop()), std::nullopt);
+  EXPECT_EQ(s.system.bodies().kind(s.chain.links[0]), BodyKind::resting);
 }
 
 TEST(Forces, on_what_does_not_move_by_them_are_over_with_the_step) {
   for (const BodyKind kind : {BodyKind::static_, BodyKind::scripted, BodyKind::inactive}) {
     System system{{.gravity = {}}};
-    const BodyId body = system.create_body();
-    const ParticleId p = system.create_particle(body, {0, 0, 0}), q = system.create_particle(body, {1, 0, 0});
-    const ParticleId far = system.create_particle(system.create_body(), {2, 0, 0});
-    const BondId pull = system.create_bond(p, far, ScriptedLaw{[](const BondState&) { return Vec3{1, 0, 0}; }, ""});
-    system.set_kind(body, kind);
+    const BodyId body = system.bodies().create();
+    const ParticleId p = system.particles().create(body, {0, 0, 0}), q = system.particles().create(body, {1, 0, 0});
+    const ParticleId far = system.particles().create(system.bodies().create(), {2, 0, 0});
+    const BondId pull = system.bonds().create(p, far, ScriptedLaw{[](const BondState&) { return Vec3{1, 0, 0}; }, ""});
+    system.bodies().set_kind(body, kind);
     for (int i = 0; i < 10; ++i) {
-      system.apply_force(q, {0, 100, 0});
+      system.particles().apply_force(q, {0, 100, 0});
       (void)system.step(0.01);
     }
-    system.destroy(pull);
-    system.set_kind(body, BodyKind::dynamic);
+    system.bonds().destroy(pull);
+    system.bodies().set_kind(body, BodyKind::dynamic);
     (void)system.step(0.01);
-    EXPECT_EQ(norm(system.velocity(body)), 0) << static_cast<int>(kind);
-    system.set_kind(body, kind);
-    system.apply_force(q, {0, 100, 0});
-    system.set_kind(body, BodyKind::dynamic);
+    EXPECT_EQ(norm(system.bodies().velocity(body)), 0) << static_cast<int>(kind);
+    system.bodies().set_kind(body, kind);
+    system.particles().apply_force(q, {0, 100, 0});
+    system.bodies().set_kind(body, BodyKind::dynamic);
     (void)system.step(0.01);
-    EXPECT_NEAR(system.velocity(body).y, 0.5, 1e-12) << "but it is in time for the step to come";
+    EXPECT_NEAR(system.bodies().velocity(body).y, 0.5, 1e-12) << "but it is in time for the step to come";
   }
 }
 
 TEST(Resting, what_sleeps_in_a_conflict_says_so_when_it_wakes) {
   // A link a tenth too short for the two places of a static body to which it is hinged: no step can do anything about it.
   System system;
-  const BodyId wall = system.create_body(), link = system.create_body();
-  const ParticleId left = system.create_particle(wall, {0, 0, 0}, 1),
-                   right = system.create_particle(wall, {1, 0, 0}, 1);
-  const ParticleId a = system.create_particle(link, {0, 0, 0}, 1), b = system.create_particle(link, {0.9, 0, 0}, 1);
-  (void)system.combine(left, a);
-  (void)system.combine(right, b);
-  system.set_kind(wall, BodyKind::static_);
-  system.set_kind(link, BodyKind::resting);
-  system.set_mass(right, 2);
+  const BodyId wall = system.bodies().create(), link = system.bodies().create();
+  const ParticleId left = system.particles().create(wall, {0, 0, 0}, 1),
+                   right = system.particles().create(wall, {1, 0, 0}, 1);
+  const ParticleId a = system.particles().create(link, {0, 0, 0}, 1), b = system.particles().create(link, {0.9, 0, 0}, 1);
+  (void)system.edits().combine(left, a);
+  (void)system.edits().combine(right, b);
+  system.bodies().set_kind(wall, BodyKind::static_);
+  system.bodies().set_kind(link, BodyKind::resting);
+  system.particles().set_mass(right, 2);
   const StepReport report = system.step(0.01);
-  ASSERT_EQ(system.kind(link), BodyKind::dynamic);
+  ASSERT_EQ(system.bodies().kind(link), BodyKind::dynamic);
   EXPECT_GT(report.worst_gap, 1e-3);
   EXPECT_EQ(report.unconverged, 1);
 }
@@ -158,18 +158,18 @@ TEST(Active, an_inactive_body_is_out_of_the_world_until_it_is_back) {
   const auto chain = scenes::make_chain(system, {.links = 4});
   for (int i = 0; i < 20; ++i) (void)system.step(0.01);
   const double start = book(system);
-  const Vec3 left = system.position(chain.lower[3]);
-  system.set_active(chain.links[3], false);
-  EXPECT_FALSE(system.is_active(chain.links[3]));
+  const Vec3 left = system.particles().position(chain.lower[3]);
+  system.bodies().set_active(chain.links[3], false);
+  EXPECT_FALSE(system.bodies().is_active(chain.links[3]));
   for (int i = 0; i < 50; ++i) {
     const StepReport report = system.step(0.01);
     EXPECT_EQ(report.unconverged, 0);
     EXPECT_LT(report.worst_gap, 1e-8);
   }
-  EXPECT_EQ(system.position(chain.lower[3]), left);
+  EXPECT_EQ(system.particles().position(chain.lower[3]), left);
   EXPECT_NEAR(book(system), start, 1e-6);
-  system.set_active(chain.links[3], true);
-  EXPECT_EQ(system.kind(chain.links[3]), BodyKind::dynamic);
+  system.bodies().set_active(chain.links[3], true);
+  EXPECT_EQ(system.bodies().kind(chain.links[3]), BodyKind::dynamic);
   EXPECT_LT(system.worst_gap(), 1e-8);  // its hinge is closed again
   for (int i = 0; i < 50; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
   EXPECT_NEAR(book(system), start, 1e-6);
@@ -178,68 +178,68 @@ TEST(Active, an_inactive_body_is_out_of_the_world_until_it_is_back) {
 
 TEST(Active, a_body_comes_back_as_what_it_was) {
   System system;
-  const BodyId fixed = system.create_body({.kind = BodyKind::static_});
-  (void)system.create_particle(fixed, {});
-  system.set_active(fixed, false);
-  system.set_active(fixed, true);
-  EXPECT_EQ(system.kind(fixed), BodyKind::static_);
+  const BodyId fixed = system.bodies().create({.kind = BodyKind::static_});
+  (void)system.particles().create(fixed, {});
+  system.bodies().set_active(fixed, false);
+  system.bodies().set_active(fixed, true);
+  EXPECT_EQ(system.bodies().kind(fixed), BodyKind::static_);
 }
 
 TEST(Active, an_articulate_goes_and_comes_as_one) {
   System system;
   const auto a = scenes::make_chain(system, {.links = 3}),
              b = scenes::make_chain(system, {.links = 3, .top = {0, 0, 1}});
-  system.set_articulate_active(a.links[1], false);
+  system.bodies().set_articulate_active(a.links[1], false);
   for (int i = 0; i < 10; ++i) (void)system.step(0.01);
-  for (const BodyId link : a.links) EXPECT_FALSE(system.is_active(link));
-  EXPECT_EQ(system.position(a.lower[2]).y, 0);
-  EXPECT_LT(system.position(b.lower[2]).y, -0.01);
-  EXPECT_EQ(system.poses().bodies.size(), 3u);
-  system.set_articulate_active(a.links[0], true);
+  for (const BodyId link : a.links) EXPECT_FALSE(system.bodies().is_active(link));
+  EXPECT_EQ(system.particles().position(a.lower[2]).y, 0);
+  EXPECT_LT(system.particles().position(b.lower[2]).y, -0.01);
+  EXPECT_EQ(system.viewer().poses().bodies.size(), 3u);
+  system.bodies().set_articulate_active(a.links[0], true);
   (void)system.step(0.01);
-  EXPECT_LT(system.position(a.lower[2]).y, 0);
+  EXPECT_LT(system.particles().position(a.lower[2]).y, 0);
 }
 
 TEST(Active, bonds_of_what_is_inactive_do_not_act) {
   System system({.gravity = {}});
-  const BodyId a = system.create_body(), b = system.create_body();
-  const ParticleId p = system.create_particle(a, {0, 0, 0}), q = system.create_particle(b, {1, 0, 0});
-  (void)system.create_bond(p, q, SpringLaw{.stiffness = 10, .length = 0.5});
+  const BodyId a = system.bodies().create(), b = system.bodies().create();
+  const ParticleId p = system.particles().create(a, {0, 0, 0}), q = system.particles().create(b, {1, 0, 0});
+  (void)system.bonds().create(p, q, SpringLaw{.stiffness = 10, .length = 0.5});
   const double energy = 0.5 * 10 * 0.25;
   EXPECT_NEAR(system.energy().potential, energy, 1e-15);
   for (const bool whole_body : {false, true}) {
-    whole_body ? system.set_active(b, false) : system.set_active(q, false);
+    whole_body ? system.bodies().set_active(b, false) : system.particles().set_active(q, false);
     EXPECT_EQ(system.energy().potential, 0);
     (void)system.step(0.01);
-    EXPECT_EQ(system.velocity(p), Vec3{});
-    whole_body ? system.set_active(b, true) : system.set_active(q, true);
+    EXPECT_EQ(system.particles().velocity(p), Vec3{});
+    whole_body ? system.bodies().set_active(b, true) : system.particles().set_active(q, true);
     EXPECT_NEAR(system.energy().potential, energy, 1e-15);
   }
   (void)system.step(0.01);
-  EXPECT_GT(system.velocity(p).x, 0.01);
+  EXPECT_GT(system.particles().velocity(p).x, 0.01);
 }
 
 TEST(Active, an_inactive_particle_weighs_next_to_nothing) {
   System system;
-  const BodyId rod = system.create_body();
-  const ParticleId hinge = system.create_particle(rod, {0, 0, 0}, 1),
-                   middle = system.create_particle(rod, {0.5, 0, 0}, 2),
-                   end = system.create_particle(rod, {1, 0, 0}, 3);
-  system.nail(hinge);
-  system.set_active(end, false);
-  EXPECT_EQ(system.mass(end), 3);
-  EXPECT_NEAR(system.mass(rod), 3, 1e-5);
+  const BodyId rod = system.bodies().create();
+  const ParticleId hinge = system.particles().create(rod, {0, 0, 0}, 1),
+                   middle = system.particles().create(rod, {0.5, 0, 0}, 2),
+                   end = system.particles().create(rod, {1, 0, 0}, 3);
+  system.particles().nail(hinge);
+  system.particles().set_active(end, false);
+  EXPECT_EQ(system.particles().mass(end), 3);
+  EXPECT_NEAR(system.bodies().mass(rod), 3, 1e-5);
   const double start = book(system);
   // A pendulum of length 0.5 from the horizontal: at the bottom v^2 = 2 g l.
   double fastest = 0;
   for (int i = 0; i < 200; ++i) {
     (void)system.step(0.005);
-    fastest = std::max(fastest, norm(system.velocity(middle)));
+    fastest = std::max(fastest, norm(system.particles().velocity(middle)));
   }
   EXPECT_NEAR(fastest, std::sqrt(2 * 9.81 * 0.5), 1e-3);
-  EXPECT_NEAR(norm(system.position(end) - system.position(hinge)), 1, 1e-9);
-  system.set_active(end, true);
-  EXPECT_EQ(system.mass(rod), 6);
+  EXPECT_NEAR(norm(system.particles().position(end) - system.particles().position(hinge)), 1, 1e-9);
+  system.particles().set_active(end, true);
+  EXPECT_EQ(system.bodies().mass(rod), 6);
   for (int i = 0; i < 20; ++i) (void)system.step(0.005);
   EXPECT_NEAR(book(system), start, 1e-6);
   EXPECT_TRUE(system.validate().empty());

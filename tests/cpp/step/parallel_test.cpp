@@ -22,20 +22,20 @@ std::vector<std::uint64_t> hashes_of_a_busy_world(int threads, IntegrationMode m
   std::vector<std::uint64_t> hashes;
   for (int step = 0; step < 12; ++step) {
     for (int edit = 0; edit < 6; ++edit) {
-      const std::vector<ParticleId> particles = system.particles();
+      const std::vector<ParticleId> particles = system.particles().ids();
       const ParticleId p = particles[index(particles.size())], q = particles[index(particles.size())];
       try {
         switch (index(8)) {
-          case 0: (void)system.combine(p, q, 0.1); break;
-          case 1: (void)system.create_bond(p, q, SpringLaw{.stiffness = 50}); break;
-          case 2: (void)system.combine(system.body(p), system.body(q)); break;
-          case 3: system.destroy(p); break;
+          case 0: (void)system.edits().combine(p, q, 0.1); break;
+          case 1: (void)system.bonds().create(p, q, SpringLaw{.stiffness = 50}); break;
+          case 2: (void)system.edits().combine(system.particles().body(p), system.particles().body(q)); break;
+          case 3: system.particles().destroy(p); break;
           case 4:
-            if (edit == 0) system.nail(p);
+            if (edit == 0) system.particles().nail(p);
             break;
           default: {
-            const std::vector<ParticleId> ring = system.ring(p);
-            (void)system.separate(p, ring[index(ring.size())]);
+            const std::vector<ParticleId> ring = system.particles().ring(p);
+            (void)system.edits().separate(p, ring[index(ring.size())]);
           }
         }
       } catch (const std::invalid_argument&) {  // what cannot be, cannot be for any number of threads

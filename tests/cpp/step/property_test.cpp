@@ -22,20 +22,20 @@ struct RandomWorld {
     for (int i = 0; i < bodies; ++i) add_body();
   }
   void add_body() {
-    const BodyId body = system.create_body();
+    const BodyId body = system.bodies().create();
     const std::size_t count = 1 + index(5);
     for (std::size_t i = 0; i < count; ++i)
-      system.create_particle(body, point(), std::pow(10, uniform(-2, 2)), point());
+      system.particles().create(body, point(), std::pow(10, uniform(-2, 2)), point());
   }
   ParticleId any_particle() {
-    const auto all = system.particles();
+    const auto all = system.particles().ids();
     return all[index(all.size())];
   }
 
   void edit() {
     const auto total_mass = [&] {
       double sum = 0;
-      for (const ParticleId p : system.particles()) sum += system.mass(p);
+      for (const ParticleId p : system.particles().ids()) sum += system.particles().mass(p);
       return sum;
     };
     const ParticleId p = any_particle(), q = any_particle();
@@ -45,30 +45,30 @@ struct RandomWorld {
       switch (index(10)) {
         case 0:
         case 1:
-        case 2: report = system.combine(p, q); break;
+        case 2: report = system.edits().combine(p, q); break;
         case 3:
         case 4:
         case 5: {
-          const auto ring = system.ring(p);
-          report = system.separate(p, ring[index(ring.size())]);
+          const auto ring = system.particles().ring(p);
+          report = system.edits().separate(p, ring[index(ring.size())]);
           break;
         }
-        case 6: report = system.separate(p, q); break;
-        case 7: report = system.combine(system.body(p), system.body(q)); break;
+        case 6: report = system.edits().separate(p, q); break;
+        case 7: report = system.edits().combine(system.particles().body(p), system.particles().body(q)); break;
         case 8:
-          if (system.is_nailed(p))
-            system.release(p);
+          if (system.particles().is_nailed(p))
+            system.particles().release(p);
           else if (index(8) == 0)
-            system.nail(p);
+            system.particles().nail(p);
           break;
-        default: report = system.combine(p, q, 0.05); break;
+        default: report = system.edits().combine(p, q, 0.05); break;
       }
     } catch (const std::invalid_argument&) {
       return;  // two particles of one body in one place, or already closing: refused, checked below by validate
     }
     ASSERT_NEAR(total_mass(), mass, 1e-9 * mass) << "edits keep mass";
     bool nailed = false;
-    for (const ParticleId any : system.particles()) nailed = nailed || system.is_nailed(any);
+    for (const ParticleId any : system.particles().ids()) nailed = nailed || system.particles().is_nailed(any);
     if (!nailed) {
       const double scale = 1e-9 + mass;  // positions and velocities are of order one
       ASSERT_LT(norm(report.momentum_change), 1e-10 * scale);
@@ -95,7 +95,7 @@ TEST(RandomEdits, ten_thousand_keep_the_structure_whole_and_finite) {
         ASSERT_LT(report.energy.total(), before.total() + 20 * before.kinetic + 1e4)
             << "seed " << seed << " edit " << i;
       }
-      if (world.system.bodies().size() < 6) world.add_body();
+      if (world.system.bodies().ids().size() < 6) world.add_body();
     }
   }
   EXPECT_EQ(edits, 10000);
@@ -104,21 +104,21 @@ TEST(RandomEdits, ten_thousand_keep_the_structure_whole_and_finite) {
 void drive(System& system, std::uint64_t seed, int steps, std::vector<std::uint64_t>& hashes) {
   scenes::make_chain(system, {.links = 12, .link_length = 0.1});
   std::mt19937_64 random(seed);
-  const auto bodies = system.bodies();
+  const auto bodies = system.bodies().ids();
   for (int i = 0; i < steps; ++i) {
-    const auto particles = system.particles();
+    const auto particles = system.particles().ids();
     const ParticleId p = particles[random() % particles.size()];
-    const auto ring = system.ring(p);
-    if (i % 20 == 5) (void)system.separate(ring.front(), ring.back());
+    const auto ring = system.particles().ring(p);
+    if (i % 20 == 5) (void)system.edits().separate(ring.front(), ring.back());
     if (i % 20 == 15) {
       const ParticleId q = particles[random() % particles.size()];
       try {
-        (void)system.combine(p, q, i % 40 < 20 ? 0 : 0.1);
+        (void)system.edits().combine(p, q, i % 40 < 20 ? 0 : 0.1);
       } catch (const std::invalid_argument&) {
       }
     }
-    if (i == 30) (void)system.create_grip(bodies[5], {0.01, 0, 0}, {0.5, 0.5, 0.5});
-    if (i == 10) system.apply_force(p, {0, 3, 0});
+    if (i == 30) (void)system.grips().create(bodies[5], {0.01, 0, 0}, {0.5, 0.5, 0.5});
+    if (i == 10) system.particles().apply_force(p, {0, 3, 0});
     (void)system.step(1.0 / 120);
     hashes.push_back(system.state_hash());
   }
@@ -135,35 +135,35 @@ TEST(Determinism, repeated_runs_give_the_same_bits) {
 
 TEST(Determinism, a_replay_gives_equal_hashes_and_a_changed_one_does_not) {
   System system;
-  system.create_particle(system.create_body(), {3, 3, 3});
-  system.start_recording();
+  system.particles().create(system.bodies().create(), {3, 3, 3});
+  system.record().start();
   std::vector<std::uint64_t> hashes;
   drive(system, 11, 200, hashes);
-  Recording recording = system.stop_recording();
+  Recording recording = system.record().stop();
   EXPECT_EQ(recording.hashes, hashes);
   const auto end = system.state_hash();
-  EXPECT_EQ(system.replay(recording), std::nullopt);
+  EXPECT_EQ(system.record().replay(recording), std::nullopt);
   EXPECT_EQ(system.state_hash(), end);
 
   System other;  // another process would do the same
-  EXPECT_EQ(other.replay(recording), std::nullopt);
+  EXPECT_EQ(other.record().replay(recording), std::nullopt);
   EXPECT_EQ(other.state_hash(), end);
 
   recording.hashes[50] ^= 1;
-  EXPECT_EQ(other.replay(recording), 51u);
+  EXPECT_EQ(other.record().replay(recording), 51u);
 }
 
 TEST(Determinism, a_recording_that_is_cut_short_is_refused_and_leaves_a_whole_system) {
   System system;
-  system.start_recording();
+  system.record().start();
   std::vector<std::uint64_t> hashes;
   drive(system, 11, 40, hashes);
-  const Recording recording = system.stop_recording();
+  const Recording recording = system.record().stop();
   for (const std::size_t missing : {std::size_t{1}, std::size_t{7}, recording.commands.size() / 2 + 3}) {
     Recording cut = recording;
     cut.commands.resize(recording.commands.size() - missing);
     System other;
-    EXPECT_THROW((void)other.replay(cut), std::invalid_argument) << missing << " bytes are missing";
+    EXPECT_THROW((void)other.record().replay(cut), std::invalid_argument) << missing << " bytes are missing";
     EXPECT_EQ(other.validate(), std::vector<std::string>{});
   }
 }
@@ -173,12 +173,12 @@ TEST(Determinism, a_restored_snapshot_goes_on_with_the_same_bits_and_the_same_id
   std::vector<std::uint64_t> hashes;
   drive(system, 13, 100, hashes);
   const Snapshot snapshot = system.snapshot();
-  const ParticleId held = system.particles()[3];
-  const Vec3 position = system.position(held);
+  const ParticleId held = system.particles().ids()[3];
+  const Vec3 position = system.particles().position(held);
   std::vector<std::uint64_t> first, second;
   for (int i = 0; i < 50; ++i) (void)system.step(1.0 / 120), first.push_back(system.state_hash());
   system.restore(snapshot);
-  EXPECT_EQ(system.position(held), position);
+  EXPECT_EQ(system.particles().position(held), position);
   for (int i = 0; i < 50; ++i) (void)system.step(1.0 / 120), second.push_back(system.state_hash());
   EXPECT_EQ(first, second);
 }

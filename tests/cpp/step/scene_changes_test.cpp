@@ -88,34 +88,34 @@ class Editor {
     return {at(random_), at(random_), at(random_)};
   }
   void apply(System& system, std::uint32_t what) {
-    const auto particles = system.particles();
+    const std::vector<ParticleId> particles = system.particles().ids();
     if (particles.size() < 12 || what < 3) {
-      const BodyId body = system.create_body();
-      const ParticleId p = system.create_particle(body, place()), q = system.create_particle(body, place());
-      if (what == 1) (void)system.create_cosmetic_bond(p, q);
+      const BodyId body = system.bodies().create();
+      const ParticleId p = system.particles().create(body, place()), q = system.particles().create(body, place());
+      if (what == 1) (void)system.cosmetic_bonds().create(p, q);
       return;
     }
     const ParticleId p = any(particles), q = any(particles);
     switch (what) {
-      case 3: (void)system.combine(p, q); break;
-      case 4: (void)system.combine(system.body(p), system.body(q)); break;
-      case 5: (void)system.separate(p, q); break;
-      case 6: (void)system.separate(p, any(system.ring(p))); break;
-      case 7: system.destroy(p); break;
-      case 8: system.destroy(system.body(p)); break;
-      case 9: system.is_nailed(p) ? system.release(p) : system.nail(p); break;
-      case 10: (void)system.create_bond(p, q, SpringLaw{.stiffness = 1, .length = 0.5}); break;
+      case 3: (void)system.edits().combine(p, q); break;
+      case 4: (void)system.edits().combine(system.particles().body(p), system.particles().body(q)); break;
+      case 5: (void)system.edits().separate(p, q); break;
+      case 6: (void)system.edits().separate(p, any(system.particles().ring(p))); break;
+      case 7: system.particles().destroy(p); break;
+      case 8: system.bodies().destroy(system.particles().body(p)); break;
+      case 9: system.particles().is_nailed(p) ? system.particles().release(p) : system.particles().nail(p); break;
+      case 10: (void)system.bonds().create(p, q, SpringLaw{.stiffness = 1, .length = 0.5}); break;
       case 11:
-        if (!system.bonds().empty()) system.destroy(any(system.bonds()));
+        if (!system.bonds().ids().empty()) system.bonds().destroy(any(system.bonds().ids()));
         break;
       case 12:
-        (void)system.create_constraint(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = 3});
+        (void)system.joints().create(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .length = 3});
         break;
       case 13:
-        if (!system.constraints().empty()) system.set_active(any(system.constraints()), random_() % 2);
+        if (!system.joints().ids().empty()) system.joints().set_active(any(system.joints().ids()), random_() % 2);
         break;
-      case 14: system.set_kind(system.body(p), random_() % 2 ? BodyKind::static_ : BodyKind::dynamic); break;
-      case 15: system.set_active(system.body(p), random_() % 2); break;
+      case 14: system.bodies().set_kind(system.particles().body(p), random_() % 2 ? BodyKind::static_ : BodyKind::dynamic); break;
+      case 15: system.bodies().set_active(system.particles().body(p), random_() % 2); break;
     }
   }
 
@@ -127,16 +127,16 @@ TEST(SceneChanges, what_is_told_edit_by_edit_adds_up_to_what_there_is) {
     System system;
     Editor editor(seed);
     Viewer viewer;
-    viewer.take(system.take_scene_changes());
+    viewer.take(system.viewer().take_scene_changes());
     const Snapshot start = system.snapshot();
     for (int round = 0; round < 40; ++round) {
       for (int edits = 0; edits < 3; ++edits) editor.edit(system);
       if (round == 20) system.restore(start);
-      const SceneChanges changes = system.take_scene_changes();
+      const SceneChanges changes = system.viewer().take_scene_changes();
       EXPECT_EQ(changes.is_whole, round == 20);
       viewer.take(changes);
       Viewer fresh;
-      fresh.take(system.take_scene_changes(true));
+      fresh.take(system.viewer().take_scene_changes(true));
       ASSERT_TRUE(viewer == fresh) << "seed " << seed << ", round " << round << "\n" << viewer.difference(fresh);
     }
   }
@@ -144,11 +144,11 @@ TEST(SceneChanges, what_is_told_edit_by_edit_adds_up_to_what_there_is) {
 
 TEST(SceneChanges, a_step_without_an_edit_tells_nothing) {
   System system;
-  const BodyId body = system.create_body();
-  (void)system.create_particle(body, {0, 0, 0});
-  (void)system.take_scene_changes();
+  const BodyId body = system.bodies().create();
+  (void)system.particles().create(body, {0, 0, 0});
+  (void)system.viewer().take_scene_changes();
   (void)system.step(0.01);
-  const SceneChanges changes = system.take_scene_changes();
+  const SceneChanges changes = system.viewer().take_scene_changes();
   EXPECT_FALSE(changes.is_whole);
   EXPECT_TRUE(changes.bodies.set.empty() && changes.bodies.gone.empty() && changes.memberships.empty());
 }
@@ -157,16 +157,16 @@ TEST(SceneChanges, a_cut_touches_its_own_bodies_and_the_articulate_of_the_smalle
   System system;
   std::vector<ParticleId> ends;
   for (int i = 0; i < 1000; ++i) {
-    const BodyId link = system.create_body();
-    const ParticleId p = system.create_particle(link, {0.1 * i, 0, 0}),
-                     q = system.create_particle(link, {0.1 * i + 0.1, 0, 0});
-    if (!ends.empty()) (void)system.combine(ends.back(), p);
+    const BodyId link = system.bodies().create();
+    const ParticleId p = system.particles().create(link, {0.1 * i, 0, 0}),
+                     q = system.particles().create(link, {0.1 * i + 0.1, 0, 0});
+    if (!ends.empty()) (void)system.edits().combine(ends.back(), p);
     ends.push_back(q);
   }
-  EXPECT_EQ(system.take_scene_changes().bodies.set.size(), 1000u);
-  const ParticleId cut = system.ring(ends[899])[1];
-  ASSERT_TRUE(system.separate(ends[899], cut).changed);
-  const SceneChanges changes = system.take_scene_changes();
+  EXPECT_EQ(system.viewer().take_scene_changes().bodies.set.size(), 1000u);
+  const ParticleId cut = system.particles().ring(ends[899])[1];
+  ASSERT_TRUE(system.edits().separate(ends[899], cut).changed);
+  const SceneChanges changes = system.viewer().take_scene_changes();
   EXPECT_LE(changes.bodies.set.size(), 2u);
   EXPECT_EQ(changes.memberships.size(), 100u);
   EXPECT_EQ(changes.events.size(), 1u);
@@ -174,17 +174,17 @@ TEST(SceneChanges, a_cut_touches_its_own_bodies_and_the_articulate_of_the_smalle
 
 TEST(SceneChanges, a_body_made_after_a_restore_is_new_though_its_id_was_in_use) {
   System system;
-  (void)system.create_particle(system.create_body(), {0, 0, 0});
-  (void)system.take_scene_changes();
+  (void)system.particles().create(system.bodies().create(), {0, 0, 0});
+  (void)system.viewer().take_scene_changes();
   const Snapshot start = system.snapshot();
-  const BodyId first = system.create_body();
-  (void)system.create_particle(first, {1, 0, 0});
-  (void)system.take_scene_changes();
+  const BodyId first = system.bodies().create();
+  (void)system.particles().create(first, {1, 0, 0});
+  (void)system.viewer().take_scene_changes();
   system.restore(start);
-  const BodyId second = system.create_body();
-  (void)system.create_particle(second, {2, 0, 0});
+  const BodyId second = system.bodies().create();
+  (void)system.particles().create(second, {2, 0, 0});
   ASSERT_EQ(first, second);
-  const SceneChanges changes = system.take_scene_changes();
+  const SceneChanges changes = system.viewer().take_scene_changes();
   ASSERT_EQ(changes.bodies.set.size(), 2u);
   EXPECT_FALSE(changes.bodies.set[0].is_new);
   EXPECT_TRUE(changes.bodies.set[1].is_new);
@@ -192,27 +192,27 @@ TEST(SceneChanges, a_body_made_after_a_restore_is_new_though_its_id_was_in_use) 
 
 TEST(SceneChanges, events_come_when_something_happens_and_not_when_it_is_called_off_or_undone) {
   System system;
-  const auto point = [&](double x) { return system.create_particle(system.create_body(), {x, 0, 0}); };
+  const auto point = [&](double x) { return system.particles().create(system.bodies().create(), {x, 0, 0}); };
   const ParticleId p = point(0), q = point(1);
-  (void)system.take_scene_changes();
+  (void)system.viewer().take_scene_changes();
   const auto kinds = [&] {
     std::string out;
-    for (const ViewEvent& event : system.take_scene_changes().events)
+    for (const ViewEvent& event : system.viewer().take_scene_changes().events)
       out += event.kind == ViewEvent::Kind::join ? 'j' : 'b';
     return out;
   };
-  (void)system.combine(p, q, 0.05);
+  (void)system.edits().combine(p, q, 0.05);
   EXPECT_EQ(kinds(), "") << "not yet";
   for (int i = 0; i < 10; ++i) (void)system.step(0.01);
   EXPECT_EQ(kinds(), "j");
-  (void)system.separate(p, q);
+  (void)system.edits().separate(p, q);
   EXPECT_EQ(kinds(), "b");
-  system.nail(p), system.nail(p), system.release(p);
+  system.particles().nail(p), system.particles().nail(p), system.particles().release(p);
   EXPECT_EQ(kinds(), "jb");
-  system.begin_edit();
-  (void)system.combine(p, q);
-  (void)system.end_edit();
-  system.undo();
+  system.edits().begin();
+  (void)system.edits().combine(p, q);
+  (void)system.edits().end();
+  system.edits().undo();
   EXPECT_EQ(kinds(), "");
 }
 

@@ -14,11 +14,11 @@ class Playground {
  public:
   explicit Playground(unsigned seed, const Vec3& gravity = {}) : system({.gravity = gravity}), random_(seed) {
     for (int i = 0; i < 6; ++i) add_solid();
-    const BodyId molecule = system.create_body();
+    const BodyId molecule = system.bodies().create();
     ParticleId last{};
     for (int i = 0; i < 6; ++i) {
-      const ParticleId atom = system.create_particle(molecule, {0.5 * i, number(-1, 1), number(-1, 1)}, number(0.5, 2));
-      if (i > 0) (void)system.create_cosmetic_bond(last, atom);
+      const ParticleId atom = system.particles().create(molecule, {0.5 * i, number(-1, 1), number(-1, 1)}, number(0.5, 2));
+      if (i > 0) (void)system.cosmetic_bonds().create(last, atom);
       last = atom;
     }
   }
@@ -34,7 +34,7 @@ class Playground {
     const std::array<Shape, 4> shapes{Sphere{number(0.1, 0.5)}, Box{{number(0.1, 1), number(0.1, 1), number(0.1, 1)}},
                                       Cylinder{number(0.05, 0.3), number(0.2, 1)}, Torus{0.4, 0.1}};
     const auto which = static_cast<std::size_t>(number(0, 3.999));
-    (void)system.create_body(shapes[which], {.mass = number(0.3, 3),
+    (void)system.bodies().create(shapes[which], {.mass = number(0.3, 3),
                                              .position = vector(3),
                                              .orientation = {number(-1, 1), number(-1, 1), number(-1, 1), 1.5},
                                              .velocity = vector(1),
@@ -44,18 +44,18 @@ class Playground {
 
   /// Edits that must keep momentum and angular momentum, unless the report says otherwise.
   RestructureReport edit() {
-    const BodyId body = any(system.bodies());
+    const BodyId body = any(system.bodies().ids());
     switch (static_cast<int>(number(0, 5))) {
-      case 0: return system.combine(any(system.particles()), any(system.particles()), number(0, 1) < 0.3 ? 0.05 : 0.0);
-      case 1: return system.separate(any(system.particles()), any(system.particles()));
-      case 2: return system.combine(body, any(system.bodies()));
-      case 3: return system.separate(body, any(system.parts(body)));
+      case 0: return system.edits().combine(any(system.particles().ids()), any(system.particles().ids()), number(0, 1) < 0.3 ? 0.05 : 0.0);
+      case 1: return system.edits().separate(any(system.particles().ids()), any(system.particles().ids()));
+      case 2: return system.edits().combine(body, any(system.bodies().ids()));
+      case 3: return system.edits().separate(body, any(system.bodies().parts(body)));
       default: {
-        const auto bonds = system.cosmetic_bonds();
-        if (!bonds.empty()) return system.destroy(any(bonds));
-        const auto particles = system.particles(body);
+        const auto bonds = system.cosmetic_bonds().ids();
+        if (!bonds.empty()) return system.cosmetic_bonds().destroy(any(bonds));
+        const auto particles = system.bodies().particles(body);
         if (particles.size() > 1 && particles[0] != particles.back())
-          (void)system.create_cosmetic_bond(particles[0], particles.back());
+          (void)system.cosmetic_bonds().create(particles[0], particles.back());
         return {};
       }
     }
@@ -63,62 +63,62 @@ class Playground {
 
   /// Edits that take away or bring what they like.
   void upset() {
-    const BodyId body = any(system.bodies());
+    const BodyId body = any(system.bodies().ids());
     switch (static_cast<int>(number(0, 17))) {
-      case 0: system.set_active(body, !system.is_active(body)); break;
+      case 0: system.bodies().set_active(body, !system.bodies().is_active(body)); break;
       case 1: {
-        const ParticleId p = any(system.particles());
-        system.set_active(p, !system.is_active(p));
+        const ParticleId p = any(system.particles().ids());
+        system.particles().set_active(p, !system.particles().is_active(p));
         break;
       }
-      case 2: system.set_velocity(body, vector(1)); break;
-      case 3: system.set_angular_velocity(body, vector(1)); break;
+      case 2: system.bodies().set_velocity(body, vector(1)); break;
+      case 3: system.bodies().set_angular_velocity(body, vector(1)); break;
       case 4:
-        if (system.bodies().size() < 12) add_solid();
+        if (system.bodies().ids().size() < 12) add_solid();
         break;
-      case 5: (void)system.create_attachment(body, system.center_of_mass(body) + vector(0.5)); break;
+      case 5: (void)system.bodies().create_attachment(body, system.bodies().center_of_mass(body) + vector(0.5)); break;
       case 6: {
-        const ParticleId p = any(system.particles());
-        if (system.is_nailed(p))
-          system.release(p);
+        const ParticleId p = any(system.particles().ids());
+        if (system.particles().is_nailed(p))
+          system.particles().release(p);
         else
-          system.nail(p);
+          system.particles().nail(p);
         break;
       }
       case 7:
       case 8: join(body); break;
       case 9:
-        if (const auto joints = system.constraints(); !joints.empty()) system.destroy(any(joints));
+        if (const auto joints = system.joints().ids(); !joints.empty()) system.joints().destroy(any(joints));
         break;
       case 10: {
-        const ParticleId p = any(system.particles()), q = any(system.particles());
-        if (p != q) (void)system.create_bond(p, q, SpringLaw{5, 0.1, 0.3});
+        const ParticleId p = any(system.particles().ids()), q = any(system.particles().ids());
+        if (p != q) (void)system.bonds().create(p, q, SpringLaw{5, 0.1, 0.3});
         break;
       }
       case 11:
-        if (const auto bonds = system.bonds(); !bonds.empty()) system.destroy(any(bonds));
+        if (const auto bonds = system.bonds().ids(); !bonds.empty()) system.bonds().destroy(any(bonds));
         break;
-      case 12: system.set_position(any(system.particles()), vector(2)); break;
-      case 13: system.set_velocity(any(system.particles()), vector(2)); break;
-      case 14: system.set_mass(any(system.particles()), number(0.1, 2)); break;
+      case 12: system.particles().set_position(any(system.particles().ids()), vector(2)); break;
+      case 13: system.particles().set_velocity(any(system.particles().ids()), vector(2)); break;
+      case 14: system.particles().set_mass(any(system.particles().ids()), number(0.1, 2)); break;
       case 15: {
         constexpr std::array kinds{BodyKind::static_, BodyKind::dynamic, BodyKind::dynamic, BodyKind::resting};
-        system.set_kind(body, kinds[static_cast<std::size_t>(number(0, 3.99))]);
+        system.bodies().set_kind(body, kinds[static_cast<std::size_t>(number(0, 3.99))]);
         break;
       }
-      default: system.set_pose(body, system.center_of_mass(body) + vector(0.2), {number(-1, 1), 0.3, 0.1, 1});
+      default: system.bodies().set_pose(body, system.bodies().center_of_mass(body) + vector(0.2), {number(-1, 1), 0.3, 0.1, 1});
     }
   }
 
   void join(BodyId body) {
     constexpr std::array kinds{ConstraintKind::revolute, ConstraintKind::ball, ConstraintKind::weld,
                                ConstraintKind::cylindrical, ConstraintKind::universal};
-    JointSpec joint{.a = body, .b = any(system.bodies()), .at = system.center_of_mass(body), .axis = vector(1)};
+    JointSpec joint{.a = body, .b = any(system.bodies().ids()), .at = system.bodies().center_of_mass(body), .axis = vector(1)};
     joint.kind = kinds[static_cast<std::size_t>(number(0, 4.99))];
     joint.second_axis = cross(joint.axis, vector(1));
     if (joint.kind == ConstraintKind::revolute && number(0, 1) < 0.5) joint.angle.stiffness = 3;
     if (number(0, 1) < 0.2) joint.b = {};
-    (void)system.create_constraint(joint);
+    (void)system.joints().create(joint);
   }
 
   System system;

@@ -71,7 +71,7 @@ Mesh box_mesh(const Vec3& low, const Vec3& size) {
 TEST(Solid, inertia_of_every_shape_is_the_textbooks) {
   System system;
   const double m = 3;
-  const auto inertia = [&](const Shape& shape) { return system.inertia(system.create_body(shape, {.mass = m})); };
+  const auto inertia = [&](const Shape& shape) { return system.bodies().inertia(system.bodies().create(shape, {.mass = m})); };
   expect_diagonal(inertia(Sphere{0.7}), 0.4 * m * 0.49 * Vec3{1, 1, 1}, 1e-14);
   expect_diagonal(inertia(Box{{1, 2, 3}}), m / 12 * Vec3{4 + 9, 1 + 9, 1 + 4}, 1e-14);
   const double a2 = 0.3 * 0.3, l2 = 2.0 * 2.0;
@@ -93,7 +93,7 @@ TEST(Solid, volumes_are_the_textbooks) {
   EXPECT_DOUBLE_EQ(mass_properties(Capsule{2, 3}).volume, pi * 4 * 3 + 4 * pi / 3 * 8);
   EXPECT_DOUBLE_EQ(mass_properties(Torus{2, 0.5}).volume, 2 * pi * pi * 2 * 0.25);
   System system;
-  EXPECT_DOUBLE_EQ(system.mass(system.create_body(Box{{1, 2, 3}}, {.density = 7})), 42);
+  EXPECT_DOUBLE_EQ(system.bodies().mass(system.bodies().create(Box{{1, 2, 3}}, {.density = 7})), 42);
 }
 
 TEST(Solid, a_mesh_of_a_box_anywhere_has_the_boxs_properties) {
@@ -165,22 +165,22 @@ TEST(Solid, bad_shapes_are_refused_with_the_reason) {
 TEST(Solid, a_turned_body_has_the_turned_inertia_and_moves) {
   System system({.gravity = {}});
   const Quaternion turn{0.1, -0.5, 0.3, std::sqrt(1 - 0.35)};
-  const BodyId body = system.create_body(
+  const BodyId body = system.bodies().create(
       Box{{1, 2, 3}},
       {.mass = 5, .position = {7, 8, 9}, .orientation = turn, .velocity = {1, 2, 3}, .spin = {-2, 1, 0.5}});
-  EXPECT_NEAR(system.mass(body), 5, 1e-14);
-  expect_near(system.center_of_mass(body), {7, 8, 9}, 1e-13);
-  expect_near(system.velocity(body), {1, 2, 3}, 1e-13);
-  expect_near(system.angular_velocity(body), {-2, 1, 0.5}, 1e-13);
-  const Quaternion q = system.orientation(body);
+  EXPECT_NEAR(system.bodies().mass(body), 5, 1e-14);
+  expect_near(system.bodies().center_of_mass(body), {7, 8, 9}, 1e-13);
+  expect_near(system.bodies().velocity(body), {1, 2, 3}, 1e-13);
+  expect_near(system.bodies().angular_velocity(body), {-2, 1, 0.5}, 1e-13);
+  const Quaternion q = system.bodies().orientation(body);
   EXPECT_NEAR(std::abs(q.x * turn.x + q.y * turn.y + q.z * turn.z + q.w * turn.w), 1, 1e-13);
   double trace = 0;
-  for (int i = 0; i < 3; ++i) trace += at(system.inertia(body), i, i);
+  for (int i = 0; i < 3; ++i) trace += at(system.bodies().inertia(body), i, i);
   EXPECT_NEAR(trace, 5.0 / 12 * 2 * (1 + 4 + 9), 1e-12);
   // J is what makes L of omega.
-  const Matrix3 j = system.inertia(body);
+  const Matrix3 j = system.bodies().inertia(body);
   const Vec3 w{-2, 1, 0.5};
-  expect_near(system.angular_momentum(body), {dot(j[0], w), dot(j[1], w), dot(j[2], w)}, 1e-12);
+  expect_near(system.bodies().angular_momentum(body), {dot(j[0], w), dot(j[1], w), dot(j[2], w)}, 1e-12);
   EXPECT_TRUE(system.validate().empty());
 }
 
@@ -192,44 +192,44 @@ TEST(Solid, attachments_anywhere_keep_mass_center_inertia_and_motion) {
     System system({.gravity = {}});
     const Vec3 size{0.01 + std::abs(number(random)), 0.01 + std::abs(number(random)), 0.01 + std::abs(number(random))};
     const BodyId body =
-        system.create_body(Box{size}, {.mass = 2,
+        system.bodies().create(Box{size}, {.mass = 2,
                                        .orientation = {number(random), number(random), number(random), 1.1},
                                        .velocity = {1, 0, 2},
                                        .spin = {number(random), number(random), number(random)}});
-    const Matrix3 before = system.inertia(body);
-    const Vec3 momentum = system.momentum(), angular = system.angular_momentum(), center = system.center_of_mass(body);
-    const Quaternion orientation = system.orientation(body);
+    const Matrix3 before = system.bodies().inertia(body);
+    const Vec3 momentum = system.momentum(), angular = system.angular_momentum(), center = system.bodies().center_of_mass(body);
+    const Quaternion orientation = system.bodies().orientation(body);
     for (int i = 0; i < 6; ++i) {
       const double far = i == 5 ? 100 : 1;
       const Vec3 place{far * number(random), far * number(random), far * number(random)};
-      const ParticleId p = system.create_attachment(body, place);
-      EXPECT_GT(system.mass(p), 0);
-      expect_near(system.position(p), place, 1e-12);
+      const ParticleId p = system.bodies().create_attachment(body, place);
+      EXPECT_GT(system.particles().mass(p), 0);
+      expect_near(system.particles().position(p), place, 1e-12);
     }
-    EXPECT_EQ(system.attachments(body).size(), 6u);
-    EXPECT_NEAR(system.mass(body), 2, 1e-13);
+    EXPECT_EQ(system.bodies().attachments(body).size(), 6u);
+    EXPECT_NEAR(system.bodies().mass(body), 2, 1e-13);
     const double scale = at(before, 0, 0) + at(before, 1, 1) + at(before, 2, 2);
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) EXPECT_NEAR(at(system.inertia(body), i, j), at(before, i, j), 1e-12 * scale);
-    expect_near(system.center_of_mass(body), center, 1e-13);
+      for (int j = 0; j < 3; ++j) EXPECT_NEAR(at(system.bodies().inertia(body), i, j), at(before, i, j), 1e-12 * scale);
+    expect_near(system.bodies().center_of_mass(body), center, 1e-13);
     expect_near(system.momentum(), momentum, 1e-12);
     expect_near(system.angular_momentum(), angular, 1e-12);
     const Quaternion& q = orientation;
-    const Quaternion now = system.solids(body)[0].orientation;
+    const Quaternion now = system.bodies().solids(body)[0].orientation;
     EXPECT_NEAR(std::abs(q.x * now.x + q.y * now.y + q.z * now.z + q.w * now.w), 1, 1e-12);
-    expect_near(system.solids(body)[0].position, {}, 1e-12);
+    expect_near(system.bodies().solids(body)[0].position, {}, 1e-12);
     EXPECT_TRUE(system.validate().empty());
   }
 }
 
 TEST(Solid, attachments_need_a_solid_whose_points_are_free) {
   System system;
-  const BodyId points = system.create_body();
-  (void)system.create_particle(points, {0, 0, 0});
-  EXPECT_THROW((void)system.create_attachment(points, {1, 0, 0}), std::invalid_argument);
-  const BodyId box = system.create_body(Box{});
-  system.nail(system.particles(box)[0]);
-  EXPECT_THROW((void)system.create_attachment(box, {1, 0, 0}), std::invalid_argument);
+  const BodyId points = system.bodies().create();
+  (void)system.particles().create(points, {0, 0, 0});
+  EXPECT_THROW((void)system.bodies().create_attachment(points, {1, 0, 0}), std::invalid_argument);
+  const BodyId box = system.bodies().create(Box{});
+  system.particles().nail(system.bodies().particles(box)[0]);
+  EXPECT_THROW((void)system.bodies().create_attachment(box, {1, 0, 0}), std::invalid_argument);
   EXPECT_TRUE(system.validate().empty());
 }
 
@@ -237,7 +237,7 @@ TEST(Solid, attachments_need_a_solid_whose_points_are_free) {
 TEST(Solid, a_free_top_flips_about_its_middle_axis_and_only_there) {
   const auto flips = [](const Vec3& spin) {
     System system({.gravity = {}});
-    const BodyId top = system.create_body(Box{{0.1, 0.3, 0.6}}, {.mass = 1, .spin = spin});
+    const BodyId top = system.bodies().create(Box{{0.1, 0.3, 0.6}}, {.mass = 1, .spin = spin});
     const Vec3 angular = system.angular_momentum();
     const double energy = system.energy().kinetic;
     const Vec3 axis = (1 / norm(spin)) * spin;
@@ -247,7 +247,7 @@ TEST(Solid, a_free_top_flips_about_its_middle_axis_and_only_there) {
       const StepReport report = system.step(1.0 / 120);
       EXPECT_EQ(report.fallbacks + report.unconverged, 0);
       // the body's own axis that was along the spin at the start, seen in space
-      const Quaternion q = system.orientation(top);
+      const Quaternion q = system.bodies().orientation(top);
       const Vec3 u{q.x, q.y, q.z}, t = 2 * cross(u, axis);
       const double along = dot(axis, axis + q.w * t + cross(u, t));
       if (along * side < -0.5) side = -side, ++count;
@@ -266,14 +266,14 @@ TEST(Solid, a_hinged_link_costs_four_points_of_which_the_hinges_are_two) {
   ParticleId last{};
   std::vector<BodyId> links;
   for (int i = 0; i < 10; ++i) {
-    const BodyId link = system.create_body(
+    const BodyId link = system.bodies().create(
         Box{{0.2, 0.04, 0.04}}, {.position = {0.1 + 0.2 * i, 0, 0}, .attachments = {{-0.1, 0, 0}, {0.1, 0, 0}}});
     links.push_back(link);
-    const auto ends = system.attachments(link);
+    const auto ends = system.bodies().attachments(link);
     if (i == 0)
-      system.nail(ends[0]);
+      system.particles().nail(ends[0]);
     else
-      (void)system.combine(last, ends[0]);
+      (void)system.edits().combine(last, ends[0]);
     last = ends[1];
   }
   const double start = system.energy().total();
@@ -290,15 +290,15 @@ TEST(Solid, a_physical_pendulum_swings_with_its_own_period) {
   System system;
   const double a = 0.4, l = 1.0;  // a plate 0.1 x 0.4 x 1 hung half its length above its center, swinging about z
   const BodyId plate =
-      system.create_body(Box{{a, l, 0.1}}, {.mass = 2, .attachments = {{0, l / 2, 0.05}, {0, l / 2, -0.05}}});
-  for (const ParticleId p : system.attachments(plate)) system.nail(p);
+      system.bodies().create(Box{{a, l, 0.1}}, {.mass = 2, .attachments = {{0, l / 2, 0.05}, {0, l / 2, -0.05}}});
+  for (const ParticleId p : system.bodies().attachments(plate)) system.particles().nail(p);
   const double moment = (a * a + l * l) / 12 + l * l / 4, omega = std::sqrt(9.81 * (l / 2) / moment);
-  system.set_angular_velocity(plate, {0, 0, 0.01});
+  system.bodies().set_angular_velocity(plate, {0, 0, 0.01});
   double crossed = 0, before = 0;
   const double h = 1.0 / 240;
   for (int step = 1; crossed == 0 && step < 1000; ++step) {
     (void)system.step(h);
-    const double x = system.center_of_mass(plate).x;
+    const double x = system.bodies().center_of_mass(plate).x;
     if (before > 0 && x <= 0) crossed = h * (step - 1 + before / (before - x));
     before = x;
   }
@@ -307,146 +307,146 @@ TEST(Solid, a_physical_pendulum_swings_with_its_own_period) {
 
 TEST(Solid, velocity_and_spin_are_assigned_one_by_one) {
   System system({.gravity = {}});
-  const BodyId body = system.create_body(Cylinder{0.1, 1}, {.mass = 2, .position = {1, 2, 3}});
-  system.set_velocity(body, {1, 0, 0});
-  system.set_angular_velocity(body, {0, 3, 0});
-  expect_near(system.velocity(body), {1, 0, 0}, 1e-14);
-  expect_near(system.angular_velocity(body), {0, 3, 0}, 1e-13);
+  const BodyId body = system.bodies().create(Cylinder{0.1, 1}, {.mass = 2, .position = {1, 2, 3}});
+  system.bodies().set_velocity(body, {1, 0, 0});
+  system.bodies().set_angular_velocity(body, {0, 3, 0});
+  expect_near(system.bodies().velocity(body), {1, 0, 0}, 1e-14);
+  expect_near(system.bodies().angular_velocity(body), {0, 3, 0}, 1e-13);
   (void)system.step(0.01);
-  expect_near(system.velocity(body), {1, 0, 0}, 1e-10);
-  expect_near(system.angular_velocity(body), {0, 3, 0}, 1e-9);
+  expect_near(system.bodies().velocity(body), {1, 0, 0}, 1e-10);
+  expect_near(system.bodies().angular_velocity(body), {0, 3, 0}, 1e-9);
   EXPECT_NEAR(system.energy().kinetic, system.energy().edits, 1e-9);
 }
 
 TEST(Solid, angular_velocity_has_no_part_where_there_is_no_inertia) {
   System system({.gravity = {}});
-  const BodyId point = system.create_body(), rod = system.create_body();
-  (void)system.create_particle(point, {0, 0, 0});
-  (void)system.create_particle(rod, {0, 0, 0}, 1, {0, 1, 0});
-  (void)system.create_particle(rod, {1, 0, 0}, 1, {0, 3, 0});
-  EXPECT_EQ(system.angular_velocity(point), Vec3{});
-  expect_near(system.angular_velocity(rod), {0, 0, 2}, 1e-14);
-  EXPECT_THROW(system.set_angular_velocity(rod, {5, 0, 1}), std::invalid_argument);  // none about its own line
-  system.set_angular_velocity(rod, {0, 0, 1});
-  expect_near(system.angular_velocity(rod), {0, 0, 1}, 1e-14);
+  const BodyId point = system.bodies().create(), rod = system.bodies().create();
+  (void)system.particles().create(point, {0, 0, 0});
+  (void)system.particles().create(rod, {0, 0, 0}, 1, {0, 1, 0});
+  (void)system.particles().create(rod, {1, 0, 0}, 1, {0, 3, 0});
+  EXPECT_EQ(system.bodies().angular_velocity(point), Vec3{});
+  expect_near(system.bodies().angular_velocity(rod), {0, 0, 2}, 1e-14);
+  EXPECT_THROW(system.bodies().set_angular_velocity(rod, {5, 0, 1}), std::invalid_argument);  // none about its own line
+  system.bodies().set_angular_velocity(rod, {0, 0, 1});
+  expect_near(system.bodies().angular_velocity(rod), {0, 0, 1}, 1e-14);
 }
 
 TEST(Solid, a_static_body_stays_where_its_pose_puts_it_whatever_is_jointed_to_it) {
   System system({.gravity = {}});
-  const BodyId post = system.create_body(Box{{1, 1, 1}}, {.kind = BodyKind::static_});
-  const BodyId door = system.create_body(Box{{1, 1, 1}}, {.position = {1, 0, 0}});
-  const ConstraintId hinge = system.create_constraint(JointSpec{.a = door, .b = post, .at = {0.5, 0, 0}});
+  const BodyId post = system.bodies().create(Box{{1, 1, 1}}, {.kind = BodyKind::static_});
+  const BodyId door = system.bodies().create(Box{{1, 1, 1}}, {.position = {1, 0, 0}});
+  const ConstraintId hinge = system.joints().create(JointSpec{.a = door, .b = post, .at = {0.5, 0, 0}});
   (void)system.step(0.01);
-  system.set_pose(post, {0, 2, 0}, {});
+  system.bodies().set_pose(post, {0, 2, 0}, {});
   (void)system.step(0.01);
-  expect_near(system.center_of_mass(post), {0, 2, 0}, 1e-12);
-  EXPECT_LT(system.state(hinge).gap, 1e-9);
-  EXPECT_GT(system.center_of_mass(door).y, 1);
+  expect_near(system.bodies().center_of_mass(post), {0, 2, 0}, 1e-12);
+  EXPECT_LT(system.joints().state(hinge).gap, 1e-9);
+  EXPECT_GT(system.bodies().center_of_mass(door).y, 1);
 }
 
 TEST(Solid, is_damped_as_one_whatever_points_carry_it) {
   for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     System system({.gravity = {}, .mode = mode});
-    const BodyId box = system.create_body(
+    const BodyId box = system.bodies().create(
         Box{{1, 2, 3}},
         {.velocity = {1, 2, 3}, .spin = {0, 0, 0.2}, .attachments = {{0.5, 1, 0}, {-0.5, -1, 1}}, .damping = 0.7});
-    const ParticleId far = system.create_particle(system.create_body(), {9, 9, 9});
-    for (const ParticleId held : system.attachments(box))  // and so in its basis
-      system.create_bond(held, far, SpringLaw{.stiffness = 1e-9});
+    const ParticleId far = system.particles().create(system.bodies().create(), {9, 9, 9});
+    for (const ParticleId held : system.bodies().attachments(box))  // and so in its basis
+      system.bonds().create(held, far, SpringLaw{.stiffness = 1e-9});
     for (int i = 0; i < 200; ++i) (void)system.step(0.005);
-    expect_near(system.velocity(box), std::exp(-0.7) * Vec3{1, 2, 3}, 1e-8);
+    expect_near(system.bodies().velocity(box), std::exp(-0.7) * Vec3{1, 2, 3}, 1e-8);
     if (mode == IntegrationMode::energy_keeping) {
-      expect_near(system.angular_velocity(box), {0, 0, 0.2 * std::exp(-0.7)}, 1e-5);
+      expect_near(system.bodies().angular_velocity(box), {0, 0, 0.2 * std::exp(-0.7)}, 1e-5);
     }
   }
 }
 
 TEST(Solid, a_pose_moves_all_that_hangs_on_it) {
   System system({.gravity = {}});
-  const BodyId a = system.create_body(Box{}, {.attachments = {{0.5, 0, 0}}});
-  const BodyId b = system.create_body(Box{}, {.position = {1, 0, 0}, .attachments = {{-0.5, 0, 0}}});
-  (void)system.combine(system.attachments(a)[0], system.attachments(b)[0]);
-  system.set_pose(a, {0, 5, 0}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)});  // a quarter turn about z
-  expect_near(system.center_of_mass(a), {0, 5, 0}, 1e-13);
-  expect_near(system.center_of_mass(b), {0, 6, 0}, 1e-13);
+  const BodyId a = system.bodies().create(Box{}, {.attachments = {{0.5, 0, 0}}});
+  const BodyId b = system.bodies().create(Box{}, {.position = {1, 0, 0}, .attachments = {{-0.5, 0, 0}}});
+  (void)system.edits().combine(system.bodies().attachments(a)[0], system.bodies().attachments(b)[0]);
+  system.bodies().set_pose(a, {0, 5, 0}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)});  // a quarter turn about z
+  expect_near(system.bodies().center_of_mass(a), {0, 5, 0}, 1e-13);
+  expect_near(system.bodies().center_of_mass(b), {0, 6, 0}, 1e-13);
   EXPECT_LT(system.worst_gap(), 1e-12);
-  EXPECT_NEAR(system.orientation(a).z, std::sqrt(0.5), 1e-13);
-  EXPECT_THROW(system.set_pose(a, {}, {0, 0, 0, 0}), std::invalid_argument);
+  EXPECT_NEAR(system.bodies().orientation(a).z, std::sqrt(0.5), 1e-13);
+  EXPECT_THROW(system.bodies().set_pose(a, {}, {0, 0, 0, 0}), std::invalid_argument);
 }
 
 TEST(Solid, a_pose_turns_the_motion_along) {
   System system({.gravity = {}});
-  const BodyId body = system.create_body(Box{{1, 2, 3}}, {.velocity = {1, 2, 3}, .spin = {3, 0, 0}});
+  const BodyId body = system.bodies().create(Box{{1, 2, 3}}, {.velocity = {1, 2, 3}, .spin = {3, 0, 0}});
   const double energy = system.energy().kinetic;
-  system.set_pose(body, {}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)});
-  expect_near(system.velocity(body), {1, 2, 3}, 1e-12);
-  expect_near(system.angular_velocity(body), {0, 3, 0}, 1e-12);
+  system.bodies().set_pose(body, {}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)});
+  expect_near(system.bodies().velocity(body), {1, 2, 3}, 1e-12);
+  expect_near(system.bodies().angular_velocity(body), {0, 3, 0}, 1e-12);
   EXPECT_NEAR(system.energy().kinetic, energy, 1e-9 * energy);
 }
 
 TEST(Solid, combining_solids_adds_mass_and_inertia_and_keeps_momenta) {
   System system({.gravity = {}});
-  const BodyId a = system.create_body(Box{{1, 1, 1}}, {.mass = 2, .velocity = {1, 0, 0}, .spin = {0, 0, 1}});
-  const BodyId b = system.create_body(Sphere{0.5}, {.mass = 3, .position = {2, 0, 0}, .velocity = {0, 1, 0}});
+  const BodyId a = system.bodies().create(Box{{1, 1, 1}}, {.mass = 2, .velocity = {1, 0, 0}, .spin = {0, 0, 1}});
+  const BodyId b = system.bodies().create(Sphere{0.5}, {.mass = 3, .position = {2, 0, 0}, .velocity = {0, 1, 0}});
   const Vec3 momentum = system.momentum(), angular = system.angular_momentum();
   const double energy = system.energy().kinetic;
-  const RestructureReport report = system.combine(a, b);
-  EXPECT_NEAR(system.mass(a), 5, 1e-13);
+  const RestructureReport report = system.edits().combine(a, b);
+  EXPECT_NEAR(system.bodies().mass(a), 5, 1e-13);
   const double box = 2.0 / 6, ball = 0.4 * 3 * 0.25, reduced = 2.0 * 3 / 5 * 4;
-  expect_diagonal(system.inertia(a), {box + ball, box + ball + reduced, box + ball + reduced}, 1e-12);
+  expect_diagonal(system.bodies().inertia(a), {box + ball, box + ball + reduced, box + ball + reduced}, 1e-12);
   expect_near(system.momentum(), momentum, 1e-12);
   expect_near(system.angular_momentum(), angular, 1e-12);
   EXPECT_NEAR(report.energy_change, system.energy().kinetic - energy, 1e-13);
   EXPECT_LT(report.energy_change, 0);
-  EXPECT_EQ(system.solids(a).size(), 2u);
-  expect_near(system.solids(a)[1].position, {2, 0, 0}, 1e-12);
+  EXPECT_EQ(system.bodies().solids(a).size(), 2u);
+  expect_near(system.bodies().solids(a)[1].position, {2, 0, 0}, 1e-12);
   EXPECT_TRUE(system.validate().empty());
 }
 
 TEST(Solid, snapshot_and_replay_keep_shapes) {
   System system;
-  system.start_recording();
+  system.record().start();
   const BodyId body =
-      system.create_body(box_mesh({0, 0, 0}, {1, 1, 2}), {.spin = {1, 2, 3}, .attachments = {{0, 0, 0}}});
-  system.nail(system.attachments(body)[0]);
+      system.bodies().create(box_mesh({0, 0, 0}, {1, 1, 2}), {.spin = {1, 2, 3}, .attachments = {{0, 0, 0}}});
+  system.particles().nail(system.bodies().attachments(body)[0]);
   for (int i = 0; i < 20; ++i) (void)system.step(0.01);
-  const Recording recording = system.stop_recording();
-  EXPECT_EQ(system.replay(recording), std::nullopt);
-  const auto solids = system.solids(body);
+  const Recording recording = system.record().stop();
+  EXPECT_EQ(system.record().replay(recording), std::nullopt);
+  const auto solids = system.bodies().solids(body);
   ASSERT_EQ(solids.size(), 1u);
   EXPECT_EQ(std::get<Mesh>(solids[0].shape).triangles.size(), 12u);
 }
 
 TEST(HalfSpace, is_the_shape_of_a_body_that_stays_where_it_is) {
   System system;
-  const BodyId ground = system.create_body(HalfSpace{}, {.position = {0, 1, 0}, .kind = BodyKind::static_});
-  ASSERT_EQ(system.solids(ground).size(), 1u);
-  EXPECT_EQ(system.solids(ground)[0].shape, Shape{HalfSpace{}});
-  EXPECT_LT(norm(system.solids(ground)[0].position - Vec3{0, 1, 0}), 1e-12);
-  system.set_pose(ground, {0, 2, 0}, {});
-  EXPECT_LT(norm(system.solids(ground)[0].position - Vec3{0, 2, 0}), 1e-12);
+  const BodyId ground = system.bodies().create(HalfSpace{}, {.position = {0, 1, 0}, .kind = BodyKind::static_});
+  ASSERT_EQ(system.bodies().solids(ground).size(), 1u);
+  EXPECT_EQ(system.bodies().solids(ground)[0].shape, Shape{HalfSpace{}});
+  EXPECT_LT(norm(system.bodies().solids(ground)[0].position - Vec3{0, 1, 0}), 1e-12);
+  system.bodies().set_pose(ground, {0, 2, 0}, {});
+  EXPECT_LT(norm(system.bodies().solids(ground)[0].position - Vec3{0, 2, 0}), 1e-12);
 
-  const BodyId ball = system.create_body(Sphere{0.5}, {.position = {0, 3, 0}});
-  system.create_constraint(SurfacePairSpec{
+  const BodyId ball = system.bodies().create(Sphere{0.5}, {.position = {0, 3, 0}});
+  system.joints().create(SurfacePairSpec{
       .a = ball, .b = ground, .surface_a = {Sphere{0.5}, {0, 3, 0}, {}}, .surface_b = {HalfSpace{}, {0, 2, 0}, {}}});
   for (int i = 0; i < 300; ++i) (void)system.step(0.01);
-  EXPECT_NEAR(system.center_of_mass(ball).y, 2.5, 1e-6);
+  EXPECT_NEAR(system.bodies().center_of_mass(ball).y, 2.5, 1e-6);
 }
 
 TEST(HalfSpace, has_no_mass_and_cannot_move) {
   System system;
   EXPECT_THROW((void)mass_properties(HalfSpace{}), std::invalid_argument);
-  EXPECT_THROW((void)system.create_body(HalfSpace{}), std::invalid_argument);
-  const BodyId wall = system.create_body(HalfSpace{{1, 0, 0}}, {.kind = BodyKind::static_});
-  const BodyId box = system.create_body(Box{}, {.position = {2, 0, 0}});
-  EXPECT_THROW(system.set_kind(wall, BodyKind::dynamic), std::invalid_argument);
-  EXPECT_THROW((void)system.combine(box, wall), std::invalid_argument);
-  system.set_active(wall, false);
-  system.set_active(wall, true);
-  EXPECT_EQ(system.kind(wall), BodyKind::static_);
+  EXPECT_THROW((void)system.bodies().create(HalfSpace{}), std::invalid_argument);
+  const BodyId wall = system.bodies().create(HalfSpace{{1, 0, 0}}, {.kind = BodyKind::static_});
+  const BodyId box = system.bodies().create(Box{}, {.position = {2, 0, 0}});
+  EXPECT_THROW(system.bodies().set_kind(wall, BodyKind::dynamic), std::invalid_argument);
+  EXPECT_THROW((void)system.edits().combine(box, wall), std::invalid_argument);
+  system.bodies().set_active(wall, false);
+  system.bodies().set_active(wall, true);
+  EXPECT_EQ(system.bodies().kind(wall), BodyKind::static_);
   EXPECT_TRUE(system.validate().empty());
-  (void)system.combine(wall, box);
-  EXPECT_EQ(system.kind(wall), BodyKind::static_);
+  (void)system.edits().combine(wall, box);
+  EXPECT_EQ(system.bodies().kind(wall), BodyKind::static_);
 }
 
 }  // namespace

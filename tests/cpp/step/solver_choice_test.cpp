@@ -46,25 +46,25 @@ void make_loop(System& system) {
   const Vec3 corners[] = {{0, 0, 0}, {0, 0.4, 0}, {0.7, 0.6, 0}, {0.8, 0, 0}};
   ParticleId last;
   for (int i = 0; i < 3; ++i) {
-    const BodyId bar = system.create_body();
-    const ParticleId a = system.create_particle(bar, corners[i]), b = system.create_particle(bar, corners[i + 1]);
-    if (i > 0) (void)system.combine(last, a);
-    if (i == 0) system.nail(a);
+    const BodyId bar = system.bodies().create();
+    const ParticleId a = system.particles().create(bar, corners[i]), b = system.particles().create(bar, corners[i + 1]);
+    if (i > 0) (void)system.edits().combine(last, a);
+    if (i == 0) system.particles().nail(a);
     last = b;
   }
-  system.nail(last);
+  system.particles().nail(last);
 }
 
 void make_springs(System& system) {
   Vec3 place{0, 0, 0};
   ParticleId last;
   for (int i = 0; i < 5; ++i) {
-    const BodyId body = system.create_body();
-    const ParticleId p = system.create_particle(body, place, 0.1 + i),
-                     q = system.create_particle(body, place + Vec3{0, 0.1, 0});
-    system.create_particle(body, place + Vec3{0.1, 0, 0.02 * i});
-    if (i > 0) system.create_bond(last, p, SpringLaw{.stiffness = 1e4, .damping = 1});
-    if (i == 0) system.nail(q);
+    const BodyId body = system.bodies().create();
+    const ParticleId p = system.particles().create(body, place, 0.1 + i),
+                     q = system.particles().create(body, place + Vec3{0, 0.1, 0});
+    system.particles().create(body, place + Vec3{0.1, 0, 0.02 * i});
+    if (i > 0) system.bonds().create(last, p, SpringLaw{.stiffness = 1e4, .damping = 1});
+    if (i == 0) system.particles().nail(q);
     last = q;
     place = place + Vec3{0.2, 0.02 * i, 0.1};
   }
@@ -104,10 +104,10 @@ TEST_P(SolverOfTheStep, moves_the_world_as_the_built_in_one_does) {
     const StepReport report = other.step(dt);
     EXPECT_EQ(report.warnings, std::vector<std::string>{});
     EXPECT_EQ(report.unconverged, 0);
-    const auto particles = direct.particles();
+    const auto particles = direct.particles().ids();
     for (const ParticleId p : particles) {
-      EXPECT_LT(norm(direct.position(p) - other.position(p)), 2e-7) << "step " << i;
-      moved = std::max(moved, norm(direct.velocity(p)));
+      EXPECT_LT(norm(direct.particles().position(p) - other.particles().position(p)), 2e-7) << "step " << i;
+      moved = std::max(moved, norm(direct.particles().velocity(p)));
     }
     if (HasFailure()) return;
   }
@@ -146,17 +146,17 @@ TEST(SolverOfTheStep, that_fails_or_throws_is_replaced_and_named) {
     const StepReport report = other.step(dt);
     ASSERT_EQ(report.warnings.size(), 1u);
     EXPECT_EQ(report.warnings[0], "the solver hopeless found no root in 1 of 1 solves; the built-in one took over");
-    for (const ParticleId p : direct.particles()) EXPECT_EQ(direct.position(p), other.position(p));
+    for (const ParticleId p : direct.particles().ids()) EXPECT_EQ(direct.particles().position(p), other.particles().position(p));
   }
 }
 
 TEST(SolverOfTheStep, is_recorded_saved_and_refused_when_unknown) {
   System system;
   scenes::make_chain(system, {.links = 3});
-  system.start_recording();
+  system.record().start();
   system.set_solver("newton");
   for (int i = 0; i < 10; ++i) (void)system.step(dt);
-  const Recording recording = system.stop_recording();
+  const Recording recording = system.record().stop();
   EXPECT_EQ(system.solver(), "newton");
   const Snapshot snapshot = system.snapshot();
   EXPECT_THROW(system.set_solver("no such solver"), std::invalid_argument);
@@ -167,7 +167,7 @@ TEST(SolverOfTheStep, is_recorded_saved_and_refused_when_unknown) {
   EXPECT_EQ(system.solver(), "direct");
   system.restore(snapshot);
   EXPECT_EQ(system.solver(), "newton");
-  EXPECT_EQ(system.replay(recording), std::nullopt);
+  EXPECT_EQ(system.record().replay(recording), std::nullopt);
 }
 
 }  // namespace

@@ -19,14 +19,14 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
 /// A rigid chain of particles with cosmetic bonds, spinning as it flies.
 struct Molecule {
   System system{{.gravity = {}}};
-  BodyId body = system.create_body();
+  BodyId body = system.bodies().create();
   std::vector<ParticleId> atoms;
   std::vector<CosmeticBondId> bonds;
 
   explicit Molecule(const std::vector<Vec3>& places) {
     for (const Vec3& x : places) {
-      atoms.push_back(system.create_particle(body, x, 1 + 0.1 * atoms.size(), Vec3{1, 0, 0} + cross({0.3, -1, 2}, x)));
-      if (atoms.size() > 1) bonds.push_back(system.create_cosmetic_bond(atoms[atoms.size() - 2], atoms.back()));
+      atoms.push_back(system.particles().create(body, x, 1 + 0.1 * atoms.size(), Vec3{1, 0, 0} + cross({0.3, -1, 2}, x)));
+      if (atoms.size() > 1) bonds.push_back(system.cosmetic_bonds().create(atoms[atoms.size() - 2], atoms.back()));
     }
   }
 };
@@ -39,16 +39,16 @@ TEST(Split, breaking_the_only_bond_between_two_pieces_splits_the_body_and_keeps_
   (void)system.step(0.01);
   const Vec3 momentum = system.momentum(), angular = system.angular_momentum();
   const double energy = system.energy().kinetic;
-  const RestructureReport report = system.destroy(m.bonds[2]);  // between atoms 2 and 3
+  const RestructureReport report = system.cosmetic_bonds().destroy(m.bonds[2]);  // between atoms 2 and 3
   ASSERT_EQ(report.created_bodies.size(), 1u);
   const BodyId piece = report.created_bodies[0];
-  EXPECT_EQ(system.particles(m.body).size(), 3u);
-  EXPECT_EQ(system.particles(piece).size(), 3u);
-  EXPECT_EQ(system.body(m.atoms[2]), m.body);
-  EXPECT_EQ(system.body(m.atoms[3]), piece);
-  EXPECT_NEAR(system.mass(m.body), 1 + 1.1 + 1.2, 1e-14);
-  EXPECT_NEAR(system.mass(piece), 1.3 + 1.4 + 1.5, 1e-14);
-  EXPECT_NE(system.articulate(m.body), system.articulate(piece));
+  EXPECT_EQ(system.bodies().particles(m.body).size(), 3u);
+  EXPECT_EQ(system.bodies().particles(piece).size(), 3u);
+  EXPECT_EQ(system.particles().body(m.atoms[2]), m.body);
+  EXPECT_EQ(system.particles().body(m.atoms[3]), piece);
+  EXPECT_NEAR(system.bodies().mass(m.body), 1 + 1.1 + 1.2, 1e-14);
+  EXPECT_NEAR(system.bodies().mass(piece), 1.3 + 1.4 + 1.5, 1e-14);
+  EXPECT_NE(system.bodies().articulate(m.body), system.bodies().articulate(piece));
   expect_near(system.momentum(), momentum, 1e-13);
   expect_near(system.angular_momentum(), angular, 1e-12);
   EXPECT_NEAR(system.energy().kinetic, energy, 1e-12);
@@ -61,21 +61,21 @@ TEST(Split, breaking_the_only_bond_between_two_pieces_splits_the_body_and_keeps_
 
 TEST(Split, a_bond_on_a_ring_of_bonds_breaks_without_a_split) {
   Molecule m(zigzag);
-  const CosmeticBondId closing = m.system.create_cosmetic_bond(m.atoms.back(), m.atoms.front());
-  EXPECT_TRUE(m.system.destroy(m.bonds[1]).created_bodies.empty());
-  EXPECT_EQ(m.system.bodies().size(), 1u);
-  EXPECT_EQ(m.system.destroy(closing).created_bodies.size(), 1u);
+  const CosmeticBondId closing = m.system.cosmetic_bonds().create(m.atoms.back(), m.atoms.front());
+  EXPECT_TRUE(m.system.cosmetic_bonds().destroy(m.bonds[1]).created_bodies.empty());
+  EXPECT_EQ(m.system.bodies().ids().size(), 1u);
+  EXPECT_EQ(m.system.cosmetic_bonds().destroy(closing).created_bodies.size(), 1u);
 }
 
 TEST(Split, what_has_no_bond_goes_with_the_nearer_piece) {
   Molecule m({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {6, 0, 0}});
   System& system = m.system;
-  const ParticleId near_left = system.create_particle(m.body, {0, 1, 0}),
-                   near_right = system.create_particle(m.body, {6, 1, 0});
-  const RestructureReport report = system.destroy(m.bonds[1]);
+  const ParticleId near_left = system.particles().create(m.body, {0, 1, 0}),
+                   near_right = system.particles().create(m.body, {6, 1, 0});
+  const RestructureReport report = system.cosmetic_bonds().destroy(m.bonds[1]);
   ASSERT_EQ(report.created_bodies.size(), 1u);
-  EXPECT_EQ(system.body(near_left), m.body);
-  EXPECT_EQ(system.body(near_right), report.created_bodies[0]);
+  EXPECT_EQ(system.particles().body(near_left), m.body);
+  EXPECT_EQ(system.particles().body(near_right), report.created_bodies[0]);
   EXPECT_EQ(report.notes.size(), 1u);
 }
 
@@ -84,15 +84,15 @@ TEST(Split, a_piece_off_a_nailed_body_falls_freely) {
   Molecule m(zigzag);
   System& system = m.system;
   system.set_gravity({0, -9.81, 0});
-  system.set_velocity(m.body, {});
-  system.set_angular_velocity(m.body, {});
-  system.nail(m.atoms[0]);
-  const BodyId piece = system.destroy(m.bonds[3]).created_bodies.at(0);
-  const Vec3 start = system.center_of_mass(piece), v = system.velocity(piece);
+  system.bodies().set_velocity(m.body, {});
+  system.bodies().set_angular_velocity(m.body, {});
+  system.particles().nail(m.atoms[0]);
+  const BodyId piece = system.cosmetic_bonds().destroy(m.bonds[3]).created_bodies.at(0);
+  const Vec3 start = system.bodies().center_of_mass(piece), v = system.bodies().velocity(piece);
   double t = 0;
   for (int i = 0; i < 50; ++i) (void)system.step(0.01), t += 0.01;
-  EXPECT_NEAR(system.center_of_mass(piece).y, start.y + v.y * t - 9.81 * t * t / 2, 1e-9);
-  expect_near(system.position(m.atoms[0]), {0, 0, 0}, 1e-9);
+  EXPECT_NEAR(system.bodies().center_of_mass(piece).y, start.y + v.y * t - 9.81 * t * t / 2, 1e-9);
+  expect_near(system.particles().position(m.atoms[0]), {0, 0, 0}, 1e-9);
   EXPECT_TRUE(system.validate().empty());
 }
 
@@ -100,23 +100,23 @@ TEST(Split, a_grip_stays_with_the_piece_that_it_holds) {
   for (const bool at_the_end : {false, true}) {
     Molecule m(zigzag);
     System& system = m.system;
-    system.set_velocity(m.body, {});
-    system.set_angular_velocity(m.body, {});
+    system.bodies().set_velocity(m.body, {});
+    system.bodies().set_angular_velocity(m.body, {});
     const std::vector<Vec3> before = [&] {
       std::vector<Vec3> places;
-      for (const ParticleId atom : m.atoms) places.push_back(system.position(atom));
+      for (const ParticleId atom : m.atoms) places.push_back(system.particles().position(atom));
       return places;
     }();
     // The drawn frame's origin is at the center of mass and its axes are the world's.
-    const Vec3 held = before[at_the_end ? 5 : 0] - system.center_of_mass(m.body);
-    (void)system.create_grip(m.body, held, {2, 9, 0});
-    const BodyId piece = system.destroy(m.bonds[2]).created_bodies.at(0);
+    const Vec3 held = before[at_the_end ? 5 : 0] - system.bodies().center_of_mass(m.body);
+    (void)system.grips().create(m.body, held, {2, 9, 0});
+    const BodyId piece = system.cosmetic_bonds().destroy(m.bonds[2]).created_bodies.at(0);
     const BodyId gripped = at_the_end ? piece : m.body, let_go = at_the_end ? m.body : piece;
     for (int i = 0; i < 20; ++i) (void)system.step(1.0 / 120);
-    ASSERT_EQ(system.poses().holds.size(), 1u);
-    EXPECT_EQ(system.poses().holds[0].body, gripped.slot);
-    EXPECT_GT(norm(system.velocity(gripped)), 0.5);
-    EXPECT_LT(norm(system.velocity(let_go)), 1e-12) << "nobody pulls on the other piece";
+    ASSERT_EQ(system.viewer().poses().holds.size(), 1u);
+    EXPECT_EQ(system.viewer().poses().holds[0].body, gripped.slot);
+    EXPECT_GT(norm(system.bodies().velocity(gripped)), 0.5);
+    EXPECT_LT(norm(system.bodies().velocity(let_go)), 1e-12) << "nobody pulls on the other piece";
     EXPECT_EQ(system.validate(), std::vector<std::string>{});
   }
 }
@@ -124,86 +124,86 @@ TEST(Split, a_grip_stays_with_the_piece_that_it_holds) {
 TEST(Split, hinges_and_bonds_of_the_pieces_stay) {
   Molecule m(zigzag);
   System& system = m.system;
-  const BodyId other = system.create_body();
-  const ParticleId end = system.create_particle(other, {5, 0.5, 1}), far = system.create_particle(other, {6, 0, 1});
-  (void)system.combine(m.atoms[5], end);
-  const BondId bond = system.create_bond(m.atoms[0], m.atoms[5], SpringLaw{});
+  const BodyId other = system.bodies().create();
+  const ParticleId end = system.particles().create(other, {5, 0.5, 1}), far = system.particles().create(other, {6, 0, 1});
+  (void)system.edits().combine(m.atoms[5], end);
+  const BondId bond = system.bonds().create(m.atoms[0], m.atoms[5], SpringLaw{});
   (void)system.step(0.01);
-  const BodyId piece = system.destroy(m.bonds[2]).created_bodies.at(0);
-  EXPECT_EQ(system.articulate(piece), system.articulate(other));
-  EXPECT_NE(system.articulate(piece), system.articulate(m.body));
-  EXPECT_EQ(system.ring(m.atoms[5]).size(), 2u);
-  EXPECT_TRUE(system.contains(bond));
+  const BodyId piece = system.cosmetic_bonds().destroy(m.bonds[2]).created_bodies.at(0);
+  EXPECT_EQ(system.bodies().articulate(piece), system.bodies().articulate(other));
+  EXPECT_NE(system.bodies().articulate(piece), system.bodies().articulate(m.body));
+  EXPECT_EQ(system.particles().ring(m.atoms[5]).size(), 2u);
+  EXPECT_TRUE(system.bonds().contains(bond));
   for (int i = 0; i < 50; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
-  EXPECT_TRUE(system.contains(far));
+  EXPECT_TRUE(system.particles().contains(far));
   EXPECT_TRUE(system.validate().empty());
 }
 
 TEST(Split, solids_are_never_torn_but_their_compounds_are) {
   System system({.gravity = {}});
-  const BodyId a = system.create_body(Box{}, {.attachments = {{0.5, 0, 0}, {-0.5, 0, 0}}});
+  const BodyId a = system.bodies().create(Box{}, {.attachments = {{0.5, 0, 0}, {-0.5, 0, 0}}});
   const BodyId b =
-      system.create_body(Sphere{0.5}, {.position = {1, 0, 0}, .spin = {0, 0, 3}, .attachments = {{0, 0.5, 0}}});
-  const auto ends = system.attachments(a);
-  const CosmeticBondId own = system.create_cosmetic_bond(ends[0], ends[1]);
-  EXPECT_TRUE(system.destroy(own).created_bodies.empty());
-  const ParticleId top = system.attachments(b)[0];
-  (void)system.combine(a, b);
+      system.bodies().create(Sphere{0.5}, {.position = {1, 0, 0}, .spin = {0, 0, 3}, .attachments = {{0, 0.5, 0}}});
+  const auto ends = system.bodies().attachments(a);
+  const CosmeticBondId own = system.cosmetic_bonds().create(ends[0], ends[1]);
+  EXPECT_TRUE(system.cosmetic_bonds().destroy(own).created_bodies.empty());
+  const ParticleId top = system.bodies().attachments(b)[0];
+  (void)system.edits().combine(a, b);
   const Vec3 angular = system.angular_momentum();
-  const CosmeticBondId joint = system.create_cosmetic_bond(ends[0], top);
-  const RestructureReport report = system.destroy(joint);
+  const CosmeticBondId joint = system.cosmetic_bonds().create(ends[0], top);
+  const RestructureReport report = system.cosmetic_bonds().destroy(joint);
   ASSERT_EQ(report.created_bodies.size(), 1u);
   const BodyId ball = report.created_bodies[0];
-  EXPECT_EQ(system.solids(a).size(), 1u);
-  ASSERT_EQ(system.solids(ball).size(), 1u);
-  EXPECT_TRUE(std::holds_alternative<Sphere>(system.solids(ball)[0].shape));
-  EXPECT_NEAR(system.inertia(ball)[0].x, 0.4 * system.mass(ball) * 0.25, 1e-12 * system.mass(ball));
+  EXPECT_EQ(system.bodies().solids(a).size(), 1u);
+  ASSERT_EQ(system.bodies().solids(ball).size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<Sphere>(system.bodies().solids(ball)[0].shape));
+  EXPECT_NEAR(system.bodies().inertia(ball)[0].x, 0.4 * system.bodies().mass(ball) * 0.25, 1e-12 * system.bodies().mass(ball));
   expect_near(system.angular_momentum(), angular, 1e-9);
   EXPECT_TRUE(system.validate().empty());
 }
 
 TEST(Split, parts_are_remembered_and_can_leave_again) {
   System system({.gravity = {}});
-  const BodyId a = system.create_body(Box{}), b = system.create_body(Box{}, {.position = {2, 0, 0}}),
-               c = system.create_body(Sphere{}, {.position = {4, 0, 0}, .velocity = {0, 1, 0}});
-  EXPECT_EQ(system.parts(a), std::vector<BodyId>{a});
-  (void)system.combine(b, c);
-  (void)system.combine(a, b);
-  EXPECT_EQ(system.parts(a), (std::vector<BodyId>{a, b, c}));
-  EXPECT_EQ(system.particles(a, c).size(), 4u);
+  const BodyId a = system.bodies().create(Box{}), b = system.bodies().create(Box{}, {.position = {2, 0, 0}}),
+               c = system.bodies().create(Sphere{}, {.position = {4, 0, 0}, .velocity = {0, 1, 0}});
+  EXPECT_EQ(system.bodies().parts(a), std::vector<BodyId>{a});
+  (void)system.edits().combine(b, c);
+  (void)system.edits().combine(a, b);
+  EXPECT_EQ(system.bodies().parts(a), (std::vector<BodyId>{a, b, c}));
+  EXPECT_EQ(system.bodies().particles(a, c).size(), 4u);
   const Vec3 momentum = system.momentum(), angular = system.angular_momentum();
-  const RestructureReport report = system.separate(a, b);
+  const RestructureReport report = system.edits().separate(a, b);
   ASSERT_EQ(report.created_bodies.size(), 1u);
-  EXPECT_EQ(system.parts(a), (std::vector<BodyId>{a, c}));
-  EXPECT_EQ(system.parts(report.created_bodies[0]), report.created_bodies);
+  EXPECT_EQ(system.bodies().parts(a), (std::vector<BodyId>{a, c}));
+  EXPECT_EQ(system.bodies().parts(report.created_bodies[0]), report.created_bodies);
   expect_near(system.momentum(), momentum, 1e-10);
   expect_near(system.angular_momentum(), angular, 1e-9);
-  EXPECT_FALSE(system.separate(a, b).changed);
+  EXPECT_FALSE(system.edits().separate(a, b).changed);
   EXPECT_TRUE(system.validate().empty());
 }
 
 // What Jacob's ladder does all the time: a hinge is locked by combining its two particles again, and unlocked.
 TEST(Split, unlocking_a_hinge_brings_the_hinge_back) {
   System system({.gravity = {}});
-  const BodyId a = system.create_body(Box{{1, 1, 1}}, {.mass = 2, .attachments = {{0.5, 0.5, 0}}});
+  const BodyId a = system.bodies().create(Box{{1, 1, 1}}, {.mass = 2, .attachments = {{0.5, 0.5, 0}}});
   const BodyId b =
-      system.create_body(Box{{1, 1, 1}}, {.mass = 3, .position = {1, 0, 0}, .attachments = {{-0.5, 0.5, 0}}});
-  const ParticleId p = system.attachments(a)[0], q = system.attachments(b)[0];
-  (void)system.combine(p, q);
-  const Matrix3 before = system.inertia(b);
-  (void)system.combine(p, q);  // locked
-  EXPECT_FALSE(system.contains(b));
-  EXPECT_EQ(system.parts(a), (std::vector<BodyId>{a, b}));
-  const RestructureReport report = system.separate(a, b);
+      system.bodies().create(Box{{1, 1, 1}}, {.mass = 3, .position = {1, 0, 0}, .attachments = {{-0.5, 0.5, 0}}});
+  const ParticleId p = system.bodies().attachments(a)[0], q = system.bodies().attachments(b)[0];
+  (void)system.edits().combine(p, q);
+  const Matrix3 before = system.bodies().inertia(b);
+  (void)system.edits().combine(p, q);  // locked
+  EXPECT_FALSE(system.bodies().contains(b));
+  EXPECT_EQ(system.bodies().parts(a), (std::vector<BodyId>{a, b}));
+  const RestructureReport report = system.edits().separate(a, b);
   ASSERT_EQ(report.created_bodies.size(), 1u);
   ASSERT_EQ(report.created_particles.size(), 1u);
   const BodyId unlocked = report.created_bodies[0];
-  EXPECT_EQ(system.ring(p), (std::vector<ParticleId>{p, report.created_particles[0]}));
-  EXPECT_EQ(system.body(report.created_particles[0]), unlocked);
-  EXPECT_EQ(system.articulate(a), system.articulate(unlocked));
-  EXPECT_NEAR(system.mass(a), 2, 1e-13);
-  EXPECT_NEAR(system.mass(unlocked), 3, 1e-13);
-  for (int i = 0; i < 3; ++i) expect_near(system.inertia(unlocked)[i], before[i], 1e-12);
+  EXPECT_EQ(system.particles().ring(p), (std::vector<ParticleId>{p, report.created_particles[0]}));
+  EXPECT_EQ(system.particles().body(report.created_particles[0]), unlocked);
+  EXPECT_EQ(system.bodies().articulate(a), system.bodies().articulate(unlocked));
+  EXPECT_NEAR(system.bodies().mass(a), 2, 1e-13);
+  EXPECT_NEAR(system.bodies().mass(unlocked), 3, 1e-13);
+  for (int i = 0; i < 3; ++i) expect_near(system.bodies().inertia(unlocked)[i], before[i], 1e-12);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
   EXPECT_TRUE(system.validate().empty());
 }
@@ -213,36 +213,36 @@ TEST(Split, net_force_and_torque_are_what_acts_from_outside) {
     System system({.mode = mode});
     const double h = 0.001;
     const BodyId plate =
-        system.create_body(Box{{1, 2, 0.3}}, {.mass = 4, .spin = {1, 2, 3}, .attachments = {{0.5, 1, 0}}});
-    const ParticleId corner = system.attachments(plate)[0];
+        system.bodies().create(Box{{1, 2, 0.3}}, {.mass = 4, .spin = {1, 2, 3}, .attachments = {{0.5, 1, 0}}});
+    const ParticleId corner = system.bodies().attachments(plate)[0];
     (void)system.step(h);
-    expect_near(system.net_force(plate), {0, -4 * 9.81, 0}, 1e-6);
-    EXPECT_LT(norm(system.net_torque(plate)), 1e-6);
-    const Vec3 force{0, 3, 7}, before = system.angular_momentum(plate);
-    system.apply_force(corner, force);
+    expect_near(system.bodies().net_force(plate), {0, -4 * 9.81, 0}, 1e-6);
+    EXPECT_LT(norm(system.bodies().net_torque(plate)), 1e-6);
+    const Vec3 force{0, 3, 7}, before = system.bodies().angular_momentum(plate);
+    system.particles().apply_force(corner, force);
     (void)system.step(h);
-    expect_near(system.net_force(plate), Vec3{0, -4 * 9.81, 0} + force, 1e-6);
-    const Vec3 arm = system.position(corner) - system.center_of_mass(plate);
-    expect_near(system.net_torque(plate), cross(arm, force), mode == IntegrationMode::robust ? 1e-6 : 0.02);
+    expect_near(system.bodies().net_force(plate), Vec3{0, -4 * 9.81, 0} + force, 1e-6);
+    const Vec3 arm = system.particles().position(corner) - system.bodies().center_of_mass(plate);
+    expect_near(system.bodies().net_torque(plate), cross(arm, force), mode == IntegrationMode::robust ? 1e-6 : 0.02);
     if (mode == IntegrationMode::energy_keeping)  // the change of angular momentum, to the last digit
-      expect_near(system.net_torque(plate), (1 / h) * (system.angular_momentum(plate) - before), 1e-6);
+      expect_near(system.bodies().net_torque(plate), (1 / h) * (system.bodies().angular_momentum(plate) - before), 1e-6);
   }
 }
 
 TEST(Split, net_forces_of_parts_add_up_to_the_bodys) {
   System system;
-  const BodyId a = system.create_body(Box{}, {.mass = 1}),
-               b = system.create_body(Box{}, {.mass = 2, .position = {2, 0, 0}});
-  (void)system.combine(a, b);
-  system.set_angular_velocity(a, {0, 0, 4});
+  const BodyId a = system.bodies().create(Box{}, {.mass = 1}),
+               b = system.bodies().create(Box{}, {.mass = 2, .position = {2, 0, 0}});
+  (void)system.edits().combine(a, b);
+  system.bodies().set_angular_velocity(a, {0, 0, 4});
   (void)system.step(0.001);
-  expect_near(system.net_force(a, a) + system.net_force(a, b), system.net_force(a), 1e-9);
+  expect_near(system.bodies().net_force(a, a) + system.bodies().net_force(a, b), system.bodies().net_force(a), 1e-9);
   // Turning at omega about the common center, each part is pulled towards it: m r omega^2.
-  EXPECT_NEAR(system.net_force(a, b).x, -2 * (2.0 / 3) * 16, 0.01);
-  EXPECT_NEAR(system.net_force(a, a).x, 1 * (4.0 / 3) * 16, 0.01);
+  EXPECT_NEAR(system.bodies().net_force(a, b).x, -2 * (2.0 / 3) * 16, 0.01);
+  EXPECT_NEAR(system.bodies().net_force(a, a).x, 1 * (4.0 / 3) * 16, 0.01);
   Vec3 sum;
-  for (const ParticleId p : system.particles(a)) sum += system.net_force(p);
-  expect_near(sum, system.net_force(a), 1e-9);
+  for (const ParticleId p : system.bodies().particles(a)) sum += system.particles().net_force(p);
+  expect_near(sum, system.bodies().net_force(a), 1e-9);
 }
 
 /// Two boxes that touch at x = 0.5, as one rigid body.
@@ -251,11 +251,11 @@ struct LockedPair {
   BodyId a, b;
 
   explicit LockedPair(IntegrationMode mode, const Vec3& gravity = {}) : system({.gravity = gravity, .mode = mode}) {
-    a = system.create_body(Box{{1, 0.4, 0.2}}, {.mass = 3, .attachments = {{-0.5, 0.2, 0.1}}});
-    b = system.create_body(Box{{1, 0.4, 0.2}}, {.mass = 2, .position = {1, 0, 0}, .attachments = {{0.5, 0.2, -0.1}}});
-    (void)system.combine(a, b);
+    a = system.bodies().create(Box{{1, 0.4, 0.2}}, {.mass = 3, .attachments = {{-0.5, 0.2, 0.1}}});
+    b = system.bodies().create(Box{{1, 0.4, 0.2}}, {.mass = 2, .position = {1, 0, 0}, .attachments = {{0.5, 0.2, -0.1}}});
+    (void)system.edits().combine(a, b);
   }
-  ParticleId corner(BodyId part) const { return system.particles(a, part).back(); }
+  ParticleId corner(BodyId part) const { return system.bodies().particles(a, part).back(); }
 };
 
 constexpr std::array both_schemes{IntegrationMode::robust, IntegrationMode::energy_keeping};
@@ -266,28 +266,28 @@ TEST(Outside, a_push_on_one_of_two_locked_blocks_is_force_and_torque_on_that_one
     System& system = pair.system;
     const double h = 1e-3;
     const Vec3 push{0, 1, 5}, arm{0.5, 0.2, -0.1};
-    system.apply_force(pair.corner(pair.b), push);
+    system.particles().apply_force(pair.corner(pair.b), push);
     (void)system.step(h);
-    expect_near(system.outside_force(pair.a, pair.b), push, 1e-12);
-    expect_near(system.outside_torque(pair.a, pair.b), cross(arm, push), 1e-4);  // turned by 1e-5 within the step
-    expect_near(system.outside_force(pair.a, pair.a), {}, 1e-12);
-    expect_near(system.outside_torque(pair.a, pair.a), {}, 1e-12);
+    expect_near(system.bodies().outside_force(pair.a, pair.b), push, 1e-12);
+    expect_near(system.bodies().outside_torque(pair.a, pair.b), cross(arm, push), 1e-4);  // turned by 1e-5 within the step
+    expect_near(system.bodies().outside_force(pair.a, pair.a), {}, 1e-12);
+    expect_near(system.bodies().outside_torque(pair.a, pair.a), {}, 1e-12);
     // What the lock carries is what moves the other block, by the motion of the two as one.
-    const Vec3 center{0.4, 0, 0}, spin_up = (1 / h) * system.angular_velocity(pair.a);
+    const Vec3 center{0.4, 0, 0}, spin_up = (1 / h) * system.bodies().angular_velocity(pair.a);
     const Vec3 of_a = 3 * ((1 / 5.0) * push + cross(spin_up, Vec3{0, 0, 0} - center));
-    expect_near(system.net_force(pair.a, pair.a), of_a, 1e-3);
-    expect_near(system.outside_force(pair.a, pair.b) - system.net_force(pair.a, pair.b), of_a, 1e-3);
+    expect_near(system.bodies().net_force(pair.a, pair.a), of_a, 1e-3);
+    expect_near(system.bodies().outside_force(pair.a, pair.b) - system.bodies().net_force(pair.a, pair.b), of_a, 1e-3);
   }
 }
 
 TEST(Outside, a_joint_made_at_one_of_two_locked_blocks_goes_with_that_one) {
   LockedPair pair(IntegrationMode::energy_keeping);
   System& system = pair.system;
-  const ConstraintId joint = system.create_constraint(JointSpec{.a = pair.a, .at = {1.4, 0, 0}, .axis = {0, 1, 0}});
-  const RestructureReport report = system.separate(pair.a, pair.b);
+  const ConstraintId joint = system.joints().create(JointSpec{.a = pair.a, .at = {1.4, 0, 0}, .axis = {0, 1, 0}});
+  const RestructureReport report = system.edits().separate(pair.a, pair.b);
   ASSERT_EQ(report.created_bodies.size(), 1u);
-  ASSERT_TRUE(system.contains(joint));
-  EXPECT_EQ(system.state(joint).a, report.created_bodies[0]);
+  ASSERT_TRUE(system.joints().contains(joint));
+  EXPECT_EQ(system.joints().state(joint).a, report.created_bodies[0]);
   EXPECT_TRUE(system.validate().empty());
 }
 
@@ -295,67 +295,67 @@ TEST(Outside, whatever_holds_a_body_its_parts_forces_add_up_to_its_net_force) {
   for (const bool damped : {false, true}) {
     LockedPair pair(IntegrationMode::robust, {0, -9.81, 0});
     System& system = pair.system;
-    if (damped) system.set_damping(0.7), system.set_damping(pair.a, 2);
-    system.nail(pair.corner(pair.a));
-    const BodyId wheel = system.create_body(Sphere{0.2}, {.mass = 1, .position = {1, 0.5, 0}});
-    system.create_constraint(JointSpec{.a = pair.a, .b = wheel, .at = {1, 0.3, 0}, .angle = {.stiffness = 2}});
-    const BodyId ball = system.create_body();
-    const ParticleId weight = system.create_particle(ball, {2, -1, 0});
-    system.create_bond(pair.corner(pair.b), weight, SpringLaw{40, 0, 0.3});
-    (void)system.create_grip(pair.a, {0.3, 0, 0}, {1, 2, 1});
+    if (damped) system.set_damping(0.7), system.bodies().set_damping(pair.a, 2);
+    system.particles().nail(pair.corner(pair.a));
+    const BodyId wheel = system.bodies().create(Sphere{0.2}, {.mass = 1, .position = {1, 0.5, 0}});
+    system.joints().create(JointSpec{.a = pair.a, .b = wheel, .at = {1, 0.3, 0}, .angle = {.stiffness = 2}});
+    const BodyId ball = system.bodies().create();
+    const ParticleId weight = system.particles().create(ball, {2, -1, 0});
+    system.bonds().create(pair.corner(pair.b), weight, SpringLaw{40, 0, 0.3});
+    (void)system.grips().create(pair.a, {0.3, 0, 0}, {1, 2, 1});
     for (int i = 0; i < 20; ++i) {
-      system.apply_force(pair.corner(pair.b), {1, 2, 3});
+      system.particles().apply_force(pair.corner(pair.b), {1, 2, 3});
       (void)system.step(0.005);
       Vec3 force, moments;
-      for (const BodyId part : system.parts(pair.a)) {
-        const Vec3 f = system.outside_force(pair.a, part);
+      for (const BodyId part : system.bodies().parts(pair.a)) {
+        const Vec3 f = system.bodies().outside_force(pair.a, part);
         double mass = 0;
         Vec3 center;
-        for (const ParticleId p : system.particles(pair.a, part))
-          mass += system.mass(p), center += system.mass(p) * system.position(p);
+        for (const ParticleId p : system.bodies().particles(pair.a, part))
+          mass += system.particles().mass(p), center += system.particles().mass(p) * system.particles().position(p);
         force += f;
-        moments += system.outside_torque(pair.a, part) + cross((1 / mass) * center - system.center_of_mass(pair.a), f);
+        moments += system.bodies().outside_torque(pair.a, part) + cross((1 / mass) * center - system.bodies().center_of_mass(pair.a), f);
       }
-      expect_near(force, system.net_force(pair.a), 1e-4);
-      expect_near(moments, system.net_torque(pair.a), 1e-4);
+      expect_near(force, system.bodies().net_force(pair.a), 1e-4);
+      expect_near(moments, system.bodies().net_torque(pair.a), 1e-4);
     }
-    EXPECT_GT(norm(system.net_force(pair.a)), 1);
+    EXPECT_GT(norm(system.bodies().net_force(pair.a)), 1);
   }
 }
 
 TEST(Split, a_bond_whose_ends_were_separated_just_goes) {
   Molecule m(zigzag);
-  (void)m.system.separate(m.atoms[1], m.atoms[2]);  // now of two bodies, its bonds with it
-  for (const CosmeticBondId bond : m.bonds) (void)m.system.destroy(bond);
-  EXPECT_TRUE(m.system.cosmetic_bonds().empty());
+  (void)m.system.edits().separate(m.atoms[1], m.atoms[2]);  // now of two bodies, its bonds with it
+  for (const CosmeticBondId bond : m.bonds) (void)m.system.cosmetic_bonds().destroy(bond);
+  EXPECT_TRUE(m.system.cosmetic_bonds().ids().empty());
   EXPECT_TRUE(m.system.validate().empty());
 }
 
 TEST(Split, a_part_of_massless_places_alone_cannot_be_left_behind) {
   System system;
-  const BodyId plate = system.create_body(), other = system.create_body();
-  const ParticleId own = system.create_particle(plate, {0, 0, 0});
-  for (const Vec3& x : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{1, 1, 1}}) system.create_particle(other, x);
-  (void)system.combine(plate, other);
-  system.create_particle(plate, {0.2, 0.2, 0.2}, 0);
-  system.destroy(own);
-  EXPECT_THROW((void)system.separate(plate, other), std::invalid_argument);
-  EXPECT_EQ(system.particles(plate).size(), 5u);
+  const BodyId plate = system.bodies().create(), other = system.bodies().create();
+  const ParticleId own = system.particles().create(plate, {0, 0, 0});
+  for (const Vec3& x : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{1, 1, 1}}) system.particles().create(other, x);
+  (void)system.edits().combine(plate, other);
+  system.particles().create(plate, {0.2, 0.2, 0.2}, 0);
+  system.particles().destroy(own);
+  EXPECT_THROW((void)system.edits().separate(plate, other), std::invalid_argument);
+  EXPECT_EQ(system.bodies().particles(plate).size(), 5u);
 }
 
 TEST(Split, splits_are_recorded_and_replayed) {
   Molecule m(zigzag);
   System& system = m.system;
-  system.start_recording();
+  system.record().start();
   (void)system.step(0.01);
-  (void)system.destroy(m.bonds[2]);
+  (void)system.cosmetic_bonds().destroy(m.bonds[2]);
   (void)system.step(0.01);
-  const BodyId other = system.create_body(Sphere{0.1});
-  (void)system.combine(m.body, other);
+  const BodyId other = system.bodies().create(Sphere{0.1});
+  (void)system.edits().combine(m.body, other);
   (void)system.step(0.01);
-  (void)system.separate(m.body, other);
+  (void)system.edits().separate(m.body, other);
   (void)system.step(0.01);
-  EXPECT_EQ(system.replay(system.stop_recording()), std::nullopt);
+  EXPECT_EQ(system.record().replay(system.record().stop()), std::nullopt);
 }
 
 }  // namespace

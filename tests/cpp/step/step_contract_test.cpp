@@ -62,13 +62,13 @@ scenes::Chain hanging_chain(System& system, int links) {
 struct Weight {
   ParticleId hook, weight;
   explicit Weight(System& system)
-      : hook(system.create_particle(system.create_body(), {0, 0, 0})),
-        weight(system.create_particle(system.create_body(), {0, -1, 0})) {
-    system.nail(hook);
+      : hook(system.particles().create(system.bodies().create(), {0, 0, 0})),
+        weight(system.particles().create(system.bodies().create(), {0, -1, 0})) {
+    system.particles().nail(hook);
   }
   void put_back(System& system) const {
-    system.set_position(weight, {0, -1, 0});
-    system.set_velocity(weight, {});
+    system.particles().set_position(weight, {0, -1, 0});
+    system.particles().set_velocity(weight, {});
   }
 };
 
@@ -77,31 +77,31 @@ struct Weight {
 Scene::Script build_calm(System& system) {
   system.set_damping(0.1);
   const auto chain = scenes::make_chain(system, {.links = 50, .rods = true});
-  const BodyId triangle = system.create_body();
-  system.create_particle(triangle, {1, 1, 0}), system.create_particle(triangle, {2, 1, 0});
-  const ParticleId corner = system.create_particle(triangle, {1, 2, 0});
-  system.create_particle(triangle, {1.3, 1.3, 0});
-  system.create_bond(corner, chain.lower.back(), SpringLaw{10, 0.1});
-  (void)system.create_grip(chain.links[20], {}, {0, 1, 0});
-  const BodyId block = system.create_body(Box{{0.2, 0.3, 0.4}}, {.position = {3, 0, 0}});
-  system.create_constraint(
+  const BodyId triangle = system.bodies().create();
+  system.particles().create(triangle, {1, 1, 0}), system.particles().create(triangle, {2, 1, 0});
+  const ParticleId corner = system.particles().create(triangle, {1, 2, 0});
+  system.particles().create(triangle, {1.3, 1.3, 0});
+  system.bonds().create(corner, chain.lower.back(), SpringLaw{10, 0.1});
+  (void)system.grips().create(chain.links[20], {}, {0, 1, 0});
+  const BodyId block = system.bodies().create(Box{{0.2, 0.3, 0.4}}, {.position = {3, 0, 0}});
+  system.joints().create(
       JointSpec{.a = block, .at = {3, 0.5, 0}, .angle = {-2, 2, 1, 5, 0.5, 3, 0.1, 0.2}, .breaks = {1e9, 1e9}});
-  const ParticleId bead = system.create_particle(system.create_body(), {2, 2, 2});
-  system.create_constraint(PathSpec{.particle = bead, .points = {{2, 2, 2}, {3, 2, 2}, {4, 3, 2}}});
-  system.create_constraint(DistanceSpec{.kind = ConstraintKind::rope, .p = bead, .q = corner, .length = 9});
-  system.create_constraint(
+  const ParticleId bead = system.particles().create(system.bodies().create(), {2, 2, 2});
+  system.joints().create(PathSpec{.particle = bead, .points = {{2, 2, 2}, {3, 2, 2}, {4, 3, 2}}});
+  system.joints().create(DistanceSpec{.kind = ConstraintKind::rope, .p = bead, .q = corner, .length = 9});
+  system.joints().create(
       SurfaceSpec{.kind = ConstraintKind::inside, .particle = bead, .surface = {Sphere{9}, {}, {}}});
   for (int i = 0; i < 40; ++i)
-    system.create_particle(system.create_body(), {-2 + 0.3 * (i % 7), 5 + 0.3 * (i / 7), 0}, 1, {0.1 * (i % 3), 0, 0});
-  const auto loose = system.particles();
+    system.particles().create(system.bodies().create(), {-2 + 0.3 * (i % 7), 5 + 0.3 * (i / 7), 0}, 1, {0.1 * (i % 3), 0, 0});
+  const auto loose = system.particles().ids();
   for (const bool implicit : {true, false})
-    system.create_bond(loose[loose.size() - 1], loose[loose.size() - 9],
-                       SharedLaw{system.create_law("energy = 3*(r - 1)^4; force = -v"), {}, implicit});
-  system.create_bond(loose[loose.size() - 2], loose[loose.size() - 3],
+    system.bonds().create(loose[loose.size() - 1], loose[loose.size() - 9],
+                       SharedLaw{system.laws().create("energy = 3*(r - 1)^4; force = -v"), {}, implicit});
+  system.bonds().create(loose[loose.size() - 2], loose[loose.size() - 3],
                      ScriptedLaw{[](const BondState&) { return Vec3{0, 0.1, 0}; }, "a name that is not a short one"});
-  system.create_field("current");
-  system.create_field("fx = sin(x + t)*m; fy = exp(-y^2)");
-  system.create_pairs({system.find_law("soft_repulsion"), {{"length", 0.5}}, {}}, {.cutoff = 0.5});
+  system.fields().create("current");
+  system.fields().create("fx = sin(x + t)*m; fy = exp(-y^2)");
+  system.pairs().create({system.laws().find("soft_repulsion"), {{"length", 0.5}}, {}}, {.cutoff = 0.5});
   return [](int) {};
 }
 
@@ -109,28 +109,28 @@ Scene::Script build_calm(System& system) {
 Scene::Script build_whirl(System& system) {
   system.set_mode(IntegrationMode::energy_keeping);  // the other one has nothing to fall back to
   system.set_gravity({});
-  const BodyId rod = system.create_body();
-  const ParticleId left = system.create_particle(rod, {-0.5, 0, 0}), right = system.create_particle(rod, {0.5, 0, 0});
+  const BodyId rod = system.bodies().create();
+  const ParticleId left = system.particles().create(rod, {-0.5, 0, 0}), right = system.particles().create(rod, {0.5, 0, 0});
   return [&system, left, right](int step) {
     if (step != 0) return;
-    const Vec3 along = system.position(right) - system.position(left);
+    const Vec3 along = system.particles().position(right) - system.particles().position(left);
     const Vec3 across = cross({0, 0, 1}, (1 / norm(along)) * along);
-    system.set_velocity(left, -9000 * across), system.set_velocity(right, 9000 * across);
+    system.particles().set_velocity(left, -9000 * across), system.particles().set_velocity(right, 9000 * across);
   };
 }
 
 Scene::Script build_closing(System& system) {
   system.set_gravity({});
-  const ParticleId a = system.create_particle(system.create_body(), {0, 0, 0}),
-                   b = system.create_particle(system.create_body(), {0.5, 0, 0});
+  const ParticleId a = system.particles().create(system.bodies().create(), {0, 0, 0}),
+                   b = system.particles().create(system.bodies().create(), {0.5, 0, 0});
   return [&system, a, b](int step) {
-    if (step == 0) (void)system.separate(a, b), system.set_velocity(b, {1, 0, 0});
-    if (step == 10) (void)system.combine(a, b, 8 * dt);
+    if (step == 0) (void)system.edits().separate(a, b), system.particles().set_velocity(b, {1, 0, 0});
+    if (step == 10) (void)system.edits().combine(a, b, 8 * dt);
   };
 }
 
 Scene::Script build_emitter(System& system) {
-  system.create_emitter({.rate = 120, .velocity = {0, 3, 0}, .velocity_spread = 0.5, .lifetime = 0.25});
+  system.emitters().create({.rate = 120, .velocity = {0, 3, 0}, .velocity_spread = 0.5, .lifetime = 0.25});
   hanging_chain(system, 5);
   return [](int) {};
 }
@@ -140,17 +140,17 @@ Scene::Script build_sleepers(System& system) {
   system.set_rest({.after = 0.1, .speed = 0.05});
   const auto chain = hanging_chain(system, 6);
   return [&system, end = chain.lower.back()](int step) {
-    if (step == 0) system.apply_force(end, {20, 0, 0});
+    if (step == 0) system.particles().apply_force(end, {20, 0, 0});
   };
 }
 
 Scene::Script build_breaking_bond(System& system) {
   const Weight weight(system);
-  const BondId bond = system.create_bond(weight.hook, weight.weight, SpringLaw{.stiffness = 1000});
-  system.set_break_force(bond, 20);
+  const BondId bond = system.bonds().create(weight.hook, weight.weight, SpringLaw{.stiffness = 1000});
+  system.bonds().set_break_force(bond, 20);
   return [&system, weight, bond](int step) {
-    if (step == 0) weight.put_back(system), system.set_active(bond, true);
-    if (step == 10) system.apply_force(weight.weight, {0, -5000, 0});
+    if (step == 0) weight.put_back(system), system.bonds().set_active(bond, true);
+    if (step == 10) system.particles().apply_force(weight.weight, {0, -5000, 0});
   };
 }
 
@@ -159,24 +159,24 @@ Scene::Script build_breaking_hinge(System& system) {
   const auto chain = hanging_chain(system, 4);
   return [&system, chain](int step) {
     if (step == 0) {
-      if (system.ring(chain.upper[2]).size() == 1) (void)system.combine(chain.lower[1], chain.upper[2]);
-      system.set_break_force(chain.upper[2], 50);
+      if (system.particles().ring(chain.upper[2]).size() == 1) (void)system.edits().combine(chain.lower[1], chain.upper[2]);
+      system.particles().set_break_force(chain.upper[2], 50);
     }
-    if (step == 10) system.apply_force(chain.lower[3], {0, -100, 0});
+    if (step == 10) system.particles().apply_force(chain.lower[3], {0, -100, 0});
   };
 }
 
 Scene::Script build_breaking_joint(System& system) {
-  const BodyId block = system.create_body(Box{{0.2, 0.3, 0.4}}, {.mass = 1});
-  const ConstraintId weld = system.create_constraint(
+  const BodyId block = system.bodies().create(Box{{0.2, 0.3, 0.4}}, {.mass = 1});
+  const ConstraintId weld = system.joints().create(
       JointSpec{.kind = ConstraintKind::weld, .a = block, .at = {0, 0, 0}, .breaks = {.force = 50}});
   return [&system, block, weld](int step) {
     if (step == 0) {
-      system.set_pose(block, {}, {});
-      system.set_velocity(block, {}), system.set_angular_velocity(block, {});
-      system.set_active(weld, true);
+      system.bodies().set_pose(block, {}, {});
+      system.bodies().set_velocity(block, {}), system.bodies().set_angular_velocity(block, {});
+      system.joints().set_active(weld, true);
     }
-    if (step == 10) system.apply_force(system.particles(block).front(), {0, -200, 0});
+    if (step == 10) system.particles().apply_force(system.bodies().particles(block).front(), {0, -200, 0});
   };
 }
 
@@ -185,8 +185,8 @@ Scene::Script build_cut(System& system, int links) {
   const auto chain = hanging_chain(system, links);
   const auto middle = static_cast<std::size_t>(links / 2);
   return [&system, upper = chain.lower[middle], lower = chain.upper[middle + 1]](int step) {
-    if (step == 0) (void)system.separate(upper, lower);
-    if (step == 3) (void)system.combine(upper, lower);
+    if (step == 0) (void)system.edits().separate(upper, lower);
+    if (step == 3) (void)system.edits().combine(upper, lower);
   };
 }
 
@@ -197,17 +197,17 @@ Scene::Script build_grab(System& system, int links) {
   const BodyId held = chain.links[static_cast<std::size_t>(links / 2)];
   const auto grip = std::make_shared<GripId>();
   return [&system, held, grip](int step) {
-    const Vec3 place = system.center_of_mass(held);
-    if (step == 0) *grip = system.create_grip(held, {}, place);
-    if (step > 0 && step < 5) system.move_grip(*grip, place + Vec3{0.01, 0, 0});
-    if (step == 5) system.destroy(*grip);
+    const Vec3 place = system.bodies().center_of_mass(held);
+    if (step == 0) *grip = system.grips().create(held, {}, place);
+    if (step > 0 && step < 5) system.grips().move(*grip, place + Vec3{0.01, 0, 0});
+    if (step == 5) system.grips().destroy(*grip);
   };
 }
 
 /// A chain of 0.4 m between two nails 0.6 m apart.
 Scene::Script build_conflict(System& system) {
   const auto chain = scenes::make_chain(system, {.links = 4});
-  system.nail(chain.lower.back(), {0.6, 0, 0});
+  system.particles().nail(chain.lower.back(), {0.6, 0, 0});
   return [](int) {};
 }
 
@@ -215,8 +215,8 @@ Scene::Script build_conflict(System& system) {
 Scene::Script build_passing_conflict(System& system) {
   const auto chain = scenes::make_chain(system, {.links = 4});
   return [&system, end = chain.lower.back()](int step) {
-    if (step == 0) system.nail(end, {0.6, 0, 0});
-    if (step == 15) system.nail(end, {0.3, 0, 0});
+    if (step == 0) system.particles().nail(end, {0.6, 0, 0});
+    if (step == 15) system.particles().nail(end, {0.3, 0, 0});
   };
 }
 
@@ -240,12 +240,12 @@ Scene::Script build_solver_that_finds_nothing(System& system) {
 Scene::Script build_bond_that_throws(System& system) {
   const Weight weight(system);
   const auto fuse = std::make_shared<Fuse>();
-  const BondId bond = system.create_bond(weight.hook, weight.weight, ScriptedLaw{[fuse](const BondState&) {
+  const BondId bond = system.bonds().create(weight.hook, weight.weight, ScriptedLaw{[fuse](const BondState&) {
                                            fuse->check();
                                            return Vec3{0, -9.81, 0};
                                          }});
   return [&system, fuse, bond](int step) {
-    if (step == 0) fuse->is_blown = false, system.set_active(bond, true);
+    if (step == 0) fuse->is_blown = false, system.bonds().set_active(bond, true);
     if (step == 5) fuse->is_blown = true;
   };
 }
@@ -253,13 +253,13 @@ Scene::Script build_bond_that_throws(System& system) {
 Scene::Script build_law_that_throws(System& system) {
   const Weight weight(system);
   const auto fuse = std::make_shared<Fuse>();
-  const LawId law = system.create_law(BatchFunction{[fuse](const BondBatch& batch) {
+  const LawId law = system.laws().create(BatchFunction{[fuse](const BondBatch& batch) {
     fuse->check();
     std::fill(batch.force, batch.force + 3 * batch.count, 0.0);
   }});
-  const BondId bond = system.create_bond(weight.hook, weight.weight, SharedLaw{law, {}, {}});
+  const BondId bond = system.bonds().create(weight.hook, weight.weight, SharedLaw{law, {}, {}});
   return [&system, fuse, bond](int step) {
-    if (step == 0) fuse->is_blown = false, system.set_active(bond, true);
+    if (step == 0) fuse->is_blown = false, system.bonds().set_active(bond, true);
     if (step == 5) fuse->is_blown = true;
   };
 }
@@ -267,12 +267,12 @@ Scene::Script build_law_that_throws(System& system) {
 Scene::Script build_field_that_throws(System& system) {
   hanging_chain(system, 3);
   const auto fuse = std::make_shared<Fuse>();
-  const FieldId field = system.create_field(FieldFunction{[fuse](const ParticleBatch& batch) {
+  const FieldId field = system.fields().create(FieldFunction{[fuse](const ParticleBatch& batch) {
     fuse->check();
     std::fill(batch.force, batch.force + 3 * batch.count, 0.0);
   }});
   return [&system, fuse, field](int step) {
-    if (step == 0) fuse->is_blown = false, system.set_active(field, true);
+    if (step == 0) fuse->is_blown = false, system.fields().set_active(field, true);
     if (step == 5) fuse->is_blown = true;
   };
 }
@@ -284,17 +284,17 @@ double pole(double, double, double t, const double*) {
 Scene::Script build_law_without_a_value(System& system) {
   const Weight weight(system);
   const BondId bond =
-      system.create_bond(weight.hook, weight.weight, SharedLaw{system.create_law(RadialFunction{pole}), {}, {}});
+      system.bonds().create(weight.hook, weight.weight, SharedLaw{system.laws().create(RadialFunction{pole}), {}, {}});
   return [&system, weight, bond](int step) {
-    if (step == 0) weight.put_back(system), system.set_active(bond, true);
+    if (step == 0) weight.put_back(system), system.bonds().set_active(bond, true);
   };
 }
 
 Scene::Script build_surface_that_fails(System& system) {
   const auto fuse = std::make_shared<Fuse>();
-  const BodyId rod = system.create_body();
-  const ParticleId low = system.create_particle(rod, {0, 0, 0}), high = system.create_particle(rod, {0, 1, 0});
-  const ConstraintId floor = system.create_constraint(SurfaceSpec{.kind = ConstraintKind::outside,
+  const BodyId rod = system.bodies().create();
+  const ParticleId low = system.particles().create(rod, {0, 0, 0}), high = system.particles().create(rod, {0, 1, 0});
+  const ConstraintId floor = system.joints().create(SurfaceSpec{.kind = ConstraintKind::outside,
                                                                   .particle = low,
                                                                   .surface = {SurfaceFunction{[fuse](const Vec3& r) {
                                                                                 fuse->check();
@@ -305,9 +305,9 @@ Scene::Script build_surface_that_fails(System& system) {
   return [&system, fuse, low, high, floor](int step) {
     if (step == 0) {
       fuse->is_blown = false;
-      system.set_position(low, {0, 0, 0}), system.set_position(high, {0, 1, 0});
-      system.set_velocity(low, {}), system.set_velocity(high, {});
-      system.set_active(floor, true);
+      system.particles().set_position(low, {0, 0, 0}), system.particles().set_position(high, {0, 1, 0});
+      system.particles().set_velocity(low, {}), system.particles().set_velocity(high, {});
+      system.joints().set_active(floor, true);
     }
     if (step == 5) fuse->is_blown = true;
   };
@@ -318,10 +318,10 @@ Scene::Script build_edits_from_within(System& system) {
   system.set_damping(0.5);
   const auto chain = hanging_chain(system, 6);
   const auto step_now = std::make_shared<int>(0);
-  system.create_bond(chain.upper[0], chain.lower[5],
+  system.bonds().create(chain.upper[0], chain.lower[5],
                      ScriptedLaw{[&system, step_now, p = chain.lower[2], q = chain.upper[3]](const BondState&) {
-                       if (*step_now == 5) (void)system.separate(p, q);
-                       if (*step_now == 8) (void)system.combine(p, q);
+                       if (*step_now == 5) (void)system.edits().separate(p, q);
+                       if (*step_now == 8) (void)system.edits().combine(p, q);
                        return Vec3{};
                      }});
   return [step_now](int step) { *step_now = step; };
@@ -330,11 +330,11 @@ Scene::Script build_edits_from_within(System& system) {
 /// A force function asks for an edit that cannot be made: two static particles cannot meet.
 Scene::Script build_edit_that_is_refused(System& system) {
   const Weight weight(system);
-  const ParticleId left = system.create_particle(system.create_body({.kind = BodyKind::static_}), {5, 0, 0}),
-                   right = system.create_particle(system.create_body({.kind = BodyKind::static_}), {6, 0, 0});
+  const ParticleId left = system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {5, 0, 0}),
+                   right = system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {6, 0, 0});
   const auto step_now = std::make_shared<int>(0);
-  system.create_bond(weight.hook, weight.weight, ScriptedLaw{[&system, step_now, left, right](const BondState&) {
-                       if (*step_now == 5) (void)system.combine(left, right);
+  system.bonds().create(weight.hook, weight.weight, ScriptedLaw{[&system, step_now, left, right](const BondState&) {
+                       if (*step_now == 5) (void)system.edits().combine(left, right);
                        return Vec3{};
                      }});
   return [step_now](int step) { *step_now = step; };
@@ -342,11 +342,11 @@ Scene::Script build_edit_that_is_refused(System& system) {
 
 /// Falls on a stop of its hinge, is lifted, and falls again.
 Scene::Script build_impact(System& system) {
-  const BodyId arm = system.create_body(Box{{1, 0.1, 0.1}}, {.mass = 1, .position = {0.5, 0, 0}});
-  system.create_constraint(
+  const BodyId arm = system.bodies().create(Box{{1, 0.1, 0.1}}, {.mass = 1, .position = {0.5, 0, 0}});
+  system.joints().create(
       JointSpec{.kind = ConstraintKind::revolute, .a = arm, .at = {0, 0, 0}, .angle = {.lower = -0.1}});
   return [&system, arm](int step) {
-    if (step == 0) system.set_angular_velocity(arm, {0, 0, 1});
+    if (step == 0) system.bodies().set_angular_velocity(arm, {0, 0, 1});
   };
 }
 

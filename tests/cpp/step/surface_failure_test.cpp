@@ -32,11 +32,11 @@ TEST_P(FailingSurface, leaves_the_step_as_it_is_without_the_surface) {
     System system{{.mode = mode}}, without{{.mode = mode}};
     ConstraintId held;
     for (System* s : {&system, &without}) {
-      const BodyId rod = s->create_body();
-      const ParticleId low = s->create_particle(rod, {0, 0, 0}, 1, {1, 0, 0});
-      s->create_particle(rod, {0, 1, 0}, 2, {-1, 0, 0});
+      const BodyId rod = s->bodies().create();
+      const ParticleId low = s->particles().create(rod, {0, 0, 0}, 1, {1, 0, 0});
+      s->particles().create(rod, {0, 1, 0}, 2, {-1, 0, 0});
       if (s == &system)
-        held = s->create_constraint(
+        held = s->joints().create(
             SurfaceSpec{.kind = ConstraintKind::outside, .particle = low, .surface = {floor.function, {}, {}}});
     }
     floor.calls = after;
@@ -47,12 +47,12 @@ TEST_P(FailingSurface, leaves_the_step_as_it_is_without_the_surface) {
                                       (throws ? "raised: the floor gave way" : "is not finite") +
                                       "; the constraint is switched off");
     EXPECT_EQ(report.unconverged, 0);
-    EXPECT_FALSE(system.state(held).active);
+    EXPECT_FALSE(system.joints().state(held).active);
     EXPECT_TRUE(system.validate().empty());
     for (int i = 0; i < 30; ++i) {
       EXPECT_LT(report.worst_gap, 1e-6);
       for (std::size_t p = 0; p < 2; ++p) {
-        const Vec3 off = system.position(system.particles()[p]) - without.position(without.particles()[p]);
+        const Vec3 off = system.particles().position(system.particles().ids()[p]) - without.particles().position(without.particles().ids()[p]);
         EXPECT_LT(norm(off), 1e-3) << "it falls as if nothing had been there";
       }
       EXPECT_TRUE(system.step(1.0 / 60).switched_off_constraints.empty());
@@ -61,9 +61,9 @@ TEST_P(FailingSurface, leaves_the_step_as_it_is_without_the_surface) {
     EXPECT_NEAR(book(system.energy()), book(without.energy()), 1e-6);
 
     floor.calls = 1 << 30;
-    system.set_active(held, true);
+    system.joints().set_active(held, true);
     for (int i = 0; i < 60; ++i) EXPECT_TRUE(system.step(1.0 / 60).switched_off_constraints.empty());
-    EXPECT_GT(system.position(system.particles()[0]).y, -1e-6) << "switched on again it holds again";
+    EXPECT_GT(system.particles().position(system.particles().ids()[0]).y, -1e-6) << "switched on again it holds again";
   }
 }
 
@@ -76,27 +76,27 @@ TEST(SurfaceFailure, of_one_of_two_surfaces_in_touch_lets_both_go) {
   for (const int after : {0, 100, 1000, 2500}) {
     Floor floor;
     System system;
-    const BodyId ball = system.create_body(Sphere{0.5}, {.position = {0, 0.6, 0}});
-    const ConstraintId held = system.create_constraint(SurfacePairSpec{
+    const BodyId ball = system.bodies().create(Sphere{0.5}, {.position = {0, 0.6, 0}});
+    const ConstraintId held = system.joints().create(SurfacePairSpec{
         .a = ball, .b = {}, .surface_a = {Sphere{0.5}, {0, 0.6, 0}, {}}, .surface_b = {floor.function, {}, {}}});
     for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 60);
-    EXPECT_NEAR(system.center_of_mass(ball).y, 0.5, 1e-6);
+    EXPECT_NEAR(system.bodies().center_of_mass(ball).y, 0.5, 1e-6);
     floor.calls = after;
     int told = 0;
     for (int i = 0; i < 30; ++i) told += static_cast<int>(system.step(1.0 / 60).switched_off_constraints.size());
     EXPECT_EQ(told, 1);
-    EXPECT_FALSE(system.state(held).active);
-    EXPECT_LT(system.center_of_mass(ball).y, 0.4) << "it falls";
+    EXPECT_FALSE(system.joints().state(held).active);
+    EXPECT_LT(system.bodies().center_of_mass(ball).y, 0.4) << "it falls";
     EXPECT_TRUE(system.validate().empty());
   }
 }
 
 TEST(SurfaceFailure, at_once_refuses_the_constraint_and_changes_nothing) {
   System system;
-  const ParticleId p = system.create_particle(system.create_body(), {0, 1, 0});
+  const ParticleId p = system.particles().create(system.bodies().create(), {0, 1, 0});
   Floor floor{.calls = 0};
   const std::uint64_t before = system.state_hash();
-  EXPECT_THROW(system.create_constraint(SurfaceSpec{.particle = p, .surface = {floor.function, {}, {}}}),
+  EXPECT_THROW(system.joints().create(SurfaceSpec{.particle = p, .surface = {floor.function, {}, {}}}),
                std::invalid_argument);
   EXPECT_EQ(system.state_hash(), before);
 }
@@ -104,8 +104,8 @@ TEST(SurfaceFailure, at_once_refuses_the_constraint_and_changes_nothing) {
 TEST(SurfaceFailure, is_what_a_surface_without_its_function_is_in_another_system) {
   Floor floor;
   System system, other;
-  const ParticleId p = system.create_particle(system.create_body(), {0, 0, 0});
-  const ConstraintId held = system.create_constraint(SurfaceSpec{.particle = p, .surface = {floor.function, {}, {}}});
+  const ParticleId p = system.particles().create(system.bodies().create(), {0, 0, 0});
+  const ConstraintId held = system.joints().create(SurfaceSpec{.particle = p, .surface = {floor.function, {}, {}}});
   other.restore(system.snapshot());
   const StepReport report = other.step(0.01);
   EXPECT_EQ(report.switched_off_constraints, std::vector<ConstraintId>{held});

@@ -40,26 +40,26 @@ std::array<double, 4> double_pendulum(std::array<double, 4> y, double seconds) {
 /// Distance of the lower mass from the truth after `seconds`, m, and the worst sub-steps of a step.
 std::pair<double, int> pendulum_error(IntegrationMode mode, double dt, double seconds) {
   System system{SystemOptions{.mode = mode}};
-  const BodyId upper = system.create_body(), lower = system.create_body();
-  const ParticleId top = system.create_particle(upper, {0, 0, 0}, 1),
-                   middle = system.create_particle(upper, {1, 0, 0}, 1);
-  const ParticleId joint = system.create_particle(lower, {1, 0, 0}, 1e-9),
-                   end = system.create_particle(lower, {2, 0, 0}, 1);
-  (void)system.combine(middle, joint);
-  system.nail(top);
+  const BodyId upper = system.bodies().create(), lower = system.bodies().create();
+  const ParticleId top = system.particles().create(upper, {0, 0, 0}, 1),
+                   middle = system.particles().create(upper, {1, 0, 0}, 1);
+  const ParticleId joint = system.particles().create(lower, {1, 0, 0}, 1e-9),
+                   end = system.particles().create(lower, {2, 0, 0}, 1);
+  (void)system.edits().combine(middle, joint);
+  system.particles().nail(top);
   int substeps = 0;
   for (int i = 0; i < std::lround(seconds / dt); ++i) substeps = std::max(substeps, system.step(dt).substeps_max);
   const double quarter = std::acos(-1.0) / 2;
   const auto truth = double_pendulum({quarter, quarter, 0, 0}, seconds);
   const Vec3 expected{std::sin(truth[0]) + std::sin(truth[1]), -std::cos(truth[0]) - std::cos(truth[1]), 0};
-  return {norm(system.position(end) - expected), substeps};
+  return {norm(system.particles().position(end) - expected), substeps};
 }
 
 /// A rod of 1 m that turns by more than a radian even in a 64th of a frame: each of its sub-steps falls back.
 void add_whirling_rod(System& system, const Vec3& place) {
-  const BodyId rod = system.create_body();
-  system.create_particle(rod, place + Vec3{0.5, 0, 0}, 1, {0, 4000, 0});
-  system.create_particle(rod, place - Vec3{0.5, 0, 0}, 1, {0, -4000, 0});
+  const BodyId rod = system.bodies().create();
+  system.particles().create(rod, place + Vec3{0.5, 0, 0}, 1, {0, 4000, 0});
+  system.particles().create(rod, place - Vec3{0.5, 0, 0}, 1, {0, -4000, 0});
 }
 
 TEST(Report, adds_up_the_fall_backs_of_all_islands) {
@@ -129,7 +129,7 @@ TEST(TimeStep, may_be_another_one_every_frame) {
   for (const auto mode : {IntegrationMode::plausible, IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     System system{SystemOptions{.mode = mode}};
     const auto chain = scenes::make_chain(system, {.links = 30, .rods = true});
-    system.create_bond(chain.lower[10], chain.lower[29], SpringLaw{.stiffness = 200});
+    system.bonds().create(chain.lower[10], chain.lower[29], SpringLaw{.stiffness = 200});
     const double start = system.energy().total();
     std::mt19937 random(4);
     double kinetic = 0;
@@ -157,17 +157,17 @@ System random_scene(std::uint64_t seed, IntegrationMode mode) {
   System system{SystemOptions{.mode = mode}};
   std::vector<ParticleId> all;
   for (int b = 0; b < 10; ++b) {
-    const BodyId body = system.create_body();
+    const BodyId body = system.bodies().create();
     const std::size_t count = 2 + index(4);
-    const Vec3 at = all.empty() ? Vec3{} : system.position(all[index(all.size())]);
+    const Vec3 at = all.empty() ? Vec3{} : system.particles().position(all[index(all.size())]);
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 x = at + (i == 0 ? Vec3{} : Vec3{number(-1, 1), number(-1, 1), number(-1, 1)});
       const Vec3 v{number(-2, 2), number(-2, 2), number(-2, 2)};
-      const ParticleId p = system.create_particle(body, x, std::pow(10, number(-3, 3)), v);
+      const ParticleId p = system.particles().create(body, x, std::pow(10, number(-3, 3)), v);
       if (i == 0 && !all.empty())
         for (const ParticleId q : all)
-          if (system.position(q) == x) {
-            (void)system.combine(q, p);
+          if (system.particles().position(q) == x) {
+            (void)system.edits().combine(q, p);
             break;
           }
       all.push_back(p);
@@ -175,9 +175,9 @@ System random_scene(std::uint64_t seed, IntegrationMode mode) {
   }
   for (int i = 0; i < 6; ++i) {
     const ParticleId p = all[index(all.size())], q = all[index(all.size())];
-    if (p != q) system.create_bond(p, q, SpringLaw{.stiffness = std::pow(10, number(0, 5))});
+    if (p != q) system.bonds().create(p, q, SpringLaw{.stiffness = std::pow(10, number(0, 5))});
   }
-  if (index(2) == 0) system.nail(all[0]);
+  if (index(2) == 0) system.particles().nail(all[0]);
   return system;
 }
 
@@ -204,16 +204,16 @@ TEST(Singular, chain_stretched_between_two_nails_stays_and_can_be_let_go) {
   for (const auto mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     System system{SystemOptions{.mode = mode}};
     const auto chain = scenes::make_chain(system, {.links = 20, .link_length = 0.1});
-    system.nail(chain.lower.back());
+    system.particles().nail(chain.lower.back());
     int iterations = 0;
     for (int i = 0; i < 120; ++i) {
       const StepReport report = system.step(1.0 / 60);
       ASSERT_TRUE(std::isfinite(report.energy.total()));
       ASSERT_LT(report.worst_gap, 1e-5) << "a straight chain cannot carry its weight: it must give or be held";
-      ASSERT_NEAR(system.position(chain.lower[9]).x, 1, 1e-3);
+      ASSERT_NEAR(system.particles().position(chain.lower[9]).x, 1, 1e-3);
       iterations = std::max(iterations, report.iterations_max);
     }
-    system.release(chain.lower.back());
+    system.particles().release(chain.lower.back());
     const double start = system.energy().total();
     for (int i = 0; i < 120; ++i) {
       const StepReport report = system.step(1.0 / 60);
@@ -221,7 +221,7 @@ TEST(Singular, chain_stretched_between_two_nails_stays_and_can_be_let_go) {
       ASSERT_EQ(report.unconverged, 0);
       ASSERT_LT(report.energy.total(), start + 1e-6);
     }
-    EXPECT_LT(system.position(chain.lower.back()).y, -0.5) << "free again";
+    EXPECT_LT(system.particles().position(chain.lower.back()).y, -0.5) << "free again";
   }
 }
 
@@ -230,17 +230,17 @@ TEST(Singular, conflict_that_has_stood_for_long_ends_at_once_when_a_nail_comes_b
   System system;
   const auto arm = scenes::make_chain(system, {.links = 2, .link_length = 1});
   const auto tail = scenes::make_chain(system, {.links = 1, .link_length = 1, .nailed = false, .top = {1, 0, 0}});
-  (void)system.combine(arm.lower[0], tail.upper[0]);
+  (void)system.edits().combine(arm.lower[0], tail.upper[0]);
   (void)system.step(1.0 / 60);
-  system.nail(arm.lower[1], {2.5, 0, 0});
+  system.particles().nail(arm.lower[1], {2.5, 0, 0});
   for (int i = 0; i < 300; ++i) {
     const StepReport report = system.step(1.0 / 60);
     ASSERT_EQ(report.unconverged, 1);
     ASSERT_LT(report.energy.kinetic, 30);
   }
-  system.nail(arm.lower[1], {1.9, 0, 0});
+  system.particles().nail(arm.lower[1], {1.9, 0, 0});
   (void)system.step(1.0 / 60);
-  EXPECT_LT(norm(system.position(arm.lower[0])), 10)
+  EXPECT_LT(norm(system.particles().position(arm.lower[0])), 10)
       << "the elbow once went 11 km, to meet a nail that comes at 36 m/s";
   const StepReport report = system.step(1.0 / 60);
   EXPECT_EQ(report.unconverged, 0);
@@ -251,17 +251,17 @@ TEST(Singular, conflict_that_has_stood_for_long_ends_at_once_when_a_nail_comes_b
 /// Thesis Fig. 4.14: an arm of two links reaches its full extension while it is pulled further.
 TEST(Singular, arm_pulled_beyond_its_reach_gives_without_a_hiccup) {
   System system{SystemOptions{.gravity = {}}};
-  const BodyId upper = system.create_body(), lower = system.create_body();
+  const BodyId upper = system.bodies().create(), lower = system.bodies().create();
   const Vec3 elbow{0.85, -std::sqrt(1 - 0.85 * 0.85), 0};
-  system.nail(system.create_particle(upper, {0, 0, 0}));
-  const ParticleId above = system.create_particle(upper, elbow), below = system.create_particle(lower, elbow);
-  const ParticleId hand = system.create_particle(lower, {1.7, 0, 0});
-  (void)system.combine(above, below);
-  system.nail(hand);
+  system.particles().nail(system.particles().create(upper, {0, 0, 0}));
+  const ParticleId above = system.particles().create(upper, elbow), below = system.particles().create(lower, elbow);
+  const ParticleId hand = system.particles().create(lower, {1.7, 0, 0});
+  (void)system.edits().combine(above, below);
+  system.particles().nail(hand);
   int substeps = 0;
   for (int i = 1; i <= 480; ++i) {  // in to 1.2, out to 2.2 and back in, twice
     const double reach = 1.7 - 0.5 * std::sin(std::acos(-1.0) * i / 120);
-    system.nail(hand, {reach, 0, 0});
+    system.particles().nail(hand, {reach, 0, 0});
     const StepReport report = system.step(1.0 / 60);
     ASSERT_TRUE(std::isfinite(report.energy.total()));
     ASSERT_LT(report.energy.kinetic, 100) << "the elbow snaps out of the straight line, once each way";

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+
+namespace iota {
+
+/// Red, green, blue, opacity; 0 to 1.
+using Color = std::array<float, 4>;
+
+/// Attributes that a particle may have beside place, velocity and mass.
+struct ParticleAttributes {
+  double age = 0;                                             ///< s
+  double lifetime = std::numeric_limits<double>::infinity();  ///< s
+  double radius = 0;                                          ///< m; 0: not given
+  Color color{1, 1, 1, 1};
+};
+
+}  // namespace iota

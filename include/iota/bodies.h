@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/ids.h>
+#include <iota/shapes.h>
+#include <iota/vec3.h>
+#include <iota/view.h>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace iota {
+
+enum class BodyKind : std::uint8_t {
+  dynamic,
+  static_,   ///< never moves
+  scripted,  ///< moved by the script (set_position, set_pose), infinite mass
+  inactive,  ///< kept, but neither stepped nor drawn
+  resting,   ///< dynamic, asleep with its whole articulate; wakes when touched, see RestOptions
+};
+
+struct BodyOptions {
+  BodyKind kind = BodyKind::dynamic;
+  double damping = 0;  ///< 1/s, adds to the system's
+};
+
+/// For bodies given as homogeneous solids.
+struct SolidOptions {
+  double density = 1000;                                   ///< kg/m^3
+  double mass = std::numeric_limits<double>::quiet_NaN();  ///< kg; NaN: density times volume
+  Vec3 position;                                           ///< of the shape's origin, m
+  Quaternion orientation;                                  ///< of the shape's frame
+  Vec3 velocity;                                           ///< of the center of mass, m/s
+  Vec3 spin;                                               ///< angular velocity, world axes, rad/s
+  std::vector<Vec3> attachments;                           ///< particles to hinge, nail or bond at; shape's frame, m
+  BodyKind kind = BodyKind::dynamic;
+  double damping = 0;  ///< 1/s
+};
+
+/// One of the solids that a body was given as: combining bodies makes it one of several.
+struct SolidView {
+  Shape shape;             ///< a Mesh made in another system, and restored here, comes back empty
+  Vec3 position;           ///< of the shape's origin, world, m
+  Quaternion orientation;  ///< of the shape's frame
+};
+
+/// Rigid bodies. A body is the rigid set of its particles. Bodies that are hinged to each other, directly or through
+/// others, form an *articulate*.
+class Bodies : public View {
+ public:
+  explicit Bodies(Core& core) : View(core) {}
+
+  /// @name Making and destroying
+  ///@{
+  BodyId create(const BodyOptions& options = {});  ///< without particles yet: see Particles::create
+  /// A body of four equal point masses that have exactly the mass, center and inertia of a solid, and one particle for
+  /// each attachment. particles(): the four, then the attachments.
+  BodyId create(const Shape& shape, const SolidOptions& options = {});
+  /// A further particle of a body made of solids, anywhere (world, m); the body's mass, center, inertia and motion stay
+  /// exactly what they are. Throws std::invalid_argument for bodies without a solid, and where something is hinged to
+  /// the solid's own four points, which have to give.
+  ParticleId create_attachment(BodyId, const Vec3& position);
+  /// Gives a body of exactly two particles the mass and inertia of a solid cylinder between them, exact for whatever acts
+  /// on its axis. It keeps the spin about its axis that set_angular_velocity gives it: nothing can act on that.
+  /// Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
+  void set_rod(BodyId, double mass, double radius);
+  void destroy(BodyId);  ///< with its particles and their bonds
+  bool contains(BodyId) const;
+  /// What a retired id became (itself if alive), if it was absorbed within the last 65 536 retirements.
+  std::optional<BodyId> survivor_of(BodyId) const;
+  std::vector<BodyId> ids() const;  ///< in order of slots
+  ///@}
+
+  /// @name Structure
+  ///@{
+  std::vector<ParticleId> particles(BodyId) const;
+  std::vector<ParticleId> particles(BodyId, BodyId part) const;
+  /// The bodies that a body was combined from: ids of itself and of those it absorbed.
+  std::vector<BodyId> parts(BodyId) const;
+  std::vector<SolidView> solids(BodyId) const;        ///< empty for bodies of particles alone
+  std::vector<ParticleId> attachments(BodyId) const;  ///< its particles with mass, without the four points of its solids
+  std::uint32_t articulate(BodyId) const;             ///< a number that the bodies of one articulate share
+  std::vector<std::vector<BodyId>> articulates() const;
+  std::uint32_t articulate_count() const;
+  ///@}
+
+  /// @name Kind
+  ///@{
+  BodyKind kind(BodyId) const;
+  void set_kind(BodyId, BodyKind);
+  /// An inactive body is kept, but neither stepped nor drawn; its bonds do not act. Active again, it is what it was
+  /// before, at rest where it was left, and its hinges close.
+  bool is_active(BodyId) const;
+  void set_active(BodyId, bool);
+  void set_articulate_active(BodyId, bool);  ///< all bodies of its articulate
+  double damping(BodyId) const;
+  void set_damping(BodyId, double per_second);
+  ///@}
+
+  /// @name Place and motion
+  ///@{
+  double mass(BodyId) const;
+  Vec3 center_of_mass(BodyId) const;
+  Matrix3 inertia(BodyId) const;         ///< about the center of mass, world axes, kg m^2 (thesis, Eq. 2.28)
+  Quaternion orientation(BodyId) const;  ///< of the drawn frame: that of its first solid, or of its basis
+  /// Moves the body, and its whole articulate rigidly with it, nails and velocities included. A scripted body arrives at
+  /// the end of the next step. position: of the center of mass.
+  void set_pose(BodyId, const Vec3& position, const Quaternion& orientation);
+  Vec3 velocity(BodyId) const;  ///< of the center of mass, m/s
+  void set_velocity(BodyId, const Vec3&);
+  /// rad/s, world axes. Zero along an axis about which the body has no inertia: a point, or the line through all points of
+  /// a body that is not a rod.
+  Vec3 angular_velocity(BodyId) const;
+  /// Throws std::invalid_argument for a component along such an axis.
+  void set_angular_velocity(BodyId, const Vec3&);
+  Vec3 angular_momentum(BodyId) const;  ///< about its center of mass, kg m^2/s
+  ///@}
+
+  /// @name Loads in the last step
+  ///@{
+  /// Sum of all forces from outside, and of their moments about the center of mass, N and N m: mass times acceleration. Of
+  /// a part of a combined body: with the forces that hold it to the rest.
+  Vec3 net_force(BodyId) const;
+  Vec3 net_torque(BodyId) const;
+  Vec3 net_force(BodyId, BodyId part) const;
+  Vec3 net_torque(BodyId, BodyId part) const;
+  /// On a part, from outside of the whole body, N, and their moments about the part's center of mass, N m. `net` minus
+  /// `outside` is the load that the other parts put on it: the load on the lock.
+  Vec3 outside_force(BodyId, BodyId part) const;
+  Vec3 outside_torque(BodyId, BodyId part) const;
+  ///@}
+};
+
+}  // namespace iota

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/forces.h>
+#include <iota/ids.h>
+#include <iota/view.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace iota {
+
+/// Named sets of particles, which fields and pairwise forces act on; at most 32 at a time.
+class Groups : public View {
+ public:
+  explicit Groups(Core& core) : View(core) {}
+
+  GroupId create(std::string_view name);
+  void destroy(GroupId);  ///< throws std::invalid_argument while a field or a pairwise force acts on it
+  bool contains(GroupId) const;
+  std::vector<GroupId> ids() const;
+  std::string name(GroupId) const;
+
+  void add(GroupId, ParticleId);
+  void remove(GroupId, ParticleId);
+  bool contains(GroupId, ParticleId) const;
+  std::vector<ParticleId> particles(GroupId) const;
+};
+
+/// Forces on each particle of a group, or on all, by itself; taken once a step and held.
+class Fields : public View {
+ public:
+  explicit Fields(Core& core) : View(core) {}
+
+  FieldId create(FieldBody body, const FieldOptions& options = {});
+  void destroy(FieldId);
+  bool contains(FieldId) const;
+  std::vector<FieldId> ids() const;
+
+  std::string name(FieldId) const;
+  bool is_active(FieldId) const;
+  void set_active(FieldId, bool);
+  std::vector<LawParameter> parameters(FieldId) const;
+  void set_parameter(FieldId, std::string_view name, double value);
+  std::size_t rehearse(FieldId, double dt);  ///< see Laws::rehearse; returns for how many particles
+};
+
+/// Forces between all pairs of particles of a group, or of all, that are nearer than a cut-off; taken once a step and
+/// held. Points of one body do not feel each other.
+class Pairs : public View {
+ public:
+  explicit Pairs(Core& core) : View(core) {}
+
+  PairsId create(const SharedLaw& law, const PairsOptions& options = {});
+  void destroy(PairsId);
+  bool contains(PairsId) const;
+  std::vector<PairsId> ids() const;
+
+  LawId law(PairsId) const;
+  double cutoff(PairsId) const;  ///< m
+  double energy(PairsId) const;  ///< of all pairs within the cut-off, now, J; a part of System::energy().potential
+  bool is_active(PairsId) const;
+  void set_active(PairsId, bool);
+  std::vector<LawParameter> parameters(PairsId) const;
+  void set_parameter(PairsId, std::string_view name, double value);
+  std::size_t rehearse(PairsId, double dt);  ///< see Laws::rehearse; returns for how many particles
+};
+
+}  // namespace iota

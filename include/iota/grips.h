@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/ids.h>
+#include <iota/vec3.h>
+#include <iota/view.h>
+
+#include <cstdint>
+
+namespace iota {
+
+struct GripOptions {
+  std::uint32_t client = 0, hold = 0;  ///< whose hand; carried to the viewers
+  double frequency = 2.5;              ///< Hz of the critically damped spring
+  double max_acceleration = 60;        ///< m/s^2: caps the force at this times the mass it can feel
+};
+
+/// Hands: springs from a point of a body to a target that a user moves.
+class Grips : public View {
+ public:
+  explicit Grips(Core& core) : View(core) {}
+
+  /// local_point: in the body's drawn frame, m; it is put on the nearest place that the body's particles span.
+  GripId create(BodyId body, const Vec3& local_point, const Vec3& target, const GripOptions& options = {});
+  void move(GripId, const Vec3& target);
+  void destroy(GripId);
+  bool contains(GripId) const;
+};
+
+}  // namespace iota

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iota/constraints.h>
+#include <iota/ids.h>
+#include <iota/view.h>
+
+#include <vector>
+
+namespace iota {
+
+/// Constraints of all kinds: joints between bodies, rods and ropes, paths and surfaces. Velocities and gaps are brought in
+/// line with a new one at the start of the next step.
+class Joints : public View {
+ public:
+  explicit Joints(Core& core) : View(core) {}
+
+  ConstraintId create(const JointSpec&);
+  ConstraintId create(const DistanceSpec&);
+  ConstraintId create(const PathSpec&);
+  ConstraintId create(const SurfaceSpec&);
+  ConstraintId create(const SurfacePairSpec&);
+  void destroy(ConstraintId);
+  bool contains(ConstraintId) const;
+  std::vector<ConstraintId> ids() const;  ///< in order of slots
+
+  ConstraintState state(ConstraintId) const;
+  std::vector<ParticleId> particles(ConstraintId) const;  ///< that it refers to, markers included
+  /// True repairs a broken one; bodies keep the relative place they were joined in.
+  void set_active(ConstraintId, bool);
+  CoordinateOptions coordinate(ConstraintId, JointCoordinate) const;
+  void set_coordinate(ConstraintId, JointCoordinate, const CoordinateOptions&);
+  void set_length(ConstraintId, double);  ///< of a rod or rope, m: reached during the next step
+  BreakLimits break_limits(ConstraintId) const;
+  void set_break_limits(ConstraintId, const BreakLimits&);
+};
+
+}  // namespace iota
