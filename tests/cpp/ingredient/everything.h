@@ -3,19 +3,18 @@
 
 #include "ingredient/tables.h"
 
+#include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
 namespace iota::model {
 
-/// The tables of a system, as a snapshot has them: after mark and checksum.
+/// The tables of a system, as a snapshot has them: between mark and length, and the checksum (base/seal.h).
 inline Model model_of(System& system) {
   const Snapshot snapshot = system.snapshot();
-  Reader outer(snapshot.bytes);
-  std::uint64_t mark = 0, checksum = 0;
-  std::vector<std::byte> content;
-  outer.value(mark), outer.value(checksum), outer.vector(content);
-  Reader reader(content);
+  const std::span<const std::byte> bytes(snapshot.bytes);
+  Reader reader(bytes.subspan(16, bytes.size() - 24));
   Model model;
   ingredient::archive(model, reader);
   if (!reader.ok() || !reader.at_end()) throw std::logic_error("the tables of a snapshot are laid out otherwise");
