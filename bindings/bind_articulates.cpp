@@ -50,7 +50,9 @@ void bind_articulates(nb::module_& module) {
                    "Equal for bodies that hang together now; given anew after edits.")
       .def_prop_rw(
           "active", [](const ArticulateView& self) { return self.body.use().bodies().is_active(self.body.id); },
-          [](const ArticulateView& self, bool active) { self.body.use().bodies().set_articulate_active(self.body.id, active); },
+          [](const ArticulateView& self, bool active) {
+            self.body.use().bodies().set_articulate_active(self.body.id, active);
+          },
           "False switches all its bodies off; see `Body.active`.")
       .def(
           "__eq__",

@@ -116,7 +116,8 @@ void bind_body(nb::module_& module) {
           "is_spark", [](const BodyHandle& self) { return self.use().viewer().is_spark(self.id); },
           "A particle that an emitter bore and that nothing ties: viewers see a dot that they cannot hold.")
       .def_prop_rw(
-          "kind", [](const BodyHandle& self) { return KindWord{to_word(kind_words, self.use().bodies().kind(self.id))}; },
+          "kind",
+          [](const BodyHandle& self) { return KindWord{to_word(kind_words, self.use().bodies().kind(self.id))}; },
           [](const BodyHandle& self, const KindWord& kind) { self.use().bodies().set_kind(self.id, to_kind(kind)); },
           "'dynamic', 'static', 'scripted', 'inactive' or 'resting'. A resting body sleeps with all that hangs together with\n"
           "it, and wakes when something touches it.")
@@ -128,7 +129,9 @@ void bind_body(nb::module_& module) {
       .def_prop_rw(
           "damping", [](const BodyHandle& self) { return self.use().bodies().damping(self.id); },
           [](const BodyHandle& self, double value) {
-            between_steps(self, "damping = ...").bodies().set_damping(self.id, finite_not_negative(value, "damping", "1/s"));
+            between_steps(self, "damping = ...")
+                .bodies()
+                .set_damping(self.id, finite_not_negative(value, "damping", "1/s"));
           },
           "1/s, adds to the system's.")
       .def_prop_ro(
@@ -144,8 +147,8 @@ void bind_body(nb::module_& module) {
           "set_pose",
           [](const BodyHandle& self, VectorArgument position, nb::object orientation) {
             System& engine = between_steps(self, "set_pose");
-            const Quaternion turn =
-                orientation.is_none() ? engine.bodies().orientation(self.id) : to_quaternion(orientation, "orientation");
+            const Quaternion turn = orientation.is_none() ? engine.bodies().orientation(self.id)
+                                                          : to_quaternion(orientation, "orientation");
             engine.bodies().set_pose(self.id, to_vec3(position, "position"), turn);
           },
           "position"_a, "orientation"_a = nb::none(),
@@ -166,7 +169,9 @@ void bind_body(nb::module_& module) {
       .def_prop_rw(
           "angular_velocity", [](const BodyHandle& self) { return self.use().bodies().angular_velocity(self.id); },
           [](const BodyHandle& self, VectorArgument v) {
-            between_steps(self, "angular_velocity = ...").bodies().set_angular_velocity(self.id, to_vec3(v, "angular_velocity"));
+            between_steps(self, "angular_velocity = ...")
+                .bodies()
+                .set_angular_velocity(self.id, to_vec3(v, "angular_velocity"));
           },
           "rad/s, world axes. It has no part along what has no inertia, and assigning one raises ValueError: one point, or\n"
           "points on a line without `set_rod`. Assigning keeps the velocity of the center; what joints do not allow of it is projected out by the next step.")

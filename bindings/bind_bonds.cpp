@@ -11,8 +11,7 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* bond_doc =
-    "A force between two particles, equal and opposite; made by `System.bond`.";
+constexpr const char* bond_doc = "A force between two particles, equal and opposite; made by `System.bond`.";
 
 constexpr const char* make_bond_doc =
     "A new force between two particles, equal and opposite.\n\n"
@@ -35,7 +34,8 @@ constexpr const char* state_doc =
 void check_ends(const SystemObject& self, const ParticleHandle& p, const ParticleHandle& q, const char* what) {
   check_one_system(p, q, what);
   p.use(), q.use();
-  if (p.system != &self) throw nb::value_error((std::string(what) + ": the particles belong to another system").c_str());
+  if (p.system != &self)
+    throw nb::value_error((std::string(what) + ": the particles belong to another system").c_str());
 }
 
 /// What a word stands for where no law has that name: a function of the script that calls, local or global. Null if
@@ -234,8 +234,8 @@ void bind_cosmetic_bond(nb::module_& module) {
       .def("__repr__", [](const CosmeticBondHandle& self) {
         if (!self.is_alive()) return stale_repr("CosmeticBond", self);
         const auto [p, q] = self.use().cosmetic_bonds().ends(self.id);
-        return "<CosmeticBond " + std::to_string(self.id.slot) + " between particles " + std::to_string(p.slot) + " and " +
-               std::to_string(q.slot) + ">";
+        return "<CosmeticBond " + std::to_string(self.id.slot) + " between particles " + std::to_string(p.slot) +
+               " and " + std::to_string(q.slot) + ">";
       });
 }
 

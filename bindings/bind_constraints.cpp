@@ -197,16 +197,23 @@ void bind_coordinate(nb::module_& module) {
   nb::class_<CoordinateView>(module, "JointCoordinate", coordinate_doc, nb::type_slots(handle_slots<CoordinateView>))
       .def_prop_ro(
           "value",
-          [](const CoordinateView& self) { return self.joint.use().joints().state(self.joint.id).coordinate[self.index()]; },
+          [](const CoordinateView& self) {
+            return self.joint.use().joints().state(self.joint.id).coordinate[self.index()];
+          },
           "rad, counted on through full turns, or m.")
       .def("__float__",
-           [](const CoordinateView& self) { return self.joint.use().joints().state(self.joint.id).coordinate[self.index()]; })
+           [](const CoordinateView& self) {
+             return self.joint.use().joints().state(self.joint.id).coordinate[self.index()];
+           })
       .def_prop_ro(
-          "speed", [](const CoordinateView& self) { return self.joint.use().joints().state(self.joint.id).speed[self.index()]; },
+          "speed",
+          [](const CoordinateView& self) { return self.joint.use().joints().state(self.joint.id).speed[self.index()]; },
           "rad/s or m/s")
       .def_prop_ro(
           "effort",
-          [](const CoordinateView& self) { return self.joint.use().joints().state(self.joint.id).effort[self.index()]; },
+          [](const CoordinateView& self) {
+            return self.joint.use().joints().state(self.joint.id).effort[self.index()];
+          },
           "By stops, motor, friction and spring along it on a in the last step, N m or N.")
       .def_prop_rw(
           "limits",
@@ -310,7 +317,9 @@ void bind_handle(nb::module_& module) {
           "False once it was destroyed or had nothing left to hold.")
       .def_prop_ro(
           "kind",
-          [](const ConstraintHandle& self) { return to_word(constraint_words, self.use().joints().state(self.id).kind); },
+          [](const ConstraintHandle& self) {
+            return to_word(constraint_words, self.use().joints().state(self.id).kind);
+          },
           "'revolute', 'rope' ...")
       .def_prop_ro(
           "a", [](const ConstraintHandle& self) { return body_or_none(self, self.use().joints().state(self.id).a); },
@@ -350,14 +359,16 @@ void bind_handle(nb::module_& module) {
           "break_force", [](const ConstraintHandle& self) { return self.use().joints().break_limits(self.id).force; },
           [](const ConstraintHandle& self, double force) {
             between_steps(self, "break_force = ...")
-                .joints().set_break_limits(self.id, {force, self.system->engine.joints().break_limits(self.id).torque});
+                .joints()
+                .set_break_limits(self.id, {force, self.system->engine.joints().break_limits(self.id).torque});
           },
           "N; inf: never.")
       .def_prop_rw(
           "break_torque", [](const ConstraintHandle& self) { return self.use().joints().break_limits(self.id).torque; },
           [](const ConstraintHandle& self, double torque) {
             between_steps(self, "break_torque = ...")
-                .joints().set_break_limits(self.id, {self.system->engine.joints().break_limits(self.id).force, torque});
+                .joints()
+                .set_break_limits(self.id, {self.system->engine.joints().break_limits(self.id).force, torque});
           },
           "N m; inf: never.")
       .def(

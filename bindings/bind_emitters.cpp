@@ -103,7 +103,8 @@ void bind_emitter(nb::module_& module) {
   type.def_prop_ro("alive", [](const EmitterHandle& self) { return self.is_alive(); })
       .def_prop_rw(
           "active", [](const EmitterHandle& self) { return self.use().emitters().is_active(self.id); },
-          [](const EmitterHandle& self, bool on) { self.use().emitters().set_active(self.id, on); }, "False: no births.")
+          [](const EmitterHandle& self, bool on) { self.use().emitters().set_active(self.id, on); },
+          "False: no births.")
       .def_prop_rw(
           "rate", [](const EmitterHandle& self) { return self.use().emitters().rate(self.id); },
           [checked](const EmitterHandle& self, double value) {
@@ -111,7 +112,8 @@ void bind_emitter(nb::module_& module) {
           },
           "Births a second.")
       .def_prop_ro(
-          "count", [](const EmitterHandle& self) { return self.use().emitters().count(self.id); }, "Its particles alive now.")
+          "count", [](const EmitterHandle& self) { return self.use().emitters().count(self.id); },
+          "Its particles alive now.")
       .def_prop_ro(
           "born", [](const EmitterHandle& self) { return self.use().emitters().born(self.id); }, "How many so far.")
       .def_prop_ro(
@@ -124,7 +126,8 @@ void bind_emitter(nb::module_& module) {
           "move",
           [checked](const EmitterHandle& self, VectorArgument position, nb::object orientation) {
             checked(self, "move")
-                .emitters().move(self.id, to_vec3(position, "position"), to_quaternion(orientation, "orientation"));
+                .emitters()
+                .move(self.id, to_vec3(position, "position"), to_quaternion(orientation, "orientation"));
           },
           "position"_a, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0),
           nb::sig("def move(self, position: Vec3 | collections.abc.Sequence[float], orientation: "
@@ -173,7 +176,8 @@ void bind_attributes(nb::class_<ParticleHandle>& type) {
           "m, for drawing and for forces that ask for it; 0 where nobody said. An emitted particle's is on its emitter's\n"
           "curve.")
       .def_prop_rw(
-          "color", [](const ParticleHandle& self) { return from_color(self.use().particles().attributes(self.id).color); },
+          "color",
+          [](const ParticleHandle& self) { return from_color(self.use().particles().attributes(self.id).color); },
           [](const ParticleHandle& self, nb::object value) {
             System& engine = between_steps(self, "color = ...");
             ParticleAttributes attributes = engine.particles().attributes(self.id);
@@ -186,11 +190,15 @@ void bind_attributes(nb::class_<ParticleHandle>& type) {
 }
 
 void bind_orientation(nb::class_<ParticleHandle>& type) {
-  type.def_prop_ro("is_oriented", [](const ParticleHandle& self) { return self.use().particles().is_oriented(self.id); })
+  type.def_prop_ro("is_oriented",
+                   [](const ParticleHandle& self) { return self.use().particles().is_oriented(self.id); })
       .def_prop_rw(
-          "orientation", [](const ParticleHandle& self) { return from_quaternion(self.use().particles().orientation(self.id)); },
+          "orientation",
+          [](const ParticleHandle& self) { return from_quaternion(self.use().particles().orientation(self.id)); },
           [](const ParticleHandle& self, nb::object value) {
-            between_steps(self, "orientation = ...").particles().set_orientation(self.id, to_quaternion(value, "orientation"));
+            between_steps(self, "orientation = ...")
+                .particles()
+                .set_orientation(self.id, to_quaternion(value, "orientation"));
           },
           nb::for_getter(nb::sig("def orientation(self) -> tuple[float, float, float, float]")),
           nb::for_setter(nb::sig("def orientation(self, value: collections.abc.Sequence[float], /) -> None")),
@@ -208,7 +216,9 @@ void bind_orientation(nb::class_<ParticleHandle>& type) {
       .def_prop_rw(
           "moment", [](const ParticleHandle& self) { return self.use().particles().moment(self.id); },
           [](const ParticleHandle& self, double value) {
-            between_steps(self, "moment = ...").particles().set_moment(self.id, finite_positive(value, "moment", "kg m^2"));
+            between_steps(self, "moment = ...")
+                .particles()
+                .set_moment(self.id, finite_positive(value, "moment", "kg m^2"));
           },
           "Of inertia, kg m^2.")
       .def(
@@ -221,7 +231,8 @@ void bind_orientation(nb::class_<ParticleHandle>& type) {
           "align",
           [](const ParticleHandle& self, VectorArgument direction, double stiffness, double damping) {
             between_steps(self, "align")
-                .particles().align(self.id, to_vec3(direction, "direction"), finite_not_negative(stiffness, "stiffness", "N m"),
+                .particles()
+                .align(self.id, to_vec3(direction, "direction"), finite_not_negative(stiffness, "stiffness", "N m"),
                        finite_not_negative(damping, "damping", "N m s"));
           },
           "direction"_a, "stiffness"_a = 1.0, "damping"_a = 0.0,
@@ -235,7 +246,8 @@ nb::object array_of(SystemObject& self, std::size_t width, Fill fill) {
   System& engine = self.use();
   const auto particles = engine.particles().ids();
   auto* numbers = new double[particles.size() * width + 1];
-  for (std::size_t i = 0; i < particles.size(); ++i) fill(engine.particles().attributes(particles[i]), numbers + i * width);
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    fill(engine.particles().attributes(particles[i]), numbers + i * width);
   nb::capsule owner(numbers, [](void* p) noexcept { delete[] static_cast<double*>(p); });
   if (width == 1) return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(numbers, {particles.size()}, owner));
   return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<2>>(numbers, {particles.size(), width}, owner));

@@ -130,11 +130,11 @@ FieldHandle make_field(nb::handle_t<SystemObject> self, nb::object field, nb::ha
     using Code = void (*)(std::int64_t count, double t, const double* position, const double* velocity,
                           const double* mass, double* force);
     if (name.empty()) options.name = function_name(field).substr(0, 31);
-    id =
-        engine.fields().create(FieldFunction([code = reinterpret_cast<Code>(address)](const ParticleBatch& b) {
-                              code(static_cast<std::int64_t>(b.count), b.time, b.position, b.velocity, b.mass, b.force);
-                            }),
-                            options);
+    id = engine.fields().create(FieldFunction([code = reinterpret_cast<Code>(address)](const ParticleBatch& b) {
+                                  code(static_cast<std::int64_t>(b.count), b.time, b.position, b.velocity, b.mass,
+                                       b.force);
+                                }),
+                                options);
     system->code.push_back(field);
   } else if (PyCallable_Check(field.ptr())) {
     if (name.empty()) options.name = function_name(field).substr(0, 31);
@@ -193,7 +193,8 @@ void def_force(nb::class_<HandleType>& type) {
           [](const HandleType& self, bool active) { view_of(self.use(), self.id).set_active(self.id, active); },
           "False while it is switched off.")
       .def_prop_ro(
-          "parameters", [](const HandleType& self) { return to_dict(view_of(self.use(), self.id).parameters(self.id)); },
+          "parameters",
+          [](const HandleType& self) { return to_dict(view_of(self.use(), self.id).parameters(self.id)); },
           nb::sig("def parameters(self) -> dict[str, float]"), "A copy; change them with `set`.")
       .def("destroy", [](const HandleType& self) { view_of(self.use(), self.id).destroy(self.id); }, "Removes it.");
 }
@@ -312,7 +313,9 @@ void bind_pair_force(nb::module_& module) {
           "cutoff", [](const PairsHandle& self) { return self.use().pairs().cutoff(self.id); }, "m")
       .def_prop_ro(
           "energy",
-          [](const PairsHandle& self) { return self.use(), self.system->use_between_steps("energy").pairs().energy(self.id); },
+          [](const PairsHandle& self) {
+            return self.use(), self.system->use_between_steps("energy").pairs().energy(self.id);
+          },
           "Of all pairs within the cut-off, now, J; not part of `System.energy`, which counts these forces as external.")
       .def(
           "set", [](const PairsHandle& self, const nb::kwargs& keywords) { set_all(self, to_parameters(keywords)); },
@@ -320,7 +323,8 @@ void bind_pair_force(nb::module_& module) {
       .def("__repr__", [](const PairsHandle& self) {
         if (!self.is_alive()) return stale_repr("PairForce", self);
         const System& engine = self.system->engine;
-        return "<PairForce " + std::to_string(self.id.slot) + " " + engine.laws().name(engine.pairs().law(self.id)) + ">";
+        return "<PairForce " + std::to_string(self.id.slot) + " " + engine.laws().name(engine.pairs().law(self.id)) +
+               ">";
       });
 }
 

@@ -243,7 +243,8 @@ void bind_laws(nb::module_& module) {
           "Removes it. Raises ValueError while bonds have it, and for a predefined law.")
       .def("__repr__", [](const LawHandle& self) {
         if (!self.is_alive()) return stale_repr("Law", self);
-        const std::string name = self.system->engine.laws().name(self.id), text = self.system->engine.laws().expression(self.id);
+        const std::string name = self.system->engine.laws().name(self.id),
+                          text = self.system->engine.laws().expression(self.id);
         return "<Law " + std::to_string(self.id.slot) + (name.empty() ? "" : " " + name) +
                (text.empty() ? "" : ": " + text) + ">";
       });

@@ -22,8 +22,9 @@ constexpr const char* make_doc =
 std::string repr(const ParticleHandle& self) {
   if (!self.is_alive()) return stale_repr("Particle", self);
   const System& engine = self.system->engine;
-  return "<Particle " + std::to_string(self.id.slot) + " of body " + std::to_string(engine.particles().body(self.id).slot) +
-         " at " + describe(engine.particles().position(self.id)) + ">";
+  return "<Particle " + std::to_string(self.id.slot) + " of body " +
+         std::to_string(engine.particles().body(self.id).slot) + " at " +
+         describe(engine.particles().position(self.id)) + ">";
 }
 
 System& between_steps(const ParticleHandle& self, const char* what) {

@@ -36,7 +36,8 @@ void bind_parts(nb::module_& module) {
           "mass",
           [](const PartView& self) {
             double mass = 0;
-            for (const ParticleId p : self.use().bodies().particles(self.body.id, self.part)) mass += self.use().particles().mass(p);
+            for (const ParticleId p : self.use().bodies().particles(self.body.id, self.part))
+              mass += self.use().particles().mass(p);
             return mass;
           },
           "kg")
@@ -47,11 +48,13 @@ void bind_parts(nb::module_& module) {
           "net_torque", [](const PartView& self) { return self.use().bodies().net_torque(self.body.id, self.part); },
           "About its own center of mass, N m.")
       .def_prop_ro(
-          "outside_force", [](const PartView& self) { return self.use().bodies().outside_force(self.body.id, self.part); },
+          "outside_force",
+          [](const PartView& self) { return self.use().bodies().outside_force(self.body.id, self.part); },
           "What acted on it from outside of the whole body in the last step, N. net_force less this is what the other\n"
           "parts do to it: the load on the lock.")
       .def_prop_ro(
-          "outside_torque", [](const PartView& self) { return self.use().bodies().outside_torque(self.body.id, self.part); },
+          "outside_torque",
+          [](const PartView& self) { return self.use().bodies().outside_torque(self.body.id, self.part); },
           "Of those forces, about its own center of mass, N m.")
       .def(
           "separate",

@@ -111,11 +111,14 @@ void bind_restructuring(nb::module_& module) {
 
   nb::object system = module.attr("System");
   auto type = nb::borrow<nb::class_<SystemObject>>(system);
-  type.def_prop_ro("bodies", all_of<BodyHandle>([](System& engine) { return engine.bodies().ids(); }), "In order of slots.")
+  type.def_prop_ro("bodies", all_of<BodyHandle>([](System& engine) { return engine.bodies().ids(); }),
+                   "In order of slots.")
       .def_prop_ro("particles", all_of<ParticleHandle>([](System& engine) { return engine.particles().ids(); }),
                    "In order of slots: the order of the rows of `positions`.")
-      .def_prop_ro("bonds", all_of<BondHandle>([](System& engine) { return engine.bonds().ids(); }), "In order of slots.")
-      .def_prop_ro("cosmetic_bonds", all_of<CosmeticBondHandle>([](System& engine) { return engine.cosmetic_bonds().ids(); }),
+      .def_prop_ro("bonds", all_of<BondHandle>([](System& engine) { return engine.bonds().ids(); }),
+                   "In order of slots.")
+      .def_prop_ro("cosmetic_bonds",
+                   all_of<CosmeticBondHandle>([](System& engine) { return engine.cosmetic_bonds().ids(); }),
                    "In order of slots.")
       .def_prop_ro("cosmetic_lines", &cosmetic_lines, "The ends of all cosmetic bonds.");
 }

@@ -83,7 +83,8 @@ void publish_changes(RoomObject& self, const PoseSnapshot& snapshot, const Scene
 
 void publish(RoomObject& self, SystemObject& system) {
   System& engine = system.use();
-  const SceneChanges changes = engine.viewer().take_scene_changes(self.presenter.needs_all(), self.presenter.assigned());
+  const SceneChanges changes =
+      engine.viewer().take_scene_changes(self.presenter.needs_all(), self.presenter.assigned());
   publish_changes(self, engine.viewer().poses(), changes);
 }
 

@@ -50,7 +50,8 @@ nb::object read_rows(System& engine, Read read) {
   return nb::cast(make_vector3_array(std::move(numbers)));
 }
 
-void assign_rows(System& engine, nb::handle values, const char* name, void (Particles::*assign)(ParticleId, const Vec3&)) {
+void assign_rows(System& engine, nb::handle values, const char* name,
+                 void (Particles::*assign)(ParticleId, const Vec3&)) {
   const std::vector<ParticleId> particles = engine.particles().ids();
   const std::vector<double> numbers = rows(values, particles.size(), name);
   for (std::size_t i = 0; i < particles.size(); ++i)
@@ -211,8 +212,7 @@ void bind_time(nb::class_<SystemObject>& type) {
           "start_recording", [](SystemObject& self) { self.use_between_steps("start_recording").record().start(); },
           "Notes all edits and inputs from here on, and the hash after each step.")
       .def(
-          "stop_recording",
-          [](SystemObject& self) { return self.use_between_steps("stop_recording").record().stop(); },
+          "stop_recording", [](SystemObject& self) { return self.use_between_steps("stop_recording").record().stop(); },
           "The Recording since `start_recording`.")
       .def(
           "replay",
@@ -263,8 +263,8 @@ void bind_system(nb::module_& module) {
   type.def("__repr__", [](SystemObject& self) {
     if (self.owner != std::this_thread::get_id()) return std::string("<System of another thread>");
     return "<System: " + std::to_string(self.engine.bodies().ids().size()) + " bodies in " +
-           std::to_string(self.engine.bodies().articulate_count()) + " articulates at " + std::to_string(self.engine.time()) +
-           " s>";
+           std::to_string(self.engine.bodies().articulate_count()) + " articulates at " +
+           std::to_string(self.engine.time()) + " s>";
   });
 }
 

@@ -60,13 +60,13 @@ void register_errors() {
 }
 
 void raise_stale(const BodyHandle& handle) {
-  raise_stale_with_survivor(
-      handle, engine_text([&] { (void)handle.system->engine.bodies().mass(handle.id); }, name_of(handle.id) + " is gone"));
+  raise_stale_with_survivor(handle, engine_text([&] { (void)handle.system->engine.bodies().mass(handle.id); },
+                                                name_of(handle.id) + " is gone"));
 }
 
 void raise_stale(const ParticleHandle& handle) {
-  raise_stale_with_survivor(
-      handle, engine_text([&] { (void)handle.system->engine.particles().position(handle.id); }, name_of(handle.id) + " is gone"));
+  raise_stale_with_survivor(handle, engine_text([&] { (void)handle.system->engine.particles().position(handle.id); },
+                                                name_of(handle.id) + " is gone"));
 }
 
 void raise_stale(const BondHandle& handle) {
@@ -121,10 +121,11 @@ void SystemObject::raise_foreign_thread() {
 System& SystemObject::use_between_steps(const char* what) {
   System& system = use();
   if (system.is_stepping())
-    raise_runtime(std::string(what) +
-                  " is not possible in a function that is called during a step. There, everything may be read, and only "
-                  "destroy, combine, separate, nail, release, kind, active and a joint's length, limits, motor, friction and "
-                  "spring may be asked for; they are made right after the step");
+    raise_runtime(
+        std::string(what) +
+        " is not possible in a function that is called during a step. There, everything may be read, and only "
+        "destroy, combine, separate, nail, release, kind, active and a joint's length, limits, motor, friction and "
+        "spring may be asked for; they are made right after the step");
   return system;
 }
 

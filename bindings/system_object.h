@@ -95,7 +95,7 @@ class SystemObject {
   bool warn_of_forces = false;                  ///< where forces fail: a warning instead of an exception
   std::map<std::string, LawId> written_laws;    ///< of expressions given to bonds: by text and parameters
   std::optional<RestructureReport> step_edits;  ///< asked for during the last step
-  std::vector<Broken> broken;  ///< in the last step
+  std::vector<Broken> broken;                   ///< in the last step
 
  private:
   [[noreturn]] static void raise_foreign_thread();

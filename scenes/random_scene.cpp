@@ -132,7 +132,9 @@ class Player {
       case DeedKind::combine_slowly:
         if (may_meet(p, q, dice)) call("combine", p, q, dice.uniform(0.02, 0.3));
         break;
-      case DeedKind::combine_bodies: call("combine_bodies", system_.particles().body(p), system_.particles().body(q)); break;
+      case DeedKind::combine_bodies:
+        call("combine_bodies", system_.particles().body(p), system_.particles().body(q));
+        break;
       case DeedKind::cut: {
         const std::vector<ParticleId> ring = system_.particles().ring(p);
         if (ring.size() > 1) call("separate", p, ring[dice.below(static_cast<std::uint32_t>(ring.size()))]);
@@ -227,7 +229,8 @@ class Player {
 
   /// Particles of bodies that hang together already can seldom meet; one pair in eight may try.
   bool may_meet(ParticleId p, ParticleId q, Dice& dice) const {
-    return dice.below(8) == 0 || system_.bodies().articulate(system_.particles().body(p)) != system_.bodies().articulate(system_.particles().body(q));
+    return dice.below(8) == 0 || system_.bodies().articulate(system_.particles().body(p)) !=
+                                     system_.bodies().articulate(system_.particles().body(q));
   }
 
   /// A two-point body whose first end is combined with p; returns its second end.
@@ -271,8 +274,8 @@ class Player {
       if (dice.below(4) == 0) coordinate->friction = dice.uniform(0, 5);
       if (dice.below(4) == 0) coordinate->stiffness = dice.uniform(0, 100), coordinate->damping = dice.uniform(0, 1);
     }
-    call("joint", number(kind), system_.particles().body(p), b, at, axis, angle.lower, angle.upper, angle.friction, angle.stiffness,
-         angle.damping, slide.lower, slide.upper, slide.friction, slide.stiffness, slide.damping);
+    call("joint", number(kind), system_.particles().body(p), b, at, axis, angle.lower, angle.upper, angle.friction,
+         angle.stiffness, angle.damping, slide.lower, slide.upper, slide.friction, slide.stiffness, slide.damping);
   }
 
   /// A particle on a sphere or half-space through its place, inside or outside of one that it is inside or outside of.

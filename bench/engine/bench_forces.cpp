@@ -22,9 +22,9 @@ void particles(benchmark::State& state, bool written) {
   const auto number = [&] { return std::uniform_real_distribution(-1.0, 1.0)(random); };
   for (int i = 0; i < n; ++i)
     system.particles().create(system.bodies().create(),
-                           spacing * Vec3{double(i % side), double(i / side % side), double(i / side / side)} +
-                               0.05 * Vec3{number(), number(), number()},
-                           1, Vec3{number(), number(), number()});
+                              spacing * Vec3{double(i % side), double(i / side % side), double(i / side / side)} +
+                                  0.05 * Vec3{number(), number(), number()},
+                              1, Vec3{number(), number(), number()});
   const std::vector<LawParameter> parameters{{"depth", 1}, {"size", 1}};
   const LawId law = written ? system.laws().create("energy = 4*depth*((size/r)^12 - (size/r)^6)", {"", parameters})
                             : system.laws().find("lennard_jones");
@@ -57,9 +57,10 @@ void bonds(benchmark::State& state, int way, bool implicit) {
   for (int i = 0; i < 2 * n; ++i)
     p.push_back(system.particles().create(system.bodies().create(), {0.1 * (i / 2), 0.1 * (i % 2), 0}));
   const std::vector<LawParameter> parameters{{"k", 10}, {"r0", 0.1}};
-  const LawId laws[] = {system.laws().find("spring"), system.laws().create("energy = 0.5*k*(r - r0)^2", {"", parameters}),
-                        system.laws().create(+[](double r, double, double, const double* q) { return -q[0] * (r - q[1]); },
-                                          {"", parameters})};
+  const LawId laws[] = {
+      system.laws().find("spring"), system.laws().create("energy = 0.5*k*(r - r0)^2", {"", parameters}),
+      system.laws().create(+[](double r, double, double, const double* q) { return -q[0] * (r - q[1]); },
+                           {"", parameters})};
   for (int i = 0; i < n; ++i) {
     SharedLaw law{laws[way], {}, implicit};
     if (way == 0) law.parameters = {{"stiffness", 10}, {"length", 0.1}};

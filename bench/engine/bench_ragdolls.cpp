@@ -17,7 +17,8 @@ namespace {
 std::vector<scenes::Ragdoll> make_crowd(System& system, int count) {
   std::vector<scenes::Ragdoll> crowd;
   for (int i = 0; i < count; ++i) crowd.push_back(scenes::make_ragdoll(system, {2.0 * (i % 32), 3, 2.0 * (i / 32)}));
-  for (scenes::Ragdoll& doll : crowd) system.particles().nail(doll.hinges[5].second);  // each hangs by a shoulder and swings
+  for (scenes::Ragdoll& doll : crowd)
+    system.particles().nail(doll.hinges[5].second);  // each hangs by a shoulder and swings
   return crowd;
 }
 

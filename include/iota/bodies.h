@@ -79,9 +79,10 @@ class Bodies : public View {
   std::vector<ParticleId> particles(BodyId, BodyId part) const;
   /// The bodies that a body was combined from: ids of itself and of those it absorbed.
   std::vector<BodyId> parts(BodyId) const;
-  std::vector<SolidView> solids(BodyId) const;        ///< empty for bodies of particles alone
-  std::vector<ParticleId> attachments(BodyId) const;  ///< its particles with mass, without the four points of its solids
-  std::uint32_t articulate(BodyId) const;             ///< a number that the bodies of one articulate share
+  std::vector<SolidView> solids(BodyId) const;  ///< empty for bodies of particles alone
+  std::vector<ParticleId> attachments(
+      BodyId) const;                       ///< its particles with mass, without the four points of its solids
+  std::uint32_t articulate(BodyId) const;  ///< a number that the bodies of one articulate share
   std::vector<std::vector<BodyId>> articulates() const;
   std::uint32_t articulate_count() const;
   ///@}

@@ -24,8 +24,8 @@ class Laws : public View {
   bool contains(LawId) const;
 
   std::string name(LawId) const;
-  std::string_view kind(LawId) const;                 ///< predefined, expression, function (of one bond each), compiled, arrays
-  std::string expression(LawId) const;                ///< empty for code
+  std::string_view kind(LawId) const;   ///< predefined, expression, function (of one bond each), compiled, arrays
+  std::string expression(LawId) const;  ///< empty for code
   std::vector<LawParameter> parameters(LawId) const;  ///< with the values that bonds have unless they say otherwise
 
   /// Evaluates the forces of all active bonds of a law where everything is now, without applying them, to measure their

@@ -34,9 +34,7 @@ void apply(Editor& e, const SetBondParameter& c) {
   set_parameter(model.laws[bond.law], bond.parameters, c.index, c.value);
 }
 
-void apply(Editor& e, const SetBondActive& c) {
-  e.model.set_bond_active(e.require(c.bond), c.active);
-}
+void apply(Editor& e, const SetBondActive& c) { e.model.set_bond_active(e.require(c.bond), c.active); }
 
 void apply(Editor& e, const SetBondBreakForce& c) {
   model::Model& model = e.model;

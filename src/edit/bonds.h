@@ -9,7 +9,7 @@ struct CreateBond {
   ParticleId p, q;
   LawId law;
   bool implicit;
-  std::uint64_t script;                                ///< key of its own function; 0: none
+  std::uint64_t script;                               ///< key of its own function; 0: none
   std::array<double, max_law_parameters> parameters;  ///< NaN: the distance of the ends now
 };
 struct SetBondParameter {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "edit/checks.h"
 #include "laws/pair_laws.h"
 #include "model/model.h"
-#include "edit/checks.h"
 
 #include <iota/forces.h>
 

@@ -95,8 +95,8 @@ void apply(Editor& e, const SetMass& c) {
   const bool was_rod = model.bodies[body].first_inertia != model::none;
   model.keep_inertia_positive(body);
   if (was_rod && model.bodies[body].first_inertia == model::none)
-    model.notes.push_back(text("body ", body, " is not a rod any more, and has no spin about its axis: particle ", particle,
-                               " has too little mass for the inertia of one; set_rod gives it anew"));
+    model.notes.push_back(text("body ", body, " is not a rod any more, and has no spin about its axis: particle ",
+                               particle, " has too little mass for the inertia of one; set_rod gives it anew"));
   model.touch_body(body);
 }
 

@@ -91,10 +91,7 @@ bool give_back_momenta(model::Model& model, std::span<const std::uint32_t> bodie
 }  // namespace
 
 Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodies, Kind kind)
-    : editor_(editor),
-      bodies_(bodies.begin(), bodies.end()),
-      kind_(kind),
-      followers_(editor.model, bodies) {
+    : editor_(editor), bodies_(bodies.begin(), bodies.end()), kind_(kind), followers_(editor.model, bodies) {
   report.articulates_before = editor.model.articulates.size();
   if (kind == Kind::moving) affected_ = editor.model.tied_bodies(bodies);
   before_ = conserved(editor.model, affected_);
@@ -125,8 +122,8 @@ RestructureReport Restructuring::finish(const model::Edit& owed) {
     pinned = !give_back_momenta(model, touched, affected, before_);
   }
   const Conserved after = conserved(model, affected);
-  report.energy_change = after.energies.kinetic + after.energies.potential - before_.energies.kinetic -
-                         before_.energies.potential;
+  report.energy_change =
+      after.energies.kinetic + after.energies.potential - before_.energies.kinetic - before_.energies.potential;
   report.momentum_change = after.momenta.linear - before_.momenta.linear;
   report.angular_momentum_change = after.momenta.angular - before_.momenta.angular;
   const double spin_change = norm(report.angular_momentum_change);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bonds that are taken once a step and held: scripted ones, laws that are code, any law on request; and what laws cost.
+#include "ingredient/bonds.h"
 #include "base/text.h"
 #include "held/held_forces.h"
-#include "ingredient/bonds.h"
 #include "laws/force_limit.h"
 #include "math/text.h"
 #include "solver/forces/force_list.h"
@@ -113,8 +113,9 @@ bool HeldForces::require_function(const BondBatch& batch, StepReport& report) {
 
 void HeldForces::call(BondBatch& batch) const {
   functions.of_laws.at(model_.laws[batch.law].function)
-      .batch({batch.bonds.size(), model_.time, batch.position_p.data(), batch.position_q.data(), batch.velocity_p.data(),
-              batch.velocity_q.data(), batch.parameter_rows.data(), batch.ids.data(), batch.force_rows.data()});
+      .batch({batch.bonds.size(), model_.time, batch.position_p.data(), batch.position_q.data(),
+              batch.velocity_p.data(), batch.velocity_q.data(), batch.parameter_rows.data(), batch.ids.data(),
+              batch.force_rows.data()});
 }
 
 void HeldForces::take_batch_function(BondBatch& batch, StepReport& report) {
@@ -160,7 +161,8 @@ void HeldForces::take_scripts(StepReport& report) {
     }
     const auto name = [&] { return script->second.name.empty() ? "" : " (" + script->second.name + ")"; };
     try {
-      const model::Ring &p = model_.rings[model_.particles[bond.p].ring], &q = model_.rings[model_.particles[bond.q].ring];
+      const model::Ring &p = model_.rings[model_.particles[bond.p].ring],
+                        &q = model_.rings[model_.particles[bond.q].ring];
       const Vec3 force = script->second.force({model_.bonds.id(slot), p.position + ahead * p.velocity,
                                                q.position + ahead * q.velocity, p.velocity, q.velocity, model_.time});
       if (laws::is_force(force))
@@ -204,7 +206,8 @@ std::size_t HeldForces::rehearse_law(std::uint32_t law, double h) {
   if (law == model::scripted_law) {
     model_.bonds.for_each([&](std::uint32_t slot, const model::Bond& bond) {
       if (bond.law != law || !bond.acts() || !functions.of_bonds.contains(bond.script)) return;
-      const model::Ring &p = model_.rings[model_.particles[bond.p].ring], &q = model_.rings[model_.particles[bond.q].ring];
+      const model::Ring &p = model_.rings[model_.particles[bond.p].ring],
+                        &q = model_.rings[model_.particles[bond.q].ring];
       (void)functions.of_bonds.at(bond.script)
           .force({model_.bonds.id(slot), p.position, q.position, p.velocity, q.velocity, model_.time});
       ++count;

@@ -76,8 +76,8 @@ bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& re
     v[0] = set.arrays.vx[i], v[1] = set.arrays.vy[i], v[2] = set.arrays.vz[i];
   }
   try {
-    function->second({n, model_.time, report.dt, set.position_rows.data(), set.velocity_rows.data(), set.arrays.m.data(),
-                      set.ids.data(), set.force_rows.data()});
+    function->second({n, model_.time, report.dt, set.position_rows.data(), set.velocity_rows.data(),
+                      set.arrays.m.data(), set.ids.data(), set.force_rows.data()});
     return true;
   } catch (const std::exception& error) {
     return fail(std::string(" raised: ") + error.what());
@@ -89,7 +89,7 @@ bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& re
 void HeldForces::take_pairs(std::uint32_t slot, ParticleSet& set, StepReport& report) {
   const model::Pairs& pairs = model_.pairs[slot];
   const auto bad = sets_.sum(slot).add_forces(set.arrays, set.family, model_.compiled(pairs.law),
-                                                      pairs.parameters.data(), pairs.cutoff, model_.time, parallel_);
+                                              pairs.parameters.data(), pairs.cutoff, model_.time, parallel_);
   if (bad.count > 0)
     report.warnings.push_back(text("pairwise force ", slot, " gives no finite force between particles ",
                                    set.ids[bad.i].slot, " and ", set.ids[bad.j].slot,

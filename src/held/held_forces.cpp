@@ -57,7 +57,7 @@ double HeldForces::calc_energy() {
     if (!p.active || !model_.compiled(p.law).has_energy()) return;
     const ParticleSet& set = loaded_set(p.group, 0);
     sum += sets_.sum(slot).energy(set.arrays, set.family, model_.compiled(p.law), p.parameters.data(), p.cutoff,
-                                          model_.time, parallel_);
+                                  model_.time, parallel_);
   });
   energy_ = sum, energy_is_known_ = true;
   return sum;

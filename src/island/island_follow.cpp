@@ -37,7 +37,7 @@ struct Around {
 
 bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, const Model::LocalChange& change,
                     std::vector<std::uint32_t>& node_of_ring) {
-  constexpr std::size_t part = 8;  // of the nodes: if more of them change, assembling it anew is as good
+  constexpr std::size_t part = 8;      // of the nodes: if more of them change, assembling it anew is as good
   if (idle_ || solver_) return false;  // another solver asks for unknowns without gaps
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) node_of_ring[nodes_.rings[node]] = node;
   const std::vector<std::uint32_t> changed = find_changed_nodes(model, change, node_of_ring);
@@ -76,7 +76,8 @@ std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const 
       const std::uint32_t ring = model.particles[p].ring;
       if (node_of_ring[ring] == none) {
         for (const auto& [other, split_from] : change.rings)
-          if (other == ring && split_from != none && node_of_ring[split_from] != none) beside = node_of_ring[split_from];
+          if (other == ring && split_from != none && node_of_ring[split_from] != none)
+            beside = node_of_ring[split_from];
         node_of_ring[ring] = problem_.add_node_beside(beside);
         nodes_.rings.push_back(ring), nodes_.pinned.push_back(0);
       }

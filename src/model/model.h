@@ -447,7 +447,7 @@ class Model {
     return !p.inactive && bodies[p.body].kind != BodyKind::inactive;
   }
   void set_bond_active(std::uint32_t bond, bool active);  ///< true repairs a broken one
-  void mute_bonds_of(std::uint32_t particle);  ///< after it has changed whether it acts
+  void mute_bonds_of(std::uint32_t particle);             ///< after it has changed whether it acts
 
   /// Held in place by a nail or by a static or scripted body in its ring.
   bool is_pinned(std::uint32_t ring) const;

@@ -341,9 +341,7 @@ std::uint32_t Presenter::use_tie_style(std::size_t kind) {
   if (own != classes_.end()) return use_style(tie_names[kind], own->second.parts);
   switch (static_cast<DrawnTie::Kind>(kind)) {
     case DrawnTie::Kind::spring:
-      return use_style(
-          "spring",
-          {make_part(every_look, to_wire(Torus{0.8 * thickness_, 0.12 * thickness_}), "steel")});
+      return use_style("spring", {make_part(every_look, to_wire(Torus{0.8 * thickness_, 0.12 * thickness_}), "steel")});
     case DrawnTie::Kind::rope:
       return use_style("rope", {make_part(every_look, to_wire(Cylinder{0.35 * thickness_, of_body}), "rope")});
     default: return use_style("rod", {make_part(every_look, to_wire(Cylinder{0.4 * thickness_, of_body}), "steel")});

@@ -12,8 +12,6 @@ namespace iota::read {
 PoseSnapshot poses(model::Model&, held::HeldForces&, Orientations&);
 
 /// As `structure_version`, but births and deaths of sparks do not count: what a viewer's list of bodies depends on.
-inline std::uint32_t scene_version(const model::Model& model) {
-  return model.structure_version - model.spark_changes;
-}
+inline std::uint32_t scene_version(const model::Model& model) { return model.structure_version - model.spark_changes; }
 
 }  // namespace iota::read

@@ -18,8 +18,9 @@ void compact(std::vector<T>& list, std::size_t count, Keeps keeps) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i * count < list.size(); ++i) {
     if (!keeps(i)) continue;
-    if (kept != i) std::copy_n(list.begin() + static_cast<std::ptrdiff_t>(i * count), count,
-                               list.begin() + static_cast<std::ptrdiff_t>(kept * count));
+    if (kept != i)
+      std::copy_n(list.begin() + static_cast<std::ptrdiff_t>(i * count), count,
+                  list.begin() + static_cast<std::ptrdiff_t>(kept * count));
     ++kept;
   }
   list.resize(kept * count);

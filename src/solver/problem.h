@@ -80,7 +80,8 @@ struct ConstraintPool {
   std::vector<double> offsets;      ///< C::rows each: what cannot be closed and is held as it is; or empty: nothing
   std::vector<RowLaw> laws;         ///< C::rows each; or empty: all are equations, which costs nothing
   std::vector<RowState> states;     ///< beside laws
-  std::vector<std::uint32_t> held;  ///< rows to which the integrator has lent a bound for a step: Integrator::hold_offsets
+  std::vector<std::uint32_t>
+      held;  ///< rows to which the integrator has lent a bound for a step: Integrator::hold_offsets
   std::vector<Slots> slots;
 
   double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }

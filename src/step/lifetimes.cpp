@@ -30,7 +30,8 @@ class Draw {
     return radius * shape::in_ball(draw);
   }
   Vec3 in_source() {
-    return shape::inside(shape::from_data(emitter_.source), [this](double low, double high) { return number(low, high); });
+    return shape::inside(shape::from_data(emitter_.source),
+                         [this](double low, double high) { return number(low, high); });
   }
 
  private:

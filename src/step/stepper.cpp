@@ -120,8 +120,8 @@ void Stepper::fill(StepReport& report) {
   report.worst_gap = ingredient::worst_gap(model);
   const ingredient::Energies energies = ingredient::calc_energies(model);
   ingredient::book_edits(model, energies.total());
-  report.energy = {energies.kinetic, energies.potential + editor_.held.energy(), model.dissipated,
-                   model.external_work, model.edit_energy};
+  report.energy = {energies.kinetic, energies.potential + editor_.held.energy(), model.dissipated, model.external_work,
+                   model.edit_energy};
   report.articulates = model.articulates.size();
   report.structure_version = model.structure_version;
 }

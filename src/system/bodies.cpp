@@ -46,28 +46,19 @@ void Bodies::set_active(BodyId id, bool active) {
 void Bodies::set_articulate_active(BodyId id, bool active) {
   const model::Model& m = core_.model;
   std::vector<BodyId> members;
-  m.for_each_body_of(m.bodies[core_.slot(id)].articulate,
-                     [&](std::uint32_t b) { members.push_back(m.bodies.id(b)); });
+  m.for_each_body_of(m.bodies[core_.slot(id)].articulate, [&](std::uint32_t b) { members.push_back(m.bodies.id(b)); });
   for (const BodyId body : members) set_active(body, active);
 }
 
-Matrix3 Bodies::inertia(BodyId id) const {
-  return to_rows(body_inertia(core_.model, core_.slot(id)));
-}
+Matrix3 Bodies::inertia(BodyId id) const { return to_rows(body_inertia(core_.model, core_.slot(id))); }
 
 Vec3 Bodies::velocity(BodyId id) const { return body_velocity(core_.model, core_.slot(id)); }
 
-Vec3 Bodies::angular_velocity(BodyId id) const {
-  return body_angular_velocity(core_.model, core_.slot(id));
-}
+Vec3 Bodies::angular_velocity(BodyId id) const { return body_angular_velocity(core_.model, core_.slot(id)); }
 
-Vec3 Bodies::angular_momentum(BodyId id) const {
-  return body_angular_momentum(core_.model, core_.slot(id));
-}
+Vec3 Bodies::angular_momentum(BodyId id) const { return body_angular_momentum(core_.model, core_.slot(id)); }
 
-std::vector<BodyId> Bodies::parts(BodyId id) const {
-  return parts_of(core_.model, core_.slot(id));
-}
+std::vector<BodyId> Bodies::parts(BodyId id) const { return parts_of(core_.model, core_.slot(id)); }
 
 std::vector<ParticleId> Bodies::particles(BodyId id, BodyId part) const {
   const model::Model& m = core_.model;
@@ -127,17 +118,13 @@ std::vector<ParticleId> Bodies::attachments(BodyId id) const {
 
 BodyId Bodies::create(const BodyOptions& options) { return core_.execute(edit::CreateBody{options}); }
 
-void Bodies::set_rod(BodyId body, double mass, double radius) {
-  core_.execute(edit::SetRod{body, mass, radius});
-}
+void Bodies::set_rod(BodyId body, double mass, double radius) { core_.execute(edit::SetRod{body, mass, radius}); }
 
 void Bodies::destroy(BodyId id) { core_.execute(edit::Destroy<BodyId>{id}); }
 
 void Bodies::set_kind(BodyId body, BodyKind kind) { core_.execute(edit::SetKind{body, kind}); }
 
-void Bodies::set_damping(BodyId body, double per_second) {
-  core_.execute(edit::SetBodyDamping{body, per_second});
-}
+void Bodies::set_damping(BodyId body, double per_second) { core_.execute(edit::SetBodyDamping{body, per_second}); }
 
 std::uint32_t Bodies::articulate_count() const { return core_.model.articulates.size(); }
 
@@ -163,9 +150,7 @@ std::vector<ParticleId> Bodies::particles(BodyId body) const {
   return ids;
 }
 
-std::uint32_t Bodies::articulate(BodyId id) const {
-  return core_.model.bodies[core_.slot(id)].articulate;
-}
+std::uint32_t Bodies::articulate(BodyId id) const { return core_.model.bodies[core_.slot(id)].articulate; }
 
 BodyKind Bodies::kind(BodyId id) const { return core_.model.bodies[core_.slot(id)].kind; }
 
@@ -173,9 +158,7 @@ double Bodies::damping(BodyId id) const { return core_.model.bodies[core_.slot(i
 
 double Bodies::mass(BodyId id) const { return core_.model.body_mass(core_.slot(id)); }
 
-Vec3 Bodies::center_of_mass(BodyId id) const {
-  return core_.model.center_of_mass(core_.slot(id));
-}
+Vec3 Bodies::center_of_mass(BodyId id) const { return core_.model.center_of_mass(core_.slot(id)); }
 
 Quaternion Bodies::orientation(BodyId id) const {
   const std::uint32_t body = core_.slot(id);

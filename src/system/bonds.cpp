@@ -6,9 +6,7 @@ namespace iota {
 
 void Bonds::set_break_force(BondId id, double force) { core_.execute(edit::SetBondBreakForce{id, force}); }
 
-double Bonds::break_force(BondId id) const {
-  return core_.model.bonds[core_.slot(id)].break_force;
-}
+double Bonds::break_force(BondId id) const { return core_.model.bonds[core_.slot(id)].break_force; }
 
 bool Bonds::is_broken(BondId id) const { return core_.model.bonds[core_.slot(id)].broken; }
 
@@ -48,9 +46,7 @@ LawId Bonds::law(BondId id) const {
   return m.laws.id(m.bonds[core_.slot(id)].law);
 }
 
-bool Bonds::is_implicit(BondId id) const {
-  return core_.model.bonds[core_.slot(id)].implicit;
-}
+bool Bonds::is_implicit(BondId id) const { return core_.model.bonds[core_.slot(id)].implicit; }
 
 std::vector<LawParameter> Bonds::parameters(BondId id) const {
   const model::Model& m = core_.model;

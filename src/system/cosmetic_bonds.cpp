@@ -7,9 +7,7 @@ CosmeticBondId CosmeticBonds::create(ParticleId p, ParticleId q) {
   return core_.execute(edit::CreateCosmeticBond{p, q});
 }
 
-RestructureReport CosmeticBonds::destroy(CosmeticBondId id) {
-  return core_.execute(edit::Destroy<CosmeticBondId>{id});
-}
+RestructureReport CosmeticBonds::destroy(CosmeticBondId id) { return core_.execute(edit::Destroy<CosmeticBondId>{id}); }
 
 bool CosmeticBonds::contains(CosmeticBondId id) const { return core_.model.cosmetic_bonds.contains(id); }
 

@@ -19,9 +19,7 @@ std::size_t Edits::undo_count() const { return core_.editor.undo.size(); }
 
 std::size_t Edits::redo_count() const { return core_.editor.redo.size(); }
 
-RestructureReport Edits::separate(BodyId body, BodyId part) {
-  return core_.execute(edit::SeparatePart{body, part});
-}
+RestructureReport Edits::separate(BodyId body, BodyId part) { return core_.execute(edit::SeparatePart{body, part}); }
 
 RestructureReport Edits::combine(ParticleId p, ParticleId q, double over) {
   return core_.execute(edit::CombineParticles{p, q, over});
@@ -29,9 +27,7 @@ RestructureReport Edits::combine(ParticleId p, ParticleId q, double over) {
 
 RestructureReport Edits::combine(BodyId a, BodyId b) { return core_.execute(edit::CombineBodies{a, b}); }
 
-RestructureReport Edits::separate(ParticleId p, ParticleId q) {
-  return core_.execute(edit::Separate{p, q});
-}
+RestructureReport Edits::separate(ParticleId p, ParticleId q) { return core_.execute(edit::Separate{p, q}); }
 
 std::uint32_t Edits::closing_count() const { return core_.model.closings.size(); }
 

@@ -3,9 +3,7 @@
 
 namespace iota {
 
-EmitterId Emitters::create(const EmitterOptions& options) {
-  return core_.execute(edit::CreateEmitter{options});
-}
+EmitterId Emitters::create(const EmitterOptions& options) { return core_.execute(edit::CreateEmitter{options}); }
 
 void Emitters::destroy(EmitterId id) { core_.execute(edit::Destroy<EmitterId>{id}); }
 
@@ -19,19 +17,13 @@ void Emitters::move(EmitterId id, const Vec3& position, const Quaternion& orient
 
 bool Emitters::contains(EmitterId id) const { return core_.model.emitters.contains(id); }
 
-bool Emitters::is_active(EmitterId id) const {
-  return core_.model.emitters[core_.slot(id)].active;
-}
+bool Emitters::is_active(EmitterId id) const { return core_.model.emitters[core_.slot(id)].active; }
 
 double Emitters::rate(EmitterId id) const { return core_.model.emitters[core_.slot(id)].rate; }
 
-std::uint32_t Emitters::count(EmitterId id) const {
-  return core_.model.emitters[core_.slot(id)].alive;
-}
+std::uint32_t Emitters::count(EmitterId id) const { return core_.model.emitters[core_.slot(id)].alive; }
 
-std::uint64_t Emitters::born(EmitterId id) const {
-  return core_.model.emitters[core_.slot(id)].born;
-}
+std::uint64_t Emitters::born(EmitterId id) const { return core_.model.emitters[core_.slot(id)].born; }
 
 std::vector<ParticleId> Emitters::particles(EmitterId id) const {
   const model::Model& m = core_.model;

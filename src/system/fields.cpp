@@ -28,9 +28,7 @@ bool Fields::is_active(FieldId id) const { return core_.model.fields[core_.slot(
 
 void Fields::set_active(FieldId id, bool active) { core_.execute(edit::SetFieldActive{id, active}); }
 
-std::string Fields::name(FieldId id) const {
-  return core_.model.fields[core_.slot(id)].name.data();
-}
+std::string Fields::name(FieldId id) const { return core_.model.fields[core_.slot(id)].name.data(); }
 
 std::vector<LawParameter> Fields::parameters(FieldId id) const {
   const model::Field& field = core_.model.fields[core_.slot(id)];
@@ -45,8 +43,6 @@ void Fields::set_parameter(FieldId id, std::string_view name, double value) {
 
 std::vector<FieldId> Fields::ids() const { return core_.model.fields.ids(); }
 
-std::size_t Fields::rehearse(FieldId id, double dt) {
-  return core_.held.rehearse_field(core_.slot(id), dt);
-}
+std::size_t Fields::rehearse(FieldId id, double dt) { return core_.held.rehearse_field(core_.slot(id), dt); }
 
 }  // namespace iota

@@ -3,17 +3,11 @@
 
 namespace iota {
 
-GroupId Groups::create(std::string_view name) {
-  return core_.execute(edit::CreateGroup{std::string(name)});
-}
+GroupId Groups::create(std::string_view name) { return core_.execute(edit::CreateGroup{std::string(name)}); }
 
-void Groups::add(GroupId group, ParticleId particle) {
-  core_.execute(edit::SetMember{group, particle, true});
-}
+void Groups::add(GroupId group, ParticleId particle) { core_.execute(edit::SetMember{group, particle, true}); }
 
-void Groups::remove(GroupId group, ParticleId particle) {
-  core_.execute(edit::SetMember{group, particle, false});
-}
+void Groups::remove(GroupId group, ParticleId particle) { core_.execute(edit::SetMember{group, particle, false}); }
 
 void Groups::destroy(GroupId id) { core_.execute(edit::Destroy<GroupId>{id}); }
 
@@ -24,9 +18,7 @@ bool Groups::contains(GroupId group, ParticleId particle) const {
   return core_.model.particles[core_.slot(particle)].groups & bit;
 }
 
-std::string Groups::name(GroupId id) const {
-  return core_.model.groups[core_.slot(id)].name.data();
-}
+std::string Groups::name(GroupId id) const { return core_.model.groups[core_.slot(id)].name.data(); }
 
 std::vector<GroupId> Groups::ids() const { return core_.model.groups.ids(); }
 

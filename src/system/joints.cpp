@@ -38,26 +38,20 @@ ConstraintId create_with_functions(Core& core, Specify specify) {
 
 ConstraintId Joints::create(const JointSpec& spec) { return core_.execute(edit::CreateJoint{spec}); }
 
-ConstraintId Joints::create(const DistanceSpec& spec) {
-  return core_.execute(edit::CreateDistance{spec});
-}
+ConstraintId Joints::create(const DistanceSpec& spec) { return core_.execute(edit::CreateDistance{spec}); }
 
 ConstraintId Joints::create(const PathSpec& spec) { return core_.execute(edit::CreatePath{spec}); }
 
 ConstraintId Joints::create(const SurfaceSpec& spec) {
   return create_with_functions(core_, [&] {
-    return edit::CreateSurface{
-        {spec.kind, spec.particle, spec.body, place(core_, spec.surface), spec.breaks}};
+    return edit::CreateSurface{{spec.kind, spec.particle, spec.body, place(core_, spec.surface), spec.breaks}};
   });
 }
 
 ConstraintId Joints::create(const SurfacePairSpec& spec) {
   return create_with_functions(core_, [&] {
-    return edit::CreateSurfacePair{{spec.kind,
-                                    spec.a,
-                                    spec.b,
-                                    {place(core_, spec.surface_a), place(core_, spec.surface_b)},
-                                    spec.breaks}};
+    return edit::CreateSurfacePair{
+        {spec.kind, spec.a, spec.b, {place(core_, spec.surface_a), place(core_, spec.surface_b)}, spec.breaks}};
   });
 }
 
@@ -111,9 +105,7 @@ ConstraintState Joints::state(ConstraintId id) const {
   return state;
 }
 
-BreakLimits Joints::break_limits(ConstraintId id) const {
-  return core_.model.constraints[core_.slot(id)].breaks;
-}
+BreakLimits Joints::break_limits(ConstraintId id) const { return core_.model.constraints[core_.slot(id)].breaks; }
 
 std::vector<ParticleId> Joints::particles(ConstraintId id) const {
   const model::Model& m = core_.model;

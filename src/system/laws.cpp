@@ -4,9 +4,7 @@
 
 namespace iota {
 
-std::size_t Laws::rehearse(LawId id, double dt) {
-  return core_.held.rehearse_law(core_.slot(id), dt);
-}
+std::size_t Laws::rehearse(LawId id, double dt) { return core_.held.rehearse_law(core_.slot(id), dt); }
 
 LawId Laws::create(LawBody body, const LawOptions& options) {
   edit::CreateLaw command{model::LawKind::expression, options.name, {}, options.parameters, 0};
@@ -53,18 +51,14 @@ void Laws::destroy(LawId id) { core_.execute(edit::Destroy<LawId>{id}); }
 
 bool Laws::contains(LawId id) const { return core_.model.laws.contains(id); }
 
-std::string Laws::name(LawId id) const {
-  return core_.model.laws[core_.slot(id)].name.data();
-}
+std::string Laws::name(LawId id) const { return core_.model.laws[core_.slot(id)].name.data(); }
 
 std::string_view Laws::kind(LawId id) const {
   constexpr std::string_view words[] = {"predefined", "expression", "function", "compiled", "arrays"};
   return words[static_cast<std::size_t>(core_.model.laws[core_.slot(id)].kind)];
 }
 
-std::string Laws::expression(LawId id) const {
-  return core_.model.laws[core_.slot(id)].text.data();
-}
+std::string Laws::expression(LawId id) const { return core_.model.laws[core_.slot(id)].text.data(); }
 
 std::vector<LawParameter> Laws::parameters(LawId id) const {
   const model::Law& law = core_.model.laws[core_.slot(id)];

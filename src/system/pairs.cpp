@@ -44,8 +44,6 @@ std::vector<PairsId> Pairs::ids() const { return core_.model.pairs.ids(); }
 
 double Pairs::energy(PairsId id) const { return core_.held.energy_of_pairs(core_.slot(id)); }
 
-std::size_t Pairs::rehearse(PairsId id, double dt) {
-  return core_.held.rehearse_pairs(core_.slot(id), dt);
-}
+std::size_t Pairs::rehearse(PairsId id, double dt) { return core_.held.rehearse_pairs(core_.slot(id), dt); }
 
 }  // namespace iota

@@ -15,13 +15,9 @@ double Particles::break_force(ParticleId id) const {
   return force ? *force : std::numeric_limits<double>::infinity();
 }
 
-Vec3 Particles::hinge_force(ParticleId id) const {
-  return ingredient::calc_hinge_force(core_.model, core_.slot(id));
-}
+Vec3 Particles::hinge_force(ParticleId id) const { return ingredient::calc_hinge_force(core_.model, core_.slot(id)); }
 
-bool Particles::is_active(ParticleId id) const {
-  return !core_.model.particles[core_.slot(id)].inactive;
-}
+bool Particles::is_active(ParticleId id) const { return !core_.model.particles[core_.slot(id)].inactive; }
 
 void Particles::set_active(ParticleId id, bool active) { core_.execute(edit::SetParticleActive{id, active}); }
 
@@ -57,9 +53,7 @@ Vec3 Particles::normal(ParticleId id) const { return rotate(orientation(id), {0,
 
 Vec3 Particles::spin(ParticleId id) const { return read::oriented_attributes(core_.model, core_.slot(id)).spin; }
 
-double Particles::moment(ParticleId id) const {
-  return read::oriented_attributes(core_.model, core_.slot(id)).moment;
-}
+double Particles::moment(ParticleId id) const { return read::oriented_attributes(core_.model, core_.slot(id)).moment; }
 
 void Particles::set_orientation(ParticleId id, const Quaternion& q) { core_.execute(edit::SetOrientation{id, q}); }
 
@@ -111,8 +105,7 @@ BodyId Particles::body(ParticleId id) const {
 std::vector<ParticleId> Particles::ring(ParticleId id) const {
   const model::Model& m = core_.model;
   std::vector<ParticleId> ids;
-  m.for_each_in_ring(m.particles[core_.slot(id)].ring,
-                     [&](std::uint32_t p) { ids.push_back(m.particles.id(p)); });
+  m.for_each_in_ring(m.particles[core_.slot(id)].ring, [&](std::uint32_t p) { ids.push_back(m.particles.id(p)); });
   return ids;
 }
 

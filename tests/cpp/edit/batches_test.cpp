@@ -94,13 +94,13 @@ TEST(EditBatch, edits_asked_for_during_a_step_are_reported_as_one) {
   const ParticleId p = system.particles().create(ball, {0, 1, 0});
   bool asked = false;
   (void)system.bonds().create(p, chain.lower[3], ScriptedLaw{[&](const BondState&) {
-                             if (!asked) {
-                               (void)system.edits().separate(chain.lower[0], chain.upper[1]);
-                               (void)system.edits().combine(chain.links[1], chain.links[2]);
-                               asked = true;
-                             }
-                             return Vec3{};
-                           }});
+                                if (!asked) {
+                                  (void)system.edits().separate(chain.lower[0], chain.upper[1]);
+                                  (void)system.edits().combine(chain.links[1], chain.links[2]);
+                                  asked = true;
+                                }
+                                return Vec3{};
+                              }});
   const StepReport report = system.step(0.01);
   ASSERT_TRUE(report.edits.has_value());
   EXPECT_TRUE(report.edits->changed);

@@ -39,14 +39,15 @@ TEST(Bond, can_be_switched_in_a_function_of_the_step) {
   const BodyId a = system.bodies().create(), b = system.bodies().create();
   const ParticleId p = system.particles().create(a, {0, 0, 0}), q = system.particles().create(b, {1, 0, 0});
   const BondId spring = system.bonds().create(p, q, SpringLaw{});
-  system.bonds().create(p, q, ScriptedLaw{[&](const BondState&) {
-                                         system.bonds().set_active(spring, false);
-                                         system.bodies().set_kind(b, BodyKind::static_);
-                                         EXPECT_THROW(system.set_gravity({}), std::logic_error);
-                                         EXPECT_TRUE(system.bonds().is_active(spring)) << "not before the step is over";
-                                         return Vec3{};
-                                       },
-                                       "switch"});
+  system.bonds().create(p, q,
+                        ScriptedLaw{[&](const BondState&) {
+                                      system.bonds().set_active(spring, false);
+                                      system.bodies().set_kind(b, BodyKind::static_);
+                                      EXPECT_THROW(system.set_gravity({}), std::logic_error);
+                                      EXPECT_TRUE(system.bonds().is_active(spring)) << "not before the step is over";
+                                      return Vec3{};
+                                    },
+                                    "switch"});
   (void)system.step(0.01);
   EXPECT_FALSE(system.bonds().is_active(spring));
   EXPECT_EQ(system.bodies().kind(b), BodyKind::static_);

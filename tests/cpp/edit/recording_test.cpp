@@ -137,11 +137,14 @@ void record_forces(System& system) {
   const FieldId wind = system.fields().create("wind", {.group = group});
   system.fields().create("fx = y; fy = 0; fz = 0");
   system.fields().create([](const ParticleBatch&) {});
-  const PairsId pairs = system.pairs().create({system.laws().find("soft_repulsion"), {{"length", 2}}, {}}, {.cutoff = 2});
+  const PairsId pairs =
+      system.pairs().create({system.laws().find("soft_repulsion"), {{"length", 2}}, {}}, {.cutoff = 2});
   (void)system.step(0.01);
-  system.fields().set_active(wind, false), system.pairs().set_active(pairs, false), system.bonds().set_active(bond, false);
+  system.fields().set_active(wind, false), system.pairs().set_active(pairs, false),
+      system.bonds().set_active(bond, false);
   system.fields().set_parameter(wind, system.fields().parameters(wind)[0].name, 2);
-  system.groups().remove(group, p), system.pairs().destroy(pairs), system.bonds().destroy(bond), system.laws().destroy(law);
+  system.groups().remove(group, p), system.pairs().destroy(pairs), system.bonds().destroy(bond),
+      system.laws().destroy(law);
   (void)system.step(0.01);
 }
 
@@ -153,11 +156,14 @@ void record_constraints(System& system) {
   const ConstraintId rope = system.joints().create(DistanceSpec{ConstraintKind::rope, p, q});
   system.joints().create(PathSpec{.particle = p, .points = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}});
   system.joints().create(SurfaceSpec{ConstraintKind::outside, p, {}, {Box{}, {0, -2, 0}}});
-  system.joints().create(SurfacePairSpec{ConstraintKind::apart, c, {}, {Sphere{}, {4, 0, 0}}, {HalfSpace{}, {0, -2, 0}}});
+  system.joints().create(
+      SurfacePairSpec{ConstraintKind::apart, c, {}, {Sphere{}, {4, 0, 0}}, {HalfSpace{}, {0, -2, 0}}});
   (void)system.step(0.01);
-  system.joints().set_coordinate(joint, JointCoordinate::angle, {.lower = -1, .upper = 1, .motor_speed = 1, .motor_max = 2});
+  system.joints().set_coordinate(joint, JointCoordinate::angle,
+                                 {.lower = -1, .upper = 1, .motor_speed = 1, .motor_max = 2});
   system.joints().set_length(rope, 3);
-  system.joints().set_active(joint, false), system.joints().set_break_limits(rope, {1, 1}), system.particles().set_break_force(p, 1);
+  system.joints().set_active(joint, false), system.joints().set_break_limits(rope, {1, 1}),
+      system.particles().set_break_force(p, 1);
   (void)system.step(0.01);
   system.joints().destroy(rope);
 }
@@ -182,7 +188,8 @@ void record_emitters(System& system) {
 
 void record_edits(System& system) {
   const BodyId a = make_tetrahedron(system, 0), b = make_rod(system, 1), c = make_rod(system, 2.5);
-  const ParticleId p = system.bodies().particles(a)[1], q = system.bodies().particles(b)[0], r = system.bodies().particles(b)[1];
+  const ParticleId p = system.bodies().particles(a)[1], q = system.bodies().particles(b)[0],
+                   r = system.bodies().particles(b)[1];
   system.cosmetic_bonds().create(p, system.bodies().particles(a)[0]);
   system.edits().begin();
   system.edits().combine(p, q);

@@ -53,10 +53,10 @@ struct Contraption {
     (void)system.edits().combine(first, second);
     const BodyId third = block(at + Vec3{0.2, -0.4, 0});
     system.joints().create(JointSpec{.a = first,
-                                       .b = third,
-                                       .at = at + Vec3{0.2, -0.2, 0},
-                                       .axis = {0, 0, 1},
-                                       .angle = {.motor_speed = 2, .motor_max = 0.5, .stiffness = 3, .damping = 0.1}});
+                                     .b = third,
+                                     .at = at + Vec3{0.2, -0.2, 0},
+                                     .axis = {0, 0, 1},
+                                     .angle = {.motor_speed = 2, .motor_max = 0.5, .stiffness = 3, .damping = 0.1}});
     const ParticleId low = system.bodies().attachments(third)[2];
     system.bonds().create(low, free_ends[0], SpringLaw{50, 1, 0.3});
     system.bonds().create(free_ends[1], low, DragLaw{0.4});
@@ -87,7 +87,8 @@ TEST(Loads, from_outside_are_mass_times_acceleration) {
         double scale = 1;
         for (const BodyId body : c.bodies) scale = std::max(scale, norm(c.system.bodies().net_force(body)));
         for (const BodyId body : c.bodies) {
-          const Vec3 force = c.system.bodies().outside_force(body, {}), torque = c.system.bodies().outside_torque(body, {});
+          const Vec3 force = c.system.bodies().outside_force(body, {}),
+                     torque = c.system.bodies().outside_torque(body, {});
           ASSERT_LT(norm(force - c.system.bodies().net_force(body)), tolerance * scale)
               << "seed " << seed << " step " << i << " body " << body.slot;
           ASSERT_LT(norm(torque - c.system.bodies().net_torque(body)), tolerance * scale)
@@ -103,7 +104,8 @@ TEST(Loads, of_one_hinge_add_up_to_zero) {
   for (int i = 0; i < 20; ++i) {
     (void)c.system.step(1e-3);
     for (std::size_t b = 0; b + 1 < 4; ++b) {
-      const ParticleId q = c.system.bodies().particles(c.bodies[b])[1], p = c.system.bodies().particles(c.bodies[b + 1])[0];
+      const ParticleId q = c.system.bodies().particles(c.bodies[b])[1],
+                       p = c.system.bodies().particles(c.bodies[b + 1])[0];
       EXPECT_LT(norm(c.system.particles().hinge_force(q) + c.system.particles().hinge_force(p)), 1e-9);
     }
   }

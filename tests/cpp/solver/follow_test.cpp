@@ -87,7 +87,8 @@ struct Changing {
   explicit Changing(unsigned seed) : random(seed) {
     std::uniform_real_distribution<double> number(-1, 1);
     for (std::uint32_t n = 0; n < 60; ++n) {
-      const std::uint32_t to = n == 0 ? 0 : n - 1 - static_cast<std::uint32_t>(random() % std::min<std::uint32_t>(n, 2));
+      const std::uint32_t to =
+          n == 0 ? 0 : n - 1 - static_cast<std::uint32_t>(random() % std::min<std::uint32_t>(n, 2));
       const Vec3 step{0.3 + 0.1 * number(random), 0.2 * number(random), 0.2 * number(random)};
       now.position.push_back(n == 0 ? Vec3{} : now.position[to] + step);
       now.velocity.push_back({}), now.mass.push_back(1 + 0.5 * number(random));

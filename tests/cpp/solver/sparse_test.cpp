@@ -284,8 +284,7 @@ struct ChangingGraph {
     for (auto& c : graph.couplings)
       for (std::uint32_t& node : c)
         if (node == from) node = to;
-    for (auto& c : graph.constraints)
-      std::replace(c.nodes.begin(), c.nodes.begin() + c.node_count, from, to);
+    for (auto& c : graph.constraints) std::replace(c.nodes.begin(), c.nodes.begin() + c.node_count, from, to);
   }
   /// Half of what ends at a node ends at a new one instead.
   void split(std::uint32_t node, std::mt19937& random) {

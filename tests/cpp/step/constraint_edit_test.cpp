@@ -66,17 +66,16 @@ struct JointedWorld {
     switch (kind) {
       case ConstraintKind::rod:
       case ConstraintKind::rope:
-        system.joints().create(
-            DistanceSpec{.kind = kind, .p = any_particle(), .q = any_particle(), .breaks = breaks});
+        system.joints().create(DistanceSpec{.kind = kind, .p = any_particle(), .q = any_particle(), .breaks = breaks});
         break;
       case ConstraintKind::path:
         system.joints().create(PathSpec{.particle = any_particle(),
-                                          .body = world_or_body,
-                                          .curve = index(2) ? CurveKind::spline : CurveKind::polyline,
-                                          .points = {point(), point(), point(), point()},
-                                          .closed = index(2) == 0,
-                                          .slide = any_options(),
-                                          .breaks = breaks});
+                                        .body = world_or_body,
+                                        .curve = index(2) ? CurveKind::spline : CurveKind::polyline,
+                                        .points = {point(), point(), point(), point()},
+                                        .closed = index(2) == 0,
+                                        .slide = any_options(),
+                                        .breaks = breaks});
         break;
       case ConstraintKind::surface:
       case ConstraintKind::inside:
@@ -112,7 +111,11 @@ struct JointedWorld {
         case 5: (void)system.edits().combine(p, q); break;
         case 6: (void)system.edits().separate(p, q); break;
         case 7: (void)system.edits().combine(system.particles().body(p), system.particles().body(q)); break;
-        case 8: system.particles().is_nailed(p) ? system.particles().release(p) : index(4) == 0 ? system.particles().nail(p) : void(); break;
+        case 8:
+          system.particles().is_nailed(p) ? system.particles().release(p)
+          : index(4) == 0                 ? system.particles().nail(p)
+                                          : void();
+          break;
         case 9:
           if (!constraints.empty()) system.joints().destroy(constraints[index(constraints.size())]);
           break;
@@ -127,7 +130,8 @@ struct JointedWorld {
           break;
         case 12: (void)system.particles().create(system.particles().body(p), system.particles().position(q), 0); break;
         default:
-          if (system.bodies().ids().size() > 8) index(2) ? system.particles().destroy(p) : system.bodies().destroy(system.particles().body(q));
+          if (system.bodies().ids().size() > 8)
+            index(2) ? system.particles().destroy(p) : system.bodies().destroy(system.particles().body(q));
       }
     } catch (const std::invalid_argument&) {
       ++refused;

@@ -113,8 +113,8 @@ TEST(Prismatic, a_block_on_an_incline_accelerates_by_g_sin) {
   const double slope = 0.5;
   const Vec3 down{std::cos(slope), -std::sin(slope), 0};
   const BodyId block = make_block(system, {0.1, 0.2, 0.3}, {0.2, 0.1, 0.3}, 2);
-  const ConstraintId joint = system.joints().create(
-      JointSpec{.kind = ConstraintKind::prismatic, .a = block, .at = {0, 0.2, 0}, .axis = down});
+  const ConstraintId joint =
+      system.joints().create(JointSpec{.kind = ConstraintKind::prismatic, .a = block, .at = {0, 0.2, 0}, .axis = down});
   run(system, 1, 1.0 / 120);
   const ConstraintState state = system.joints().state(joint);
   EXPECT_NEAR(state.speed[1], g * std::sin(slope), 1e-6);
@@ -160,22 +160,23 @@ TEST(Universal, keeps_its_axes_perpendicular_and_transmits_the_known_ratio) {
   const BodyId in = make_block(system, {-0.5, 0, 0}, {0.6, 0.1, 0.1}, 1);
   const BodyId out = make_block(system, 0.5 * out_axis, {0.6, 0.1, 0.1}, 1);
   const ConstraintId in_bearing = system.joints().create(JointSpec{.kind = ConstraintKind::revolute,
-                                                                     .a = in,
-                                                                     .at = {-0.5, 0, 0},
-                                                                     .axis = {1, 0, 0},
-                                                                     .angle = {.motor_speed = 2, .motor_max = 1e3}});
+                                                                   .a = in,
+                                                                   .at = {-0.5, 0, 0},
+                                                                   .axis = {1, 0, 0},
+                                                                   .angle = {.motor_speed = 2, .motor_max = 1e3}});
   const ConstraintId out_bearing = system.joints().create(
       JointSpec{.kind = ConstraintKind::revolute, .a = out, .at = 0.5 * out_axis, .axis = out_axis});
   const ConstraintId cross_joint =
       system.joints().create(JointSpec{.kind = ConstraintKind::universal,
-                                         .a = in,
-                                         .b = out,
-                                         .at = {},
-                                         .axis = {0, 1, 0},
-                                         .second_axis = {-std::sin(beta), 0, std::cos(beta)}});
+                                       .a = in,
+                                       .b = out,
+                                       .at = {},
+                                       .axis = {0, 1, 0},
+                                       .second_axis = {-std::sin(beta), 0, std::cos(beta)}});
   run(system, 4, 1.0 / 240, [&](const StepReport&) {
     EXPECT_LT(system.joints().state(cross_joint).gap, 1e-8);
-    const double input = system.joints().state(in_bearing).coordinate[0], output = system.joints().state(out_bearing).coordinate[0];
+    const double input = system.joints().state(in_bearing).coordinate[0],
+                 output = system.joints().state(out_bearing).coordinate[0];
     EXPECT_NEAR(std::sin(output) * std::cos(input), std::sin(input) * std::cos(output) * std::cos(beta), 1e-6);
   });
   EXPECT_NEAR(system.joints().state(in_bearing).coordinate[0], 8, 0.05);
@@ -200,11 +201,11 @@ TEST(Universal, each_angle_has_its_own_motor_and_stops) {
   System system{SystemOptions{.gravity = {}}};
   const BodyId block = system.bodies().create(Box{{1, 0.2, 0.3}}, {.mass = 1});
   const ConstraintId joint = system.joints().create(JointSpec{.kind = ConstraintKind::universal,
-                                                                .a = block,
-                                                                .axis = {1, 0, 0},
-                                                                .second_axis = {0, 1, 0},
-                                                                .angle = {.motor_speed = 2, .motor_max = 50},
-                                                                .second_angle = {.upper = 0.5}});
+                                                              .a = block,
+                                                              .axis = {1, 0, 0},
+                                                              .second_axis = {0, 1, 0},
+                                                              .angle = {.motor_speed = 2, .motor_max = 50},
+                                                              .second_angle = {.upper = 0.5}});
   system.bodies().set_angular_velocity(block, {0, 1, 0});
   double largest = 0;
   run(system, 1.5, 1.0 / 240,
@@ -228,7 +229,8 @@ TEST(Orientation, a_block_falls_freely_without_turning) {
     system.particles().apply_force(particles[7], {1, 0, 0});
     (void)system.step(1.0 / 120);
   }
-  EXPECT_NEAR(norm(system.particles().position(particles[7]) - system.particles().position(particles[0]) - arm), 0, 1e-9);
+  EXPECT_NEAR(norm(system.particles().position(particles[7]) - system.particles().position(particles[0]) - arm), 0,
+              1e-9);
   EXPECT_NEAR(system.momentum().x, 1, 1e-9);
 }
 
@@ -238,7 +240,9 @@ TEST(Rod, two_points_keep_their_distance_and_it_tells_the_centripetal_force) {
   const ParticleId p = system.particles().create(a, {1, 0, 0}, 2, {0, 3, 0}),
                    q = system.particles().create(b, {-1, 0, 0}, 2, {0, -3, 0});
   const ConstraintId rod = system.joints().create(DistanceSpec{.kind = ConstraintKind::rod, .p = p, .q = q});
-  run(system, 1, 1e-3, [&](const StepReport&) { EXPECT_NEAR(norm(system.particles().position(p) - system.particles().position(q)), 2, 1e-9); });
+  run(system, 1, 1e-3, [&](const StepReport&) {
+    EXPECT_NEAR(norm(system.particles().position(p) - system.particles().position(q)), 2, 1e-9);
+  });
   EXPECT_NEAR(norm(system.joints().state(rod).force), 2 * 9.0, 1e-3);
 }
 
@@ -304,7 +308,8 @@ TEST(Motor, a_strong_one_does_not_ring_about_its_speed) {
       .kind = ConstraintKind::revolute, .a = block, .axis = {0, 0, 1}, .angle = {.motor_speed = 3, .motor_max = 1e4}});
   int step = 0;
   run(system, 1, 1.0 / 120, [&](const StepReport&) {
-    if (++step == 60) system.joints().set_coordinate(joint, JointCoordinate::angle, {.motor_speed = -2, .motor_max = 1e4});
+    if (++step == 60)
+      system.joints().set_coordinate(joint, JointCoordinate::angle, {.motor_speed = -2, .motor_max = 1e4});
     EXPECT_NEAR(system.joints().state(joint).speed[0], step <= 60 ? 3 : -2, 0.01) << step;
   });
 }
@@ -328,10 +333,10 @@ TEST(Friction, a_block_on_an_incline_sticks_below_the_threshold_and_slides_above
     const double slope = 0.5;  // m g sin = 9.4 N
     const BodyId block = make_block(system, {0, 0, 0}, {0.2, 0.1, 0.3}, 2);
     const ConstraintId joint = system.joints().create(JointSpec{.kind = ConstraintKind::prismatic,
-                                                                  .a = block,
-                                                                  .at = {},
-                                                                  .axis = {std::cos(slope), -std::sin(slope), 0},
-                                                                  .slide = {.friction = friction}});
+                                                                .a = block,
+                                                                .at = {},
+                                                                .axis = {std::cos(slope), -std::sin(slope), 0},
+                                                                .slide = {.friction = friction}});
     run(system, 1, 1.0 / 240);
     const double pull = 2 * g * std::sin(slope);
     EXPECT_NEAR(system.joints().state(joint).speed[1], friction > pull ? 0 : (pull - friction) / 2, 1e-5);
@@ -403,9 +408,9 @@ TEST(Path, a_corner_of_a_polyline_is_no_hiccup) {
   System system{SystemOptions{.gravity = {}}};
   const ParticleId p = system.particles().create(system.bodies().create(), {0.5, 0, 0}, 1, {2, 0, 0});
   system.joints().create(PathSpec{.particle = p,
-                                    .curve = CurveKind::polyline,
-                                    .points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
-                                    .closed = true});
+                                  .curve = CurveKind::polyline,
+                                  .points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                                  .closed = true});
   run(system, 5, 1.0 / 120, [&](const StepReport& report) {
     EXPECT_EQ(report.fallbacks, 0);
     EXPECT_NEAR(norm(system.particles().velocity(p)), 2, 0.02);
@@ -417,9 +422,9 @@ TEST(Path, moves_with_its_body_and_pushes_it) {
   const BodyId rail = make_block(system, {0, 0, 0}, {2, 0.1, 0.1}, 3);
   const ParticleId p = system.particles().create(system.bodies().create(), {-1, 0, 0}, 1, {1, 0.5, 0.2});
   const ConstraintId path = system.joints().create(PathSpec{.particle = p,
-                                                              .body = rail,
-                                                              .points = {{-1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}},
-                                                              .slide = {.motor_speed = 1, .motor_max = 0.1}});
+                                                            .body = rail,
+                                                            .points = {{-1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}},
+                                                            .slide = {.motor_speed = 1, .motor_max = 0.1}});
   const Vec3 momentum = system.momentum(), spin = system.angular_momentum();
   run(system, 1, 1.0 / 120, [&](const StepReport&) { EXPECT_LT(system.joints().state(path).gap, 1e-8); });
   EXPECT_NEAR(norm(system.momentum() - momentum), 0, 1e-10);
@@ -467,8 +472,7 @@ TEST(Surface, with_sharp_edges_keeps_a_point_on_one_side_only) {
   for (const Shape& shape : {Shape{Box{}}, Shape{Cylinder{}}, Shape{Cone{}}}) {
     System system{SystemOptions{.gravity = {}}};
     const ParticleId p = system.particles().create(system.bodies().create(), {-0.2, 0, 0}, 1, {1.3, 0.4, 0.7});
-    EXPECT_THROW(system.joints().create(SurfaceSpec{.particle = p, .surface = {shape, {}, {}}}),
-                 std::invalid_argument);
+    EXPECT_THROW(system.joints().create(SurfaceSpec{.particle = p, .surface = {shape, {}, {}}}), std::invalid_argument);
     system.joints().create(SurfaceSpec{.kind = ConstraintKind::inside, .particle = p, .surface = {shape, {}, {}}});
     const double start = system.energy().kinetic;
     for (int i = 0; i < 300; ++i) {
@@ -522,9 +526,9 @@ TEST(SurfacePair, a_ball_rests_on_a_plane_and_another_on_it) {
   const ConstraintId floor = system.joints().create(SurfacePairSpec{
       .a = lower, .b = {}, .surface_a = {Sphere{0.5}, {0, 0.6, 0}, {}}, .surface_b = {HalfSpace{}, {}, {}}});
   const ConstraintId contact = system.joints().create(SurfacePairSpec{.a = upper,
-                                                                        .b = lower,
-                                                                        .surface_a = {Sphere{0.5}, {0, 1.7, 0}, {}},
-                                                                        .surface_b = {Sphere{0.5}, {0, 0.6, 0}, {}}});
+                                                                      .b = lower,
+                                                                      .surface_a = {Sphere{0.5}, {0, 1.7, 0}, {}},
+                                                                      .surface_b = {Sphere{0.5}, {0, 0.6, 0}, {}}});
   run(system, 4, 1.0 / 120);
   EXPECT_NEAR(system.bodies().center_of_mass(lower).y, 0.5, 1e-6);
   EXPECT_NEAR(system.bodies().center_of_mass(upper).y, 1.5, 1e-6);
@@ -566,8 +570,8 @@ TEST(Break, a_rope_snaps_when_its_load_is_too_much_and_the_report_names_it) {
   System system;
   const BodyId anchor = system.bodies().create({.kind = BodyKind::static_}), ball = system.bodies().create();
   const ParticleId p = system.particles().create(anchor, {}), q = system.particles().create(ball, {0, -1, 0}, 2);
-  const ConstraintId rope = system.joints().create(
-      DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .breaks = {.force = 2.1 * g}});
+  const ConstraintId rope =
+      system.joints().create(DistanceSpec{.kind = ConstraintKind::rope, .p = p, .q = q, .breaks = {.force = 2.1 * g}});
   run(system, 0.5, 1.0 / 120, [&](const StepReport& report) { EXPECT_TRUE(report.broken.empty()); });
   system.particles().apply_force(q, {0, -1, 0});
   EXPECT_TRUE(system.step(1.0 / 120).broken.empty());
@@ -581,7 +585,8 @@ TEST(Break, a_rope_snaps_when_its_load_is_too_much_and_the_report_names_it) {
   EXPECT_LT(system.particles().position(q).y, -2);
   system.joints().set_length(rope, 3), system.joints().set_active(rope, true);
   run(system, 2, 1.0 / 120);
-  EXPECT_FALSE(system.joints().state(rope).broken && norm(system.particles().position(q)) < 3.1) << "it holds again, or snaps again";
+  EXPECT_FALSE(system.joints().state(rope).broken && norm(system.particles().position(q)) < 3.1)
+      << "it holds again, or snaps again";
 }
 
 TEST(Break, a_weld_gives_way_to_a_moment) {
@@ -604,12 +609,14 @@ TEST(HingeForce, of_a_hanging_chain_is_the_weight_below_it) {
     for (const bool by_field : {false, true}) {
       System system{SystemOptions{.mode = mode, .damping = 5}};
       const auto chain = scenes::make_chain(system, {.links = 5, .link_mass = 0.4, .direction = {0, -1, 0}});
-      if (by_field) system.fields().create("uniform", {.parameters = {{"acceleration_y", -g}}, .replaces_gravity = true});
+      if (by_field)
+        system.fields().create("uniform", {.parameters = {{"acceleration_y", -g}}, .replaces_gravity = true});
       for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 120);
       for (std::size_t i = 0; i < 5; ++i) {
         const double below = 0.4 * g * static_cast<double>(5 - i);
         EXPECT_NEAR(norm(system.particles().hinge_force(chain.upper[i]) - Vec3{0, below, 0}), 0, 1e-6) << i;
-        EXPECT_NEAR(norm(system.particles().hinge_force(chain.lower[i]) - Vec3{0, -(below - 0.4 * g), 0}), 0, 1e-6) << i;
+        EXPECT_NEAR(norm(system.particles().hinge_force(chain.lower[i]) - Vec3{0, -(below - 0.4 * g), 0}), 0, 1e-6)
+            << i;
       }
     }
 }
@@ -636,7 +643,8 @@ TEST(HingeForce, tells_springs_and_constraints_from_hinges) {
   System system{SystemOptions{.mode = IntegrationMode::robust, .damping = 20}};
   const BodyId upper = make_block(system, {0, 1, 0}, {0.2, 1, 0.2}, 1);
   const BodyId lower = make_block(system, {0, 0, 0}, {0.2, 1, 0.2}, 3);
-  const ParticleId p = system.particles().create(upper, {0, 0.5, 0}, 0), q = system.particles().create(lower, {0, 0.5, 0}, 0);
+  const ParticleId p = system.particles().create(upper, {0, 0.5, 0}, 0),
+                   q = system.particles().create(lower, {0, 0.5, 0}, 0);
   system.joints().create(JointSpec{.kind = ConstraintKind::weld, .a = upper, .at = {0, 1.5, 0}});
   (void)system.edits().combine(p, q);
   const ParticleId hook = system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {0, 2, 0});

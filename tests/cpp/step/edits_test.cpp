@@ -104,16 +104,19 @@ TEST(StaticBody, does_not_creep_under_a_load) {
   System system{SystemOptions{.mode = IntegrationMode::robust}};
   const auto chain =
       scenes::make_chain(system, {.links = 100, .nailed = false, .heavy_end = 1e6, .direction = {0, -1, 0}});
-  const ParticleId hook = system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {0, 0, 0}, 1e-3);
+  const ParticleId hook =
+      system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {0, 0, 0}, 1e-3);
   (void)system.edits().combine(hook, chain.upper[0]);
   for (int i = 0; i < 600; ++i) (void)system.step(1.0 / 60);
-  EXPECT_LT(norm(system.particles().position(hook)), 3e-8);  // as far as the nails' relative compliance of 1e-12 gives under 1e6 N
+  EXPECT_LT(norm(system.particles().position(hook)),
+            3e-8);  // as far as the nails' relative compliance of 1e-12 gives under 1e6 N
 }
 
 TEST(Combine, of_particles_that_do_not_give_way_is_refused_and_changes_nothing) {
   System system;
   const BodyId wall = system.bodies().create({.kind = BodyKind::static_}), link = system.bodies().create();
-  const ParticleId hook = system.particles().create(wall, {0, 1, 0}), eye = system.particles().create(link, {0.3, 0.8, 0});
+  const ParticleId hook = system.particles().create(wall, {0, 1, 0}),
+                   eye = system.particles().create(link, {0.3, 0.8, 0});
   system.particles().nail(eye);
   const auto hash = system.state_hash();
   EXPECT_THROW((void)system.edits().combine(hook, eye), std::invalid_argument);

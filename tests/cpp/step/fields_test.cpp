@@ -16,7 +16,7 @@ std::vector<ParticleId> scatter(System& system, int count, unsigned seed, double
   std::vector<ParticleId> list;
   for (int i = 0; i < count; ++i)
     list.push_back(system.particles().create(system.bodies().create(), size * Vec3{number(), number(), number()},
-                                          0.5 + 0.4 * number(), speed * Vec3{number(), number(), number()}));
+                                             0.5 + 0.4 * number(), speed * Vec3{number(), number(), number()}));
   return list;
 }
 
@@ -172,11 +172,12 @@ TEST(Field, a_function_sees_all_its_particles_and_is_switched_off_when_it_throws
   bool angry = false;
   std::size_t seen = 0;
   const FieldId field = system.fields().create(FieldFunction([&](const ParticleBatch& b) {
-                                              if (angry) throw std::runtime_error("enough");
-                                              seen = b.count;
-                                              for (std::size_t i = 0; i < 3 * b.count; ++i) b.force[i] = b.mass[i / 3];
-                                            }),
-                                            {"push", {}, {}, false});
+                                                 if (angry) throw std::runtime_error("enough");
+                                                 seen = b.count;
+                                                 for (std::size_t i = 0; i < 3 * b.count; ++i)
+                                                   b.force[i] = b.mass[i / 3];
+                                               }),
+                                               {"push", {}, {}, false});
   (void)system.step(0.5);
   EXPECT_EQ(seen, 3u);
   EXPECT_NEAR(norm(system.particles().velocity(particles[1]) - Vec3{0.5, 0.5, 0.5}), 0, 1e-12);
@@ -226,9 +227,9 @@ TEST(Pairs, are_the_same_written_restored_and_replayed) {
   for (const bool written : {false, true}) {
     System system(SystemOptions{.gravity = {}});
     (void)scatter(system, 200, 10, 1, 0.2);
-    const LawId law = written
-                          ? system.laws().create("energy = 0.5*k*where(r < d, r - d, 0)^2", {"", {{"k", 30}, {"d", 0.4}}})
-                          : system.laws().find("soft_repulsion");
+    const LawId law =
+        written ? system.laws().create("energy = 0.5*k*where(r < d, r - d, 0)^2", {"", {{"k", 30}, {"d", 0.4}}})
+                : system.laws().find("soft_repulsion");
     SharedLaw shared{law, {}, {}};
     if (!written) shared.parameters = {{"stiffness", 30}, {"length", 0.4}};
     system.record().start();
@@ -284,7 +285,8 @@ TEST(Groups, and_forces_refuse_bad_input) {
   refuses([&] { system.fields().create(FieldFunction{}); }, "needs a function");
   const SharedLaw morse{system.laws().find("morse"), {}, {}};
   refuses([&] { system.pairs().create(morse, {.cutoff = 1}); }, "need a value for length");
-  refuses([&] { system.pairs().create({system.laws().find("coulomb"), {}, {}}, {.cutoff = 0}); }, "cutoff must be positive");
+  refuses([&] { system.pairs().create({system.laws().find("coulomb"), {}, {}}, {.cutoff = 0}); },
+          "cutoff must be positive");
   refuses([&] { system.pairs().create({system.laws().find("coulomb"), {}, {}}, {.cutoff = NAN}); }, "cutoff");
   EXPECT_EQ(system.state_hash(), hash);
   const GroupId group = system.groups().create("a");

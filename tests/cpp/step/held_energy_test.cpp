@@ -38,13 +38,14 @@ struct Swarm {
     const BodyId rod = system.bodies().create();
     points.push_back(system.particles().create(rod, {5, 0, 0}));
     points.push_back(system.particles().create(rod, {6, 0, 0}));
-    pairs =
-        system.pairs().create({system.laws().find("coulomb"), {{"strength", 0.3}, {"softening", 0.2}}, {}}, {.cutoff = 50});
+    pairs = system.pairs().create({system.laws().find("coulomb"), {{"strength", 0.3}, {"softening", 0.2}}, {}},
+                                  {.cutoff = 50});
     well = system.fields().create("well", {.parameters = {{"center_x", 1}, {"strength", 3}, {"softening", 1}}});
     system.fields().create("attractor", {.parameters = {{"strength", 0.7}, {"range", 3}}});
-    system.fields().create("energy = 0.5*k*(x^2 + 2*y^2) + m*g*z; fx = -0*vx", {.parameters = {{"k", 0.4}, {"g", 0.3}}});
+    system.fields().create("energy = 0.5*k*(x^2 + 2*y^2) + m*g*z; fx = -0*vx",
+                           {.parameters = {{"k", 0.4}, {"g", 0.3}}});
     bond = system.bonds().create(points[0], points[27],
-                              SharedLaw{system.laws().find("spring"), {{"stiffness", 2}, {"length", 1}}, false});
+                                 SharedLaw{system.laws().find("spring"), {{"stiffness", 2}, {"length", 1}}, false});
   }
   Energy step(double h) {
     const StepReport report = system.step(h);

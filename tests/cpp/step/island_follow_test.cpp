@@ -48,7 +48,9 @@ struct MixedChain {
 
   MixedChain(unsigned seed, IntegrationMode mode) : system({.mode = mode}), random(seed) {
     constexpr int links = 300;
-    const auto joint = [](int i) { return Vec3{0.07 * i, 0.07 * (i % 2), 0.03 * (i % 3)}; };  // a straight one is singular
+    const auto joint = [](int i) {
+      return Vec3{0.07 * i, 0.07 * (i % 2), 0.03 * (i % 3)};
+    };  // a straight one is singular
     for (int i = 0; i < links; ++i) {
       chain.links.push_back(system.bodies().create());
       chain.upper.push_back(system.particles().create(chain.links.back(), joint(i), 0.05));
@@ -64,11 +66,11 @@ struct MixedChain {
     }
     system.particles().nail(chain.upper[0]);
     const ParticleId hook = system.particles().create(system.bodies().create({.kind = BodyKind::static_}),
-                                                   system.particles().position(chain.lower[299]) + Vec3{0, 0.2, 0});
+                                                      system.particles().position(chain.lower[299]) + Vec3{0, 0.2, 0});
     (void)system.joints().create(
         DistanceSpec{.kind = ConstraintKind::rope, .p = hook, .q = chain.lower[299], .length = 0.5});
     (void)system.bonds().create(chain.lower[100], chain.lower[140],
-                             SpringLaw{.stiffness = 40, .damping = 0.5, .length = 3});
+                                SpringLaw{.stiffness = 40, .damping = 0.5, .length = 3});
     (void)system.step(1.0 / 240);
   }
   enum Edit { cut, close, call_off, grab, let_go, damp, nail };
@@ -77,7 +79,8 @@ struct MixedChain {
     const std::size_t link = 2 + random() % 280;
     switch (choice[random() % choice.size()]) {
       case cut:
-        if (system.particles().ring(chain.upper[link]).size() > 1) (void)system.edits().separate(chain.lower[link - 1], chain.upper[link]);
+        if (system.particles().ring(chain.upper[link]).size() > 1)
+          (void)system.edits().separate(chain.lower[link - 1], chain.upper[link]);
         return;
       case close:
         if (loops.size() > 2) return;
@@ -87,14 +90,18 @@ struct MixedChain {
         if (loops.empty()) return;
         (void)system.edits().separate(chain.lower[loops.back()], chain.lower[loops.back() + 10]);
         return loops.pop_back();
-      case grab: return grips.push_back(system.grips().create(chain.links[link], {}, system.particles().position(chain.upper[link])));
+      case grab:
+        return grips.push_back(
+            system.grips().create(chain.links[link], {}, system.particles().position(chain.upper[link])));
       case let_go:
         if (grips.empty()) return;
         system.grips().destroy(grips.front());
         grips.erase(grips.begin());
         return;
       case damp: return system.bodies().set_damping(chain.links[link], random() % 2 ? 0.5 : 0);
-      case nail: system.particles().is_nailed(chain.upper[150]) ? system.particles().release(chain.upper[150]) : system.particles().nail(chain.upper[150]);
+      case nail:
+        system.particles().is_nailed(chain.upper[150]) ? system.particles().release(chain.upper[150])
+                                                       : system.particles().nail(chain.upper[150]);
     }
   }
 };
@@ -125,7 +132,8 @@ TEST(FollowingIsland, gives_what_an_island_that_is_built_anew_gives) {
 // Cuts by themselves: whatever projects velocities does so for all that is in one problem, pieces that were cut off too.
 TEST(FollowingIsland, gives_the_same_with_grips_closings_nails_joints_and_damping) {
   using enum MixedChain::Edit;
-  const std::vector<MixedChain::Edit> choices[] = {{cut, grab, let_go, damp}, {close, call_off, grab, let_go, damp, nail}};
+  const std::vector<MixedChain::Edit> choices[] = {{cut, grab, let_go, damp},
+                                                   {close, call_off, grab, let_go, damp, nail}};
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const auto mode = seed % 2 ? IntegrationMode::robust : IntegrationMode::energy_keeping;
     MixedChain followed(seed, mode), renewed(seed, mode);
@@ -142,14 +150,16 @@ TEST(FollowingIsland, gives_the_same_with_grips_closings_nails_joints_and_dampin
 TEST(FollowingIsland, keeps_a_rope_beside_a_cut) {
   const auto make = [](System& system, ConstraintId& rope) {
     auto chain = scenes::make_chain(system, {.links = 300});
-    const ParticleId hook = system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {30, 0.2, 0});
+    const ParticleId hook =
+        system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {30, 0.2, 0});
     rope = system.joints().create(
         DistanceSpec{.kind = ConstraintKind::rope, .p = hook, .q = chain.upper[299], .length = 0.5});
     for (int i = 0; i < 5; ++i) (void)system.step(1.0 / 120);
     (void)system.edits().separate(chain.lower[298], chain.upper[299]);
     return chain;
   };
-  System followed{SystemOptions{.mode = IntegrationMode::robust}}, renewed{SystemOptions{.mode = IntegrationMode::robust}};
+  System followed{SystemOptions{.mode = IntegrationMode::robust}},
+      renewed{SystemOptions{.mode = IntegrationMode::robust}};
   ConstraintId rope;
   const scenes::Chain chain = make(followed, rope);
   (void)make(renewed, rope);

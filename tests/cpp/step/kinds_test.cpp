@@ -141,7 +141,8 @@ TEST(Resting, what_sleeps_in_a_conflict_says_so_when_it_wakes) {
   const BodyId wall = system.bodies().create(), link = system.bodies().create();
   const ParticleId left = system.particles().create(wall, {0, 0, 0}, 1),
                    right = system.particles().create(wall, {1, 0, 0}, 1);
-  const ParticleId a = system.particles().create(link, {0, 0, 0}, 1), b = system.particles().create(link, {0.9, 0, 0}, 1);
+  const ParticleId a = system.particles().create(link, {0, 0, 0}, 1),
+                   b = system.particles().create(link, {0.9, 0, 0}, 1);
   (void)system.edits().combine(left, a);
   (void)system.edits().combine(right, b);
   system.bodies().set_kind(wall, BodyKind::static_);

@@ -34,8 +34,8 @@ struct Mesh {
     constexpr int n = 4;
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x)
-        particles.push_back(
-            system.particles().create(system.bodies().create(), {0.11 * x, 0.11 * y, 0.01 * ((x + y) % 2)}, 0.1 + 0.01 * x));
+        particles.push_back(system.particles().create(system.bodies().create(),
+                                                      {0.11 * x, 0.11 * y, 0.01 * ((x + y) % 2)}, 0.1 + 0.01 * x));
     for (int x = 0; x < n; ++x) system.particles().nail(particles[(n - 1) * n + x]);
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x) {
@@ -61,11 +61,11 @@ TEST(Law, is_the_same_force_on_all_ways_of_writing_it) {
       Mesh mesh(mode, [&](System& s, ParticleId p, ParticleId q) {
         if (way == ways.size())
           return s.bonds().create(p, q,
-                               ScriptedLaw{[](const BondState& b) {
-                                             const Vec3 d = b.position_q - b.position_p;
-                                             return (20 * (norm(d) - 0.1) / norm(d)) * d;
-                                           },
-                                           "scripted"});
+                                  ScriptedLaw{[](const BondState& b) {
+                                                const Vec3 d = b.position_q - b.position_p;
+                                                return (20 * (norm(d) - 0.1) / norm(d)) * d;
+                                              },
+                                              "scripted"});
         if (!law) law = ways[way](s);
         SharedLaw shared{*law, {}, false};
         if (way == 0) shared.parameters = {{"stiffness", 20}, {"length", 0.1}};
@@ -229,8 +229,8 @@ TEST(Law, a_function_that_throws_switches_off_the_bonds_of_its_law) {
   System system{SystemOptions{.gravity = {}}};
   const ParticleId p = system.particles().create(system.bodies().create(), {0, 0, 0});
   const ParticleId q = system.particles().create(system.bodies().create(), {1, 0, 0});
-  const LawId law =
-      system.laws().create(BatchFunction([](const BondBatch&) { throw std::runtime_error("no wind today"); }), {"wind"});
+  const LawId law = system.laws().create(
+      BatchFunction([](const BondBatch&) { throw std::runtime_error("no wind today"); }), {"wind"});
   const BondId a = system.bonds().create(p, q, SharedLaw{law}), b = system.bonds().create(q, p, SharedLaw{law});
   const StepReport report = system.step(0.01);
   EXPECT_EQ(report.switched_off, (std::vector<BondId>{a, b}));
@@ -243,8 +243,8 @@ TEST(Law, parameters_change_while_it_runs) {
   const ParticleId p = system.particles().create(system.bodies().create(), {0, 0, 0});
   const ParticleId q = system.particles().create(system.bodies().create(), {1.5, 0, 0}, 2);
   system.particles().nail(p);
-  const LawId law =
-      system.laws().create("energy = 0.5*k*(r - r0)^2; force = -c*v", {"", {{"k", 100}, {"r0", std::nan("")}, {"c", 5}}});
+  const LawId law = system.laws().create("energy = 0.5*k*(r - r0)^2; force = -c*v",
+                                         {"", {{"k", 100}, {"r0", std::nan("")}, {"c", 5}}});
   const BondId bond = system.bonds().create(p, q, SharedLaw{law});
   EXPECT_EQ(system.bonds().parameters(bond).at(1).value, 1.5) << "NaN: the distance at creation";
   (void)system.step(0.01);
@@ -307,7 +307,8 @@ TEST(Law, bad_ones_are_refused_before_anything_changes) {
   const LawId morse = system.laws().find("morse");
   refuses([&] { system.bonds().create(p, q, SharedLaw{morse, {{"stiffness", 1}}}); }, "has no parameter 'stiffness'");
   refuses([&] { system.bonds().create(p, q, SharedLaw{morse, {{"width", -1}}}); }, "width must be positive");
-  refuses([&] { system.bonds().create(p, q, SharedLaw{system.laws().find("spring"), {{"stiffness", -1}}}); }, "zero or more");
+  refuses([&] { system.bonds().create(p, q, SharedLaw{system.laws().find("spring"), {{"stiffness", -1}}}); },
+          "zero or more");
   refuses([&] { system.laws().destroy(morse); }, "predefined");
   EXPECT_EQ(system.state_hash(), hash);
 
@@ -339,7 +340,8 @@ TEST(Bonds, tell_what_they_carry_whichever_way_they_are_written) {
     const BondId bond = system.bonds().create(p, q, laws[way]);
     for (int i = 0; i < 240; ++i) (void)system.step(1.0 / 120);
     EXPECT_NEAR(system.bonds().force(bond).y, -weight, 1e-6) << way;
-    EXPECT_NEAR(norm(system.bonds().force(bond)), norm(system.particles().nail_force(p)) - 9.81, 1e-6) << way;  // and the weight of p
+    EXPECT_NEAR(norm(system.bonds().force(bond)), norm(system.particles().nail_force(p)) - 9.81, 1e-6)
+        << way;  // and the weight of p
     system.bonds().set_active(bond, false);
     EXPECT_EQ(norm(system.bonds().force(bond)), 0);
   }

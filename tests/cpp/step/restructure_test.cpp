@@ -27,8 +27,8 @@ struct WorkedExample : ::testing::Test {
   BondId b8_9, b10_11;
 
   WorkedExample() {
-    a = system.bodies().create(), b = system.bodies().create(), c = system.bodies().create(), d = system.bodies().create(),
-    e = system.bodies().create();
+    a = system.bodies().create(), b = system.bodies().create(), c = system.bodies().create(),
+    d = system.bodies().create(), e = system.bodies().create();
     a1 = system.particles().create(a, {0, 0, 0}, 1), a2 = system.particles().create(a, {1, 1, 0}, 2);
     a3 = system.particles().create(a, {2, 0, 0.3}, 1.5);
     b3 = system.particles().create(b, {2, 0, 0.3}, 0.5), b4 = system.particles().create(b, {3, 0.5, 0}, 1);

@@ -114,7 +114,9 @@ class Editor {
       case 13:
         if (!system.joints().ids().empty()) system.joints().set_active(any(system.joints().ids()), random_() % 2);
         break;
-      case 14: system.bodies().set_kind(system.particles().body(p), random_() % 2 ? BodyKind::static_ : BodyKind::dynamic); break;
+      case 14:
+        system.bodies().set_kind(system.particles().body(p), random_() % 2 ? BodyKind::static_ : BodyKind::dynamic);
+        break;
       case 15: system.bodies().set_active(system.particles().body(p), random_() % 2); break;
     }
   }

@@ -17,7 +17,8 @@ class Playground {
     const BodyId molecule = system.bodies().create();
     ParticleId last{};
     for (int i = 0; i < 6; ++i) {
-      const ParticleId atom = system.particles().create(molecule, {0.5 * i, number(-1, 1), number(-1, 1)}, number(0.5, 2));
+      const ParticleId atom =
+          system.particles().create(molecule, {0.5 * i, number(-1, 1), number(-1, 1)}, number(0.5, 2));
       if (i > 0) (void)system.cosmetic_bonds().create(last, atom);
       last = atom;
     }
@@ -35,18 +36,20 @@ class Playground {
                                       Cylinder{number(0.05, 0.3), number(0.2, 1)}, Torus{0.4, 0.1}};
     const auto which = static_cast<std::size_t>(number(0, 3.999));
     (void)system.bodies().create(shapes[which], {.mass = number(0.3, 3),
-                                             .position = vector(3),
-                                             .orientation = {number(-1, 1), number(-1, 1), number(-1, 1), 1.5},
-                                             .velocity = vector(1),
-                                             .spin = vector(2),
-                                             .attachments = {vector(0.6), vector(0.6)}});
+                                                 .position = vector(3),
+                                                 .orientation = {number(-1, 1), number(-1, 1), number(-1, 1), 1.5},
+                                                 .velocity = vector(1),
+                                                 .spin = vector(2),
+                                                 .attachments = {vector(0.6), vector(0.6)}});
   }
 
   /// Edits that must keep momentum and angular momentum, unless the report says otherwise.
   RestructureReport edit() {
     const BodyId body = any(system.bodies().ids());
     switch (static_cast<int>(number(0, 5))) {
-      case 0: return system.edits().combine(any(system.particles().ids()), any(system.particles().ids()), number(0, 1) < 0.3 ? 0.05 : 0.0);
+      case 0:
+        return system.edits().combine(any(system.particles().ids()), any(system.particles().ids()),
+                                      number(0, 1) < 0.3 ? 0.05 : 0.0);
       case 1: return system.edits().separate(any(system.particles().ids()), any(system.particles().ids()));
       case 2: return system.edits().combine(body, any(system.bodies().ids()));
       case 3: return system.edits().separate(body, any(system.bodies().parts(body)));
@@ -106,14 +109,17 @@ class Playground {
         system.bodies().set_kind(body, kinds[static_cast<std::size_t>(number(0, 3.99))]);
         break;
       }
-      default: system.bodies().set_pose(body, system.bodies().center_of_mass(body) + vector(0.2), {number(-1, 1), 0.3, 0.1, 1});
+      default:
+        system.bodies().set_pose(body, system.bodies().center_of_mass(body) + vector(0.2),
+                                 {number(-1, 1), 0.3, 0.1, 1});
     }
   }
 
   void join(BodyId body) {
     constexpr std::array kinds{ConstraintKind::revolute, ConstraintKind::ball, ConstraintKind::weld,
                                ConstraintKind::cylindrical, ConstraintKind::universal};
-    JointSpec joint{.a = body, .b = any(system.bodies().ids()), .at = system.bodies().center_of_mass(body), .axis = vector(1)};
+    JointSpec joint{
+        .a = body, .b = any(system.bodies().ids()), .at = system.bodies().center_of_mass(body), .axis = vector(1)};
     joint.kind = kinds[static_cast<std::size_t>(number(0, 4.99))];
     joint.second_axis = cross(joint.axis, vector(1));
     if (joint.kind == ConstraintKind::revolute && number(0, 1) < 0.5) joint.angle.stiffness = 3;

@@ -71,7 +71,9 @@ Mesh box_mesh(const Vec3& low, const Vec3& size) {
 TEST(Solid, inertia_of_every_shape_is_the_textbooks) {
   System system;
   const double m = 3;
-  const auto inertia = [&](const Shape& shape) { return system.bodies().inertia(system.bodies().create(shape, {.mass = m})); };
+  const auto inertia = [&](const Shape& shape) {
+    return system.bodies().inertia(system.bodies().create(shape, {.mass = m}));
+  };
   expect_diagonal(inertia(Sphere{0.7}), 0.4 * m * 0.49 * Vec3{1, 1, 1}, 1e-14);
   expect_diagonal(inertia(Box{{1, 2, 3}}), m / 12 * Vec3{4 + 9, 1 + 9, 1 + 4}, 1e-14);
   const double a2 = 0.3 * 0.3, l2 = 2.0 * 2.0;
@@ -193,11 +195,12 @@ TEST(Solid, attachments_anywhere_keep_mass_center_inertia_and_motion) {
     const Vec3 size{0.01 + std::abs(number(random)), 0.01 + std::abs(number(random)), 0.01 + std::abs(number(random))};
     const BodyId body =
         system.bodies().create(Box{size}, {.mass = 2,
-                                       .orientation = {number(random), number(random), number(random), 1.1},
-                                       .velocity = {1, 0, 2},
-                                       .spin = {number(random), number(random), number(random)}});
+                                           .orientation = {number(random), number(random), number(random), 1.1},
+                                           .velocity = {1, 0, 2},
+                                           .spin = {number(random), number(random), number(random)}});
     const Matrix3 before = system.bodies().inertia(body);
-    const Vec3 momentum = system.momentum(), angular = system.angular_momentum(), center = system.bodies().center_of_mass(body);
+    const Vec3 momentum = system.momentum(), angular = system.angular_momentum(),
+               center = system.bodies().center_of_mass(body);
     const Quaternion orientation = system.bodies().orientation(body);
     for (int i = 0; i < 6; ++i) {
       const double far = i == 5 ? 100 : 1;

@@ -146,7 +146,8 @@ TEST(SolverOfTheStep, that_fails_or_throws_is_replaced_and_named) {
     const StepReport report = other.step(dt);
     ASSERT_EQ(report.warnings.size(), 1u);
     EXPECT_EQ(report.warnings[0], "the solver hopeless found no root in 1 of 1 solves; the built-in one took over");
-    for (const ParticleId p : direct.particles().ids()) EXPECT_EQ(direct.particles().position(p), other.particles().position(p));
+    for (const ParticleId p : direct.particles().ids())
+      EXPECT_EQ(direct.particles().position(p), other.particles().position(p));
   }
 }
 

@@ -25,7 +25,8 @@ struct Molecule {
 
   explicit Molecule(const std::vector<Vec3>& places) {
     for (const Vec3& x : places) {
-      atoms.push_back(system.particles().create(body, x, 1 + 0.1 * atoms.size(), Vec3{1, 0, 0} + cross({0.3, -1, 2}, x)));
+      atoms.push_back(
+          system.particles().create(body, x, 1 + 0.1 * atoms.size(), Vec3{1, 0, 0} + cross({0.3, -1, 2}, x)));
       if (atoms.size() > 1) bonds.push_back(system.cosmetic_bonds().create(atoms[atoms.size() - 2], atoms.back()));
     }
   }
@@ -125,7 +126,8 @@ TEST(Split, hinges_and_bonds_of_the_pieces_stay) {
   Molecule m(zigzag);
   System& system = m.system;
   const BodyId other = system.bodies().create();
-  const ParticleId end = system.particles().create(other, {5, 0.5, 1}), far = system.particles().create(other, {6, 0, 1});
+  const ParticleId end = system.particles().create(other, {5, 0.5, 1}),
+                   far = system.particles().create(other, {6, 0, 1});
   (void)system.edits().combine(m.atoms[5], end);
   const BondId bond = system.bonds().create(m.atoms[0], m.atoms[5], SpringLaw{});
   (void)system.step(0.01);
@@ -157,7 +159,8 @@ TEST(Split, solids_are_never_torn_but_their_compounds_are) {
   EXPECT_EQ(system.bodies().solids(a).size(), 1u);
   ASSERT_EQ(system.bodies().solids(ball).size(), 1u);
   EXPECT_TRUE(std::holds_alternative<Sphere>(system.bodies().solids(ball)[0].shape));
-  EXPECT_NEAR(system.bodies().inertia(ball)[0].x, 0.4 * system.bodies().mass(ball) * 0.25, 1e-12 * system.bodies().mass(ball));
+  EXPECT_NEAR(system.bodies().inertia(ball)[0].x, 0.4 * system.bodies().mass(ball) * 0.25,
+              1e-12 * system.bodies().mass(ball));
   expect_near(system.angular_momentum(), angular, 1e-9);
   EXPECT_TRUE(system.validate().empty());
 }
@@ -225,7 +228,8 @@ TEST(Split, net_force_and_torque_are_what_acts_from_outside) {
     const Vec3 arm = system.particles().position(corner) - system.bodies().center_of_mass(plate);
     expect_near(system.bodies().net_torque(plate), cross(arm, force), mode == IntegrationMode::robust ? 1e-6 : 0.02);
     if (mode == IntegrationMode::energy_keeping)  // the change of angular momentum, to the last digit
-      expect_near(system.bodies().net_torque(plate), (1 / h) * (system.bodies().angular_momentum(plate) - before), 1e-6);
+      expect_near(system.bodies().net_torque(plate), (1 / h) * (system.bodies().angular_momentum(plate) - before),
+                  1e-6);
   }
 }
 
@@ -252,7 +256,8 @@ struct LockedPair {
 
   explicit LockedPair(IntegrationMode mode, const Vec3& gravity = {}) : system({.gravity = gravity, .mode = mode}) {
     a = system.bodies().create(Box{{1, 0.4, 0.2}}, {.mass = 3, .attachments = {{-0.5, 0.2, 0.1}}});
-    b = system.bodies().create(Box{{1, 0.4, 0.2}}, {.mass = 2, .position = {1, 0, 0}, .attachments = {{0.5, 0.2, -0.1}}});
+    b = system.bodies().create(Box{{1, 0.4, 0.2}},
+                               {.mass = 2, .position = {1, 0, 0}, .attachments = {{0.5, 0.2, -0.1}}});
     (void)system.edits().combine(a, b);
   }
   ParticleId corner(BodyId part) const { return system.bodies().particles(a, part).back(); }
@@ -269,7 +274,8 @@ TEST(Outside, a_push_on_one_of_two_locked_blocks_is_force_and_torque_on_that_one
     system.particles().apply_force(pair.corner(pair.b), push);
     (void)system.step(h);
     expect_near(system.bodies().outside_force(pair.a, pair.b), push, 1e-12);
-    expect_near(system.bodies().outside_torque(pair.a, pair.b), cross(arm, push), 1e-4);  // turned by 1e-5 within the step
+    expect_near(system.bodies().outside_torque(pair.a, pair.b), cross(arm, push),
+                1e-4);  // turned by 1e-5 within the step
     expect_near(system.bodies().outside_force(pair.a, pair.a), {}, 1e-12);
     expect_near(system.bodies().outside_torque(pair.a, pair.a), {}, 1e-12);
     // What the lock carries is what moves the other block, by the motion of the two as one.
@@ -314,7 +320,8 @@ TEST(Outside, whatever_holds_a_body_its_parts_forces_add_up_to_its_net_force) {
         for (const ParticleId p : system.bodies().particles(pair.a, part))
           mass += system.particles().mass(p), center += system.particles().mass(p) * system.particles().position(p);
         force += f;
-        moments += system.bodies().outside_torque(pair.a, part) + cross((1 / mass) * center - system.bodies().center_of_mass(pair.a), f);
+        moments += system.bodies().outside_torque(pair.a, part) +
+                   cross((1 / mass) * center - system.bodies().center_of_mass(pair.a), f);
       }
       expect_near(force, system.bodies().net_force(pair.a), 1e-4);
       expect_near(moments, system.bodies().net_torque(pair.a), 1e-4);
@@ -335,7 +342,8 @@ TEST(Split, a_part_of_massless_places_alone_cannot_be_left_behind) {
   System system;
   const BodyId plate = system.bodies().create(), other = system.bodies().create();
   const ParticleId own = system.particles().create(plate, {0, 0, 0});
-  for (const Vec3& x : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{1, 1, 1}}) system.particles().create(other, x);
+  for (const Vec3& x : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{1, 1, 1}})
+    system.particles().create(other, x);
   (void)system.edits().combine(plate, other);
   system.particles().create(plate, {0.2, 0.2, 0.2}, 0);
   system.particles().destroy(own);

@@ -89,16 +89,17 @@ Scene::Script build_calm(System& system) {
   const ParticleId bead = system.particles().create(system.bodies().create(), {2, 2, 2});
   system.joints().create(PathSpec{.particle = bead, .points = {{2, 2, 2}, {3, 2, 2}, {4, 3, 2}}});
   system.joints().create(DistanceSpec{.kind = ConstraintKind::rope, .p = bead, .q = corner, .length = 9});
-  system.joints().create(
-      SurfaceSpec{.kind = ConstraintKind::inside, .particle = bead, .surface = {Sphere{9}, {}, {}}});
+  system.joints().create(SurfaceSpec{.kind = ConstraintKind::inside, .particle = bead, .surface = {Sphere{9}, {}, {}}});
   for (int i = 0; i < 40; ++i)
-    system.particles().create(system.bodies().create(), {-2 + 0.3 * (i % 7), 5 + 0.3 * (i / 7), 0}, 1, {0.1 * (i % 3), 0, 0});
+    system.particles().create(system.bodies().create(), {-2 + 0.3 * (i % 7), 5 + 0.3 * (i / 7), 0}, 1,
+                              {0.1 * (i % 3), 0, 0});
   const auto loose = system.particles().ids();
   for (const bool implicit : {true, false})
     system.bonds().create(loose[loose.size() - 1], loose[loose.size() - 9],
-                       SharedLaw{system.laws().create("energy = 3*(r - 1)^4; force = -v"), {}, implicit});
-  system.bonds().create(loose[loose.size() - 2], loose[loose.size() - 3],
-                     ScriptedLaw{[](const BondState&) { return Vec3{0, 0.1, 0}; }, "a name that is not a short one"});
+                          SharedLaw{system.laws().create("energy = 3*(r - 1)^4; force = -v"), {}, implicit});
+  system.bonds().create(
+      loose[loose.size() - 2], loose[loose.size() - 3],
+      ScriptedLaw{[](const BondState&) { return Vec3{0, 0.1, 0}; }, "a name that is not a short one"});
   system.fields().create("current");
   system.fields().create("fx = sin(x + t)*m; fy = exp(-y^2)");
   system.pairs().create({system.laws().find("soft_repulsion"), {{"length", 0.5}}, {}}, {.cutoff = 0.5});
@@ -110,7 +111,8 @@ Scene::Script build_whirl(System& system) {
   system.set_mode(IntegrationMode::energy_keeping);  // the other one has nothing to fall back to
   system.set_gravity({});
   const BodyId rod = system.bodies().create();
-  const ParticleId left = system.particles().create(rod, {-0.5, 0, 0}), right = system.particles().create(rod, {0.5, 0, 0});
+  const ParticleId left = system.particles().create(rod, {-0.5, 0, 0}),
+                   right = system.particles().create(rod, {0.5, 0, 0});
   return [&system, left, right](int step) {
     if (step != 0) return;
     const Vec3 along = system.particles().position(right) - system.particles().position(left);
@@ -159,7 +161,8 @@ Scene::Script build_breaking_hinge(System& system) {
   const auto chain = hanging_chain(system, 4);
   return [&system, chain](int step) {
     if (step == 0) {
-      if (system.particles().ring(chain.upper[2]).size() == 1) (void)system.edits().combine(chain.lower[1], chain.upper[2]);
+      if (system.particles().ring(chain.upper[2]).size() == 1)
+        (void)system.edits().combine(chain.lower[1], chain.upper[2]);
       system.particles().set_break_force(chain.upper[2], 50);
     }
     if (step == 10) system.particles().apply_force(chain.lower[3], {0, -100, 0});
@@ -241,9 +244,9 @@ Scene::Script build_bond_that_throws(System& system) {
   const Weight weight(system);
   const auto fuse = std::make_shared<Fuse>();
   const BondId bond = system.bonds().create(weight.hook, weight.weight, ScriptedLaw{[fuse](const BondState&) {
-                                           fuse->check();
-                                           return Vec3{0, -9.81, 0};
-                                         }});
+                                              fuse->check();
+                                              return Vec3{0, -9.81, 0};
+                                            }});
   return [&system, fuse, bond](int step) {
     if (step == 0) fuse->is_blown = false, system.bonds().set_active(bond, true);
     if (step == 5) fuse->is_blown = true;
@@ -295,13 +298,13 @@ Scene::Script build_surface_that_fails(System& system) {
   const BodyId rod = system.bodies().create();
   const ParticleId low = system.particles().create(rod, {0, 0, 0}), high = system.particles().create(rod, {0, 1, 0});
   const ConstraintId floor = system.joints().create(SurfaceSpec{.kind = ConstraintKind::outside,
-                                                                  .particle = low,
-                                                                  .surface = {SurfaceFunction{[fuse](const Vec3& r) {
-                                                                                fuse->check();
-                                                                                return r.y;
-                                                                              }},
-                                                                              {},
-                                                                              {}}});
+                                                                .particle = low,
+                                                                .surface = {SurfaceFunction{[fuse](const Vec3& r) {
+                                                                              fuse->check();
+                                                                              return r.y;
+                                                                            }},
+                                                                            {},
+                                                                            {}}});
   return [&system, fuse, low, high, floor](int step) {
     if (step == 0) {
       fuse->is_blown = false;
@@ -319,11 +322,11 @@ Scene::Script build_edits_from_within(System& system) {
   const auto chain = hanging_chain(system, 6);
   const auto step_now = std::make_shared<int>(0);
   system.bonds().create(chain.upper[0], chain.lower[5],
-                     ScriptedLaw{[&system, step_now, p = chain.lower[2], q = chain.upper[3]](const BondState&) {
-                       if (*step_now == 5) (void)system.edits().separate(p, q);
-                       if (*step_now == 8) (void)system.edits().combine(p, q);
-                       return Vec3{};
-                     }});
+                        ScriptedLaw{[&system, step_now, p = chain.lower[2], q = chain.upper[3]](const BondState&) {
+                          if (*step_now == 5) (void)system.edits().separate(p, q);
+                          if (*step_now == 8) (void)system.edits().combine(p, q);
+                          return Vec3{};
+                        }});
   return [step_now](int step) { *step_now = step; };
 }
 
@@ -334,9 +337,9 @@ Scene::Script build_edit_that_is_refused(System& system) {
                    right = system.particles().create(system.bodies().create({.kind = BodyKind::static_}), {6, 0, 0});
   const auto step_now = std::make_shared<int>(0);
   system.bonds().create(weight.hook, weight.weight, ScriptedLaw{[&system, step_now, left, right](const BondState&) {
-                       if (*step_now == 5) (void)system.edits().combine(left, right);
-                       return Vec3{};
-                     }});
+                          if (*step_now == 5) (void)system.edits().combine(left, right);
+                          return Vec3{};
+                        }});
   return [step_now](int step) { *step_now = step; };
 }
 

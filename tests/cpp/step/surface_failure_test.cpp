@@ -52,7 +52,8 @@ TEST_P(FailingSurface, leaves_the_step_as_it_is_without_the_surface) {
     for (int i = 0; i < 30; ++i) {
       EXPECT_LT(report.worst_gap, 1e-6);
       for (std::size_t p = 0; p < 2; ++p) {
-        const Vec3 off = system.particles().position(system.particles().ids()[p]) - without.particles().position(without.particles().ids()[p]);
+        const Vec3 off = system.particles().position(system.particles().ids()[p]) -
+                         without.particles().position(without.particles().ids()[p]);
         EXPECT_LT(norm(off), 1e-3) << "it falls as if nothing had been there";
       }
       EXPECT_TRUE(system.step(1.0 / 60).switched_off_constraints.empty());

@@ -45,14 +45,15 @@ TEST(Body, of_any_rank_keeps_its_shape_momentum_and_energy_while_it_tumbles) {
     const Vec3 spin{0.7, 1.1, -0.4}, drift{0.1, 0.2, 0.3};
     std::vector<ParticleId> particles;
     for (std::size_t i = 0; i < shape.size(); ++i)
-      particles.push_back(system.particles().create(body, shape[i], 1 + 0.3 * double(i), drift + cross(spin, shape[i])));
+      particles.push_back(
+          system.particles().create(body, shape[i], 1 + 0.3 * double(i), drift + cross(spin, shape[i])));
     const Vec3 momentum = system.momentum(), angular_momentum = system.angular_momentum();
     const double energy = system.energy().total();
     run(system, 3);
     for (std::size_t i = 0; i < shape.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
-        EXPECT_NEAR(norm(system.particles().position(particles[i]) - system.particles().position(particles[j])), norm(shape[i] - shape[j]),
-                    1e-9);
+        EXPECT_NEAR(norm(system.particles().position(particles[i]) - system.particles().position(particles[j])),
+                    norm(shape[i] - shape[j]), 1e-9);
     EXPECT_NEAR(norm(system.momentum() - momentum), 0, 1e-11);
     EXPECT_NEAR(norm(system.angular_momentum() - angular_momentum), 0, 1e-9);
     EXPECT_NEAR(system.energy().total(), energy, 1e-9 * (1 + energy));
@@ -144,7 +145,9 @@ TEST(Nail, that_moves_carries_the_chain_along_and_does_work) {
     const double t = i / 120.0;
     system.particles().nail(chain.upper[0], {0.3 * std::sin(3 * t), 0.3 * std::sin(2 * t), 0});
     ASSERT_LT(system.step(1.0 / 120).worst_gap, 1e-9);
-    ASSERT_NEAR(norm(system.particles().position(chain.upper[0]) - Vec3{0.3 * std::sin(3 * t), 0.3 * std::sin(2 * t), 0}), 0, 1e-9);
+    ASSERT_NEAR(
+        norm(system.particles().position(chain.upper[0]) - Vec3{0.3 * std::sin(3 * t), 0.3 * std::sin(2 * t), 0}), 0,
+        1e-9);
   }
   EXPECT_NE(system.energy().external_work, 0);
   system.particles().release(chain.upper[0]);
@@ -175,12 +178,13 @@ TEST(Spring, with_critical_damping_creeps_home_however_short_the_step) {
     const ParticleId end = system.particles().create(system.bodies().create(), {1.1, 0, 0}, mass);
     system.particles().nail(anchor);
     system.bonds().create(anchor, end,
-                       SpringLaw{.stiffness = mass * omega * omega, .damping = 2 * mass * omega, .length = 1});
+                          SpringLaw{.stiffness = mass * omega * omega, .damping = 2 * mass * omega, .length = 1});
     const int steps = static_cast<int>(std::lround(3 / dt));
     for (int i = 1; i <= steps; ++i) {
       (void)system.step(dt);
       const double t = i * dt;
-      ASSERT_NEAR(system.particles().position(end).x, 1 + 0.1 * std::exp(-omega * t) * (1 + omega * t), 0.16 * dt * dt) << t;
+      ASSERT_NEAR(system.particles().position(end).x, 1 + 0.1 * std::exp(-omega * t) * (1 + omega * t), 0.16 * dt * dt)
+          << t;
     }
   }
 }
@@ -221,11 +225,11 @@ TEST(ScriptedBond, acts_on_both_ends_and_sees_the_state) {
                    q = system.particles().create(system.bodies().create(), {2, 0, 0});
   int calls = 0;
   system.bonds().create(p, q,
-                     ScriptedLaw{[&](const BondState& s) {
-                                   ++calls;
-                                   return 0.5 * (s.position_q - s.position_p);
-                                 },
-                                 "pull"});
+                        ScriptedLaw{[&](const BondState& s) {
+                                      ++calls;
+                                      return 0.5 * (s.position_q - s.position_p);
+                                    },
+                                    "pull"});
   (void)system.step(0.1);
   EXPECT_EQ(calls, 1);
   EXPECT_NEAR(system.momentum().x, 0, 1e-13);
@@ -254,18 +258,18 @@ TEST(ScriptedBond, may_ask_for_edits_which_come_right_after_the_step) {
   const ParticleId other = system.particles().create(system.bodies().create(), {5, 5, 5});
   bool asked = false, refused = false;
   system.bonds().create(other, chain.lower[2], ScriptedLaw{[&](const BondState&) {
-                       if (!asked) {
-                         EXPECT_TRUE(system.edits().separate(chain.lower[0], chain.upper[1]).queued);
-                         EXPECT_EQ(system.bodies().articulate_count(), 2u);
-                         try {
-                           system.bodies().create();
-                         } catch (const std::logic_error&) {
-                           refused = true;
-                         }
-                       }
-                       asked = true;
-                       return Vec3{};
-                     }});
+                          if (!asked) {
+                            EXPECT_TRUE(system.edits().separate(chain.lower[0], chain.upper[1]).queued);
+                            EXPECT_EQ(system.bodies().articulate_count(), 2u);
+                            try {
+                              system.bodies().create();
+                            } catch (const std::logic_error&) {
+                              refused = true;
+                            }
+                          }
+                          asked = true;
+                          return Vec3{};
+                        }});
   (void)system.step(0.01);
   EXPECT_TRUE(refused);
   EXPECT_EQ(system.bodies().articulate_count(), 3u);
@@ -348,7 +352,8 @@ TEST(Kinds, static_scripted_and_inactive_bodies_do_as_they_say) {
                absent = system.bodies().create({.kind = BodyKind::inactive}), hanging = system.bodies().create();
   const ParticleId f = system.particles().create(fixed, {0, 0, 0}), s = system.particles().create(puppet, {1, 0, 0}),
                    i = system.particles().create(absent, {2, 0, 0});
-  const ParticleId top = system.particles().create(hanging, {0, 0, 0}), end = system.particles().create(hanging, {0.5, 0, 0});
+  const ParticleId top = system.particles().create(hanging, {0, 0, 0}),
+                   end = system.particles().create(hanging, {0.5, 0, 0});
   (void)system.edits().combine(f, top);
   for (int k = 1; k <= 60; ++k) {
     system.particles().set_position(s, {1, k / 60.0, 0});
@@ -368,7 +373,7 @@ TEST(EnergyBook, adds_up_through_hands_nails_springs_damping_and_edits) {
     const auto other = scenes::make_chain(system, {.links = 4, .nailed = false, .top = {0, 0.5, 0}});
     system.bonds().create(chain.lower[5], other.lower[3], SpringLaw{.stiffness = 30, .damping = 0.2});
     system.bonds().create(chain.lower[8], other.lower[0],
-                       ScriptedLaw{[](const BondState& s) { return 0.3 * (s.position_q - s.position_p); }});
+                          ScriptedLaw{[](const BondState& s) { return 0.3 * (s.position_q - s.position_p); }});
     const auto book = [&] {
       const Energy e = system.energy();
       return e.total() + e.dissipated - e.external_work - e.edits;
@@ -403,7 +408,8 @@ TEST(Conflict, of_two_nails_too_far_apart_is_shared_reported_and_finite) {
   }
   double shortest = 1, longest = 0;
   for (std::size_t i = 0; i < 10; ++i) {
-    const double length = norm(system.particles().position(chain.lower[i]) - system.particles().position(chain.upper[i]));
+    const double length =
+        norm(system.particles().position(chain.lower[i]) - system.particles().position(chain.upper[i]));
     shortest = std::min(shortest, length), longest = std::max(longest, length);
   }
   EXPECT_LT(longest - shortest, 0.02) << "the violation is shared";
@@ -493,7 +499,8 @@ TEST(StaleIds, say_what_became_of_them) {
   EXPECT_NE(text([&] { (void)system.particles().position(p); }).find("destroyed"), std::string::npos);
   const ParticleId reused = system.particles().create(system.bodies().create(), {});
   EXPECT_EQ(reused.slot, p.slot) << "slots are reused";
-  EXPECT_NE(text([&] { (void)system.particles().position(p); }).find("destroyed"), std::string::npos) << "but old ids stay dead";
+  EXPECT_NE(text([&] { (void)system.particles().position(p); }).find("destroyed"), std::string::npos)
+      << "but old ids stay dead";
 }
 
 }  // namespace
