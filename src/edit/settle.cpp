@@ -93,7 +93,8 @@ bool give_back_momenta(model::Model& model, std::span<const std::uint32_t> bodie
 Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodies, Kind kind)
     : editor_(editor), bodies_(bodies.begin(), bodies.end()), kind_(kind), followers_(editor.model, bodies) {
   report.articulates_before = editor.model.articulates.size();
-  if (kind == Kind::moving) affected_ = editor.model.tied_bodies(bodies);
+  if (kind == Kind::gentle) return;
+  affected_ = editor.model.tied_bodies(bodies);
   before_ = conserved(editor.model, affected_);
 }
 
