@@ -2,6 +2,7 @@
 #include "binders.h"
 #include "names.h"
 #include "shape_argument.h"
+#include "typed_argument.h"
 
 namespace iota::bindings {
 
@@ -13,7 +14,7 @@ constexpr const char* doc =
 
 constexpr const char* make_doc =
     "A new body. Make its particles with `Body.particle`, or give the body as a solid:\n\n"
-    "shape: any shape, of density (kg/m^3) or mass (kg), with its origin at position\n"
+    "shape: any shape, of density (kg/m^3, 1000 if not said) or mass (kg), with its origin at position\n"
     "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses then stand for it, with exactly\n"
     "its mass, center and inertia. velocity: of the center of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
     "shape's frame (m) for particles to hinge, nail or bond, see `Body.attachment`.\n\n"
@@ -42,14 +43,15 @@ std::string repr(const BodyHandle& self) {
 }
 
 /// Without a shape a body has no mass and is nowhere yet: its particles say where and how fast.
-void refuse_without_shape(const std::optional<double>& mass, VectorArgument position, nb::handle orientation,
-                          VectorArgument velocity, VectorArgument spin, nb::handle attachments) {
+void refuse_without_shape(const std::optional<double>& density, const std::optional<double>& mass,
+                          VectorArgument position, nb::handle orientation, VectorArgument velocity, VectorArgument spin,
+                          nb::handle attachments) {
   const Quaternion q = to_quaternion(orientation, "orientation");
-  if (!mass && to_vec3(position, "position") == Vec3{} && q == Quaternion{} &&
+  if (!density && !mass && to_vec3(position, "position") == Vec3{} && q == Quaternion{} &&
       to_vec3(velocity, "velocity") == Vec3{} && to_vec3(spin, "spin") == Vec3{} && nb::len_hint(attachments) == 0)
     return;
   throw nb::type_error(
-      "mass, position, orientation, velocity, spin and attachments are of bodies with a shape: give shape=..., or make "
+      "density, mass, position, orientation, velocity, spin and attachments are of bodies with a shape: give shape=..., or make "
       "particles with body.particle(position, mass, velocity)");
 }
 
@@ -59,22 +61,28 @@ System& between_steps(const BodyHandle& self, const char* what) {
   return engine;
 }
 
+void set_pose(const BodyHandle& self, const Vec3& position, const Quaternion& orientation) {
+  between_steps(self, "moving a body").bodies().set_pose(self.id, position, orientation);
+}
+
 void bind_making(nb::class_<SystemObject>& system) {
   const nb::tuple zero = nb::make_tuple(0.0, 0.0, 0.0);
   system.def(
       "body",
-      [](nb::handle_t<SystemObject> self, const KindWord& kind, double damping, nb::object shape, double density,
-         std::optional<double> mass, VectorArgument position, nb::object orientation, VectorArgument velocity,
-         VectorArgument spin, nb::iterable attachments) {
+      [](nb::handle_t<SystemObject> self, const KindWord& kind, double damping, nb::object shape,
+         std::optional<double> density, std::optional<double> mass, VectorArgument position, nb::object orientation,
+         VectorArgument velocity, VectorArgument spin, nb::iterable attachments) {
         System& engine = nb::inst_ptr<SystemObject>(self)->use_between_steps("body(...)");
         finite_not_negative(damping, "damping", "1/s");
         if (shape.is_none()) {
-          refuse_without_shape(mass, position, orientation, velocity, spin, attachments);
+          refuse_without_shape(density, mass, position, orientation, velocity, spin, attachments);
           return handle_of(self, engine.bodies().create({to_kind(kind), damping}));
         }
         SolidOptions options;
         options.kind = to_kind(kind), options.damping = damping;
-        options.density = finite_positive(density, "density", "kg/m^3");
+        if (density && mass)
+          throw nb::value_error("give density or mass: a shape's mass is its density times its volume");
+        if (density) options.density = finite_positive(*density, "density", "kg/m^3");
         if (mass) options.mass = finite_positive(*mass, "mass", "kg");
         options.position = to_vec3(position, "position"),
         options.orientation = to_quaternion(orientation, "orientation");
@@ -82,13 +90,14 @@ void bind_making(nb::class_<SystemObject>& system) {
         for (nb::handle place : attachments) options.attachments.push_back(to_vec3({place}, "each attachment"));
         return handle_of(self, engine.bodies().create(to_shape(shape), options));
       },
-      "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(), "density"_a = 1000.0,
-      "mass"_a = nb::none(), "position"_a = zero, "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0),
-      "velocity"_a = zero, "spin"_a = zero, "attachments"_a = nb::tuple(),
+      "kind"_a = KindWord{"dynamic"}, "damping"_a = 0.0, nb::kw_only(), "shape"_a = nb::none(),
+      "density"_a = nb::none(), "mass"_a = nb::none(), "position"_a = zero,
+      "orientation"_a = nb::make_tuple(0.0, 0.0, 0.0, 1.0), "velocity"_a = zero, "spin"_a = zero,
+      "attachments"_a = nb::tuple(),
       nb::sig(
           "def body(self, kind: typing.Literal['dynamic', 'static', 'scripted', 'inactive', 'resting'] = 'dynamic', "
           "damping: float = 0.0, *, shape: Shape | None = None, "
-          "density: float = 1000.0, mass: float | None = None, "
+          "density: float | None = None, mass: float | None = None, "
           "position: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
           "orientation: collections.abc.Sequence[float] = (0.0, 0.0, 0.0, 1.0), "
           "velocity: Vec3 | collections.abc.Sequence[float] = (0.0, 0.0, 0.0), "
@@ -138,11 +147,23 @@ void bind_body(nb::module_& module) {
           "mass", [](const BodyHandle& self) { return self.use().bodies().mass(self.id); }, "kg")
       .def_prop_ro(
           "center_of_mass", [](const BodyHandle& self) { return self.use().bodies().center_of_mass(self.id); }, "m")
-      .def_prop_ro(
+      .def_prop_rw(
+          "position", [](const BodyHandle& self) { return self.use().bodies().center_of_mass(self.id); },
+          [](const BodyHandle& self, VectorArgument position) {
+            const Bodies& bodies = between_steps(self, "position = ...").bodies();
+            set_pose(self, to_vec3(position, "position"), bodies.orientation(self.id));
+          },
+          "Of the center of mass, m. Assigning moves it as `set_pose` does, without turning it.")
+      .def_prop_rw(
           "orientation", [](const BodyHandle& self) { return to_tuple(self.use().bodies().orientation(self.id)); },
-          nb::sig("def orientation(self) -> tuple[float, float, float, float]"),
+          [](const BodyHandle& self, QuaternionArgument orientation) {
+            const Bodies& bodies = between_steps(self, "orientation = ...").bodies();
+            set_pose(self, bodies.center_of_mass(self.id), to_quaternion(orientation.value, "orientation"));
+          },
+          nb::for_getter(nb::sig("def orientation(self) -> tuple[float, float, float, float]")),
+          nb::for_setter(nb::sig("def orientation(self, value: collections.abc.Sequence[float], /) -> None")),
           "Of the drawn frame: unit quaternion x y z w that turns body-frame vectors into the world frame. For a body\n"
-          "given by shape it is the shape's frame.")
+          "given by shape it is the shape's frame. Assigning turns it about its center of mass as `set_pose` does.")
       .def(
           "set_pose",
           [](const BodyHandle& self, VectorArgument position, nb::object orientation) {

@@ -4,6 +4,7 @@
 #include "law_argument.h"
 #include "restructure_result.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -54,6 +55,19 @@ nb::object function_called(const System& engine, const std::string& word) {
   return {};
 }
 
+/// How stiff a bond is has no usual value: a predefined law does not choose one unasked.
+void require_stiffness(const System& engine, LawId law, const std::vector<LawParameter>& given) {
+  if (engine.laws().kind(law) != "predefined") return;
+  const auto has = [](const std::vector<LawParameter>& list, const std::string& name) {
+    return std::any_of(list.begin(), list.end(), [&](const LawParameter& p) { return p.name == name; });
+  };
+  const std::vector<LawParameter> known = engine.laws().parameters(law);
+  for (const LawParameter& p : given)
+    if (!has(known, p.name)) return;  // refused with a better text
+  if (has(known, "stiffness") && !has(given, "stiffness"))
+    throw nb::value_error(("a " + engine.laws().name(law) + " needs stiffness=..., N/m").c_str());
+}
+
 BondHandle make_bond(SystemObject& self, const ParticleHandle& p, const ParticleHandle& q, nb::object law,
                      std::optional<bool> implicit, double break_force, const nb::kwargs& keywords) {
   check_ends(self, p, q, "bond");
@@ -83,6 +97,8 @@ BondHandle make_bond(SystemObject& self, const ParticleHandle& p, const Particle
     throw nb::type_error(
         ("law must be a predefined law, an expression, a Law or a function, not " + describe(law)).c_str());
   }
+  if (const auto* chosen = std::get_if<SharedLaw>(&engine_law))
+    require_stiffness(engine, chosen->law, chosen->parameters);
   const BondId id = engine.bonds().create(p.id, q.id, std::move(engine_law));
   if (function) function->bond = id;
   if (std::isfinite(break_force)) engine.bonds().set_break_force(id, break_force);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
+#include "pickled.h"
 #include "restructure_result.h"
 
 namespace iota::bindings {
@@ -21,10 +22,12 @@ auto wrap_pairs(const RestructureResult& self, const Pairs& pairs) {
 }
 
 void bind_energy(nb::module_& module) {
-  nb::class_<Energy>(module, "Energy",
-                     "Energy book-keeping in J: kinetic + potential + dissipated - external_work - edits is constant "
-                     "up to round-off.")
-      .def(
+  nb::class_<Energy> type(
+      module, "Energy",
+      "Energy book-keeping in J: kinetic + potential + dissipated - external_work - edits is constant "
+      "up to round-off.");
+  def_pickled(type, &Energy::kinetic, &Energy::potential, &Energy::dissipated, &Energy::external_work, &Energy::edits);
+  type.def(
           "__init__",
           [](Energy* self, double kinetic, double potential, double dissipated, double external_work, double edits) {
             new (self) Energy{kinetic, potential, dissipated, external_work, edits};
@@ -50,7 +53,36 @@ void bind_energy(nb::module_& module) {
 }
 
 void bind_step_report(nb::module_& module) {
-  nb::class_<StepReport>(module, "StepReport", "What one `System.step` did. Not converged is a result, no exception.")
+  nb::class_<StepReport> type(
+      module, "StepReport", "What one `System.step` did. Not converged is a result, no exception. It can be pickled.");
+  // What a script sees of it: of what was born and died, how many.
+  const std::tuple seen{&StepReport::step,
+                        &StepReport::time,
+                        &StepReport::dt,
+                        &StepReport::iterations_mean,
+                        &StepReport::iterations_max,
+                        &StepReport::substeps_max,
+                        &StepReport::fallbacks,
+                        &StepReport::unconverged,
+                        &StepReport::worst_gap,
+                        &StepReport::energy,
+                        &StepReport::articulates,
+                        &StepReport::resting,
+                        &StepReport::structure_version,
+                        &StepReport::warnings};
+  type.def(
+          "__getstate__",
+          [seen](const StepReport& r) { return nb::make_tuple(get_state(r, seen), r.born.size(), r.died.size()); },
+          nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
+      .def(
+          "__setstate__",
+          [seen](StepReport& self, const nb::tuple& state) {
+            auto& report = *new (&self) StepReport{};
+            set_state(report, seen, state[0]);
+            report.born.resize(nb::cast<std::size_t>(state[1]));
+            report.died.resize(nb::cast<std::size_t>(state[2]));
+          },
+          nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"))
       .def(
           "__init__",
           [](StepReport* self, std::uint64_t step, double time, double dt, const Energy& energy, double worst_gap,
@@ -93,11 +125,80 @@ auto field(Member RestructureReport::* member) {
   return [member](const RestructureResult& self) { return self.report.*member; };
 }
 
+template <class Tag>
+nb::object id_state(Id<Tag> id) {
+  return nb::make_tuple(id.slot, id.generation);
+}
+template <class Absorbed>
+nb::object id_state(const Absorbed& pair) {
+  return nb::make_tuple(id_state(pair.retired), id_state(pair.survivor));
+}
+template <class Tag>
+void read_id(Id<Tag>& id, nb::handle state) {
+  id.slot = nb::cast<std::uint32_t>(state[0]), id.generation = nb::cast<std::uint32_t>(state[1]);
+}
+template <class Absorbed>
+void read_id(Absorbed& pair, nb::handle state) {
+  read_id(pair.retired, state[0]), read_id(pair.survivor, state[1]);
+}
+
+/// visit(list) for each list of ids of a report.
+template <class Report, class Visit>
+void for_each_list(Report& report, Visit visit) {
+  visit(report.created_bodies), visit(report.created_particles), visit(report.destroyed_bodies);
+  visit(report.destroyed_particles), visit(report.absorbed_bodies), visit(report.absorbed_particles);
+}
+
+/// Copies keep the system; pickles cannot.
+void def_state(nb::class_<RestructureResult>& type) {
+  using R = RestructureReport;
+  const std::tuple seen{&R::queued,
+                        &R::changed,
+                        &R::structure_version,
+                        &R::articulates_before,
+                        &R::articulates_after,
+                        &R::closed_distance,
+                        &R::remaining_gap,
+                        &R::energy_change,
+                        &R::momentum_change,
+                        &R::angular_momentum_change,
+                        &R::notes};
+  type.def("__copy__", [](const RestructureResult& self) { return self; })
+      .def(
+          "__deepcopy__", [](const RestructureResult& self, nb::handle) { return self; }, "memo"_a)
+      .def(
+          "__getstate__",
+          [seen](const RestructureResult& self) {
+            nb::list lists;
+            for_each_list(self.report, [&](const auto& ids) {
+              nb::list list;
+              for (const auto& id : ids) list.append(id_state(id));
+              lists.append(list);
+            });
+            return nb::make_tuple(get_state(self.report, seen), lists);
+          },
+          nb::sig("def __getstate__(self) -> tuple[typing.Any, ...]"))
+      .def(
+          "__setstate__",
+          [seen](RestructureResult& self, const nb::tuple& state) {
+            auto& result = *new (&self) RestructureResult{};
+            set_state(result.report, seen, state[0]);
+            std::size_t next = 0;
+            for_each_list(result.report, [&](auto& ids) {
+              for (nb::handle id : state[1][next++]) read_id(ids.emplace_back(), id);
+            });
+          },
+          nb::sig("def __setstate__(self, state: tuple[typing.Any, ...], /) -> None"));
+}
+
 void bind_restructure_report(nb::module_& module) {
-  nb::class_<RestructureResult>(module, "RestructureReport",
-                                "What one structural edit did. True where it changed something.",
-                                nb::type_slots(handle_slots<RestructureResult>))
-      .def("__bool__", field(&RestructureReport::changed))
+  nb::class_<RestructureResult> type(
+      module, "RestructureReport",
+      "What one structural edit did. True where it changed something. Pickled it keeps all but "
+      "the system: handles from it then tell their slots only.",
+      nb::type_slots(handle_slots<RestructureResult>));
+  def_state(type);
+  type.def("__bool__", field(&RestructureReport::changed))
       .def_prop_ro("queued", field(&RestructureReport::queued),
                    "True if it was asked for during a step: it is done right after it, and the rest is not known yet.")
       .def_prop_ro("changed", field(&RestructureReport::changed),
@@ -152,11 +253,14 @@ void bind_restructure_report(nb::module_& module) {
 }
 
 void bind_diagnosis(nb::module_& module) {
-  nb::class_<Diagnosis>(
+  nb::class_<Diagnosis> type(
       module, "Diagnosis",
       "Whether the constraints of bodies that are solved together contradict or repeat each other: a\n"
-      "singular value decomposition of their Jacobian, scaled so that figures do not depend on units.")
-      .def_ro("unknowns", &Diagnosis::unknowns, "Coordinates of points.")
+      "singular value decomposition of their Jacobian, scaled so that figures do not depend on units.");
+  def_pickled(type, &Diagnosis::unknowns, &Diagnosis::rows, &Diagnosis::rank, &Diagnosis::redundancy,
+              &Diagnosis::degrees_of_freedom, &Diagnosis::singular_values, &Diagnosis::condition,
+              &Diagnosis::kkt_condition, &Diagnosis::findings);
+  type.def_ro("unknowns", &Diagnosis::unknowns, "Coordinates of points.")
       .def_ro("rows", &Diagnosis::rows, "Of constraints that hold now: open stops and slack ropes do not.")
       .def_ro("rank", &Diagnosis::rank, "Singular values above 1e-8 of the largest.")
       .def_ro("redundancy", &Diagnosis::redundancy, "rows - rank")

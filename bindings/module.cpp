@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Python module `iota._core`: the engine and the server under their own names. `iota` re-exports it.
 #include "binders.h"
+#include "explained_calls.h"
 
 NB_MODULE(_core, module) {
   using namespace iota::bindings;
@@ -26,4 +27,5 @@ NB_MODULE(_core, module) {
   bind_emitters(module);
   bind_server(module);
   bind_solvers(module);
+  explain_calls(module);
 }

@@ -216,7 +216,7 @@ bool Handle<IdType>::is_alive() const {
 
 template <class IdType>
 System& Handle<IdType>::use() const {
-  if (!system) throw nb::value_error("this handle was cleared by the garbage collector");
+  if (!system) throw nb::value_error("this handle has no system: it comes from a report that was pickled, or was cleared");
   System& engine = system->use();
   if (!view_of(engine, id).contains(id)) raise_stale(*this);
   return engine;

@@ -38,7 +38,8 @@ bool try_vec3(nb::handle value, Vec3& out) {
     return true;
   }
   PyObject* object = value.ptr();
-  if (PyUnicode_Check(object) || PyBytes_Check(object)) return false;
+  // Not a set: it has no order.
+  if (PyUnicode_Check(object) || PyBytes_Check(object) || !PySequence_Check(object)) return false;
   nb::object items = nb::steal(PySequence_Fast(object, ""));
   if (!items.is_valid()) {
     PyErr_Clear();
@@ -64,7 +65,7 @@ Vec3 to_vec3(VectorArgument argument, const char* name) {
 
 Quaternion to_quaternion(nb::handle value, const char* name) {
   double v[4] = {};
-  nb::object items = nb::steal(PySequence_Fast(value.ptr(), ""));
+  nb::object items = PySequence_Check(value.ptr()) ? nb::steal(PySequence_Fast(value.ptr(), "")) : nb::object();
   bool good = items.is_valid() && PySequence_Fast_GET_SIZE(items.ptr()) == 4;
   if (!items.is_valid()) PyErr_Clear();
   for (Py_ssize_t i = 0; good && i < 4; ++i) good = try_number(PySequence_Fast_GET_ITEM(items.ptr(), i), v[i]);

@@ -115,7 +115,7 @@ def test_every_use_of_a_stale_handle_raises(system: iota.System) -> None:
         lambda: body.destroy(),
         lambda: body.set_rod(1, 0.1),
         lambda: body.particle(),
-        lambda: system.bond(p, q, "spring"),
+        lambda: system.bond(p, q, "spring", stiffness=100),
         lambda: system.cosmetic_bond(q, p),
         lambda: system.grip(body),
         lambda: q.combine(p),

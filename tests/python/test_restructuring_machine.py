@@ -108,7 +108,7 @@ class Restructuring(RuleBasedStateMachine):
         make = {
             "rod": lambda: system.rod(a, b),
             "rope": lambda: system.rope(a, b),
-            "spring": lambda: system.bond(a, b, "spring"),
+            "spring": lambda: system.bond(a, b, "spring", stiffness=100),
             "ball": lambda: system.ball(a.body, b.body, at=a.position),
             "weld": lambda: system.weld(a.body, b.body, at=a.position),
             "revolute": lambda: system.revolute(a.body, at=a.position, axis=(0, 0, 1), motor=(1, 1)),

@@ -30,7 +30,7 @@ class RigidBody:
     damping: float = 0.0  # 1/s
     rod: tuple[float, float] | None = None
     shape: Shape | None = None
-    density: float = 1000.0  # kg/m^3
+    density: float | None = None  # kg/m^3; None: 1000, unless mass is given
     mass: float | None = None  # kg, instead of a density
     position: Vector = (0.0, 0.0, 0.0)  # of the shape's origin, m
     orientation: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0)  # of the shape, x y z w

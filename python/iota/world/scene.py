@@ -60,10 +60,10 @@ class Scene:
 
     def __init__(self) -> None:
         self.classes: dict[str, Looks] = {}
-        self._class_of: dict[Body, tuple[str, int]] = {}
-        self._untold: dict[Body, tuple[str, int]] = {}
+        self._class_of: dict[Body | SimulatedBody, tuple[str, int]] = {}
+        self._untold: dict[Body | SimulatedBody, tuple[str, int]] = {}
 
-    def assign(self, bodies: Iterable[Body], name: str) -> None:
+    def assign(self, bodies: Iterable[Body | SimulatedBody], name: str) -> None:
         for index, body in enumerate(bodies):
             self._class_of[body] = self._untold[body] = (name, index % 2)
 
