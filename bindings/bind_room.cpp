@@ -243,9 +243,14 @@ void bind_room(nb::module_& module) {
       .def(
           "notice",
           [](RoomObject& self, std::uint32_t client, std::uint8_t level, const std::string& title,
-             const std::string& text, const std::string& hint) { self.use().notice(client, level, title, text, hint); },
-          "client"_a, "level"_a, "title"_a, "text"_a, "hint"_a = "",
-          "A card on one client's page, or on all (client 0). level: a NoticeLevel.")
+             const std::string& text, const std::string& hint,
+             bool keep) { self.use().notice(client, level, title, text, hint, keep); },
+          "client"_a, "level"_a, "title"_a, "text"_a, "hint"_a = "", "keep"_a = false,
+          "A card on one client's page, or on all (client 0). level: a NoticeLevel. keep: pages that open later are shown\n"
+          "it too.")
+      .def(
+          "forget_notice", [](RoomObject& self, const std::string& title) { self.use().forget_notice(title); },
+          "title"_a, "Kept cards with this title, or all for an empty one, are not shown to pages that open later.")
       .def(
           "effect",
           [](RoomObject& self, const std::string& kind, VectorArgument position) {

@@ -46,9 +46,9 @@ Vec3 widen(const net::Vec3f& v) { return {v[0], v[1], v[2]}; }
   throw nb::python_error();
 }
 
-std::string kept_token() {
+std::string token_of_state_folder(std::string (*get)(const std::filesystem::path&)) {
   try {
-    return net::load_or_make_token();
+    return get(net::state_folder());
   } catch (const std::system_error& error) {
     raise_os_error(error.code(), error.what());
   } catch (const std::runtime_error& error) {
@@ -111,8 +111,13 @@ void bind_server(nb::module_& module) {
   bind_input(module);
   bind_statistics(module);
   module.def("make_token", &net::make_token, "A new secret for a page's address: 32 hexadecimal digits.");
-  module.def("kept_token", &kept_token,
-             "The secret kept in the state folder, made when there is none. Raises OSError where that cannot be done.");
+  module.def(
+      "kept_token", [] { return token_of_state_folder(&net::load_or_make_token); },
+      "The secret kept in the state folder, made when there is none. Raises OSError where that cannot be done.");
+  module.def(
+      "renew_token", [] { return token_of_state_folder(&net::renew_token); },
+      "A new secret in place of the kept one: pages that know the old one are refused by servers that start from now on.\n"
+      "Raises OSError where it cannot be kept.");
   bind_room(module);
   nb::class_<ServerObject>(module, "Server", server_doc)
       .def(

@@ -9,7 +9,9 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
+#include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -33,19 +35,28 @@ using asio::ip::tcp;
 using error_code = boost::system::error_code;
 using namespace std::chrono_literals;
 
-constexpr auto request_time = 20s;  // a whole request, or a pause between two on one connection
+constexpr auto header_time = 5s;    // for a request to come, on a new connection or after an answer
+constexpr auto answer_time = 20s;   // for the other side to take an answer
 constexpr auto silence_time = 30s;  // without even an answer to a ping
 constexpr auto close_time = 1s;     // for the other side's part of a close
 constexpr auto keyframe_time = 1s;
-constexpr std::size_t max_connections = 256;
+constexpr std::size_t max_connections = 512;
+constexpr std::size_t max_strangers = 128;  // of them: not welcomed; a client of Iota has its token and needs few
 constexpr std::uint8_t body_kind = entity_kind<protocol::BodyEntity>();
 
-/// The page loads only its own files and runs no inline code; three.js makes textures and workers from blobs. 'self' in
-/// connect-src does not cover ws: in every browser.
-constexpr const char* content_security_policy =
-    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; "
-    "connect-src 'self' ws: wss: blob: data:; img-src 'self' blob: data:; media-src 'self' blob: data:; "
-    "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'";
+/// The page loads only its own files and runs no inline code; three.js makes textures and workers from blobs. It talks to the
+/// WebSocket of this server only, which 'self' does not cover in every browser.
+std::string content_security_policy(std::string_view host) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::strchr(".-:[]", c);
+  };
+  std::string socket;  // none for a request whose Host is refused
+  if (!host.empty() && std::ranges::all_of(host, is_plain)) socket = std::string(" ws://").append(host);
+  return "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; connect-src 'self'" +
+         socket +
+         " blob: data:; img-src 'self' blob: data:; media-src 'self' blob: data:; object-src 'none'; base-uri 'none'; "
+         "form-action 'none'; frame-ancestors 'self'";
+}
 
 std::string_view to_view(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -68,7 +79,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
 
   void start(const http::request<http::empty_body>& request) {
     websocket::stream_base::timeout timeout{};
-    timeout.handshake_timeout = request_time;
+    timeout.handshake_timeout = header_time;
     timeout.idle_timeout = silence_time;
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
@@ -102,6 +113,8 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
 
   void world_ended() override { close_when_sent(websocket::close_code::going_away, "the world has ended"); }
   void finish() override { close_when_sent(websocket::close_code::going_away, "the server stops"); }
+  void evict() override { ended(); }
+  Standing standing() const override { return client_ == 0 ? Standing::idle : Standing::welcomed; }
 
  private:
   /// A slow client should skip poses, not get them late from a long buffer in the kernel.
@@ -265,7 +278,8 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   HttpSession& operator=(const HttpSession&) = delete;
 
   void start() {
-    stream_.expires_after(request_time);
+    is_served_ = false;
+    stream_.expires_after(header_time);
     parser_.emplace();
     parser_->header_limit(16 * 1024);
     http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
@@ -275,6 +289,8 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   }
 
   void finish() override { stream_.close(); }
+  void evict() override { finish(); }
+  Standing standing() const override { return is_served_ ? Standing::served : Standing::idle; }
 
  private:
   using Request = http::request<http::empty_body>;
@@ -379,10 +395,12 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     const Request& request = parser_->get();
     Response response{status, request.version() == 10 ? 10U : 11U};
     response.set(http::field::server, "iota");
-    response.set("Content-Security-Policy", content_security_policy);
+    response.set("Content-Security-Policy", content_security_policy(to_view(request[http::field::host])));
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");  // the page's URL holds the token
     response.set("Cross-Origin-Opener-Policy", "same-origin");
+    response.set("Cross-Origin-Resource-Policy", "same-origin");  // else a foreign page could tell that Iota runs here
+    response.set("Permissions-Policy", "camera=(), microphone=(), geolocation=(), payment=(), usb=()");
     response.keep_alive(request.keep_alive() && !must_close_);
     return response;
   }
@@ -395,7 +413,8 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     }
     if (is_head_) response.body().clear();  // the length stays that of the whole
     response_.emplace(std::move(response));
-    stream_.expires_after(request_time);
+    is_served_ = true;
+    stream_.expires_after(answer_time);
     const bool is_last = !response_->keep_alive();
     http::async_write(stream_, *response_, [self = shared_from_this(), is_last](error_code error, std::size_t) {
       if (error || self->context_.is_finishing) return self->finish();
@@ -422,12 +441,32 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   std::optional<Response> response_;
   bool is_head_ = false;
   bool must_close_ = false;
+  bool is_served_ = false;
 };
+
+/// Whether there is room for one more connection. Where strangers have taken all their places, the oldest of them that waits
+/// for something goes; without one, the oldest that is sent a file.
+bool make_room(ConnectionContext& context) {
+  std::size_t strangers = 0;
+  OpenConnection* oldest = nullptr;
+  for (OpenConnection* connection : context.open) {
+    const Standing standing = connection->standing();
+    if (standing == Standing::welcomed) continue;
+    ++strangers;
+    if (oldest == nullptr || (standing == Standing::idle && oldest->standing() == Standing::served))
+      oldest = connection;
+  }
+  if (strangers >= max_strangers || (context.open.size() >= max_connections && oldest != nullptr)) {
+    std::erase(context.open, oldest);  // it is destroyed when its handlers have run
+    oldest->evict();
+  }
+  return context.open.size() < max_connections;
+}
 
 }  // namespace
 
 void start_connection(tcp::socket socket, ConnectionContext& context) {
-  if (context.is_finishing || context.open.size() >= max_connections) return;  // closes it
+  if (context.is_finishing || !make_room(context)) return;  // closes it
   error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   std::make_shared<HttpSession>(std::move(socket), context)->start();

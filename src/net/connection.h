@@ -9,20 +9,32 @@
 
 #include <boost/asio/ip/tcp.hpp>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
-#include <unordered_set>
 #include <utility>
+#include <vector>
 
 namespace iota::net {
+
+/// How far a connection has come. Those that are not yet welcomed may be anybody's: they share few places.
+enum class Standing : std::uint8_t {
+  idle,      ///< nothing complete was received yet, or since the last answer
+  served,    ///< a file is on its way to it
+  welcomed,  ///< a client
+};
 
 /// A connection that the server can ask to end.
 class OpenConnection {
  public:
   /// Send what is queued, then close.
   virtual void finish() = 0;
+  /// Close at once, to make room.
+  virtual void evict() = 0;
+  virtual Standing standing() const = 0;
 
  protected:
   ~OpenConnection() = default;
@@ -35,13 +47,14 @@ struct ConnectionContext {
   /// The hub that a hello asks for, or none and the reason.
   std::function<std::pair<std::shared_ptr<Hub>, std::string>(const std::string& world)> find_world;
   std::uint16_t port = 0;
-  std::unordered_set<OpenConnection*> open;
+  std::vector<OpenConnection*> open;  ///< the oldest first
   bool is_finishing = false;
   std::function<void()> on_all_closed;  ///< called when the last one closes while finishing
 
-  void opened(OpenConnection& connection) { open.insert(&connection); }
+  void opened(OpenConnection& connection) { open.push_back(&connection); }
+  bool is_open(OpenConnection* connection) const { return std::ranges::find(open, connection) != open.end(); }
   void closed(OpenConnection& connection) {
-    open.erase(&connection);
+    std::erase(open, &connection);
     if (is_finishing && open.empty() && on_all_closed) on_all_closed();
   }
 };

@@ -2,7 +2,9 @@
 #include "net/hub.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <utility>
 #include <variant>
 
 namespace iota::net {
@@ -11,6 +13,10 @@ namespace {
 /// A client that has so many events waiting sends faster than any script can take (moves come as one).
 constexpr std::size_t max_waiting_input = 4096;
 constexpr std::size_t max_holds = 32;
+constexpr std::string_view clients_key = "clients";
+constexpr std::size_t max_kept_notices = 8;
+constexpr auto reset_pause = std::chrono::seconds(1);  // of one client
+constexpr float farthest = 1e9F;                       // m, as the engine's limit
 
 template <class Message>
 Frame make_frame(const Message& message) {
@@ -32,6 +38,24 @@ std::string fit_text(std::string_view text, std::size_t max_bytes) {
   return out.append(ellipsis);
 }
 
+bool is_near(const protocol::Vec3& place) {
+  return std::ranges::all_of(place, [](float x) { return std::abs(x) <= farthest; });
+}
+
+/// Whether the same client has asked for the same already, since the script took its input last: one single step a round,
+/// whatever the client sends. Only the newest speed counts, as far as nothing else was asked for after the one before.
+bool has_waiting_twin(std::vector<InputEvent>& waiting, const InputEvent& event) {
+  for (auto i = waiting.rbegin(); i != waiting.rend(); ++i) {
+    if (i->kind != InputEvent::Kind::control || i->client != event.client) continue;
+    if (i->command == event.command) {
+      i->value = event.value;
+      return true;
+    }
+    if (event.command != protocol::ControlCommand::single_step) return false;
+  }
+  return false;
+}
+
 protocol::Notice make_notice(std::uint8_t level, std::string_view title, std::string_view text, std::string_view hint) {
   return {static_cast<protocol::NoticeLevel>(std::min<std::uint8_t>(level, 2)), fit_text(title, 256),
           fit_text(text, 8192), fit_text(hint, 1024)};
@@ -39,8 +63,11 @@ protocol::Notice make_notice(std::uint8_t level, std::string_view title, std::st
 
 }  // namespace
 
-Hub::Hub(std::string world, std::size_t max_clients, Counters& counters)
-    : world_(std::move(world)), max_clients_(std::min<std::size_t>(max_clients, 1024)), counters_(counters) {}
+Hub::Hub(std::string world, std::size_t max_clients, Counters& counters, std::function<void()> call_frame)
+    : world_(std::move(world)),
+      max_clients_(std::min<std::size_t>(max_clients, 1024)),
+      counters_(counters),
+      call_frame_(std::move(call_frame)) {}
 
 // ----------------------------------------------------------------------------------------------------- from any thread
 
@@ -70,10 +97,22 @@ bool Hub::set_latest(std::string key, Frame frame) {
 }
 
 bool Hub::notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
-                 std::string_view hint) {
-  return post([this, client, frame = make_frame(make_notice(level, title, text, hint))] {
+                 std::string_view hint, bool is_kept) {
+  return post([this, client, frame = make_frame(make_notice(level, title, text, hint)),
+               kept_as = is_kept ? std::string(title) : std::string()] {
+    if (!kept_as.empty()) {
+      std::erase_if(kept_notices_, [&](const auto& kept) { return kept.first == kept_as; });
+      if (kept_notices_.size() == max_kept_notices) kept_notices_.erase(kept_notices_.begin());
+      kept_notices_.emplace_back(kept_as, frame);
+    }
     if (client == 0) return broadcast(frame);
     if (const auto found = clients_.find(client); found != clients_.end()) found->second.link->send(frame, {});
+  });
+}
+
+bool Hub::forget_notice(std::string_view title) {
+  return post([this, title = std::string(title)] {
+    std::erase_if(kept_notices_, [&](const auto& kept) { return title.empty() || kept.first == title; });
   });
 }
 
@@ -128,9 +167,11 @@ std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol
   const std::uint32_t number = next_client_++;
   link.send(make_frame(protocol::Welcome{protocol::protocol_version, world_, number}), {});
   for (const auto& [key, frame] : latest_) link.send(frame, key);
-  clients_[number] = {&link, hello.name, hello.role, {}, {}};
+  clients_[number] = {.link = &link, .name = hello.name, .role = hello.role, .selected = {}, .holds = {}};
   ++counters_.clients;
-  broadcast_clients();
+  link.send(make_frame(all_clients()), clients_key);
+  for (const auto& [title, frame] : kept_notices_) link.send(frame, {});
+  tell_clients();
   InputEvent event;
   event.kind = InputEvent::Kind::join;
   event.client = number;
@@ -142,7 +183,7 @@ std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol
 void Hub::leave(std::uint32_t client) {
   if (clients_.erase(client) == 0) return;
   --counters_.clients;
-  broadcast_clients();
+  tell_clients();
   InputEvent event{.kind = InputEvent::Kind::leave, .client = client};
   push_input(std::move(event));
 }
@@ -169,15 +210,36 @@ bool Hub::may_act(std::uint32_t client) {
   return false;
 }
 
+bool Hub::may_reset(std::uint32_t client) {
+  Client& self = clients_.at(client);
+  const auto now = Clock::now();
+  if (self.reset_at == Clock::time_point::min() || now - self.reset_at >= reset_pause) {
+    self.reset_at = now;
+    self.is_told_to_wait = false;
+    return true;
+  }
+  if (!std::exchange(self.is_told_to_wait, true))
+    tell(client, make_notice(0, "Reset a moment ago", "A page can reset the world once a second.", {}));
+  return false;
+}
+
 void Hub::broadcast(const Frame& frame, std::string_view key) {
   for (auto& [number, client] : clients_) client.link->send(frame, key);
 }
 
-void Hub::broadcast_clients() {
+protocol::Clients Hub::all_clients() const {
   protocol::Clients message;
   for (const auto& [number, client] : clients_)
     message.clients.push_back({number, client.name, client.selected, client.role});
-  broadcast(make_frame(message), "clients");
+  return message;
+}
+
+void Hub::tell_clients() {
+  if (std::exchange(are_clients_told_, false)) call_frame_();
+}
+
+void Hub::frame() {
+  if (!std::exchange(are_clients_told_, true)) broadcast(make_frame(all_clients()), clients_key);
 }
 
 void Hub::push_input(InputEvent event) {
@@ -192,6 +254,7 @@ void Hub::push_input(InputEvent event) {
         return;
       }
     }
+    if (event.kind == InputEvent::Kind::control && has_waiting_twin(input_, event)) return;
     const bool is_own = event.kind == InputEvent::Kind::join || event.kind == InputEvent::Kind::leave;
     if (is_own || input_counts_[client]++ < max_waiting_input) {
       input_.push_back(std::move(event));
@@ -211,7 +274,7 @@ void Hub::handle(std::uint32_t client, const protocol::Select& message) {
   Client& self = clients_.at(client);
   if (self.selected == message.body) return;
   self.selected = message.body;
-  broadcast_clients();
+  tell_clients();
   InputEvent event{.kind = InputEvent::Kind::select, .client = client};
   event.body = message.body;
   push_input(std::move(event));
@@ -222,6 +285,8 @@ void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
   Client& self = clients_.at(client);
   if (self.holds.contains(message.hold)) return refuse_frame(client, "grab_start.hold is in use already");
   if (self.holds.size() == max_holds) return refuse_frame(client, "grab_start: this client has too many hands");
+  if (!is_near(message.local_point) || !is_near(message.target))
+    return refuse_frame(client, "grab_start: a place is beyond 1e9 m");
   self.holds.insert(message.hold);
   InputEvent event{.kind = InputEvent::Kind::grab_start, .client = client};
   event.hold = message.hold;
@@ -234,6 +299,7 @@ void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
 void Hub::handle(std::uint32_t client, const protocol::GrabMove& message) {
   if (clients_.at(client).role == protocol::Role::viewer) return;  // it has been told when it grabbed
   if (!clients_.at(client).holds.contains(message.hold)) return refuse_frame(client, "grab_move.hold holds nothing");
+  if (!is_near(message.target)) return refuse_frame(client, "grab_move.target is beyond 1e9 m");
   InputEvent event{.kind = InputEvent::Kind::grab_move, .client = client};
   event.hold = message.hold;
   event.target = message.target;
@@ -258,6 +324,7 @@ void Hub::handle(std::uint32_t client, const protocol::Action& message) {
 
 void Hub::handle(std::uint32_t client, const protocol::Control& message) {
   if (!may_act(client)) return;
+  if (message.command == protocol::ControlCommand::reset && !may_reset(client)) return;
   InputEvent event{.kind = InputEvent::Kind::control, .client = client};
   event.command = message.command;
   event.value = message.value;

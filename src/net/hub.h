@@ -11,6 +11,7 @@
 #include <iota_protocol.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -49,7 +50,8 @@ struct Counters {
 
 class Hub {
  public:
-  Hub(std::string world, std::size_t max_clients, Counters& counters);
+  /// `call_frame`: has frame() called on the server's thread, a frame's time from now. Called there only.
+  Hub(std::string world, std::size_t max_clients, Counters& counters, std::function<void()> call_frame);
   const std::string& world() const { return world_; }
 
   // --- from any thread. True: nothing was waiting, so deliver() has to be called on the server's thread.
@@ -58,8 +60,11 @@ class Hub {
   /// A message that is whole: the latest of each type counts, and is given to late joiners.
   template <class Message>
   [[nodiscard]] bool set(const Message& message);
+  /// Kept: told to clients that join later too, until it is forgotten or another with the same title takes its place.
   [[nodiscard]] bool notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
-                            std::string_view hint);
+                            std::string_view hint, bool is_kept);
+  /// The kept notices with this title, or all for an empty one, are not told to those who join later.
+  [[nodiscard]] bool forget_notice(std::string_view title);
   [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position);
   std::vector<InputEvent> take_input();
 
@@ -69,6 +74,8 @@ class Hub {
   /// Welcomes the client on `link` and replays the scene to it; gives its number, or 0 and the reason of a refusal.
   std::pair<std::uint32_t, std::string> join(ClientLink& link, const protocol::Hello& hello);
   void leave(std::uint32_t client);
+  /// Tells what waited for a frame's time to pass.
+  void frame();
   /// One frame of a welcomed client. What is not understood is answered by a notice.
   void receive(std::uint32_t client, std::span<const std::uint8_t> bytes);
   void refuse_frame(std::uint32_t client, std::string_view reason);
@@ -80,23 +87,30 @@ class Hub {
   void end();
 
  private:
+  using Clock = std::chrono::steady_clock;
   struct Client {
     ClientLink* link = nullptr;
     std::string name;
     protocol::Role role = protocol::Role::actor;
     protocol::Id selected;
     std::set<std::uint32_t> holds;
+    Clock::time_point reset_at = Clock::time_point::min();  ///< when it asked for a reset last
+    bool is_told_to_wait = false;                           ///< that it asks for resets too often
   };
   using Edit = std::function<void()>;
 
   bool post(Edit edit);
   void broadcast(const Frame& frame, std::string_view key = {});
-  void broadcast_clients();
+  protocol::Clients all_clients() const;
+  /// Tells everyone who is there, with the next frame: many come, go and select at once.
+  void tell_clients();
   [[nodiscard]] bool set_latest(std::string key, Frame frame);
   void push_input(InputEvent event);
   void tell(std::uint32_t client, const protocol::Notice& notice);
   /// Tells a client that only watches that it does.
   bool may_act(std::uint32_t client);
+  /// Tells a client that resets the world too often that it has to wait.
+  bool may_reset(std::uint32_t client);
 
   void handle(std::uint32_t client, const protocol::Hello& message);
   void handle(std::uint32_t client, const protocol::Select& message);
@@ -110,6 +124,7 @@ class Hub {
   const std::string world_;
   const std::size_t max_clients_;
   Counters& counters_;
+  const std::function<void()> call_frame_;
 
   // Between the threads: to the server ...
   std::mutex out_mutex_;
@@ -127,6 +142,8 @@ class Hub {
   std::map<std::uint32_t, Client> clients_;
   std::uint32_t next_client_ = 1;
   std::vector<std::pair<std::string, Frame>> latest_;  ///< in the order in which keys were first set
+  std::vector<std::pair<std::string, Frame>> kept_notices_;
+  bool are_clients_told_ = true;
   EntityStore entities_;
   std::vector<Edit> delivering_;
   std::vector<EntityChanges> delivered_changes_;

@@ -13,6 +13,7 @@
 #include <cctype>
 #include <chrono>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <stdexcept>
 #include <system_error>
@@ -29,6 +30,7 @@ using namespace std::chrono_literals;
 
 constexpr auto farewell_time = 250ms;
 constexpr auto accept_pause = 100ms;
+constexpr auto frame_time = 16ms;
 
 [[noreturn]] void fail(const error_code& error, const std::string& what) { throw std::system_error(error, what); }
 
@@ -95,11 +97,16 @@ tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
 /// The worlds of a server, in the order in which they were opened. From any thread.
 class Worlds {
  public:
-  std::shared_ptr<Hub> open(const std::string& world, std::size_t max_clients, Counters& counters) {
+  std::shared_ptr<Hub> open(const std::string& world, std::size_t max_clients, Counters& counters,
+                            std::function<void()> call_frame) {
     const std::lock_guard lock(mutex_);
     if (find(world) != hubs_.end())
       throw std::invalid_argument("there is a world '" + world + "' on this server already");
-    return hubs_.emplace_back(std::make_shared<Hub>(world, max_clients, counters));
+    return hubs_.emplace_back(std::make_shared<Hub>(world, max_clients, counters, std::move(call_frame)));
+  }
+  std::vector<std::shared_ptr<Hub>> all() {
+    const std::lock_guard lock(mutex_);
+    return hubs_;
   }
   void close(const std::shared_ptr<Hub>& hub) {
     const std::lock_guard lock(mutex_);
@@ -153,7 +160,8 @@ struct Server::Implementation {
         context{options, counters, [this](const std::string& world) { return link->worlds.ask(world); }, 0, {},
                 false,   {}},
         acceptor(listen(io, options)),
-        timer(io) {
+        timer(io),
+        frame_timer(io) {
     context.port = acceptor.local_endpoint().port();
     context.on_all_closed = [this] { io.stop(); };
     accept();
@@ -195,6 +203,17 @@ struct Server::Implementation {
     });
   }
 
+  /// Calls frame() of all hubs, a frame's time from now.
+  void call_frame() {
+    if (std::exchange(is_frame_due, true)) return;
+    frame_timer.expires_after(frame_time);
+    frame_timer.async_wait([this](error_code error) {
+      is_frame_due = false;
+      if (error) return;
+      for (const auto& hub : link->worlds.all()) hub->frame();
+    });
+  }
+
   void finish() {
     context.is_finishing = true;
     error_code ignored;
@@ -203,7 +222,7 @@ struct Server::Implementation {
     timer.async_wait([this](error_code) { io.stop(); });
     const auto open = context.open;  // closing may take some out
     for (OpenConnection* connection : open) {
-      if (context.open.contains(connection)) connection->finish();
+      if (context.is_open(connection)) connection->finish();
     }
     if (context.open.empty()) io.stop();
   }
@@ -214,7 +233,8 @@ struct Server::Implementation {
   ConnectionContext context;
   asio::io_context io{1};  // destroyed first: handlers own connections, which refer to the members above
   tcp::acceptor acceptor;
-  asio::steady_timer timer;
+  asio::steady_timer timer, frame_timer;
+  bool is_frame_due = false;
   std::thread thread;
 };
 
@@ -235,7 +255,8 @@ std::string Server::url(const std::string& world) const { return url() + "&world
 std::unique_ptr<Room> Server::open(const std::string& world) {
   check_world(world);
   const auto& link = implementation_->link;
-  auto hub = link->worlds.open(world, implementation_->options.max_clients, implementation_->counters);
+  auto hub = link->worlds.open(world, implementation_->options.max_clients, implementation_->counters,
+                               [server = implementation_.get()] { server->call_frame(); });
   return std::unique_ptr<Room>(new Room(std::move(hub), link));
 }
 
@@ -272,9 +293,11 @@ void Room::set(const protocol::WorldState& state) { deliver_if(hub_->set(state))
 void Room::set(const protocol::Actions& actions) { deliver_if(hub_->set(actions)); }
 
 void Room::notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
-                  std::string_view hint) {
-  deliver_if(hub_->notice(client, level, title, text, hint));
+                  std::string_view hint, bool is_kept) {
+  deliver_if(hub_->notice(client, level, title, text, hint, is_kept));
 }
+
+void Room::forget_notice(std::string_view title) { deliver_if(hub_->forget_notice(title)); }
 
 void Room::effect(std::string_view kind, const Vec3f& position) { deliver_if(hub_->effect(kind, position)); }
 

@@ -79,8 +79,10 @@ class Room {
   void set(const protocol::WorldState& state);
   void set(const protocol::Actions& actions);
   /// A card on one client's page, or on all (client 0). Level 0 info, 1 warning, 2 error. Too long a text is cut.
+  /// Kept ones are shown to later clients too, at most eight, until `forget_notice` with their title, or an empty one for all.
   void notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
-              std::string_view hint = {});
+              std::string_view hint = {}, bool is_kept = false);
+  void forget_notice(std::string_view title);
   /// Flash, sound and haptic pulse: "break", "join" or "grab" at a place in the world. Throws std::invalid_argument
   /// for a place that is not finite, std::length_error for a kind above 32 bytes.
   void effect(std::string_view kind, const Vec3f& position);

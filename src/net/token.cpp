@@ -106,6 +106,15 @@ std::string load_or_make_token(const fs::path& folder) {
   return token;
 }
 
+std::string renew_token(const fs::path& folder) {
+  if (fs::create_directories(folder)) fs::permissions(folder, fs::perms::owner_all);
+  std::string token = make_token();
+  const fs::path temporary = folder / ("token." + make_token());
+  write_secret(temporary, token + "\n");
+  fs::rename(temporary, folder / "token");
+  return token;
+}
+
 bool equal_in_constant_time(std::string_view given, std::string_view expected) {
   if (expected.empty()) return false;
   unsigned difference = given.size() == expected.size() ? 0U : 1U;

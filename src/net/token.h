@@ -18,6 +18,9 @@ std::string make_token();
 /// processes that start at once get the same one. Throws std::system_error when it can be neither read nor written.
 std::string load_or_make_token(const std::filesystem::path& folder = state_folder());
 
+/// A new token in place of the kept one: whoever knew that has to be given the new address. Throws as load_or_make_token.
+std::string renew_token(const std::filesystem::path& folder = state_folder());
+
 /// Whether they are equal, in a time that depends on the length of `given` only.
 bool equal_in_constant_time(std::string_view given, std::string_view expected);
 

@@ -195,6 +195,37 @@ def test_run_serves_prints_the_address_and_keys_and_stops_by_itself() -> None:
     assert 1 <= json.loads(lines[3])["steps"] <= 125 and len(lines) == 4
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full")
+def test_a_script_error_does_not_end_the_world_where_the_terminal_cannot_be_written(tmp_path: Path) -> None:
+    path = tmp_path / "fails.py"
+    path.write_text(
+        textwrap.dedent("""
+        import time
+        import iota
+        system = iota.System()
+        system.body().particle((0, 1, 0))
+        world = iota.World(system)
+        @world.every(0.05)
+        def fail(): raise RuntimeError("no")
+        @world.at(0.1)
+        def slow(): time.sleep(0.7)
+        summary = world.run()
+        assert summary.steps > 20
+        """)
+    )
+    for redirect in ("2>/dev/full", "2>&-"):
+        command = f"{sys.executable} -m iota run {path} --port 0 --seconds 2 --no-open {redirect}"
+        done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=60)
+        assert done.returncode == 0, redirect
+
+
+def test_the_token_can_be_renewed() -> None:
+    first = run("token").stdout
+    assert re.fullmatch("[0-9a-f]{32}\n", first) and run("token").stdout == first
+    second = run("token", "--renew").stdout
+    assert second != first and run("token").stdout == second
+
+
 def test_an_interrupt_while_starting_is_one_line() -> None:
     script = "import os, signal, sys, time; sys.argv = ['iota']; import iota; os.kill(os.getpid(), signal.SIGINT); time.sleep(9)"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)

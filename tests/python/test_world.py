@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import struct
+import threading
 import time
 import urllib.error
 import urllib.request
@@ -180,6 +181,80 @@ def test_an_action_that_raises_is_told_on_the_page_with_its_line(
         step = page.last["poses"]["step"]
         page.wait_for(lambda: page.last["poses"]["step"] > step + 10)
     assert "RuntimeError: too hot" in capsys.readouterr().err
+
+
+def test_an_error_is_shown_to_pages_that_open_later_until_reset(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+    failed = threading.Event()
+
+    @world.every(0.02)
+    def tick() -> None:
+        failed.set()
+        raise RuntimeError("nobody saw it")
+
+    url = run_world(world)
+    assert failed.wait(20)
+    with PageClient(url) as page:
+        (notice,) = page.wait_for(lambda: page.notices)
+        assert "nobody saw it" in notice["text"] and notice["level"] == 2
+    world.call(lambda: setattr(world, "paused", True))
+    world.call(world.reset)
+    with PageClient(url) as page:
+        page.wait_for(lambda: page.pose_frames > 3)
+        assert page.notices == []
+
+
+def test_a_page_that_opens_while_a_callback_hangs_is_told_so(run_world: Runner) -> None:
+    system = iota.System()
+    system.body().particle()
+    world = iota.World(system)
+    hangs, go_on = threading.Event(), threading.Event()
+
+    @world.action("ponder", on="world")
+    def ponder() -> None:
+        hangs.set()
+        go_on.wait(60)
+
+    url = run_world(world)
+    try:
+        with PageClient(url) as page:
+            page.send("action", name="ponder", body=NOTHING)
+            assert hangs.wait(20)
+            page.wait_for(lambda: page.notices)
+            with PageClient(url) as late:
+                (notice,) = late.wait_for(lambda: late.notices)
+                assert "'ponder' is slow" in notice["title"]
+            go_on.set()
+            step = page.last["poses"]["step"]
+            page.wait_for(lambda: page.last["poses"]["step"] > step + 10)
+        with PageClient(url) as after:
+            after.wait_for(lambda: after.pose_frames > 3)
+            assert after.notices == []
+    finally:
+        go_on.set()
+
+
+def test_one_pages_bad_hand_is_its_error_alone(world: iota.World, run_world: Runner) -> None:
+    with PageClient(run_world(world)) as page, PageClient(world.url or "") as other:
+        page.send("grab_start", hold=1, body=page.body(3), local_point=(0, 0, 0), target=(2e9, 0, 0))
+        (notice,) = page.wait_for(lambda: page.notices)
+        assert "1e9" in notice["text"] and "script" not in notice["hint"]
+        page.send("grab_start", hold=2, body=page.body(3), local_point=(9e8, 0, 0), target=(0, 0, 0))
+        step = other.last["poses"]["step"]
+        other.wait_for(lambda: other.last["poses"]["step"] > step + 20)
+        assert other.notices == []
+
+
+def test_one_page_cannot_run_the_world_for_all(world: iota.World, run_world: Runner) -> None:
+    with PageClient(run_world(world)) as page:
+        steps = world.call(lambda: world.system.step_count)
+        began = time.monotonic()
+        for _ in range(4000):
+            page.send("control", command=ControlCommand.SINGLE_STEP, value=0)
+        page.wait_for(lambda: page.last["world_state"]["paused"])
+        time.sleep(0.2)
+        taken = world.call(lambda: world.system.step_count) - steps
+        assert taken < 130 * (time.monotonic() - began) + 10, "no faster than real time"
 
 
 def test_an_action_without_a_body_says_what_to_do(world: iota.World, run_world: Runner) -> None:

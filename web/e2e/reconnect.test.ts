@@ -46,6 +46,13 @@ describe("iota run chain", () => {
     await tab.until("the world moves", (was) => iota.step > was + 20, before);
   });
 
+  it("takes the token out of the address bar, and a reload still knows it", async () => {
+    expect(tab.page.url()).not.toContain("token");
+    await tab.page.reload();
+    await tab.until("the page is back", () => globalThis.iota?.connected && iota.step > 0);
+    expect(tab.page.url()).not.toContain("token");
+  });
+
   it("says why when the address has no valid token", async () => {
     const page = await browser.context.newPage();
     await page.goto(server.url.replace(/token=.*/, "token=wrong"));

@@ -73,6 +73,10 @@ def make_parser() -> Parser:
     running.add_argument("--json", action="store_true", help="print the run's figures as one JSON object at its end")
     running.set_defaults(function=run.run)
 
+    token = commands.add_parser("token", help="prints the secret in the page's address, or makes a new one")
+    token.add_argument("--renew", action="store_true", help="a new one: addresses from before are refused from then on")
+    token.set_defaults(function=run.token)
+
     benching = commands.add_parser("bench", help="measures the engine through Python")
     benching.add_argument("what", choices=["chain", "forces"])
     benching.add_argument("--links", type=link_count, nargs="+", default=list(bench.LINKS), help="chain lengths")

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from iota import studies
+from iota._core import kept_token, renew_token
 from iota.cli.failure import Failure
 from iota.errors import PageMissingError
 from iota.world import World
@@ -54,6 +55,14 @@ def run(arguments: argparse.Namespace) -> None:
             )
     if arguments.json and options.summary is not None:
         print(json.dumps(options.summary.as_dict()))
+
+
+def token(arguments: argparse.Namespace) -> None:
+    """Prints the kept token; with --renew a new one in its place."""
+    try:
+        print(renew_token() if arguments.renew else kept_token())
+    except OSError as error:
+        raise Failure(f"{error.strerror or error}") from None
 
 
 def can_show_a_page() -> bool:

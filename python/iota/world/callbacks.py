@@ -50,6 +50,10 @@ class Hook:
         return cls(function, wants_event(function), function_name(function))
 
 
+def slow_title(what: str) -> str:
+    return f"{what} is slow"
+
+
 def function_name(function: Callable[..., Any]) -> str:
     return getattr(function, "__qualname__", None) or type(function).__name__
 
@@ -89,13 +93,14 @@ def print_on_terminal(text: str) -> None:
 
 
 class Guard:
-    """Calls functions of the script; tells of errors and slowness by `tell(title, text, hint)`.
+    """Calls functions of the script; tells of errors and slowness by `tell(title, text, hint)`, and by `over(title)` that a
+    slow one has returned.
 
     A watching thread tells of a slow function while it still runs: the page, served by another thread, goes on drawing.
     """
 
-    def __init__(self, tell_error: Tell, tell_slow: Tell) -> None:
-        self._tell_error, self._tell_slow = tell_error, tell_slow
+    def __init__(self, tell_error: Tell, tell_slow: Tell, over: Callable[[str], None]) -> None:
+        self._tell_error, self._tell_slow, self._over = tell_error, tell_slow, over
         self._running: tuple[str, float] | None = None
         self._told: tuple[str, float] | None = None
         self._stop = threading.Event()
@@ -138,6 +143,7 @@ class Guard:
         seconds = time.monotonic() - running[1]
         if seconds > SLOW:
             print_on_terminal(f"iota: {what} took {seconds:.1f} s; the world stood still meanwhile\n")
+            self._over(slow_title(what))
 
     def _watch(self) -> None:
         while not self._stop.wait(0.1):
@@ -145,4 +151,4 @@ class Guard:
             if running and running != self._told and time.monotonic() - running[1] > SLOW:
                 self._told = running
                 hint = "Do long work elsewhere, or in small pieces once a step."
-                self._tell_slow(f"{running[0]} is slow", "The world waits for it; the page goes on.", hint)
+                self._tell_slow(slow_title(running[0]), "The world waits for it; the page goes on.", hint)

@@ -9,7 +9,7 @@ from typing import Any
 
 from iota._core import InputEvent
 from iota._protocol import ControlCommand
-from iota.world.callbacks import Guard
+from iota.world.callbacks import Guard, one_line
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event
 from iota.world.state import State
@@ -43,7 +43,15 @@ class Inputs:
             elif event.kind == "control":
                 self._control(event)
             else:
-                self._guard.call(f"{event.kind} by client {event.client}", self._state.hands.take, event, body)
+                self._take_hands(event, body)
+
+    def _take_hands(self, event: InputEvent, body: Any) -> None:
+        """What a page asks for that the system refuses is that page's error alone, and nothing of the script's."""
+        try:
+            self._state.hands.take(event, body)
+        except (ValueError, RuntimeError, LookupError) as error:
+            title = "That cannot be held" if event.kind.startswith("grab") else "That cannot be done"
+            self._state.notices.send(title, one_line(error), level="warning", client=event.client)
 
     def _act(self, event: InputEvent, named: Any) -> None:
         state = self._state

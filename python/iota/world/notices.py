@@ -8,28 +8,44 @@ from collections.abc import Callable
 LEVELS = ("info", "warning", "error")
 MOST_WARNINGS = 100
 
-Show = Callable[[int, int, str, str, str], object]  # client (0: all), number of the level, title, text, hint
+Show = Callable[
+    [int, int, str, str, str, bool], object
+]  # client (0: all), number of the level, title, text, hint, keep
+Forget = Callable[[str], object]  # a title, or nothing for all
 
 
 class Notices:
-    """Shows cards by `show`; before it is set and after it is taken away there is nobody to see them."""
+    """Shows cards by `show`; before it is set and after it is taken away there is nobody to see them.
+
+    Errors of the script are kept by the server, so that pages that open later are told why nothing happens."""
 
     def __init__(self) -> None:
         self.show: Show | None = None
+        self.forget: Forget | None = None
         self._warnings: set[str] = set()
 
-    def send(self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0) -> None:
-        """On all pages, or on one client's. Raises ValueError for an unknown level."""
+    def send(
+        self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0, keep: bool = False
+    ) -> None:
+        """On all pages, or on one client's. keep: pages that open later are shown it too. Raises ValueError for an unknown
+        level."""
         if level not in LEVELS:
             raise ValueError(f"level must be one of {', '.join(LEVELS)}, not {level!r}")
         if self.show is not None:
-            self.show(client, LEVELS.index(level), title, text, hint)
+            self.show(client, LEVELS.index(level), title, text, hint, keep)
 
     def error(self, title: str, text: str, hint: str) -> None:
-        self.send(title, text, hint, "error")
+        """Of the script. It is kept until `over`."""
+        self.send(title, text, hint, "error", keep=True)
 
     def warning(self, title: str, text: str, hint: str) -> None:
-        self.send(title, text, hint, "warning")
+        """Of what goes on just now. It is kept until `over`."""
+        self.send(title, text, hint, "warning", keep=True)
+
+    def over(self, title: str = "") -> None:
+        """What was kept under a title, or all, is not shown to pages that open from now on."""
+        if self.forget is not None:
+            self.forget(title)
 
     def warn_once(self, text: str) -> None:
         """The same text is shown only once."""

@@ -21,7 +21,7 @@ class Publisher:
         self._source = source_of(state.system)
         self.room = room
         self.url = server.url if is_alone else server.url_of(room.world)
-        state.notices.show = room.notice
+        state.notices.show, state.notices.forget = room.notice, room.forget_notice
         state.scene.tell_anew()
         state.is_changed = True
 
@@ -37,7 +37,7 @@ class Publisher:
         return cls(state, server, server.open(id), is_alone=False)
 
     def close(self) -> None:
-        self._state.notices.show = None
+        self._state.notices.show = self._state.notices.forget = None
         self.room.close(self._state.system)
         if self._is_alone:
             self._server.close()

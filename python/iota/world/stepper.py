@@ -75,6 +75,7 @@ class Stepper:
         self._state.is_changed = True
         self.schedule.rewind()
         self._off.clear()
+        self._state.notices.over()
         for hook in self.on_reset:
             self._call(f"on_reset ({hook.name})", hook, "reset")
 

@@ -66,7 +66,7 @@ class World:
     ) -> None:
         # Scripts see the built-in system; nothing here asks for more than a Simulator.
         self._state = State(cast(System, system), Clock(dt), title, style, ground, camera)
-        self._guard = Guard(self._state.notices.error, self._state.notices.warning)
+        self._guard = Guard(self._state.notices.error, self._state.notices.warning, self._state.notices.over)
         self._stepper = Stepper(self._state, self._guard)
         self._inputs = Inputs(self._state, self._guard, self._stepper.step, self._stepper.reset)
         self._publisher: Publisher | None = None

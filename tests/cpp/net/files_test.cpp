@@ -28,6 +28,15 @@ TEST(Token, is_made_once_and_kept) {
   EXPECT_EQ(std::distance(fs::directory_iterator(state), fs::directory_iterator()), 1);
 }
 
+TEST(Token, is_another_one_once_it_was_renewed) {
+  const TemporaryFolder folder;
+  const std::string before = load_or_make_token(folder.path() / "iota");
+  const std::string after = renew_token(folder.path() / "iota");
+  EXPECT_NE(after, before);
+  EXPECT_EQ(after.size(), 32U);
+  EXPECT_EQ(load_or_make_token(folder.path() / "iota"), after);
+}
+
 TEST(Token, is_readable_by_its_owner_only) {
   const TemporaryFolder folder;
   const auto mode_of = [&] { return fs::status(folder.path() / "token").permissions(); };

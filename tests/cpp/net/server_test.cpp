@@ -210,8 +210,10 @@ TEST_F(ServerTest, serves_the_page_with_safe_headers) {
   EXPECT_EQ(answer.headers.at("Referrer-Policy"), "no-referrer");
   const std::string& policy = answer.headers.at("Content-Security-Policy");
   EXPECT_NE(policy.find("default-src 'self'"), std::string::npos);
-  EXPECT_NE(policy.find("connect-src 'self' ws: wss:"), std::string::npos);
+  const std::string socket = "connect-src 'self' ws://localhost:" + std::to_string(server_->port()) + " blob:";
+  EXPECT_NE(policy.find(socket), std::string::npos) << policy;
   EXPECT_EQ(policy.find("unsafe-inline"), std::string::npos);
+  EXPECT_EQ(answer.headers.at("Cross-Origin-Resource-Policy"), "same-origin");
 }
 
 TEST_F(ServerTest, serves_assets_for_ever_and_others_by_their_tag) {
@@ -286,6 +288,21 @@ TEST_F(ServerTest, lets_go_of_a_client_that_says_no_hello_in_time) {
   EXPECT_FALSE(silent.receive());
   EXPECT_TRUE(silent.is_closed());
   EXPECT_TRUE(is_alive(*polite)) << "who has said hello stays";
+}
+
+TEST_F(ServerTest, strangers_keep_nobody_out) {
+  const auto before = join("before");
+  std::vector<std::unique_ptr<PageClient>> silent;
+  for (int i = 0; i < 300; ++i) {
+    silent.push_back(std::make_unique<PageClient>());
+    silent.back()->connect(server_->port(), target());
+  }
+  EXPECT_EQ(test::http_request(server_->port(), "GET", "/healthz").body, "ok");
+  const auto late = join("late");
+  EXPECT_TRUE(hear<protocol::Welcome>(*late));
+  EXPECT_TRUE(is_alive(*before)) << "a client that was welcomed keeps its place";
+  silent.front()->receive();
+  EXPECT_TRUE(silent.front()->is_closed()) << "the oldest had to go";
 }
 
 TEST_F(ServerTest, welcomes_a_client_that_says_hello) {
@@ -726,6 +743,80 @@ TEST_F(ServerTest, a_client_that_floods_the_script_is_dropped_with_a_reason) {
   EXPECT_NE(client->close_reason().find("more input"), std::string::npos);
   EXPECT_EQ(server_->statistics().clients_dropped, 1U);
   EXPECT_TRUE(is_alive(*other));
+}
+
+TEST_F(ServerTest, one_client_has_one_single_step_a_round_and_one_reset_a_second) {
+  const auto client = join();
+  const auto other = join();
+  ASSERT_TRUE(hear<protocol::Welcome>(*client));
+  take(2);
+  for (int i = 0; i < 1000; ++i) {
+    say(*client, protocol::Control{protocol::ControlCommand::pause, 0});
+    say(*client, protocol::Control{protocol::ControlCommand::single_step, 0});
+    say(*client, protocol::Control{protocol::ControlCommand::reset, 0});
+  }
+  say(*other, protocol::Control{protocol::ControlCommand::reset, 0});
+  ASSERT_TRUE(is_alive(*client));
+  ASSERT_TRUE(is_alive(*other));
+  std::map<std::pair<std::uint32_t, protocol::ControlCommand>, int> counts;
+  for (const InputEvent& event : room_->take_input()) ++counts[{event.client, event.command}];
+  EXPECT_EQ((counts[{1, protocol::ControlCommand::single_step}]), 1);
+  EXPECT_EQ((counts[{1, protocol::ControlCommand::reset}]), 1);
+  EXPECT_EQ((counts[{2, protocol::ControlCommand::reset}]), 1) << "each has its own";
+  say(*client, protocol::Control{protocol::ControlCommand::single_step, 0});
+  ASSERT_TRUE(is_alive(*client));
+  EXPECT_EQ(take(1).size(), 1U) << "the next round has its step";
+}
+
+TEST_F(ServerTest, who_is_there_is_told_at_most_once_a_frame) {
+  const auto client = join();
+  const auto other = join();
+  ASSERT_TRUE(hear<protocol::Welcome>(*other));
+  const auto began = std::chrono::steady_clock::now();
+  for (std::uint32_t i = 1; i <= 3000; ++i) say(*client, protocol::Select{{i, 1}});
+  int told = 0;
+  for (;;) {
+    const auto clients = hear<protocol::Clients>(*other);
+    ASSERT_TRUE(clients) << "the last selection is told";
+    ++told;
+    if (clients->clients[0].selected.slot == 3000) break;
+  }
+  const auto took = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  EXPECT_LE(told, took / 0.016 + 3) << "in " << took << " s";
+}
+
+TEST_F(ServerTest, a_place_beyond_the_engines_limit_is_that_clients_error_alone) {
+  const auto client = join();
+  const auto other = join();
+  ASSERT_TRUE(hear<protocol::Welcome>(*other));
+  take(2);
+  say(*client, protocol::GrabStart{1, {3, 1}, {0, 0, 0}, {2e9F, 0, 0}});
+  const auto notice = hear<protocol::Notice>(*client);
+  ASSERT_TRUE(notice);
+  EXPECT_NE(notice->text.find("1e9"), std::string::npos);
+  say(*client, protocol::GrabStart{1, {3, 1}, {0, 0, 0}, {1, 0, 0}});
+  say(*client, protocol::GrabMove{1, {0, -2e9F, 0}});
+  EXPECT_TRUE(hear<protocol::Notice>(*client));
+  EXPECT_EQ(take(1).at(0).kind, Kind::grab_start);
+  EXPECT_TRUE(room_->take_input().empty());
+  room_->notice(0, 0, "last", "");
+  EXPECT_EQ(hear<protocol::Notice>(*other)->title, "last") << "nobody else is told";
+}
+
+TEST_F(ServerTest, kept_notices_reach_those_who_come_later_until_they_are_forgotten) {
+  room_->notice(0, 2, "broken", "before anybody came", {}, true);
+  room_->notice(0, 2, "broken", "again", {}, true);
+  room_->notice(0, 1, "slow", "", {}, true);
+  room_->notice(0, 0, "said once", "");
+  const auto first = join();
+  EXPECT_EQ(hear<protocol::Notice>(*first)->text, "again") << "one for each title";
+  EXPECT_EQ(hear<protocol::Notice>(*first)->title, "slow");
+  room_->forget_notice("broken");
+  const auto second = join();
+  EXPECT_EQ(hear<protocol::Notice>(*second)->title, "slow");
+  room_->forget_notice({});
+  const auto third = join();
+  EXPECT_FALSE(hear<protocol::Notice>(*third, 200ms));
 }
 
 // -------------------------------------------------------------------------------------------------------- slow clients

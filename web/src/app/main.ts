@@ -3,6 +3,7 @@
 
 import { ScreenInput } from "../interact/screen_input.ts";
 import type { JoinRequest } from "../net/connection.ts";
+import { takeToken } from "../net/token.ts";
 import { makePage } from "../page/page.ts";
 import { Resolution } from "../page/resolution.ts";
 import { Role } from "../protocol/generated.ts";
@@ -11,11 +12,11 @@ import { byId } from "../ui/dom.ts";
 import { offerHeadset } from "../xr/entry.ts";
 import { makeDebug } from "./debug.ts";
 
-/** Where the world's socket is: beside this page, with the token of this page's address. */
+/** Where the world's socket is: beside this page, with its token. */
 function socketUrl(): string {
   const url = new URL("ws", document.baseURI);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
-  const token = new URLSearchParams(location.search).get("token");
+  const token = takeToken();
   if (token !== null) url.searchParams.set("token", token);
   return url.href;
 }
