@@ -7,6 +7,7 @@
 #include "shape_argument.h"
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 
 #include <algorithm>
@@ -43,9 +44,10 @@ protocol::Part make_part(const std::string& kind, const std::vector<float>& size
 }
 
 void set_settings(RoomObject& self, const std::string& title, const std::vector<std::string>& looks,
-                  const std::string& look, const Vec3& camera_position, const Vec3& camera_target,
+                  const std::string& look, const std::optional<std::pair<Vec3, Vec3>>& camera,
                   std::optional<double> ground) {
-  self.use().set(protocol::WorldSettings{title, looks, look, narrow(camera_position), narrow(camera_target),
+  const auto& [position, target] = camera.value_or(std::pair<Vec3, Vec3>{});
+  self.use().set(protocol::WorldSettings{title, looks, look, camera.has_value(), narrow(position), narrow(target),
                                          ground.has_value(), static_cast<float>(ground.value_or(0))});
 }
 
@@ -197,8 +199,8 @@ void bind_room(nb::module_& module) {
             if (nb::try_cast(system, object) && object) object->use().viewer().stop_watching_scene();
           },
           "system"_a, "Tells its pages that the world has ended; changes of its system are noted no more.")
-      .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a, "camera_position"_a,
-           "camera_target"_a, "ground"_a.none())
+      .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a,
+           "camera"_a.none(), "ground"_a.none())
       .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a)
       .def("set_actions", &set_actions, "actions"_a,
            "Tuples of name, key, label, help, whether it is on a body, and button.")

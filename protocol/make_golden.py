@@ -232,6 +232,7 @@ SERVER: list[Vector] = [
         + text("rope")
         + text("chain")
         + text("rope")
+        + b"\x01"
         + vec3([2.5, 1.5, 3.5])
         + vec3([0.0, 1.25, 0.0])
         + b"\x01"
@@ -240,6 +241,7 @@ SERVER: list[Vector] = [
             "title": "K\u00e4tte",
             "looks": ["rope", "chain"],
             "look": "rope",
+            "has_camera": True,
             "camera_position": [2.5, 1.5, 3.5],
             "camera_target": [0.0, 1.25, 0.0],
             "has_ground": True,

@@ -28,7 +28,7 @@ void apply(Editor& e, const Nail& c) {
   model.nails.make(slot) = {position, position, {}};
   model.touch_ring(slot);
   change.report.changed = true;
-  (void)change.finish({moved, true}, {ViewEvent::Kind::join, position});
+  (void)change.finish({moved, true});
 }
 
 void apply(Editor& e, const Release& c) {

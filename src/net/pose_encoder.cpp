@@ -120,8 +120,10 @@ PoseQuantizer::Bounds PoseQuantizer::bulk_of(std::span<const BodyPose> bodies) {
 }
 
 void PoseQuantizer::set_box(const Bounds& bulk) {
-  // Room to swing without another box soon; the error stays a small part of what is seen.
-  const double margin = std::max(0.5, bulk.longest_edge() / 2);
+  // Room to swing without another box soon; the error stays a small part of what is seen, whatever its size. Bodies that come
+  // together for a moment do not change the box by more than a factor.
+  widest_ = std::max(widest_, bulk.longest_edge());
+  const double margin = std::max(widest_ / 16, bulk.longest_edge() / 2);
   Bounds box = bulk;
   for (std::size_t i = 0; i < 3; ++i) {
     poses_.box_min[i] = static_cast<float>(bulk.min[i] - margin);
@@ -160,14 +162,15 @@ void PoseQuantizer::fit_box(std::span<const BodyPose> bodies) {
     inside = larger;
     has_grown = true;
   }
-  const bool is_too_wide = box_ && box_->longest_edge() > 4 * (2 * inside->longest_edge() + 1);
+  const bool is_too_wide = box_ && box_->longest_edge() > std::max(8 * inside->longest_edge(), widest_ / 4);
   if (is_new || has_grown || is_too_wide) set_box(*inside);
 }
 
 void PoseQuantizer::add_body(const BodyPose& body) {
   const auto rotation = pack_rotation(body.orientation);
   if (!is_finite(body.position) || !rotation) return;
-  if (body.body > 0xFFFF || !box_->contains(body.position)) {
+  // Bodies at one place, or a single one, tell nothing of the size of the scene: they travel as floats.
+  if (body.body > 0xFFFF || widest_ == 0 || !box_->contains(body.position)) {
     poses_.far_bodies.push_back({body.body, to_vec3(body.position), *rotation});
     return;
   }

@@ -13,8 +13,9 @@
 namespace iota::net {
 namespace {
 
-/// Finer than a page shows. The same point of a body that has moved gives the same number, and is not told again.
-constexpr double least_length = 1e-6;
+/// Lengths are told in steps of this part of the scene's size, and of at most 1e-6 m: finer than a page shows. The same point
+/// of a body that has moved gives the same number, and is not told again.
+constexpr double finest = 1e-6;
 constexpr std::size_t most_triangles = 50'000;
 constexpr std::size_t most_record_bytes = 8 << 20;
 constexpr double usual_thickness = 0.03;
@@ -23,11 +24,12 @@ constexpr double of_body = 0.1;  // length of what is drawn as long as its body,
 constexpr std::array tie_names{"spring", "rope", "rod"};
 
 /// 0 for what is not finite: a world that has gone wrong is shown as far as it can be.
-float rounded(double value) {
-  return std::isfinite(value) ? static_cast<float>(std::round(value / least_length) * least_length) + 0.0F : 0.0F;
+float round_to(double step, double value) {
+  return std::isfinite(value) ? static_cast<float>(std::round(value / step) * step) + 0.0F : 0.0F;
 }
-protocol::Vec3 to_wire(const Vec3& v) { return {rounded(v.x), rounded(v.y), rounded(v.z)}; }
-protocol::Quat to_wire(const Quaternion& q) { return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)}; }
+protocol::Quat to_wire(const Quaternion& q) {
+  return {round_to(finest, q.x), round_to(finest, q.y), round_to(finest, q.z), round_to(finest, q.w)};
+}
 float size(double value) { return std::isfinite(value) ? static_cast<float>(value) : 0.0F; }
 
 /// Its name and its sizes, as in protocol/shapes.json; a mesh has vertices and triangles instead.
@@ -43,6 +45,11 @@ protocol::Shape to_wire(const Shape& shape) {
   for (const auto& triangle : mesh->triangles)
     wire.triangles.insert(wire.triangles.end(), triangle.begin(), triangle.end());
   return wire;
+}
+
+/// Has no length, whatever the size of the scene.
+protocol::Vec3 unit_axis(const Vec3& v) {
+  return {round_to(finest, v.x), round_to(finest, v.y), round_to(finest, v.z)};
 }
 
 protocol::Part make_part(std::string look, protocol::Shape shape, std::string material) {
@@ -65,10 +72,6 @@ protocol::BodyKind kind_of(BodyKind kind) {
 protocol::TieKind kind_of(DrawnTie::Kind kind) {
   return std::array{protocol::TieKind::spring, protocol::TieKind::rope,
                     protocol::TieKind::rod}[static_cast<std::size_t>(kind)];
-}
-
-protocol::Anchor to_wire(const Anchor& anchor) {
-  return {anchor.body ? anchor.body.slot : protocol::no_body, to_wire(anchor.point)};
 }
 
 Vec3 rotated(const Quaternion& q, const Vec3& v) {
@@ -154,6 +157,7 @@ EntityChanges Presenter::present(const SceneChanges& changes) {
   if (changes.is_whole)
     for (std::vector<Told>& kind : told_)
       for (Told& known : kind) known.is_listed = false;
+  if (changes.is_whole && changes.extent > 0) quantum_ = finest * std::min(1.0, changes.extent);
   if (thickness_ == 0) choose_thickness(changes);
   if (needs_all_) {
     needs_all_ = false;
@@ -171,11 +175,11 @@ EntityChanges Presenter::present(const SceneChanges& changes) {
                                        kind_of(tie.kind),
                                        tie_styles_[static_cast<std::size_t>(tie.kind)],
                                        size(std::max(tie.length, 0.0)),
-                                       to_wire(tie.a),
-                                       to_wire(tie.b)});
+                                       anchored(tie.a),
+                                       anchored(tie.b)});
   for (const DrawnJoint& joint : changes.joints.set)
-    tell(joint.slot, protocol::JointEntity{{}, joint.kind, to_wire(joint.a), to_wire(joint.b), to_wire(joint.axis)});
-  for (const DrawnNail& nail : changes.nails.set) tell(nail.slot, protocol::NailEntity{{}, to_wire(nail.at)});
+    tell(joint.slot, protocol::JointEntity{{}, joint.kind, anchored(joint.a), anchored(joint.b), unit_axis(joint.axis)});
+  for (const DrawnNail& nail : changes.nails.set) tell(nail.slot, protocol::NailEntity{{}, anchored(nail.at)});
   for (const DrawnParticleSet& set : changes.particle_sets.set)
     tell(set.slot, protocol::ParticleSetEntity{{}, set.active, set.capacity});
   if (statics_changed_) present_statics();
@@ -272,12 +276,12 @@ std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, co
       if (mesh && mesh->triangles.empty()) continue;
       protocol::Part& part = parts.emplace_back(make_part(look, {}, first->material));
       part.color = first->color;
-      part.offset = to_wire(solid.position);
+      part.offset = rounded(solid.position);
       part.rotation = to_wire(solid.orientation);
       if (mesh && mesh->triangles.size() > most_triangles) {
         const auto [center, box] = box_around(*mesh);
         part.shape = to_wire(box);
-        part.offset = to_wire(solid.position + rotated(solid.orientation, center));
+        part.offset = rounded(solid.position + rotated(solid.orientation, center));
         warnings_.push_back("the page draws meshes of at most " + std::to_string(most_triangles) +
                             " triangles, that of body " + std::to_string(body.id.slot) + " has " +
                             std::to_string(mesh->triangles.size()) +
@@ -311,7 +315,7 @@ std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, 
     for (const DrawnLine& line : body.lines) {
       if (!(line.length > 0)) continue;
       protocol::Part& part = add(to_wire(Capsule{radius, line.length}));
-      part.offset = to_wire(line.center);
+      part.offset = rounded(line.center);
       part.rotation = to_wire(line.turn);
     }
     if (parts.size() == before) add(to_wire(Sphere{radius}));
@@ -380,6 +384,14 @@ void Presenter::release_style(std::uint32_t slot) {
   forget<protocol::StyleEntity>(slot);
   styles_.erase(style);
   free_styles_.push_back(slot);
+}
+
+protocol::Vec3 Presenter::rounded(const Vec3& v) const {
+  return {round_to(quantum_, v.x), round_to(quantum_, v.y), round_to(quantum_, v.z)};
+}
+
+protocol::Anchor Presenter::anchored(const Anchor& anchor) const {
+  return {anchor.body ? anchor.body.slot : protocol::no_body, rounded(anchor.point)};
 }
 
 /// A radius that suits rods of this system, taken once: from their middle length or, without rods, from the size of all.

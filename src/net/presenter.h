@@ -91,12 +91,15 @@ class Presenter {
   std::uint32_t use_style(std::string_view name, const std::vector<protocol::Part>& parts);
   void release_style(std::uint32_t slot);
   void choose_thickness(const SceneChanges& changes);
+  protocol::Vec3 rounded(const Vec3& v) const;
+  protocol::Anchor anchored(const Anchor& anchor) const;
 
   std::map<std::string, Class, std::less<>> classes_;
   std::map<BodyId, Assignment> assignments_;
   std::vector<BodyId> assigned_;
   std::vector<protocol::Part> statics_;
   bool needs_all_ = true, statics_changed_ = false;
+  double quantum_ = 1e-6;  ///< finer than a page shows, m
   double thickness_ = 0;  ///< radius that suits rods of this system, m; 0: not known yet
 
   std::array<std::vector<Told>, entity_kind_count> told_;  ///< by slot

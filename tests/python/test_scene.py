@@ -10,7 +10,7 @@ import iota
 from iota import looks
 from iota._protocol import BodyKind, TieKind
 from iota.world.frames import into_frame, turn_from_x
-from iota.world.scene import Scene, fitting_camera
+from iota.world.scene import Scene
 
 
 def test_bodies_without_a_class_get_a_look_by_their_particles(system: iota.System) -> None:
@@ -175,12 +175,6 @@ def test_turn_from_x_takes_x_to_a_direction(direction: tuple[float, float, float
     x, y, z, w = quaternion
     back = into_frame(iota.Vec3(*direction), iota.Vec3(), (x, y, z, w))
     assert tuple(back) == pytest.approx((1, 0, 0), abs=1e-6)
-
-
-def test_the_camera_sees_everything(system: iota.System, chain: list[iota.Body]) -> None:
-    camera = fitting_camera(system)
-    assert camera.target == pytest.approx((0.18, 1.76, 0), abs=0.01)
-    assert fitting_camera(iota.System()).position
 
 
 def test_shapes_refuse_what_they_do_not_know() -> None:

@@ -76,7 +76,7 @@ describe("an emulated headset", () => {
     const seen = await me.tab.page.evaluate(() => {
       const { page } = iota;
       const eyes = page.viewer.renderer.xr.getCamera().cameras;
-      const target = page.world.settings.cameraTarget;
+      const target = page.navigation.home.pivot;
       const head = iotaXR!.head();
       const ahead = page.viewer.camera.getWorldDirection(page.viewer.camera.position.clone());
       const [dx, dz] = [target[0] - head[0], target[2] - head[2]];

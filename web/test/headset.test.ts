@@ -6,7 +6,7 @@ import { Commands } from "../src/commands/commands.ts";
 import { layoutPanel, panelWidth } from "../src/xr/panel_layout.ts";
 import { standBefore, type Standing } from "../src/xr/standing.ts";
 
-const settings: Standing = { ground: 0.5, cameraPosition: [3, 1.7, 4], cameraTarget: [0.2, 1.5, 0] };
+const settings: Standing = { ground: 0.5, eye: [3, 1.7, 4], target: [0.2, 1.5, 0] };
 
 function stand(world: Standing, head: Matrix4): { head: Vector3; ahead: Vector3; rig: Object3D } {
   const rig = new Object3D();
@@ -31,7 +31,7 @@ describe("where a user stands at first", () => {
   });
 
   it("has the thing at eye height where there is no ground", () => {
-    const { head } = stand({ ground: null, cameraPosition: [0, 1, 3], cameraTarget: [0, 1, 0] }, new Matrix4().setPosition(0, 1.2, 0));
+    const { head } = stand({ ground: null, eye: [0, 1, 3], target: [0, 1, 0] }, new Matrix4().setPosition(0, 1.2, 0));
     expect(head.y).toBeCloseTo(1.15);
     expect(head.z).toBeGreaterThan(0.8);
   });

@@ -6,6 +6,7 @@ import type { Pickable } from "../src/scene/pickable.ts";
 import { bodyDistance, bodyReach, parseShape, placeShape, type PlacedShape } from "../src/scene/shapes/shape.ts";
 
 export class TestScene implements Pickable {
+  readonly size = 1.6;
   readonly pickable: Uint32Array;
   readonly pickableCount: number;
   readonly position: Float32Array;

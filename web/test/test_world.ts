@@ -64,7 +64,7 @@ export class TestWorld implements WorldListener {
 
   /** Joins: what has been told before and is not told again until the next poses is gone. */
   join(): void {
-    this.world.take({ type: "welcome", version: 3, world: "", client: 1 });
+    this.world.take({ type: "welcome", version: 4, world: "", client: 1 });
   }
 
   set<K extends EntityKind>(kind: K, ...entities: readonly EntityRecords[K][]): void {

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from iota._core import InputEvent, Room, Vec3
-from iota.world.scene import fitting_camera
 from iota.world.server import Server
 from iota.world.source import source_of
 from iota.world.state import State
@@ -62,14 +61,11 @@ class Publisher:
     def _tell_settings(self) -> None:
         state = self._state
         looks = list(dict.fromkeys(name for styles in state.scene.classes.values() for name in styles if name != "*"))
-        # The fitted camera is where the world was first seen from: later structures do not move it.
-        state.camera = state.camera or fitting_camera(state.system)
         self.room.set_settings(
             title=state.title,
             looks=looks,
             look=state.style or (looks[0] if looks else ""),
-            camera_position=Vec3(*state.camera.position),
-            camera_target=Vec3(*state.camera.target),
+            camera=None if state.camera is None else (Vec3(*state.camera.position), Vec3(*state.camera.target)),
             ground=state.ground,
         )
         self.room.set_actions([action.describe() for action in state.actions])

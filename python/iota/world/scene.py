@@ -7,9 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
-from iota._core import Body, DrawnPart, Room, System
+from iota._core import Body, DrawnPart, Room
 from iota.looks import Look, Looks
 from iota.simulator import SimulatedBody
 
@@ -20,17 +18,6 @@ class Camera:
 
     position: Sequence[float] = (2.5, 1.6, 3.5)
     target: Sequence[float] = (0.0, 1.2, 0.0)
-
-
-def fitting_camera(system: System) -> Camera:
-    """Sees all particles from the front, a little from the side and above."""
-    places = system.positions
-    if not len(places):
-        return Camera()
-    low, high = places.min(axis=0), places.max(axis=0)
-    center, size = (low + high) / 2, max(float(np.linalg.norm(high - low)), 1.0)
-    eye = center + size * np.array([0.6, 0.25, 1.2])
-    return Camera(tuple(map(float, eye)), tuple(map(float, center)))
 
 
 def listed(style: Look | list[Look]) -> list[Look]:

@@ -211,6 +211,28 @@ TEST(PoseEncoder, a_body_that_comes_back_from_afar_is_listed_again) {
   EXPECT_EQ(receiver.next(snapshot).far_bodies.size(), 1U);
 }
 
+TEST(PoseEncoder, positions_are_as_exact_in_a_molecule_as_in_a_valley) {
+  for (const float size : {1e-9F, 1e-3F, 1.0F, 1e3F}) {
+    Receiver receiver;
+    PoseSnapshot snapshot = hanging_chain(24);
+    for (BodyPose& body : snapshot.bodies)
+      for (float& x : body.position) x *= size;
+    const auto poses = receiver.next(snapshot);
+    ASSERT_EQ(poses.bodies.size(), 24U);
+    for (std::size_t i = 0; i < 24; ++i)
+      EXPECT_NEAR(unpack_position(poses, poses.bodies[i])[1], snapshot.bodies[i].position[1], 1e-4F * size);
+  }
+}
+
+TEST(PoseEncoder, a_single_body_is_exact_at_any_size) {
+  Receiver receiver;
+  PoseSnapshot snapshot;
+  snapshot.bodies.push_back(make_pose(0, 1e-9F, -2e-9F, 3e-9F));
+  const auto poses = receiver.next(snapshot);
+  ASSERT_EQ(poses.far_bodies.size(), 1U);
+  EXPECT_EQ(poses.far_bodies[0].position[1], -2e-9F);
+}
+
 TEST(PoseEncoder, a_long_chain_is_one_box) {
   Receiver receiver;
   const auto poses = receiver.next(hanging_chain(4000));  // 400 m

@@ -61,7 +61,7 @@ const std::map<std::string, ServerMessage>& server_vectors() {
       {"entities_set", EntitiesSet{"body", {1, 2, 3, 4, 5}}},
       {"entities_destroyed", EntitiesDestroyed{"tie", {{7, 1}, {70000, 9}}}},
       {"world_settings",
-       WorldSettings{"K\u00e4tte", {"rope", "chain"}, "rope", {2.5F, 1.5F, 3.5F}, {0, 1.25F, 0}, true, -0.5F}},
+       WorldSettings{"K\u00e4tte", {"rope", "chain"}, "rope", true, {2.5F, 1.5F, 3.5F}, {0, 1.25F, 0}, true, -0.5F}},
       {"world_state", WorldState{true, 0.5F, 0.375F, 1.0 / 120}},
       {"actions", Actions{{{"push", "p", "push it", "", ActionTarget::body, ControllerButton::b}}}},
   };

@@ -94,9 +94,10 @@ export interface GestureListener {
   pressedNothing(pointer: Pointer): void;
 }
 
+/** In sizes of the scene: as far as a ray picks, as near as it holds, and moves of a target that are not sent again. */
 const farthest = 100;
-/** Targets that move less than this are not sent again, m. */
-const still = 1e-5;
+const nearest = 0.03;
+const still = 5e-6;
 
 export class Gestures {
   readonly grabs: Grab[] = [];
@@ -180,7 +181,7 @@ export class Gestures {
     pointer.near = pointer.nearReach > 0 && pickPoint(this.scene_, pointer.tip, pointer.nearReach, pointer.hit);
     if (pointer.near) return true;
     return pointer.far
-      && pickRay(this.scene_, pointer.origin, pointer.direction, pointer.tolerance, farthest, pointer.hit);
+      && pickRay(this.scene_, pointer.origin, pointer.direction, pointer.tolerance, farthest * this.scene_.size, pointer.hit);
   }
 
   private hover_(pointer: Pointer): void {
@@ -213,7 +214,7 @@ export class Gestures {
     const target = this.target_;
     if (!this.calcTarget_(grab, target)) return;
     const moved = Math.hypot(target[0] - grab.target[0], target[1] - grab.target[1], target[2] - grab.target[2]);
-    if (moved < still) return;
+    if (moved < still * this.scene_.size) return;
     grab.target.set(target);
     this.listener_.grabMoved(grab);
   }
@@ -224,14 +225,15 @@ export class Gestures {
       for (let axis = 0; axis < 3; axis++) out[axis] = tip[axis] + grab.offset[axis];
       return true;
     }
-    let along = Math.max(grab.distance + depth, 0.05);
+    const least = Math.min(nearest * this.scene_.size, grab.distance);
+    let along = Math.max(grab.distance + depth, least);
     if (grab.pointer.drag === "plane") {
       const slope = direction[0] * facing[0] + direction[1] * facing[1] + direction[2] * facing[2];
       // Nearly along the plane the point would run away to the horizon.
       if (slope < 0.05) return false;
       const away = (grab.start[0] - origin[0]) * facing[0] + (grab.start[1] - origin[1]) * facing[1]
         + (grab.start[2] - origin[2]) * facing[2];
-      along = Math.min(Math.max((away + depth) / slope, 0.05), farthest);
+      along = Math.min(Math.max((away + depth) / slope, least), farthest * this.scene_.size);
     }
     for (let axis = 0; axis < 3; axis++) out[axis] = origin[axis] + direction[axis] * along + grab.offset[axis];
     return true;

@@ -60,21 +60,23 @@ function distanceAt(scene: Pickable, body: number, x: number, y: number, z: numb
 /** Moves a point in the body's frame onto the body's surface when it lies outside. */
 function pullToSurface(scene: Pickable, body: number, point: Float32Array): void {
   const shapes = scene.shapesOf(body);
-  const step = 1e-4;
+  const step = 0.2 * touching(scene);
   const distance = bodyDistance(shapes, point[0], point[1], point[2]);
   if (distance <= 0) return;
   const gx = bodyDistance(shapes, point[0] + step, point[1], point[2]) - distance;
   const gy = bodyDistance(shapes, point[0], point[1] + step, point[2]) - distance;
   const gz = bodyDistance(shapes, point[0], point[1], point[2] + step) - distance;
   const norm = Math.hypot(gx, gy, gz);
-  if (norm < 1e-12) return;
+  if (norm < 1e-6 * step) return;
   point[0] -= (gx / norm) * distance;
   point[1] -= (gy / norm) * distance;
   point[2] -= (gz / norm) * distance;
 }
 
-/** Half a millimeter: closer than this to a surface is on it. */
-const touching = 5e-4;
+/** Closer than this to a surface is on it: half a millimeter in a room, less in a smaller scene, m. */
+function touching({ size }: Pickable): number {
+  return 3e-4 * Math.min(size, 1.6);
+}
 
 /**
  * Nearest body along a ray with unit direction. A true hit wins over one that only lies within
@@ -86,6 +88,7 @@ export function pickRay(
 ): boolean {
   const ox = origin[0], oy = origin[1], oz = origin[2];
   const dx = direction[0], dy = direction[1], dz = direction[2];
+  const close = touching(scene);
   let best = Infinity;
   let bestMiss = tolerance;
   let found = -1;
@@ -106,7 +109,7 @@ export function pickRay(
     const end = Math.min(middle + wide, farthest);
     for (let step = 0; step < 96 && t <= end; step++) {
       const distance = distanceAt(scene, body, ox + dx * t, oy + dy * t, oz + dz * t);
-      if (distance < touching) {
+      if (distance < close) {
         if (t < best) {
           best = t;
           found = body;
@@ -114,7 +117,7 @@ export function pickRay(
         }
         break;
       }
-      const miss = distance / Math.max(t, 1e-3);
+      const miss = distance / Math.max(t, 2 * close);
       if (best === Infinity && miss < bestMiss) {
         bestMiss = miss;
         found = body;

@@ -143,7 +143,7 @@ export class ScreenInput {
     if (grab !== null) {
       if (event.shiftKey) {
         // Up moves the target away. The rest of the move keeps it under the pointer.
-        finger.pointer.depth -= dy * 0.006 * Math.max(grab.distance, 0.3);
+        finger.pointer.depth -= dy * 0.006 * grab.distance;
       }
       return;
     }
@@ -161,7 +161,7 @@ export class ScreenInput {
 
   private pinch_(finger: Finger, other: Finger, dx: number, dy: number, apart: number): void {
     const now = Math.hypot(finger.x - other.x, finger.y - other.y);
-    if (apart > 1 && now > 1) this.navigation_.zoom(apart / now);
+    if (apart > 1 && now > 1) this.zoomAt_(apart / now, (finger.x + other.x) / 2, (finger.y + other.y) / 2, false);
     // Each finger moves the middle by half.
     this.navigation_.pan(dx / 2, dy / 2, this.canvas_.clientHeight);
   }
@@ -213,13 +213,23 @@ export class ScreenInput {
     if (again) this.host_.menu(body, finger.x, finger.y);
   }
 
+  /** Zooms to what is under a place in css px, as far away as the body there or, without one, as what the camera turns about. */
+  private zoomAt_(factor: number, x: number, y: number, onBody: boolean): void {
+    const at = [(x / innerWidth) * 2 - 1, 1 - (y / innerHeight) * 2] as const;
+    if (!onBody) return this.navigation_.zoom(factor, ...at);
+    this.camera_.getWorldDirection(this.ray_);
+    const { origin, hit: { point } } = this.mouse;
+    const depth = (point[0] - origin[0]) * this.ray_.x + (point[1] - origin[1]) * this.ray_.y + (point[2] - origin[2]) * this.ray_.z;
+    this.navigation_.zoom(factor, ...at, depth);
+  }
+
   private wheel_(event: WheelEvent): void {
     event.preventDefault();
     this.host_.active();
     const lines = event.deltaMode === 1 ? 33 : 1;
     const amount = Math.min(Math.max(event.deltaY * lines, -240), 240);
     const grab = this.mouse.grab;
-    if (grab !== null) this.mouse.depth -= amount * 0.0006 * Math.max(grab.distance, 0.3);
-    else this.navigation_.zoom(Math.exp(amount * 0.0011));
+    if (grab !== null) this.mouse.depth -= amount * 0.0006 * grab.distance;
+    else this.zoomAt_(Math.exp(amount * 0.0011), event.clientX, event.clientY, this.mouse.hovered >= 0);
   }
 }

@@ -3,13 +3,19 @@
 // interruptible. One state serves all of them: a point, a distance and two angles.
 
 import { MathUtils, Vector3, type PerspectiveCamera } from "three";
-import type { Vec3 } from "../protocol/generated.ts";
+import type { FittedView } from "./framing.ts";
 
 const easeSeconds = 0.07;
 /** A returning view takes longer than a dragged one. */
 const travelSeconds = 0.25;
 const steepest = 1.5;
-const headroom = 0.05;
+/** Of the size of the scene: how near and far the camera goes, how far what it looks at is from the scene's middle. */
+const nearest = 0.02;
+const farthest = 14;
+const widest = 4;
+/** Of the same: height that the camera keeps over the ground, and walking in a second. */
+const headroom = 0.02;
+const pace = 0.75;
 
 interface View {
   readonly pivot: Vector3;
@@ -25,8 +31,10 @@ function makeView(): View {
 export class Navigation {
   /** Whether a drag on nothing looks around from the place instead of orbiting. */
   flying = false;
-  /** Lowest height of the camera, m; null: anywhere. */
+  /** Height of the ground, m, which the camera stays above; null: anywhere. */
   ground: number | null = null;
+  /** Whether the user has moved the camera since it was last at its first view. */
+  touched = false;
   /** Right, up, forward in -1..1, from keys. */
   readonly walk = new Vector3();
   /** Walking three times as fast. */
@@ -40,23 +48,52 @@ export class Navigation {
   private readonly direction_ = new Vector3();
   private readonly right_ = new Vector3();
   private readonly up_ = new Vector3();
+  private readonly middle_ = new Vector3(0, 1, 0);
+  private size_ = 2;
 
   constructor(camera: PerspectiveCamera) {
     this.camera_ = camera;
   }
 
-  /** The view that reset returns to; taken at once the first time. */
-  setHome(position: Vec3, target: Vec3, atOnce: boolean): void {
-    const away = new Vector3(...position).sub(new Vector3(...target));
-    this.home_.pivot.set(...target);
-    this.home_.distance = Math.max(away.length(), 0.05);
-    this.home_.yaw = Math.atan2(away.x, away.z);
-    this.home_.pitch = MathUtils.clamp(Math.asin(away.y / this.home_.distance), -steepest, steepest);
+  /** Where the scene is and how large, m: paces and limits follow it. */
+  setScene(middle: readonly [number, number, number], size: number): void {
+    this.middle_.set(...middle);
+    this.size_ = size;
+  }
+
+  /** Distance from the camera to what it looks at, m. */
+  get distance(): number {
+    return this.now_.distance;
+  }
+
+  /** The view that reset returns to. */
+  setHome({ pivot, distance, yaw, pitch }: FittedView): void {
+    this.home_.pivot.set(...pivot);
+    this.home_.distance = distance;
+    this.home_.yaw = yaw;
+    this.home_.pitch = MathUtils.clamp(pitch, -steepest, steepest);
+  }
+
+  get home(): FittedView {
+    const { pivot, distance, yaw, pitch } = this.home_;
+    return { pivot: [pivot.x, pivot.y, pivot.z], distance, yaw, pitch };
+  }
+
+  /** Goes after a first view that moves. */
+  follow(): void {
     copyView(this.home_, this.goal_);
-    if (atOnce) copyView(this.home_, this.now_);
+    this.seconds_ = travelSeconds;
+  }
+
+  /** Goes to the first view without a way there. */
+  jumpHome(): void {
+    this.touched = false;
+    copyView(this.home_, this.goal_);
+    copyView(this.home_, this.now_);
   }
 
   reset(): void {
+    this.touched = false;
     copyView(this.home_, this.goal_);
     // The short way round.
     this.goal_.yaw += 2 * Math.PI * Math.round((this.now_.yaw - this.goal_.yaw) / (2 * Math.PI));
@@ -85,12 +122,25 @@ export class Navigation {
     const meters = (2 * this.goal_.distance * Math.tan(MathUtils.degToRad(this.camera_.fov / 2))) / viewHeight;
     this.axes_(this.goal_);
     this.goal_.pivot.addScaledVector(this.right_, -dx * meters).addScaledVector(this.up_, dy * meters);
+    this.keepNear_();
   }
 
-  /** Above 1: away. */
-  zoom(factor: number): void {
+  /**
+   * Above 1: away. What is at x, y of the picture (-1 .. 1, right and up), `depth` m from the camera or as far as the pivot, stays
+   * there.
+   */
+  zoom(factor: number, x = 0, y = 0, depth = this.goal_.distance): void {
     this.touch_();
-    this.goal_.distance = MathUtils.clamp(this.goal_.distance * factor, 0.08, 60);
+    const before = this.goal_.distance;
+    this.goal_.distance = MathUtils.clamp(before * factor, nearest * this.size_, farthest * this.size_);
+    const share = 1 - this.goal_.distance / before;
+    const tangent = Math.tan(MathUtils.degToRad(this.camera_.fov / 2));
+    this.axes_(this.goal_);
+    this.goal_.pivot
+      .addScaledVector(this.right_, share * x * tangent * this.camera_.aspect * depth)
+      .addScaledVector(this.up_, share * y * tangent * depth)
+      .addScaledVector(this.direction_, share * (before - depth));
+    this.keepNear_();
   }
 
   /** Advances and places the camera; returns whether it moved. */
@@ -98,16 +148,17 @@ export class Navigation {
     if (this.walk.lengthSq() > 0) {
       this.touch_();
       this.axes_(this.goal_);
-      const pace = (this.walkingFast ? 4.5 : 1.5) * seconds;
+      const way = (this.walkingFast ? 3 : 1) * pace * this.size_ * seconds;
       this.awayOf_(this.goal_, this.direction_);
       this.goal_.pivot
-        .addScaledVector(this.right_, this.walk.x * pace)
-        .addScaledVector(this.direction_, -this.walk.z * pace);
-      this.goal_.pivot.y += this.walk.y * pace;
+        .addScaledVector(this.right_, this.walk.x * way)
+        .addScaledVector(this.direction_, -this.walk.z * way);
+      this.goal_.pivot.y += this.walk.y * way;
+      this.keepNear_();
     }
     this.keepAbove_();
     const ease = 1 - Math.exp(-seconds / this.seconds_);
-    const before = this.now_.yaw + this.now_.pitch + this.now_.distance;
+    const before = { turn: this.now_.yaw + this.now_.pitch, distance: this.now_.distance };
     const drift = this.now_.pivot.distanceTo(this.goal_.pivot);
     this.now_.pivot.lerp(this.goal_.pivot, ease);
     this.now_.distance += (this.goal_.distance - this.now_.distance) * ease;
@@ -115,11 +166,18 @@ export class Navigation {
     this.now_.pitch += (this.goal_.pitch - this.now_.pitch) * ease;
     this.eyeOf_(this.now_, this.camera_.position);
     this.camera_.rotation.set(-this.now_.pitch, this.now_.yaw, 0, "YXZ");
-    return drift > 1e-6 || Math.abs(this.now_.yaw + this.now_.pitch + this.now_.distance - before) > 1e-6;
+    const least = 1e-6 * this.size_;
+    return drift > least || Math.abs(this.now_.distance - before.distance) > least || Math.abs(this.now_.yaw + this.now_.pitch - before.turn) > 1e-6;
   }
 
   private touch_(): void {
+    this.touched = true;
     this.seconds_ = easeSeconds;
+  }
+
+  /** What the camera looks at stays where there is something to see. */
+  private keepNear_(): void {
+    this.goal_.pivot.sub(this.middle_).clampLength(0, widest * this.size_).add(this.middle_);
   }
 
   /** Unit vector from the pivot to the camera. */
@@ -140,7 +198,7 @@ export class Navigation {
 
   private keepAbove_(): void {
     if (this.ground === null) return;
-    const lowest = this.ground + headroom;
+    const lowest = this.ground + headroom * Math.min(this.size_, this.goal_.distance);
     const height = this.goal_.pivot.y + this.goal_.distance * Math.sin(this.goal_.pitch);
     if (height >= lowest) return;
     const pitch = (lowest - this.goal_.pivot.y) / this.goal_.distance;

@@ -3,7 +3,6 @@
 
 import { Color, Vector3, type Group } from "three";
 import type { BodyView } from "../scene/entities/body.ts";
-import type { Flashes } from "../scene/flashes.ts";
 import { HoldLines } from "../scene/hold_lines.ts";
 import { palette } from "../scene/materials.ts";
 import { Outline } from "../scene/outline.ts";
@@ -30,7 +29,6 @@ export class Highlights implements FramePart {
   private readonly session_: Session;
   private readonly selection_: Selection;
   private readonly viewer_: Viewer;
-  private readonly flashes_: Flashes;
   private readonly lines_ = new HoldLines();
   private readonly selected_: Outline;
   private readonly hovered_: Outline;
@@ -38,13 +36,12 @@ export class Highlights implements FramePart {
   private readonly eye_ = new Vector3();
   private readonly point_ = new Float32Array(3);
 
-  constructor(world: World, session: Session, selection: Selection, viewer: Viewer, flashes: Flashes) {
+  constructor(world: World, session: Session, selection: Selection, viewer: Viewer) {
     this.world_ = world;
     this.bodies_ = world.entities.body;
     this.session_ = session;
     this.selection_ = selection;
     this.viewer_ = viewer;
-    this.flashes_ = flashes;
     this.selected_ = makeOutline(this.bodies_, palette.selected, 0.0026);
     this.hovered_ = makeOutline(this.bodies_, palette.hoverOnLight, 0.0022);
     for (let index = 0; index < mostOthers; index++) this.others_.push(makeOutline(this.bodies_, new Color(), 0.0018));
@@ -77,7 +74,6 @@ export class Highlights implements FramePart {
     const body = bodies.pickable[0];
     point.set(bodies.position.subarray(3 * body, 3 * body + 3));
     this.lines_.add(point, point, 0, this.eye_, 1);
-    this.flashes_.effect("grab", point);
     this.hovered_.body = body;
   }
 

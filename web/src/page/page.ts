@@ -4,12 +4,14 @@
 
 import { Commands } from "../commands/commands.ts";
 import type { JoinRequest } from "../net/connection.ts";
+import { Hit, pickPoint, toBody, toWorld } from "../interact/picking.ts";
 import { Navigation } from "../navigate/navigation.ts";
 import { NoticeLevel } from "../protocol/generated.ts";
 import type { EntityView } from "../scene/entities/entity.ts";
 import { Flashes } from "../scene/flashes.ts";
 import { World } from "../world/world.ts";
 import { Events, type PageListener } from "./events.ts";
+import { Framing } from "./framing.ts";
 import { Highlights } from "./highlights.ts";
 import { pageCommands, scriptCommands } from "./page_commands.ts";
 import type { PageParts } from "./page_parts.ts";
@@ -41,8 +43,9 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
   const navigation = new Navigation(viewer.camera);
   const session = new Session(socketUrl, request, world, viewer, events);
   const selection = new Selection(world, session, viewer, events);
-  const highlights = new Highlights(world, session, selection, viewer, flashes);
-  const parts: PageParts = { world, session, selection, gestures: selection.gestures, viewer, navigation, sound, events };
+  const framing = new Framing(world, viewer, navigation);
+  const highlights = new Highlights(world, session, selection, viewer);
+  const parts: PageParts = { world, session, selection, gestures: selection.gestures, viewer, navigation, sound, events, framing };
   const commands = new Commands();
   commands.add(...pageCommands(parts));
   const actions: PageListener = {
@@ -50,8 +53,10 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
       if (what === "actions") commands.script = scriptCommands(world.actions, parts);
     },
   };
-  events.add(actions, selection, flashes, sound, applySettings(parts));
-  viewer.add(flatCamera(parts), selection, highlights, ...Object.values<EntityView<never>>(world.entities), flashes);
+  events.add(actions, selection, flashesOf(flashes, parts), sound, applySettings(parts), framing);
+  viewer.lookDistance = () => navigation.distance;
+  // Bodies are where they are drawn before the camera is placed.
+  viewer.add(selection, ...Object.values<EntityView<never>>(world.entities), framing, flatCamera(parts), highlights, flashes);
   return {
     ...parts,
     commands,
@@ -67,16 +72,34 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
   };
 }
 
-/** Ground and first view, as the script wants them. */
+/** The ground, as the script wants it. */
 function applySettings({ world, viewer, navigation }: PageParts): PageListener {
-  let placed = false;
   return {
     changed: (what) => {
       if (what !== "settings") return;
       viewer.stage.setGround(world.ground);
       navigation.ground = world.ground;
-      if (!placed) navigation.setHome(world.settings.cameraPosition, world.settings.cameraTarget, true);
-      placed = true;
+    },
+  };
+}
+
+/** Rings of light where something broke or joined, on the body that is there. */
+function flashesOf(flashes: Flashes, { world, viewer }: PageParts): PageListener {
+  const bodies = world.entities.body;
+  const hit = new Hit();
+  const place = new Float32Array(3);
+  return {
+    effect: (kind, position) => {
+      const { size } = viewer;
+      if (!pickPoint(bodies, position, 0.1 * size, hit)) return flashes.show(kind, position, size);
+      const { body } = hit;
+      const local = new Float32Array(3);
+      toBody(bodies, body, position[0], position[1], position[2], local);
+      flashes.show(kind, position, size, (out) => {
+        if (!bodies.has(body)) return;
+        toWorld(bodies, body, local, place);
+        out.set(place[0], place[1], place[2]);
+      });
     },
   };
 }

@@ -17,7 +17,7 @@ const signs = {
   plus: "M6 12h12M12 6v12",
 };
 
-export function pageCommands({ world, session, selection, viewer, navigation, sound, events }: PageParts): Entry[] {
+export function pageCommands({ world, session, selection, viewer, navigation, framing, sound, events }: PageParts): Entry[] {
   const say = (key: string, title: string) => events.notice({ level: NoticeLevel.info, title, text: "", hint: "", key });
   /** The next faster (1) or slower (-1) of the speeds on offer. */
   const changeSpeed = (direction: 1 | -1) => {
@@ -118,16 +118,17 @@ export function pageCommands({ world, session, selection, viewer, navigation, so
       help: "back to the first view",
       keys: ["Home", "0"],
       title: () => "First view",
-      run: () => navigation.reset(),
+      run: () => framing.home(),
     },
     {
       name: "grid",
-      help: "grid: lines each 0.1 m and 1 m",
+      help: "grid: fine lines, and stronger ones each ten",
       keys: ["g"],
       title: () => "Grid",
       active: () => viewer.stage.gridShown,
       run: () => {
         viewer.stage.gridShown = !viewer.stage.gridShown;
+        if (viewer.stage.gridShown) say("grid", `Fine lines each ${lengthName(viewer.stage.gridCell)}, stronger ones each ten`);
         viewer.invalidate();
       },
     },
@@ -167,6 +168,13 @@ export function pageCommands({ world, session, selection, viewer, navigation, so
     },
   ];
   return commands;
+}
+
+/** "10 cm" for 0.1 m. */
+function lengthName(meters: number): string {
+  const units: readonly (readonly [number, string])[] = [[1e3, "km"], [1, "m"], [1e-2, "cm"], [1e-3, "mm"], [1e-6, "µm"], [1e-9, "nm"]];
+  const [unit, name] = units.find(([size]) => meters > 0.99 * size) ?? [1e-12, "pm"];
+  return `${Number((meters / unit).toPrecision(2))} ${name}`;
 }
 
 const faceButtons = { [ControllerButton.none]: null, [ControllerButton.a]: "a", [ControllerButton.b]: "b" } as const;

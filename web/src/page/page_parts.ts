@@ -3,6 +3,7 @@ import type { Gestures } from "../interact/gestures.ts";
 import type { Navigation } from "../navigate/navigation.ts";
 import type { World } from "../world/world.ts";
 import type { Events } from "./events.ts";
+import type { Framing } from "./framing.ts";
 import type { Selection } from "./selection.ts";
 import type { Session } from "./session.ts";
 import type { Sound } from "./sound.ts";
@@ -16,6 +17,7 @@ export interface PageParts {
   readonly gestures: Gestures;
   readonly viewer: Viewer;
   readonly navigation: Navigation;
+  readonly framing: Framing;
   readonly sound: Sound;
   readonly events: Events;
 }

@@ -67,8 +67,6 @@ export class Session implements ConnectionListener {
     const { world_: world, viewer_: viewer } = this;
     if (poses.step !== world.step || poses.holds.count > 0) viewer.invalidate();
     world.takePoses(poses, now);
-    const { boxMin, boxMax } = poses;
-    if (poses.keyframe) viewer.stage.fit(boxMin[0], boxMin[1], boxMin[2], boxMax[0], boxMax[1], boxMax[2]);
     viewer.timing.decodeMs = smooth(viewer.timing.decodeMs, performance.now() - started);
   }
 

@@ -54,6 +54,9 @@ export class Viewer {
   readonly stage: Stage;
   readonly timing: Timing = { frameMs: 16.7, scriptMs: 0, renderMs: 0, decodeMs: 0 };
 
+  /** Distance from the camera to what it looks at, m. */
+  lookDistance: () => number = () => this.stage.size;
+
   private readonly parts_: FramePart[] = [];
   private worthShowing_: () => boolean = () => false;
   private ready_: () => void = () => {};
@@ -71,6 +74,11 @@ export class Viewer {
     this.stage = new Stage(this.scene, this.renderer);
     this.rig.add(this.camera);
     this.scene.add(this.rig);
+  }
+
+  /** Half the diagonal of the box around all that is there, m. */
+  get size(): number {
+    return this.stage.size;
   }
 
   /** In a headset now. */
@@ -124,6 +132,7 @@ export class Viewer {
     const warming = this.warmed_ < warmFrames && this.worthShowing_();
     if (warming) for (const part of parts) part.warmUp?.();
     for (const part of parts) part.draw?.(seconds, frame);
+    if (!this.presenting) this.stage.followCamera(this.camera, this.lookDistance());
     const scripted = performance.now();
     if (scripted < this.drawUntil_) {
       this.renderer.render(this.scene, this.camera);

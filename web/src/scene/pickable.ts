@@ -13,5 +13,7 @@ export interface Pickable {
   readonly rotation: Float32Array;
   /** Bounding radius about the body's origin, m, by slot. */
   readonly reach: Float32Array;
+  /** Of the scene, m: what is near enough to count as touched follows it. */
+  readonly size: number;
   shapesOf(body: number): readonly PlacedShape[];
 }

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quiet workshop: ground that fades into the horizon, warm key light with a soft shadow, cool
-// fill, and a small studio of soft boxes for reflections. All of it computed, nothing downloaded.
+// The quiet workshop: ground that goes to a horizon, warm key light with a soft shadow, cool fill,
+// and a small studio of soft boxes for reflections. All of it computed, nothing downloaded, and as large as the scene is.
 
 import {
-  BackSide, BoxGeometry, BufferAttribute, CircleGeometry, Color, DirectionalLight, Fog, Group, HemisphereLight, Mesh,
-  MeshBasicMaterial, MeshLambertMaterial, PlaneGeometry, PMREMGenerator, Scene, SphereGeometry, Vector3,
-  type Texture, type WebGLRenderer,
+  BackSide, BoxGeometry, CircleGeometry, Color, DirectionalLight, Fog, Group, HemisphereLight, Mesh, MeshBasicMaterial,
+  MeshLambertMaterial, PlaneGeometry, PMREMGenerator, Scene, ShaderMaterial, SphereGeometry, Vector3,
+  type PerspectiveCamera, type Texture, type WebGLRenderer,
 } from "three";
 import { makeFloorColor } from "./textures.ts";
 
 interface Theme {
+  /** Where the ground ends, above it, and overhead. */
+  readonly far: string;
   readonly horizon: string;
   readonly zenith: string;
   readonly ground: string;
@@ -19,34 +21,51 @@ interface Theme {
 }
 
 const themes: Record<"light" | "dark", Theme> = {
-  light: { horizon: "#dcd9d3", zenith: "#f1f0ed", ground: "#cbc7bf", key: 2.9, fill: 0.55, environment: 0.7 },
-  dark: { horizon: "#25282c", zenith: "#14161a", ground: "#4a4a4b", key: 2.6, fill: 0.25, environment: 0.55 },
+  light: { far: "#dad6ce", horizon: "#f0eeea", zenith: "#ccd3d9", ground: "#c9c3b8", key: 2.5, fill: 0.6, environment: 0.8 },
+  dark: { far: "#202225", horizon: "#353a40", zenith: "#0f1114", ground: "#3f3e3d", key: 2.3, fill: 0.22, environment: 0.6 },
 };
 
-const groundRadius = 60;
+/** In sizes of the scene (half the diagonal of its box): the ground, its texture, and where it begins and ends to fade. */
+const groundRadius = 120;
+const tileSize = 2;
+const fogNear = 4;
+const fogFar = 26;
 
-/** Color of sky and ground by height, as vertex colors of a large sphere. */
-function paintSky(geometry: SphereGeometry, theme: Theme): void {
-  const position = geometry.getAttribute("position");
-  const colors = new Float32Array(position.count * 3);
-  const low = new Color(theme.horizon);
-  const high = new Color(theme.zenith);
-  const mixed = new Color();
-  for (let index = 0; index < position.count; index++) {
-    const height = Math.max(position.getY(index) / geometry.parameters.radius, 0);
-    mixed.lerpColors(low, high, Math.min(1, height * 1.6)).toArray(colors, index * 3);
-  }
-  geometry.setAttribute("color", new BufferAttribute(colors, 3));
+/** Sky by the height of each pixel's direction; noise of half a step of the screen's colors hides their bands. */
+function makeSky(): ShaderMaterial {
+  return new ShaderMaterial({
+    side: BackSide, depthWrite: false, depthTest: false, fog: false, toneMapped: false,
+    uniforms: { far: { value: new Color() }, horizon: { value: new Color() }, zenith: { value: new Color() } },
+    vertexShader: `
+      varying vec3 vDirection;
+      void main() {
+        vDirection = position;
+        gl_Position = (projectionMatrix * vec4(mat3(modelViewMatrix) * position, 1.0)).xyww;
+      }`,
+    fragmentShader: `
+      uniform vec3 far, horizon, zenith;
+      varying vec3 vDirection;
+      void main() {
+        float height = normalize(vDirection).y;
+        vec3 sky = mix(horizon, zenith, pow(clamp(height * 1.5, 0.0, 1.0), 0.7));
+        gl_FragColor = vec4(mix(far, sky, smoothstep(-0.004, 0.012, height)), 1.0);
+        #include <colorspace_fragment>
+        gl_FragColor.rgb += (fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5) / 255.0;
+      }`,
+  });
 }
 
 function makeStudio(renderer: WebGLRenderer): Texture {
   const studio = new Scene();
-  const walls = new Mesh(new BoxGeometry(12, 6, 12), new MeshBasicMaterial({ color: "#a4a7aa", side: BackSide }));
+  const walls = new Mesh(new BoxGeometry(12, 6, 12), new MeshBasicMaterial({ color: "#8e9499", side: BackSide }));
   walls.position.y = 2;
-  const floor = new Mesh(new PlaneGeometry(12, 12), new MeshBasicMaterial({ color: "#6b655d" }));
+  const floor = new Mesh(new PlaneGeometry(12, 12), new MeshBasicMaterial({ color: "#4a443d" }));
   floor.rotation.x = -Math.PI / 2;
   floor.position.y = -0.95;
-  studio.add(walls, floor);
+  const ceiling = new Mesh(new PlaneGeometry(12, 12), new MeshBasicMaterial({ color: "#b9bcbe" }));
+  ceiling.rotation.x = Math.PI / 2;
+  ceiling.position.y = 4.95;
+  studio.add(walls, floor, ceiling);
   const panel = (width: number, height: number, strength: number, tint: string, at: Vector3) => {
     const light = new Mesh(
       new PlaneGeometry(width, height),
@@ -56,10 +75,13 @@ function makeStudio(renderer: WebGLRenderer): Texture {
     light.lookAt(0, 0.5, 0);
     studio.add(light);
   };
-  panel(3.2, 2.2, 11, "#fff1dc", new Vector3(3.2, 4.4, 3.4));
-  panel(1.2, 4.2, 6, "#dfeaff", new Vector3(-5.4, 1.8, 1.5));
-  panel(5.0, 0.7, 7, "#ffffff", new Vector3(0, 4.6, -3.4));
-  panel(0.5, 4.0, 5, "#fff6e8", new Vector3(4.6, 1.6, -4.2));
+  panel(3.4, 2.4, 12, "#fff1dc", new Vector3(3.2, 4.4, 3.4));
+  panel(1.4, 4.6, 7, "#dfeaff", new Vector3(-5.4, 1.8, 2.2));
+  panel(5.0, 0.8, 8, "#ffffff", new Vector3(0, 4.6, -3.4));
+  panel(0.6, 4.2, 6, "#fff6e8", new Vector3(4.6, 1.6, -4.2));
+  // Before the things: flat faces towards the user mirror these, with a dark gap between them.
+  panel(4.2, 3.0, 2.2, "#fff4e6", new Vector3(2.6, 1.8, 5.6));
+  panel(0.9, 3.4, 3.6, "#e8f0ff", new Vector3(-2.6, 1.6, 5.4));
   const generator = new PMREMGenerator(renderer);
   const target = generator.fromScene(studio, 0.025);
   generator.dispose();
@@ -72,10 +94,11 @@ function makeStudio(renderer: WebGLRenderer): Texture {
   return target.texture;
 }
 
-/** Fine lines each 0.1 m, stronger each 1 m, fading with distance; compiled in only while it is shown. */
-function addGrid(material: MeshLambertMaterial): void {
+/** Fine lines each cell, stronger each ten, fading with distance; compiled in only while it is shown. */
+function addGrid(material: MeshLambertMaterial, cell: { value: number }): void {
   material.defines = {};
   material.onBeforeCompile = (shader) => {
+    shader.uniforms["gridCell"] = cell;
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\n#ifdef GRID\nvarying vec2 vGround;\n#endif")
       .replace(
@@ -88,6 +111,7 @@ function addGrid(material: MeshLambertMaterial): void {
         `#include <common>
 #ifdef GRID
 varying vec2 vGround;
+uniform float gridCell;
 float gridLine(vec2 p, float cell) {
   vec2 w = fwidth(p / cell);
   vec2 d = abs(fract(p / cell - 0.5) - 0.5);
@@ -100,7 +124,7 @@ float gridLine(vec2 p, float cell) {
         "#include <color_fragment>",
         `#include <color_fragment>
 #ifdef GRID
-diffuseColor.rgb *= 1.0 - 0.45 * max(0.35 * gridLine(vGround, 0.1), 0.8 * gridLine(vGround, 1.0));
+diffuseColor.rgb *= 1.0 - 0.45 * max(0.35 * gridLine(vGround, gridCell), 0.8 * gridLine(vGround, 10.0 * gridCell));
 #endif`,
       );
   };
@@ -113,43 +137,46 @@ export class Stage {
   readonly ground: Mesh<CircleGeometry, MeshLambertMaterial>;
 
   private readonly scene_: Scene;
-  private readonly sky_: Mesh<SphereGeometry, MeshBasicMaterial>;
+  private readonly sky_ = new Mesh(new SphereGeometry(1, 16, 12), makeSky());
   private readonly key_ = new DirectionalLight("#fff0dc");
   private readonly fill_ = new HemisphereLight("#dce8f5", "#8a8073");
+  private readonly fog_ = new Fog("#ffffff", fogNear, fogFar);
+  private readonly cell_ = { value: 0.1 };
   private readonly middle_ = new Vector3(0, 1, 0);
-  private radius_ = 0;
+  private readonly lit_ = new Vector3();
+  private size_ = 1;
+  private reach_ = 0;
 
   constructor(scene: Scene, renderer: WebGLRenderer) {
     this.scene_ = scene;
     scene.environment = makeStudio(renderer);
-    scene.fog = new Fog("#ffffff", 7, 34);
-    const material = new MeshLambertMaterial({ map: makeFloorColor() });
-    material.map?.repeat.set(40, 40);
+    scene.fog = this.fog_;
+    const material = new MeshLambertMaterial({ map: makeFloorColor(), dithering: true });
+    material.map?.repeat.set((2 * groundRadius) / tileSize, (2 * groundRadius) / tileSize);
     // Not a physical material: it fills most of the screen, and a matt floor needs no reflections.
-    addGrid(material);
+    addGrid(material, this.cell_);
     this.ground = new Mesh(new CircleGeometry(groundRadius, 64), material);
     this.ground.rotation.x = -Math.PI / 2;
     this.ground.receiveShadow = true;
-    this.sky_ = new Mesh(
-      new SphereGeometry(groundRadius * 1.4, 24, 32),
-      new MeshBasicMaterial({ side: BackSide, vertexColors: true, toneMapped: false, fog: false, depthWrite: false }),
-    );
     this.sky_.renderOrder = -1;
+    this.sky_.frustumCulled = false;
     this.key_.castShadow = true;
     this.key_.shadow.mapSize.set(2048, 2048);
-    this.key_.shadow.radius = 5;
-    this.key_.shadow.normalBias = 0.004;
+    this.key_.shadow.radius = 4;
     this.key_.shadow.bias = -0.0004;
     this.root.add(this.ground, this.sky_, this.key_, this.key_.target, this.fill_);
     scene.add(this.root);
     this.setTheme("light");
-    this.fit(-1, 0, -1, 1, 2, 1);
+    this.setScene([0, 1, 0], 1.6);
   }
 
   setTheme(name: "light" | "dark"): void {
     const theme = themes[name];
-    paintSky(this.sky_.geometry, theme);
-    this.scene_.fog?.color.set(theme.horizon);
+    const { far, horizon, zenith } = this.sky_.material.uniforms;
+    (far.value as Color).set(theme.far);
+    (horizon.value as Color).set(theme.horizon);
+    (zenith.value as Color).set(theme.zenith);
+    this.fog_.color.set(theme.far);
     this.scene_.environmentIntensity = theme.environment;
     this.ground.material.color.set(theme.ground);
     this.key_.intensity = theme.key;
@@ -172,25 +199,57 @@ export class Stage {
     this.ground.material.needsUpdate = true;
   }
 
-  /** Keeps the shadow on the box of all bodies; moves only when the box has left it, so that edges do not swim. */
-  fit(x0: number, y0: number, z0: number, x1: number, y1: number, z1: number): void {
-    const floor = this.ground.visible ? Math.min(this.ground.position.y, y0) : y0;
-    const radius = Math.max(0.5 * Math.hypot(x1 - x0, y1 - floor, z1 - z0), 0.3);
-    const x = (x0 + x1) / 2;
-    const y = (floor + y1) / 2;
-    const z = (z0 + z1) / 2;
-    const drift = Math.hypot(x - this.middle_.x, y - this.middle_.y, z - this.middle_.z);
-    if (radius + drift <= this.radius_ && radius > this.radius_ * 0.4) return;
-    this.middle_.set(x, y, z);
-    this.radius_ = radius * 1.4;
-    const reach = this.radius_ * 1.15;
-    this.key_.target.position.copy(this.middle_);
-    this.key_.position.set(x + reach * 0.55, y + reach * 1.35, z + reach * 0.75);
-    const camera = this.key_.shadow.camera;
+  /** Distance between two fine lines of the grid, m. */
+  get gridCell(): number {
+    return this.cell_.value;
+  }
+
+  /** Half the diagonal of the box around all that is there, m. */
+  get size(): number {
+    return this.size_;
+  }
+
+  /** Middle of the scene and half its diagonal, m. Ground and fog follow; light only when the scene has left it, so that edges of shadows do not swim. */
+  setScene(middle: readonly [number, number, number], size: number): void {
+    this.middle_.set(...middle);
+    // Ground, fog and grid keep their size while the scene breathes.
+    if (size > 1.5 * this.size_ || size < 0.6 * this.size_) {
+      this.size_ = size;
+      this.cell_.value = 10 ** Math.round(Math.log10(size / 16));
+    }
+    this.ground.scale.setScalar(this.size_);
+    this.ground.position.x = tileSize * this.size_ * Math.round(middle[0] / (tileSize * this.size_));
+    this.ground.position.z = tileSize * this.size_ * Math.round(middle[2] / (tileSize * this.size_));
+    const drift = this.lit_.distanceTo(this.middle_);
+    if (size + drift <= this.reach_ && size > 0.4 * this.reach_) return;
+    this.lit_.copy(this.middle_);
+    this.reach_ = 1.35 * size;
+    this.light_(this.key_, 0.55, 1.35, 0.75);
+  }
+
+  /** What depends on where the camera is: how far it sees, fog, sky. `distance` is that to what it looks at, m. */
+  followCamera(camera: PerspectiveCamera, distance: number): void {
+    const apart = camera.getWorldPosition(this.sky_.position).distanceTo(this.middle_);
+    this.fog_.near = apart + fogNear * this.size_;
+    this.fog_.far = 2 * apart + fogFar * this.size_;
+    const near = 0.01 * Math.min(Math.max(distance, 0.02 * this.size_), this.size_);
+    const far = apart + 1.5 * groundRadius * this.size_;
+    if (camera.near === near && camera.far === far) return;
+    camera.near = near;
+    camera.far = far;
+    camera.updateProjectionMatrix();
+  }
+
+  private light_(light: DirectionalLight, x: number, y: number, z: number): void {
+    const reach = this.reach_;
+    light.target.position.copy(this.lit_);
+    light.position.set(x, y, z).multiplyScalar(reach).add(this.lit_);
+    const { camera } = light.shadow;
     camera.left = camera.bottom = -reach;
     camera.right = camera.top = reach;
-    camera.near = 0.05;
-    camera.far = reach * 3.2;
+    camera.near = 0.02 * reach;
+    camera.far = 3.2 * reach;
+    light.shadow.normalBias = 0.002 * reach;
     camera.updateProjectionMatrix();
   }
 }

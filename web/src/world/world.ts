@@ -32,7 +32,7 @@ export interface WorldListener {
 }
 
 const noSettings: WorldSettings = {
-  type: "worldSettings", title: "", looks: [], look: "", cameraPosition: [0, 1, 3], cameraTarget: [0, 1, 0], hasGround: false, ground: 0,
+  type: "worldSettings", title: "", looks: [], look: "", hasCamera: false, cameraPosition: [0, 0, 0], cameraTarget: [0, 0, 0], hasGround: false, ground: 0,
 };
 
 export class World {

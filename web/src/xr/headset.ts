@@ -275,8 +275,11 @@ export class Headset implements PageListener, FramePart {
 
   private place_(): void {
     this.toPlace_ = false;
-    const { world, viewer: { rig } } = this.page_;
-    standBefore({ ...world.settings, ground: world.ground }, this.headLocal_.elements, rig);
+    const { world, navigation, viewer: { rig } } = this.page_;
+    const { pivot, distance, yaw, pitch } = navigation.home;
+    const flat = distance * Math.cos(pitch);
+    const eye = [pivot[0] + flat * Math.sin(yaw), pivot[1] + distance * Math.sin(pitch), pivot[2] + flat * Math.cos(yaw)] as const;
+    standBefore({ eye: [...eye], target: [...pivot], ground: world.ground }, this.headLocal_.elements, rig);
     rig.updateMatrixWorld();
     this.panel.snap();
     this.readHead_();

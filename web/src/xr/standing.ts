@@ -3,10 +3,10 @@
 
 import type { Vec3 } from "../protocol/generated.ts";
 
-/** Of a world: where a script would have it seen from, and how high its ground is (m; null: none). */
+/** Of a world: where it is first seen from, and how high its ground is (m; null: none). */
 export interface Standing {
-  readonly cameraPosition: Readonly<Vec3>;
-  readonly cameraTarget: Readonly<Vec3>;
+  readonly eye: Readonly<Vec3>;
+  readonly target: Readonly<Vec3>;
   readonly ground: number | null;
 }
 
@@ -28,9 +28,9 @@ const eyesAbove = 0.15;
  * comes to stand before the middle of the world's view, on the side of the script's camera.
  */
 export function standBefore(settings: Standing, head: ArrayLike<number>, rig: Rig): void {
-  const { cameraPosition: camera, cameraTarget: target } = settings;
-  let awayX = camera[0] - target[0];
-  let awayZ = camera[2] - target[2];
+  const { eye, target } = settings;
+  let awayX = eye[0] - target[0];
+  let awayZ = eye[2] - target[2];
   const far = Math.hypot(awayX, awayZ);
   if (far > 1e-6) {
     awayX /= far;

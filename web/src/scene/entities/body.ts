@@ -2,12 +2,13 @@
 // Draws all bodies: one instanced mesh for each part of each style, tints that ease, outlines. It also holds the packed data for
 // picking, so that a pick agrees with the picture. An edit touches only the instances of the bodies that it names.
 
-import { Group, type Color } from "three";
+import { Group, Matrix4, type Color } from "three";
 import { BodyKind, type BodyEntity, type Id } from "../../protocol/generated.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
 import type { DrawnPart, Outline } from "../outline.ts";
 import type { Pickable } from "../pickable.ts";
+import { addCorners, type Points } from "../points.ts";
 import { mostSlots, type PoseBuffer } from "../pose_buffer.ts";
 import type { Detail } from "../shapes/kind.ts";
 import { bodyReach, makeGeometry, placeShape, sizeOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
@@ -101,6 +102,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   pickable = new Uint32Array(0);
   pickableCount = 0;
   reach = new Float32Array(0);
+  size = 1;
 
   private readonly styles_: Styles;
   private readonly bodyGone_: (body: number) => void;
@@ -108,6 +110,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   /** By style: a batch for each of its parts. */
   private readonly batches_ = new Map<number, Batch[]>();
   private readonly outlines_: Outline[] = [];
+  private readonly matrix_ = new Matrix4();
   /** Slots that are drawn, in order, and those of them that can be held: worked out anew after a change. */
   private drawn_ = new Uint32Array(0);
   private drawnCount_ = 0;
@@ -225,6 +228,26 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   /** Slots of all bodies, drawn or not. */
   slots(): IterableIterator<number> {
     return this.bodies_.keys();
+  }
+
+  /** Adds the corners of all bodies where they are drawn now, or of every so manieth one: of those that move, or of the others. */
+  addPoints(points: Points, moving: boolean, every = 1): void {
+    for (const batches of this.batches_.values()) {
+      for (const { pool, placements } of batches) {
+        for (let index = 0; index < pool.count; index += every) {
+          const slot = pool.members[index];
+          if (this.poses.known[slot] !== 1 || !Number.isFinite(this.reach[slot])) continue;
+          if ((this.bodies_.get(slot)?.entity.kind === BodyKind.dynamic) !== moving) continue;
+          writeMatrix(this.position, this.rotation, slot, placements, placementSize * index, 1, this.matrix_.elements, 0);
+          addCorners(points, pool.mesh.geometry, this.matrix_);
+        }
+      }
+    }
+  }
+
+  /** How many bodies are drawn. */
+  get count(): number {
+    return this.bodies_.size;
   }
 
   /** Whether a body is drawn now. */

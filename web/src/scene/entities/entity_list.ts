@@ -34,7 +34,7 @@ export function makeEntityViews({ poses, bodyGone, warn }: EntityHost) {
     membership: new Memberships(),
     tie: new TieView(poses, style),
     joint: new JointView(),
-    nail: new NailView(),
+    nail: new NailView(poses),
     particleSet: new ParticleSetView(),
     staticShape: new StaticShapeView(warn),
   } satisfies EntityViews;

@@ -1,7 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nails are known, and not drawn.
+// Nails: a small pin at each, so that what hangs in the air is seen to hang on something. A nail of the world stays where it is told to
+// be; one that is described by a point of a body goes along with it.
 
+import { Group, Matrix4, SphereGeometry, Vector3 } from "three";
 import type { NailEntity } from "../../protocol/generated.ts";
+import { InstancePool } from "../instance_pool.ts";
+import { materialOf } from "../materials.ts";
+import type { PoseBuffer } from "../pose_buffer.ts";
+import { calcAnchor } from "./anchor.ts";
 import { EntityRecords } from "./entity.ts";
 
-export class NailView extends EntityRecords<NailEntity> {}
+export class NailView extends EntityRecords<NailEntity> {
+  readonly root = new Group();
+  /** m; follows the size of the scene. */
+  pinRadius = 0.01;
+
+  private readonly poses_: PoseBuffer;
+  private readonly pool_: InstancePool;
+  private readonly indices_ = new Map<number, number>();
+  private readonly matrix_ = new Matrix4();
+  private readonly place_ = new Vector3();
+
+  constructor(poses: PoseBuffer) {
+    super();
+    this.poses_ = poses;
+    this.pool_ = new InstancePool(new SphereGeometry(1, 20, 14), materialOf("brass", null), 16).addTo(this.root);
+  }
+
+  override create(entity: NailEntity): void {
+    super.create(entity);
+    this.indices_.set(entity.id.slot, this.pool_.add(entity.id.slot));
+  }
+
+  override destroy(slot: number): void {
+    const index = this.indices_.get(slot);
+    if (index !== undefined) {
+      const moved = this.pool_.remove(index);
+      if (moved >= 0) this.indices_.set(moved, index);
+      this.indices_.delete(slot);
+    }
+    super.destroy(slot);
+  }
+
+  draw(): void {
+    const { members, count, mesh } = this.pool_;
+    const radius = this.pinRadius;
+    for (let index = 0; index < count; index++) {
+      const nail = this.records_.get(members[index]);
+      if (nail !== undefined && calcAnchor(this.poses_, nail.at, this.place_)) {
+        this.matrix_.makeScale(radius, radius, radius).setPosition(this.place_);
+      } else {
+        this.matrix_.makeScale(0, 0, 0);
+      }
+      mesh.setMatrixAt(index, this.matrix_);
+    }
+    this.pool_.upload();
+  }
+}

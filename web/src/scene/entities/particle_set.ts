@@ -4,6 +4,7 @@
 
 import { Color, DynamicDrawUsage, Group, IcosahedronGeometry, InstancedBufferAttribute, InstancedMesh, Matrix4, MeshStandardMaterial } from "three";
 import type { ParticleSetEntity, PoseSparkColumns } from "../../protocol/generated.ts";
+import type { Points } from "../points.ts";
 import { EntityRecords } from "./entity.ts";
 
 /** Radius of sparks without one, m. */
@@ -35,6 +36,13 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
   override create(entity: ParticleSetEntity): void {
     super.create(entity);
     this.reserve_(Math.min(entity.capacity, mostReserved));
+  }
+
+  /** Adds the places of sparks, of some of them where there are many. */
+  addPoints(points: Points): void {
+    const { array } = this.mesh_.instanceMatrix;
+    const every = Math.ceil(this.count / 500);
+    for (let index = 0; index < this.count; index += every) points.add(array[16 * index + 12], array[16 * index + 13], array[16 * index + 14]);
   }
 
   /** Shows these in place of those before. */

@@ -5,6 +5,7 @@ import { Group, Matrix4 } from "three";
 import type { StaticShapeEntity } from "../../protocol/generated.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
+import { addCorners, type Points } from "../points.ts";
 import { readPart } from "../parts.ts";
 import { makeGeometry } from "../shapes/shape.ts";
 import type { EntityView } from "./entity.ts";
@@ -38,6 +39,16 @@ export class StaticShapeView implements EntityView<StaticShapeEntity> {
   change(entity: StaticShapeEntity): void {
     this.destroy(entity.id.slot);
     this.create(entity);
+  }
+
+  /** Calls `take` with the corners of each that has an end; the points are only valid during the call. */
+  forEachCorners(points: Points, take: (points: Points) => void): void {
+    for (const { mesh } of this.shown_.values()) {
+      mesh.updateMatrixWorld();
+      points.clear();
+      addCorners(points, mesh.geometry, mesh.matrixWorld);
+      take(points);
+    }
   }
 
   destroy(slot: number): void {

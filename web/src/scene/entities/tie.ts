@@ -3,13 +3,14 @@
 // A tie moves with its two ends, so nothing is sent for it but once.
 
 import { Group, Matrix4, Quaternion, Vector3 } from "three";
-import { NO_BODY, TieKind, type Anchor, type TieEntity } from "../../protocol/generated.ts";
+import { TieKind, type TieEntity } from "../../protocol/generated.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { makeCoil } from "../shapes/coil.ts";
 import { makeGeometry, sizeOf, type Shape } from "../shapes/shape.ts";
 import { shapeKind } from "../shapes/shape_list.ts";
+import { calcAnchor } from "./anchor.ts";
 import type { EntityView } from "./entity.ts";
 import type { Styles, StyleUser } from "./style.ts";
 
@@ -134,7 +135,7 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
   }
 
   private placePieces_({ entity, index }: Tie, { pool: { mesh, pieces }, length: madeFor }: Batch): void {
-    const shown = this.calcEnd_(entity.a, this.from_) && this.calcEnd_(entity.b, this.to_);
+    const shown = calcAnchor(this.poses_, entity.a, this.from_) && calcAnchor(this.poses_, entity.b, this.to_);
     const slack = entity.kind === TieKind.rope ? Math.max(0, entity.length - this.from_.distanceTo(this.to_)) : 0;
     // Depth of the parabola of that length over a level span. Steep spans hang a little too deep, which does not show.
     const sag = Math.sqrt(0.375 * slack * entity.length);
@@ -155,19 +156,5 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
       mesh.setMatrixAt(index * pieces + piece - 1, this.matrix_);
       this.start_.copy(this.end_);
     }
-  }
-
-  /** World place of an end; false where its body is not known yet. */
-  private calcEnd_({ body, point }: Anchor, out: Vector3): boolean {
-    out.set(point[0], point[1], point[2]);
-    if (body === NO_BODY) return true;
-    if (this.poses_.known[body] !== 1) return false;
-    const { position, rotation } = this.poses_;
-    this.turn_.fromArray(rotation, 4 * body);
-    out.applyQuaternion(this.turn_);
-    out.x += position[3 * body];
-    out.y += position[3 * body + 1];
-    out.z += position[3 * body + 2];
-    return true;
   }
 }

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Places in the world that stand for what is drawn, for all that follows the size of a scene: camera, light, ground, fog.
+
+import type { BufferGeometry, Matrix4 } from "three";
+
+/** Points x y z, one after the other; `count` of them are in use. */
+export class Points {
+  xyz = new Float64Array(3 * 64);
+  count = 0;
+
+  clear(): void {
+    this.count = 0;
+  }
+
+  add(x: number, y: number, z: number): void {
+    if (!Number.isFinite(x + y + z)) return;
+    if (3 * this.count === this.xyz.length) {
+      const larger = new Float64Array(2 * this.xyz.length);
+      larger.set(this.xyz);
+      this.xyz = larger;
+    }
+    this.xyz.set([x, y, z], 3 * this.count++);
+  }
+
+  addAll({ xyz, count }: Points): void {
+    for (let at = 0; at < 3 * count; at += 3) this.add(xyz[at], xyz[at + 1], xyz[at + 2]);
+  }
+
+  /** Middle of their box, and half its diagonal; null without points. */
+  bounds(): Bounds | null {
+    if (this.count === 0) return null;
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    for (let index = 0; index < 3 * this.count; index++) {
+      const axis = index % 3;
+      low[axis] = Math.min(low[axis], this.xyz[index]);
+      high[axis] = Math.max(high[axis], this.xyz[index]);
+    }
+    return {
+      center: [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2],
+      radius: Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2,
+      lowest: low[1],
+    };
+  }
+}
+
+export interface Bounds {
+  readonly center: readonly [number, number, number];
+  readonly radius: number;
+  readonly lowest: number;
+}
+
+/** Adds the corners of a geometry's box, as it is placed. */
+export function addCorners(points: Points, geometry: BufferGeometry, { elements: m }: Matrix4): void {
+  if (geometry.boundingBox === null) geometry.computeBoundingBox();
+  const { min, max } = geometry.boundingBox!;
+  for (let corner = 0; corner < 8; corner++) {
+    const x = corner & 1 ? max.x : min.x;
+    const y = corner & 2 ? max.y : min.y;
+    const z = corner & 4 ? max.z : min.z;
+    points.add(m[0] * x + m[4] * y + m[8] * z + m[12], m[1] * x + m[5] * y + m[9] * z + m[13], m[2] * x + m[6] * y + m[10] * z + m[14]);
+  }
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+import { describe, expect, it } from "vitest";
+import { fitView, shareOutside, viewAxes, type Frame } from "../src/navigate/framing.ts";
+import { Points } from "../src/scene/points.ts";
+
+const frame: Frame = { side: 0.62, up: 0.34, down: 0.29 };
+
+/** A number in 0..1 from a seed, the same in each run. */
+function makeRandom(seed: number): () => number {
+  let state = seed;
+  return () => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return state / 4294967296;
+  };
+}
+
+function cloud(size: number, seed: number): Points {
+  const random = makeRandom(seed);
+  const points = new Points();
+  for (let index = 0; index < 40; index++) {
+    points.add(size * (random() * 3 + 5), size * (random() - 2), size * (random() * 0.5));
+  }
+  return points;
+}
+
+/** The largest share of the frame that a point takes up, to a side, up or down. */
+function fullness({ xyz, count }: Points, view: NonNullable<ReturnType<typeof fitView>>): number {
+  const [right, up, away] = viewAxes(view.yaw, view.pitch);
+  let most = 0;
+  for (let at = 0; at < 3 * count; at += 3) {
+    const p = [0, 1, 2].map((axis) => xyz[at + axis] - view.pivot[axis]);
+    const along = (axis: readonly number[]) => axis.reduce((sum, value, index) => sum + value * p[index], 0);
+    const depth = view.distance - along(away);
+    most = Math.max(most, Math.abs(along(right)) / (frame.side * depth), along(up) / (frame.up * depth), -along(up) / (frame.down * depth));
+  }
+  return most;
+}
+
+describe("a fitted view", () => {
+  it("shows all points and is filled by them, at any size and from any side", () => {
+    for (const size of [1e-9, 1e-3, 1, 1e3]) {
+      for (let seed = 1; seed < 20; seed++) {
+        const points = cloud(size, seed);
+        const view = fitView(points, seed, 0.1 * (seed % 7) - 0.3, frame)!;
+        expect(fullness(points, view)).toBeCloseTo(1, 6);
+      }
+    }
+  });
+
+  it("scales with the scene", () => {
+    const one = fitView(cloud(1, 3), 0.4, 0.2, frame)!;
+    const tiny = fitView(cloud(1e-9, 3), 0.4, 0.2, frame)!;
+    expect(tiny.distance / one.distance).toBeCloseTo(1e-9, 15);
+  });
+
+  it("is none without points, and leaves out what is not finite", () => {
+    const points = new Points();
+    points.add(Number.NaN, 0, 0);
+    points.add(Infinity, 0, 0);
+    expect(points.bounds()).toBeNull();
+    expect(fitView(points, 0, 0, frame)).toBeNull();
+  });
+
+  it("tells which share of the points is outside of it", () => {
+    const points = cloud(1, 5);
+    const view = fitView(points, 0.4, 0.2, frame)!;
+    expect(shareOutside(points, { ...view, distance: view.distance * 1.001 }, frame)).toBe(0);
+    expect(shareOutside(points, { ...view, pivot: [1e3, 0, 0] }, frame)).toBe(1);
+  });
+});
