@@ -199,6 +199,13 @@ void Islands::build_fresh(Model& model, const Parallel& parallel) {
   });
 }
 
+void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const {
+  for (std::uint32_t& a : articulates) a = leader_of_[a];
+  std::sort(articulates.begin(), articulates.end());
+  articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
+  if (!articulates.empty() && articulates.back() == none) articulates.pop_back();  // free particles have no island
+}
+
 std::span<Island* const> Islands::all() {
   if (order_is_old_) {
     in_order_.clear();

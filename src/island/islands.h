@@ -24,6 +24,9 @@ class Islands {
     const std::uint32_t leader = leader_of_[articulate];
     return leader == model::none ? nullptr : island_of_leader_[leader].get();
   }
+  /// Makes a list of articulates one of the leaders of their islands, each once, in order: a net of particles is one
+  /// island of as many articulates as particles.
+  void replace_by_leaders(std::vector<std::uint32_t>& articulates) const;
   FreeParticles& free_particles() { return free_particles_; }
 
  private:

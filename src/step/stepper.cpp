@@ -46,8 +46,8 @@ void Stepper::update_islands() {
     else
       FreeParticles::wake(model, articulate);
   }
-  for (const std::uint32_t articulate : dirty_)
-    if (Island* const island = islands.of_articulate(articulate)) (void)island->project(model, false);
+  islands.replace_by_leaders(dirty_);
+  for (const std::uint32_t leader : dirty_) (void)islands.of_articulate(leader)->project(model, false);
   if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
 }
 
