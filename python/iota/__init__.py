@@ -16,7 +16,7 @@ from iota import starting as starting  # noqa: I001  # first: what follows takes
 
 from collections.abc import Sequence
 
-from iota import builder, forces, looks, types
+from iota import builder, looks, types
 from iota._core import (
     Articulate,
     Body,
@@ -102,7 +102,6 @@ __all__ = [
     "WrongThreadError",
     "__version__",
     "builder",
-    "forces",
     "looks",
     "solve",
     "solver",

@@ -21,7 +21,6 @@ def build(links: int = 24, repeat: bool = True) -> iota.World:
     chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(0.85, -0.55, 0.1)).realize(system).bodies
     world = iota.World(system, title="chain", style="rope")
     present(world, chain)
-    iota.forces.floor(world)
 
     @world.action("break", key="b", button="b", help="separates the held or selected link from the one above")
     def break_link(event: iota.Event) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from iota._core import Body, DrawnPart, Room
+from iota._core import Body, Capsule, Cylinder, DrawnPart, Room, Sphere, Torus
 from iota.looks import Look, Looks
 from iota.simulator import SimulatedBody
 
@@ -53,6 +53,19 @@ class Scene:
     def assign(self, bodies: Iterable[Body | SimulatedBody], name: str) -> None:
         for index, body in enumerate(bodies):
             self._class_of[body] = self._untold[body] = (name, index % 2)
+
+    def thickness_of(self, body: Body) -> float | None:
+        """Radius of what a body is drawn with, m, where that is round and about the body's line; None: it has no such look."""
+        if body not in self._class_of:
+            return None
+        radii = []
+        for drawn in self.classes[self._class_of[body][0]].values():
+            for look in listed(drawn):
+                if isinstance(look.shape, Capsule | Cylinder | Sphere):
+                    radii.append(look.shape.radius)
+                elif isinstance(look.shape, Torus):
+                    radii.append(look.shape.radius + look.shape.tube)
+        return min(radii, default=None)
 
     def tell_anew(self) -> None:
         """The next room knows nothing."""

@@ -6,7 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from iota._core import System
+import numpy as np
+
+from iota._core import Body, System
 from iota.looks import Looks
 from iota.world.actions import Actions
 from iota.world.clock import Clock
@@ -33,9 +35,20 @@ class State:
     step_ms: float = 0.0  # what a step takes, smoothed
     is_changed: bool = True  # what pages were told of it, poses apart, does not hold any more
 
+    _usual_thickness: float | None = None
+
     def __post_init__(self) -> None:
         self.scene = Scene()
         self.hands = Hands(self.system)
+
+    def thickness_of(self, body: Body) -> float:
+        """Radius of what a body of particles is drawn with, m; as pages draw it where the script says nothing."""
+        thickness = self.scene.thickness_of(body)
+        if thickness is not None:
+            return thickness
+        if self._usual_thickness is None:
+            self._usual_thickness = usual_thickness(self.system)
+        return self._usual_thickness if len(body.particles) > 1 else 2 * self._usual_thickness
 
     def class_of(self, looks: Looks) -> str:
         """The class of bodies that are drawn so, as pages name it: a new one where there is none."""
@@ -46,3 +59,16 @@ class State:
         name = f"class {len(classes) + 1}"
         classes[name] = looks
         return name
+
+
+def usual_thickness(system: System) -> float:
+    """Radius that suits rods of this system, m, as src/net/presenter.cpp chooses it: by their middle length or the size of all."""
+    places = system.positions
+    lengths = sorted(
+        abs(particles[1].position - particles[0].position)
+        for body in system.bodies
+        if not body.is_spark and len(particles := body.particles) == 2
+    )
+    middle = lengths[len(lengths) // 2] if lengths else 0.0
+    extent = float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0
+    return 0.06 * middle or 0.02 * extent or 0.03

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import time
 
-from iota._core import StepReport
+from iota._core import StepReport, System
 from iota.errors import ForceError
 from iota.world.callbacks import GO_ON, Guard, Hook
 from iota.world.event import Event
+from iota.world.floor import Floor
 from iota.world.schedule import Schedule
 from iota.world.state import State
 from iota.world.summary import RunSummary, Tally
@@ -25,6 +26,7 @@ class Stepper:
         self.on_step: list[Hook] = []
         self.on_reset: list[Hook] = []
         self._off: set[Hook] = set()  # raised since the last reset
+        self._floor: Floor | None = None
         self._start: bytes | None = None
         self._tally: Tally | None = None
 
@@ -34,7 +36,10 @@ class Stepper:
 
     def begin(self) -> None:
         """From here on; `reset` comes back to this moment."""
-        self._tally = Tally(self._state.system)
+        state = self._state
+        self._tally = Tally(state.system)
+        if state.ground is not None and isinstance(state.system, System):
+            self._floor = Floor(state.system, state.ground, state.thickness_of)
         self._start = self._state.system.snapshot()
         self.schedule.begin()
 
@@ -54,6 +59,8 @@ class Stepper:
             if hook not in self._off and not self._call(f"on_step ({hook.name})", hook, "step", again=True):
                 self._off.add(hook)
         dt, began = state.clock.dt, time.perf_counter()
+        if self._floor is not None:
+            self._floor.push(dt)
         try:
             report = state.system.step(dt)
         except ForceError as error:
@@ -72,6 +79,8 @@ class Stepper:
             return
         self._state.system.restore(self._start)
         self._state.hands.forget()
+        if self._floor is not None:
+            self._floor.forget()
         self._state.is_changed = True
         self.schedule.rewind()
         self._off.clear()

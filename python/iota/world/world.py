@@ -20,6 +20,7 @@ from iota.world import options as run_options
 from iota.world.actions import Action
 from iota.world.callbacks import Guard, Hook
 from iota.world.clock import Clock
+from iota.world.floor import level_below
 from iota.world.frames import turn_from_x
 from iota.world.hands import Client
 from iota.world.inputs import Inputs
@@ -40,8 +41,8 @@ class World:
     """Runs a system in real time and serves a page that shows it.
 
     system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. style: the style of
-    drawing that pages start with, see `draw`. ground: height of the drawn ground, m, None for none. camera: where viewers
-    start, None: all is in view.
+    drawing that pages start with, see `draw`. ground: height of the ground, m, which holds what falls on it (not under another
+    Simulator); "auto": 0, or below what begins or hangs lower; None for none. camera: where viewers start, None: all is in view.
 
         world = iota.World(system, title="pendulum")
 
@@ -61,11 +62,12 @@ class World:
         title: str = "iota",
         dt: float = 1 / 120,
         style: str | None = None,
-        ground: float | None = 0.0,
+        ground: float | Literal["auto"] | None = "auto",
         camera: Camera | None = None,
     ) -> None:
         # Scripts see the built-in system; nothing here asks for more than a Simulator.
-        self._state = State(cast(System, system), Clock(dt), title, style, ground, camera)
+        self._state = State(cast(System, system), Clock(dt), title, style, None if ground == "auto" else ground, camera)
+        self._finds_ground = ground == "auto"
         self._guard = Guard(self._state.notices.error, self._state.notices.warning, self._state.notices.over)
         self._stepper = Stepper(self._state, self._guard)
         self._inputs = Inputs(self._state, self._guard, self._stepper.step, self._stepper.reset)
@@ -397,6 +399,9 @@ class World:
 
     def _begin(self) -> None:
         self._runner = threading.get_ident()
+        if self._finds_ground:
+            self._finds_ground = False
+            self._state.ground = level_below(self.system)
         self._stepper.begin()
         self._state.clock.restart()
 

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The ground of a World holds what falls on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+
+import iota
+from iota.world import options
+from iota.world.floor import touching_points
+
+TILTED = (0.3, 0.5, 0.1, 0.8)
+SHAPES = {
+    "box": lambda s: iota.Box((3 * s, 2 * s, s)),
+    "ball": lambda s: iota.Sphere(s),
+    "cylinder": lambda s: iota.Cylinder(s, 2 * s),
+    "capsule": lambda s: iota.Capsule(s, 2 * s),
+    "cone": lambda s: iota.Cone(s, 3 * s),
+    "torus": lambda s: iota.Torus(2 * s, 0.5 * s),
+    "ellipsoid": lambda s: iota.Ellipsoid((s, 2 * s, 3 * s)),
+}
+
+
+def run(world: iota.World, seconds: float) -> None:
+    with options.use(options.RunOptions(headless=True, seconds=seconds)):
+        world.run()
+
+
+def dropped(shape: iota.Shape, height: float, **more: object) -> tuple[iota.World, iota.Body]:
+    system = iota.System()
+    norm = math.hypot(*TILTED)
+    turn = tuple(x / norm for x in TILTED)
+    body = system.body(shape=shape, density=1000, position=(0, height, 0), orientation=turn, **more)
+    return iota.World(system, ground=0.0), body
+
+
+def lowest(body: iota.Body, shape: iota.Shape) -> float:
+    """Of the shape's touching points where the body is now, m."""
+    x, y, z, w = body.orientation
+    up = (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x))  # world y in the body's frame
+    places = touching_points(shape)
+    return body.center_of_mass.y + min(sum(a * b for a, b in zip(up, p, strict=True)) - r for p, r in places)
+
+
+@pytest.mark.parametrize("size", [0.02, 0.3, 3.0])
+@pytest.mark.parametrize("kind", SHAPES)
+def test_what_is_dropped_comes_to_lie_on_the_ground(kind: str, size: float) -> None:
+    shape = SHAPES[kind](size)
+    world, body = dropped(shape, 5 * size)
+    run(world, 3 + 2 * math.sqrt(size))
+    assert body.center_of_mass.y < 3.3 * size
+    assert lowest(body, shape) > -0.05 * size
+    assert abs(body.velocity.y) < 0.3 * math.sqrt(9.81 * size)
+
+
+def test_what_is_thrown_down_fast_hardly_comes_back() -> None:
+    """It falls as from 80 m; what it keeps is spin, of which its corners make a little height."""
+    world, body = dropped(iota.Box((0.3, 0.2, 0.1)), 1.0, velocity=(2, -40, 0))
+    highest = 0.0
+
+    @world.on_step
+    def watch() -> None:
+        nonlocal highest
+        if world.system.time > 0.2:
+            highest = max(highest, body.center_of_mass.y)
+
+    run(world, 3)
+    assert highest < 3
+
+
+def test_a_box_that_slides_is_stopped_by_friction_and_stays_where_it_is() -> None:
+    system = iota.System()
+    box = system.body(shape=iota.Box((0.3, 0.2, 0.1)), density=1000, position=(0, 0.1, 0), velocity=(3, 0, 0))
+    world = iota.World(system, ground=0.0)
+    run(world, 2)
+    # v^2 / (2 mu g) with mu = 0.6; corners catch a little
+    assert box.center_of_mass.x == pytest.approx(0.76, rel=0.5)
+    place = box.center_of_mass
+    run(iota.World(system, ground=0.0), 2)
+    assert abs(box.center_of_mass - place) < 0.02
+    assert box.center_of_mass.y == pytest.approx(0.1, abs=0.002)
+
+
+def test_a_chain_that_was_cut_off_lies_on_the_ground_as_thick_as_it_is_drawn() -> None:
+    system = iota.System()
+    chain = iota.builder.chain(24, 2.4, top=(0, 3, 0), direction=(0.85, -0.55, 0.1)).realize(system)
+    chain.points[0].release()
+    world = iota.World(system, ground=0.0)
+    world.draw(chain.bodies, iota.looks.capsule(0.02, "rope"))
+    run(world, 4)
+    heights = system.positions[:, 1]
+    assert heights.min() > 0.012
+    assert heights.max() < 0.1
+
+
+def test_the_ground_is_under_what_is_there_and_what_hangs() -> None:
+    def ground_of(make: Callable[[iota.System], None]) -> float | None:
+        system = iota.System()
+        make(system)
+        world = iota.World(system)
+        run(world, 0.01)
+        return world._state.ground
+
+    assert ground_of(lambda system: system.body().particle((0, 1, 0))) == 0
+
+    def pendulum(system: iota.System) -> None:
+        rod = system.body()
+        rod.particle((0, 0, 0)).nail()
+        rod.particle((1, 0, 0))
+
+    low = ground_of(pendulum)
+    assert low is not None
+    assert -1.5 < low < -1
+
+
+def test_what_starts_below_a_given_ground_is_left_there() -> None:
+    system = iota.System(gravity=(0, -9.81, 0))
+    below, above = system.body().particle((0, -1, 0)), system.body().particle((1, 1, 0))
+    run(iota.World(system, ground=0.0), 2)
+    assert below.position.y < -15
+    assert above.position.y == pytest.approx(0, abs=0.1)
+
+
+def test_without_a_ground_things_fall_on() -> None:
+    system = iota.System()
+    point = system.body().particle((0, 1, 0))
+    run(iota.World(system, ground=None), 2)
+    assert point.position.y == pytest.approx(1 - 9.81 * 2, rel=0.02)
+
+
+def test_emitted_sparks_pass_and_the_rest_is_held() -> None:
+    system = iota.System()
+    system.emitter(rate=200, position=(0, 0.2, 0), velocity=(0, 1, 0), lifetime=1.0)
+    point = system.body().particle((0.5, 1, 0))
+    run(iota.World(system, ground=0.0), 2)
+    assert point.position.y == pytest.approx(0, abs=0.1)
+    assert system.positions[:, 1].min() < -0.5
