@@ -225,9 +225,9 @@ class Pair {
     if (lot < 95) {
       if (p == q || twin_.bonds.size() > 12) return true;
       say("bond", p, q);
-      model::Bond bond;
+      ingredient::Bond bond;
       bond.p = p, bond.q = q;
-      (void)model_.add_bond(bond);
+      (void)ingredient::Bonds::add(model_, bond);
       twin_.bonds.push_back({p, q});
       return true;
     }
@@ -265,7 +265,7 @@ class Pair {
     }
     std::vector<std::pair<std::uint32_t, std::uint32_t>> mine, theirs;
     const auto ordered = [](std::uint32_t a, std::uint32_t b) { return std::pair{std::min(a, b), std::max(a, b)}; };
-    model_.bonds.for_each([&](std::uint32_t, const model::Bond& b) { mine.push_back(ordered(b.p, b.q)); });
+    model_.bonds.for_each([&](std::uint32_t, const ingredient::Bond& b) { mine.push_back(ordered(b.p, b.q)); });
     for (const auto& [a, b] : twin_.bonds) theirs.push_back(ordered(a, b));
     std::sort(mine.begin(), mine.end()), std::sort(theirs.begin(), theirs.end());
     if (mine != theirs) return "the bonds join other particles";

@@ -11,7 +11,9 @@ A file knows a thing when it names it: in an identifier (also in TypeScript's ca
 name such as "revolute", or in its own name. Comments and sentences in strings do not count, and neither do tests, documents and
 generated files. Each thing has several spellings, so that a renaming does not look like an improvement.
 
-The number is the cost of one more of its kind: the fewer files know a shape, the fewer a new shape has to be told to.
+The fewer files know a shape, the fewer a new shape has to be told to. Files that are named after the thing (`grips.cpp` for a
+grip) are its own: one more of its kind would bring such files along. `strangers` counts the others, which one would have to
+edit.
 """
 
 from __future__ import annotations
@@ -34,8 +36,9 @@ SKIPPED = {"node_modules", "dist", "dist.new", "dist.old", "e2e", "test", "tests
 
 @dataclass(frozen=True)
 class Thing:
-    """`spellings`: words in a row of one identifier ("rod spin" finds RodSpin, rod_spins_ and rodSpin), or "=Name" for
-    exactly this identifier or quoted name. `folders`: where the words mean this thing."""
+    """`spellings`: words in a row of one identifier ("rod spin" finds RodSpin, rod_spins_ and rodSpin), "=Name" for
+    exactly this identifier or quoted name, or "Kind::name" and '"name"' as they stand in the text. `folders`: where the
+    words mean this thing."""
 
     name: str
     spellings: tuple[str, ...]
@@ -48,7 +51,8 @@ INGREDIENTS = [
     Thing("point masses", ("virtual mass", "damped masses", "add masses", "mass couplings", "point mass", "=masses",
                            "=Masses"), ENGINE),
     Thing("rigid rows", ("rigid row", "pinned row", "rigid rows", "body row"), ENGINE),
-    Thing("tied particles", ("tied", "tie", "=ties", "=Ties", "affine"), ENGINE),
+    # What is drawn between two points is a tie, too, and bonds and joints tie bodies together: other things.
+    Thing("tied particles", ("=Tie", "=Ties", "=ties", "=ties_", "tied particle", "=tied_", "affine"), ENGINE),
     Thing("nails", ("nail", "nailed", "is nailed"), ENGINE),
     Thing("closings", ("closing", "closings", "close over"), ENGINE),
     Thing("joints", ("constraint rows", "joint rows", "constraint data", "joint data", "joint", "joints"), ENGINE),
@@ -81,7 +85,8 @@ SHAPES = [
     Thing("half-space", ("half space", "=Plane", "=plane")),
 ]  # fmt: skip
 
-JOINTS = [Thing(name, (f"={name}", f"make {name}", f"{name} joint", f"={name.title()}"),
+# Their names are common words (inside, path, apart): a file knows the kind when it names the enumerator or quotes it.
+JOINTS = [Thing(name, (f"ConstraintKind::{name}", f'"{name}"'),
                 ("include", "src/geometry", "src/shape", "src/model", "src/ingredient", "src/solver", "src/island",
                  "src/edit", "src/read", "src/step", "bindings", "python/iota/__init__.py"))
           for name in ("ball", "universal", "revolute", "cylindrical", "prismatic", "weld", "rod", "rope", "path",
@@ -160,12 +165,22 @@ class File:
     """What one source names: whole names, and the words of each with blanks around them."""
 
     def __init__(self, path: Path) -> None:
-        self.names = {path.stem, *names_in(path.read_text(errors="replace"), token_pattern(path))}
+        self.stem = path.stem
+        self.text = path.read_text(errors="replace")
+        self.names = {path.stem, *names_in(self.text, token_pattern(path))}
         self.words = "\n".join(f" {' '.join(word.lower() for word in WORD.findall(name))} " for name in self.names)
+
+    def is_of(self, thing: Thing) -> bool:
+        """Whether it is named after it."""
+        words = f" {' '.join(word.lower() for word in WORD.findall(self.stem))} "
+        names = [thing.name, *(spelling.removeprefix("=").lower() for spelling in thing.spellings)]
+        return any(f" {name} " in words or f" {name}s " in words for name in names)
 
     def knows(self, spelling: str) -> bool:
         if spelling.startswith("="):
             return spelling[1:] in self.names
+        if spelling.startswith(("ConstraintKind::", '"')):
+            return re.search(rf"{spelling}(?!\w)", self.text) is not None
         return f" {spelling} " in self.words or f" {spelling}s " in self.words
 
 
@@ -240,13 +255,18 @@ def print_one(tree: Path, table: dict[str, list[Thing]]) -> None:
 def print_both(before: Path, after: Path, table: dict[str, list[Thing]]) -> None:
     """Files of the engine's own sources (src) and of everything; a thing that is new has no number before."""
     old, new = files_of(before), files_of(after)
-    print(f"{'':34}{'src':>8}{'':>8}{'all':>8}")
-    print(f"{'':34}{'before':>8}{'after':>8}{'before':>8}{'after':>8}")
+    print(f"{'':34}{'src':>8}{'':>8}{'all':>8}{'':>8}{'strangers in src':>16}")
+    print(f"{'':34}{'before':>8}{'after':>8}{'before':>8}{'after':>8}{'before':>8}{'after':>8}")
     for kind, things in table.items():
-        total = [0] * 4
+        total = [0] * 6
         for thing in things:
             a, b = knowers(thing, old), knowers(thing, new)
-            row = [sum(n.startswith("src/") for n in a), sum(n.startswith("src/") for n in b), len(a), len(b)]
+            src = [[name for name in names if name.startswith("src/")] for names in (a, b)]
+            strangers = [
+                sum(not files[name].is_of(thing) for name in names)
+                for names, files in zip(src, (old, new), strict=True)
+            ]
+            row = [len(src[0]), len(src[1]), len(a), len(b), *strangers]
             total = [x + y for x, y in zip(total, row, strict=True)]
             print(f"{kind:13} {thing.name:20}{''.join(f'{n or chr(45):>8}' for n in row)}")
         print(f"{kind:13} {'TOTAL':20}{''.join(f'{n or chr(45):>8}' for n in total)}\n")

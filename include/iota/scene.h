@@ -54,6 +54,10 @@ struct Anchor {
 };
 
 struct DrawnTie {
+  /// Bonds and joints are tables of their own: a tie's slot tells which one it is of.
+  static constexpr std::uint32_t slot_of_bond(std::uint32_t bond) { return 2 * bond; }
+  static constexpr std::uint32_t slot_of_joint(std::uint32_t joint) { return 2 * joint + 1; }
+
   enum class Kind : std::uint8_t { spring, rope, rod };
   std::uint32_t slot = 0;  ///< of all ties: no two have the same at a time
   Kind kind = Kind::spring;

@@ -174,7 +174,7 @@ void apply(Editor& e, const SetKind& c) {
     if (c.kind != BodyKind::dynamic) model.spins.erase(slot);
     if (c.kind == BodyKind::dynamic && before != BodyKind::inactive) model.rebuild_basis(slot);  // rigid as it was put
     model.for_each_particle_of(slot, [&](std::uint32_t p) {
-      model.mute_bonds_of(p);
+      model.acting_changed(p);
       model::Ring& ring = model.rings[model.particles[p].ring];
       if (c.kind != BodyKind::dynamic && (c.kind != BodyKind::inactive || ring.count == 1))
         ring.velocity = ring.acceleration = {};
@@ -269,7 +269,7 @@ void apply(Editor& e, const SetPose& c) {
     ring.position = moved(ring.position);
     ring.velocity = mean + rotate(turn, ring.velocity - mean);
     // Of a static body's rings too, or what is tied to it would bring it back.
-    if (model::Nail* const nail = model.nails.find(slot))
+    if (ingredient::Nail* const nail = model.nails.find(slot))
       nail->position = nail->position_before = moved(nail->position);
   }
   model.for_each_body_of(articulate, [&](std::uint32_t b) { refresh_coordinates_of(model, b); });
@@ -298,7 +298,7 @@ void apply(Editor& e, const SetAngularVelocity& c) {
   if (!(model.axial_inertia(body) > 0)) return;
   constexpr double round_off = 1e-12;
   const double spin = dot(c.value, model.rod_axis(body));
-  model.set_spin(body, std::abs(spin) > round_off * norm(c.value) ? spin : 0);
+  ingredient::RodSpins::set(model, body, std::abs(spin) > round_off * norm(c.value) ? spin : 0);
 }
 
 // Mass, momentum and energy go with it.

@@ -12,11 +12,11 @@ BondId apply(Editor& e, const CreateBond& c) {
   model::Model& model = e.model;
   const std::uint32_t p = e.require(c.p), q = e.require(c.q), slot = e.require(c.law);
   if (p == q) throw std::invalid_argument(text("a bond needs two particles, got particle ", p, " twice"));
-  const model::Law& law = model.laws[slot];
+  const ingredient::Law& law = model.laws[slot];
   if (c.implicit && !law.has_derivative())
     throw std::invalid_argument(
         text("the law ", law.name.data(), " is code without a derivative: its bonds cannot be implicit"));
-  model::Bond bond;
+  ingredient::Bond bond;
   bond.p = p, bond.q = q, bond.law = slot, bond.implicit = c.implicit, bond.script = c.script;
   for (std::uint32_t i = 0; i < law.parameter_count; ++i) {
     const double value = c.parameters[i];
@@ -24,17 +24,17 @@ BondId apply(Editor& e, const CreateBond& c) {
     require_parameter_value(law, i, bond.parameters[i]);
   }
   e.structure_changed();
-  return model.bonds.id(model.add_bond(bond));
+  return model.bonds.id(ingredient::Bonds::add(model, bond));
 }
 
 void apply(Editor& e, const SetBondParameter& c) {
   model::Model& model = e.model;
-  model::Bond& bond = model.bonds[e.require(c.bond)];
-  model.scene.bonds.note(c.bond.slot);
+  ingredient::Bond& bond = model.bonds[e.require(c.bond)];
+  model.changed_bonds.note(c.bond.slot);
   set_parameter(model.laws[bond.law], bond.parameters, c.index, c.value);
 }
 
-void apply(Editor& e, const SetBondActive& c) { e.model.set_bond_active(e.require(c.bond), c.active); }
+void apply(Editor& e, const SetBondActive& c) { ingredient::Bonds::set_active(e.model, e.require(c.bond), c.active); }
 
 void apply(Editor& e, const SetBondBreakForce& c) {
   model::Model& model = e.model;
@@ -48,7 +48,7 @@ void apply(Editor& e, const Destroy<BondId>& c) {
   model::Model& model = e.model;
   const std::uint32_t bond = e.require(c.id);
   e.drop_function(e.held.functions.of_bonds, model.bonds[bond].script);
-  model.remove_bond(bond);
+  ingredient::Bonds::remove(model, bond);
   e.structure_changed();
 }
 

@@ -15,10 +15,10 @@ RestructureReport apply(Editor& e, const CombineParticles& c) {
   const bool unrelated = body_p != body_q && model.particles[p].ring != model.particles[q].ring;
   if (c.over > 0 && unrelated && distance > 1e-9) {
     require_can_meet(model, p, q);
-    if (closing_between(model, p, q) != model::none)
+    if (ingredient::Closings::between(model, p, q) != model::none)
       throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));
     Restructuring change(e, std::array{body_p, body_q}, Restructuring::Kind::moving);
-    (void)model.add_closing({{p, q}, distance, c.over, 0, 0});
+    (void)ingredient::Closings::add(model, {{p, q}, distance, c.over, 0, 0});
     model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
     change.report.changed = true;
     return change.finish({.jolted = true});
@@ -45,10 +45,10 @@ RestructureReport apply(Editor& e, const CombineBodies& c) {
 
 RestructureReport call_off(Editor& e, std::uint32_t closing) {
   model::Model& model = e.model;
-  const model::Closing& c = model.closings[closing];
+  const ingredient::Closing& c = model.closings[closing];
   Restructuring change(e, std::array{model.particles[c.p].body, model.particles[c.q].body},
                        Restructuring::Kind::moving);
-  model::call_off(model, closing);
+  ingredient::Closings::end(model, closing);
   change.report.changed = true;
   return change.finish({.jolted = true});
 }

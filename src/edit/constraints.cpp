@@ -36,7 +36,7 @@ void require_limits(const BreakLimits& limits) {
   require_break_force(limits.torque, "break_torque");
 }
 
-void require_surface(const model::PlacedSurface& surface) {
+void require_surface(const ingredient::PlacedSurface& surface) {
   if (surface.data.function == 0) shape::check(shape::from_data(surface.data.shape));
   require_finite("position of the surface", surface.position);
   const Quaternion& q = surface.orientation;
@@ -47,7 +47,7 @@ void require_surface(const model::PlacedSurface& surface) {
 }
 
 /// Calls a surface's function once, for what would otherwise only show in the next step. point: world frame.
-void require_function(const model::Model& model, const model::PlacedSurface& surface, const Vec3& point) {
+void require_function(const model::Model& model, const ingredient::PlacedSurface& surface, const Vec3& point) {
   const auto found = model.surface_functions.find(surface.data.function);
   if (found == model.surface_functions.end()) return;
   const Quaternion& q = surface.orientation;
@@ -61,8 +61,8 @@ void require_function(const model::Model& model, const model::PlacedSurface& sur
 /// a gap closes there.
 void constraint_changed(Editor& e, std::uint32_t constraint) {
   model::Model& model = e.model;
-  const model::Constraint& c = model.constraints[constraint];
-  for (const int place : {model::a_origin, model::b_origin})
+  const ingredient::Constraint& c = model.constraints[constraint];
+  for (const int place : {ingredient::a_origin, ingredient::b_origin})
     if (c.particles[place] != none) model.touch_particle(c.particles[place]), e.mark_velocity_dirty(c.particles[place]);
   e.structure_changed();
 }
@@ -94,8 +94,8 @@ void refresh_coordinates_of(model::Model& model, std::uint32_t body) {
 
 ConstraintId apply(Editor& e, const CreateJoint& c) {
   model::Model& model = e.model;
-  const model::ConstraintKindInfo& kind = model::info(c.spec.kind);
-  if (kind.form != model::ConstraintKindInfo::Form::joint)
+  const ingredient::ConstraintKindInfo& kind = ingredient::info(c.spec.kind);
+  if (kind.form != ingredient::ConstraintKindInfo::Form::joint)
     throw std::invalid_argument(text("a ", kind.name, " joins two particles, not bodies"));
   (void)e.require(c.spec.a);
   if (c.spec.b) (void)e.require(c.spec.b);
@@ -120,8 +120,8 @@ ConstraintId apply(Editor& e, const CreateJoint& c) {
 }
 
 ConstraintId apply(Editor& e, const CreateDistance& c) {
-  if (model::info(c.spec.kind).form != model::ConstraintKindInfo::Form::distance)
-    throw std::invalid_argument(text("a ", model::info(c.spec.kind).name, " is not a rod or rope"));
+  if (ingredient::info(c.spec.kind).form != ingredient::ConstraintKindInfo::Form::distance)
+    throw std::invalid_argument(text("a ", ingredient::info(c.spec.kind).name, " is not a rod or rope"));
   (void)e.require(c.spec.p), (void)e.require(c.spec.q);
   require_limits(c.spec.breaks);
   return made(e, make_constraint(e.model, c.spec));
@@ -141,8 +141,8 @@ ConstraintId apply(Editor& e, const CreatePath& c) {
 
 ConstraintId apply(Editor& e, const CreateSurface& c) {
   model::Model& model = e.model;
-  const char* const name = model::info(c.spec.kind).name;
-  if (model::info(c.spec.kind).form != model::ConstraintKindInfo::Form::surface)
+  const char* const name = ingredient::info(c.spec.kind).name;
+  if (ingredient::info(c.spec.kind).form != ingredient::ConstraintKindInfo::Form::surface)
     throw std::invalid_argument(text("a ", name, " is not between a particle and a surface"));
   const std::uint32_t particle = e.require(c.spec.particle);
   if (c.spec.body && e.require(c.spec.body) == model.particles[particle].body)
@@ -155,14 +155,14 @@ ConstraintId apply(Editor& e, const CreateSurface& c) {
 
 ConstraintId apply(Editor& e, const CreateSurfacePair& c) {
   model::Model& model = e.model;
-  const char* const name = model::info(c.spec.kind).name;
-  if (model::info(c.spec.kind).form != model::ConstraintKindInfo::Form::surface_pair)
+  const char* const name = ingredient::info(c.spec.kind).name;
+  if (ingredient::info(c.spec.kind).form != ingredient::ConstraintKindInfo::Form::surface_pair)
     throw std::invalid_argument(text("a ", name, " is not between two surfaces"));
   (void)e.require(c.spec.a);
   if (c.spec.b) (void)e.require(c.spec.b);
   if (c.spec.a == c.spec.b)
     throw std::invalid_argument(text(name, ": needs two bodies, got body ", c.spec.a.slot, " twice"));
-  for (const model::PlacedSurface& surface : c.spec.surfaces) require_surface(surface);
+  for (const ingredient::PlacedSurface& surface : c.spec.surfaces) require_surface(surface);
   for (const std::size_t i : {0, 1}) require_function(model, c.spec.surfaces[i], c.spec.surfaces[1 - i].position);
   require_limits(c.spec.breaks);
   return made(e, make_constraint(model, c.spec));
@@ -171,11 +171,11 @@ ConstraintId apply(Editor& e, const CreateSurfacePair& c) {
 void apply(Editor& e, const SetConstraintActive& c) {
   model::Model& model = e.model;
   const std::uint32_t slot = e.require(c.constraint);
-  model::Constraint& constraint = model.constraints[slot];
+  ingredient::Constraint& constraint = model.constraints[slot];
   constraint.broken = 0;
   if (constraint.active == static_cast<std::uint8_t>(c.active)) return;
   constraint.active = c.active;
-  if (c.active) model.make_geometry_anew(slot);  // a surface that has failed gets another chance
+  if (c.active) ingredient::Joints::renew_geometry(model, slot);  // a surface that has failed gets another chance
   ingredient::refresh_coordinates(model, slot);
   constraint.multipliers.fill(0), constraint.efforts = {}, constraint.gap = 0;
   constraint_changed(e, slot);
@@ -183,8 +183,8 @@ void apply(Editor& e, const SetConstraintActive& c) {
 
 void apply(Editor& e, const SetCoordinate& c) {
   const std::uint32_t slot = e.require(c.constraint);
-  model::Constraint& constraint = e.model.constraints[slot];
-  const model::ConstraintKindInfo& kind = model::info(constraint.kind);
+  ingredient::Constraint& constraint = e.model.constraints[slot];
+  const ingredient::ConstraintKindInfo& kind = ingredient::info(constraint.kind);
   const char* const name = name_of(c.coordinate);
   if (!has_coordinate(constraint.kind, c.coordinate))
     throw std::invalid_argument(text("a ", kind.name, " has no ", name));
@@ -202,12 +202,12 @@ void apply(Editor& e, const SetCoordinate& c) {
 void apply(Editor& e, const SetLength& c) {
   model::Model& model = e.model;
   const std::uint32_t slot = e.require(c.constraint);
-  if (model::info(model.constraints[slot].kind).form != model::ConstraintKindInfo::Form::distance)
+  if (ingredient::info(model.constraints[slot].kind).form != ingredient::ConstraintKindInfo::Form::distance)
     throw std::invalid_argument("only rods and ropes have a length");
   if (!(c.value > 1e-9 && c.value <= 1e9))
     throw std::invalid_argument(text("length must be between 1e-9 and 1e9 m, got ", c.value));
   model.constraints[slot].length = c.value;
-  model.scene.constraints.note(slot);
+  model.changed_constraints.note(slot);
   wake(e, slot);
 }
 
@@ -220,9 +220,9 @@ void apply(Editor& e, const SetBreakLimits& c) {
 void apply(Editor& e, const Destroy<ConstraintId>& c) {
   model::Model& model = e.model;
   const std::uint32_t slot = e.require(c.id);
-  for (const model::SurfaceData& surface : model.constraints[slot].surfaces)
+  for (const ingredient::SurfaceData& surface : model.constraints[slot].surfaces)
     e.drop_function(model.surface_functions, surface.function);
-  destroy_constraint(model, slot);
+  ingredient::Joints::destroy(model, slot);
   e.structure_changed();
 }
 

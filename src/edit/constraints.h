@@ -15,10 +15,10 @@ struct CreatePath {
   PathSpec spec;
 };
 struct CreateSurface {
-  model::SurfaceConstraintData spec;
+  ingredient::SurfaceConstraintData spec;
 };
 struct CreateSurfacePair {
-  model::SurfacePairData spec;
+  ingredient::SurfacePairData spec;
 };
 struct SetConstraintActive {
   static constexpr std::string_view queued_as = "set_active";

@@ -9,7 +9,7 @@ namespace iota::edit {
 
 namespace {
 
-constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '4'}, "snapshot"};
+constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '5'}, "snapshot"};
 
 template <class Table, class IdType>
 std::uint32_t slot_of(const Table& table, std::string_view kind, IdType id,
@@ -47,7 +47,7 @@ void Editor::mark_velocity_dirty(std::uint32_t particle) {
 Snapshot Editor::snapshot() {
   std::vector<std::byte> content;
   Writer writer(content);
-  ingredient::archive(model, writer);
+  model.archive(writer);
   // A restored system builds its islands from what is saved; so does this one, or replays would differ in the last bits.
   islands.renew();
   keys_saved_below_ = held.functions.next_key;
@@ -57,13 +57,11 @@ Snapshot Editor::snapshot() {
 void Editor::restore(const Snapshot& snapshot) {
   Reader reader(unseal(snapshot_seal, snapshot.bytes));
   model::Model restored;
-  ingredient::archive(restored, reader);
+  restored.archive(reader);
   if (!reader.ok() || !reader.at_end())
     throw std::invalid_argument("restore: the snapshot is of another build of Iota");
-  restored.surface_functions = std::move(model.surface_functions);
-  if (model.scene.is_on()) restored.scene.watch();
+  restored.take_over(model);
   model = std::move(restored);
-  model.make_geometries();
   islands.forget();
   held.forget();
   orientations.forget();

@@ -5,8 +5,8 @@
 #include "base/serialize.h"
 #include "edit/history.h"
 #include "held/held_forces.h"
+#include "ingredient/model.h"
 #include "island/islands.h"
-#include "model/model.h"
 #include "read/orientations.h"
 
 #include <iota/system.h>

@@ -32,7 +32,7 @@ EmitterId apply(Editor& editor, const CreateEmitter& c) {
         text("lifetime_spread (", o.lifetime_spread, " s) must be below the lifetime (", o.lifetime, " s)"));
   require_mass("mass", o.mass);
   require_not_negative("damping", o.damping);
-  model::Emitter e;
+  ingredient::Emitter e;
   if (o.curve.size() > e.keys.size())
     throw std::invalid_argument(
         text("the curve of an emitter has at most ", e.keys.size(), " keys, got ", o.curve.size()));
@@ -50,14 +50,14 @@ EmitterId apply(Editor& editor, const CreateEmitter& c) {
   e.mass = o.mass, e.damping = o.damping, e.max_count = o.max_count, e.seed = o.seed;
   e.key_count = static_cast<std::uint32_t>(o.curve.size());
   const EmitterId emitter = editor.model.emitters.create(e);
-  editor.model.scene.emitters.note(emitter.slot);
+  editor.model.changed_emitters.note(emitter.slot);
   return emitter;
 }
 
 void apply(Editor& e, const SetEmitterActive& c) {
   const std::uint32_t slot = e.require(c.emitter);
   e.model.emitters[slot].active = c.active;
-  e.model.scene.emitters.note(slot);
+  e.model.changed_emitters.note(slot);
 }
 
 void apply(Editor& e, const SetRate& c) {
@@ -67,7 +67,7 @@ void apply(Editor& e, const SetRate& c) {
 }
 
 void apply(Editor& e, const MoveEmitter& c) {
-  model::Emitter& emitter = e.model.emitters[e.require(c.emitter)];
+  ingredient::Emitter& emitter = e.model.emitters[e.require(c.emitter)];
   require_finite("position", c.position);
   emitter.orientation = require_quaternion("orientation", c.orientation);
   emitter.position = c.position;
@@ -83,7 +83,7 @@ void apply(Editor& e, const Destroy<EmitterId>& c) {
     model.scene.bodies.note(model.particles[a.particle].body);
   });
   model.emitters.destroy(slot);
-  model.scene.emitters.note(slot);
+  model.changed_emitters.note(slot);
   e.structure_changed();
 }
 

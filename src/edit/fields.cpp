@@ -38,10 +38,10 @@ void apply(Editor& e, const Destroy<GroupId>& c) {
     throw std::invalid_argument(text("the group ", model.groups[slot].name.data(), " cannot be destroyed: ", what, " ",
                                      user, " acts on it; destroy that first"));
   };
-  model.fields.for_each([&](std::uint32_t f, const model::Field& field) {
+  model.fields.for_each([&](std::uint32_t f, const ingredient::Field& field) {
     if (field.group == slot) refuse("field", f);
   });
-  model.pairs.for_each([&](std::uint32_t p, const model::Pairs& pairs) {
+  model.pairs.for_each([&](std::uint32_t p, const ingredient::PairForce& pairs) {
     if (pairs.group == slot) refuse("pairwise force", p);
   });
   model.particles.for_each(
@@ -54,9 +54,9 @@ void apply(Editor& e, const Destroy<GroupId>& c) {
 
 namespace {
 
-laws::Range range_of(const model::Field& field, std::uint32_t index) {
-  return field.kind == model::FieldKind::listed ? laws::field_law_parameters(field.number)[index].range
-                                                : laws::Range::any;
+laws::Range range_of(const ingredient::Field& field, std::uint32_t index) {
+  return field.kind == ingredient::FieldKind::listed ? laws::field_law_parameters(field.number)[index].range
+                                                     : laws::Range::any;
 }
 
 std::string list_of_fields() {
@@ -66,8 +66,8 @@ std::string list_of_fields() {
   return list;
 }
 
-model::Field make_field(const CreateField& c) {
-  model::Field field;
+ingredient::Field make_field(const CreateField& c) {
+  ingredient::Field field;
   put_text(field.name, c.name, "the name of a field");
   if (c.function == 0 && c.text.find('=') == std::string::npos) {
     field.number = laws::find_field_law(c.text);
@@ -83,7 +83,7 @@ model::Field make_field(const CreateField& c) {
       field.parameters[require_parameter(field.name.data(), field.names, field.parameter_count, p.name)] = p.value;
   } else {
     put_parameters(field.names, field.parameters, field.parameter_count, c.parameters, laws::FieldLaw::variables);
-    field.kind = c.function == 0 ? model::FieldKind::expression : model::FieldKind::function;
+    field.kind = c.function == 0 ? ingredient::FieldKind::expression : ingredient::FieldKind::function;
     field.function = c.function;
     put_text(field.text, c.text, "the text of a field");
   }
@@ -97,13 +97,13 @@ model::Field make_field(const CreateField& c) {
 
 FieldId apply(Editor& e, const CreateField& c) {
   model::Model& model = e.model;
-  model::Field field = make_field(c);
+  ingredient::Field field = make_field(c);
   field.group = c.group ? e.require(c.group) : model::none;
   return model.fields.id(model.make_field(field));
 }
 
 void apply(Editor& e, const SetFieldParameter& c) {
-  model::Field& field = e.model.fields[e.require(c.field)];
+  ingredient::Field& field = e.model.fields[e.require(c.field)];
   if (c.index >= field.parameter_count) throw std::invalid_argument("set_parameter: no such parameter");
   require_in_range(field.names[c.index].data(), range_of(field, c.index), c.value);
   field.parameters[c.index] = c.value;
@@ -123,11 +123,11 @@ void apply(Editor& e, const Destroy<FieldId>& c) {
 PairsId apply(Editor& e, const CreatePairs& c) {
   model::Model& model = e.model;
   const std::uint32_t slot = e.require(c.law);
-  const model::Law& law = model.laws[slot];
+  const ingredient::Law& law = model.laws[slot];
   require_positive("cutoff", c.cutoff);
   if (!law.has_derivative())
     throw std::invalid_argument(text("pairwise forces take a predefined law or an expression, not the law ", slot));
-  model::Pairs pairs;
+  ingredient::PairForce pairs;
   pairs.law = slot, pairs.cutoff = c.cutoff, pairs.group = c.group ? e.require(c.group) : model::none;
   for (std::uint32_t i = 0; i < law.parameter_count; ++i) {
     if (std::isnan(c.parameters[i]))
@@ -141,7 +141,7 @@ PairsId apply(Editor& e, const CreatePairs& c) {
 
 void apply(Editor& e, const SetPairsParameter& c) {
   model::Model& model = e.model;
-  model::Pairs& pairs = model.pairs[e.require(c.pairs)];
+  ingredient::PairForce& pairs = model.pairs[e.require(c.pairs)];
   set_parameter(model.laws[pairs.law], pairs.parameters, c.index, c.value);
 }
 

@@ -16,7 +16,7 @@ GripId apply(Editor& e, const CreateGrip& c) {
   require_positive("max_acceleration", c.options.max_acceleration);
   if (model.bodies[body].count == 0) throw std::invalid_argument(text("body ", body, " has no particles to hold"));
   e.orientations.refresh(model);
-  model::Grip grip;
+  ingredient::Grip grip;
   grip.body = body;
   grip.client = c.options.client, grip.hold = c.options.hold;
   grip.frequency = c.options.frequency, grip.max_acceleration = c.options.max_acceleration;

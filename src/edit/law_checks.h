@@ -2,8 +2,8 @@
 #pragma once
 
 #include "edit/checks.h"
+#include "ingredient/model.h"
 #include "laws/pair_laws.h"
-#include "model/model.h"
 
 #include <iota/forces.h>
 
@@ -87,18 +87,18 @@ std::vector<LawParameter> list_parameters(const Names<count>& names, std::uint32
 }
 
 /// The same for a law, and for what has values for its parameters.
-inline std::uint32_t require_parameter(const model::Law& law, std::string_view name) {
+inline std::uint32_t require_parameter(const ingredient::Law& law, std::string_view name) {
   return require_parameter(law.name.data(), law.parameters, law.parameter_count, name);
 }
-inline std::vector<LawParameter> list_parameters(const model::Law& law, const LawValues& values) {
+inline std::vector<LawParameter> list_parameters(const ingredient::Law& law, const LawValues& values) {
   return list_parameters(law.parameters, law.parameter_count, values.data());
 }
-inline void require_parameter_value(const model::Law& law, std::uint32_t index, double value) {
-  const bool listed = law.kind == model::LawKind::listed;
+inline void require_parameter_value(const ingredient::Law& law, std::uint32_t index, double value) {
+  const bool listed = law.kind == ingredient::LawKind::listed;
   require_in_range(law.parameters[index].data(),
                    listed ? laws::pair_law_parameters(law.number)[index].range : laws::Range::any, value);
 }
-inline void set_parameter(const model::Law& law, LawValues& values, std::uint32_t index, double value) {
+inline void set_parameter(const ingredient::Law& law, LawValues& values, std::uint32_t index, double value) {
   if (index >= law.parameter_count) throw std::invalid_argument("set_parameter: no such parameter");
   require_parameter_value(law, index, value);
   values[index] = value;

@@ -9,9 +9,9 @@ namespace iota::edit {
 
 LawId apply(Editor& e, const CreateLaw& c) {
   model::Model& model = e.model;
-  if (c.kind == model::LawKind::listed || c.kind == model::LawKind::scripted)
+  if (c.kind == ingredient::LawKind::listed || c.kind == ingredient::LawKind::scripted)
     throw std::invalid_argument("only laws that are expressions or code can be created");
-  model::Law law;
+  ingredient::Law law;
   law.kind = c.kind;
   put_text(law.name, c.name, "the name of a law");
   put_parameters(law.parameters, law.standard, law.parameter_count, c.parameters, laws::PairLaw::variables);
@@ -27,8 +27,8 @@ LawId apply(Editor& e, const CreateLaw& c) {
 void apply(Editor& e, const Destroy<LawId>& c) {
   model::Model& model = e.model;
   const std::uint32_t slot = e.require(c.id);
-  const model::Law& law = model.laws[slot];
-  if (slot <= model::scripted_law) throw std::invalid_argument("a predefined law cannot be destroyed");
+  const ingredient::Law& law = model.laws[slot];
+  if (slot <= ingredient::scripted_law) throw std::invalid_argument("a predefined law cannot be destroyed");
   if (law.uses > 0)
     throw std::invalid_argument(text("the law ", law.name.data(), " cannot be destroyed: ", law.uses,
                                      law.uses == 1 ? " bond has it" : " bonds have it", "; destroy those first"));

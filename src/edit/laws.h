@@ -6,14 +6,14 @@
 namespace iota {
 
 template <>
-struct LastEnumerator<model::LawKind> : std::integral_constant<model::LawKind, model::LawKind::batch> {};
+struct LastEnumerator<ingredient::LawKind> : std::integral_constant<ingredient::LawKind, ingredient::LawKind::batch> {};
 
 }  // namespace iota
 
 namespace iota::edit {
 
 struct CreateLaw {
-  model::LawKind kind;  ///< expression, radial or batch
+  ingredient::LawKind kind;  ///< expression, radial or batch
   std::string name, text;
   std::vector<LawParameter> parameters;
   std::uint64_t function;  ///< key of the code, where it is code

@@ -114,8 +114,8 @@ void apply(Editor& e, const SetParticleActive& c) {
   if (p.inactive != static_cast<std::uint8_t>(c.active)) return;
   p.inactive = !c.active;
   p.mass *= c.active ? 1 / model::inactive_share : model::inactive_share;
-  model.mute_bonds_of(slot);
-  model.for_each_bond_of(slot, [&](std::uint32_t b) {
+  model.acting_changed(slot);
+  model.bonds.for_each_of(slot, [&](std::uint32_t b) {
     for (const std::uint32_t end : {model.bonds[b].p, model.bonds[b].q}) model.touch_particle(end);
   });
   model.touch_particle(slot);

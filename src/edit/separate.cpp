@@ -38,7 +38,7 @@ CosmeticBondId apply(Editor& e, const CreateCosmeticBond& c) {
     throw std::invalid_argument(text("a cosmetic bond joins particles of one body; particle ", p, " is of body ",
                                      model.particles[p].body, ", particle ", q, " of body ", model.particles[q].body));
   e.structure_changed();
-  return model.cosmetic_bonds.id(model.add_cosmetic_bond({{p, q}}));
+  return model.cosmetic_bonds.id(ingredient::CosmeticBonds::add(model, {{p, q}}));
 }
 
 RestructureReport apply(Editor& e, const Destroy<CosmeticBondId>& c) {
@@ -47,7 +47,7 @@ RestructureReport apply(Editor& e, const Destroy<CosmeticBondId>& c) {
   const auto [p, q] = std::pair(model.cosmetic_bonds[bond].p, model.cosmetic_bonds[bond].q);
   const Vec3 middle = 0.5 * (model.position(p) + model.position(q));
   Restructuring change(e, {{model.particles[p].body}}, Restructuring::Kind::moving);
-  RestructureReport report = change.finish(break_cosmetic_bond(model, bond, change.report));
+  RestructureReport report = change.finish(ingredient::CosmeticBonds::break_(model, bond, change.report));
   if (!report.created_bodies.empty()) model.scene.note(ViewEvent::Kind::break_, middle);
   return report;
 }

@@ -106,8 +106,7 @@ RestructureReport Restructuring::finish(const model::Edit& owed) {
     return bodies;
   };
   if (report.changed) {
-    if (model.closings.size() > 0) end_settled_closings(model, report.notes);
-    if (model.constraints.size() > 0) end_settled_constraints(model, with_created(bodies_), report.notes);
+    ingredient::settle(model, with_created(bodies_), report.notes);
     followers_.follow(model);
     editor_.structure_changed();
   }

@@ -9,9 +9,9 @@ namespace iota::held {
 namespace {
 
 /// Laws whose force is finite wherever their bonds are: nothing has to watch them.
-bool is_finite_everywhere(const model::Law& law) {
-  return law.kind == model::LawKind::listed &&
-         (law.number == model::spring_law || law.number == model::drag_law ||
+bool is_finite_everywhere(const ingredient::Law& law) {
+  return law.kind == ingredient::LawKind::listed &&
+         (law.number == ingredient::spring_law || law.number == ingredient::drag_law ||
           law.number == laws::find_pair_law("dashpot") || law.number == laws::find_pair_law("tether") ||
           law.number == laws::find_pair_law("soft_repulsion"));
 }
@@ -35,10 +35,10 @@ void BondBatches::update(const model::Model& model) {
     batches[place].bonds.push_back(slot);
     batches[place].ids.push_back(model.bonds.id(slot));
   };
-  model.bonds.for_each([&](std::uint32_t slot, const model::Bond& bond) {
+  model.bonds.for_each([&](std::uint32_t slot, const ingredient::Bond& bond) {
     if (!bond.acts()) return;
     if (std::isfinite(bond.break_force)) breakable.push_back(slot);
-    if (bond.law == model::scripted_law) return;
+    if (bond.law == ingredient::scripted_law) return;
     if (!bond.implicit)
       put(held, place_held[bond.law], slot, bond.law);
     else if (!is_finite_everywhere(model.laws[bond.law]))
@@ -56,7 +56,7 @@ void BondBatch::load(const model::Model& model, double ahead) {
   const std::uint32_t count = model.laws[law].parameter_count;
   for (std::uint32_t k = 0; k < count; ++k) parameters[k].resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const model::Bond& bond = model.bonds[bonds[i]];
+    const ingredient::Bond& bond = model.bonds[bonds[i]];
     const model::Particle &p = model.particles[bond.p], &q = model.particles[bond.q];
     const model::Ring &from = model.rings[p.ring], &to = model.rings[q.ring];
     rate[i] = to.velocity - from.velocity;
@@ -85,7 +85,7 @@ void BondBatch::load_rows(const model::Model& model, double ahead) {
   for (auto* const rows : {&position_p, &position_q, &velocity_p, &velocity_q, &force_rows}) rows->resize(3 * n);
   parameter_rows.resize(n * count);
   for (std::size_t i = 0; i < n; ++i) {
-    const model::Bond& bond = model.bonds[bonds[i]];
+    const ingredient::Bond& bond = model.bonds[bonds[i]];
     const model::Ring &p = model.rings[model.particles[bond.p].ring], &q = model.rings[model.particles[bond.q].ring];
     put(position_p.data(), i, p.position + ahead * p.velocity), put(velocity_p.data(), i, p.velocity);
     put(position_q.data(), i, q.position + ahead * q.velocity), put(velocity_q.data(), i, q.velocity);

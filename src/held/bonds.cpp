@@ -12,16 +12,16 @@
 namespace iota::held {
 
 void HeldForces::switch_off(std::uint32_t slot, const std::string& why, StepReport& report) {
-  const model::Bond& bond = model_.bonds[slot];
-  model_.set_bond_active(slot, false);
+  const ingredient::Bond& bond = model_.bonds[slot];
+  ingredient::Bonds::set_active(model_, slot, false);
   report.switched_off.push_back(model_.bonds.id(slot));
-  const std::string law = bond.law == model::scripted_law ? "" : model_.laws[bond.law].name.data();
+  const std::string law = bond.law == ingredient::scripted_law ? "" : model_.laws[bond.law].name.data();
   report.warnings.push_back(
       text("bond ", slot, law.empty() ? "" : " (" + law + ")", why, "; the bond is switched off"));
 }
 
 void HeldForces::add_force(std::uint32_t slot, const Vec3& on_p) {
-  model::Bond& bond = model_.bonds[slot];
+  ingredient::Bond& bond = model_.bonds[slot];
   bond.held_force = on_p;
   model_.pushes.make(model_.particles[bond.p].ring).force += on_p;
   model_.pushes.make(model_.particles[bond.q].ring).force -= on_p;
@@ -30,8 +30,8 @@ void HeldForces::add_force(std::uint32_t slot, const Vec3& on_p) {
 void HeldForces::take_laws(StepReport& report) {
   batches_.update(model_);
   for (BondBatch& batch : batches_.held) {
-    const model::Law& law = model_.laws[batch.law];
-    if (law.kind == model::LawKind::batch)
+    const ingredient::Law& law = model_.laws[batch.law];
+    if (law.kind == ingredient::LawKind::batch)
       take_batch_function(batch, report);
     else
       take_law(batch, report);
@@ -40,9 +40,9 @@ void HeldForces::take_laws(StepReport& report) {
 }
 
 void HeldForces::evaluate(BondBatch& batch, double time) const {
-  const model::Law& law = model_.laws[batch.law];
+  const ingredient::Law& law = model_.laws[batch.law];
   const std::size_t n = batch.bonds.size();
-  if (law.kind == model::LawKind::radial) {
+  if (law.kind == ingredient::LawKind::radial) {
     const auto function = functions.of_laws.find(law.function);
     for (std::size_t i = 0; i < n; ++i) {
       std::array<double, max_law_parameters> parameters{};
@@ -89,7 +89,7 @@ void HeldForces::watch_implicit_law(BondBatch& batch, StepReport& report) {
       switch_off(batch.bonds[i], not_finite(batch, i), report);
     } else if (law.depends_on_time()) {
       // The law changes under the bond: work from outside.
-      const model::Bond& bond = model_.bonds[batch.bonds[i]];
+      const ingredient::Bond& bond = model_.bonds[batch.bonds[i]];
       laws::PairState state = ingredient::Bonds::state(model_, bond);
       const double before = law.elastic(state, bond.parameters.data()).energy;
       state.t += report.dt;
@@ -98,11 +98,11 @@ void HeldForces::watch_implicit_law(BondBatch& batch, StepReport& report) {
   }
 }
 
-bool HeldForces::has_function(const model::Law& law) const {
+bool HeldForces::has_function(const ingredient::Law& law) const {
   if (law.has_derivative()) return true;
   const auto found = functions.of_laws.find(law.function);
   if (found == functions.of_laws.end()) return false;
-  return law.kind == model::LawKind::radial ? found->second.radial != nullptr : found->second.batch != nullptr;
+  return law.kind == ingredient::LawKind::radial ? found->second.radial != nullptr : found->second.batch != nullptr;
 }
 
 bool HeldForces::require_function(const BondBatch& batch, StepReport& report) {
@@ -120,11 +120,11 @@ void HeldForces::call(BondBatch& batch) const {
 
 void HeldForces::take_batch_function(BondBatch& batch, StepReport& report) {
   if (!require_function(batch, report)) return;
-  const model::Law& law = model_.laws[batch.law];
+  const ingredient::Law& law = model_.laws[batch.law];
   batch.load_rows(model_, look_ahead(report.dt));
   const auto fail = [&](const std::string& why) {
     for (const std::uint32_t slot : batch.bonds) {
-      model_.set_bond_active(slot, false);
+      ingredient::Bonds::set_active(model_, slot, false);
       report.switched_off.push_back(model_.bonds.id(slot));
     }
     report.warnings.push_back(text("law ", law.name.data(), " raised", why, "; its ", batch.bonds.size(),
@@ -152,8 +152,8 @@ void HeldForces::take_scripts(StepReport& report) {
   const double ahead = look_ahead(report.dt);
   for (std::uint32_t slot = 0; slot < model_.bonds.slot_count(); ++slot) {
     if (!model_.bonds.is_alive(slot)) continue;
-    const model::Bond bond = model_.bonds[slot];
-    if (bond.law != model::scripted_law || !bond.acts()) continue;
+    const ingredient::Bond bond = model_.bonds[slot];
+    if (bond.law != ingredient::scripted_law || !bond.acts()) continue;
     const auto script = functions.of_bonds.find(bond.script);
     if (script == functions.of_bonds.end()) {
       switch_off(slot, " has no function in this system", report);
@@ -180,7 +180,7 @@ void HeldForces::take_scripts(StepReport& report) {
 // --- what bonds carry ---------------------------------------------------------------------------------------------------
 
 Vec3 HeldForces::force(std::uint32_t slot) const {
-  const model::Bond& bond = model_.bonds[slot];
+  const ingredient::Bond& bond = model_.bonds[slot];
   if (!bond.acts()) return {};
   return bond.implicit ? -ingredient::Bonds::force(model_, slot) : bond.held_force;
 }
@@ -203,8 +203,8 @@ void rehearse_implicit(Force force, const Vec3& e, double h) {
 std::size_t HeldForces::rehearse_law(std::uint32_t law, double h) {
   batches_.update(model_);
   std::size_t count = 0;
-  if (law == model::scripted_law) {
-    model_.bonds.for_each([&](std::uint32_t slot, const model::Bond& bond) {
+  if (law == ingredient::scripted_law) {
+    model_.bonds.for_each([&](std::uint32_t slot, const ingredient::Bond& bond) {
       if (bond.law != law || !bond.acts() || !functions.of_bonds.contains(bond.script)) return;
       const model::Ring &p = model_.rings[model_.particles[bond.p].ring],
                         &q = model_.rings[model_.particles[bond.q].ring];
@@ -217,7 +217,7 @@ std::size_t HeldForces::rehearse_law(std::uint32_t law, double h) {
   for (BondBatch& batch : batches_.held) {
     if (batch.law != law || !has_function(model_.laws[law])) continue;
     count += batch.bonds.size();
-    if (model_.laws[law].kind == model::LawKind::batch) {
+    if (model_.laws[law].kind == ingredient::LawKind::batch) {
       batch.load_rows(model_, 0);
       call(batch);
     } else {
@@ -225,13 +225,13 @@ std::size_t HeldForces::rehearse_law(std::uint32_t law, double h) {
       evaluate(batch, model_.time);
     }
   }
-  model_.bonds.for_each([&](std::uint32_t, const model::Bond& bond) {
+  model_.bonds.for_each([&](std::uint32_t, const ingredient::Bond& bond) {
     if (bond.law != law || !bond.ties()) return;
     const Vec3 e = model_.position(bond.q) - model_.position(bond.p);
     const auto& p = bond.parameters;
-    if (law == model::spring_law)
+    if (law == ingredient::spring_law)
       rehearse_implicit(solver::SpringForce{{}, p[0], p[1], p[2]}, e, h);
-    else if (law == model::drag_law)
+    else if (law == ingredient::drag_law)
       rehearse_implicit(solver::DragForce{{}, p[0]}, e, h);
     else
       rehearse_implicit(solver::RadialForce{{}, &model_.compiled(law), p, model_.time}, e, h);

@@ -30,10 +30,10 @@ ParticleSet& HeldForces::loaded_set(std::uint32_t group, double ahead) {
 }
 
 void HeldForces::take_field(std::uint32_t slot, ParticleSet& set, StepReport& report) {
-  const model::Field& field = model_.fields[slot];
+  const ingredient::Field& field = model_.fields[slot];
   const std::size_t n = set.rings.size();
   set.force_rows.resize(3 * n);
-  if (field.kind == model::FieldKind::function) {
+  if (field.kind == ingredient::FieldKind::function) {
     if (!call_field(slot, set, report)) return;
   } else {
     const laws::FieldLaw& law = model_.compiled_field(slot);
@@ -59,7 +59,7 @@ void HeldForces::take_field(std::uint32_t slot, ParticleSet& set, StepReport& re
 }
 
 bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& report) {
-  const model::Field field = model_.fields[slot];
+  const ingredient::Field field = model_.fields[slot];
   const auto fail = [&](const std::string& why) {
     model_.fields[slot].active = 0;
     report.warnings.push_back(text("field ", slot, field.name[0] ? " (" : "", field.name.data(),
@@ -87,7 +87,7 @@ bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& re
 }
 
 void HeldForces::take_pairs(std::uint32_t slot, ParticleSet& set, StepReport& report) {
-  const model::Pairs& pairs = model_.pairs[slot];
+  const ingredient::PairForce& pairs = model_.pairs[slot];
   const auto bad = sets_.sum(slot).add_forces(set.arrays, set.family, model_.compiled(pairs.law),
                                               pairs.parameters.data(), pairs.cutoff, model_.time, parallel_);
   if (bad.count > 0)

@@ -49,11 +49,11 @@ double HeldForces::calc_energy() {
     if (model_.laws[batch.law].has_derivative()) sum += batch.energy(model_);
   for (const auto& set : sets_.sets)
     if (set->is_loaded) set->follow(model_);
-  model_.fields.for_each([&](std::uint32_t slot, const model::Field& f) {
-    if (f.active && f.kind != model::FieldKind::function && model_.compiled_field(slot).has_energy())
+  model_.fields.for_each([&](std::uint32_t slot, const ingredient::Field& f) {
+    if (f.active && f.kind != ingredient::FieldKind::function && model_.compiled_field(slot).has_energy())
       sum += model_.compiled_field(slot).energy(loaded_set(f.group, 0).arrays, model_.time, f.parameters.data());
   });
-  model_.pairs.for_each([&](std::uint32_t slot, const model::Pairs& p) {
+  model_.pairs.for_each([&](std::uint32_t slot, const ingredient::PairForce& p) {
     if (!p.active || !model_.compiled(p.law).has_energy()) return;
     const ParticleSet& set = loaded_set(p.group, 0);
     sum += sets_.sum(slot).energy(set.arrays, set.family, model_.compiled(p.law), p.parameters.data(), p.cutoff,
@@ -77,7 +77,7 @@ Energy HeldForces::book() {
 }
 
 double HeldForces::energy_of_pairs(std::uint32_t slot) const {
-  const model::Pairs& pairs = model_.pairs[slot];
+  const ingredient::PairForce& pairs = model_.pairs[slot];
   ParticleSet set;  // of its own: this may be asked for while others are in use
   set.group = pairs.group;
   set.find(model_);

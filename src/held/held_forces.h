@@ -57,7 +57,7 @@ class HeldForces {
   void take_batch_function(BondBatch&, StepReport&);
   void take_scripts(StepReport&);
   void watch_implicit_law(BondBatch&, StepReport&);
-  bool has_function(const model::Law&) const;
+  bool has_function(const ingredient::Law&) const;
   bool require_function(const BondBatch&, StepReport&);  ///< switches the bonds of a law off whose code is missing
   void evaluate(BondBatch&, double time) const;
   void call(BondBatch&) const;  ///< the function of a law for all its bonds; it may throw

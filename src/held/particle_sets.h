@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/parallel.h"
-#include "model/model.h"
+#include "ingredient/model.h"
 #include "neighbors/pair_sum.h"
 
 #include <memory>

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include "ingredient/model.h"
+#include "laws/pair_laws.h"
 
 namespace iota::ingredient {
 
@@ -12,22 +15,22 @@ void Bonds::build(const IslandMap& map, Problem& problem) {
   std::vector<std::uint32_t> bonds;
   for (const std::uint32_t body : map.bodies)
     model.for_each_particle_of(body, [&](std::uint32_t p) {
-      model.for_each_bond_of(p, [&](std::uint32_t b) {
+      model.bonds.for_each_of(p, [&](std::uint32_t b) {
         if (model.bonds[b].ties()) bonds.push_back(b);
       });
     });
   sort_unique(bonds);
   for (const std::uint32_t slot : bonds) {
-    const model::Bond& b = model.bonds[slot];
+    const Bond& b = model.bonds[slot];
     solver::ForceArm arm;
     arm.nodes = {map.node_of(b.p), map.node_of(b.q)};
     arm.weights = {-1, 1};
     arm.count = 2;
     if (arm.nodes[0] == none || arm.nodes[1] == none || arm.nodes[0] == arm.nodes[1]) continue;
     const solver::ItemKey key{owner, {}, slot};
-    if (b.law == model::spring_law) {
+    if (b.law == spring_law) {
       problem.add(solver::SpringForce{arm}, key);
-    } else if (b.law == model::drag_law) {
+    } else if (b.law == drag_law) {
       problem.add(solver::DragForce{arm}, key);
     } else {
       solver::RadialForce force{arm, &model.compiled(b.law)};
@@ -54,20 +57,21 @@ void Bonds::load(const Model& model, const IslandNodes&, double h, Problem& prob
 }
 
 void Bonds::validate(const Model& model, model::Audit& audit) {
-  model.bonds.for_each([&](std::uint32_t slot, const model::Bond& b) {
+  model.bonds.for_each([&](std::uint32_t slot, const Bond& b) {
     audit.require_ends("bond", slot, b);
     audit.use_particle(b.p), audit.use_particle(b.q);
-    audit.use_law("bond", slot, b.law);
+    audit.require(model.laws.is_alive(b.law), "bond ", slot, " has no living law");
+    audit.use("law", b.law);
     if (model.laws.is_alive(b.law))
       audit.require(!b.implicit || model.laws[b.law].has_derivative(), "bond ", slot,
                     " is implicit without a derivative");
     for (const double v : b.parameters)
       audit.require(std::isfinite(v), "bond ", slot, " has a parameter that is not finite");
   });
-  audit.require_listed("bond", model.bonds, &model::References::first_bond);
+  audit.require_listed("bond", model.bonds);
 }
 
-laws::PairState Bonds::state(const Model& model, const model::Bond& b, double ahead) {
+laws::PairState Bonds::state(const Model& model, const Bond& b, double ahead) {
   const model::Ring &p = model.rings[model.particles[b.p].ring], &q = model.rings[model.particles[b.q].ring];
   const Vec3 u = q.velocity - p.velocity, d = q.position - p.position + ahead * u;
   const double r = norm(d);
@@ -75,7 +79,7 @@ laws::PairState Bonds::state(const Model& model, const model::Bond& b, double ah
 }
 
 double Bonds::energy(const Model& model, std::uint32_t slot) {
-  const model::Bond& b = model.bonds[slot];
+  const Bond& b = model.bonds[slot];
   if (!b.ties()) return 0;
   // An infinite one, of ends that have met for instance, counts for nothing; the next step switches the bond off.
   const double energy = model.compiled(b.law).elastic(state(model, b), b.parameters.data()).energy;
@@ -83,7 +87,7 @@ double Bonds::energy(const Model& model, std::uint32_t slot) {
 }
 
 Vec3 Bonds::force(const Model& model, std::uint32_t slot) {
-  const model::Bond& b = model.bonds[slot];
+  const Bond& b = model.bonds[slot];
   const laws::PairLaw& law = model.compiled(b.law);
   const laws::PairState ends = state(model, b);
   const Vec3 d = model.position(b.q) - model.position(b.p), u = model.velocity(b.q) - model.velocity(b.p);
@@ -98,10 +102,10 @@ Vec3 Bonds::force(const Model& model, std::uint32_t slot) {
 void Bonds::add_energy(const Scope& scope, Energies& sum) {
   const Model& model = scope.model;
   if (scope.is_whole())
-    model.bonds.for_each([&](std::uint32_t slot, const model::Bond&) { sum.potential += energy(model, slot); });
+    model.bonds.for_each([&](std::uint32_t slot, const Bond&) { sum.potential += energy(model, slot); });
   else if (model.bonds.size() > 0)
     scope.for_each_particle([&](std::uint32_t p, const model::Particle&) {
-      model.for_each_bond_of(p, [&](std::uint32_t b) {
+      model.bonds.for_each_of(p, [&](std::uint32_t b) {
         if (model.bonds[b].p == p) sum.potential += energy(model, b);
       });
     });
@@ -110,8 +114,8 @@ void Bonds::add_energy(const Scope& scope, Energies& sum) {
 void Bonds::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   const Model& model = step.model;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
-    model.for_each_bond_of(p, [&](std::uint32_t slot) {
-      const model::Bond& bond = model.bonds[slot];
+    model.bonds.for_each_of(p, [&](std::uint32_t slot) {
+      const Bond& bond = model.bonds[slot];
       if (!bond.ties()) return;  // forces that are held are applied as pushes
       const Vec3 on_q = force(model, slot);
       reader.take({.particle = p, .force = bond.p == p ? -on_q : on_q, .part = model.particles[p].part});
@@ -121,8 +125,94 @@ void Bonds::add_loads(const LastStep& step, std::uint32_t body, LoadReader& read
 
 bool Bonds::holds(const Model& model, std::uint32_t particle) {
   bool any = false;
-  model.for_each_bond_of(particle, [&](std::uint32_t b) { any = any || model.bonds[b].ties(); });
+  model.bonds.for_each_of(particle, [&](std::uint32_t b) { any = any || model.bonds[b].ties(); });
   return any;
+}
+
+bool Bonds::uses(const Model& model, std::uint32_t particle) { return model.bonds.ends_at(particle); }
+
+std::uint32_t Bonds::add(Model& model, const Bond& bond) {
+  const std::uint32_t slot = model.bonds.create(bond);
+  ++model.laws[bond.law].uses, ++model.bonds_revision;
+  for (const std::uint32_t particle : {bond.p, bond.q}) {
+    ++model.particles[particle].uses;
+    model.touch_particle(particle);
+  }
+  model.bonds[slot].muted = !model.acts(bond.p) || !model.acts(bond.q);
+  return slot;
+}
+
+void Bonds::remove(Model& model, std::uint32_t slot) {
+  const Bond& bond = model.bonds[slot];
+  --model.laws[bond.law].uses, ++model.bonds_revision;
+  for (const std::uint32_t particle : {bond.p, bond.q}) {
+    --model.particles[particle].uses;
+    model.touch_particle(particle);
+  }
+  model.bonds.destroy(slot);
+  model.changed_bonds.note(slot);
+}
+
+void Bonds::set_active(Model& model, std::uint32_t slot, bool active) {
+  Bond& bond = model.bonds[slot];
+  if (bond.active == static_cast<std::uint8_t>(active)) return;
+  bond.active = active;
+  bond.broken = 0;
+  ++model.bonds_revision, ++model.structure_version;
+  for (const std::uint32_t end : {bond.p, bond.q}) model.touch_particle(end);
+}
+
+bool Bonds::ties_any(const Model& model) { return model.bonds.size() > 0; }
+
+void Bonds::visit_tied(const Model& model, std::uint32_t particle, Visit visit) {
+  model.bonds.for_each_of(particle, [&](std::uint32_t slot) {
+    const Bond& bond = model.bonds[slot];
+    if (bond.ties()) visit(model.particles[bond.p == particle ? bond.q : bond.p].body);
+  });
+}
+
+void Bonds::absorb(Model& model, std::uint32_t q, std::uint32_t p) {
+  ++model.bonds_revision;
+  const auto moved = [&](std::uint32_t) {
+    --model.particles[q].uses, ++model.particles[p].uses;
+    model.touch_particle(p);
+  };
+  model.bonds.redirect(q, p, moved, [&](std::uint32_t slot) { remove(model, slot); });
+}
+
+void Bonds::drop(Model& model, std::uint32_t particle) {
+  model.bonds.for_each_of(particle, [&](std::uint32_t slot) { remove(model, slot); });
+}
+
+void Bonds::acting_changed(Model& model, std::uint32_t particle) {
+  model.bonds.for_each_of(particle, [&](std::uint32_t slot) {
+    Bond& bond = model.bonds[slot];
+    bond.muted = !model.acts(bond.p) || !model.acts(bond.q);
+    ++model.bonds_revision;
+  });
+}
+
+model::ChangedSlots* Bonds::scene_log(Model& model) { return &model.changed_bonds; }
+
+// Springs are drawn. They and the joints that are drawn as ties share the numbers of ties.
+void Bonds::describe(const SceneView& view, SceneChanges& changes) {
+  const Model& model = view.model;
+  const auto list = [&](std::uint32_t p, std::vector<std::uint32_t>& slots) {
+    model.bonds.for_each_of(p, [&](std::uint32_t bond) { slots.push_back(bond); });
+  };
+  constexpr std::size_t length = 2;  // of the spring's parameters
+  static_assert(laws::Spring::parameters[length].name == std::string_view("length"));
+  for (const std::uint32_t slot : view.slots(model.bonds, model.changed_bonds, list)) {
+    const std::uint32_t tie = DrawnTie::slot_of_bond(slot);
+    const bool is_drawn = model.bonds.is_alive(slot) && model.bonds[slot].active && model.bonds[slot].law == spring_law;
+    if (!is_drawn) {
+      changes.ties.gone.push_back(tie);
+      continue;
+    }
+    const Bond& bond = model.bonds[slot];
+    changes.ties.set.push_back(
+        {tie, DrawnTie::Kind::spring, bond.parameters[length], view.anchor(bond.p), view.anchor(bond.q)});
+  }
 }
 
 }  // namespace iota::ingredient

@@ -2,24 +2,64 @@
 #pragma once
 
 #include "ingredient/ingredient.h"
+#include "ingredient/laws.h"
+
+#include <array>
+#include <cstdint>
+#include <limits>
 
 namespace iota::ingredient {
+
+/// A force between two particles, by a law.
+struct Bond : model::Ends {
+  std::uint32_t law = spring_law;
+  std::uint8_t active = 1;
+  std::uint8_t implicit = 1;
+  std::uint8_t muted = 0;   ///< one of its ends does not act
+  std::uint8_t broken = 0;  ///< by more than `break_force`
+  std::array<double, laws::max_parameters> parameters{};
+  double break_force = std::numeric_limits<double>::infinity();  ///< N
+  Vec3 held_force;           ///< on p in the last step, N; of bonds that are not implicit
+  std::uint64_t script = 0;  ///< key of its own function, which lives outside the tables
+
+  /// Whether it is solved implicitly, so that its two ends belong to one problem.
+  bool ties() const { return acts() && implicit; }
+  bool acts() const { return active && !muted; }
+};
 
 /// Forces between two particles. Those that are solved implicitly, with the positions at the end of the step, are rows of
 /// an island; the others are taken once a step and held, see `held_forces`.
 class Bonds : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.bonds.archive(ar);
-  }
+  struct Tables {
+    model::EndTable<Bond, BondId> bonds;
+    std::uint64_t bonds_revision = 0;   ///< rises when a bond is added, removed, moved or switched; not saved
+    model::ChangedSlots changed_bonds;  ///< not saved
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure& structure) {
+      bonds.archive(ar, structure.particles.slot_count());
+    }
+  };
   static void validate(const Model&, model::Audit&);
   static void add_energy(const Scope&, Energies&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
   static bool holds(const Model&, std::uint32_t particle);
+  static bool uses(const Model&, std::uint32_t particle);
+  static bool ties_any(const Model&);
+  static void visit_tied(const Model&, std::uint32_t particle, Visit);
+  static void absorb(Model&, std::uint32_t q, std::uint32_t p);
+  static void drop(Model&, std::uint32_t particle);
+  static void acting_changed(Model&, std::uint32_t particle);
+  static model::ChangedSlots* scene_log(Model&);
+  static void describe(const SceneView&, SceneChanges&);
+
+  static std::uint32_t add(Model&, const Bond&);  ///< returns the slot
+  static void remove(Model&, std::uint32_t bond);
+  static void set_active(Model&, std::uint32_t bond, bool active);  ///< true repairs a broken one
 
   /// The two ends of a bond for its law: distance and its rate (positions `ahead` seconds on), time, masses.
-  static laws::PairState state(const Model&, const model::Bond& bond, double ahead = 0);
+  static laws::PairState state(const Model&, const Bond& bond, double ahead = 0);
   static double energy(const Model&, std::uint32_t bond);  ///< of one that is solved implicitly, at `Model::time`, J
   /// On the second particle, as things stand, N.
   static Vec3 force(const Model&, std::uint32_t bond);

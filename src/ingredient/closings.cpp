@@ -2,8 +2,11 @@
 #include "ingredient/closings.h"
 
 #include "base/text.h"
+#include "ingredient/model.h"
+#include "model/restructure.h"
 
 #include <algorithm>
+#include <array>
 
 namespace iota::ingredient {
 
@@ -25,10 +28,10 @@ void Closings::build(const IslandMap& map, Problem& problem) {
   std::vector<std::uint32_t> slots;
   for (const std::uint32_t body : map.bodies)
     model.for_each_particle_of(
-        body, [&](std::uint32_t p) { model.for_each_closing_of(p, [&](std::uint32_t c) { slots.push_back(c); }); });
+        body, [&](std::uint32_t p) { model.closings.for_each_of(p, [&](std::uint32_t c) { slots.push_back(c); }); });
   sort_unique(slots);
   for (const std::uint32_t slot : slots) {
-    const model::Closing& c = model.closings[slot];
+    const Closing& c = model.closings[slot];
     const std::uint32_t a = map.node_of(c.p), b = map.node_of(c.q);
     if (a == none || b == none) continue;  // of an inactive body
     problem.add(solver::DistanceConstraint{{a, b}, c.distance, c.distance}, {owner, {}, slot});
@@ -39,7 +42,7 @@ void Closings::load(const Model& model, const IslandNodes&, double h, Problem& p
   if (model.closings.size() == 0) return;
   auto& distances = problem.pool_of<solver::DistanceConstraint>();
   for_each_item_of<solver::DistanceConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
-    const model::Closing& c = model.closings[key.slot];
+    const Closing& c = model.closings[key.slot];
     distances.multipliers[i] = c.multiplier;
     distances.items[i].length = c.distance * closing_factor(c.elapsed + h, c.duration);
   });
@@ -54,23 +57,94 @@ void Closings::store(Model& model, const IslandNodes&, double, const Problem& pr
 }
 
 std::string Closings::name_of_row(const Model& model, solver::ItemKey key) const {
-  const model::Closing& c = model.closings[key.slot];
+  const Closing& c = model.closings[key.slot];
   return text("the closing of particles ", c.p, " and ", c.q);
 }
 
 void Closings::validate(const Model& model, model::Audit& audit) {
-  model.closings.for_each([&](std::uint32_t, const model::Closing& c) {
+  model.closings.for_each([&](std::uint32_t, const Closing& c) {
     const model::Particle &p = model.particles[c.p], &q = model.particles[c.q];
     audit.join(p.body, q.body);
     audit.use_particle(c.p), audit.use_particle(c.q);
     audit.require(p.ring != q.ring && p.body != q.body, "a closing of particles ", c.p, " and ", c.q,
                   " has nothing to close");
   });
-  audit.require_listed("closing", model.closings, &model::References::first_closing);
+  audit.require_listed("closing", model.closings);
 }
 
-bool Closings::holds(const Model& model, std::uint32_t particle) {
-  return model.references[particle].first_closing != none;
+bool Closings::holds(const Model& model, std::uint32_t particle) { return model.closings.ends_at(particle); }
+
+std::uint32_t Closings::add(Model& model, const Closing& closing) {
+  for (const std::uint32_t particle : {closing.p, closing.q}) {
+    ++model.particles[particle].uses;
+    model.touch_locally(model.particles[particle].body);
+  }
+  return model.closings.create(closing);
+}
+
+void Closings::remove(Model& model, std::uint32_t closing) {
+  for (const std::uint32_t particle : {model.closings[closing].p, model.closings[closing].q}) {
+    --model.particles[particle].uses;
+    model.touch_locally(model.particles[particle].body);
+  }
+  model.closings.destroy(closing);
+}
+
+std::uint32_t Closings::between(const Model& model, std::uint32_t p, std::uint32_t q) {
+  std::uint32_t found = none;
+  model.closings.for_each_of(p, [&](std::uint32_t slot) {
+    if (model.closings[slot].p == q || model.closings[slot].q == q) found = slot;
+  });
+  return found;
+}
+
+// The articulate is split at once: no cut may find one of another cut waiting.
+void Closings::end(Model& model, std::uint32_t closing) {
+  const std::array bodies{model.particles[model.closings[closing].p].body,
+                          model.particles[model.closings[closing].q].body};
+  remove(model, closing);
+  model::split_where_apart(model, bodies);
+}
+
+// On their way to each other they are one problem already.
+void Closings::visit_joined(const Model& model, std::uint32_t particle, Visit visit) {
+  model.closings.for_each_of(particle, [&](std::uint32_t slot) {
+    const Closing& closing = model.closings[slot];
+    visit(model.particles[closing.p == particle ? closing.q : closing.p].body);
+  });
+}
+
+void Closings::absorb(Model& model, std::uint32_t q, std::uint32_t p) {
+  const auto moved = [&](std::uint32_t) {
+    --model.particles[q].uses, ++model.particles[p].uses;
+    model.touch_particle(p);
+  };
+  model.closings.redirect(q, p, moved, [&](std::uint32_t slot) { remove(model, slot); });
+}
+
+void Closings::drop(Model& model, std::uint32_t particle) {
+  model.closings.for_each_of(particle, [&](std::uint32_t slot) { end(model, slot); });
+}
+
+bool Closings::call_off(Model& model, std::uint32_t p, std::uint32_t q) {
+  const std::uint32_t closing = between(model, p, q);
+  if (closing != none) end(model, closing);
+  return closing != none;
+}
+
+// Where the two particles share a ring or a body by now, nothing is left to close, or nothing could.
+void Closings::settle(Model& model, std::span<const std::uint32_t>, std::vector<std::string>& notes) {
+  if (model.closings.size() == 0) return;
+  for (std::uint32_t slot = 0; slot < model.closings.slot_count(); ++slot) {
+    if (!model.closings.is_alive(slot)) continue;
+    const Closing& closing = model.closings[slot];
+    const model::Particle &p = model.particles[closing.p], &q = model.particles[closing.q];
+    if (p.ring != q.ring && p.body != q.body) continue;
+    if (p.ring != q.ring)
+      notes.push_back(text("particles ", closing.p, " and ", closing.q,
+                           " were on their way to each other, but are of one rigid body now: called off"));
+    remove(model, slot);
+  }
 }
 
 }  // namespace iota::ingredient

@@ -5,15 +5,39 @@
 
 namespace iota::ingredient {
 
+/// Two particles on their way to each other.
+struct Closing : model::Ends {
+  double distance = 0;               ///< at the start, m
+  double duration = 0, elapsed = 0;  ///< s
+  double multiplier = 0;
+};
+
 /// Pairs of particles that come together over some time and are combined then: distance rows that get shorter.
 class Closings : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.closings.archive(ar);
-  }
+  struct Tables {
+    model::EndTable<Closing, Id<Closing>> closings;
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure& structure) {
+      closings.archive(ar, structure.particles.slot_count());
+    }
+  };
   static void validate(const Model&, model::Audit&);
   static bool holds(const Model&, std::uint32_t particle);
+  static bool uses(const Model& model, std::uint32_t particle) { return holds(model, particle); }
+  static void visit_joined(const Model&, std::uint32_t particle, Visit);
+  static void absorb(Model&, std::uint32_t q, std::uint32_t p);
+  static void drop(Model&, std::uint32_t particle);
+  static bool call_off(Model&, std::uint32_t p, std::uint32_t q);
+  static void settle(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
+
+  static std::uint32_t add(Model&, const Closing&);  ///< returns the slot; the two articulates must become one
+  static void remove(Model&, std::uint32_t closing);
+  /// Of two particles, in either order; `none` without one.
+  static std::uint32_t between(const Model&, std::uint32_t p, std::uint32_t q);
+  /// Ends one before its particles have met. Its articulate may split.
+  static void end(Model&, std::uint32_t closing);
 
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/emitters.h"
 
+#include "ingredient/model.h"
 namespace iota::ingredient {
 
 void Emitters::validate(const Model& model, model::Audit& audit) {
@@ -10,9 +11,28 @@ void Emitters::validate(const Model& model, model::Audit& audit) {
     audit.require(model.emitters.is_alive(a.emitter), "attributes ", slot, " are of no emitter");
     if (model.emitters.is_alive(a.emitter)) ++emitted[a.emitter];
   });
-  model.emitters.for_each([&](std::uint32_t slot, const model::Emitter& e) {
+  model.emitters.for_each([&](std::uint32_t slot, const Emitter& e) {
     audit.require(e.alive == emitted[slot], "emitter ", slot, " counts ", e.alive, " particles, has ", emitted[slot]);
   });
+}
+
+void Emitters::forget_particle(Model& model, std::uint32_t particle) {
+  const std::uint32_t slot = model.particles[particle].attributes;
+  if (slot == none) return;
+  if (const std::uint32_t emitter = model.attributes[slot].emitter; emitter != none) --model.emitters[emitter].alive;
+}
+
+model::ChangedSlots* Emitters::scene_log(Model& model) { return &model.changed_emitters; }
+
+void Emitters::describe(const SceneView& view, SceneChanges& changes) {
+  const Model& model = view.model;
+  const auto none_of = [](std::uint32_t, std::vector<std::uint32_t>&) {};
+  for (const std::uint32_t slot : view.slots(model.emitters, model.changed_emitters, none_of)) {
+    if (model.emitters.is_alive(slot))
+      changes.particle_sets.set.push_back({slot, model.emitters[slot].active != 0, model.emitters[slot].max_count});
+    else
+      changes.particle_sets.gone.push_back(slot);
+  }
 }
 
 }  // namespace iota::ingredient

@@ -2,16 +2,45 @@
 #pragma once
 
 #include "ingredient/ingredient.h"
+#include "shape/shape.h"
+
+#include <iota/emitters.h>
+
+#include <array>
 
 namespace iota::ingredient {
+
+/// EmitterOptions as plain data, and how far it has come.
+struct Emitter {
+  shape::Data source;
+  std::uint32_t active = 1, padding = 0;
+  double rate = 0;
+  Vec3 position, velocity;
+  Quaternion orientation;
+  double velocity_spread = 0, lifetime = 1, lifetime_spread = 0, mass = 0, damping = 0;
+  std::uint32_t max_count = 0, key_count = 0;
+  std::array<AttributeKey, 8> keys{};
+  std::uint64_t seed = 0, draws = 0;  ///< numbers drawn so far: the whole state of its dice
+  double due = 0;                     ///< births that are owed, a fraction
+  std::uint32_t alive = 0, padding2 = 0;
+  std::uint64_t born = 0;
+};
 
 /// Sources of particles; what they emit is born and dies between steps, see `particle_life`.
 class Emitters : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.emitters.archive(ar);
-  }
+  struct Tables {
+    SlotTable<Emitter, EmitterId> emitters;
+    model::ChangedSlots changed_emitters;  ///< not saved
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure&) {
+      emitters.archive(ar);
+    }
+  };
+  static void forget_particle(Model&, std::uint32_t particle);
+  static model::ChangedSlots* scene_log(Model&);
+  static void describe(const SceneView&, SceneChanges&);
   static void validate(const Model&, model::Audit&);
 };
 

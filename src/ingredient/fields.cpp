@@ -1,11 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/fields.h"
 
+#include "ingredient/model.h"
 namespace iota::ingredient {
 
 void Fields::validate(const Model& model, model::Audit& audit) {
+  model.fields.for_each([&](std::uint32_t slot, const Field& f) { audit.require_group("field", slot, f.group); });
+}
+
+std::uint32_t Fields::Tables::make_field(const Field& field) {
+  const std::uint32_t slot = fields.create(field).slot;
+  try {
+    compile(slot);
+  } catch (...) {
+    fields.destroy(slot);
+    throw;
+  }
+  return slot;
+}
+
+void Fields::Tables::compile(std::uint32_t slot) {
+  if (compiled_.size() <= slot) compiled_.resize(slot + 1);
+  const Field& field = fields[slot];
+  compiled_[slot].reset();
+  if (field.kind == FieldKind::listed) {
+    compiled_[slot] = std::make_shared<const laws::FieldLaw>(field.number);
+  } else if (field.kind == FieldKind::expression) {
+    std::vector<std::string> names;
+    for (std::uint32_t i = 0; i < field.parameter_count; ++i) names.emplace_back(field.names[i].data());
+    compiled_[slot] = std::make_shared<const laws::FieldLaw>(field.text.data(), std::move(names));
+  }
+}
+
+void Fields::Tables::compile() {
+  compiled_.clear();
+  fields.for_each([&](std::uint32_t slot, const Field&) { compile(slot); });
+}
+
+bool Fields::replaces_gravity(const Model& model) {
+  bool replaced = false;
   model.fields.for_each(
-      [&](std::uint32_t slot, const model::Field& f) { audit.require_group("field", slot, f.group); });
+      [&](std::uint32_t, const Field& f) { replaced = replaced || (f.active && f.replaces_gravity); });
+  return replaced;
 }
 
 }  // namespace iota::ingredient

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "ingredient/ingredient_list.h"
+#include "ingredient/model.h"
 
 #include <span>
 #include <tuple>
@@ -33,6 +33,16 @@ class Followers {
   };
   Memories<Ingredients>::Type memories_;
 };
+
+/// Ends what an edit of some bodies (all alive) has left without sense, and says so in the notes.
+inline void settle(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
+  for_each_type<Ingredients>([&]<class I>() { I::settle(model, bodies, notes); });
+}
+
+/// Adds to tables what an island with the body will write to from many threads.
+inline void prepare(Model& model, std::uint32_t body) {
+  for_each_type<Ingredients>([&]<class I>() { I::prepare(model, body); });
+}
 
 /// Bodies may have got other bases since ingredients chose the points that they hang on.
 inline void follow_bases(Model& model) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/grips.h"
 
+#include "ingredient/model.h"
 #include "math/mat3.h"
 
 #include <algorithm>
@@ -11,10 +12,10 @@ namespace iota::ingredient {
 
 namespace {
 
-/// Of the bodies that can move and that rings, bonds and joints tie to a body, kg.
+/// Of the bodies that can move and that hang together with a body, kg.
 double calc_tied_mass(const Model& model, std::uint32_t body) {
   std::vector<std::uint32_t> articulates{model.bodies[body].articulate};
-  if (model.bonds.size() + model.constraints.size() > 0)  // a search through 10 000 links takes longer than their sum
+  if (model.has_ties())  // a search through 10 000 links takes longer than their sum
     for (const std::uint32_t b : model.tied_bodies(std::array{body})) articulates.push_back(model.bodies[b].articulate);
   sort_unique(articulates);
   double mass = 0;
@@ -29,7 +30,7 @@ double calc_tied_mass(const Model& model, std::uint32_t body) {
 
 void Grips::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
-  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
+  model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
     if (!is_free(model.bodies[g.body].kind)) return;
     solver::GripForce force;
     for (std::uint32_t i = 0; i < g.count; ++i) {
@@ -54,7 +55,7 @@ void Grips::load(const Model& model, const IslandNodes&, double, Problem& proble
   auto& forces = problem.pool_of<solver::GripForce>().items;
   arms_.resize(forces.size());
   for_each_item_of<solver::GripForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
-    const model::Grip& g = model.grips[key.slot];
+    const Grip& g = model.grips[key.slot];
     const double omega = 2 * std::numbers::pi * g.frequency, mass = felt_mass(key.slot);
     forces[i].arm.origin = g.target;
     arms_[i] = forces[i].arm.value(problem.position.data());
@@ -75,7 +76,7 @@ void Grips::store(Model& model, const IslandNodes&, double h, const Problem& pro
 }
 
 void Grips::validate(const Model& model, model::Audit& audit) {
-  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
+  model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
     audit.require(model.bodies.is_alive(g.body), "grip ", slot, " holds no living body");
     for (std::uint32_t i = 0; i < g.count; ++i)
       audit.require(model.particles.is_alive(g.points[i]) && model.particles[g.points[i]].body == g.body, "grip ", slot,
@@ -86,7 +87,7 @@ void Grips::validate(const Model& model, model::Audit& audit) {
 // It counts for the part at the place that it holds, whichever points carry that.
 void Grips::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   const Model& model = step.model;
-  model.grips.for_each([&](std::uint32_t, const model::Grip& g) {
+  model.grips.for_each([&](std::uint32_t, const Grip& g) {
     if (g.body != body) return;
     Vec3 place;
     for (std::uint32_t i = 0; i < g.count; ++i) place += g.weights[i] * step.place(g.points[i]);
@@ -98,18 +99,17 @@ void Grips::add_loads(const LastStep& step, std::uint32_t body, LoadReader& read
 
 bool Grips::holds(const Model& model, std::uint32_t particle) {
   bool any = false;
-  model.grips.for_each(
-      [&](std::uint32_t, const model::Grip& g) { any = any || g.body == model.particles[particle].body; });
+  model.grips.for_each([&](std::uint32_t, const Grip& g) { any = any || g.body == model.particles[particle].body; });
   return any;
 }
 
-Vec3 Grips::point(const Model& model, const model::Grip& grip) {
+Vec3 Grips::point(const Model& model, const Grip& grip) {
   Vec3 sum;
   for (std::uint32_t i = 0; i < grip.count; ++i) sum += grip.weights[i] * model.position(grip.points[i]);
   return sum;
 }
 
-void Grips::anchor(const Model& model, model::Grip& grip, const Vec3& point) {
+void Grips::anchor(const Model& model, Grip& grip, const Vec3& point) {
   const model::Body& body = model.bodies[grip.body];
   grip.count = body.rank;
   grip.points.fill(0), grip.weights.fill(0);
@@ -130,7 +130,7 @@ void Grips::anchor(const Model& model, model::Grip& grip, const Vec3& point) {
 
 Grips::Memory Grips::remember(const Model& model, std::span<const std::uint32_t> bodies) {
   Memory held;
-  model.grips.for_each([&](std::uint32_t slot, const model::Grip& g) {
+  model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
     if (std::find(bodies.begin(), bodies.end(), g.body) == bodies.end()) return;
     const Vec3 place = point(model, g);
     std::uint32_t nearest = none;
@@ -147,7 +147,7 @@ Grips::Memory Grips::remember(const Model& model, std::span<const std::uint32_t>
 void Grips::follow(Model& model, const Memory& held) {
   for (const Held& before : held) {
     if (!model.grips.is_alive(before.grip)) continue;
-    model::Grip& grip = model.grips[before.grip];
+    Grip& grip = model.grips[before.grip];
     if (const auto particle = model.survivor_of(before.nearest)) {
       grip.body = model.particles[particle->slot].body;
     } else if (const auto body = model.survivor_of(before.body)) {
@@ -162,7 +162,7 @@ void Grips::follow(Model& model, const Memory& held) {
 }
 
 void Grips::follow_bases(Model& model) {
-  model.grips.for_each([&](std::uint32_t, model::Grip& g) {
+  model.grips.for_each([&](std::uint32_t, Grip& g) {
     const model::Body& body = model.bodies[g.body];
     const bool same =
         g.count == body.rank && std::equal(body.basis.begin(), body.basis.begin() + body.rank, g.points.begin());

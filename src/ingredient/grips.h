@@ -5,13 +5,28 @@
 
 namespace iota::ingredient {
 
+/// A point of a body that a viewer holds.
+struct Grip {
+  std::uint32_t body = none, count = 0;
+  std::array<std::uint32_t, 4> points{};
+  std::array<double, 4> weights{};
+  Vec3 target;
+  std::uint32_t client = 0, hold = 0;
+  double frequency = 0, max_acceleration = 0;
+  Vec3 force;  ///< in the last step, N
+};
+
 /// What viewers hold: a damped spring from a point of a body to a target, of limited force.
 class Grips : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.grips.archive(ar);
-  }
+  struct Tables {
+    SlotTable<Grip, GripId> grips;
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure&) {
+      grips.archive(ar);
+    }
+  };
   static void validate(const Model&, model::Audit&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
   static bool holds(const Model&, std::uint32_t particle);
@@ -28,10 +43,10 @@ class Grips : public NoAnswers {
   static void follow(Model&, const Memory&);
   static void follow_bases(Model&);
 
-  static Vec3 point(const Model&, const model::Grip&);  ///< where it holds, world frame
+  static Vec3 point(const Model&, const Grip&);  ///< where it holds, world frame
   /// Hangs a grip on the point of its body nearest to `point` (world frame): the span of the body's basis, for a rod
   /// between its ends.
-  static void anchor(const Model&, model::Grip&, const Vec3& point);
+  static void anchor(const Model&, Grip&, const Vec3& point);
 
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);

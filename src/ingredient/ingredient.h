@@ -3,21 +3,25 @@
 
 #include "ingredient/island_nodes.h"
 #include "ingredient/loads.h"
+#include "ingredient/scene_view.h"
 #include "ingredient/scope.h"
 #include "model/audit.h"
+#include "model/end_table.h"
 #include "solver/diagnosis.h"
 #include "solver/problem.h"
 
 #include <algorithm>
 #include <concepts>
+#include <span>
 #include <string>
-#include <tuple>
 #include <type_traits>
 #include <vector>
 
 namespace iota::ingredient {
 
+using model::Structure;
 using solver::Problem;
+using Visit = Structure::Visit;
 
 /// The answers of a kind of thing that has nothing to say. An ingredient inherits them and hides those that it answers
 /// itself. Static functions are about the whole model. The others are about one island: an ingredient object belongs to an
@@ -29,9 +33,14 @@ struct NoAnswers {
   /// @name The model
   ///@{
 
-  /// The tables of the ingredient, to and from bytes. The points, bodies and articulates are there already.
-  template <class Archive>
-  static void archive(Model&, Archive&) {}
+  /// What it keeps. `Model` inherits the tables of all ingredients, so that members are found by their names.
+  struct Tables {
+    /// To and from bytes. The structure is there already.
+    template <class Archive>
+    void archive(Archive&, const Structure&) {}
+  };
+  /// Moves what bytes do not hold from the model that a restored one replaces, and makes anew what is made of tables.
+  static void take_over(Model& /*restored*/, Model& /*before*/) {}
   static void validate(const Model&, model::Audit&) {}
   /// Its share of kinetic and potential energy, and of momentum.
   static void add_energy(const Scope&, Energies&) {}
@@ -43,6 +52,47 @@ struct NoAnswers {
   /// Whether it keeps a particle that is a body by itself from flying freely.
   static bool holds(const Model&, std::uint32_t /*particle*/) { return false; }
 
+  /// Whether anything of it refers to a particle.
+  static bool uses(const Model&, std::uint32_t /*particle*/) { return false; }
+  /// Whether a force of it takes the place of gravity.
+  static bool replaces_gravity(const Model&) { return false; }
+  /// Angular momentum of a body that its points know nothing of, kg m^2/s.
+  static Vec3 inner_momentum(const Model&, std::uint32_t /*body*/) { return {}; }
+  ///@}
+
+  /// @name Who hangs together
+  ///@{
+
+  /// visit(body): of those that it joins with a particle's in one articulate, as hinges do.
+  static void visit_joined(const Model&, std::uint32_t /*particle*/, Visit) {}
+  /// visit(body): of those that must be solved together with a particle's. By constraints (rigidly), or by forces.
+  static constexpr bool ties_rigidly = false;
+  static void visit_tied(const Model&, std::uint32_t /*particle*/, Visit) {}
+  static bool ties_any(const Model&) { return false; }
+  static bool ties_to_world(const Model&, std::uint32_t /*body*/) { return false; }  ///< by a constraint
+  /// visit(particle): of those that stay with a particle when its body falls apart.
+  static void visit_companions(const Model&, std::uint32_t /*particle*/, Visit) {}
+  ///@}
+
+  /// @name Edits
+  ///@{
+
+  /// Particle q becomes p: what refers to q refers to p from now on, or ends.
+  static void absorb(Model&, std::uint32_t /*q*/, std::uint32_t /*p*/) {}
+  /// A particle is going: ends what refers to it.
+  static void drop(Model&, std::uint32_t /*particle*/) {}
+  static void forget_particle(Model&, std::uint32_t /*particle*/) {}  ///< it is gone
+  static void forget_body(Model&, std::uint32_t /*body*/) {}
+  /// Another particle is the first of a ring, or it is empty and gone.
+  static void ring_changed(Model&, std::uint32_t /*ring*/) {}
+  /// A ring becomes another one; `replaces`: what holds `from` in its place holds `into` there now.
+  static void ring_merged(Model&, std::uint32_t /*into*/, std::uint32_t /*from*/, bool /*replaces*/) {}
+  static void inertia_changed(Model&, std::uint32_t /*body*/) {}     ///< the basis or the inertia pairs of a body
+  static void acting_changed(Model&, std::uint32_t /*particle*/) {}  ///< see Structure::acts
+  /// Ends what brings two particles together. False if nothing does.
+  static bool call_off(Model&, std::uint32_t /*p*/, std::uint32_t /*q*/) { return false; }
+  /// Ends what an edit of some bodies (all alive) has left without sense, and says so in the notes.
+  static void settle(Model&, std::span<const std::uint32_t> /*bodies*/, std::vector<std::string>& /*notes*/) {}
   /// What it has to know from before an edit of some bodies to follow that afterwards.
   struct Memory {};
   static Memory remember(const Model&, std::span<const std::uint32_t> /*bodies*/) { return {}; }
@@ -50,6 +100,19 @@ struct NoAnswers {
   static void follow(Model&, const Memory&) {}
   /// Bodies may have other bases, in the same places.
   static void follow_bases(Model&) {}
+  /// Adds to tables what an island with the body will write to from many threads.
+  static void prepare(Model&, std::uint32_t /*body*/) {}
+  ///@}
+
+  /// @name Viewers
+  ///@{
+
+  /// Items that have changed or gone by themselves, not with a body; null: it has none.
+  static model::ChangedSlots* scene_log(Model&) { return nullptr; }
+  /// Describes the items that the view asks for.
+  static void describe(const SceneView&, SceneChanges&) {}
+  /// Its part of how a body is drawn.
+  static void draw(const SceneView&, std::uint32_t /*body*/, DrawnBody&) {}
   ///@}
 
   /// @name Building and stepping
@@ -102,20 +165,44 @@ struct NoAnswers {
 
 /// What is asked of every ingredient about the model.
 template <class I>
-concept ModelIngredient = requires(Model& model, const Model& seen, Writer& writer, Reader& reader, model::Audit& audit,
-                                   const Scope& scope, Energies& energies, Momenta& momenta, const LastStep& step,
-                                   LoadReader& loads, std::uint32_t slot, std::span<const std::uint32_t> bodies) {
-  I::archive(model, writer);
-  I::archive(model, reader);
+concept ModelIngredient = requires(
+    Model& model, const Model& seen, model::Audit& audit, const Scope& scope, Energies& energies, Momenta& momenta,
+    const LastStep& step, LoadReader& loads, std::uint32_t slot, std::span<const std::uint32_t> bodies,
+    std::vector<std::string>& notes, Visit visit, const SceneView& view, SceneChanges& changes, DrawnBody& drawn) {
+  typename I::Tables;
+  I::take_over(model, model);
   I::validate(seen, audit);
   I::add_energy(scope, energies);
   I::add_momentum(scope, momenta);
   { I::worst_gap(seen) } -> std::same_as<double>;
   I::add_loads(step, slot, loads);
   { I::holds(seen, slot) } -> std::same_as<bool>;
+  { I::uses(seen, slot) } -> std::same_as<bool>;
+  { I::replaces_gravity(seen) } -> std::same_as<bool>;
+  { I::inner_momentum(seen, slot) } -> std::same_as<Vec3>;
+  I::visit_joined(seen, slot, visit);
+  { I::ties_rigidly } -> std::convertible_to<bool>;
+  I::visit_tied(seen, slot, visit);
+  { I::ties_any(seen) } -> std::same_as<bool>;
+  { I::ties_to_world(seen, slot) } -> std::same_as<bool>;
+  I::visit_companions(seen, slot, visit);
+  I::absorb(model, slot, slot);
+  I::drop(model, slot);
+  I::forget_particle(model, slot);
+  I::forget_body(model, slot);
+  I::ring_changed(model, slot);
+  I::ring_merged(model, slot, slot, true);
+  I::inertia_changed(model, slot);
+  I::acting_changed(model, slot);
+  { I::call_off(model, slot, slot) } -> std::same_as<bool>;
+  I::settle(model, bodies, notes);
   { I::remember(seen, bodies) } -> std::same_as<typename I::Memory>;
   I::follow(model, I::remember(seen, bodies));
   I::follow_bases(model);
+  I::prepare(model, slot);
+  { I::scene_log(model) } -> std::same_as<model::ChangedSlots*>;
+  I::describe(view, changes);
+  I::draw(view, slot, drawn);
 };
 
 /// What the stages of a step ask of an ingredient of an island.

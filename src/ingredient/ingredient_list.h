@@ -3,6 +3,7 @@
 
 #include "ingredient/bonds.h"
 #include "ingredient/closings.h"
+#include "ingredient/cosmetic_bonds.h"
 #include "ingredient/emitters.h"
 #include "ingredient/fields.h"
 #include "ingredient/grips.h"
@@ -37,7 +38,8 @@ using Ingredients = std::tuple<  //
     Fields,                      //
     Pairs,                       //
     Emitters,                    //
-    Grips>;
+    Grips,                       //
+    CosmeticBonds>;
 
 template <class List>
 struct TypesOf;

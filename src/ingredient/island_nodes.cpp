@@ -2,6 +2,7 @@
 #include "ingredient/island_nodes.h"
 
 #include "base/text.h"
+#include "ingredient/model.h"
 
 namespace iota::ingredient {
 
@@ -58,6 +59,10 @@ std::string name_of_ring(const Model& model, std::uint32_t ring) {
   const std::uint32_t particle = model.rings[ring].first;
   return text("particle ", particle, " of body ", model.particles[particle].body);
 }
+
+IslandMap::IslandMap(const Model& model, const IslandNodes& nodes, std::span<const std::uint32_t> bodies,
+                     const std::vector<std::uint32_t>& node_of_ring)
+    : model(model), nodes(nodes), bodies(bodies), structure_(model), node_of_ring_(node_of_ring) {}
 
 WeightedNodes IslandMap::nodes_of(std::uint32_t particle) const {
   const model::Particle& p = model.particles[particle];

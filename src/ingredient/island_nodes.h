@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "model/model.h"
+#include "model/structure.h"
 
 #include <algorithm>
 #include <array>
@@ -38,7 +38,8 @@ struct IslandNodes {
 
   std::size_t size() const { return rings.size(); }
   template <class Visit>
-  void for_each_ring(const Model& model, Visit visit) const {  ///< visit(ring): of the nodes, then of the carried
+  void for_each_ring(const model::Structure& model,
+                     Visit visit) const {  ///< visit(ring): of the nodes, then of the carried
     for (const std::uint32_t ring : rings) visit(ring);
     for (const std::uint32_t p : carried) visit(model.particles[p].ring);
   }
@@ -56,8 +57,7 @@ std::string name_of_ring(const Model&, std::uint32_t ring);  ///< for a sentence
 class IslandMap {
  public:
   IslandMap(const Model& model, const IslandNodes& nodes, std::span<const std::uint32_t> bodies,
-            const std::vector<std::uint32_t>& node_of_ring)
-      : model(model), nodes(nodes), bodies(bodies), node_of_ring_(node_of_ring) {}
+            const std::vector<std::uint32_t>& node_of_ring);
 
   const Model& model;
   const IslandNodes& nodes;
@@ -66,12 +66,13 @@ class IslandMap {
   bool has(std::uint32_t body) const { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); }
 
   /// Of a particle's ring; `none` for one that is outside of the island, or carried.
-  std::uint32_t node_of(std::uint32_t particle) const { return node_of_ring_[model.particles[particle].ring]; }
+  std::uint32_t node_of(std::uint32_t particle) const { return node_of_ring_[structure_.particles[particle].ring]; }
   /// The particle's own node, or those that carry it.
   WeightedNodes nodes_of(std::uint32_t particle) const;
   bool is_pinned(std::uint32_t node) const { return nodes.pinned[node]; }
 
  private:
+  const model::Structure& structure_;
   const std::vector<std::uint32_t>& node_of_ring_;
 };
 

@@ -2,6 +2,7 @@
 #include "ingredient/joint_readings.h"
 
 #include "ingredient/joint_rows.h"
+#include "ingredient/model.h"
 
 #include <algorithm>
 #include <array>

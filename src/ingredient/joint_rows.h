@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "ingredient/ingredient.h"
+#include "ingredient/model.h"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@ struct PlaceArm {
   WeightedNodes nodes{};
   Vec3 constant;
 };
-using PlaceArms = std::array<PlaceArm, model::place_count>;
+using PlaceArms = std::array<PlaceArm, place_count>;
 
 /// What a solver's row is to its joint.
 struct RowUse {
@@ -34,12 +34,6 @@ RowsOf rows_of(const CoordinateOptions&);
 
 namespace joint {
 
-using model::Constraint;
-using model::ConstraintGeometry;
-using model::ConstraintKindInfo;
-using model::info;
-using model::place_count;
-using enum model::Place;
 using Role = RowUse::Role;
 
 inline constexpr int angle = static_cast<int>(JointCoordinate::angle), slide = static_cast<int>(JointCoordinate::slide),

@@ -3,9 +3,13 @@
 
 #include "base/text.h"
 #include "ingredient/joint_readings.h"
+#include "ingredient/joint_rows.h"
+#include "ingredient/model.h"
+#include "model/restructure.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace iota::ingredient {
 
@@ -186,8 +190,9 @@ void Joints::validate(const Model& model, model::Audit& audit) {
     audit.require(body_of_side(model, c, 0) != body_of_side(model, c, 1), info(c.kind).name, " ", slot,
                   " joins a body to itself");
   });
-  model.references.for_each([&](std::uint32_t slot, const model::References& of) {
-    for (std::uint32_t link = of.first_constraint; link != none;) {
+  audit.require_owners("lists", model.places, model.particles);
+  model.places.for_each([&](std::uint32_t slot, const model::ListHead& head) {
+    for (std::uint32_t link = head.first; link != none;) {
       const std::uint32_t joint = link / place_count, place = link % place_count;
       const bool good = model.constraints.is_alive(joint) && model.constraints[joint].particles[place] == slot;
       audit.require(good, "particle ", slot, " lists constraint ", joint, ", which is not there");
@@ -238,8 +243,195 @@ void Joints::add_loads(const LastStep& step, std::uint32_t body, LoadReader& rea
   });
 }
 
-bool Joints::holds(const Model& model, std::uint32_t particle) {
-  return model.references[particle].first_constraint != none;
+bool Joints::holds(const Model& model, std::uint32_t particle) { return model.places.has(particle); }
+
+namespace {
+
+void link_place(Model& model, std::uint32_t slot, std::uint32_t place) {
+  Constraint& c = model.constraints[slot];
+  std::uint32_t& first = model.places.make(c.particles[place]).first;
+  c.next[place] = first, c.previous[place] = none;
+  if (first != none) model.constraints[first / place_count].previous[first % place_count] = place_count * slot + place;
+  first = place_count * slot + place;
+  model.touch_particle(c.particles[place]);
+}
+
+void unlink_place(Model& model, std::uint32_t slot, std::uint32_t place) {
+  const Constraint& c = model.constraints[slot];
+  const std::uint32_t before = c.previous[place], after = c.next[place];
+  if (after != none) model.constraints[after / place_count].previous[after % place_count] = before;
+  if (before != none)
+    model.constraints[before / place_count].next[before % place_count] = after;
+  else if (after != none)
+    model.places.at(c.particles[place]).first = after;
+  else
+    model.places.erase(c.particles[place]);
+  model.touch_particle(c.particles[place]);
+}
+
+/// Takes it out of the tables; its markers stay.
+void remove(Model& model, std::uint32_t slot) {
+  for (std::uint32_t place = 0; place < place_count; ++place)
+    if (model.constraints[slot].particles[place] != none) unlink_place(model, slot, place);
+  const CurveData curve = model.constraints[slot].curve;
+  model.geometries[slot] = {};
+  model.constraints.destroy(slot);
+  model.changed_constraints.note(slot);
+  if (curve.count == 0) return;
+  const auto first = model.curve_points.begin() + curve.first;
+  model.curve_points.erase(first, first + curve.count);
+  model.constraints.for_each([&](std::uint32_t, Constraint& c) {
+    if (c.curve.first > curve.first) c.curve.first -= curve.count;
+  });
+}
+
+/// Why an edit has left a joint without sense; null: it has not.
+const char* reason_to_end(const Model& model, const Constraint& c) {
+  const std::uint32_t a = body_of_side(model, c, 0), b = body_of_side(model, c, 1);
+  for (int place = 0; place < place_count; ++place)
+    if (c.particles[place] != none && model.particles[c.particles[place]].body != (place < b_origin ? a : b))
+      return "one of its bodies came apart there";
+  const std::uint32_t p = c.particles[a_origin], q = c.particles[b_origin];
+  if (c.kind == ConstraintKind::rod && p != none && q != none && model.particles[p].ring == model.particles[q].ring)
+    return "its two ends are hinged together now";
+  return a == b ? "its two bodies are one rigid body now" : nullptr;
+}
+
+}  // namespace
+
+std::uint32_t Joints::add(Model& model, const Constraint& constraint) {
+  const std::uint32_t slot = model.constraints.create(constraint).slot;
+  for (std::uint32_t place = 0; place < place_count; ++place)
+    if (constraint.particles[place] != none) link_place(model, slot, place);
+  if (model.geometries.size() <= slot) model.geometries.resize(slot + 1);
+  renew_geometry(model, slot);
+  return slot;
+}
+
+void Joints::destroy(Model& model, std::uint32_t slot) {
+  const Constraint c = model.constraints[slot];
+  remove(model, slot);
+  for (int place = 0; place < place_count; ++place) {
+    if (!(c.owned >> place & 1)) continue;
+    const model::Particle& p = model.particles[c.particles[place]];
+    // A marker that was hinged, bonded, constrained or given a mass since does not belong to the constraint alone.
+    if (p.is_marker() && !model.is_needed(p) && !model.places.has(c.particles[place]))
+      model::destroy_particle(model, c.particles[place]);
+  }
+}
+
+void Joints::renew_geometry(Model& model, std::uint32_t constraint) {
+  model.geometries[constraint] = make_geometry(model, model.constraints[constraint]);
+}
+
+void Joints::take_over(Model& restored, Model& before) {
+  restored.surface_functions = std::move(before.surface_functions);
+  restored.geometries.assign(restored.constraints.slot_count(), {});
+  restored.constraints.for_each([&](std::uint32_t slot, const Constraint&) { renew_geometry(restored, slot); });
+}
+
+bool Joints::ties_any(const Model& model) { return model.constraints.size() > 0; }
+
+void Joints::visit_tied(const Model& model, std::uint32_t particle, Visit visit) {
+  model.for_each_constraint_of(particle, [&](std::uint32_t slot, int place) {
+    const Constraint& c = model.constraints[slot];
+    if (!c.active || (place != a_origin && place != b_origin)) return;
+    if (const std::uint32_t other = body_of_side(model, c, place == a_origin ? 1 : 0); other != none) visit(other);
+  });
+}
+
+bool Joints::ties_to_world(const Model& model, std::uint32_t body) {
+  bool tied = false;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model.for_each_constraint_of(p, [&](std::uint32_t slot, int) {
+      tied = tied || (model.constraints[slot].active && body_of_side(model, model.constraints[slot], 1) == none);
+    });
+  });
+  return tied;
+}
+
+// The places of one side stay with its origin.
+void Joints::visit_companions(const Model& model, std::uint32_t particle, Visit visit) {
+  model.for_each_constraint_of(particle, [&](std::uint32_t slot, int place) {
+    const std::uint32_t origin = model.constraints[slot].particles[place < b_origin ? a_origin : b_origin];
+    if (origin != none && model.particles[origin].body == model.particles[particle].body) visit(origin);
+  });
+}
+
+void Joints::absorb(Model& model, std::uint32_t q, std::uint32_t p) {
+  while (model.places.has(q)) {
+    const std::uint32_t link = model.places[q].first, slot = link / place_count, place = link % place_count;
+    Constraint& c = model.constraints[slot];
+    if (std::find(c.particles.begin(), c.particles.end(), p) != c.particles.end()) {  // two of its places in one
+      for (std::uint32_t i = 0; i < place_count; ++i)                                 // both stay
+        if (c.particles[i] == p || c.particles[i] == q) c.owned &= static_cast<std::uint8_t>(~(1u << i));
+      destroy(model, slot);
+      continue;
+    }
+    unlink_place(model, slot, place);
+    c.particles[place] = p;
+    c.owned &= static_cast<std::uint8_t>(~(1u << place));
+    link_place(model, slot, place);
+  }
+}
+
+void Joints::drop(Model& model, std::uint32_t particle) {
+  while (model.places.has(particle)) {
+    const std::uint32_t link = model.places[particle].first;
+    model.constraints[link / place_count].owned &= static_cast<std::uint8_t>(~(1u << link % place_count));
+    destroy(model, link / place_count);
+  }
+}
+
+void Joints::settle(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
+  if (model.constraints.size() == 0) return;
+  std::vector<std::uint32_t> candidates;
+  for (const std::uint32_t body : bodies)
+    model.for_each_particle_of(body, [&](std::uint32_t p) {  // a hinge also joins what was in its particles' rings
+      model.for_each_in_ring(model.particles[p].ring, [&](std::uint32_t r) {
+        model.for_each_constraint_of(r, [&](std::uint32_t c, int) { candidates.push_back(c); });
+      });
+    });
+  sort_unique(candidates);
+  for (const std::uint32_t slot : candidates) {
+    if (!model.constraints.is_alive(slot)) continue;
+    const char* const reason = reason_to_end(model, model.constraints[slot]);
+    if (!reason) continue;
+    notes.push_back(text(info(model.constraints[slot].kind).name, " ", slot, " ended: ", reason));
+    destroy(model, slot);
+  }
+}
+
+model::ChangedSlots* Joints::scene_log(Model& model) { return &model.changed_constraints; }
+
+// A constraint is drawn as a tie, as a joint or, while it is inactive, as neither.
+void Joints::describe(const SceneView& view, SceneChanges& changes) {
+  const Model& model = view.model;
+  const auto list = [&](std::uint32_t p, std::vector<std::uint32_t>& slots) {
+    model.for_each_constraint_of(p, [&](std::uint32_t constraint, int) { slots.push_back(constraint); });
+  };
+  for (const std::uint32_t slot : view.slots(model.constraints, model.changed_constraints, list)) {
+    const bool is_there = model.constraints.is_alive(slot) && model.constraints[slot].active;
+    const bool is_tie = is_there && info(model.constraints[slot].kind).form == ConstraintKindInfo::Form::distance;
+    const std::uint32_t tie = DrawnTie::slot_of_joint(slot);
+    if (is_tie) {
+      const Constraint& c = model.constraints[slot];
+      const auto kind = c.kind == ConstraintKind::rod ? DrawnTie::Kind::rod : DrawnTie::Kind::rope;
+      changes.ties.set.push_back(
+          {tie, kind, c.length, view.anchor(c.particles[a_origin]), view.anchor(c.particles[b_origin])});
+    } else {
+      changes.ties.gone.push_back(tie);
+    }
+    if (is_there && !is_tie) {
+      const Constraint& c = model.constraints[slot];
+      const std::uint32_t a = body_of_side(model, c, 0), b = body_of_side(model, c, 1);
+      const Vec3 place = model.carried(c.particles[a_origin]).first;
+      changes.joints.set.push_back({slot, info(c.kind).name, view.anchor(a, place), view.anchor(b, place),
+                                    view.into_body(a, calc_axis(model, c))});
+    } else {
+      changes.joints.gone.push_back(slot);
+    }
+  }
 }
 
 }  // namespace iota::ingredient

@@ -1,24 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingredient/constraint.h"
 #include "ingredient/ingredient.h"
-#include "ingredient/joint_rows.h"
+
+#include <map>
+#include <vector>
 
 namespace iota::ingredient {
 
 /// Joints, rods, ropes, paths and surfaces with their limits, motors, friction and springs.
 class Joints : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.constraints.archive(ar);
-    ar.vector(model.curve_points);
-  }
+  struct Tables {
+    SlotTable<Constraint, ConstraintId> constraints;
+    SideTable<model::ListHead> places;  ///< of particles: the first of the places that they are at
+    std::vector<Vec3> curve_points;     ///< of paths, m
+    /// Of function surfaces, by key; not saved.
+    std::map<std::uint64_t, SurfaceFunction> surface_functions;
+    std::vector<ConstraintGeometry> geometries;  ///< by slot of the constraint; not saved
+    model::ChangedSlots changed_constraints;     ///< not saved
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure& structure) {
+      constraints.archive(ar), places.archive(ar, structure.particles.slot_count());
+      ar.vector(curve_points);
+    }
+    const ConstraintGeometry& geometry(std::uint32_t constraint) const { return geometries[constraint]; }
+    /// visit(slot of the constraint, place): once for each place that the particle is at.
+    template <class Visit>
+    void for_each_constraint_of(std::uint32_t particle, Visit visit) const {
+      for (std::uint32_t link = places[particle].first, next; link != none; link = next) {
+        next = constraints[link / place_count].next[link % place_count];
+        visit(link / place_count, static_cast<int>(link % place_count));
+      }
+    }
+  };
+  static void take_over(Model& restored, Model& before);
   static void validate(const Model&, model::Audit&);
   static void add_energy(const Scope&, Energies&);
   static double worst_gap(const Model&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
   static bool holds(const Model&, std::uint32_t particle);
+  static bool uses(const Model& model, std::uint32_t particle) { return holds(model, particle); }
+  static constexpr bool ties_rigidly = true;
+  static bool ties_any(const Model&);
+  static void visit_tied(const Model&, std::uint32_t particle, Visit);
+  static bool ties_to_world(const Model&, std::uint32_t body);
+  static void visit_companions(const Model&, std::uint32_t particle, Visit);
+  static void absorb(Model&, std::uint32_t q, std::uint32_t p);
+  static void drop(Model&, std::uint32_t particle);
+  static void settle(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
+  static model::ChangedSlots* scene_log(Model&);
+  static void describe(const SceneView&, SceneChanges&);
+
+  static std::uint32_t add(Model&, const Constraint&);    ///< returns the slot
+  static void destroy(Model&, std::uint32_t constraint);  ///< with the markers that were made for it
+  static void renew_geometry(Model&, std::uint32_t constraint);
 
   void build(const IslandMap&, Problem&);
   void leave(const IslandMap&);

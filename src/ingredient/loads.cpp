@@ -2,6 +2,7 @@
 #include "ingredient/loads.h"
 
 #include "ingredient/ingredient_list.h"
+#include "ingredient/model.h"
 
 #include <cmath>
 
@@ -74,6 +75,9 @@ class PartLoads final : public LoadReader {
 };
 
 }  // namespace
+
+LastStep::LastStep(const model::Model& model)
+    : model(model), h(model.last_dt), structure_(model), back_(model.steps_to_end_point() ? 0 : model.last_dt / 2) {}
 
 Vec3 LastStep::damping(std::uint32_t particle) const {
   const double c = model.damping + model.bodies[model.particles[particle].body].damping;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "model/model.h"
+#include "model/structure.h"
 
 #include <cstdint>
 
@@ -10,8 +10,7 @@ namespace iota::ingredient {
 /// The last step of a model as the solver took it.
 class LastStep {
  public:
-  explicit LastStep(const model::Model& model)
-      : model(model), h(model.last_dt), back_(model.steps_to_end_point() ? 0 : model.last_dt / 2) {}
+  explicit LastStep(const model::Model& model);
 
   const model::Model& model;
   double h;  ///< s
@@ -31,7 +30,10 @@ class LastStep {
   Vec3 damping(std::uint32_t particle) const;
 
  private:
-  const model::Ring& ring(std::uint32_t particle) const { return model.rings[model.particles[particle].ring]; }
+  const model::Ring& ring(std::uint32_t particle) const {
+    return structure_.rings[structure_.particles[particle].ring];
+  }
+  const model::Structure& structure_;
   double back_;
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include "ingredient/model.h"
 
 namespace iota::ingredient {
 

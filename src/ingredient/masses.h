@@ -8,10 +8,6 @@ namespace iota::ingredient {
 /// Point masses with the inertia pairs of their bodies, weight and damping.
 class Masses : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.inertia_pairs.archive(ar);
-  }
   static void validate(const Model&, model::Audit&);
   static void add_energy(const Scope&, Energies&);
   static void add_momentum(const Scope&, Momenta&);

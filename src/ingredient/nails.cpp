@@ -2,6 +2,7 @@
 #include "ingredient/nails.h"
 
 #include <algorithm>
+#include "ingredient/model.h"
 
 namespace iota::ingredient {
 
@@ -31,7 +32,7 @@ void Nails::build(const IslandMap& map, Problem& problem) {
 void Nails::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
   auto& affines = problem.pool_of<solver::AffineConstraint>();
   for_each_item_of<solver::AffineConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
-    const model::Nail& from = model.nails.at(key.slot);
+    const Nail& from = model.nails.at(key.slot);
     auto& nail = affines.items[i];
     nail.target = from.position;
     nail.target_start = model.rings[key.slot].nailed && h > 0 ? from.position_before : nail.target;
@@ -43,7 +44,7 @@ void Nails::load(const Model& model, const IslandNodes&, double h, Problem& prob
 void Nails::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
   const auto& affines = problem.pool_of<solver::AffineConstraint>();
   for_each_item_of<solver::AffineConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
-    model::Nail& nail = model.nails.at(key.slot);
+    Nail& nail = model.nails.at(key.slot);
     const double* const l = affines.multiplier(i);
     nail.multiplier = {l[0], l[1], l[2]};
     nail.position_before = nail.position;
@@ -53,7 +54,7 @@ void Nails::store(Model& model, const IslandNodes&, double, const Problem& probl
 void Nails::refresh(Model& model, const IslandNodes& nodes, bool moved) const {
   if (!moved) return;
   nodes.for_each_pinned([&](std::uint32_t ring) {
-    model::Nail& nail = model.nails.at(ring);
+    Nail& nail = model.nails.at(ring);
     nail.position_before = nail.position;
   });
 }
@@ -64,7 +65,7 @@ void Nails::accept_assigned(Model& model, const IslandNodes& nodes) const {
   constexpr double creep = 1e-7;  // m; a ring that is farther away was moved by the script
   nodes.for_each_pinned([&](std::uint32_t slot) {
     const model::Ring& ring = model.rings[slot];
-    model::Nail& nail = model.nails.at(slot);
+    Nail& nail = model.nails.at(slot);
     if (!ring.nailed && norm(ring.position - nail.position) > creep)
       nail.position = nail.position_before = ring.position;
   });
@@ -74,7 +75,7 @@ bool Nails::prescribes_motion(const Model& model, const IslandNodes& nodes) cons
   bool any = false;
   nodes.for_each_pinned([&](std::uint32_t slot) {
     const model::Ring& ring = model.rings[slot];
-    const model::Nail& nail = model.nails.at(slot);
+    const Nail& nail = model.nails.at(slot);
     any = any || (ring.nailed && nail.position != nail.position_before) || ring.velocity != Vec3{};
   });
   return any;
@@ -113,7 +114,7 @@ void Nails::validate(const Model& model, model::Audit& audit) {
 
 double Nails::worst_gap(const Model& model) {
   double worst = 0;
-  model.nails.for_each([&](std::uint32_t ring, const model::Nail& nail) {
+  model.nails.for_each([&](std::uint32_t ring, const Nail& nail) {
     if (!model.rings[ring].nailed) return;
     bool moves = false;
     model.for_each_in_ring(
@@ -123,6 +124,37 @@ double Nails::worst_gap(const Model& model) {
     if (!(gap <= worst)) worst = gap;
   });
   return worst;
+}
+
+// A nail is drawn at the first particle of its ring.
+void Nails::ring_changed(Model& model, std::uint32_t ring) {
+  model.changed_nails.note(ring);
+  if (model.rings[ring].count == 0) model.nails.erase(ring);
+}
+
+void Nails::ring_merged(Model& model, std::uint32_t into, std::uint32_t from, bool replaces) {
+  if (replaces) model.nails.copy(from, into);
+}
+
+void Nails::prepare(Model& model, std::uint32_t body) {
+  const BodyKind kind = model.bodies[body].kind;
+  if (kind == BodyKind::static_ || kind == BodyKind::scripted)
+    model.for_each_particle_of(body, [&](std::uint32_t p) { (void)model.nails.make(model.particles[p].ring); });
+}
+
+model::ChangedSlots* Nails::scene_log(Model& model) { return &model.changed_nails; }
+
+void Nails::describe(const SceneView& view, SceneChanges& changes) {
+  const Model& model = view.model;
+  const auto list = [&](std::uint32_t p, std::vector<std::uint32_t>& slots) {
+    slots.push_back(model.particles[p].ring);
+  };
+  for (const std::uint32_t ring : view.slots(model.rings, model.changed_nails, list)) {
+    if (model.rings.is_alive(ring) && model.rings[ring].nailed)
+      changes.nails.set.push_back({ring, view.anchor(model.rings[ring].first)});
+    else
+      changes.nails.gone.push_back(ring);
+  }
 }
 
 }  // namespace iota::ingredient

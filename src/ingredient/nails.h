@@ -5,15 +5,32 @@
 
 namespace iota::ingredient {
 
+/// What holds a ring that is nailed or a static or scripted body's.
+struct Nail {
+  /// Where it is, and where it was at the last step, m; of a ring that a static body holds: where that was put.
+  Vec3 position, position_before;
+  Vec3 multiplier;  ///< minus its force, N; warm start and reaction
+};
+
 /// What pins a ring to a place: a nail, a static or a scripted body. Nails that the script moves arrive at the end of the
 /// step.
 class Nails : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.nails.archive(ar, model.rings.slot_count());
-  }
+  struct Tables {
+    SideTable<Nail> nails;              ///< of rings
+    model::ChangedSlots changed_nails;  ///< rings; not saved
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure& structure) {
+      nails.archive(ar, structure.rings.slot_count());
+    }
+  };
   static void validate(const Model&, model::Audit&);
+  static void ring_changed(Model&, std::uint32_t ring);
+  static void ring_merged(Model&, std::uint32_t into, std::uint32_t from, bool replaces);
+  static void prepare(Model&, std::uint32_t body);
+  static model::ChangedSlots* scene_log(Model&);
+  static void describe(const SceneView&, SceneChanges&);
   static double worst_gap(const Model&);
 
   void build(const IslandMap&, Problem&);

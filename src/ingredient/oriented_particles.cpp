@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/oriented_particles.h"
 
+#include "ingredient/model.h"
 namespace iota::ingredient {
 
 namespace {

@@ -9,10 +9,6 @@ namespace iota::ingredient {
 /// turning is stepped in closed form, see `particle_life`.
 class OrientedParticles : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.attributes.archive(ar);
-  }
   static void validate(const Model&, model::Audit&);
   static void add_energy(const Scope&, Energies&);
   static void add_momentum(const Scope&, Momenta&);

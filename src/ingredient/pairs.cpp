@@ -2,12 +2,14 @@
 #include "ingredient/pairs.h"
 
 #include <cmath>
+#include "ingredient/model.h"
 
 namespace iota::ingredient {
 
 void Pairs::validate(const Model& model, model::Audit& audit) {
-  model.pairs.for_each([&](std::uint32_t slot, const model::Pairs& p) {
-    audit.use_law("pairwise force", slot, p.law);
+  model.pairs.for_each([&](std::uint32_t slot, const PairForce& p) {
+    audit.require(model.laws.is_alive(p.law), "pairwise force ", slot, " has no living law");
+    audit.use("law", p.law);
     audit.require_group("pairwise force", slot, p.group);
     audit.require(p.cutoff > 0 && std::isfinite(p.cutoff), "pairwise force ", slot, " has cut-off ", p.cutoff);
   });

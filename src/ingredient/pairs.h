@@ -2,16 +2,31 @@
 #pragma once
 
 #include "ingredient/ingredient.h"
+#include "laws/pair_law.h"
 
 namespace iota::ingredient {
+
+/// A force between all pairs of a group that are nearer than a cut-off.
+struct PairForce {
+  std::uint32_t law = none;
+  std::uint32_t group = none;  ///< none: all particles
+  std::uint8_t active = 1;
+  std::array<std::uint8_t, 7> padding{};
+  double cutoff = 1;  ///< m
+  std::array<double, laws::max_parameters> parameters{};
+};
 
 /// Forces between all pairs of a group of particles that are near each other; they are taken once a step and held.
 class Pairs : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.pairs.archive(ar);
-  }
+  struct Tables {
+    SlotTable<PairForce, PairsId> pairs;
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure&) {
+      pairs.archive(ar);
+    }
+  };
   static void validate(const Model&, model::Audit&);
 };
 

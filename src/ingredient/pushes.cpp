@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <utility>
+#include "ingredient/model.h"
 
 namespace iota::ingredient {
 
@@ -25,7 +26,7 @@ void Pushes::load(const Model& model, const IslandNodes& nodes, double, Problem&
 void Pushes::store(Model& model, const IslandNodes& nodes, double, const Problem&) const {
   if (model.pushes.is_empty()) return;
   nodes.for_each_ring(model, [&](std::uint32_t ring) {
-    if (model::Push* const push = model.pushes.find(ring)) push->before = std::exchange(push->force, Vec3{});
+    if (Push* const push = model.pushes.find(ring)) push->before = std::exchange(push->force, Vec3{});
   });
 }
 
@@ -51,7 +52,7 @@ void Pushes::add_loads(const LastStep& step, std::uint32_t body, LoadReader& rea
   const bool moves = is_free(model.bodies[body].kind);
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     const model::Particle& particle = model.particles[p];
-    const model::Push* const push = model.pushes.find(particle.ring);
+    const Push* const push = model.pushes.find(particle.ring);
     if (!push) return;
     int free = 0;
     model.for_each_in_ring(
@@ -59,6 +60,14 @@ void Pushes::add_loads(const LastStep& step, std::uint32_t body, LoadReader& rea
     if (!moves && free > 0) return;
     reader.take({.particle = p, .force = (1.0 / std::max(1, free)) * push->before, .part = particle.part});
   });
+}
+
+void Pushes::ring_changed(Model& model, std::uint32_t ring) {
+  if (model.rings[ring].count == 0) model.pushes.erase(ring);
+}
+
+void Pushes::ring_merged(Model& model, std::uint32_t into, std::uint32_t from, bool) {
+  if (const Vec3 force = model.pushes[from].force; force != Vec3{}) model.pushes.make(into).force += force;
 }
 
 }  // namespace iota::ingredient

@@ -5,14 +5,26 @@
 
 namespace iota::ingredient {
 
+/// Forces that were applied to a ring, N.
+struct Push {
+  Vec3 force;   ///< for the next step only
+  Vec3 before;  ///< in the last step
+};
+
 /// Forces that were applied to particles for one step.
 class Pushes : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.pushes.archive(ar, model.rings.slot_count());
-  }
+  struct Tables {
+    SideTable<Push> pushes;  ///< of rings
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure& structure) {
+      pushes.archive(ar, structure.rings.slot_count());
+    }
+  };
   static void validate(const Model&, model::Audit&);
+  static void ring_changed(Model&, std::uint32_t ring);
+  static void ring_merged(Model&, std::uint32_t into, std::uint32_t from, bool replaces);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
 
   void load(const Model&, const IslandNodes&, double h, Problem&);

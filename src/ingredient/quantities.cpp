@@ -2,8 +2,11 @@
 #include "ingredient/quantities.h"
 
 #include "ingredient/ingredient_list.h"
+#include "ingredient/model.h"
 
 namespace iota::ingredient {
+
+Scope::Scope(const model::Model& model, std::uint32_t body) : model(model), structure_(model), body_(body) {}
 
 namespace {
 

@@ -2,6 +2,7 @@
 #include "ingredient/rigid_rows.h"
 
 #include "base/text.h"
+#include "ingredient/model.h"
 
 #include <algorithm>
 #include <array>

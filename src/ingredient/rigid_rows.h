@@ -8,10 +8,6 @@ namespace iota::ingredient {
 /// The basis points of a body keep their distances.
 class RigidRows : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.more_rows.archive(ar, model.bodies.slot_count());
-  }
   static void validate(const Model&, model::Audit&);
   static double worst_gap(const Model&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);

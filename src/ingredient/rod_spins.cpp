@@ -2,6 +2,7 @@
 #include "ingredient/rod_spins.h"
 
 #include <cmath>
+#include "ingredient/model.h"
 
 namespace iota::ingredient {
 
@@ -29,7 +30,7 @@ void RodSpins::load(const Model& model, const IslandNodes&, double, Problem& pro
 double RodSpins::after_step(Model& model, double h, Problem& problem) {
   double lost = 0;
   for_each_item_of<solver::GyroscopicForce>(owner, problem, [&](std::size_t, solver::ItemKey key) {
-    model::RodSpin& spin = model.spins.at(key.slot);
+    RodSpin& spin = model.spins.at(key.slot);
     lost += energy(model, key.slot);
     spin.momentum *= std::exp(-(model.damping + model.bodies[key.slot].damping) * h);
     lost -= energy(model, key.slot);
@@ -45,7 +46,7 @@ void RodSpins::put_to_rest(Model& model, const Problem& problem) const {
 
 void RodSpins::validate(const Model& model, model::Audit& audit) {
   audit.require_owners("a spin", model.spins, model.bodies);
-  model.spins.for_each([&](std::uint32_t slot, const model::RodSpin& spin) {
+  model.spins.for_each([&](std::uint32_t slot, const RodSpin& spin) {
     audit.require(!model.bodies.is_alive(slot) || model.axial_inertia(slot) > 0, "body ", slot,
                   " spins, but is not a rod");
     audit.require(std::isfinite(spin.momentum) && std::isfinite(spin.angle), "the spin of ", slot, " is not finite");
@@ -63,7 +64,7 @@ void RodSpins::add_energy(const Scope& scope, Energies& sum) {
 
 void RodSpins::add_momentum(const Scope& scope, Momenta& sum) {
   scope.for_each_body_in(scope.model.spins,
-                         [&](std::uint32_t body) { sum.angular += scope.model.spin_momentum(body); });
+                         [&](std::uint32_t body) { sum.angular += inner_momentum(scope.model, body); });
 }
 
 // A force of inertia: with the axis the momentum of the spin turns.
@@ -78,6 +79,24 @@ void RodSpins::add_loads(const LastStep& step, std::uint32_t body, LoadReader& r
   const BodyId part = model.particles[pair.p].part;
   reader.take({.particle = pair.p, .force = -on_q, .kind = Load::Kind::inertia, .part = part});
   reader.take({.particle = pair.q, .force = on_q, .kind = Load::Kind::inertia, .part = part});
+}
+
+void RodSpins::set(Model& model, std::uint32_t body, double angular_velocity) {
+  if (model.spins.has(body) != (angular_velocity != 0)) model.touch_body(body);
+  if (angular_velocity == 0)
+    model.spins.erase(body);
+  else
+    model.spins.make(body).momentum = model.axial_inertia(body) * angular_velocity;
+}
+
+void RodSpins::forget_body(Model& model, std::uint32_t body) { model.spins.erase(body); }
+
+void RodSpins::inertia_changed(Model& model, std::uint32_t body) {
+  if (model.spins.has(body) && !(model.axial_inertia(body) > 0)) model.spins.erase(body);  // it is not a rod any more
+}
+
+Vec3 RodSpins::inner_momentum(const Model& model, std::uint32_t body) {
+  return model.spins.has(body) ? model.spins.at(body).momentum * model.rod_axis(body) : Vec3{};
 }
 
 }  // namespace iota::ingredient

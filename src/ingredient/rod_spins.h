@@ -5,17 +5,33 @@
 
 namespace iota::ingredient {
 
+/// The turning of a rod about itself, of which its two points know nothing.
+struct RodSpin {
+  double momentum =
+      0;             ///< about the line from the first to the second particle of its inertia pair, kg m^2/s; constant
+  double angle = 0;  ///< turned by since it began, rad
+  double drawn = 0;  ///< of that, what the drawn frame shows
+};
+
 /// Rods turn about themselves. Their two points know nothing of that but a gyroscopic force.
 class RodSpins : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.spins.archive(ar, model.bodies.slot_count());
-  }
+  struct Tables {
+    SideTable<RodSpin> spins;  ///< of bodies that are rods
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure& structure) {
+      spins.archive(ar, structure.bodies.slot_count());
+    }
+  };
   static void validate(const Model&, model::Audit&);
+  static void forget_body(Model&, std::uint32_t body);
+  static void inertia_changed(Model&, std::uint32_t body);
+  static Vec3 inner_momentum(const Model&, std::uint32_t body);
   static void add_energy(const Scope&, Energies&);
   static void add_momentum(const Scope&, Momenta&);
-  static double energy(const Model&, std::uint32_t body);  ///< of one that spins, J
+  static void set(Model&, std::uint32_t body, double angular_velocity);  ///< of a rod about itself, rad/s
+  static double energy(const Model&, std::uint32_t body);                ///< of one that spins, J
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
 
   void build(const IslandMap&, Problem&);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "model/model.h"
+#include "model/structure.h"
 
 #include <cstdint>
 
@@ -11,32 +11,31 @@ namespace iota::ingredient {
 /// to one that moves. A bond or joint belongs to the body of its first end.
 class Scope {
  public:
-  explicit Scope(const model::Model& model) : model(model) {}
-  Scope(const model::Model& model, std::uint32_t body) : model(model), body_(body) {}
+  explicit Scope(const model::Model& model, std::uint32_t body = model::none);
 
   const model::Model& model;
 
   bool is_whole() const { return body_ == model::none; }
-  bool is_active(std::uint32_t body) const { return model.bodies[body].kind != BodyKind::inactive; }
+  bool is_active(std::uint32_t body) const { return structure_.bodies[body].kind != BodyKind::inactive; }
 
   /// visit(slot, particle)
   template <class Visit>
   void for_each_particle(Visit visit) const {
     if (is_whole())
-      model.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
+      structure_.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
         if (is_active(p.body)) visit(slot, p);
       });
     else if (is_active(body_))
-      model.for_each_particle_of(body_, [&](std::uint32_t p) { visit(p, model.particles[p]); });
+      structure_.for_each_particle_of(body_, [&](std::uint32_t p) { visit(p, structure_.particles[p]); });
   }
   template <class Visit>
   void for_each_inertia_pair(Visit visit) const {
     if (is_whole())
-      model.inertia_pairs.for_each([&](std::uint32_t, const model::InertiaPair& pair) {
+      structure_.inertia_pairs.for_each([&](std::uint32_t, const model::InertiaPair& pair) {
         if (is_active(pair.body)) visit(pair);
       });
     else if (is_active(body_))
-      model.for_each_inertia_of(body_, [&](std::uint32_t i) { visit(model.inertia_pairs[i]); });
+      structure_.for_each_inertia_of(body_, [&](std::uint32_t i) { visit(structure_.inertia_pairs[i]); });
   }
   /// visit(body): of those that have a value in a side table.
   template <class T, class Visit>
@@ -48,7 +47,8 @@ class Scope {
   }
 
  private:
-  std::uint32_t body_ = model::none;
+  const model::Structure& structure_;
+  std::uint32_t body_;
 };
 
 struct Energies {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/tables.h"
 
+#include "ingredient/model.h"
 namespace iota::ingredient {
 
 std::vector<std::string> validate(const model::Model& model) {

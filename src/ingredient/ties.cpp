@@ -2,6 +2,7 @@
 #include "ingredient/ties.h"
 
 #include "base/text.h"
+#include "ingredient/model.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,10 +8,6 @@ namespace iota::ingredient {
 /// Particles that are unknowns of their own though they are in no basis stay at their places in their bodies.
 class Ties : public NoAnswers {
  public:
-  template <class Archive>
-  static void archive(Model& model, Archive& ar) {
-    model.ties.archive(ar, model.particles.slot_count());
-  }
   static void validate(const Model&, model::Audit&);
   static double worst_gap(const Model&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);

@@ -74,7 +74,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
     for (std::size_t i = c * chunk; i < std::min(in_order_.size(), (c + 1) * chunk); ++i) {
       const Place& place = in_order_[i];
       model::Ring& ring = model.rings[place.ring];
-      model::Push* const push = model.pushes.find(place.ring);
+      ingredient::Push* const push = model.pushes.find(place.ring);
       if (push) push->before = std::exchange(push->force, Vec3{});
       const Vec3 force = push ? push->before : Vec3{};
       if (model.bodies[place.body].kind == BodyKind::resting) {

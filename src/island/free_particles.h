@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/parallel.h"
-#include "model/model.h"
+#include "ingredient/model.h"
 #include "solver/integrator.h"
 
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ingredient/ingredient_list.h"
-#include "model/model.h"
+#include "ingredient/model.h"
 #include "solver/integrator.h"
 
 #include <iota/solver.h>

@@ -98,9 +98,7 @@ bool Islands::is_due(const Followed& followed, const Model& model) const {
 // What an island takes for granted and adds to tables, which is not for many threads.
 void Islands::make_ready(Model& model, std::uint32_t body) {
   model.prefer_unknowns(body);
-  const BodyKind kind = model.bodies[body].kind;
-  if (kind == BodyKind::static_ || kind == BodyKind::scripted)
-    model.for_each_particle_of(body, [&](std::uint32_t p) { (void)model.nails.make(model.particles[p].ring); });
+  ingredient::prepare(model, body);
 }
 
 bool Islands::update(Model& model, const Parallel& parallel) {
@@ -169,11 +167,7 @@ void Islands::gather_waiting(const Model& model) {
             if (free_particles_.contains(a)) free_particles_.set(a, false), is_waiting_[a] = 1;  // no longer free
             if (is_waiting_[a]) is_waiting_[a] = 0, members_.push_back(a);
           };
-          model.for_each_bond_of(p, [&](std::uint32_t b) {
-            const model::Bond& bond = model.bonds[b];
-            if (bond.ties()) reach(model.particles[bond.p == p ? bond.q : bond.p].body);
-          });
-          model.for_each_body_tied_to(p, reach);
+          model.visit_tied(p, Model::Ties::all, reach);
         });
       });
     std::sort(members_.begin(), members_.end());  // so that the result does not depend on the order of discovery

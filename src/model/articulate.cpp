@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/model.h"
+#include "model/structure.h"
 
 #include <algorithm>
 
 namespace iota::model {
 
-void Model::touch(std::uint32_t articulate, Touch what) {
+void Structure::touch(std::uint32_t articulate, Touch what) {
   ++articulates[articulate].version;
   articulates[articulate].disturbed = 1;
   articulates[articulate].standing_gap = 0;  // a conflict may be solvable now
@@ -18,21 +18,21 @@ namespace {
 constexpr std::size_t most_local_changes = 1024;  // after more of them islands are built anew
 }
 
-void Model::touch_locally(std::uint32_t body) {
+void Structure::touch_locally(std::uint32_t body) {
   const bool few = local_change_.bodies.size() < most_local_changes;
   if (few) local_change_.bodies.push_back(body);
   scene.bodies.note(body);
   touch(bodies[body].articulate, few ? locally : anything);
 }
 
-void Model::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
+void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
   // Without room the bodies of the ring are in islands that are built anew, and nobody asks for the ring.
   if (local_change_.bodies.size() < most_local_changes || rings[ring].count == 0)
     local_change_.rings.push_back({ring, split_from});
   for_each_in_ring(ring, [&](std::uint32_t p) { touch_locally(particles[p].body); });
 }
 
-void Model::take_touched(Touched& taken) {
+void Structure::take_touched(Touched& taken) {
   taken.articulates.swap(touched_);
   std::swap(taken.local, local_change_);
   touched_.clear(), local_change_.bodies.clear(), local_change_.rings.clear(), taken.only_locally.clear();
@@ -43,7 +43,7 @@ void Model::take_touched(Touched& taken) {
 }
 
 // The smaller list is hung behind the larger as it is; only its bodies have to learn where they are now.
-void Model::join_articulates(std::uint32_t a, std::uint32_t b) {
+void Structure::join_articulates(std::uint32_t a, std::uint32_t b) {
   if (a == b) return;
   if (articulates[a].count < articulates[b].count) std::swap(a, b);
   touch(a, locally), touch(b, locally);
@@ -61,7 +61,7 @@ void Model::join_articulates(std::uint32_t a, std::uint32_t b) {
   articulates.destroy(b);
 }
 
-bool Model::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
+bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   if (body_a == body_b) return false;
   // Two breadth-first floods in turn, each a list of bodies that also serves as its queue. A mark says whose a body is.
   Marks& marks = body_marks_;
@@ -86,9 +86,7 @@ bool Model::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
       for_each_in_ring(particles[p].ring, [&](std::uint32_t hinged) {
         if (hinged != p) reach(which, particles[hinged].body);
       });
-      for_each_closing_of(p, [&](std::uint32_t c) {  // on their way to each other: already one problem
-        reach(which, particles[closings[c].p == p ? closings[c].q : closings[c].p].body);
-      });
+      visit_joined(p, [&](std::uint32_t body) { reach(which, body); });
     });
   };
   std::uint32_t which = 0;
@@ -105,36 +103,6 @@ bool Model::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
     enter_articulate(body, own);
   }
   return true;
-}
-
-bool Model::is_tied_to_world(std::uint32_t body) const {
-  bool tied = false;
-  for_each_particle_of(body, [&](std::uint32_t p) {
-    for_each_constraint_of(p, [&](std::uint32_t c, int) {
-      tied = tied || (constraints[c].active && body_of_side(*this, constraints[c], 1) == none);
-    });
-  });
-  return tied;
-}
-
-std::vector<std::uint32_t> Model::tied_bodies(std::span<const std::uint32_t> start, Ties ties) const {
-  std::vector<std::uint32_t> reached, articulates_reached;
-  std::vector<std::uint8_t> is_reached(articulates.slot_count(), 0);
-  const auto reach = [&](std::uint32_t body) {
-    const std::uint32_t a = bodies[body].articulate;
-    if (is_reached[a]) return;
-    is_reached[a] = 1;
-    for_each_body_of(a, [&](std::uint32_t b) { reached.push_back(b); });
-  };
-  for (const std::uint32_t body : start) reach(body);
-  for (std::size_t next = 0; next < reached.size(); ++next)
-    for_each_particle_of(reached[next], [&](std::uint32_t p) {
-      for_each_bond_of(p, [&](std::uint32_t b) {
-        if (ties == Ties::all && bonds[b].ties()) reach(particles[bonds[b].p == p ? bonds[b].q : bonds[b].p].body);
-      });
-      for_each_body_tied_to(p, reach);
-    });
-  return reached;
 }
 
 }  // namespace iota::model

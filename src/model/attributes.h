@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shape/shape.h"
-
 #include <iota/emitters.h>
 
 #include <array>
@@ -25,22 +23,6 @@ struct Attributes {
   double moment = 0, damping = 0;               ///< kg m^2, 1/s
   Vec3 preferred;                               ///< unit direction that its local z is drawn to, world
   double stiffness = 0, alignment_damping = 0;  ///< N m / rad, N m s
-};
-
-/// EmitterOptions as plain data, and how far it has come.
-struct Emitter {
-  shape::Data source;
-  std::uint32_t active = 1, padding = 0;
-  double rate = 0;
-  Vec3 position, velocity;
-  Quaternion orientation;
-  double velocity_spread = 0, lifetime = 1, lifetime_spread = 0, mass = 0, damping = 0;
-  std::uint32_t max_count = 0, key_count = 0;
-  std::array<AttributeKey, 8> keys{};
-  std::uint64_t seed = 0, draws = 0;  ///< numbers drawn so far: the whole state of its dice
-  double due = 0;                     ///< births that are owed, a fraction
-  std::uint32_t alive = 0, padding2 = 0;
-  std::uint64_t born = 0;
 };
 
 }  // namespace iota::model

@@ -6,10 +6,9 @@
 
 namespace iota::model {
 
-Audit::Audit(const Model& model)
+Audit::Audit(const Structure& model)
     : model_(model),
       uses_(model.particles.slot_count(), 0),
-      law_uses_(model.laws.slot_count(), 0),
       in_body_(model.bodies.slot_count(), 0),
       in_ring_(model.rings.slot_count(), 0),
       in_articulate_(model.articulates.slot_count(), 0),
@@ -31,23 +30,14 @@ void Audit::require_group(const char* what, std::uint32_t slot, std::uint32_t gr
   require(group == none || model_.groups.is_alive(group), what, " ", slot, " acts on no living group");
 }
 
-void Audit::use_law(const char* what, std::uint32_t slot, std::uint32_t law) {
-  require(model_.laws.is_alive(law), what, " ", slot, " has no living law");
-  if (model_.laws.is_alive(law)) ++law_uses_[law];
-}
-
 void Audit::check_structure() {
   check_particles();
   check_rings();
   check_bodies();
-  require_owners("lists", model_.references, model_.particles);
   require_owners("a fuse", model_.fuses, model_.particles);
   model_.twins.for_each([&](std::uint32_t slot, const Twin& t) {
     require(model_.particles.is_alive(t.particle) && t.mass >= 0, "twin ", slot, " is of no living particle");
   });
-  model_.cosmetic_bonds.for_each(
-      [&](std::uint32_t slot, const CosmeticBond& b) { require_ends("cosmetic bond", slot, b); });
-  require_listed("cosmetic bond", model_.cosmetic_bonds, &References::first_cosmetic_bond);
 }
 
 void Audit::check_particles() {
@@ -116,9 +106,9 @@ void Audit::check_counts() {
   model_.particles.for_each([&](std::uint32_t slot, const Particle& p) {
     require(p.uses == uses_[slot], "particle ", slot, " counts ", p.uses, " uses, has ", uses_[slot]);
   });
-  model_.laws.for_each([&](std::uint32_t slot, const Law& l) {
-    require(l.uses == law_uses_[slot], "law ", slot, " counts ", l.uses, " uses, has ", law_uses_[slot]);
-  });
+  for (const auto& [item, count] : counts_)
+    require(count.found == count.told, item.first, " ", item.second, " counts ", count.told, " uses, has ",
+            count.found);
 }
 
 void Audit::check_articulates() {

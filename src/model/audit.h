@@ -2,8 +2,9 @@
 #pragma once
 
 #include "base/text.h"
-#include "model/model.h"
+#include "model/structure.h"
 
+#include <map>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ namespace iota::model {
 /// of how edits keep it.
 class Audit {
  public:
-  explicit Audit(const Model&);
+  explicit Audit(const Structure&);
 
   template <class... Parts>
   void require(bool condition, const Parts&... parts) {
@@ -28,12 +29,13 @@ class Audit {
   }
   void require_ends(const char* what, std::uint32_t slot, const Ends&);
   /// Every end of an item is in the list of its particle, and in no other.
-  template <class Table>
-  void require_listed(const char* what, const Table& items, std::uint32_t References::* first);
+  template <class T, class IdType>
+  void require_listed(const char* what, const EndTable<T, IdType>& items);
   /// `group` lives, or is `none`.
   void require_group(const char* what, std::uint32_t slot, std::uint32_t group);
-  /// An item uses a law, which must live.
-  void use_law(const char* what, std::uint32_t slot, std::uint32_t law);
+  /// An item uses one of another kind, "law" for instance; that one counts its uses and says so, before or after.
+  void use(const char* kind, std::uint32_t slot) { ++counts_[{kind, slot}].found; }
+  void require_uses(const char* kind, std::uint32_t slot, std::uint32_t count) { counts_[{kind, slot}].told = count; }
 
   /// An item needs a particle as an unknown of its own.
   void use_particle(std::uint32_t particle) { ++uses_[particle]; }
@@ -52,20 +54,24 @@ class Audit {
   void check_articulates();
   std::uint32_t root(std::uint32_t body);
 
-  const Model& model_;
+  const Structure& model_;
   std::vector<std::string> complaints_;
-  std::vector<std::uint32_t> uses_;      // of each particle
-  std::vector<std::uint32_t> law_uses_;  // of each law
+  std::vector<std::uint32_t> uses_;  // of each particle
+  struct Count {
+    std::uint32_t found = 0, told = 0;
+  };
+  std::map<std::pair<std::string, std::uint32_t>, Count> counts_;
   std::vector<std::uint32_t> in_body_, in_ring_, in_articulate_;
   std::vector<std::uint32_t> parent_;  // of each body, in the forest of bodies that hang together
 };
 
-template <class Table>
-void Audit::require_listed(const char* what, const Table& items, std::uint32_t References::* first) {
+template <class T, class IdType>
+void Audit::require_listed(const char* what, const EndTable<T, IdType>& items) {
+  require_owners("lists", items.heads, model_.particles);
   std::uint32_t listed = 0;
-  model_.references.for_each([&](std::uint32_t slot, const References& of) {
-    for (std::uint32_t link = of.*first; link != none; link = items[link / 2].next[link % 2]) {
-      const bool good = items.is_alive(link / 2) && (link % 2 ? items[link / 2].q : items[link / 2].p) == slot;
+  items.heads.for_each([&](std::uint32_t slot, const ListHead& head) {
+    for (std::uint32_t link = head.first; link != none; link = items[link / 2].next[link % 2]) {
+      const bool good = items.is_alive(link / 2) && items[link / 2].at(link % 2) == slot;
       require(good, "particle ", slot, " lists ", what, " ", link / 2, ", which does not end there");
       if (!good || ++listed > 2 * items.size()) return;
     }

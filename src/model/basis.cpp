@@ -19,7 +19,7 @@ double distance_from_span(Vec3 r, const std::array<Vec3, 3>& axes, int count) {
 /// Affine coordinates in a body's basis points, by the Gram matrix of the vectors from the first to the others.
 class BasisWeights {
  public:
-  BasisWeights(const Model& model, std::uint32_t body_slot) {
+  BasisWeights(const Structure& model, std::uint32_t body_slot) {
     const Body& body = model.bodies[body_slot];
     origin_ = model.position(body.basis[0]);
     for (int i = 1; i < body.rank; ++i) vectors_[i - 1] = model.position(body.basis[i]) - origin_;
@@ -47,7 +47,7 @@ class BasisWeights {
 // two ends. Everything else is an affine combination of these. A body made of solids prefers points that are unknowns
 // anyway, as long as they reach a fifth as far. Ties go to the earlier one, whatever round-off says.
 // Markers have no mass to be a basis with.
-void Model::rebuild_basis(std::uint32_t body_slot) {
+void Structure::rebuild_basis(std::uint32_t body_slot) {
   constexpr double flat = 1e-7;  // of the extent: thinner counts as a point, line or plane
   constexpr double tie = 1 + 1e-6, far_enough = 0.2;
   Body& body = bodies[body_slot];
@@ -116,7 +116,7 @@ void Model::rebuild_basis(std::uint32_t body_slot) {
 // Rods have less inertia than point masses at their ends: a negative pair. With less mass at an end than the rod had
 // (assigned, or shared with a twin), some motions would have negative kinetic energy. If each mass is above twice the sum
 // of its pairs, as in a rod, the matrix is diagonally dominant whatever else is hinged or tied there.
-void Model::keep_inertia_positive(std::uint32_t body_slot) {
+void Structure::keep_inertia_positive(std::uint32_t body_slot) {
   std::vector<std::pair<std::uint32_t, double>> taken;  // by each pair from each of its ends
   for_each_inertia_of(body_slot, [&](std::uint32_t i) {
     const InertiaPair& pair = inertia_pairs[i];
@@ -131,11 +131,10 @@ void Model::keep_inertia_positive(std::uint32_t body_slot) {
     for (; i < taken.size() && taken[i].first == particle; ++i) sum += taken[i].second;
     if (!(particles[particle].mass > 2.001 * sum)) remove_inertia_of(body_slot, particle);
   }
-  if (spins.has(body_slot) && !(axial_inertia(body_slot) > 0))
-    spins.erase(body_slot);  // the body is not a rod any more
+  inertia_changed(body_slot);
 }
 
-void Model::prefer_unknowns(std::uint32_t body_slot) {
+void Structure::prefer_unknowns(std::uint32_t body_slot) {
   Body& body = bodies[body_slot];
   if (body.first_solid == none || body.count == body.rank) return;
   std::uint32_t needs = 0;
@@ -160,7 +159,7 @@ void Model::prefer_unknowns(std::uint32_t body_slot) {
   rebuild_basis(body_slot);
 }
 
-std::uint32_t Model::make_marker(std::uint32_t body, const Vec3& position) {
+std::uint32_t Structure::make_marker(std::uint32_t body, const Vec3& position) {
   const std::uint32_t marker = make_particle(body, position, 0, {});
   ties.make(marker).weights = BasisWeights(*this, body).of(position);
   Ring& ring = rings[particles[marker].ring];
@@ -169,13 +168,13 @@ std::uint32_t Model::make_marker(std::uint32_t body, const Vec3& position) {
   return marker;
 }
 
-double Model::extent(std::uint32_t body) const {
+double Structure::extent(std::uint32_t body) const {
   double longest = 0;
   for (int k = 0; k < bodies[body].row_count; ++k) longest = std::max(longest, row(body, k).length);
   return longest;
 }
 
-std::array<double, 4> Model::weights(std::uint32_t particle) const {
+std::array<double, 4> Structure::weights(std::uint32_t particle) const {
   const int own = particles[particle].basis_index;
   if (own < 0) return ties[particle].weights;
   std::array<double, 4> weights{};
@@ -183,7 +182,7 @@ std::array<double, 4> Model::weights(std::uint32_t particle) const {
   return weights;
 }
 
-std::pair<Vec3, Vec3> Model::carried(std::uint32_t particle) const {
+std::pair<Vec3, Vec3> Structure::carried(std::uint32_t particle) const {
   const Body& body = bodies[particles[particle].body];
   const std::array<double, 4> w = weights(particle);
   Vec3 x, v;
@@ -195,13 +194,13 @@ std::pair<Vec3, Vec3> Model::carried(std::uint32_t particle) const {
   return {x, v};
 }
 
-bool Model::follows_basis(std::uint32_t particle) const {
+bool Structure::follows_basis(std::uint32_t particle) const {
   if (particles[particle].basis_index >= 0) return true;
   const auto [x, v] = carried(particle);
   return norm(x - position(particle)) < 1e-9 && norm(v - velocity(particle)) < 1e-9;
 }
 
-BodyId Model::part_at(std::uint32_t body, const Vec3& place) const {
+BodyId Structure::part_at(std::uint32_t body, const Vec3& place) const {
   BodyId part = bodies.id(body);
   double least = -1;
   for_each_particle_of(body, [&](std::uint32_t p) {
@@ -212,7 +211,7 @@ BodyId Model::part_at(std::uint32_t body, const Vec3& place) const {
   return part;
 }
 
-bool Model::spans(std::uint32_t body_slot, const Vec3& place) const {
+bool Structure::spans(std::uint32_t body_slot, const Vec3& place) const {
   constexpr double off = 1e-6;  // of the extent: a place farther from the body's point, line or plane is not on it
   const Body& body = bodies[body_slot];
   if (body.rank == 0) return false;

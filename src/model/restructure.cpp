@@ -12,7 +12,8 @@ namespace iota::model {
 namespace {
 
 /// Merging two rings would put two particles of one body in one place, which no rigid body can.
-void require_no_shared_body(const Model& model, std::uint32_t ring_a, std::uint32_t ring_b, std::uint32_t except_body) {
+void require_no_shared_body(const Structure& model, std::uint32_t ring_a, std::uint32_t ring_b,
+                            std::uint32_t except_body) {
   model.for_each_in_ring(ring_a, [&](std::uint32_t a) {
     model.for_each_in_ring(ring_b, [&](std::uint32_t b) {
       const std::uint32_t body = model.particles[a].body;
@@ -25,7 +26,7 @@ void require_no_shared_body(const Model& model, std::uint32_t ring_a, std::uint3
   });
 }
 
-bool is_fixed(const Model& model, std::uint32_t ring, std::uint32_t except_body = none) {
+bool is_fixed(const Structure& model, std::uint32_t ring, std::uint32_t except_body = none) {
   bool fixed = false;
   model.for_each_in_ring(ring, [&](std::uint32_t p) {
     const std::uint32_t body = model.particles[p].body;
@@ -37,22 +38,20 @@ bool is_fixed(const Model& model, std::uint32_t ring, std::uint32_t except_body 
 
 /// All particles of `from` join `into`; position and velocity become the mass-weighted means, unless a nail or a body that
 /// does not give way decides.
-Edit merge_rings(Model& model, std::uint32_t into, std::uint32_t from) {
+Edit merge_rings(Structure& model, std::uint32_t into, std::uint32_t from) {
   Ring& r = model.rings[into];
   const Ring s = model.rings[from];
   const double m_r = model.ring_mass(into), m_s = model.ring_mass(from),
                share = m_r + m_s > 0 ? m_s / (m_r + m_s) : 0.5;
   Edit edit{r.position != s.position, r.velocity != s.velocity || r.nailed || s.nailed};
-  if (r.nailed || is_fixed(model, into)) {
-    // the first one's nail wins
-  } else if (s.nailed || is_fixed(model, from)) {
+  const bool stays = r.nailed || is_fixed(model, into);  // the first one's nail wins
+  const bool replaces = !stays && (s.nailed || is_fixed(model, from));
+  if (replaces)
     r.nailed = s.nailed, r.position = s.position;
-    model.nails.copy(from, into);
-  } else {
+  else if (!stays)
     r.position += share * (s.position - r.position);
-  }
   r.velocity += share * (s.velocity - r.velocity);
-  if (const Vec3 force = model.pushes[from].force; force != Vec3{}) model.pushes.make(into).force += force;
+  model.ring_merged(into, from, replaces);
   for (std::uint32_t left = s.count; left > 0; --left) {  // the last one takes the ring `from` with it
     const std::uint32_t moved = model.rings[from].first;
     model.take_from_ring(moved);
@@ -62,11 +61,14 @@ Edit merge_rings(Model& model, std::uint32_t into, std::uint32_t from) {
 }
 
 /// q, of the same body as p, becomes p: mass, bonds and inertia pairs. Both must be in one ring already or q alone in its.
-void absorb_particle(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
+void absorb_particle(Structure& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
   if (model.particles[q].inactive != model.particles[p].inactive)
     model.particles[q].mass *= model.particles[p].inactive ? inactive_share : 1 / inactive_share;
   model.particles[p].mass += model.particles[q].mass;
-  model.redirect_uses(q, p);
+  if (const double* const force = model.fuses.find(q))  // the weaker one counts
+    model.set_fuse(p, model.fuses.has(p) ? std::min(*force, model.fuses[p]) : *force);
+  model.absorb_uses(q, p);
+  model.acting_changed(p);
   model.twins.for_each([&](std::uint32_t, Twin& t) {
     if (t.particle == q) t.particle = p;
   });
@@ -77,7 +79,7 @@ void absorb_particle(Model& model, std::uint32_t p, std::uint32_t q, Restructure
 }
 
 /// All particles of body b become body a's; where both have one in the same ring, one absorbs the other.
-void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
+void absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
   const BodyKind kind = model.bodies[a].kind;
   if (is_endless(model, b) && kind != BodyKind::static_ && kind != BodyKind::scripted)
     throw std::invalid_argument("combine: body " + std::to_string(b) + " is a half-space, which has no mass, so body " +
@@ -109,7 +111,7 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
     const std::uint32_t twin = twin_in(a, moved);
     model.take_from_body(moved);
     model.add_to_body(moved, a);
-    model.mute_bonds_of(moved);
+    model.acting_changed(moved);
     if (twin == none) continue;
     model.for_each_inertia_of(a, [&](std::uint32_t i) {
       InertiaPair& pair = model.inertia_pairs[i];
@@ -132,14 +134,14 @@ void absorb_body(Model& model, std::uint32_t a, std::uint32_t b, RestructureRepo
   model.touch_body(a);
 }
 
-std::uint32_t massive_count(const Model& model, std::uint32_t body) {
+std::uint32_t massive_count(const Structure& model, std::uint32_t body) {
   std::uint32_t count = 0;
   model.for_each_particle_of(body, [&](std::uint32_t p) { count += !model.particles[p].is_marker(); });
   return count;
 }
 
 /// q can leave the body of p only with mass of its own, and must leave some behind.
-void require_mass_on_its_own(const Model& model, std::uint32_t p, std::uint32_t q) {
+void require_mass_on_its_own(const Structure& model, std::uint32_t p, std::uint32_t q) {
   if (model.particles[q].is_marker())
     throw std::invalid_argument("separate: particle " + std::to_string(q) +
                                 " is massless and cannot leave the body that carries it; give it a mass first");
@@ -152,7 +154,7 @@ void require_mass_on_its_own(const Model& model, std::uint32_t p, std::uint32_t 
 }
 
 /// The bodies at the other members of a particle's ring.
-std::vector<std::uint32_t> ring_neighbors(const Model& model, std::uint32_t particle) {
+std::vector<std::uint32_t> ring_neighbors(const Structure& model, std::uint32_t particle) {
   std::vector<std::uint32_t> bodies;
   model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t other) {
     if (other != particle) bodies.push_back(model.particles[other].body);
@@ -160,25 +162,8 @@ std::vector<std::uint32_t> ring_neighbors(const Model& model, std::uint32_t part
   return bodies;
 }
 
-/// Destroys everything that refers to a particle before it is destroyed. Articulates are split at once: no cut may find one of another
-/// cut waiting.
-void destroy_uses(Model& model, std::uint32_t particle) {
-  model.for_each_bond_of(particle, [&](std::uint32_t b) { model.remove_bond(b); });
-  model.for_each_closing_of(particle, [&](std::uint32_t c) {
-    const std::array held{model.particles[model.closings[c].p].body, model.particles[model.closings[c].q].body};
-    model.remove_closing(c);
-    split_where_apart(model, held);
-  });
-  while (model.references[particle].first_constraint != none) {
-    const std::uint32_t link = model.references[particle].first_constraint;
-    model.constraints[link / place_count].owned &= static_cast<std::uint8_t>(~(1u << link % place_count));
-    destroy_constraint(model, link / place_count);
-  }
-  model.for_each_cosmetic_bond_of(particle, [&](std::uint32_t b) { model.remove_cosmetic_bond(b); });
-}
-
 /// The markers of a body that its massive particles do not reach any more.
-std::vector<ParticleId> stray_markers(const Model& model, std::uint32_t body) {
+std::vector<ParticleId> stray_markers(const Structure& model, std::uint32_t body) {
   std::vector<ParticleId> strays;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     if (model.particles[p].is_marker() && !model.spans(body, model.position(p)))
@@ -188,7 +173,7 @@ std::vector<ParticleId> stray_markers(const Model& model, std::uint32_t body) {
 }
 
 /// Call it after everything else is hinged again: it splits articulates as they are.
-void destroy_strays(Model& model, std::uint32_t body, const std::vector<ParticleId>& strays,
+void destroy_strays(Structure& model, std::uint32_t body, const std::vector<ParticleId>& strays,
                     std::vector<std::string>& notes) {
   for (const ParticleId id : strays)
     if (model.particles.contains(id)) destroy_particle(model, id.slot);
@@ -199,26 +184,11 @@ void destroy_strays(Model& model, std::uint32_t body, const std::vector<Particle
 
 }  // namespace
 
-void destroy_stray_markers(Model& model, std::uint32_t body, std::vector<std::string>& notes) {
+void destroy_stray_markers(Structure& model, std::uint32_t body, std::vector<std::string>& notes) {
   destroy_strays(model, body, stray_markers(model, body), notes);
 }
 
-std::uint32_t closing_between(const Model& model, std::uint32_t p, std::uint32_t q) {
-  std::uint32_t found = none;
-  model.for_each_closing_of(p, [&](std::uint32_t slot) {
-    if (model.closings[slot].p == q || model.closings[slot].q == q) found = slot;
-  });
-  return found;
-}
-
-void call_off(Model& model, std::uint32_t closing) {
-  const std::vector<std::uint32_t> bodies{model.particles[model.closings[closing].p].body,
-                                          model.particles[model.closings[closing].q].body};
-  model.remove_closing(closing);
-  split_where_apart(model, bodies);
-}
-
-void require_can_meet(const Model& model, std::uint32_t p, std::uint32_t q) {
+void require_can_meet(const Structure& model, std::uint32_t p, std::uint32_t q) {
   const std::uint32_t a = model.particles[p].ring, b = model.particles[q].ring;
   const std::uint32_t body = model.particles[p].body;  // of one body, q leaves the ring that is brought to p
   const std::uint32_t leaving = body == model.particles[q].body ? body : none;
@@ -229,7 +199,7 @@ void require_can_meet(const Model& model, std::uint32_t p, std::uint32_t q) {
                                 " are apart, and static or scripted bodies and nails hold both; release or move one");
 }
 
-Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
+Edit combine_particles(Structure& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
   if (p == q) return {};
   const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
   const std::uint32_t ring_p = model.particles[p].ring, ring_q = model.particles[q].ring;
@@ -249,7 +219,7 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
     if (model.rings[ring_p].count == 1) model.rings[ring_p].velocity = velocity;
     if (!q_was_hinged && left_behind.nailed && !model.rings[ring_p].nailed) {
       model.rings[ring_p].nailed = 1;
-      model.nails.copy(ring_q, ring_p);
+      model.ring_merged(ring_p, ring_q, true);
       edit.moved = true;
     }
     absorb_particle(model, p, q, report);
@@ -268,7 +238,6 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
 
   require_no_shared_body(model, ring_p, ring_q, none);
   require_can_meet(model, p, q);
-  if (const std::uint32_t closing = closing_between(model, p, q); closing != none) model.remove_closing(closing);
   model.touch_ring(ring_q);
   const Edit edit = merge_rings(model, ring_p, ring_q);
   model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
@@ -276,14 +245,14 @@ Edit combine_particles(Model& model, std::uint32_t p, std::uint32_t q, Restructu
   return edit;
 }
 
-Edit combine_bodies(Model& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
+Edit combine_bodies(Structure& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
   if (a == b) return {};
   report.changed = true;
   absorb_body(model, a, b, report);
   return {false, true};
 }
 
-Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
+Edit separate_particles(Structure& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
   const std::uint32_t body = model.particles[p].body;
   if (p == q) {  // one particle: a second one at the same place
     model.particles[p].mass /= 2;
@@ -336,39 +305,22 @@ Edit separate_particles(Model& model, std::uint32_t p, std::uint32_t q, Restruct
     return {};
   }
 
-  if (const std::uint32_t closing = closing_between(model, p, q); closing != none) {  // not met yet: called off
-    report.changed = true;
-    call_off(model, closing);
-  }
+  report.changed = model.call_off(p, q);  // not met yet
   return {};
 }
 
-void end_settled_closings(Model& model, std::vector<std::string>& notes) {
-  for (std::uint32_t slot = 0; slot < model.closings.slot_count(); ++slot) {
-    if (!model.closings.is_alive(slot)) continue;
-    const Particle& p = model.particles[model.closings[slot].p];
-    const Particle& q = model.particles[model.closings[slot].q];
-    if (p.ring != q.ring && p.body != q.body) continue;
-    if (p.ring != q.ring)
-      notes.push_back("particles " + std::to_string(model.closings[slot].p) + " and " +
-                      std::to_string(model.closings[slot].q) +
-                      " were on their way to each other, but are of one rigid body now: called off");
-    model.remove_closing(slot);
-  }
-}
-
-void split_where_apart(Model& model, std::span<const std::uint32_t> bodies) {
+void split_where_apart(Structure& model, std::span<const std::uint32_t> bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j)
       if (model.bodies[bodies[i]].articulate == model.bodies[bodies[j]].articulate)
         model.split_articulate(bodies[i], bodies[j]);
 }
 
-void destroy_particle(Model& model, std::uint32_t particle) {
+void destroy_particle(Structure& model, std::uint32_t particle) {
   const std::uint32_t body = model.particles[particle].body;
   const bool massive = !model.particles[particle].is_marker();
   if (massive && massive_count(model, body) == 1) return destroy_body(model, body);
-  destroy_uses(model, particle);
+  model.drop_uses(particle);
   std::vector<std::uint32_t> apart = ring_neighbors(model, particle);
   model.remove_particle(particle);
   model.touch_body(body);
@@ -379,10 +331,10 @@ void destroy_particle(Model& model, std::uint32_t particle) {
   destroy_stray_markers(model, body, model.notes);
 }
 
-void destroy_body(Model& model, std::uint32_t body) {
+void destroy_body(Structure& model, std::uint32_t body) {
   while (model.bodies[body].first != none) {
     const std::uint32_t particle = model.bodies[body].first;
-    destroy_uses(model, particle);
+    model.drop_uses(particle);
     std::vector<std::uint32_t> apart = ring_neighbors(model, particle);
     model.remove_particle(particle);
     apart.push_back(body);

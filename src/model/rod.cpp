@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rods: two points with an inertia pair, which turn about themselves beside what the points do.
-#include "model/model.h"
+// Rods: two points with an inertia pair.
+#include "model/structure.h"
 
 #include <algorithm>
 
 namespace iota::model {
 
 // Mass [A B; B A] with A + B = m/2 and A - B = m/2 + 2J = 2 It/L^2, and of a cylinder It = m L^2/12 + Ia/2.
-double Model::axial_inertia(std::uint32_t slot) const {
+double Structure::axial_inertia(std::uint32_t slot) const {
   const Body& body = bodies[slot];
   if (body.rank != 2 || body.first_inertia == none || inertia_pairs[body.first_inertia].next != none) return 0;
   const InertiaPair& pair = inertia_pairs[body.first_inertia];
@@ -15,22 +15,10 @@ double Model::axial_inertia(std::uint32_t slot) const {
   return std::max(0.0, (mass / 3 + 2 * pair.inertia) * length * length);
 }
 
-Vec3 Model::rod_axis(std::uint32_t body) const {
+Vec3 Structure::rod_axis(std::uint32_t body) const {
   const InertiaPair& pair = inertia_pairs[bodies[body].first_inertia];
   const Vec3 along = position(pair.q) - position(pair.p);
   return (1 / norm(along)) * along;
-}
-
-Vec3 Model::spin_momentum(std::uint32_t body) const {
-  return spins.has(body) ? spins.at(body).momentum * rod_axis(body) : Vec3{};
-}
-
-void Model::set_spin(std::uint32_t body, double angular_velocity) {
-  if (spins.has(body) != (angular_velocity != 0)) touch_body(body);
-  if (angular_velocity == 0)
-    spins.erase(body);
-  else
-    spins.make(body).momentum = axial_inertia(body) * angular_velocity;
 }
 
 }  // namespace iota::model

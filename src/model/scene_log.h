@@ -34,24 +34,16 @@ class ChangedSlots {
   std::vector<Mark> marks_;
 };
 
-/// What a viewer has to be told next. Bonds, constraints and rings are noted here where they vanish: those that change do so
-/// at a body, and a body that is noted is described with all that hangs on it.
+/// What a viewer has to be told next. A body that is noted is described with all that hangs on it. Ingredients note items
+/// that change or vanish by themselves in logs of their own, beside their tables: see Model::watch_scene.
 struct SceneLog {
-  ChangedSlots bodies, memberships, bonds, constraints, rings, emitters;
+  ChangedSlots bodies, memberships;
   std::vector<ViewEvent> events;
   bool is_whole = true;  ///< everything is to be told anew
 
   bool is_on() const { return bodies.is_on; }
   void note(ViewEvent::Kind kind, const Vec3& position) {
     if (is_on()) events.push_back({kind, position});
-  }
-  void clear() {
-    for (ChangedSlots* table : {&bodies, &memberships, &bonds, &constraints, &rings, &emitters}) table->clear();
-    events.clear();
-    is_whole = false;
-  }
-  void watch() {
-    for (ChangedSlots* table : {&bodies, &memberships, &bonds, &constraints, &rings, &emitters}) table->is_on = true;
   }
 };
 

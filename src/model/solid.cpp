@@ -14,7 +14,7 @@ constexpr std::array<Vec3, 4> corners{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1,
 Quaternion conjugate(const Quaternion& q) { return {-q.x, -q.y, -q.z, q.w}; }
 
 /// Puts the four points where they have these principal mean squares about their center; axes in the world frame.
-void place_points(Model& model, Solid& solid, const Vec3& center, const SymmetricEigen& e, const SolidPose& pose) {
+void place_points(Structure& model, Solid& solid, const Vec3& center, const SymmetricEigen& e, const SolidPose& pose) {
   const auto root = [](double value) { return std::sqrt(std::max(value, 0.0)); };
   solid.half = {root(e.values[0]), root(e.values[1]), root(e.values[2])};
   const Quaternion inverse = conjugate(pose.orientation);
@@ -29,7 +29,7 @@ void place_points(Model& model, Solid& solid, const Vec3& center, const Symmetri
 
 }  // namespace
 
-SolidPose solid_pose(const Model& model, std::uint32_t slot) {
+SolidPose solid_pose(const Structure& model, std::uint32_t slot) {
   const Solid& solid = model.solids[slot];
   Vec3 center, axes[3];
   for (int k = 0; k < 4; ++k) {
@@ -43,7 +43,7 @@ SolidPose solid_pose(const Model& model, std::uint32_t slot) {
   return {center - rotate(q, solid.center), q};
 }
 
-std::uint32_t add_solid(Model& model, std::uint32_t body, Solid solid, double mass, const Vec3& center,
+std::uint32_t add_solid(Structure& model, std::uint32_t body, Solid solid, double mass, const Vec3& center,
                         const Mat3& mean_squares, const SolidPose& pose) {
   solid.body = body;
   const Vec3 world_center = pose.position + rotate(pose.orientation, center);
@@ -60,7 +60,7 @@ std::uint32_t add_solid(Model& model, std::uint32_t body, Solid solid, double ma
   return slot;
 }
 
-bool is_endless(const Model& model, std::uint32_t body) {
+bool is_endless(const Structure& model, std::uint32_t body) {
   bool endless = false;
   model.for_each_solid_of(body, [&](std::uint32_t solid) {
     endless = endless || !shape::is_solid(shape::from_data(model.solids[solid].shape));
@@ -68,7 +68,7 @@ bool is_endless(const Model& model, std::uint32_t body) {
   return endless;
 }
 
-bool is_untouched(const Model& model, std::uint32_t slot) {
+bool is_untouched(const Structure& model, std::uint32_t slot) {
   const auto& points = model.solids[slot].points;
   const double mass = model.particles[points[0]].mass;
   return std::none_of(points.begin(), points.end(), [&](std::uint32_t p) {
@@ -76,7 +76,7 @@ bool is_untouched(const Model& model, std::uint32_t slot) {
   });
 }
 
-std::uint32_t attach(Model& model, std::uint32_t slot, const Vec3& position) {
+std::uint32_t attach(Structure& model, std::uint32_t slot, const Vec3& position) {
   const SolidPose pose = solid_pose(model, slot);
   Solid& solid = model.solids[slot];
   const Vec3 spin = body_angular_velocity(model, solid.body);
@@ -113,7 +113,7 @@ std::uint32_t attach(Model& model, std::uint32_t slot, const Vec3& position) {
   return particle;
 }
 
-Mat3 body_inertia(const Model& model, std::uint32_t body) {
+Mat3 body_inertia(const Structure& model, std::uint32_t body) {
   const Vec3 center = model.center_of_mass(body);
   Mat3 inertia;
   model.for_each_particle_of(
@@ -127,7 +127,7 @@ Mat3 body_inertia(const Model& model, std::uint32_t body) {
   return inertia;
 }
 
-Vec3 body_velocity(const Model& model, std::uint32_t body) {
+Vec3 body_velocity(const Structure& model, std::uint32_t body) {
   double mass = 0;
   Vec3 sum;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
@@ -137,7 +137,7 @@ Vec3 body_velocity(const Model& model, std::uint32_t body) {
   return mass > 0 ? (1 / mass) * sum : sum;
 }
 
-Vec3 body_angular_momentum(const Model& model, std::uint32_t body) {
+Vec3 body_angular_momentum(const Structure& model, std::uint32_t body) {
   const Vec3 center = model.center_of_mass(body);
   Vec3 sum;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
@@ -148,10 +148,10 @@ Vec3 body_angular_momentum(const Model& model, std::uint32_t body) {
     sum += pair.inertia *
            cross(model.position(pair.p) - model.position(pair.q), model.velocity(pair.p) - model.velocity(pair.q));
   });
-  return sum + model.spin_momentum(body);
+  return sum + model.inner_momentum(body);
 }
 
-Vec3 body_angular_velocity(const Model& model, std::uint32_t body) {
+Vec3 body_angular_velocity(const Structure& model, std::uint32_t body) {
   return solve_semidefinite(body_inertia(model, body), body_angular_momentum(model, body));
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "math/mat3.h"
-#include "model/model.h"
+#include "model/structure.h"
 
 namespace iota::model {
 
@@ -11,28 +11,28 @@ struct SolidPose {
   Vec3 position;           ///< of its origin, world, m
   Quaternion orientation;  ///< turns vectors of the shape's frame into the world frame
 };
-SolidPose solid_pose(const Model&, std::uint32_t solid);
+SolidPose solid_pose(const Structure&, std::uint32_t solid);
 
 /// Gives an empty body the four point masses of a solid, at rest. `solid` comes with kind, sizes and mesh; the rest is
 /// filled in. mean_squares and center as in MassProperties.
-std::uint32_t add_solid(Model&, std::uint32_t body, Solid solid, double mass, const Vec3& center,
+std::uint32_t add_solid(Structure&, std::uint32_t body, Solid solid, double mass, const Vec3& center,
                         const Mat3& mean_squares, const SolidPose& pose);
 
 /// Whether one of a body's shapes has no volume: it is a half-space. Such a body is static or scripted.
-bool is_endless(const Model&, std::uint32_t body);
+bool is_endless(const Structure&, std::uint32_t body);
 
 /// Whether the four points of a solid may still be moved: no hinge, nail or bond holds on to them, and they are equal.
-bool is_untouched(const Model&, std::uint32_t solid);
+bool is_untouched(const Structure&, std::uint32_t solid);
 
 /// A further particle of a body at a place (world). It takes a small share of mass from a solid, whose four points are
 /// set anew so that the body's mass, center of mass, inertia and motion stay what they are, to round-off.
-std::uint32_t attach(Model&, std::uint32_t solid, const Vec3& position);
+std::uint32_t attach(Structure&, std::uint32_t solid, const Vec3& position);
 
 /// Inertia about the center of mass, world axes, kg m^2 (thesis, Eq. 2.28; inertia pairs included).
-Mat3 body_inertia(const Model&, std::uint32_t body);
-Vec3 body_velocity(const Model&, std::uint32_t body);          ///< of the center of mass, m/s
-Vec3 body_angular_momentum(const Model&, std::uint32_t body);  ///< about the center of mass, kg m^2/s
+Mat3 body_inertia(const Structure&, std::uint32_t body);
+Vec3 body_velocity(const Structure&, std::uint32_t body);          ///< of the center of mass, m/s
+Vec3 body_angular_momentum(const Structure&, std::uint32_t body);  ///< about the center of mass, kg m^2/s
 /// rad/s. Has no component about an axis without inertia: any axis of one point, or the line of collinear points.
-Vec3 body_angular_velocity(const Model&, std::uint32_t body);
+Vec3 body_angular_velocity(const Structure&, std::uint32_t body);
 
 }  // namespace iota::model

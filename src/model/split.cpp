@@ -38,8 +38,8 @@ int hand_over(Table& items, std::uint32_t& from, std::uint32_t& to, std::uint32_
 
 /// Makes a body of its own of some particles; they stay in their rings. Solids and inertia pairs that lie across go.
 /// Returns the new body.
-std::uint32_t split_off(Model& model, std::uint32_t body, std::vector<std::uint32_t> leaving, RestructureReport& report,
-                        bool& torn) {
+std::uint32_t split_off(Structure& model, std::uint32_t body, std::vector<std::uint32_t> leaving,
+                        RestructureReport& report, bool& torn) {
   std::sort(leaving.begin(), leaving.end());
   const std::uint32_t own = model.make_body(model.bodies[body].kind, model.bodies[body].damping);
   Body &from = model.bodies[body], &to = model.bodies[own];
@@ -62,7 +62,7 @@ std::uint32_t split_off(Model& model, std::uint32_t body, std::vector<std::uint3
 }
 
 /// The last part of a split, after the particles were moved.
-void finish_split(Model& model, std::uint32_t body, std::uint32_t own, std::vector<std::string>& notes) {
+void finish_split(Structure& model, std::uint32_t body, std::uint32_t own, std::vector<std::string>& notes) {
   for (const std::uint32_t b : {body, own}) {
     model.rebuild_basis(b);
     model.touch_body(b);
@@ -74,7 +74,7 @@ void finish_split(Model& model, std::uint32_t body, std::uint32_t own, std::vect
 /// Particles of a body in sets that are merged.
 class Pieces {
  public:
-  Pieces(const Model& model, std::uint32_t body) {
+  Pieces(const Structure& model, std::uint32_t body) {
     model.for_each_particle_of(body, [&](std::uint32_t p) { particles.push_back(p); });
     std::sort(particles.begin(), particles.end());
     parent_.resize(particles.size());
@@ -99,7 +99,7 @@ class Pieces {
 
 }  // namespace
 
-std::vector<BodyId> parts_of(const Model& model, std::uint32_t body) {
+std::vector<BodyId> parts_of(const Structure& model, std::uint32_t body) {
   std::vector<BodyId> parts;
   const auto add = [&](BodyId part) {
     if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
@@ -111,7 +111,7 @@ std::vector<BodyId> parts_of(const Model& model, std::uint32_t body) {
   return parts;
 }
 
-Edit separate_part(Model& model, std::uint32_t body, BodyId part, RestructureReport& report) {
+Edit separate_part(Structure& model, std::uint32_t body, BodyId part, RestructureReport& report) {
   const std::vector<BodyId> parts = parts_of(model, body);
   if (parts.size() < 2 || std::find(parts.begin(), parts.end(), part) == parts.end()) return {};
   std::vector<std::uint32_t> leaving;
@@ -157,19 +157,11 @@ Edit separate_part(Model& model, std::uint32_t body, BodyId part, RestructureRep
   return {false, torn || shared};
 }
 
-Edit break_cosmetic_bond(Model& model, std::uint32_t bond, RestructureReport& report) {
-  const std::uint32_t p = model.cosmetic_bonds[bond].p, q = model.cosmetic_bonds[bond].q;
+Edit fall_apart(Structure& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {
   const std::uint32_t body = model.particles[p].body;
-  model.remove_cosmetic_bond(bond);
-  report.changed = true;
-  if (model.particles[q].body != body) return {};  // separated since
-
   Pieces pieces(model, body);
   for (const std::uint32_t particle : pieces.particles)
-    model.for_each_cosmetic_bond_of(particle, [&](std::uint32_t b) {
-      const CosmeticBond& line = model.cosmetic_bonds[b];
-      if (model.particles[line.p].body == model.particles[line.q].body) pieces.join(line.p, line.q);
-    });
+    model.visit_companions(particle, [&](std::uint32_t other) { pieces.join(particle, other); });
   model.for_each_solid_of(body, [&](std::uint32_t s) {
     const Solid& solid = model.solids[s];
     for (const std::uint32_t point : solid.points) pieces.join(point, solid.points[0]);
@@ -177,11 +169,6 @@ Edit break_cosmetic_bond(Model& model, std::uint32_t bond, RestructureReport& re
     for (const std::uint32_t particle : pieces.particles)  // its attachments
       if (model.particles[particle].part == part) pieces.join(particle, solid.points[0]);
   });
-  for (const std::uint32_t particle : pieces.particles)  // a joint's markers stay together
-    model.for_each_constraint_of(particle, [&](std::uint32_t c, int place) {
-      const std::uint32_t origin = model.constraints[c].particles[place < b_origin ? a_origin : b_origin];
-      if (origin != none && model.particles[origin].body == body) pieces.join(particle, origin);
-    });
   const std::size_t stays = pieces.piece(p), leaves = pieces.piece(q);
   if (stays == leaves) return {};
 

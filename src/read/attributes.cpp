@@ -11,7 +11,7 @@ namespace iota::read {
 namespace {
 
 /// Radius and color on an emitter's curve. life: 0 birth, 1 death.
-void look_at(const model::Emitter& emitter, double life, ParticleAttributes& out) {
+void look_at(const ingredient::Emitter& emitter, double life, ParticleAttributes& out) {
   if (emitter.key_count == 0) return;
   std::uint32_t next = 0;
   while (next < emitter.key_count && emitter.keys[next].life < life) ++next;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "model/model.h"
+#include "ingredient/model.h"
 
 namespace iota::read {
 

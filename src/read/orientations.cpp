@@ -40,7 +40,7 @@ void Orientations::refresh(model::Model& model) {
     const Vec3 x = unit_or(model.position(b.basis[1]) - x0, old_x);
     if (b.rank == 2) {  // carry the frame along by the smallest turn, and about itself by what it has spun
       b.orientation = normalized(multiply(shortest_turn(old_x, x), b.orientation));
-      if (model::RodSpin* const spin = model.spins.find(slot)) {
+      if (ingredient::RodSpin* const spin = model.spins.find(slot)) {
         const double sign = dot(x, model.rod_axis(slot)) < 0 ? -1 : 1;
         b.orientation = normalized(multiply(axis_angle(x, sign * (spin->angle - spin->drawn)), b.orientation));
         spin->drawn = spin->angle;

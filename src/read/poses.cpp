@@ -41,7 +41,7 @@ PoseSnapshot poses(model::Model& m, held::HeldForces& held, Orientations& orient
     const double values[4] = {q.x, q.y, q.z, q.w};
     for (int i = 0; i < 4; ++i) pose.orientation[i] = static_cast<float>(values[i]);
   });
-  m.grips.for_each([&](std::uint32_t, const model::Grip& g) {
+  m.grips.for_each([&](std::uint32_t, const ingredient::Grip& g) {
     HoldPose& hold = snapshot.holds.emplace_back();
     hold.client = g.client, hold.hold = g.hold, hold.body = g.body;
     put(hold.point, ingredient::Grips::point(m, g));

@@ -20,7 +20,7 @@ void break_constraints(edit::Editor& editor, StepReport& report) {
   model::Model& model = editor.model;
   for (std::uint32_t slot = 0; slot < model.constraints.slot_count(); ++slot) {
     if (!model.constraints.is_alive(slot)) continue;
-    const model::Constraint& c = model.constraints[slot];
+    const ingredient::Constraint& c = model.constraints[slot];
     if (!c.active || (std::isinf(c.breaks.force) && std::isinf(c.breaks.torque))) continue;
     const ingredient::Reaction reaction = ingredient::calc_reaction(model, slot);
     const double force = norm(reaction.force), torque = norm(reaction.torque);
@@ -37,7 +37,7 @@ void break_constraints(edit::Editor& editor, StepReport& report) {
 void break_bonds(edit::Editor& editor, StepReport& report) {
   model::Model& model = editor.model;
   for (const std::uint32_t slot : editor.held.breakable_bonds()) {
-    model::Bond& bond = model.bonds[slot];
+    ingredient::Bond& bond = model.bonds[slot];
     const double force = norm(editor.held.force(slot));
     if (!(force > bond.break_force)) continue;
     const Vec3 middle = 0.5 * (model.position(bond.p) + model.position(bond.q));
@@ -87,7 +87,7 @@ void switch_off_failed_surfaces(edit::Editor& editor, StepReport& report) {
     for (const auto& surface : model.geometry(slot).surfaces) {
       if (!surface || surface->failure().empty()) continue;
       report.switched_off_constraints.push_back(model.constraints.id(slot));
-      report.warnings.push_back(text("constraint ", slot, " (", model::info(model.constraints[slot].kind).name,
+      report.warnings.push_back(text("constraint ", slot, " (", ingredient::info(model.constraints[slot].kind).name,
                                      "): the function of its surface ", surface->failure(),
                                      "; the constraint is switched off"));
       apply(editor, edit::SetConstraintActive{model.constraints.id(slot), false});

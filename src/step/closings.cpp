@@ -8,8 +8,8 @@ namespace iota::step {
 
 void finish_closings(edit::Editor& editor, StepReport& report) {
   model::Model& model = editor.model;
-  std::vector<std::pair<Id<model::Closing>, edit::CombineParticles>> due;
-  model.closings.for_each([&](std::uint32_t slot, model::Closing& c) {
+  std::vector<std::pair<Id<ingredient::Closing>, edit::CombineParticles>> due;
+  model.closings.for_each([&](std::uint32_t slot, ingredient::Closing& c) {
     c.elapsed += report.dt;
     if (c.elapsed >= c.duration)
       due.push_back({model.closings.id(slot), {model.particles.id(c.p), model.particles.id(c.q), 0}});

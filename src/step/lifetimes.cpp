@@ -23,7 +23,7 @@ double dice(std::uint64_t seed, std::uint64_t n) {
 
 class Draw {
  public:
-  explicit Draw(model::Emitter& emitter) : emitter_(emitter) {}
+  explicit Draw(ingredient::Emitter& emitter) : emitter_(emitter) {}
   double number(double low, double high) { return low + (high - low) * dice(emitter_.seed, emitter_.draws++); }
   Vec3 in_ball(double radius) {
     const auto draw = [this](double low, double high) { return number(low, high); };
@@ -35,7 +35,7 @@ class Draw {
   }
 
  private:
-  model::Emitter& emitter_;
+  ingredient::Emitter& emitter_;
 };
 
 /// The turn about a vector by its length.
@@ -54,7 +54,7 @@ void bear_particles(edit::Editor& editor, std::uint32_t slot, StepReport& report
   model.emitters[slot].due = owed - static_cast<double>(count);
   if (count > 0) ingredient::begin_edits(model);
   for (std::uint64_t i = 0; i < count; ++i) {
-    model::Emitter& e = model.emitters[slot];
+    ingredient::Emitter& e = model.emitters[slot];
     if (e.alive >= e.max_count) return;
     Draw draw(e);
     const double since = std::min(h, (owed - static_cast<double>(i + 1)) / rate);

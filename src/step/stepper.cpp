@@ -86,7 +86,7 @@ namespace {
 
 /// Forces act for one step, also on points that cannot move: kept, they would act at once when such a body becomes dynamic.
 void drop_forces_on_pinned_points(model::Model& model) {
-  model.pushes.for_each([&](std::uint32_t ring, const model::Push& push) {
+  model.pushes.for_each([&](std::uint32_t ring, const ingredient::Push& push) {
     if (push.force == Vec3{}) return;
     bool is_free = true;
     model.for_each_in_ring(ring, [&](std::uint32_t p) {

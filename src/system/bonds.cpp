@@ -16,22 +16,22 @@ BondId Bonds::create(ParticleId p, ParticleId q, BondLaw body) {
   const auto law_id = [&](std::uint32_t slot) { return core_.model.laws.id(slot); };
   edit::CreateBond command{p, q, {}, true, 0, {}};
   if (const auto* spring = std::get_if<SpringLaw>(&body)) {
-    command.law = law_id(model::spring_law);
+    command.law = law_id(ingredient::spring_law);
     command.parameters = {spring->stiffness, spring->damping, spring->length};
   } else if (const auto* drag = std::get_if<DragLaw>(&body)) {
-    command.law = law_id(model::drag_law);
+    command.law = law_id(ingredient::drag_law);
     command.parameters = {drag->damping};
   } else if (auto* scripted = std::get_if<ScriptedLaw>(&body)) {
     if (!scripted->force) throw std::invalid_argument("a scripted bond needs a function");
     held::Functions& functions = core_.held.functions;
-    command.law = law_id(model::scripted_law), command.implicit = false, command.script = functions.next_key;
+    command.law = law_id(ingredient::scripted_law), command.implicit = false, command.script = functions.next_key;
     const BondId id = core_.execute(command);
     functions.of_bonds[functions.next_key++] = std::move(*scripted);
     return id;
   } else {
     const SharedLaw& shared = std::get<SharedLaw>(body);
-    const model::Law& law = core_.model.laws[core_.slot(shared.law)];
-    if (law.kind == model::LawKind::scripted)
+    const ingredient::Law& law = core_.model.laws[core_.slot(shared.law)];
+    if (law.kind == ingredient::LawKind::scripted)
       throw std::invalid_argument("a bond with a function of its own is made with a ScriptedLaw");
     command.law = shared.law, command.parameters = law.standard;
     command.implicit = shared.implicit.value_or(law.has_derivative());
@@ -50,7 +50,7 @@ bool Bonds::is_implicit(BondId id) const { return core_.model.bonds[core_.slot(i
 
 std::vector<LawParameter> Bonds::parameters(BondId id) const {
   const model::Model& m = core_.model;
-  const model::Bond& bond = m.bonds[core_.slot(id)];
+  const ingredient::Bond& bond = m.bonds[core_.slot(id)];
   return edit::list_parameters(m.laws[bond.law], bond.parameters);
 }
 
@@ -70,7 +70,7 @@ std::vector<BondId> Bonds::ids() const { return core_.model.bonds.ids(); }
 
 std::pair<ParticleId, ParticleId> Bonds::ends(BondId id) const {
   const model::Model& m = core_.model;
-  const model::Bond& b = m.bonds[core_.slot(id)];
+  const ingredient::Bond& b = m.bonds[core_.slot(id)];
   return {m.particles.id(b.p), m.particles.id(b.q)};
 }
 

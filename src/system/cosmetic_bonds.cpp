@@ -15,7 +15,7 @@ std::vector<CosmeticBondId> CosmeticBonds::ids() const { return core_.model.cosm
 
 std::pair<ParticleId, ParticleId> CosmeticBonds::ends(CosmeticBondId id) const {
   const model::Model& m = core_.model;
-  const model::CosmeticBond& b = m.cosmetic_bonds[core_.slot(id)];
+  const ingredient::CosmeticBond& b = m.cosmetic_bonds[core_.slot(id)];
   return {m.particles.id(b.p), m.particles.id(b.q)};
 }
 

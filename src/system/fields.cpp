@@ -31,12 +31,12 @@ void Fields::set_active(FieldId id, bool active) { core_.execute(edit::SetFieldA
 std::string Fields::name(FieldId id) const { return core_.model.fields[core_.slot(id)].name.data(); }
 
 std::vector<LawParameter> Fields::parameters(FieldId id) const {
-  const model::Field& field = core_.model.fields[core_.slot(id)];
+  const ingredient::Field& field = core_.model.fields[core_.slot(id)];
   return edit::list_parameters(field.names, field.parameter_count, field.parameters.data());
 }
 
 void Fields::set_parameter(FieldId id, std::string_view name, double value) {
-  const model::Field& field = core_.model.fields[core_.slot(id)];
+  const ingredient::Field& field = core_.model.fields[core_.slot(id)];
   const std::uint32_t index = edit::require_parameter(field.name.data(), field.names, field.parameter_count, name);
   core_.execute(edit::SetFieldParameter{id, index, value});
 }

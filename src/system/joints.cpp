@@ -9,8 +9,8 @@ namespace iota {
 namespace {
 
 /// A surface as plain data; its function, if it has one, is kept under the next key.
-model::PlacedSurface place(Core& core, const Surface& surface) {
-  model::PlacedSurface placed{{}, surface.position, surface.orientation};
+ingredient::PlacedSurface place(Core& core, const Surface& surface) {
+  ingredient::PlacedSurface placed{{}, surface.position, surface.orientation};
   if (const auto* shape = std::get_if<Shape>(&surface.shape)) {
     placed.data.shape = shape::to_data(*shape);
     return placed;
@@ -70,14 +70,14 @@ void Joints::set_break_limits(ConstraintId id, const BreakLimits& limits) {
 }
 
 CoordinateOptions Joints::coordinate(ConstraintId id, JointCoordinate coordinate) const {
-  const model::Constraint& c = core_.model.constraints[core_.slot(id)];
+  const ingredient::Constraint& c = core_.model.constraints[core_.slot(id)];
   return c.options[static_cast<std::size_t>(coordinate)];
 }
 
 ConstraintState Joints::state(ConstraintId id) const {
   const model::Model& m = core_.model;
   const std::uint32_t slot = core_.slot(id);
-  const model::Constraint& c = m.constraints[slot];
+  const ingredient::Constraint& c = m.constraints[slot];
   ConstraintState state;
   state.kind = c.kind;
   const auto body_id = [&](int side) {
@@ -88,13 +88,7 @@ ConstraintState Joints::state(ConstraintId id) const {
   state.active = c.active, state.broken = c.broken;
   const ingredient::Reaction reaction = ingredient::calc_reaction(m, slot);
   state.position = reaction.position, state.force = reaction.force, state.torque = reaction.torque;
-  for (const int axis : {model::a_axis, model::b_axis}) {
-    if (!c.has(axis)) continue;
-    const Vec3 d =
-        position_of(m, c, axis) - position_of(m, c, axis < model::b_origin ? model::a_origin : model::b_origin);
-    state.axis = (1 / norm(d)) * d;
-    break;
-  }
+  state.axis = calc_axis(m, c);
   state.gap = is_in_force(m, c) ? c.gap : 0, state.length = c.length;
   for (const JointCoordinate which : joint_coordinates) {
     const auto i = static_cast<std::size_t>(which);

@@ -7,7 +7,7 @@ namespace iota {
 std::size_t Laws::rehearse(LawId id, double dt) { return core_.held.rehearse_law(core_.slot(id), dt); }
 
 LawId Laws::create(LawBody body, const LawOptions& options) {
-  edit::CreateLaw command{model::LawKind::expression, options.name, {}, options.parameters, 0};
+  edit::CreateLaw command{ingredient::LawKind::expression, options.name, {}, options.parameters, 0};
   if (const auto* expression = std::get_if<std::string>(&body)) {
     command.text = *expression;
     return core_.execute(command);
@@ -17,7 +17,7 @@ LawId Laws::create(LawBody body, const LawOptions& options) {
   if (auto* batch = std::get_if<BatchFunction>(&body)) function.batch = std::move(*batch);
   if (!function.radial && !function.batch) throw std::invalid_argument("a law needs a function, got none");
   held::Functions& functions = core_.held.functions;
-  command.kind = function.radial ? model::LawKind::radial : model::LawKind::batch;
+  command.kind = function.radial ? ingredient::LawKind::radial : ingredient::LawKind::batch;
   command.function = functions.next_key;
   const LawId id = core_.execute(command);
   functions.of_laws[functions.next_key++] = std::move(function);
@@ -30,8 +30,8 @@ LawId Laws::find(std::string_view name) const {
   const auto& made = core_.model.laws;
   LawId found;
   std::vector<std::string> known;
-  made.for_each([&](std::uint32_t slot, const model::Law& law) {
-    if (slot < laws::pair_law_count || law.kind == model::LawKind::scripted || law.name[0] == '\0') return;
+  made.for_each([&](std::uint32_t slot, const ingredient::Law& law) {
+    if (slot < laws::pair_law_count || law.kind == ingredient::LawKind::scripted || law.name[0] == '\0') return;
     if (name == law.name.data()) found = made.id(slot);
     known.emplace_back(law.name.data());
   });
@@ -61,7 +61,7 @@ std::string_view Laws::kind(LawId id) const {
 std::string Laws::expression(LawId id) const { return core_.model.laws[core_.slot(id)].text.data(); }
 
 std::vector<LawParameter> Laws::parameters(LawId id) const {
-  const model::Law& law = core_.model.laws[core_.slot(id)];
+  const ingredient::Law& law = core_.model.laws[core_.slot(id)];
   return edit::list_parameters(law, law.standard);
 }
 

@@ -5,7 +5,7 @@
 namespace iota {
 
 PairsId Pairs::create(const SharedLaw& shared, const PairsOptions& options) {
-  const model::Law& law = core_.model.laws[core_.slot(shared.law)];
+  const ingredient::Law& law = core_.model.laws[core_.slot(shared.law)];
   if (shared.implicit.value_or(false))
     throw std::invalid_argument("pairwise forces are taken once a step and held: they cannot be implicit");
   edit::CreatePairs command{shared.law, options.group.value_or(GroupId{}), options.cutoff, law.standard};
@@ -30,7 +30,7 @@ double Pairs::cutoff(PairsId id) const { return core_.model.pairs[core_.slot(id)
 
 std::vector<LawParameter> Pairs::parameters(PairsId id) const {
   const model::Model& m = core_.model;
-  const model::Pairs& pairs = m.pairs[core_.slot(id)];
+  const ingredient::PairForce& pairs = m.pairs[core_.slot(id)];
   return edit::list_parameters(m.laws[pairs.law], pairs.parameters);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingredient/model.h"
 #include "ingredient/tables.h"
 
 #include <cstddef>
@@ -16,7 +17,7 @@ inline Model model_of(System& system) {
   const std::span<const std::byte> bytes(snapshot.bytes);
   Reader reader(bytes.subspan(16, bytes.size() - 24));
   Model model;
-  ingredient::archive(model, reader);
+  model.archive(reader);
   if (!reader.ok() || !reader.at_end()) throw std::logic_error("the tables of a snapshot are laid out otherwise");
   return model;
 }

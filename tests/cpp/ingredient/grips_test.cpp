@@ -14,7 +14,7 @@ namespace {
 
 /// A grip at `place` of a body.
 std::uint32_t hold(model::Model& model, std::uint32_t body, const Vec3& place) {
-  model::Grip grip;
+  ingredient::Grip grip;
   grip.body = body;
   Grips::anchor(model, grip, place);
   return model.grips.create(grip).slot;

@@ -26,15 +26,15 @@ TEST(Holds, nothing_holds_a_particle_by_itself) {
 
 TEST(Holds, a_closing_holds_both_its_particles) {
   TwoParticles two;
-  (void)two.m.model.add_closing({{two.p, two.q}, 1, 1, 0, 0});
+  (void)Closings::add(two.m.model, {{two.p, two.q}, 1, 1, 0, 0});
   EXPECT_TRUE(Closings::holds(two.m.model, two.p) && Closings::holds(two.m.model, two.q));
 }
 
 TEST(Holds, a_bond_holds_where_it_is_solved_implicitly_and_acts) {
   TwoParticles two;
-  model::Bond bond;
+  ingredient::Bond bond;
   bond.p = two.p, bond.q = two.q;
-  const std::uint32_t slot = two.m.model.add_bond(bond);
+  const std::uint32_t slot = Bonds::add(two.m.model, bond);
   EXPECT_TRUE(is_held(two.m.model, two.q));
   two.m.model.bonds[slot].implicit = 0;
   EXPECT_FALSE(is_held(two.m.model, two.q));
@@ -44,7 +44,7 @@ TEST(Holds, a_bond_holds_where_it_is_solved_implicitly_and_acts) {
 
 TEST(Holds, a_grip_holds_the_particles_of_its_body) {
   TwoParticles two;
-  model::Grip grip;
+  ingredient::Grip grip;
   grip.body = two.m.model.particles[two.p].body;
   (void)two.m.model.grips.create(grip);
   EXPECT_TRUE(is_held(two.m.model, two.p));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A new ingredient takes part in every fold as soon as it is in the list.
-#include "ingredient/ingredient_list.h"
+#include "ingredient/model.h"
 #include "ingredient/quantities.h"
 #include "model/restructure.h"
 

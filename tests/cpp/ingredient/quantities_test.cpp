@@ -11,11 +11,8 @@
 namespace iota::ingredient {
 namespace {
 
-using model::Bond;
 using model::InertiaPair;
-using model::Law;
 using model::SmallModel;
-using model::spring_law;
 
 void set_velocity(Model& model, std::uint32_t p, const Vec3& v) { model.rings[model.particles[p].ring].velocity = v; }
 
@@ -84,7 +81,7 @@ TEST(Quantities, the_energy_of_a_spring_is_that_of_its_text) {
     const std::string name = law.parameters[i].data();
     spring.parameters[i] = name == "stiffness" ? 7 : name == "length" ? 1 : 0;
   }
-  const std::uint32_t bond = m.model.add_bond(spring);
+  const std::uint32_t bond = Bonds::add(m.model, spring);
   EXPECT_DOUBLE_EQ(Bonds::energy(m.model, bond), 0.5 * 7 * 4);
   EXPECT_DOUBLE_EQ(calc_energies(m.model).potential, 0.5 * 7 * 4);
   EXPECT_LT(norm(Bonds::force(m.model, bond) - Vec3{-14, 0, 0}), 1e-13) << "on the second particle, towards the first";

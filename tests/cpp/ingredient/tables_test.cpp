@@ -17,7 +17,7 @@ using model::Model;
 std::vector<std::byte> bytes_of(Model& model) {
   std::vector<std::byte> bytes;
   Writer writer(bytes);
-  archive(model, writer);
+  model.archive(writer);
   return bytes;
 }
 
@@ -26,7 +26,7 @@ TEST(Tables, come_back_from_their_bytes_as_they_were) {
   const std::vector<std::byte> bytes = bytes_of(e.model);
   Model again;
   Reader reader(bytes);
-  archive(again, reader);
+  again.archive(reader);
   ASSERT_TRUE(reader.ok() && reader.at_end());
   EXPECT_EQ(bytes_of(again), bytes);
   EXPECT_EQ(again.hash(), e.model.hash());
@@ -39,12 +39,12 @@ TEST(Tables, of_each_ingredient_are_its_own) {
   for_each_type<Ingredients>([&]<class I>() {
     std::vector<std::byte> bytes;
     Writer writer(bytes);
-    I::archive(e.model, writer);
+    static_cast<OwnTables<I>&>(e.model).archive(writer, e.model);
     together += bytes.size();
     // Read into a model that has everything: only what was written may be read.
     Model other = e.model;
     Reader reader(bytes);
-    I::archive(other, reader);
+    static_cast<OwnTables<I>&>(other).archive(reader, other);
     EXPECT_TRUE(reader.ok() && reader.at_end()) << bytes.size() << " bytes";
     EXPECT_EQ(bytes_of(other), bytes_of(e.model)) << "reading what was written changes nothing";
   });
@@ -61,7 +61,7 @@ TEST(Tables, that_are_cut_short_are_noticed_wherever_that_is) {
     const std::vector<std::byte> part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     Model model;
     Reader reader(part);
-    archive(model, reader);
+    model.archive(reader);
     ASSERT_FALSE(reader.ok()) << size << " bytes of " << bytes.size();
   }
 }

@@ -12,6 +12,11 @@
 namespace iota::model {
 namespace {
 
+using ingredient::Closing;
+using ingredient::place_count;
+using ingredient::spring_law;
+using enum ingredient::Place;
+
 /// A slot of a table beyond its end: nothing lives there.
 constexpr std::uint32_t nowhere = 1000;
 
@@ -48,7 +53,7 @@ const std::vector<Damage> damages{
     {"is nailed nowhere", [](Everything& e) { e.model.rings[ring_of(e, e.loner)].nailed = 1; }},
     // side tables
     {"a tie of 1000, which does not live", [](Everything& e) { e.model.ties.make(nowhere); }},
-    {"lists of 1000, which does not live", [](Everything& e) { e.model.references.make(nowhere); }},
+    {"lists of 1000, which does not live", [](Everything& e) { e.model.bonds.heads.make(nowhere); }},
     {"a fuse of 1000, which does not live", [](Everything& e) { e.model.fuses.make(nowhere); }},
     {"rows of 1000, which does not live", [](Everything& e) { e.model.more_rows.make(nowhere); }},
     {"a spin of 1000, which does not live", [](Everything& e) { e.model.spins.make(nowhere); }},
@@ -88,13 +93,11 @@ const std::vector<Damage> damages{
     {"bond", [](Everything& e) { e.model.bonds[e.bond].q = e.model.bonds[e.bond].p; }},
     {"cosmetic bond",
      [](Everything& e) { e.model.cosmetic_bonds[e.cosmetic].q = e.model.cosmetic_bonds[e.cosmetic].p; }},
-    {"which does not end there", [](Everything& e) { e.model.references.at(e.corner).first_bond = 2 * e.bond; }},
-    {"ends of 3 bonds", [](Everything& e) { e.model.references.at(e.loner).first_bond = none; }},
+    {"which does not end there", [](Everything& e) { e.model.bonds.heads.make(e.corner).first = 2 * e.bond; }},
+    {"ends of 3 bonds", [](Everything& e) { e.model.bonds.heads.at(e.loner).first = none; }},
     {"ends of 1 closings",
-     [](Everything& e) {
-       e.model.references.at(e.model.closings[first_alive(e.model.closings)].p).first_closing = none;
-     }},
-    {"ends of 1 cosmetic bonds", [](Everything& e) { e.model.references.at(e.corner).first_cosmetic_bond = none; }},
+     [](Everything& e) { e.model.closings.heads.at(e.model.closings[first_alive(e.model.closings)].p).first = none; }},
+    {"ends of 1 cosmetic bonds", [](Everything& e) { e.model.cosmetic_bonds.heads.at(e.corner).first = none; }},
     {"is implicit without a derivative", [](Everything& e) { e.model.bonds[e.scripted].implicit = 1; }},
     {"has a parameter that is not finite",
      [](Everything& e) { e.model.bonds[e.bond].parameters[0] = std::numeric_limits<double>::infinity(); }},
@@ -107,12 +110,12 @@ const std::vector<Damage> damages{
      }},
     {"lists constraint",
      [](Everything& e) {
-       e.model.references.make(e.loner).first_constraint = place_count * e.joint + static_cast<std::uint32_t>(a_origin);
+       e.model.places.make(e.loner).first = place_count * e.joint + static_cast<std::uint32_t>(a_origin);
      }},
     {"places of constraints",
      [](Everything& e) {
        const std::uint32_t origin = e.model.constraints[e.joint].particles[a_origin];
-       e.model.references.at(origin).first_constraint = none;
+       e.model.places.at(origin).first = none;
      }},
     // laws, fields, pairwise forces
     {"has no living law", [](Everything& e) { e.model.bonds[e.bond].law = nowhere; }},

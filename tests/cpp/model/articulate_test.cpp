@@ -42,9 +42,9 @@ TEST(Articulates, that_hang_together_otherwise_are_not_split) {
   m.hinge(m.particle(a, 0), m.particle(b, 0));
   EXPECT_FALSE(m.model.split_articulate(a, a));
   EXPECT_FALSE(m.model.split_articulate(a, b));
-  Closing closing;
+  ingredient::Closing closing;
   closing.p = m.particle(a, 1), closing.q = m.particle(b, 1), closing.duration = 1;
-  m.model.add_closing(closing);
+  ingredient::Closings::add(m.model, closing);
   m.leave_ring(m.particle(b, 0));
   EXPECT_FALSE(m.model.split_articulate(a, b)) << "two bodies on their way to each other are one problem";
   EXPECT_EQ(ingredient::validate(m.model), whole);
@@ -120,9 +120,9 @@ TEST(Touched, of_very_many_rings_asks_for_a_problem_that_is_built_anew) {
 TEST(TiedBodies, are_those_that_hinges_and_implicit_bonds_connect) {
   SmallModel m;
   const auto left = m.chain(2), right = m.chain(2, {0, 3, 0}), apart = m.chain(1, {0, 6, 0});
-  Bond bond;
+  ingredient::Bond bond;
   bond.p = m.particle(left[1], 1), bond.q = m.particle(right[0], 0);
-  const std::uint32_t slot = m.model.add_bond(bond);
+  const std::uint32_t slot = ingredient::Bonds::add(m.model, bond);
   const auto tied = [&](Model::Ties ties) {
     std::vector<std::uint32_t> list = m.model.tied_bodies(std::vector{left[0]}, ties);
     std::sort(list.begin(), list.end());

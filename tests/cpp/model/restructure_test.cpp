@@ -128,25 +128,25 @@ TEST_F(RestructureSeparate, at_a_hinge_takes_the_latter_out_of_the_ring_in_place
 
 TEST_F(RestructureClosing, ends_without_a_trace_when_it_is_called_off) {
   const std::uint32_t p = m.particle(m.body({{0, 0, 0}}), 0), q = m.particle(m.body({{1, 0, 0}}), 0);
-  Closing closing;
+  ingredient::Closing closing;
   closing.p = p, closing.q = q, closing.duration = 1;
   model.join_articulates(model.bodies[model.particles[p].body].articulate,
                          model.bodies[model.particles[q].body].articulate);
-  const std::uint32_t slot = model.add_closing(closing);
+  const std::uint32_t slot = ingredient::Closings::add(model, closing);
   EXPECT_EQ(ingredient::validate(model), whole);
-  EXPECT_EQ(closing_between(model, p, q), slot);
-  EXPECT_EQ(closing_between(model, q, p), slot);
-  call_off(model, slot);
-  EXPECT_EQ(closing_between(model, p, q), none);
+  EXPECT_EQ(ingredient::Closings::between(model, p, q), slot);
+  EXPECT_EQ(ingredient::Closings::between(model, q, p), slot);
+  ingredient::Closings::end(model, slot);
+  EXPECT_EQ(ingredient::Closings::between(model, p, q), none);
   EXPECT_EQ(model.articulates.size(), 2u);
   EXPECT_EQ(model.particles[p].uses + model.particles[q].uses, 0u);
 }
 
 TEST_F(RestructureDestroy, a_body_takes_its_bonds_and_hinges_with_it) {
   const auto chain = m.chain(3);
-  Bond bond;
+  ingredient::Bond bond;
   bond.p = m.particle(chain[1], 1), bond.q = m.particle(chain[2], 1);
-  model.add_bond(bond);
+  ingredient::Bonds::add(model, bond);
   destroy_body(model, chain[1]);
   EXPECT_EQ(model.bonds.size(), 0u);
   EXPECT_EQ(model.articulates.size(), 2u);

@@ -2,6 +2,7 @@
 // Models made by hand, below the public `System`.
 #pragma once
 
+#include "ingredient/model.h"
 #include "model/restructure.h"
 
 #include <initializer_list>

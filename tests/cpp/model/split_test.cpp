@@ -14,9 +14,9 @@ namespace iota::model {
 namespace {
 
 std::uint32_t join(Model& model, std::uint32_t p, std::uint32_t q) {
-  CosmeticBond bond;
+  ingredient::CosmeticBond bond;
   bond.p = p, bond.q = q;
-  return model.add_cosmetic_bond(bond);
+  return ingredient::CosmeticBonds::add(model, bond);
 }
 
 /// The particles that bonds connect with p, by a search.
@@ -26,7 +26,7 @@ std::set<std::uint32_t> reach(const Model& model, std::uint32_t p) {
   while (!open.empty()) {
     const std::uint32_t at = open.back();
     open.pop_back();
-    model.cosmetic_bonds.for_each([&](std::uint32_t, const CosmeticBond& bond) {
+    model.cosmetic_bonds.for_each([&](std::uint32_t, const ingredient::CosmeticBond& bond) {
       if (model.particles[bond.p].body != model.particles[bond.q].body) return;
       for (const auto& [from, to] : {std::pair{bond.p, bond.q}, std::pair{bond.q, bond.p}})
         if (from == at && found.insert(to).second) open.push_back(to);
@@ -55,7 +55,7 @@ TEST(SplitByBonds, agrees_with_a_search_through_random_graphs) {
       const std::uint32_t first = m.model.cosmetic_bonds[bond].p, second = m.model.cosmetic_bonds[bond].q;
       const std::uint32_t home = m.model.particles[first].body;
       RestructureReport report;
-      (void)break_cosmetic_bond(m.model, bond, report);
+      (void)ingredient::CosmeticBonds::break_(m.model, bond, report);
       const std::set<std::uint32_t> stays = reach(m.model, first);
       const bool apart = !stays.contains(second);
       ASSERT_EQ(report.created_bodies.size(), apart ? 1u : 0u);
@@ -80,7 +80,7 @@ TEST(SplitByBonds, leaves_positions_velocities_and_masses_as_they_are) {
   const Vec3 momentum = ingredient::calc_momenta(m.model).linear, angular = ingredient::calc_momenta(m.model).angular;
   const double energy = ingredient::calc_energies(m.model).kinetic;
   RestructureReport report;
-  const Edit edit = break_cosmetic_bond(m.model, bridge, report);
+  const Edit edit = ingredient::CosmeticBonds::break_(m.model, bridge, report);
   EXPECT_FALSE(edit.moved);
   EXPECT_EQ(ingredient::calc_momenta(m.model).linear, momentum);
   EXPECT_EQ(ingredient::calc_momenta(m.model).angular, angular);
@@ -94,7 +94,7 @@ TEST(SplitByBonds, never_makes_a_body_without_mass) {
   join(m.model, m.particle(body, 0), m.particle(body, 1));
   const std::uint32_t bond = join(m.model, m.particle(body, 0), marker);
   RestructureReport report;
-  (void)break_cosmetic_bond(m.model, bond, report);
+  (void)ingredient::CosmeticBonds::break_(m.model, bond, report);
   EXPECT_TRUE(report.created_bodies.empty());
   EXPECT_EQ(report.notes.size(), 1u);
   EXPECT_TRUE(ingredient::validate(m.model).empty());

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "base/archive.h"
+#include "base/function_ref.h"
 #include "base/side_table.h"
 #include "base/slot_table.h"
-#include "laws/field_law.h"
-#include "laws/pair_law.h"
 #include "model/attributes.h"
-#include "model/constraint.h"
+#include "model/end_table.h"
 #include "model/scene_log.h"
+#include "shape/shape.h"
 
 #include <iota/system.h>
 
@@ -16,18 +16,19 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <memory>
 #include <span>
 #include <vector>
 
 namespace iota::model {
 
-inline constexpr std::uint32_t none = 0xffffffff;
+/// A structure with the tables of all ingredients: see ingredient/model.h.
+class Model;
+
 inline constexpr double inactive_share = 0x1p-20;  ///< of its mass that an inactive particle keeps
 
 inline bool is_free(BodyKind kind) { return kind == BodyKind::dynamic || kind == BodyKind::resting; }
 
-// A model of a hundred thousand links lives or dies by the size of these three records: what few items have is in side
+// Memory and speed at a hundred thousand links depend on the size of these three records: what few items have is in side
 // tables beside them.
 
 /// One body's point. Points of different bodies in one ring share position and velocity; each holds its share of mass.
@@ -35,7 +36,7 @@ struct Particle {
   std::uint32_t body = none, ring = none;
   std::uint32_t next_in_body = none, previous_in_body = none;
   std::uint32_t next_in_ring = none, previous_in_ring = none;
-  std::uint32_t uses = 0;           ///< bonds and closings that need it as an unknown of its own
+  std::uint32_t uses = 0;           ///< items (bonds, closings) that need it as an unknown of its own
   std::uint32_t groups = 0;         ///< a bit for each group that it is in
   std::uint32_t attributes = none;  ///< see `Attributes`
   /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them, see
@@ -57,11 +58,6 @@ struct Tie {
       multiplier{};  ///< of the rows that tie it to them, where it is an unknown of its own, N; warm start
 };
 
-/// Where the lists begin of what refers to a particle: see `Ends` and `Constraint`.
-struct References {
-  std::uint32_t first_bond = none, first_closing = none, first_cosmetic_bond = none, first_constraint = none;
-};
-
 /// What the particles of a ring share: one position, one unknown of the solver. (The thesis: a particle is a ring of
 /// points.)
 struct Ring {
@@ -69,19 +65,6 @@ struct Ring {
   std::uint32_t nailed = 0;
   Vec3 position, velocity;
   Vec3 acceleration;  ///< change of velocity in the last step by its length, m/s^2
-};
-
-/// What holds a ring that is nailed or a static or scripted body's.
-struct Nail {
-  /// Where it is, and where it was at the last step, m; of a ring that a static body holds: where that was put.
-  Vec3 position, position_before;
-  Vec3 multiplier;  ///< minus its force, N; warm start and reaction
-};
-
-/// Forces that were applied to a ring, N.
-struct Push {
-  Vec3 force;   ///< for the next step only
-  Vec3 before;  ///< in the last step
 };
 
 /// Two basis points of a body keep their distance.
@@ -104,7 +87,7 @@ struct Body {
   std::uint32_t basis_needs = 0;       ///< particles that were unknowns anyway when the basis was chosen
   std::array<std::uint32_t, 4> basis{none, none, none, none};
   double damping = 0;      ///< 1/s
-  RigidRow first_row;      ///< of the basis pairs; see Model::row
+  RigidRow first_row;      ///< of the basis pairs; see Structure::row
   Quaternion orientation;  ///< of the drawn frame
 };
 using MoreRows = std::array<RigidRow, 5>;  ///< of bodies whose basis is more than two points
@@ -119,14 +102,6 @@ struct InertiaPair {
   std::uint32_t body = none, next = none;
   std::uint32_t p = none, q = none;
   double inertia = 0;  ///< kg, may be negative
-};
-
-/// The turning of a rod about itself, of which its two points know nothing.
-struct RodSpin {
-  double momentum =
-      0;             ///< about the line from the first to the second particle of its inertia pair, kg m^2/s; constant
-  double angle = 0;  ///< turned by since it began, rad
-  double drawn = 0;  ///< of that, what the drawn frame shows
 };
 
 /// A homogeneous solid that a body, or a part of it, was given as. Four ordinary, equal point masses stand for it, at
@@ -161,156 +136,32 @@ struct Articulate {
   double standing_gap = 0;           ///< that was left then, relative; 0: no conflict
 };
 
-/// What joins two particles is in a list of each of them, so that looking after one particle's uses costs what it has.
-/// A link is slot * 2 + end: which end of the next item is at this particle.
-struct Ends {
-  std::uint32_t p = none, q = none;
-  std::array<std::uint32_t, 2> next{none, none}, previous{none, none};
-};
-
-enum class LawKind : std::uint32_t {
-  listed,      ///< of laws::PairLaws
-  expression,  ///< its text
-  scripted,    ///< each bond has a function of its own
-  radial,      ///< compiled code for one bond
-  batch,       ///< a function for all bonds at once
-};
-
-/// A law of force that bonds share. The first ones, in fixed slots, are the predefined ones and `scripted`.
-struct Law {
-  LawKind kind = LawKind::listed;
-  std::uint32_t number = 0;  ///< of a listed law
-  std::uint32_t parameter_count = 0;
-  std::uint32_t uses = 0;      ///< bonds that have it
-  std::uint64_t function = 0;  ///< key of the compiled code, which lives outside the tables
-  std::array<double, laws::max_parameters> standard{};
-  std::array<std::array<char, 24>, laws::max_parameters> parameters{};  ///< names
-  std::array<char, 32> name{};
-  std::array<char, 1000> text{};
-
-  bool has_derivative() const { return kind == LawKind::listed || kind == LawKind::expression; }
-};
-inline constexpr std::uint32_t spring_law = 0, drag_law = 1, scripted_law = laws::pair_law_count;
-
-struct Bond : Ends {
-  std::uint32_t law = spring_law;
-  std::uint8_t active = 1;
-  std::uint8_t implicit = 1;
-  std::uint8_t muted = 0;   ///< one of its ends does not act
-  std::uint8_t broken = 0;  ///< by more than `break_force`
-  std::array<double, laws::max_parameters> parameters{};
-  double break_force = std::numeric_limits<double>::infinity();  ///< N
-  Vec3 held_force;           ///< on p in the last step, N; of bonds that are not implicit
-  std::uint64_t script = 0;  ///< key of its own function, which lives outside the tables
-
-  /// Whether it is solved implicitly, so that its two ends belong to one problem.
-  bool ties() const { return acts() && implicit; }
-  bool acts() const { return active && !muted; }
-};
-
 /// A named set of particles; its slot is its bit in Particle::groups.
 struct Group {
   std::array<char, 32> name{};
 };
 
-enum class FieldKind : std::uint32_t { listed, expression, function };
-
-/// A force on each particle by itself.
-struct Field {
-  FieldKind kind = FieldKind::listed;
-  std::uint32_t number = 0;    ///< of a listed one
-  std::uint32_t group = none;  ///< none: all particles
-  std::uint32_t parameter_count = 0;
-  std::uint8_t active = 1, replaces_gravity = 0;
-  std::array<std::uint8_t, 6> padding{};
-  std::uint64_t function = 0;  ///< key of the function, which lives outside the tables
-  std::array<double, laws::max_field_parameters> parameters{};
-  std::array<std::array<char, 24>, laws::max_field_parameters> names{};
-  std::array<char, 32> name{};
-  std::array<char, 1000> text{};
-};
-
-/// A force between all pairs of a group that are nearer than a cut-off.
-struct Pairs {
-  std::uint32_t law = none;
-  std::uint32_t group = none;  ///< none: all particles
-  std::uint8_t active = 1;
-  std::array<std::uint8_t, 7> padding{};
-  double cutoff = 1;  ///< m
-  std::array<double, laws::max_parameters> parameters{};
-};
-
-struct CosmeticBond : Ends {};
-
-struct Grip {
-  std::uint32_t body = none, count = 0;
-  std::array<std::uint32_t, 4> points{};
-  std::array<double, 4> weights{};
-  Vec3 target;
-  std::uint32_t client = 0, hold = 0;
-  double frequency = 0, max_acceleration = 0;
-  Vec3 force;  ///< in the last step, N
-};
-
-/// Two particles on their way to each other.
-struct Closing : Ends {
-  double distance = 0;               ///< at the start, m
-  double duration = 0, elapsed = 0;  ///< s
-  double multiplier = 0;
-};
-
-/// All of a system that is saved: plain tables under stable ids. It knows structure and book-keeping, not time stepping.
-class Model {
+/// Particles, rings, bodies and articulates: who belongs to whom, where everything is, and how that changes. It knows
+/// nothing of what acts on them (ingredients), but tells that what happens to the things that it hangs on.
+class Structure {
  public:
-  Model();
-
   SlotTable<Particle, ParticleId> particles;
-  SideTable<Tie> ties;               ///< of particles in no basis
-  SideTable<References> references;  ///< of particles
-  SideTable<double> fuses;           ///< how much the hinge or nail of a particle bears, N
+  SideTable<Tie> ties;      ///< of particles in no basis
+  SideTable<double> fuses;  ///< how much the hinge or nail of a particle bears, N
   SlotTable<Ring, Id<Ring>> rings;
-  SideTable<Nail> nails;   ///< of rings
-  SideTable<Push> pushes;  ///< of rings
   SlotTable<Body, BodyId> bodies;
   SideTable<MoreRows> more_rows;  ///< of bodies
-  SideTable<RodSpin> spins;       ///< of bodies that are rods
   SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
   SlotTable<Solid, Id<Solid>> solids;
   SlotTable<Twin, Id<Twin>> twins;
   SlotTable<Attributes, Id<Attributes>> attributes;
-  SlotTable<Emitter, EmitterId> emitters;
   SlotTable<Articulate, Id<Articulate>> articulates;
-  SlotTable<Law, LawId> laws;
   SlotTable<Group, GroupId> groups;
-  SlotTable<Field, FieldId> fields;
-  SlotTable<Pairs, PairsId> pairs;
-  SlotTable<Bond, BondId> bonds;
-  SlotTable<CosmeticBond, CosmeticBondId> cosmetic_bonds;
-  SlotTable<Grip, GripId> grips;
-  SlotTable<Closing, Id<Closing>> closings;
-  SlotTable<Constraint, ConstraintId> constraints;
-  std::vector<Vec3> curve_points;  ///< of paths, m
-  /// Of function surfaces, by key; not saved.
-  std::map<std::uint64_t, SurfaceFunction> surface_functions;
-
-  Vec3 gravity{0, -9.81, 0};
-  IntegrationMode mode = IntegrationMode::energy_keeping;
-  /// Whether forces are those at the end of a step (backward Euler), not in its middle.
-  bool steps_to_end_point() const { return mode == IntegrationMode::plausible || mode == IntegrationMode::robust; }
-  double damping = 0;
-  /// Name of who solves the equations of steps, ended by zeros; empty: the built-in one.
-  std::array<char, 32> solver{};
-  double rest_after = 0, rest_speed = 0;  ///< s, m/s; see RestOptions
-  double time = 0, last_dt = 0;
-  std::uint64_t step = 0;
   std::uint32_t structure_version = 1;
-  std::uint32_t spark_changes = 0;  ///< how often `structure_version` has risen for births and deaths of sparks
-  double dissipated = 0, external_work = 0, edit_energy = 0;
-  double booked_energy = 0;        ///< kinetic and potential energy when edits were last booked, J
-  std::uint64_t has_edits = 0;     ///< since then
-  double held_energy = 0;          ///< of forces that are held, which `energy` leaves out, when it was last booked, J
-  std::vector<std::string> notes;  ///< of edits that have no report, for the next step's; not saved
-  SceneLog scene;                  ///< what viewers have to be told; not saved
+  std::uint32_t spark_changes = 0;     ///< how often `structure_version` has risen for births and deaths of sparks
+  std::uint64_t members_revision = 0;  ///< rises when a group or what takes part changes; not saved
+  std::vector<std::string> notes;      ///< of edits that have no report, for the next step's; not saved
+  SceneLog scene;                      ///< what viewers have to be told; not saved
 
   /// @name Membership: cheap links only, no physics
   ///@{
@@ -358,47 +209,9 @@ class Model {
     LocalChange local;
   };
   void take_touched(Touched&);
-  enum class Ties { all, constraints };
-  /// The bodies of the articulates of `bodies` and of all that constraints and implicit bonds tie to those: what one
-  /// problem solves. In order of discovery.
-  std::vector<std::uint32_t> tied_bodies(std::span<const std::uint32_t> bodies, Ties ties = Ties::all) const;
-  bool is_tied_to_world(std::uint32_t body) const;  ///< by an active constraint
   ///@}
 
-  /// @name What joins two particles. Adding and removing keeps the particles' lists and touches the articulates.
-  ///@{
-  std::uint32_t add_bond(const Bond&);
-  std::uint32_t add_closing(const Closing&);
-  std::uint32_t add_cosmetic_bond(const CosmeticBond&);
-  void remove_bond(std::uint32_t bond);
-  void remove_closing(std::uint32_t closing);
-  void remove_cosmetic_bond(std::uint32_t bond);
-  std::uint64_t bonds_revision = 0;  ///< rises when a bond is added, removed, moved or switched; not saved
-  std::uint32_t add_constraint(const Constraint&);
-  void remove_constraint(std::uint32_t constraint);     ///< its markers stay
   void set_fuse(std::uint32_t particle, double force);  ///< infinite: none
-  const ConstraintGeometry& geometry(std::uint32_t constraint) const { return geometries_[constraint]; }
-  void make_geometries();  ///< anew, after a restore
-  void make_geometry_anew(std::uint32_t constraint) {
-    geometries_[constraint] = make_geometry(*this, constraints[constraint]);
-  }
-  /// Bonds, closings and constraints of q become p's; those that would join p to itself are removed.
-  void redirect_uses(std::uint32_t q, std::uint32_t p);
-  ///@}
-
-  /// @name Laws
-  ///@{
-  std::uint32_t make_law(const Law&);  ///< throws expression::ExpressionError for a text that is no law
-  /// Ready for use; only laws with a derivative have one.
-  const laws::PairLaw& compiled(std::uint32_t law) const { return *compiled_laws_[law]; }
-  std::uint32_t make_field(const Field&);  ///< throws expression::ExpressionError for a text that is no field
-  const laws::FieldLaw& compiled_field(std::uint32_t field) const { return *compiled_fields_[field]; }
-  void compile_laws();    ///< anew, after a restore
-  void compile_fields();  ///< anew, after a restore
-  /// What pulls on all masses: gravity, unless an active field replaces it.
-  Vec3 acting_gravity() const;
-  std::uint64_t members_revision = 0;  ///< rises when a group changes; not saved
-  ///@}
 
   /// Drops inertia pairs of a body (it is then its point masses) that could leave its mass matrix indefinite.
   void keep_inertia_positive(std::uint32_t body);
@@ -424,9 +237,7 @@ class Model {
   std::uint32_t make_marker(std::uint32_t body, const Vec3& position);
   /// Moment of inertia of a rod about itself, kg m^2; 0 of a body that is no rod: two points with an inertia pair.
   double axial_inertia(std::uint32_t body) const;
-  Vec3 rod_axis(std::uint32_t body) const;                     ///< of a rod, unit vector
-  Vec3 spin_momentum(std::uint32_t body) const;                ///< of a rod's turning about itself, kg m^2/s
-  void set_spin(std::uint32_t body, double angular_velocity);  ///< of a rod about itself, rad/s
+  Vec3 rod_axis(std::uint32_t body) const;  ///< of a rod, unit vector
 
   /// Of the massive particle nearest to a place.
   BodyId part_at(std::uint32_t body, const Vec3& place) const;
@@ -446,8 +257,6 @@ class Model {
     const Particle& p = particles[particle];
     return !p.inactive && bodies[p.body].kind != BodyKind::inactive;
   }
-  void set_bond_active(std::uint32_t bond, bool active);  ///< true repairs a broken one
-  void mute_bonds_of(std::uint32_t particle);             ///< after it has changed whether it acts
 
   /// Held in place by a nail or by a static or scripted body in its ring.
   bool is_pinned(std::uint32_t ring) const;
@@ -477,36 +286,6 @@ class Model {
     for (std::uint32_t b = articulates[articulate].first, next; b != none; b = next)
       next = bodies[b].next_in_articulate, visit(b);
   }
-  /// visit(slot of the bond); it may remove that bond.
-  template <class Visit>
-  void for_each_bond_of(std::uint32_t particle, Visit visit) const {
-    visit_uses(bonds, references[particle].first_bond, visit);
-  }
-  template <class Visit>
-  void for_each_closing_of(std::uint32_t particle, Visit visit) const {
-    visit_uses(closings, references[particle].first_closing, visit);
-  }
-  template <class Visit>
-  void for_each_cosmetic_bond_of(std::uint32_t particle, Visit visit) const {
-    visit_uses(cosmetic_bonds, references[particle].first_cosmetic_bond, visit);
-  }
-  /// visit(slot of the constraint, place): once for each place that the particle is at.
-  template <class Visit>
-  void for_each_constraint_of(std::uint32_t particle, Visit visit) const {
-    for (std::uint32_t link = references[particle].first_constraint, next; link != none; link = next) {
-      next = constraints[link / place_count].next[link % place_count];
-      visit(link / place_count, static_cast<int>(link % place_count));
-    }
-  }
-  /// visit(body): the bodies that active constraints tie to a particle's.
-  template <class Visit>
-  void for_each_body_tied_to(std::uint32_t particle, Visit visit) const {
-    for_each_constraint_of(particle, [&](std::uint32_t c, int place) {
-      if (!constraints[c].active || (place != a_origin && place != b_origin)) return;
-      const std::uint32_t other = body_of_side(*this, constraints[c], place == a_origin ? 1 : 0);
-      if (other != none) visit(other);
-    });
-  }
   template <class Visit>
   void for_each_inertia_of(std::uint32_t body, Visit visit) const {
     for (std::uint32_t i = bodies[body].first_inertia; i != none; i = inertia_pairs[i].next) visit(i);
@@ -525,23 +304,41 @@ class Model {
   bool is_spark(std::uint32_t particle) const;
   std::optional<BodyId> survivor_of(BodyId) const;
 
-  std::uint64_t hash() const;
-
-  /// Settings, points, bodies and articulates with what refers to them. The tables of ingredients are archived by these:
-  /// see ingredient::archive.
   template <class Archive>
   void archive(Archive& ar);
 
- private:
-  void compile_law(std::uint32_t law);
-  void compile_field(std::uint32_t field);
-  std::vector<std::shared_ptr<const laws::PairLaw>> compiled_laws_;  // by slot; not saved, made from the table
-  std::vector<std::shared_ptr<const laws::FieldLaw>> compiled_fields_;
+  /// @name What changes of the structure mean for all that hangs on it; `Model` passes each on to its ingredients.
+  ///@{
+  virtual void absorb_uses(std::uint32_t q, std::uint32_t p) = 0;  ///< p takes the place of q, which is going
+  virtual void drop_uses(std::uint32_t particle) = 0;              ///< it is going; may destroy other things
+  virtual void forget_particle(std::uint32_t particle) = 0;        ///< it is gone, with whatever hung on it
+  virtual void forget_body(std::uint32_t body) = 0;
+  /// Another particle is the first of a ring, or the ring is empty and gone.
+  virtual void ring_changed(std::uint32_t ring) = 0;
+  /// One ring becomes another; `replaces`: what holds `from` in its place holds `into` there now.
+  virtual void ring_merged(std::uint32_t into, std::uint32_t from, bool replaces) = 0;
+  virtual void inertia_changed(std::uint32_t body) = 0;     ///< its basis or its inertia pairs are other ones
+  virtual void acting_changed(std::uint32_t particle) = 0;  ///< see `acts`
+  /// Ends what brings two particles together. False if nothing does.
+  virtual bool call_off(std::uint32_t p, std::uint32_t q) = 0;
+  virtual bool is_used(std::uint32_t particle) const = 0;     ///< by anything but its body, ring and groups
+  virtual Vec3 inner_momentum(std::uint32_t body) const = 0;  ///< angular, that its points know nothing of, kg m^2/s
+  using Visit = FunctionRef<void(std::uint32_t)>;
+  /// visit(body): of those that belong to one articulate with the particle's for a reason other than a hinge.
+  virtual void visit_joined(std::uint32_t particle, Visit visit) const = 0;
+  /// visit(particle): of the particles of its body from which nothing but a cut would part it.
+  virtual void visit_companions(std::uint32_t particle, Visit visit) const = 0;
+  ///@}
 
-  template <class Table, class Visit>
-  static void visit_uses(const Table& items, std::uint32_t link, Visit visit) {
-    for (std::uint32_t next; link != none; link = next) next = items[link / 2].next[link % 2], visit(link / 2);
-  }
+ protected:
+  Structure() = default;
+  Structure(const Structure&) = default;
+  Structure(Structure&&) = default;
+  Structure& operator=(const Structure&) = default;
+  Structure& operator=(Structure&&) = default;
+  ~Structure() = default;
+
+ private:
   /// Bodies marked in the search at hand: those with the current mark. Not saved.
   struct Marks {
     std::vector<std::uint32_t> of;
@@ -567,15 +364,12 @@ class Model {
     template <class Archive>
     void archive(Archive& ar);
   };
-  std::vector<ConstraintGeometry> geometries_;  // by slot of the constraint; not saved
-  void link_place(std::uint32_t constraint, std::uint32_t place);
-  void unlink_place(std::uint32_t constraint, std::uint32_t place);
   Survivors<ParticleId> particle_survivors_;
   Survivors<BodyId> body_survivors_;
 };
 
 template <class IdType>
-void Model::Survivors<IdType>::record(IdType retired, IdType survivor) {
+void Structure::Survivors<IdType>::record(IdType retired, IdType survivor) {
   constexpr std::size_t remembered = 65536;
   became[retired] = survivor;
   in_order.push_back(retired);
@@ -586,7 +380,7 @@ void Model::Survivors<IdType>::record(IdType retired, IdType survivor) {
 }
 
 template <class IdType>
-std::optional<IdType> Model::Survivors<IdType>::find(IdType id) const {
+std::optional<IdType> Structure::Survivors<IdType>::find(IdType id) const {
   const auto found = became.find(id);
   if (found == became.end()) return std::nullopt;
   return found->second;
@@ -594,7 +388,7 @@ std::optional<IdType> Model::Survivors<IdType>::find(IdType id) const {
 
 template <class IdType>
 template <class Archive>
-void Model::Survivors<IdType>::archive(Archive& ar) {
+void Structure::Survivors<IdType>::archive(Archive& ar) {
   struct Pair {
     IdType retired, survivor;
   };
@@ -606,14 +400,12 @@ void Model::Survivors<IdType>::archive(Archive& ar) {
 }
 
 template <class Archive>
-void Model::archive(Archive& ar) {
+void Structure::archive(Archive& ar) {
   particles.archive(ar), rings.archive(ar), bodies.archive(ar), solids.archive(ar), twins.archive(ar);
-  articulates.archive(ar), groups.archive(ar), cosmetic_bonds.archive(ar);
-  references.archive(ar, particles.slot_count()), fuses.archive(ar, particles.slot_count());
-  ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
-  ar.value(time), ar.value(last_dt), ar.value(step), ar.value(structure_version), ar.value(spark_changes);
-  ar.value(dissipated), ar.value(external_work), ar.value(edit_energy), ar.value(booked_energy), ar.value(has_edits);
-  ar.value(held_energy);
+  articulates.archive(ar), groups.archive(ar), inertia_pairs.archive(ar), attributes.archive(ar);
+  ties.archive(ar, particles.slot_count()), fuses.archive(ar, particles.slot_count());
+  more_rows.archive(ar, bodies.slot_count());
+  ar.value(structure_version), ar.value(spark_changes);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
 }
 

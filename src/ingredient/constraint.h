@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/curve.h"
+#include "model/structure.h"
 #include "shape/shape.h"
 #include "shape/surface.h"
 
@@ -14,9 +15,9 @@
 #include <string>
 #include <vector>
 
-namespace iota::model {
+namespace iota::ingredient {
 
-class Model;
+using model::Model;
 
 /// The places of a constraint. A joint needs a frame on each of its sides: an origin and the ends of directions that
 /// start there (axis z, side x, third y). A rod or rope joins the two origins. Curves and surfaces need the whole frame
@@ -66,7 +67,7 @@ struct SurfaceData {
   std::uint64_t function = 0;
 };
 
-/// The curve's points are in `Model::curve_points`, in the frame of b.
+/// The curve's points are in `Joints::Tables::curve_points`, in the frame of b.
 struct CurveData {
   CurveKind kind = CurveKind::spline;
   std::uint8_t closed = 0;
@@ -145,15 +146,12 @@ std::uint32_t make_constraint(Model&, const SurfaceConstraintData&);
 std::uint32_t make_constraint(Model&, const SurfacePairData&);
 /// The geometry of a constraint from its data; throws std::invalid_argument for sizes and points that make none.
 ConstraintGeometry make_geometry(const Model&, const Constraint&);
-/// With the markers that were made for it.
-void destroy_constraint(Model&, std::uint32_t constraint);
-/// Ends constraints of these bodies that an edit has left without sense: both sides in one rigid body, or one torn apart.
-void end_settled_constraints(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
-
 /// The body of a side (0: a, 1: b), `none` for the world.
 std::uint32_t body_of_side(const Model&, const Constraint&, int side);
 /// Whether it does anything: it is active, neither of its bodies is inactive, and one of them can move.
 bool is_in_force(const Model&, const Constraint&);
 Vec3 position_of(const Model&, const Constraint&, int place);
+/// Unit vector along its axis, world frame; zero for kinds without one.
+Vec3 calc_axis(const Model&, const Constraint&);
 
-}  // namespace iota::model
+}  // namespace iota::ingredient

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/model.h"
+#include "model/structure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <type_traits>
 
@@ -30,7 +31,7 @@ void unlink(Table& items, Owner& owner, std::uint32_t item, auto next, auto prev
 
 }  // namespace
 
-std::uint32_t Model::make_particle(std::uint32_t body, const Vec3& position, double mass, const Vec3& velocity) {
+std::uint32_t Structure::make_particle(std::uint32_t body, const Vec3& position, double mass, const Vec3& velocity) {
   Particle p;
   p.mass = mass, p.part = bodies.id(body);
   const std::uint32_t particle = particles.create(p).slot;
@@ -41,7 +42,7 @@ std::uint32_t Model::make_particle(std::uint32_t body, const Vec3& position, dou
   return particle;
 }
 
-std::uint32_t Model::make_body(BodyKind kind, double body_damping) {
+std::uint32_t Structure::make_body(BodyKind kind, double body_damping) {
   Body b;
   b.kind = kind, b.damping = body_damping;
   const std::uint32_t body = bodies.create(b).slot;
@@ -50,79 +51,76 @@ std::uint32_t Model::make_body(BodyKind kind, double body_damping) {
   return body;
 }
 
-void Model::remove_particle(std::uint32_t particle) {
+void Structure::remove_particle(std::uint32_t particle) {
   set_fuse(particle, std::numeric_limits<double>::infinity());
   if (twins.size() > 0)
     for (std::uint32_t t = 0; t < twins.slot_count(); ++t)
       if (twins.is_alive(t) && twins[t].particle == particle) twins.destroy(t);
-  if (const std::uint32_t slot = particles[particle].attributes; slot != none) {
-    if (const std::uint32_t emitter = attributes[slot].emitter; emitter != none) --emitters[emitter].alive;
-    attributes.destroy(slot);
-  }
+  forget_particle(particle);
+  if (const std::uint32_t slot = particles[particle].attributes; slot != none) attributes.destroy(slot);
   take_from_body(particle);
   take_from_ring(particle);
-  ties.erase(particle), references.erase(particle);
+  ties.erase(particle);
   particles.destroy(particle);
 }
 
-void Model::add_to_body(std::uint32_t particle, std::uint32_t body) {
+void Structure::add_to_body(std::uint32_t particle, std::uint32_t body) {
   particles[particle].body = body;
   append(particles, bodies[body], particle, &Particle::next_in_body, &Particle::previous_in_body);
 }
 
-void Model::take_from_body(std::uint32_t particle) {
+void Structure::take_from_body(std::uint32_t particle) {
   remove_inertia_of(particles[particle].body, particle);
   remove_solids_of(particles[particle].body, particle);
   unlink(particles, bodies[particles[particle].body], particle, &Particle::next_in_body, &Particle::previous_in_body);
   particles[particle].body = none;
 }
 
-void Model::add_to_ring(std::uint32_t particle, std::uint32_t ring) {
+void Structure::add_to_ring(std::uint32_t particle, std::uint32_t ring) {
   particles[particle].ring = ring;
   append(particles, rings[ring], particle, &Particle::next_in_ring, &Particle::previous_in_ring);
 }
 
-void Model::take_from_ring(std::uint32_t particle) {
+void Structure::take_from_ring(std::uint32_t particle) {
   const std::uint32_t ring = particles[particle].ring;
   unlink(particles, rings[ring], particle, &Particle::next_in_ring, &Particle::previous_in_ring);
   particles[particle].ring = none;
-  scene.rings.note(ring);  // its nail is drawn at its first particle
-  if (rings[ring].count > 0) return;
-  nails.erase(ring), pushes.erase(ring);
-  rings.destroy(ring);
+  ring_changed(ring);
+  if (rings[ring].count == 0) rings.destroy(ring);
 }
 
-void Model::enter_articulate(std::uint32_t body, std::uint32_t articulate) {
+void Structure::enter_articulate(std::uint32_t body, std::uint32_t articulate) {
   bodies[body].articulate = articulate;
   scene.memberships.note(body);
   append(bodies, articulates[articulate], body, &Body::next_in_articulate, &Body::previous_in_articulate);
 }
 
-void Model::leave_articulate(std::uint32_t body) {
+void Structure::leave_articulate(std::uint32_t body) {
   const std::uint32_t articulate = bodies[body].articulate;
   unlink(bodies, articulates[articulate], body, &Body::next_in_articulate, &Body::previous_in_articulate);
   if (articulates[articulate].count == 0) articulates.destroy(articulate);
 }
 
-void Model::add_to_articulate(std::uint32_t body, std::uint32_t articulate) {
+void Structure::add_to_articulate(std::uint32_t body, std::uint32_t articulate) {
   enter_articulate(body, articulate);
   touch(articulate);
 }
 
-void Model::take_from_articulate(std::uint32_t body) {
+void Structure::take_from_articulate(std::uint32_t body) {
   touch_body(body);
   leave_articulate(body);
 }
 
-void Model::remove_body(std::uint32_t body) {
+void Structure::remove_body(std::uint32_t body) {
   remove_inertia_of(body, none);
   remove_solids_of(body, none);
   take_from_articulate(body);
-  more_rows.erase(body), spins.erase(body);
+  forget_body(body);
+  more_rows.erase(body);
   bodies.destroy(body);
 }
 
-void Model::remove_inertia_of(std::uint32_t body, std::uint32_t particle) {
+void Structure::remove_inertia_of(std::uint32_t body, std::uint32_t particle) {
   std::uint32_t* link = &bodies[body].first_inertia;
   while (*link != none) {
     const std::uint32_t pair = *link;
@@ -136,7 +134,7 @@ void Model::remove_inertia_of(std::uint32_t body, std::uint32_t particle) {
   }
 }
 
-void Model::remove_solids_of(std::uint32_t body, std::uint32_t particle) {
+void Structure::remove_solids_of(std::uint32_t body, std::uint32_t particle) {
   std::uint32_t* link = &bodies[body].first_solid;
   while (*link != none) {
     const std::uint32_t solid = *link;
@@ -150,7 +148,7 @@ void Model::remove_solids_of(std::uint32_t body, std::uint32_t particle) {
   }
 }
 
-bool Model::is_pinned(std::uint32_t ring) const {
+bool Structure::is_pinned(std::uint32_t ring) const {
   if (rings[ring].nailed) return true;
   bool pinned = false;
   for_each_in_ring(ring, [&](std::uint32_t p) {
@@ -160,19 +158,19 @@ bool Model::is_pinned(std::uint32_t ring) const {
   return pinned;
 }
 
-double Model::body_mass(std::uint32_t body) const {
+double Structure::body_mass(std::uint32_t body) const {
   double mass = 0;
   for_each_particle_of(body, [&](std::uint32_t p) { mass += particles[p].mass; });
   return mass;
 }
 
-double Model::ring_mass(std::uint32_t ring) const {
+double Structure::ring_mass(std::uint32_t ring) const {
   double mass = 0;
   for_each_in_ring(ring, [&](std::uint32_t p) { mass += particles[p].mass; });
   return mass;
 }
 
-Vec3 Model::center_of_mass(std::uint32_t body) const {
+Vec3 Structure::center_of_mass(std::uint32_t body) const {
   double mass = 0;
   Vec3 sum;
   for_each_particle_of(body, [&](std::uint32_t p) {
@@ -182,42 +180,35 @@ Vec3 Model::center_of_mass(std::uint32_t body) const {
   return mass > 0 ? (1 / mass) * sum : sum;
 }
 
-void Model::record_survivor(ParticleId retired, ParticleId survivor) { particle_survivors_.record(retired, survivor); }
-void Model::record_survivor(BodyId retired, BodyId survivor) { body_survivors_.record(retired, survivor); }
+void Structure::record_survivor(ParticleId retired, ParticleId survivor) {
+  particle_survivors_.record(retired, survivor);
+}
+void Structure::record_survivor(BodyId retired, BodyId survivor) { body_survivors_.record(retired, survivor); }
 
-std::optional<ParticleId> Model::survivor_of(ParticleId id) const {
+std::optional<ParticleId> Structure::survivor_of(ParticleId id) const {
   for (std::optional<ParticleId> next = id; next; next = particle_survivors_.find(*next))
     if (particles.contains(*next)) return next;
   return std::nullopt;
 }
 
-std::optional<BodyId> Model::survivor_of(BodyId id) const {
+std::optional<BodyId> Structure::survivor_of(BodyId id) const {
   for (std::optional<BodyId> next = id; next; next = body_survivors_.find(*next))
     if (bodies.contains(*next)) return next;
   return std::nullopt;
 }
 
-bool Model::is_spark(std::uint32_t particle) const {
+bool Structure::is_spark(std::uint32_t particle) const {
   const Particle& p = particles[particle];
   if (p.attributes == none || attributes[p.attributes].emitter == none) return false;
-  const References& r = references[particle];
   const Ring& ring = rings[p.ring];
-  return bodies[p.body].count == 1 && ring.count == 1 && !ring.nailed && r.first_bond == none &&
-         r.first_closing == none && r.first_constraint == none;
+  return bodies[p.body].count == 1 && ring.count == 1 && !ring.nailed && !is_used(particle);
 }
 
-std::uint64_t Model::hash() const {
-  Hasher h;
-  h.value(step), h.value(time), h.value(structure_version);
-  const auto add = [&](const Vec3& v) { h.value(v.x), h.value(v.y), h.value(v.z); };
-  rings.for_each([&](std::uint32_t slot, const Ring& r) {
-    h.value(slot), h.value(r.first), h.value(r.count);
-    add(r.position), add(r.velocity);
-  });
-  particles.for_each(
-      [&](std::uint32_t slot, const Particle& p) { h.value(slot), h.value(p.body), h.value(p.ring), h.value(p.mass); });
-  bodies.for_each([&](std::uint32_t slot, const Body& b) { h.value(slot), h.value(b.articulate), h.value(b.count); });
-  return h.result();
+void Structure::set_fuse(std::uint32_t particle, double force) {
+  if (std::isinf(force))
+    fuses.erase(particle);
+  else
+    fuses.make(particle) = force;
 }
 
 }  // namespace iota::model

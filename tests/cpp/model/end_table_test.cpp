@@ -12,9 +12,13 @@
 namespace iota::model {
 namespace {
 
+using ingredient::Bond;
+using ingredient::Bonds;
+using ingredient::spring_law;
+
 std::set<std::uint32_t> bonds_of(const Model& model, std::uint32_t p) {
   std::set<std::uint32_t> found;
-  model.for_each_bond_of(p, [&](std::uint32_t bond) { EXPECT_TRUE(found.insert(bond).second) << "listed twice"; });
+  model.bonds.for_each_of(p, [&](std::uint32_t bond) { EXPECT_TRUE(found.insert(bond).second) << "listed twice"; });
   return found;
 }
 
@@ -30,11 +34,11 @@ TEST(Adjacency, lists_agree_with_a_twin_through_random_bonds) {
       bond.p = particles[random() % 12], bond.q = particles[random() % 12];
       if (bond.p == bond.q) continue;
       const std::uint64_t revision = m.model.bonds_revision;
-      twin[m.model.add_bond(bond)] = {bond.p, bond.q};
+      twin[Bonds::add(m.model, bond)] = {bond.p, bond.q};
       EXPECT_GT(m.model.bonds_revision, revision);
     } else {
       const auto victim = std::next(twin.begin(), static_cast<std::ptrdiff_t>(random() % twin.size()));
-      m.model.remove_bond(victim->first);
+      Bonds::remove(m.model, victim->first);
       twin.erase(victim);
     }
     for (const std::uint32_t p : particles) {
@@ -56,10 +60,10 @@ TEST(Adjacency, redirected_uses_go_to_the_survivor_and_those_between_the_two_end
   const auto bond = [&](std::uint32_t a, std::uint32_t b) {
     Bond made;
     made.p = a, made.q = b;
-    return m.model.add_bond(made);
+    return Bonds::add(m.model, made);
   };
   const std::uint32_t between = bond(p[0], p[1]), kept = bond(p[1], p[2]), other = bond(p[2], p[0]);
-  m.model.redirect_uses(p[1], p[0]);
+  m.model.absorb_uses(p[1], p[0]);
   EXPECT_FALSE(m.model.bonds.is_alive(between));
   EXPECT_EQ(m.model.bonds[kept].p, p[0]);
   EXPECT_EQ(bonds_of(m.model, p[0]), (std::set{kept, other}));
@@ -74,10 +78,10 @@ TEST(Adjacency, a_bond_may_be_removed_while_its_particles_bonds_are_visited) {
   for (int i = 0; i < 5; ++i) {
     Bond made;
     made.p = p, made.q = q;
-    m.model.add_bond(made);
+    Bonds::add(m.model, made);
   }
   int visited = 0;
-  m.model.for_each_bond_of(p, [&](std::uint32_t bond) { ++visited, m.model.remove_bond(bond); });
+  m.model.bonds.for_each_of(p, [&](std::uint32_t bond) { ++visited, Bonds::remove(m.model, bond); });
   EXPECT_EQ(visited, 5);
   EXPECT_EQ(m.model.bonds.size(), 0u);
   EXPECT_TRUE(ingredient::validate(m.model).empty());
@@ -88,11 +92,11 @@ TEST(Adjacency, a_bond_is_muted_while_one_of_its_ends_does_not_act) {
   const std::uint32_t p = m.particle(m.body({{0, 0, 0}}), 0), q = m.particle(m.body({{1, 0, 0}}), 0);
   Bond made;
   made.p = p, made.q = q;
-  const std::uint32_t bond = m.model.add_bond(made);
+  const std::uint32_t bond = Bonds::add(m.model, made);
   EXPECT_TRUE(m.model.bonds[bond].acts());
-  m.model.particles[q].inactive = 1, m.model.mute_bonds_of(q);
+  m.model.particles[q].inactive = 1, m.model.acting_changed(q);
   EXPECT_FALSE(m.model.bonds[bond].acts());
-  m.model.particles[q].inactive = 0, m.model.mute_bonds_of(q);
+  m.model.particles[q].inactive = 0, m.model.acting_changed(q);
   EXPECT_TRUE(m.model.bonds[bond].acts());
 }
 

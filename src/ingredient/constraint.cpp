@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/constraint.h"
+#include "ingredient/constraint.h"
 
+#include "ingredient/model.h"
 #include "math/mat3.h"
-#include "model/model.h"
-#include "model/restructure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
-namespace iota::model {
+namespace iota::ingredient {
 
 namespace {
 
@@ -32,7 +31,7 @@ struct Side {
 
   Side() = default;
   Side(const Model& model, std::uint32_t slot) : body(slot) {
-    const Body& b = model.bodies[slot];
+    const model::Body& b = model.bodies[slot];
     dimensions = std::max(b.rank - 1, 0);
     for (int i = 0; i < dimensions; ++i) {
       Vec3 axis = model.position(b.basis[i + 1]) - model.position(b.basis[0]);
@@ -223,7 +222,7 @@ std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
     const Side& side = place < b_origin ? a : b;
     add_place(model, c, place, side.body, origin_of(side) + c.scale[place >= b_origin] * frames.direction[place]);
   }
-  return model.add_constraint(c);
+  return Joints::add(model, c);
 }
 
 std::uint32_t make_constraint(Model& model, const DistanceSpec& spec) {
@@ -247,7 +246,7 @@ std::uint32_t make_constraint(Model& model, const DistanceSpec& spec) {
   c.scale = {c.length, c.length};
   c.particles.fill(none);
   c.particles[a_origin] = p, c.particles[b_origin] = q;
-  return model.add_constraint(c);
+  return Joints::add(model, c);
 }
 
 namespace {
@@ -312,7 +311,7 @@ std::uint32_t make_constraint(Model& model, const PathSpec& spec) {
     c.options[1].lower = 0, c.options[1].upper = curve->length();
   c.length = curve->length();
   c.coordinate[1] = curve->nearest(model.position(spec.particle.slot) - origin);
-  return model.add_constraint(c);
+  return Joints::add(model, c);
 }
 
 std::uint32_t make_constraint(Model& model, const SurfaceConstraintData& spec) {
@@ -331,7 +330,7 @@ std::uint32_t make_constraint(Model& model, const SurfaceConstraintData& spec) {
            "the shape has sharp edges, and a point that is held on them has no direction there; "
            "give a box or cylinder a rounding, or keep the point inside or outside");
   make_frame(model, c, b, b_origin, spec.surface.position, spec.surface.orientation);
-  return model.add_constraint(c);
+  return Joints::add(model, c);
 }
 
 std::uint32_t make_constraint(Model& model, const SurfacePairData& spec) {
@@ -348,19 +347,7 @@ std::uint32_t make_constraint(Model& model, const SurfacePairData& spec) {
   for (std::size_t i = 0; i < 2; ++i)
     make_frame(model, c, sides[i], i == 0 ? a_origin : b_origin, spec.surfaces[i].position,
                spec.surfaces[i].orientation);
-  return model.add_constraint(c);
-}
-
-void destroy_constraint(Model& model, std::uint32_t slot) {
-  const Constraint c = model.constraints[slot];
-  model.remove_constraint(slot);
-  for (int place = 0; place < place_count; ++place) {
-    if (!(c.owned >> place & 1)) continue;
-    const Particle& p = model.particles[c.particles[place]];
-    // A marker that was hinged, bonded, constrained or given a mass since does not belong to the constraint alone.
-    if (p.is_marker() && !model.is_needed(p) && model.references[c.particles[place]].first_constraint == none)
-      destroy_particle(model, c.particles[place]);
-  }
+  return Joints::add(model, c);
 }
 
 std::uint32_t body_of_side(const Model& model, const Constraint& c, int side) {
@@ -379,48 +366,25 @@ bool is_in_force(const Model& model, const Constraint& c) {
   return complete && moves;
 }
 
+Vec3 calc_axis(const Model& model, const Constraint& c) {
+  for (const int axis : {a_axis, b_axis}) {
+    if (!c.has(axis)) continue;
+    const Vec3 d = position_of(model, c, axis) - position_of(model, c, axis < b_origin ? a_origin : b_origin);
+    return (1 / norm(d)) * d;
+  }
+  return {};
+}
+
 Vec3 position_of(const Model& model, const Constraint& c, int place) {
   return c.particles[place] == none ? c.fixed[place - b_origin] : model.position(c.particles[place]);
 }
 
-void end_settled_constraints(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
-  std::vector<std::uint32_t> candidates;
-  for (const std::uint32_t body : bodies)
-    if (model.bodies.is_alive(body))
-      model.for_each_particle_of(body, [&](std::uint32_t p) {  // a hinge also joins what was in its particles' rings
-        model.for_each_in_ring(model.particles[p].ring, [&](std::uint32_t r) {
-          model.for_each_constraint_of(r, [&](std::uint32_t c, int) { candidates.push_back(c); });
-        });
-      });
-  std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-  for (const std::uint32_t slot : candidates) {
-    if (!model.constraints.is_alive(slot)) continue;
-    const Constraint& c = model.constraints[slot];
-    const std::uint32_t a = body_of_side(model, c, 0), b = body_of_side(model, c, 1);
-    bool torn = false;
-    for (int place = 0; place < place_count; ++place)
-      if (c.particles[place] != none)
-        torn = torn || model.particles[c.particles[place]].body != (place < b_origin ? a : b);
-    const std::uint32_t p = c.particles[a_origin], q = c.particles[b_origin];
-    const bool met =
-        c.kind == ConstraintKind::rod && p != none && q != none && model.particles[p].ring == model.particles[q].ring;
-    if (a != b && !torn && !met) continue;
-    const std::string name = std::string(info(c.kind).name) + " " + std::to_string(slot);
-    notes.push_back(name + " ended: " +
-                    (torn  ? "one of its bodies came apart there"
-                     : met ? "its two ends are hinged together now"
-                           : "its two bodies are one rigid body now"));
-    destroy_constraint(model, slot);
-  }
-}
-
-}  // namespace iota::model
+}  // namespace iota::ingredient
 
 namespace iota {
 
 bool has_coordinate(ConstraintKind kind, JointCoordinate coordinate) {
-  const model::ConstraintKindInfo& i = model::info(kind);
+  const ingredient::ConstraintKindInfo& i = ingredient::info(kind);
   return std::array{i.angle, i.slide, i.second_angle}[static_cast<std::size_t>(coordinate)];
 }
 

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ingredient/cosmetic_bonds.h"
+
+#include "ingredient/model.h"
+#include "math/mat3.h"
+
+namespace iota::ingredient {
+
+namespace {
+
+DrawnLine line(const Vec3& from, const Vec3& to) {
+  const double length = norm(to - from);
+  return {0.5 * (from + to), length > 0 ? shortest_turn({1, 0, 0}, (1 / length) * (to - from)) : Quaternion{}, length};
+}
+
+}  // namespace
+
+std::uint32_t CosmeticBonds::add(Model& model, const CosmeticBond& bond) {
+  model.scene.bodies.note(model.particles[bond.p].body);
+  return model.cosmetic_bonds.create(bond);
+}
+
+void CosmeticBonds::remove(Model& model, std::uint32_t bond) {
+  model.scene.bodies.note(model.particles[model.cosmetic_bonds[bond].p].body);
+  model.cosmetic_bonds.destroy(bond);
+}
+
+model::Edit CosmeticBonds::break_(Model& model, std::uint32_t bond, RestructureReport& report) {
+  const std::uint32_t p = model.cosmetic_bonds[bond].p, q = model.cosmetic_bonds[bond].q;
+  remove(model, bond);
+  report.changed = true;
+  if (model.particles[q].body != model.particles[p].body) return {};  // separated since
+  return model::fall_apart(model, p, q, report);
+}
+
+void CosmeticBonds::visit_companions(const Model& model, std::uint32_t particle, Visit visit) {
+  model.cosmetic_bonds.for_each_of(particle, [&](std::uint32_t slot) {
+    const CosmeticBond& bond = model.cosmetic_bonds[slot];
+    if (model.particles[bond.p].body == model.particles[bond.q].body) visit(bond.p == particle ? bond.q : bond.p);
+  });
+}
+
+void CosmeticBonds::absorb(Model& model, std::uint32_t q, std::uint32_t p) {
+  model.cosmetic_bonds.redirect(q, p, [](std::uint32_t) {}, [&](std::uint32_t bond) { remove(model, bond); });
+}
+
+void CosmeticBonds::drop(Model& model, std::uint32_t particle) {
+  model.cosmetic_bonds.for_each_of(particle, [&](std::uint32_t bond) { remove(model, bond); });
+}
+
+void CosmeticBonds::validate(const Model& model, model::Audit& audit) {
+  model.cosmetic_bonds.for_each(
+      [&](std::uint32_t slot, const CosmeticBond& bond) { audit.require_ends("cosmetic bond", slot, bond); });
+  audit.require_listed("cosmetic bond", model.cosmetic_bonds);
+}
+
+// Without cosmetic bonds a line leads from each particle of a body to the next.
+void CosmeticBonds::draw(const SceneView& view, std::uint32_t body, DrawnBody& drawn) {
+  const Model& model = view.model;
+  if (model.bodies[body].count == 1) return;
+  const Vec3 center = model.center_of_mass(body);
+  const auto local = [&](std::uint32_t p) { return view.into_body(body, model.position(p) - center); };
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model.cosmetic_bonds.for_each_of(p, [&](std::uint32_t slot) {
+      const CosmeticBond& bond = model.cosmetic_bonds[slot];
+      if (bond.p == p) drawn.lines.push_back(line(local(bond.p), local(bond.q)));
+    });
+  });
+  if (!drawn.lines.empty()) return;
+  std::uint32_t before = none;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    if (before != none) drawn.lines.push_back(line(local(before), local(p)));
+    before = p;
+  });
+}
+
+}  // namespace iota::ingredient

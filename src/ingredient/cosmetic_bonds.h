@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/ingredient.h"
+#include "model/restructure.h"
+
+namespace iota::ingredient {
+
+/// Two particles of one body with a line between them.
+struct CosmeticBond : model::Ends {};
+
+/// Lines between particles of a body. They do nothing in a step: they are drawn, and tell which particles stay together
+/// when the body falls apart.
+class CosmeticBonds : public NoAnswers {
+ public:
+  struct Tables {
+    model::EndTable<CosmeticBond, CosmeticBondId> cosmetic_bonds;
+
+    template <class Archive>
+    void archive(Archive& ar, const Structure& structure) {
+      cosmetic_bonds.archive(ar, structure.particles.slot_count());
+    }
+  };
+  static void validate(const Model&, model::Audit&);
+  static void visit_companions(const Model&, std::uint32_t particle, Visit);
+  static void absorb(Model&, std::uint32_t q, std::uint32_t p);
+  static void drop(Model&, std::uint32_t particle);
+  static void draw(const SceneView&, std::uint32_t body, DrawnBody&);
+
+  static std::uint32_t add(Model&, const CosmeticBond&);  ///< returns the slot
+  static void remove(Model&, std::uint32_t bond);
+  /// Removes one. Where its two ends hang together by nothing else the body falls into two: one with the bond's first end,
+  /// which stays the body, and one with the second.
+  static model::Edit break_(Model&, std::uint32_t bond, RestructureReport&);
+};
+
+}  // namespace iota::ingredient

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/ingredient_list.h"
+#include "model/structure.h"
+
+#include <iota/system.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace iota::ingredient {
+
+/// The tables of one ingredient; of a type of their own, since many ingredients have none.
+template <class I>
+struct OwnTables : I::Tables {};
+template <class List>
+struct AllTables;
+template <class... I>
+struct AllTables<std::tuple<I...>> : OwnTables<I>... {};
+
+}  // namespace iota::ingredient
+
+namespace iota::model {
+
+/// All of a system that is saved: the structure, the settings, and the tables that the ingredients declare, under the names
+/// that they have there (`model.bonds`). It is no business of `src/model`, which knows of no ingredient; its name is.
+class Model final : public Structure, public ingredient::AllTables<ingredient::Ingredients> {
+ public:
+  Vec3 gravity{0, -9.81, 0};
+  IntegrationMode mode = IntegrationMode::energy_keeping;
+  /// Whether forces are those at the end of a step (backward Euler), not in its middle.
+  bool steps_to_end_point() const { return mode == IntegrationMode::plausible || mode == IntegrationMode::robust; }
+  double damping = 0;
+  /// Name of who solves the equations of steps, ended by zeros; empty: the built-in one.
+  std::array<char, 32> solver{};
+  double rest_after = 0, rest_speed = 0;  ///< s, m/s; see RestOptions
+  double time = 0, last_dt = 0;
+  std::uint64_t step = 0;
+  double dissipated = 0, external_work = 0, edit_energy = 0;
+  double booked_energy = 0;     ///< kinetic and potential energy when edits were last booked, J
+  std::uint64_t has_edits = 0;  ///< since then
+  double held_energy = 0;       ///< of forces that are held, which `energy` leaves out, when it was last booked, J
+
+  /// What pulls on all masses: gravity, unless an active field replaces it.
+  Vec3 acting_gravity() const;
+
+  enum class Ties { all, constraints };
+  /// The bodies of the articulates of `bodies` and of all that constraints and (where `ties` is all) forces solved
+  /// implicitly tie to those: what one problem solves. In order of discovery.
+  std::vector<std::uint32_t> tied_bodies(std::span<const std::uint32_t> bodies, Ties ties = Ties::all) const;
+  bool has_ties() const;                            ///< between any articulates
+  bool is_tied_to_world(std::uint32_t body) const;  ///< by an active constraint
+  /// visit(body): of those tied to a particle's, without its articulate.
+  void visit_tied(std::uint32_t particle, Ties ties, Visit visit) const;
+
+  /// Notes from now on what viewers have to be told: nothing so far.
+  void watch_scene();
+  void stop_watching_scene();
+
+  std::uint64_t hash() const;
+  template <class Archive>
+  void archive(Archive& ar);
+  /// Takes from the model that this one, read from bytes, is to replace, what bytes do not hold.
+  void take_over(Model& before);
+
+  void absorb_uses(std::uint32_t q, std::uint32_t p) override;
+  void drop_uses(std::uint32_t particle) override;
+  void forget_particle(std::uint32_t particle) override;
+  void forget_body(std::uint32_t body) override;
+  void ring_changed(std::uint32_t ring) override;
+  void ring_merged(std::uint32_t into, std::uint32_t from, bool replaces) override;
+  void inertia_changed(std::uint32_t body) override;
+  void acting_changed(std::uint32_t particle) override;
+  bool call_off(std::uint32_t p, std::uint32_t q) override;
+  bool is_used(std::uint32_t particle) const override;
+  Vec3 inner_momentum(std::uint32_t body) const override;
+  void visit_joined(std::uint32_t particle, Visit visit) const override;
+  void visit_companions(std::uint32_t particle, Visit visit) const override;
+};
+
+template <class Archive>
+void Model::archive(Archive& ar) {
+  Structure::archive(ar);
+  ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
+  ar.value(time), ar.value(last_dt), ar.value(step);
+  ar.value(dissipated), ar.value(external_work), ar.value(edit_energy), ar.value(booked_energy), ar.value(has_edits);
+  ar.value(held_energy);
+  ingredient::for_each_type<ingredient::Ingredients>(
+      [&]<class I>() { static_cast<ingredient::OwnTables<I>&>(*this).archive(ar, *this); });
+}
+
+}  // namespace iota::model

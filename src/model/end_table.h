@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "base/side_table.h"
+#include "base/slot_table.h"
+
+#include <array>
+#include <cstdint>
+
+namespace iota::model {
+
+inline constexpr std::uint32_t none = 0xffffffff;
+
+/// Two particles that something joins. Each of them has a list of all that ends at it. A link is slot * 2 + end: which end
+/// of the next item is at this particle.
+struct Ends {
+  std::uint32_t p = none, q = none;
+  std::array<std::uint32_t, 2> next{none, none}, previous{none, none};
+
+  std::uint32_t at(std::uint32_t end) const { return end == 0 ? p : q; }
+};
+
+/// Where the list of what refers to a particle begins.
+struct ListHead {
+  std::uint32_t first = none;
+};
+
+/// A table of items that join two particles (they inherit `Ends`), with the lists of the particles: looking after what ends
+/// at one particle costs what ends there.
+template <class T, class IdType>
+class EndTable : private SlotTable<T, IdType> {
+  using Items = SlotTable<T, IdType>;
+
+ public:
+  using Items::contains, Items::for_each, Items::id, Items::ids, Items::is_alive, Items::size, Items::slot_count;
+  using Items::operator[];
+
+  /// Returns the slot.
+  std::uint32_t create(const T& item) {
+    const std::uint32_t slot = Items::create(item).slot;
+    for (const std::uint32_t end : {0u, 1u}) link(slot, end);
+    return slot;
+  }
+  void destroy(std::uint32_t slot) {
+    for (const std::uint32_t end : {0u, 1u}) unlink(slot, end);
+    Items::destroy(slot);
+  }
+
+  bool ends_at(std::uint32_t particle) const { return heads.has(particle); }
+  /// visit(slot); it may destroy that item.
+  template <class Visit>
+  void for_each_of(std::uint32_t particle, Visit visit) const {
+    for (std::uint32_t link = heads[particle].first, next; link != none; link = next)
+      next = (*this)[link / 2].next[link % 2], visit(link / 2);
+  }
+  /// The items of q become p's: moved(slot). Those that would join p to itself go to drop(slot), which destroys them.
+  template <class Moved, class Drop>
+  void redirect(std::uint32_t q, std::uint32_t p, Moved moved, Drop drop) {
+    while (heads.has(q)) {
+      const std::uint32_t slot = heads[q].first / 2, end = heads[q].first % 2;
+      if ((*this)[slot].at(1 - end) == p) {
+        drop(slot);
+        continue;
+      }
+      unlink(slot, end);
+      (end == 0 ? (*this)[slot].p : (*this)[slot].q) = p;
+      link(slot, end);
+      moved(slot);
+    }
+  }
+
+  /// `particles`: number of slots of their table.
+  template <class Archive>
+  void archive(Archive& ar, std::uint32_t particles) {
+    Items::archive(ar);
+    heads.archive(ar, particles);
+  }
+
+  SideTable<ListHead> heads;  ///< of the particles that have a list
+
+ private:
+  /// Puts one end of an item at the front of its particle's list.
+  void link(std::uint32_t slot, std::uint32_t end) {
+    Ends& item = (*this)[slot];
+    std::uint32_t& first = heads.make(item.at(end)).first;
+    item.next[end] = first, item.previous[end] = none;
+    if (first != none) (*this)[first / 2].previous[first % 2] = 2 * slot + end;
+    first = 2 * slot + end;
+  }
+  void unlink(std::uint32_t slot, std::uint32_t end) {
+    const Ends& item = (*this)[slot];
+    const std::uint32_t before = item.previous[end], after = item.next[end];
+    if (after != none) (*this)[after / 2].previous[after % 2] = before;
+    if (before != none)
+      (*this)[before / 2].next[before % 2] = after;
+    else if (after != none)
+      heads.at(item.at(end)).first = after;
+    else
+      heads.erase(item.at(end));
+  }
+};
+
+}  // namespace iota::model
