@@ -14,7 +14,7 @@ def run(world: iota.World, seconds: float) -> iota.types.RunSummary:
 
 
 def test_it_breaks_and_mends_itself_by_forces() -> None:
-    world = study.build()
+    world = study.build(demonstrate=True)
     system = world.system
     parts: dict[float, int] = {}
     bonds: dict[float, int] = {}
@@ -44,15 +44,23 @@ def test_it_is_alive_at_once_and_the_same_each_time() -> None:
     assert world.system.energy.kinetic > 0.5
 
 
-def test_it_can_do_so_once() -> None:
-    world = study.build(repeat=False)
-    run(world, 23)
+def test_nothing_happens_by_itself_and_the_user_can_ask_for_it() -> None:
+    world = study.build()
+    run(world, 10)
+    assert world.system.articulate_count == 1 and not world.system.bonds
+    world = study.build()
+    world.at(1.0)(world._state.actions["fall apart"].hook.function)
+    run(world, 2)
+    assert world.system.articulate_count == 2
+    world = study.build()
+    world.at(1.0)(world._state.actions["fall apart"].hook.function)
+    run(world, 10)
     assert world.system.articulate_count == 1
 
 
 @pytest.mark.parametrize("links", [1, 2, 3, 60])
 def test_it_runs_with_any_number_of_links(links: int) -> None:
-    world = study.build(links=links)
+    world = study.build(links=links, demonstrate=True)
     summary = run(world, 9)
     assert summary.steps == 1080 and summary.articulates == 1  # broken at 4 s, whole again at 8 s
     assert summary.worst_gap_m < 1e-9 and world.system.validate() == []
@@ -60,7 +68,7 @@ def test_it_runs_with_any_number_of_links(links: int) -> None:
 
 
 def test_a_cut_off_part_lies_on_the_floor() -> None:
-    world = study.build(repeat=False)
+    world = study.build()
     links = world.system.bodies
     world.at(0.1)(lambda: links[11].particles[1].separate(links[12].particles[0]))
     run(world, 3.5)

@@ -24,7 +24,7 @@ Runner = Callable[[iota.World], str]
 @pytest.fixture
 def world() -> iota.World:
     """The study, without its scripted break."""
-    world = study.build(repeat=False)
+    world = study.build()
     world._stepper.schedule._plan.clear()
     world._stepper.schedule.rewind()
     return world

@@ -73,7 +73,7 @@ describe("picking with a ray", () => {
       const found = pickRay(scene, [0, 0, 0], direction, 0, 6, hit);
       expect(found ? hit.body : -1).toBe(slow);
     }
-  }, 20_000);
+  }, 120_000);
 });
 
 describe("picking with a hand", () => {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A chain on a nail: drag it, break it with b, rejoin it with c; now and then it falls apart and mends itself."""
+"""A chain on a nail: drag it, break it with b, rejoin it with c; with t it falls apart and mends itself."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ from iota import looks
 
 NAIL = (0.0, 2.8, 0.0)
 LENGTH = 2.4
+JOIN_SPEED = 1.2  # m/s, of ends that are drawn together
 
 
-def build(links: int = 24, repeat: bool = True) -> iota.World:
-    """The world of the study. repeat: whether the chain goes on breaking and mending itself, or does so once.
+def build(links: int = 24, demonstrate: bool = False) -> iota.World:
+    """The world of the study. demonstrate: whether the chain falls apart and mends itself at 4 s, without being asked.
 
     Up to 500 links keep their energy; finer chains, whose links whirl faster than any eye, are stepped robustly."""
     system = iota.System(damping=0.05, mode="energy_keeping" if links <= 500 else "robust")
-    chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(0.85, -0.55, 0.1)).realize(system).bodies
+    chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(-0.35, -0.9, 0.25)).realize(system).bodies
     world = iota.World(system, title="chain", style="rope")
     present(world, chain)
 
@@ -38,9 +39,9 @@ def build(links: int = 24, repeat: bool = True) -> iota.World:
             event.notice("Nothing to join", "Everything hangs together already.")
         else:
             end, own = pair
-            end.combine(own, over=max(0.2, abs(end.position - own.position) / 2.5))
+            end.combine(own, over=max(0.3, abs(end.position - own.position) / JOIN_SPEED))
 
-    script_break(world, chain, repeat)
+    script_break(world, chain, demonstrate)
     return world
 
 
@@ -57,11 +58,11 @@ def present(world: iota.World, chain: list[iota.Body]) -> None:
     world.add_strut((x, y + 0.10, z), (x, y + 0.22, z), looks.cylinder(0.06, "brass"))
     world.add_static(looks.torus(0.03, 0.007, "steel"), (x, y + 0.03, z))
     world.add_strut((x, y + 0.06, z), (x, y + 0.10, z), looks.cylinder(0.012, "steel"))
-    world.camera = iota.Camera(position=(0.9, 1.7, 4.3), target=(0, 1.5, 0))
+    world.camera = iota.Camera(position=(0.35, 1.7, 5.2), target=(0, 1.32, 0))
 
 
-def script_break(world: iota.World, chain: list[iota.Body], repeat: bool) -> None:
-    """Thesis 5.1.2: the lower part falls off, is kept near by a force, pulled close by a second one, and rejoined."""
+def script_break(world: iota.World, chain: list[iota.Body], demonstrate: bool) -> None:
+    """On request, or once at 4 s: thesis 5.1.2: the lower part falls off, is kept near by a force, pulled close by a second one, and rejoined."""
     cut = len(chain) * 2 // 3
     if cut == 0:
         return
@@ -73,8 +74,8 @@ def script_break(world: iota.World, chain: list[iota.Body], repeat: bool) -> Non
         return weight * min(10 * bond.distance, 2.5) * bond.direction
 
     def fall_off() -> None:
-        if world.held() or system.articulate_count > 1:
-            return  # somebody is at it
+        if system.articulate_count > 1 or bonds:
+            return  # somebody is at it, or it is under way
         hook.separate(eye)
         bonds.append(system.bond(hook, eye, "spring", stiffness=weight / 0.25, damping=weight / 3, length=0))
         world.after(2.5)(come_close)
@@ -92,9 +93,10 @@ def script_break(world: iota.World, chain: list[iota.Body], repeat: bool) -> Non
 
     system = world.system
     world.on_reset(bonds.clear)
-    if repeat:
-        world.every(18.0, start=4.0)(fall_off)
-    else:
+    world.action("fall apart", key="t", help="the lower part falls off and is pulled back by forces", on="world")(
+        fall_off
+    )
+    if demonstrate:
         world.at(4.0)(fall_off)
 
 

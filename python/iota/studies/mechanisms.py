@@ -9,6 +9,8 @@ import iota
 from iota import looks
 
 BENCH = 0.9  # height of the bench's top, m
+BENCH_SIZE = (2.5, 0.05, 0.6)  # of its top, m
+BENCH_PLACE = (0.15, BENCH - 0.025, 0.0)
 STEEL = 7800.0  # kg/m^3
 WOOD = 700.0
 
@@ -27,7 +29,7 @@ def build() -> iota.World:
 
 def present(world: iota.World) -> None:
     """The bench, and where one stands in front of it."""
-    world.add_static(looks.box((2.5, 0.05, 0.6), "wood"), (0.15, BENCH - 0.025, 0))
+    world.add_static(looks.box(BENCH_SIZE, "wood", 0.006), BENCH_PLACE)
     for x in (-1.0, 1.3):
         for z in (-0.22, 0.22):
             world.add_static(looks.box((0.07, BENCH - 0.05, 0.07), "wood"), (x, (BENCH - 0.05) / 2, z))
@@ -62,7 +64,7 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
     pin, wrist = axle + (crank, 0, 0.03), axle + (crank + rod, 0, 0.03)
     connecting_rod = bar(system, pin, wrist, 0.025)
     piston = system.body(shape=iota.Box((0.1, 0.07, 0.07)), density=2700, position=wrist)
-    world.draw(wheel, looks.solid("brass"))
+    world.draw(wheel, spoked_wheel(0.12, 0.02))
     world.draw([connecting_rod, piston], looks.solid("steel"))
     speed, torque = 2 * math.pi, 20.0
     axis = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(speed, torque)).angle
@@ -74,11 +76,35 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
         world.add_static(looks.box((0.34, 0.012, 0.09), "steel"), (wrist.x - crank, wrist.y + side, wrist.z))
     world.add_static(looks.box((0.04, axle.y - BENCH, 0.04), "steel"), (wrist.x, (axle.y + BENCH) / 2 - 0.03, -0.05))
 
-    @world.action("reverse", key="r", help="turns the engine's motor the other way")
+    @world.action("reverse", key="x", help="turns the engine's motor the other way", on="world")
     def reverse() -> None:
         nonlocal speed
         speed = -speed
         axis.motor = (speed, torque)
+
+
+def spoked_wheel(radius: float, width: float) -> list[looks.Look]:
+    """A rim, a hub and spokes about local x, one of them marked, so that one sees it turn."""
+    rim = looks.torus(0.9 * radius, 0.1 * radius, "brass", rotation=(0, 0.5**0.5, 0, 0.5**0.5))
+    hub = looks.cylinder(0.22 * radius, "steel", 1.4 * width)
+    spokes = [
+        looks.cylinder(
+            0.055 * radius,
+            "rubber" if number == 0 else "brass",
+            0.72 * radius,
+            offset=(0, 0.5 * radius * math.cos(angle), 0.5 * radius * math.sin(angle)),
+            rotation=turn_to((0, math.cos(angle), math.sin(angle))),
+        )
+        for number, angle in enumerate(2 * math.pi * n / 6 for n in range(6))
+    ]
+    return [rim, hub, *spokes]
+
+
+def turn_to(direction: tuple[float, float, float]) -> tuple[float, float, float, float]:
+    """The rotation that takes local x to a direction across it."""
+    _, y, z = direction
+    half = 0.5**0.5
+    return (0.0, -half * z, half * y, half)
 
 
 def pendulum(world: iota.World, axle: iota.Vec3) -> None:
@@ -154,9 +180,17 @@ def crane(world: iota.World, foot: iota.Vec3) -> None:
     )
     world.draw(boom, looks.solid("wood"))
     world.draw(weight, looks.solid("rubber"))
+    start = weight.center_of_mass
+    # The bench holds the weight as the ground does, without friction.
+    top = iota.Box((BENCH_SIZE[0] + 0.1, BENCH_SIZE[1] + 0.1, BENCH_SIZE[2] + 0.1))
+    system.outside(weight.attachment(start), top, at=BENCH_PLACE)
     rope = system.rope(hook, weight.attachments[0], break_force=150)
     world.add_strut(tuple(foot), tuple(shoulder), looks.cylinder(0.025, "steel"))
 
-    @world.action("mend", key="m", help="ties the crane's rope again")
+    @world.action("mend", key="c", help="hangs the crane's weight on its rope again", on="world")
     def mend() -> None:
+        if rope.active:
+            return
+        weight.set_pose(start, (0, 0, 0, 1))
+        weight.velocity = weight.angular_velocity = (0, 0, 0)
         rope.active = True

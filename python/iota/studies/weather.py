@@ -59,11 +59,11 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
         tuple(corner + (-0.012, 0.06, 0)), (corner.x - 0.012, 0.0, corner.z), looks.cylinder(0.012, "steel")
     )
 
-    @world.action("calm", key="g", help="the wind drops, or comes back")
+    @world.action("calm", key="n", help="the wind drops, or comes back", on="world")
     def calm() -> None:
         wind.active = not wind.active
 
-    @world.action("tear", key="t", help="tears what you hold out of its threads", on="body")
+    @world.action("tear", key="b", button="b", help="tears what you hold out of its threads", on="body")
     def tear(event: iota.Event) -> None:
         for bond in list(system.bonds):
             if event.body in (end.body for end in bond.ends):
@@ -79,7 +79,7 @@ def fountain(world: iota.World, nozzle: iota.Vec3) -> None:
     )  # fmt: skip
     world.add_strut((nozzle.x, 0, nozzle.z), (nozzle.x, nozzle.y - 0.02, nozzle.z), looks.cylinder(0.03, "brass"))
 
-    @world.action("fountain", key="f", help="turns the fountain off and on")
+    @world.action("fountain", key="u", help="turns the fountain off and on", on="world")
     def turn() -> None:
         spout.active = not spout.active
 

@@ -155,7 +155,7 @@ class Floor:
         place[:, 1] -= touches.radius[near]
         w = weights_at(x, w, place, touches.is_solid[near] & (touches.radius[near] > 0))
 
-        carriers, first, of = np.unique(touches.carriers[near], return_index=True, return_inverse=True)
+        _, first, of = np.unique(touches.carriers[near], return_index=True, return_inverse=True)
         bodies = _Bodies(x[first], v[first], m[first])
         ways = bodies.ways_to(place, of)
         speed = np.einsum("ni,ni->n", v[:, :, 1], w)

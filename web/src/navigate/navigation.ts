@@ -79,6 +79,22 @@ export class Navigation {
     return { pivot: [pivot.x, pivot.y, pivot.z], distance, yaw, pitch };
   }
 
+  /** The view that the camera is on its way to. */
+  get goal(): FittedView {
+    const { pivot, distance, yaw, pitch } = this.goal_;
+    return { pivot: [pivot.x, pivot.y, pivot.z], distance, yaw, pitch };
+  }
+
+  /** Goes to a view, which stays the user's. */
+  goTo({ pivot, distance, yaw, pitch }: FittedView): void {
+    this.touched = true;
+    this.goal_.pivot.set(...pivot);
+    this.goal_.distance = distance;
+    this.goal_.yaw = yaw;
+    this.goal_.pitch = pitch;
+    this.seconds_ = travelSeconds;
+  }
+
   /** Goes after a first view that moves. */
   follow(): void {
     copyView(this.home_, this.goal_);

@@ -58,6 +58,15 @@ export class Framing implements FramePart, PageListener {
     this.navigation_.reset();
   }
 
+  /** Brings all that moves into view, from where the user looks now. */
+  showAll(): void {
+    this.look_();
+    const { yaw, pitch } = this.navigation_.goal;
+    const view = fitView(this.points_, yaw, Math.max(pitch, 0.05), this.calcFrame_(1));
+    if (view !== null) this.navigation_.goTo(view);
+    this.viewer_.invalidate();
+  }
+
   // --- PageListener
 
   changed(what: string): void {
@@ -72,6 +81,10 @@ export class Framing implements FramePart, PageListener {
   // --- FramePart
 
   update(seconds: number): void {
+    const { camera, renderer } = this.viewer_;
+    const { body } = this.world_.entities;
+    camera.getWorldPosition(body.eye);
+    body.pixels = (renderer.domElement.height * camera.projectionMatrix.elements[5]) / 2;
     this.wait_ -= seconds;
     if (this.framed_ !== null && this.wait_ > 0 && !this.falling_) return;
     this.wait_ = lookEverySeconds;

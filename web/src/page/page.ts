@@ -64,6 +64,7 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
       viewer.invalidate();
       viewer.stage.setTheme(theme);
       highlights.setTheme(theme);
+      world.entities.particleSet.setTheme(theme);
     },
     start: () => {
       session.connection.open();

@@ -135,6 +135,8 @@ export class Viewer {
     if (!this.presenting) this.stage.followCamera(this.camera, this.lookDistance());
     const scripted = performance.now();
     if (scripted < this.drawUntil_) {
+      if (this.presenting) this.stage.hideContacts();
+      else this.stage.drawContacts();
       this.renderer.render(this.scene, this.camera);
       if (warming && ++this.warmed_ === warmFrames) this.ready_();
     }

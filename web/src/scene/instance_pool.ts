@@ -3,6 +3,7 @@
 // remove does not depend on how many others there are.
 
 import { InstancedBufferAttribute, InstancedMesh, type BufferGeometry, type MeshStandardMaterial, type Object3D } from "three";
+import { casterLayer } from "./contact_shadow.ts";
 
 export class InstancePool {
   readonly mesh: InstancedMesh<BufferGeometry, MeshStandardMaterial>;
@@ -27,6 +28,7 @@ export class InstancePool {
     // Bodies move each frame: a bounding sphere kept right would cost more than it culls.
     this.mesh.frustumCulled = false;
     this.mesh.castShadow = this.mesh.receiveShadow = true;
+    this.mesh.layers.enable(casterLayer);
     geometry.setAttribute("tint", new InstancedBufferAttribute(new Float32Array(4 * this.capacity_ * pieces), 4));
   }
 

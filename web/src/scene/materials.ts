@@ -36,6 +36,7 @@ function texture(name: string, make: () => Texture): Texture {
 /** Every material has all three textures, plain ones if need be: so all share one program, compiled once at the start. */
 function makeBase(name: string): MeshStandardMaterial {
   const material = new MeshStandardMaterial({
+    dithering: true,
     map: texture("white", () => makePlain(255, 255, 255)),
     roughnessMap: texture("white", () => makePlain(255, 255, 255)),
     normalMap: texture("flat", () => makePlain(128, 128, 255)),
@@ -43,10 +44,10 @@ function makeBase(name: string): MeshStandardMaterial {
   const set = (values: MeshStandardMaterialParameters) => material.setValues(values);
   switch (name) {
     case "steel":
-      set({ color: "#b9bec3", metalness: 1, roughness: 0.42, roughnessMap: texture("brushed", makeBrushedRoughness) });
+      set({ color: "#b9bec3", metalness: 1, roughness: 0.3, roughnessMap: texture("brushed", makeBrushedRoughness) });
       break;
     case "brass":
-      set({ color: "#c79a4b", metalness: 1, roughness: 0.38, roughnessMap: texture("brushed", makeBrushedRoughness) });
+      set({ color: "#c79a4b", metalness: 1, roughness: 0.26, roughnessMap: texture("brushed", makeBrushedRoughness) });
       break;
     case "rubber":
       set({ color: "#26282b", roughness: 0.86 });

@@ -7,6 +7,7 @@ import {
   MeshLambertMaterial, PlaneGeometry, PMREMGenerator, Scene, ShaderMaterial, SphereGeometry, Vector3,
   type PerspectiveCamera, type Texture, type WebGLRenderer,
 } from "three";
+import { ContactShadow } from "./contact_shadow.ts";
 import { makeFloorColor } from "./textures.ts";
 
 interface Theme {
@@ -21,13 +22,14 @@ interface Theme {
 }
 
 const themes: Record<"light" | "dark", Theme> = {
-  light: { far: "#dad6ce", horizon: "#f0eeea", zenith: "#ccd3d9", ground: "#c9c3b8", key: 2.5, fill: 0.6, environment: 0.8 },
+  light: { far: "#dad6ce", horizon: "#f0eeea", zenith: "#ccd3d9", ground: "#c9c3b8", key: 3.1, fill: 0.3, environment: 0.8 },
   dark: { far: "#202225", horizon: "#353a40", zenith: "#0f1114", ground: "#3f3e3d", key: 2.3, fill: 0.22, environment: 0.6 },
 };
 
 /** In sizes of the scene (half the diagonal of its box): the ground, its texture, and where it begins and ends to fade. */
 const groundRadius = 120;
 const tileSize = 2;
+const contactStrength = 0.75;
 const fogNear = 4;
 const fogFar = 26;
 
@@ -94,6 +96,24 @@ function makeStudio(renderer: WebGLRenderer): Texture {
   return target.texture;
 }
 
+/** Darkened by what is near. */
+function addContactShadow(material: MeshLambertMaterial, shadow: ContactShadow): void {
+  const before = material.onBeforeCompile;
+  material.onBeforeCompile = (shader, renderer) => {
+    before.call(material, shader, renderer);
+    Object.assign(shader.uniforms, { contactPicture: shadow.picture, contactMatrix: shadow.matrix, contactStrength: shadow.strength });
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nuniform mat4 contactMatrix;\nvarying vec2 vContact;")
+      .replace("#include <project_vertex>", "#include <project_vertex>\nvContact = (contactMatrix * modelMatrix * vec4(transformed, 1.0)).xy;");
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", "#include <common>\nuniform sampler2D contactPicture;\nuniform float contactStrength;\nvarying vec2 vContact;")
+      .replace("#include <color_fragment>", `#include <color_fragment>
+vec2 contactEdge = smoothstep(vec2(0.5), vec2(0.42), abs(vContact - 0.5));
+float contact = texture2D(contactPicture, vContact).r * contactEdge.x * contactEdge.y;
+diffuseColor.rgb *= 1.0 - contactStrength * (1.0 - exp(-5.0 * contact));`);
+  };
+}
+
 /** Fine lines each cell, stronger each ten, fading with distance; compiled in only while it is shown. */
 function addGrid(material: MeshLambertMaterial, cell: { value: number }): void {
   material.defines = {};
@@ -142,6 +162,7 @@ export class Stage {
   private readonly fill_ = new HemisphereLight("#dce8f5", "#8a8073");
   private readonly fog_ = new Fog("#ffffff", fogNear, fogFar);
   private readonly cell_ = { value: 0.1 };
+  private readonly contact_: ContactShadow;
   private readonly middle_ = new Vector3(0, 1, 0);
   private readonly lit_ = new Vector3();
   private size_ = 1;
@@ -155,6 +176,8 @@ export class Stage {
     material.map?.repeat.set((2 * groundRadius) / tileSize, (2 * groundRadius) / tileSize);
     // Not a physical material: it fills most of the screen, and a matt floor needs no reflections.
     addGrid(material, this.cell_);
+    this.contact_ = new ContactShadow(renderer);
+    addContactShadow(material, this.contact_);
     this.ground = new Mesh(new CircleGeometry(groundRadius, 64), material);
     this.ground.rotation.x = -Math.PI / 2;
     this.ground.receiveShadow = true;
@@ -187,6 +210,7 @@ export class Stage {
   setGround(height: number | null): void {
     this.ground.visible = height !== null;
     if (height !== null) this.ground.position.y = height;
+    this.reach_ = 0;
   }
 
   get gridShown(): boolean {
@@ -224,6 +248,7 @@ export class Stage {
     if (size + drift <= this.reach_ && size > 0.4 * this.reach_) return;
     this.lit_.copy(this.middle_);
     this.reach_ = 1.35 * size;
+    this.contact_.aim(middle[0], this.ground.position.y, middle[2], this.reach_);
     this.light_(this.key_, 0.55, 1.35, 0.75);
   }
 
@@ -238,6 +263,17 @@ export class Stage {
     camera.near = near;
     camera.far = far;
     camera.updateProjectionMatrix();
+  }
+
+  /** Takes the picture of what is near the ground; before each picture of the scene. */
+  drawContacts(): void {
+    this.contact_.strength.value = this.ground.visible ? contactStrength : 0;
+    if (this.ground.visible) this.contact_.update(this.scene_);
+  }
+
+  /** In a headset there are none: they would cost a pass for each frame. */
+  hideContacts(): void {
+    this.contact_.strength.value = 0;
   }
 
   private light_(light: DirectionalLight, x: number, y: number, z: number): void {

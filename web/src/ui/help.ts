@@ -42,7 +42,9 @@ function addSection(root: HTMLElement, title: string, rows: readonly (readonly [
   if (rows.length === 0) return;
   const list = make("dl");
   addRows(list, rows);
-  root.append(make("h2", "", title), list);
+  const section = make("section");
+  section.append(make("h2", "", title), list);
+  root.append(section);
 }
 
 /** Lines of the help for commands; those with the same text share one. Keys that `hidden` says yes to are left out. */
@@ -57,6 +59,16 @@ function rowsOf(entries: readonly Entry[], hidden: (key: string) => boolean): (r
   return [...keysOf].filter(([, keys]) => keys.length > 0).map(([help, keys]) => [keyCaps(keys), help] as const);
 }
 
+/** What the page does by a key that is the script's here: it says where else to find that. */
+function displaced(commands: Commands, taken: (key: string) => boolean): (readonly [Node | string, string])[] {
+  return commands.own
+    .filter(({ keys, offered }) => keys?.some(taken) === true && keys.every((key) => taken(key)) && offered?.() !== false)
+    .map((entry) => [
+      entry.title(),
+      `${(entry.keys ?? []).map(keyName).join(" ")} is this world's key here${entry.places?.includes("bar") === true ? ": press the button in the bar" : ""}`,
+    ] as const);
+}
+
 /** Fills and opens the dialog. */
 export function openHelp(dialog: HTMLDialogElement, title: string, commands: Commands): void {
   dialog.replaceChildren();
@@ -67,15 +79,18 @@ export function openHelp(dialog: HTMLDialogElement, title: string, commands: Com
   close.setAttribute("aria-label", "Close");
   close.addEventListener("click", () => dialog.close());
   header.append(close);
-  dialog.append(header);
-  addSection(dialog, "In this world", commands.script.map((command) => [
+  const columns = make("div", "columns");
+  dialog.append(header, columns);
+  addSection(columns, "In this world", commands.script.map((command) => [
     command.keys === undefined || command.keys.length === 0 ? command.title() : keyCaps(command.keys), command.help || command.title(),
   ]));
-  if (matchMedia("(pointer: coarse)").matches) addSection(dialog, "Touch", touch);
-  if (matchMedia("(any-hover: hover)").matches) addSection(dialog, "Mouse", mouse);
+  if (matchMedia("(pointer: coarse)").matches) addSection(columns, "Touch", touch);
+  if (matchMedia("(any-hover: hover)").matches) addSection(columns, "Mouse", mouse);
   const taken = (key: string) => commands.scriptOfKey(key) !== undefined;
-  addSection(dialog, "Keys", [
-    ...rowsOf(commands.own, taken),
+  const keyboard = matchMedia("(any-hover: hover)").matches;
+  if (keyboard) addSection(columns, "Keys", [
+    ...rowsOf(commands.own.filter((entry) => entry.offered?.() !== false), taken),
+    ...displaced(commands, taken),
     [keyCaps(walkKeyNames.filter((key) => !taken(key))), "walk, down and up; with shift faster"],
   ]);
   dialog.showModal();

@@ -9,6 +9,7 @@ import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
 import type { Change } from "../world/world.ts";
 import { makeActionButton, makeBarItem, type BarItem } from "./buttons.ts";
+import { EdgeMarkers } from "./edge_markers.ts";
 import { Cards, type CardLevel } from "./cards.ts";
 import { byId, keyName, make, placeNear } from "./dom.ts";
 import { openHelp } from "./help.ts";
@@ -16,11 +17,13 @@ import { Keys } from "./keys.ts";
 
 const idleAfterMs = 7000;
 const welcomeMs = 15000;
+/** N. */
+const leastForce = 0.05;
 const meterEveryMs = 250;
 const linkCard = "link";
 const levels: readonly CardLevel[] = ["info", "warning", "error"];
 
-type OverlayPage = Pick<Page, "world" | "selection" | "gestures" | "viewer" | "navigation" | "commands" | "sound" | "setTheme">;
+type OverlayPage = Pick<Page, "world" | "selection" | "gestures" | "viewer" | "navigation" | "commands" | "sound" | "framing" | "setTheme">;
 
 export class Overlay implements PageListener, FramePart {
   readonly cards = new Cards(byId("cards", HTMLElement));
@@ -46,6 +49,7 @@ export class Overlay implements PageListener, FramePart {
     this.page_ = page;
     this.canvas_ = canvas;
     const showBar = () => this.showBar();
+    page.viewer.add(new EdgeMarkers(page, byId("away", HTMLElement)));
     page.commands.add(this.helpCommand_());
     page.commands.onChange(() => this.takeCommands_());
     this.takeCommands_();
@@ -252,6 +256,8 @@ export class Overlay implements PageListener, FramePart {
     const grab = this.page_.gestures.grabs.at(-1);
     if (grab !== undefined) {
       const force = this.page_.selection.forceOf(grab);
+      // A click that only selects pulls at nothing.
+      if (force < leastForce) return "";
       return `${force < 10 ? force.toFixed(1) : force.toFixed(0)} N`;
     }
     const mouse = this.page_.gestures.pointers[0];

@@ -2,7 +2,7 @@
 // Draws all bodies: one instanced mesh for each part of each style, tints that ease, outlines. It also holds the packed data for
 // picking, so that a pick agrees with the picture. An edit touches only the instances of the bodies that it names.
 
-import { Group, Matrix4, type Color } from "three";
+import { Group, Matrix4, Vector3, type Color } from "three";
 import { BodyKind, type BodyEntity, type Id } from "../../protocol/generated.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
@@ -17,6 +17,13 @@ import type { Styles, StyleUser } from "./style.ts";
 
 /** Up to here bodies are few enough for round outlines; above, vertices cost too much. */
 const fineUpTo = 160;
+/** Radius on the screen, px, from which bodies are drawn fine, and coarse; finer than before only when clearly larger. */
+const finePixels = 22;
+const coarsePixels = 5;
+const clearly = 1.25;
+/** Frames between two looks at how large a batch is on the screen, and how many of its members are looked at. */
+const lookEvery = 6;
+const mostLookedAt = 64;
 const growSeconds = 0.15;
 /** A new look starts from this size. */
 const regrownSize = 0.6;
@@ -28,7 +35,7 @@ const placementSize = 8;
 class Batch {
   readonly pool: InstancePool;
   private readonly shape_: Shape;
-  private detail_: Detail = "fine";
+  private detail_: Detail = "coarse";
   /** Of each instance in its body's frame. */
   private placements_ = new Float32Array(placementSize);
 
@@ -50,11 +57,19 @@ class Batch {
     this.placements_.set(offset, placementSize * index);
     this.placements_.set(rotation, placementSize * index + 3);
     this.placements_[placementSize * index + 7] = this.stretchOf_(shape);
-    if (this.detail_ === "fine" && this.pool.count > fineUpTo) {
-      this.detail_ = "coarse";
-      this.pool.setGeometry(makeGeometry(this.shape_, this.detail_));
-    }
     return index;
+  }
+
+  /** Draws in the detail that a radius on the screen asks for, px. */
+  fit(pixels: number): void {
+    const { detail_: now } = this;
+    const fine = finePixels * (now === "fine" ? 1 : clearly);
+    const coarse = coarsePixels * (now === "tiny" ? clearly : 1);
+    const few = this.pool.count <= fineUpTo;
+    const wanted: Detail = pixels >= fine && few ? "fine" : pixels >= coarse ? "coarse" : "tiny";
+    if (wanted === now) return;
+    this.detail_ = wanted;
+    this.pool.setGeometry(makeGeometry(this.shape_, wanted));
   }
 
   /** Returns the body whose instance has taken the index, or -1. */
@@ -103,6 +118,9 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   pickableCount = 0;
   reach = new Float32Array(0);
   size = 1;
+  /** Where pictures are taken from, world, m; and how many px a length has at a distance of the same length. */
+  readonly eye = new Vector3();
+  pixels = 800;
 
   private readonly styles_: Styles;
   private readonly bodyGone_: (body: number) => void;
@@ -111,6 +129,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   private readonly batches_ = new Map<number, Batch[]>();
   private readonly outlines_: Outline[] = [];
   private readonly matrix_ = new Matrix4();
+  private frame_ = 0;
   /** Slots that are drawn, in order, and those of them that can be held: worked out anew after a change. */
   private drawn_ = new Uint32Array(0);
   private drawnCount_ = 0;
@@ -191,6 +210,9 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
       const body = this.drawn_[index];
       if (known[body] === 1) this.grown_[body] = Math.min(1, this.grown_[body] + grow);
       this.easeTint_(body, ease);
+    }
+    if (this.frame_++ % lookEvery === 0) {
+      for (const batches of this.batches_.values()) for (const batch of batches) batch.fit(this.calcPixels_(batch));
     }
     for (const batches of this.batches_.values()) for (const batch of batches) this.drawBatch_(batch);
     for (const outline of this.outlines_) {
@@ -349,6 +371,21 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
       this.drawn_[this.drawnCount_++] = slot;
       if (body.entity.kind === BodyKind.dynamic) this.dynamic_[this.dynamicCount_++] = slot;
     }
+  }
+
+  /** Radius on the screen of the largest of some members, px. */
+  private calcPixels_({ pool: { members, count } }: Batch): number {
+    const { position, known } = this.poses;
+    let most = 0;
+    for (let index = 0; index < count; index += Math.ceil(count / mostLookedAt)) {
+      const body = members[index];
+      if (known[body] !== 1) continue;
+      const apart = Math.hypot(
+        position[3 * body] - this.eye.x, position[3 * body + 1] - this.eye.y, position[3 * body + 2] - this.eye.z,
+      );
+      most = Math.max(most, (this.pixels * this.reach[body]) / Math.max(apart - this.reach[body], 0.01 * this.reach[body]));
+    }
+    return most;
   }
 
   private drawBatch_({ pool, placements }: Batch): void {

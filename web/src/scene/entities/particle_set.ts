@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Particles of emitters, by the thousand. Each pose frame lists all of them, without ids, so they are drawn where the newest frame
-// has them: one instanced ball, without shadows, and not to be picked.
+// has them: glowing points, two triangles each, without shadows, and not to be picked.
 
-import { Color, DynamicDrawUsage, Group, IcosahedronGeometry, InstancedBufferAttribute, InstancedMesh, Matrix4, MeshStandardMaterial } from "three";
+import {
+  Color, CustomBlending, DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, Matrix4, OneFactor, OneMinusSrcAlphaFactor,
+  PlaneGeometry, ShaderMaterial,
+} from "three";
 import type { ParticleSetEntity, PoseSparkColumns } from "../../protocol/generated.ts";
 import type { Points } from "../points.ts";
 import { EntityRecords } from "./entity.ts";
@@ -12,10 +15,42 @@ const usualRadius = 0.01;
 /** At most so many instances are reserved for one set in advance: a world may have many sets and few sparks. */
 const mostReserved = 4096;
 
+/** A bright ball with a halo around it: what is in the middle covers, the halo only adds light. */
+function makeGlow(): ShaderMaterial {
+  return new ShaderMaterial({
+    transparent: true, depthWrite: false, fog: false, toneMapped: false,
+    uniforms: { glow: { value: 0.3 } },
+    blending: CustomBlending, blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor,
+    vertexShader: `
+      varying vec2 vPlace;
+      varying vec3 vColor;
+      void main() {
+        vPlace = 3.0 * position.xy;
+        vColor = instanceColor;
+        vec4 center = modelViewMatrix * instanceMatrix * vec4(0.0, 0.0, 0.0, 1.0);
+        center.xy += vPlace * instanceMatrix[0][0];
+        gl_Position = projectionMatrix * center;
+      }`,
+    fragmentShader: `
+      uniform float glow;
+      varying vec2 vPlace;
+      varying vec3 vColor;
+      void main() {
+        float radius = length(vPlace);
+        float ball = 1.0 - smoothstep(0.85, 1.05, radius);
+        float halo = glow * pow(max(1.0 - radius / 3.0, 0.0), 2.5);
+        float hot = max(1.0 - radius, 0.0);
+        vec3 shown = ball * mix(1.15 * vColor, vec3(1.0, 0.97, 0.88), 0.75 * hot * hot * vColor.r) + halo * vColor;
+        gl_FragColor = vec4(shown, 0.92 * ball);
+        #include <colorspace_fragment>
+      }`,
+  });
+}
+
 export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
   readonly root = new Group();
 
-  private readonly mesh_ = new InstancedMesh(new IcosahedronGeometry(1, 2), new MeshStandardMaterial({ roughness: 0.5 }), 0);
+  private readonly mesh_ = new InstancedMesh(new PlaneGeometry(2, 2), makeGlow(), 0);
   private readonly matrix_ = new Matrix4();
   private readonly color_ = new Color();
 
@@ -23,9 +58,15 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
     super();
     this.mesh_.frustumCulled = false;
     this.mesh_.count = 0;
+    this.mesh_.renderOrder = 1;
     this.mesh_.visible = false;
     this.root.add(this.mesh_);
     this.reserve_(64);
+  }
+
+  /** A bright ground shows less of a halo. */
+  setTheme(theme: "light" | "dark"): void {
+    this.mesh_.material.uniforms["glow"].value = theme === "dark" ? 0.32 : 0.07;
   }
 
   /** How many sparks are shown. */

@@ -121,10 +121,10 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
     const pieces = rope ? ropePieces : 1;
     const radius = sizeOf(shape, "radius");
     const length = Math.max(atRest / pieces, 2 * radius);
-    // A spring's shape is one turn of it: a ring with its wire.
-    const geometry = kind === TieKind.spring
+    // A spring's shape is one turn of it, a ring with its wire; with any other shape it is a thread.
+    const geometry = kind === TieKind.spring && shape.kind.name === "torus"
       ? makeCoil(radius, sizeOf(shape, "tube") || 0.15 * radius, length)
-      : makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: rope ? [radius, length] : [radius, length, 0] }, "coarse");
+      : makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: rope ? [radius, length] : [radius, length, 0] }, rope ? "coarse" : "tiny");
     const pool = new InstancePool(geometry, materialOf(shape.material, shape.color), 16, pieces).addTo(this.root);
     return { style, pool, length };
   }

@@ -38,7 +38,7 @@ export const box: Kind = {
   draw({ sizes: [x, y, z, rounding] }, detail) {
     const least = Math.min(x, y, z);
     const round = Math.max(rounding, bevel * least);
-    const segments = detail === "coarse" ? 1 : Math.round(3 + 12 * (round / least));
+    const segments = detail !== "fine" ? 1 : Math.round(3 + 12 * (round / least));
     const geometry = new RoundedBoxGeometry(x, y, z, segments, round);
     layAlong(geometry, [x, y, z]);
     return geometry;

@@ -10,11 +10,11 @@ export const capsule: Kind = {
   distance: ({ sizes }, x, y, z) => Math.hypot(Math.max(0, Math.abs(x) - sizes[1] / 2), y, z) - sizes[0],
   reach: ({ sizes: [radius, length] }) => length / 2 + radius,
   draw({ sizes: [radius, length] }, detail, material) {
-    const steps = detail === "fine" ? 6 : 2;
+    const steps = { fine: 6, coarse: 2, tiny: 1 }[detail];
     const profile: ProfilePoint[] = [];
     arc(profile, -length / 2, 0, radius, 0, Math.PI / 2, steps);
     arc(profile, length / 2, 0, radius, Math.PI / 2, Math.PI, steps);
     if (material === "rope" && detail === "fine") return layRope(profile, length / 2, radius, length);
-    return revolve(profile, detail === "fine" ? 28 : 9, length, tilesAlong(radius, length));
+    return revolve(profile, { fine: 28, coarse: 12, tiny: 6 }[detail], length, tilesAlong(radius, length));
   },
 };

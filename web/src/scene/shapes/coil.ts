@@ -8,7 +8,7 @@ import { sweep } from "./sweep.ts";
 export function makeCoil(radius: number, tube: number, length: number): BufferGeometry {
   const turns = Math.max(4, Math.min(40, Math.round(length / (5 * tube))));
   const straight = 0.12;
-  const rows = 14 * turns;
+  const rows = 12 * turns;
   const center = (t: number): [number, number, number] => {
     const wound = Math.min(1, Math.max(0, (t - straight) / (1 - 2 * straight)));
     // The wire comes in from the axis and leaves to it.

@@ -23,6 +23,6 @@ export const cylinder: Kind = {
     arc(profile, half, radius - edge, edge, Math.PI / 2, Math.PI, steps);
     profile.push({ x: length / 2, r: 0, nx: 1, nr: 0 });
     if (material === "rope" && detail === "fine") return layRope(profile, half, radius, length);
-    return revolve(profile, detail === "fine" ? 28 : 9, length, tilesAlong(radius, length));
+    return revolve(profile, { fine: 28, coarse: 12, tiny: 6 }[detail], length, tilesAlong(radius, length));
   },
 };

@@ -3,8 +3,8 @@
 import type { BufferGeometry } from "three";
 import type { MeshData } from "./mesh.ts";
 
-/** fine: a few bodies seen near; coarse: hundreds, where vertices are what costs. */
-export type Detail = "fine" | "coarse";
+/** fine: a few bodies seen near; coarse: small on the screen, or hundreds, where vertices are what costs; tiny: a few pixels. */
+export type Detail = "fine" | "coarse" | "tiny";
 
 /** A shape as the server sends it: which one, and its sizes. Its frame: the origin at the center, +x along it. Lengths in m. */
 export interface Solid {

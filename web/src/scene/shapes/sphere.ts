@@ -7,6 +7,8 @@ export const sphere: Kind = {
   sizes: ["radius"],
   distance: ({ sizes }, x, y, z) => Math.hypot(x, y, z) - sizes[0],
   reach: ({ sizes: [radius] }) => radius,
-  draw: ({ sizes: [radius] }, detail) =>
-    detail === "fine" ? new SphereGeometry(radius, 40, 24) : new SphereGeometry(radius, 16, 10),
+  draw({ sizes: [radius] }, detail) {
+    const around = { fine: 40, coarse: 16, tiny: 8 }[detail];
+    return new SphereGeometry(radius, around, Math.round(0.6 * around));
+  },
 };

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points from the edge of the window at what has left it: one marker for each thing that hangs together by itself. Pressed, it brings
+// everything back into view.
+
+import { Vector3 } from "three";
+import type { Page } from "../page/page.ts";
+import type { FramePart } from "../page/viewer.ts";
+import { make } from "./dom.ts";
+
+const most = 4;
+const lookEverySeconds = 0.15;
+/** From the edge, css px. */
+const margin = 34;
+
+interface Part {
+  bodies: number;
+  inView: number;
+  readonly middle: Vector3;
+}
+
+export class EdgeMarkers implements FramePart {
+  private readonly page_: Pick<Page, "world" | "viewer" | "framing">;
+  private readonly root_: HTMLElement;
+  private readonly markers_: HTMLButtonElement[] = [];
+  private readonly parts_ = new Map<number, Part>();
+  private readonly point_ = new Vector3();
+  private wait_ = 0;
+
+  constructor(page: Pick<Page, "world" | "viewer" | "framing">, root: HTMLElement) {
+    this.page_ = page;
+    this.root_ = root;
+  }
+
+  draw(seconds: number): void {
+    this.wait_ -= seconds;
+    if (this.wait_ > 0) return;
+    this.wait_ = lookEverySeconds;
+    const away = this.page_.viewer.presenting ? [] : this.findAway_();
+    for (let index = 0; index < Math.max(away.length, this.markers_.length); index++) {
+      if (index === this.markers_.length) this.markers_.push(this.makeMarker_());
+      const marker = this.markers_[index];
+      marker.hidden = index >= away.length;
+      if (!marker.hidden) this.place_(marker, away[index].middle);
+    }
+  }
+
+  /** What of the world is out of view as a whole. Nothing where all or most of it is: then the user looks elsewhere. */
+  private findAway_(): readonly Part[] {
+    const { world: { entities, poses } } = this.page_;
+    const { body, membership } = entities;
+    this.parts_.clear();
+    for (let index = 0; index < body.pickableCount; index++) {
+      const slot = body.pickable[index];
+      const articulate = membership.articulateOf(slot);
+      let part = this.parts_.get(articulate);
+      if (part === undefined) this.parts_.set(articulate, part = { bodies: 0, inView: 0, middle: new Vector3() });
+      this.point_.fromArray(poses.position, 3 * slot);
+      part.middle.add(this.point_);
+      part.bodies++;
+      if (this.isInView_(this.point_)) part.inView++;
+    }
+    const parts = [...this.parts_.values()];
+    const away = parts.filter((part) => part.inView === 0);
+    if (away.length > most || 2 * away.length > parts.length) return [];
+    for (const part of away) part.middle.divideScalar(part.bodies);
+    return away;
+  }
+
+  private isInView_(place: Vector3): boolean {
+    const seen = place.project(this.page_.viewer.camera);
+    return Math.abs(seen.x) < 1 && Math.abs(seen.y) < 1 && seen.z < 1;
+  }
+
+  private place_(marker: HTMLElement, middle: Vector3): void {
+    const { camera } = this.page_.viewer;
+    const seen = this.point_.copy(middle).applyMatrix4(camera.matrixWorldInverse);
+    const depth = Math.max(Math.abs(seen.z), 1e-9);
+    let x = (seen.x * camera.projectionMatrix.elements[0]) / depth;
+    let y = (seen.y * camera.projectionMatrix.elements[5]) / depth;
+    // What is behind is pointed at sideways or down.
+    const size = Math.max(Math.abs(x), Math.abs(y), 1e-6);
+    if (seen.z > 0 || size > 1) {
+      x /= size;
+      y /= size;
+    }
+    const angle = Math.atan2(-y * innerHeight, x * innerWidth);
+    const left = Math.min(Math.max(((x + 1) / 2) * innerWidth, margin), innerWidth - margin);
+    const top = Math.min(Math.max(((1 - y) / 2) * innerHeight, margin), innerHeight - margin - 70);
+    marker.style.transform = `translate(${Math.round(left - 22)}px, ${Math.round(top - 22)}px) rotate(${angle.toFixed(2)}rad)`;
+  }
+
+  private makeMarker_(): HTMLButtonElement {
+    const marker = make("button", "away", "➤");
+    marker.type = "button";
+    marker.setAttribute("aria-label", "Something is out of view: show everything");
+    marker.title = "Something is out of view: show everything";
+    marker.addEventListener("click", () => this.page_.framing.showAll());
+    this.root_.append(marker);
+    return marker;
+  }
+}
