@@ -488,7 +488,7 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         command_line(),
     ]
     if goal == "test":
-        steps.insert(2, python_environment("test", "verify"))
+        steps.insert(2, python_environment("test", "verify", "shapelib"))
         steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests"), wheel()]
     elif goal == "verify":
         steps.insert(2, python_environment("verify"))

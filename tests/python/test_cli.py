@@ -275,3 +275,29 @@ def test_bench_forces_prints_a_row_for_every_way_of_writing_a_force(capsys: pyte
     rows = json.loads(capsys.readouterr().out)["forces"]
     assert [row["force"] for row in rows][:3] == ["predefined", "expression", "compiled code"] and len(rows) == 9
     assert all(row["ns"] > 0 for row in rows)
+
+
+def test_import_tells_what_is_in_a_file_and_saves_it(tmp_path: Path) -> None:
+    water = tmp_path / "water.xyz"
+    water.write_text("3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n")
+    done = run("import", water, "--json", "--save", tmp_path / "out.json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["counts"]["formula"] == "H2O"
+    saved = iota.builder.Structure.from_json(json.loads((tmp_path / "out.json").read_text()))
+    assert len(saved.points) == 3
+    assert "edges: 12" in run("import", "cube").stdout
+
+
+def test_import_says_in_one_line_what_is_wrong(tmp_path: Path) -> None:
+    broken = tmp_path / "broken.off"
+    broken.write_text("OFF\n1 1 0\n0 0 0\n3 0 1 2\n")
+    assert fails_with_one_line("import", broken) == (
+        f"iota: {broken}, line 4: face 1 (of 1, line 4) uses vertex 1; there are 0..0"
+    )
+    assert "no such file" in fails_with_one_line("import", tmp_path / "none.pdb")
+    assert "did you mean 'cube'" in fails_with_one_line("import", "cubee")
+    assert "the SMILES 'C(' cannot be read" in fails_with_one_line("import", "smiles:C(")
+    assert "unexpected keyword argument 'kind'" in fails_with_one_line("import", tmp_path / "a.urdf", "--kind", "soft")
+    done = run("import", "cube", "--save", tmp_path / "nowhere" / "x.json")
+    assert done.returncode == 1 and "cannot be written" in done.stderr
+    assert list(tmp_path.iterdir()) == [broken]

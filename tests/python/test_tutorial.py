@@ -37,6 +37,13 @@ def test_the_blocks_of_the_page_on_replaceable_parts_run(capsys: pytest.CaptureF
     assert "1.41421356" in capsys.readouterr().out
 
 
+def test_the_blocks_of_the_page_on_files_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    for block in blocks(ROOT / "docs" / "shapelib.md"):
+        exec(compile(block, "docs/shapelib.md", "exec"), names)
+
+
 def test_the_blocks_of_the_page_on_builders_run() -> None:
     names: dict[str, object] = {}
     for block in blocks(ROOT / "docs" / "builder.md"):

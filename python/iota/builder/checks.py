@@ -103,6 +103,8 @@ def _points(structure: Contents, members: Numbers) -> Iterator[str]:
             yield f"point {number}: its {name} must be finite, not {tuple(rows[number].tolist())}"
     for number in np.flatnonzero(~(np.isfinite(points.mass) & (points.mass >= 0))):
         yield f"point {number}: its mass must be finite and at least 0 kg, not {points.mass[number]}"
+    for number in np.flatnonzero(~(np.isfinite(points.radius) & (points.radius >= 0))):
+        yield f"point {number}: its radius must be finite and at least 0 m, not {points.radius[number]}"
     uses = np.bincount(members, minlength=len(points))
     for number in np.flatnonzero(uses > 1):
         yield f"point {number} is in {uses[number]} bodies, or twice in one; hinge two points instead"

@@ -42,7 +42,10 @@ def from_json(structure: Filled, data: dict[str, Any]) -> Filled:
     if unknown := sorted(data.keys() - known):
         raise ValueError(f"a structure has no {', '.join(unknown)}; it has {', '.join(sorted(known))}")
     structure.points.add(
-        **{name: np.reshape(rows, (-1, 3) if name != "mass" else -1) for name, rows in data["points"].items()}
+        **{
+            name: np.reshape(rows, -1 if name in ("mass", "radius") else (-1, 3))
+            for name, rows in data["points"].items()
+        }
     )
     for name, kind in PARTS.items():
         for number, entry in enumerate(data.get(name, ())):

@@ -19,13 +19,14 @@ Vector = Sequence[float] | Vec3
 
 
 class Points:
-    """Places (m), velocities (m/s) and masses (kg) of n points, one row each.
+    """Places (m), velocities (m/s), masses (kg), and how they are drawn: radii (m) and colors of n points, one row each.
 
-    `position` and `velocity` (n, 3) and `mass` (n,) are views, float64: write into them, but ask again after `add`.
+    `position`, `velocity` and `color` (n, 3), `mass` and `radius` (n,) are views, float64: write into them, but ask again
+    after `add`. A radius of 0 leaves it to the page how a point is drawn; colors, 0 to 1, are of points with a radius.
     """
 
     def __init__(self) -> None:
-        self._rows = np.empty((0, 7))
+        self._rows = np.empty((0, 11))
         self._count = 0
 
     def __len__(self) -> int:
@@ -43,19 +44,39 @@ class Points:
     def mass(self) -> Array:
         return self._rows[: self._count, 6]
 
-    def add(self, position: ArrayLike, mass: ArrayLike = 1.0, velocity: ArrayLike = (0.0, 0.0, 0.0)) -> range:
-        """Adds points; returns their numbers. position: (k, 3) or (3,). mass, velocity: one for all, or one each."""
+    @property
+    def radius(self) -> Array:
+        return self._rows[: self._count, 7]
+
+    @property
+    def color(self) -> Array:
+        return self._rows[: self._count, 8:11]
+
+    def add(
+        self,
+        position: ArrayLike,
+        mass: ArrayLike = 1.0,
+        velocity: ArrayLike = (0.0, 0.0, 0.0),
+        radius: ArrayLike = 0.0,
+        color: ArrayLike = (1.0, 1.0, 1.0),
+    ) -> range:
+        """Adds points; returns their numbers. position: (k, 3) or (3,). The others: one for all, or one each."""
         places = np.atleast_2d(np.asarray(position, float))
         if places.ndim != 2 or places.shape[1] != 3:
             raise ValueError(f"position must be of shape (k, 3), not {np.shape(position)}")
         first, self._count = self._count, self._count + len(places)
         if self._count > len(self._rows):
-            grown = np.empty((max(2 * len(self._rows), self._count), 7))
+            grown = np.empty((max(2 * len(self._rows), self._count), 11))
             grown[:first] = self._rows[:first]
             self._rows = grown
         new = self._rows[first : self._count]
-        new[:, 0:3], new[:, 3:6], new[:, 6] = places, velocity, mass
+        new[:, 0:3], new[:, 3:6], new[:, 6], new[:, 7], new[:, 8:11] = places, velocity, mass, radius, color
         return range(first, self._count)
 
+    def add_all(self, other: Points) -> range:
+        """Adds all points of another table; returns their numbers."""
+        return self.add(other.position, other.mass, other.velocity, other.radius, other.color)
+
     def to_json(self) -> dict[str, Any]:
-        return {name: getattr(self, name).tolist() for name in ("position", "velocity", "mass")}
+        names = ("position", "velocity", "mass", *(("radius", "color") if self.radius.any() else ()))
+        return {name: getattr(self, name).tolist() for name in names}

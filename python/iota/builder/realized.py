@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from itertools import chain, groupby, islice
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from iota import _core
 from iota.builder.checks import label, problems
 from iota.builder.contents import Contents
@@ -84,6 +86,10 @@ def _make_bodies(structure: Contents, system: _core.System, made: Realized) -> N
     if alone:
         _make_plain(structure, system, [RigidBody([number]) for number in alone], points, Realized())
     made.points = [point for point in points if point is not None]
+    for number in np.flatnonzero(structure.points.radius).tolist():
+        point = made.points[number]
+        point.radius = structure.points.radius[number]
+        point.color = structure.points.color[number]
     made.names |= {part.name: body for part, body in zip(structure.bodies, made.bodies, strict=True) if part.name}
 
 

@@ -125,7 +125,7 @@ class Structure(Contents):
     def copy(self) -> Structure:
         """An independent one; shapes and looks, which nobody changes, are shared."""
         twin = Structure()
-        twin.points.add(self.points.position, self.points.mass, self.points.velocity)
+        twin.points.add_all(self.points)
         twin.bodies = [replace(body, points=list(body.points)) for body in self.bodies]
         twin.bonds = [replace(bond, parameters=dict(bond.parameters)) for bond in self.bonds]
         twin.joints = [replace(joint, options=dict(joint.options)) for joint in self.joints]
@@ -167,7 +167,7 @@ class Structure(Contents):
         def pairs(listed: list[tuple[int, int]]) -> list[tuple[int, int]]:
             return [(p + shift.points, q + shift.points) for p, q in listed]
 
-        points.add(other.points.position, other.points.mass, other.points.velocity)
+        points.add_all(other.points)
         self.bodies += [
             replace(body, points=[p + shift.points for p in body.points], name=named(body.name))
             for body in other.bodies

@@ -12,7 +12,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, bench_forces, run, verify
+from iota.cli import bench, bench_forces, imports, run, verify
 from iota.cli.failure import Failure
 
 MOST_LINKS = 1_000_000  # some GB
@@ -76,6 +76,16 @@ def make_parser() -> Parser:
     token = commands.add_parser("token", help="prints the secret in the page's address, or makes a new one")
     token.add_argument("--renew", action="store_true", help="a new one: addresses from before are refused from then on")
     token.set_defaults(function=run.token)
+
+    importing = commands.add_parser("import", help="reads a molecule, polyhedron or mechanism and tells what is in it")
+    importing.add_argument("source", metavar="FILE|NAME|smiles:TEXT")
+    importing.add_argument("--kind", choices=["rigid", "soft", "flexible"], help="of molecules and polyhedra")
+    importing.add_argument("--scale", type=positive, help="m for an angstrom (molecules) or for a unit of the file")
+    importing.add_argument("--json", action="store_true", help="print counts and notes as one JSON object")
+    importing.add_argument("--save", metavar="FILE.json", help="write the structure, see docs/builder.md")
+    importing.add_argument("--show", action="store_true", help="serve a page where it can be grabbed")
+    importing.add_argument("--port", type=port, help="of the page; 0 for any free one (default: 8080)")
+    importing.set_defaults(function=imports.run)
 
     benching = commands.add_parser("bench", help="measures the engine through Python")
     benching.add_argument("what", choices=["chain", "forces"])

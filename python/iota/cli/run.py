@@ -7,7 +7,6 @@ import argparse
 import ast
 import difflib
 import errno
-import importlib
 import inspect
 import json
 import os
@@ -34,7 +33,7 @@ def list_studies(arguments: argparse.Namespace) -> None:
     names = studies.names()
     width = max(map(len, names))
     for name in names:
-        doc = inspect.getdoc(importlib.import_module(f"iota.studies.{name}")) or ""
+        doc = inspect.getdoc(studies.module(name)) or ""
         print(f"{name:{width}}  {doc.splitlines()[0] if doc else ''}")
 
 
@@ -87,7 +86,7 @@ def find(what: str) -> Callable[[int | None], None]:
 
 
 def run_study(name: str, links: int | None) -> None:
-    module = importlib.import_module(f"iota.studies.{name}")
+    module = studies.module(name)
     build_and_run(module.build, links, name)
 
 

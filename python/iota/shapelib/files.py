@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reading files: what is wrong with one is said in one line that names the file and the place."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TypeAlias, TypeVar
+
+PathLike: TypeAlias = str | os.PathLike[str]
+Item = TypeVar("Item")
+
+MOST_BYTES = 1 << 28
+QUIET_S = 1.0  # what is done sooner shows no progress
+
+
+class FileError(ValueError):
+    """A file that cannot be used. Its text names the file, the line where there is one, and the reason."""
+
+    def __init__(self, path: PathLike, reason: str, line: int | None = None) -> None:
+        where = os.fspath(path) if line is None else f"{os.fspath(path)}, line {line}"
+        super().__init__(f"{where}: {' '.join(reason.split())}")
+        self.path, self.reason, self.line = os.fspath(path), reason, line
+
+
+def read_bytes(path: PathLike) -> bytes:
+    """The contents of a file of at most 256 MiB that is not empty. Raises FileError."""
+    file = Path(path)
+    try:
+        if file.is_dir():
+            raise FileError(path, "is a folder, not a file")
+        size = file.stat().st_size
+        if size > MOST_BYTES:
+            raise FileError(path, f"has {size / 2**20:.0f} MiB, more than {MOST_BYTES >> 20}")
+        data = file.read_bytes()
+    except OSError as error:
+        raise FileError(path, (error.strerror or str(error)).lower()) from None
+    if not data.strip():
+        raise FileError(path, "is empty")
+    return data
+
+
+def read_text(path: PathLike) -> str:
+    """The text of a file. Raises FileError, also for a file that is not text."""
+    data = read_bytes(path)
+    if b"\0" in data:
+        raise FileError(path, "is not a text file", data[: data.index(b"\0")].count(b"\n") + 1)
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:  # names of authors in older files
+        return data.decode("latin-1")
+
+
+def number(text: str, path: PathLike, line: int, what: str) -> float:
+    """A finite number. Raises FileError that says what it should have been."""
+    try:
+        value = float(text)
+    except ValueError:
+        raise FileError(path, f"{what} must be a number, not {text.strip()[:40]!r}", line) from None
+    if not abs(value) < 1e300:
+        raise FileError(path, f"{what} must be finite, not {text.strip()}", line)
+    return value
+
+
+def whole(text: str, path: PathLike, line: int, what: str) -> int:
+    """A whole number. Raises FileError that says what it should have been."""
+    try:
+        return int(text)
+    except ValueError:
+        raise FileError(path, f"{what} must be a whole number, not {text.strip()[:40]!r}", line) from None
+
+
+def with_progress(items: Sequence[Item], what: str) -> Iterator[Item]:
+    """The items; after a second, a line on the terminal says how far it has come, and is taken away at the end."""
+    began = shown = time.monotonic()
+    is_shown = False
+    for done, item in enumerate(items):
+        if done % 1000 == 0 and sys.stderr.isatty() and (now := time.monotonic()) - shown > 0.2:
+            shown = now
+            if now - began > QUIET_S:
+                is_shown = True
+                print(f"\r{what}: {100 * done // len(items)} %", end="", file=sys.stderr, flush=True)
+        yield item
+    if is_shown:
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Mechanisms from URDF and MJCF files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+from iota.builder.points import Vector
+from iota.shapelib.files import FileError, PathLike
+from iota.shapelib.imported import Imported
+from iota.shapelib.mechanism_data import to_structure
+from iota.shapelib.mjcf import read_mjcf
+from iota.shapelib.trees import read_tree
+from iota.shapelib.urdf import read_urdf
+
+ENDINGS = (".urdf", ".mjcf", ".xml")
+
+
+def mechanism(
+    path: PathLike,
+    *,
+    base: Literal["fixed", "free"] | None = None,
+    scale: float = 1.0,
+    at: Vector = (0.0, 0.0, 0.0),
+) -> Imported:
+    """A robot or machine from a URDF or MJCF file: a body for each link that can move, with the mass and inertia that the file
+    tells and the shapes that it draws, and a joint of ours for each of its joints, with limits, damping and friction. Names
+    are those of the file. Files have z up, the structure has y up.
+
+    base: of URDF, whether links that no joint holds are welded to the world ("fixed", the usual) or free; MJCF says so
+    itself. scale: of lengths; masses are kept. at: where the file's origin goes, m. What has no counterpart is left out and
+    listed in `notes`: mimic joints, transmissions, actuators, contacts, tendons over pulleys, meshes that are missing.
+    Raises `FileError` that names file and line, ImportError without MuJoCo for MJCF.
+
+        arm = iota.shapelib.mechanism("arm.urdf").realize(system, world)
+        arm["elbow"].angle.motor = (1.0, 20)
+    """
+    if base not in (None, "fixed", "free"):
+        raise ValueError(f"base must be 'fixed', 'free' or None, not {base!r}")
+    if not 0 < scale < float("inf"):
+        raise ValueError(f"scale must be above 0, not {scale}")
+    if Path(path).suffix.lower() not in ENDINGS:
+        raise FileError(path, f"mechanisms are in files that end in {', '.join(ENDINGS)}")
+    root = read_tree(path)
+    if root.tag not in ("robot", "mujoco"):
+        raise root.wrong(f"has <{root.tag}> at its top, neither <robot> (URDF) nor <mujoco> (MJCF)")
+    data = read_urdf(path, root, base) if root.tag == "robot" else read_mjcf(path)
+    return to_structure(data, at, scale)

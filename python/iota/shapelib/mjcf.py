@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: Apache-2.0
+"""MuJoCo models (MJCF): MuJoCo itself reads them, with its defaults, classes and includes, and tells masses, frames and joints."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from iota import looks
+from iota._core import Box, Capsule, Cylinder, Ellipsoid, Mesh, Shape, Sphere
+from iota.shapelib.files import FileError, PathLike
+from iota.shapelib.frames import Frame, from_quaternion, solid_of
+from iota.shapelib.mechanism_data import Link, LinkJoint, Mechanism
+from iota.shapelib.trees import read_tree
+from iota.shapelib.urdf import LIGHTEST, X_TO_Z
+
+FREE, BALL, SLIDE, HINGE = range(4)  # mjtJoint
+CONNECT, WELD = 0, 1  # mjtEq
+SITE = 6  # mjtObj
+CARDAN = 1e-3  # share of a link's mass in each of the light rings that two joints of one link need between them
+
+
+def read_mjcf(path: PathLike) -> Mechanism:
+    """Raises FileError, and ImportError without MuJoCo."""
+    root = read_tree(path)
+    if root.tag != "mujoco":
+        raise root.wrong(f"an MJCF file has <mujoco> at its top, not <{root.tag}>")
+    try:
+        import mujoco
+    except ImportError:
+        raise ImportError("MJCF files need MuJoCo: pip install 'iota[shapelib]'") from None
+    try:
+        model = mujoco.MjModel.from_xml_path(str(path))
+    except ValueError as error:
+        text = str(error)
+        line = re.search(r"line(?: number=)? ?(\d+)", text)
+        raise FileError(path, f"MuJoCo cannot read it: {text.split(chr(10))[0]}", line and int(line.group(1))) from None
+    state = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, state)
+    reader = _Reader(model, state, root.text("model", "") or Path(path).name.split(".")[0])
+    reader.read()
+    return reader.mechanism
+
+
+class _Reader:
+    """One model, in the places of its first configuration."""
+
+    def __init__(self, model: Any, state: Any, title: str) -> None:
+        self.model, self.state = model, state
+        self.mechanism = Mechanism(title)
+        self.armatures = 0
+        self.names = [model.body(number).name or f"body {number}" for number in range(model.nbody)]
+
+    def read(self) -> None:
+        m, mechanism = self.model, self.mechanism
+        moves = np.zeros(m.nbody, bool)
+        for body in range(1, m.nbody):
+            moves[body] = m.body_jntnum[body] > 0 or moves[m.body_parentid[body]]
+        self.moves = moves
+        for body in range(m.nbody):
+            link = self.link(body)
+            joints = range(m.body_jntadr[body], m.body_jntadr[body] + m.body_jntnum[body])
+            kinds = [int(m.jnt_type[joint]) for joint in joints]
+            if moves[body] and FREE not in kinds:
+                self.join(link, list(joints))
+            mechanism.links.append(link)
+        for number in range(m.neq):
+            self.equality(number)
+        for number in range(m.ntendon):
+            self.tendon(number)
+        planes = int((m.geom_type == 0).sum())
+        for count, what in (
+            (self.armatures, "rotor inertias (armature)"), (m.nu, "actuators"), (m.nsensor, "sensors"), (m.nexclude, "exclusions of contacts"), (m.nkey, "keyframes"),
+            (planes, "planes, which are drawn by the world"), (m.nflex, "deformable bodies"), (m.nhfield, "height fields"),
+        ):  # fmt: skip
+            if count:
+                mechanism.notes.append(f"{count} {what} are left out")
+        mechanism.counts = {
+            "bodies": m.nbody - 1, "joints": m.njnt, "degrees of freedom": m.nv, "geoms": m.ngeom, "equalities": m.neq,
+            "tendons": m.ntendon, "actuators": m.nu, "mass": float(m.body_mass.sum()),
+            "height of the center of mass": float(m.body_mass @ self.state.xipos[:, 2] / max(m.body_mass.sum(), 1e-300)),
+        }  # fmt: skip
+
+    def frame(self, body: int) -> Frame:
+        return Frame(self.state.xpos[body].copy(), self.state.xmat[body].reshape(3, 3).copy())
+
+    def link(self, body: int) -> Link:
+        m = self.model
+        link = Link(self.names[body], self.frame(body), None)
+        if self.moves[body]:
+            mass, inertia = float(m.body_mass[body]), np.diag(m.body_inertia[body])
+            if mass <= 0:
+                self.mechanism.notes.append(f"the body {link.name} has no mass; it is given {LIGHTEST} kg")
+                mass, inertia = LIGHTEST, LIGHTEST * 1e-2 * np.eye(3)
+            x, y, z, w = np.roll(m.body_iquat[body], -1)
+            link.solid = solid_of(mass, inertia, Frame(m.body_ipos[body].copy(), from_quaternion(x, y, z, w)))
+        for geom in range(m.body_geomadr[body], m.body_geomadr[body] + m.body_geomnum[body]):
+            shape = self.shape(geom)
+            if shape is not None:
+                w, x, y, z = m.geom_quat[geom]
+                red, green, blue, _ = (round(255 * float(np.clip(v, 0, 1))) for v in m.geom_rgba[geom])
+                look = looks.Look(shape[0], "paint", f"#{red:02x}{green:02x}{blue:02x}")
+                where = Frame(m.geom_pos[geom].copy(), from_quaternion(x, y, z, w) @ shape[1])
+                link.drawn.append((look, where))
+        if link.drawn and not self.moves[body]:
+            link.kind, link.solid = "static", solid_of(1.0, np.eye(3), Frame())
+        return link
+
+    def shape(self, geom: int) -> tuple[Shape, Any] | None:
+        """As mjtGeom numbers them; None for planes and what has no closed surface."""
+        m = self.model
+        size, kind = [float(v) for v in m.geom_size[geom]], int(m.geom_type[geom])
+        if kind == 2:
+            return Sphere(size[0]), np.eye(3)
+        if kind == 3:
+            return Capsule(size[0], 2 * size[1]), X_TO_Z
+        if kind == 4:
+            return Ellipsoid([2 * v for v in size]), np.eye(3)
+        if kind == 5:
+            return Cylinder(size[0], 2 * size[1]), X_TO_Z
+        if kind == 6:
+            return Box([2 * v for v in size]), np.eye(3)
+        if kind == 7:
+            mesh = int(m.geom_dataid[geom])
+            vertices = m.mesh_vert[m.mesh_vertadr[mesh] : m.mesh_vertadr[mesh] + m.mesh_vertnum[mesh]]
+            faces = m.mesh_face[m.mesh_faceadr[mesh] : m.mesh_faceadr[mesh] + m.mesh_facenum[mesh]]
+            try:
+                return Mesh(vertices.astype(float), faces), np.eye(3)
+            except ValueError as error:
+                self.mechanism.notes.append(f"the mesh {m.mesh(mesh).name} is not drawn: {error}")
+        return None
+
+    # --- joints ---------------------------------------------------------------------------------------------------
+
+    def join(self, link: Link, joints: list[int]) -> None:
+        """One joint of ours for each of a body's; between two of them there is a light ring."""
+        parent = int(self.model.body_parentid[self.names.index(link.name)])
+        above = self.name_of(parent)
+        if not joints:
+            self.mechanism.joints.append(
+                LinkJoint("weld", f"{link.name} to {self.names[parent]}", link.name, above, link.frame.place)
+            )
+            return
+        assert link.solid is not None
+        rings = len(joints) - 1
+        solid = link.solid
+        if rings:
+            inertia = solid.mass * np.diag([s * s / 20 for s in solid.shape.size])
+            inertia = np.trace(inertia) * np.eye(3) - inertia
+            share = CARDAN
+            own = 1 - rings * share
+            link.solid = solid_of(own * solid.mass, own * inertia, solid.frame)
+            for number in range(rings):
+                ring = Link(
+                    f"{link.name} ring {number + 1}",
+                    link.frame,
+                    solid_of(share * solid.mass, share * inertia, solid.frame),
+                )
+                ring.drawn = [(looks.sphere(1e-3), Frame(solid.frame.place))]
+                self.mechanism.links.append(ring)
+        for number, joint in enumerate(joints):
+            a = link.name if number == rings else f"{link.name} ring {number + 1}"
+            self.joint(joint, a, above)
+            above = a
+
+    def name_of(self, body: int) -> str | None:
+        return self.names[body] if self.moves[body] else None
+
+    def joint(self, joint: int, a: str, b: str | None) -> None:
+        m = self.model
+        name, kind = m.joint(joint).name or f"joint {joint}", int(m.jnt_type[joint])
+        at, axis = self.state.xanchor[joint].copy(), self.state.xaxis[joint].copy()
+        if kind == BALL:
+            if m.jnt_limited[joint]:
+                self.mechanism.notes.append(f"the limit of the ball joint {name} is left out")
+            self.mechanism.joints.append(LinkJoint("ball", name, a, b, at))
+            return
+        dof, first = int(m.jnt_dofadr[joint]), float(m.qpos0[m.jnt_qposadr[joint]])
+        options: dict[str, Any] = {}
+        stiffness, damping = float(np.ravel(m.jnt_stiffness[joint])[0]), float(np.ravel(m.dof_damping[dof])[0])
+        if stiffness > 0 or damping > 0:
+            rest = float(m.qpos_spring[m.jnt_qposadr[joint]]) - first
+            options["spring"] = (stiffness, damping, rest)
+        if m.dof_frictionloss[dof] > 0:
+            options["friction"] = float(m.dof_frictionloss[dof])
+        if m.jnt_limited[joint]:
+            low, high = (float(v) - first for v in m.jnt_range[joint])
+            if low <= 0 <= high and low < high:
+                options["limits"] = (low, high)
+            else:
+                self.mechanism.notes.append(f"the limits of {name} exclude its first place: left out")
+        self.armatures += m.dof_armature[dof] > 0
+        self.mechanism.joints.append(
+            LinkJoint("prismatic" if kind == SLIDE else "revolute", name, a, b, at, axis, options)
+        )
+
+    # --- loops and ropes ------------------------------------------------------------------------------------------
+
+    def equality(self, number: int) -> None:
+        m = self.model
+        kind, name = int(m.eq_type[number]), m.equality(number).name or f"equality {number}"
+        if kind not in (CONNECT, WELD):
+            self.mechanism.notes.append(f"the equality {name} couples joints or tendons, which is left out")
+            return
+        if not m.eq_active0[number]:
+            self.mechanism.notes.append(f"the equality {name} is switched off, and left out")
+            return
+        ends = [int(m.eq_obj1id[number]), int(m.eq_obj2id[number])]
+        data = m.eq_data[number]
+        is_site = int(m.eq_objtype[number]) == SITE
+        bodies = [int(m.site_bodyid[end]) for end in ends] if is_site else ends
+        if is_site:
+            places = [self.state.site_xpos[end].copy() for end in ends]
+            turns = [self.state.site_xmat[end].reshape(3, 3) for end in ends]
+        else:
+            frames = [self.frame(body) for body in bodies]
+            # connect: a place in each body. weld: one in the second, and the second as the first sees it.
+            local = [data[0:3], data[3:6]] if kind == CONNECT else [data[0:3], data[0:3]]
+            places = [frame.place + frame.turn @ place for frame, place in zip(frames, local, strict=True)]
+            turns = [frame.turn for frame in frames]
+            if kind == WELD:
+                w, x, y, z = data[6:10]
+                relative = Frame(data[3:6].copy(), from_quaternion(x, y, z, w))
+                meant = frames[0] @ relative
+                places[0] = meant.place + meant.turn @ data[0:3]
+                turns = [meant.turn, frames[1].turn]
+        a, b = (self.name_of(body) for body in bodies)
+        at = places[1] if a is None or b is not None else places[0]
+        if a is None and b is None:
+            self.mechanism.notes.append(f"the equality {name} is between bodies that do not move: left out")
+            return
+        gap = float(np.linalg.norm(places[0] - places[1]))
+        turn = float(np.linalg.norm(turns[0] - turns[1])) if kind == WELD else 0.0
+        if gap > 1e-6 or turn > 1e-6:
+            self.mechanism.notes.append(
+                f"the equality {name} does not hold at the start: it is made as its bodies are now"
+            )
+        first, second = (a, b) if a is not None else (b, a)
+        assert first is not None
+        self.mechanism.joints.append(LinkJoint("ball" if kind == CONNECT else "weld", name, first, second, at))
+
+    def tendon(self, number: int) -> None:
+        """One between two sites, without pulleys, with a largest length, is a rope of ours."""
+        m = self.model
+        name = f"the tendon {m.tendon(number).name or number}"
+        wraps = range(m.tendon_adr[number], m.tendon_adr[number] + m.tendon_num[number])
+        is_plain = len(wraps) == 2 and all(int(m.wrap_type[wrap]) == 3 for wrap in wraps)
+        if not (is_plain and m.tendon_limited[number]):
+            what = "has no largest length" if is_plain else "couples joints, or runs over more than two places"
+            self.mechanism.notes.append(f"{name} {what}: left out")
+            return
+        ends = []
+        for wrap in wraps:
+            site = int(m.wrap_objid[wrap])
+            body = int(m.site_bodyid[site])
+            ends.append((self.names[body], self.state.site_xpos[site].copy()))
+        self.mechanism.ropes.append((name, ends[0], ends[1], float(m.tendon_range[number][1])))

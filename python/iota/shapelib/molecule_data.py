@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A molecule as data, and how its bonds are found where a file has none."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iota.shapelib.chemistry import Element
+from iota.shapelib.files import FileError, PathLike
+from iota.shapelib.nearest import near_pairs
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+MOST_ATOMS = 100_000
+SLACK = 0.45  # angstrom, how much longer than the sum of its radii a bond may be
+COLLIDING = 0.4  # angstrom: nearer than any two nuclei
+
+
+@dataclass
+class Molecule:
+    """Atoms and bonds. position: (n, 3), angstrom. bonds: (k, 2). orders: (k,), 1.5 for aromatic ones, 1 where unknown.
+    names: for messages, such as "CA of ARG 27"."""
+
+    title: str
+    elements: list[Element]
+    position: NDArray[np.float64]
+    bonds: NDArray[np.int64]
+    orders: NDArray[np.float64]
+    names: list[str] = field(default_factory=list)
+    residues: int = 0
+    notes: list[str] = field(default_factory=list)
+
+    def formula(self) -> str:
+        """C and H first, then the others by name (Hill 1900)."""
+        count = Counter(element.symbol for element in self.elements)
+        first = [symbol for symbol in ("C", "H") if "C" in count and symbol in count]
+        listed = first + sorted(count.keys() - set(first))
+        return "".join(symbol + (str(count[symbol]) if count[symbol] > 1 else "") for symbol in listed)
+
+
+def check_count(count: int, path: PathLike, line: int | None = None) -> None:
+    """Raises FileError for more atoms than can be simulated."""
+    if count > MOST_ATOMS:
+        raise FileError(path, f"has more than {MOST_ATOMS} atoms; cut out what you need", line)
+
+
+def check_places(molecule: Molecule, path: PathLike) -> None:
+    """Raises FileError where two atoms are in one place."""
+    if not len(molecule.elements):
+        raise FileError(path, "has no atoms")
+    pairs, distances = near_pairs(molecule.position, COLLIDING)
+    if len(pairs):
+        (p, q), distance = pairs[0].tolist(), distances[0]
+        more = f", and {len(pairs) - 1} more such pairs" if len(pairs) > 1 else ""
+        name = molecule.names or [f"{e.symbol}{number}" for number, e in enumerate(molecule.elements, 1)]
+        raise FileError(path, f"the atoms {name[p]} and {name[q]} are {distance:.3g} angstrom apart{more}")
+
+
+def perceive_bonds(elements: list[Element], position: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Bonds between atoms that are no further apart than their covalent radii and a slack; hydrogen takes its nearest atom
+    only. (k, 2)"""
+    radius = np.array([element.bond_radius for element in elements])
+    pairs, distances = near_pairs(position, 2 * radius.max() + SLACK)
+    is_bond = distances < radius[pairs[:, 0]] + radius[pairs[:, 1]] + SLACK
+    pairs, distances = pairs[is_bond], distances[is_bond]
+    is_hydrogen = np.array([element.symbol == "H" for element in elements])
+    keep = np.ones(len(pairs), bool)
+    taken: set[int] = set()
+    for number in np.argsort(distances, kind="stable").tolist():
+        ends = [end for end in pairs[number].tolist() if is_hydrogen[end]]
+        keep[number] = not taken.intersection(ends)
+        if keep[number]:
+            taken.update(ends)
+    kept: NDArray[np.int64] = pairs[keep]
+    return kept

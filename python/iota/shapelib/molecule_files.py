@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Molecules from PDB, SDF, MOL, XYZ and CIF files, and from SMILES."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from iota.shapelib import cif
+from iota.shapelib.chemistry import Element, complaints, element, rdkit
+from iota.shapelib.files import FileError, PathLike, number, read_text, whole, with_progress
+from iota.shapelib.molecule_data import Molecule, check_count, check_places, perceive_bonds
+
+
+def read_molecule(path: PathLike) -> Molecule:
+    """By the file's ending. Raises FileError."""
+    ending = Path(path).suffix.lower()
+    if ending not in READERS:
+        raise FileError(
+            path, f"molecules are in files that end in {', '.join(READERS)}, not in {ending or 'nothing'!r}"
+        )
+    molecule = READERS[ending](read_text(path), path)
+    molecule.title = molecule.title or Path(path).stem
+    check_places(molecule, path)
+    return molecule
+
+
+def parse_smiles(text: str, seed: int = 1) -> Molecule:
+    """A molecule in three dimensions from a SMILES string, hydrogens added: RDKit's distance geometry (ETKDG; Riniker and
+    Landrum 2015), relaxed in its force field. Raises ValueError that says what is wrong with the text."""
+    chem = rdkit()
+    from rdkit.Chem import rdDistGeom as shapes
+    from rdkit.Chem import rdForceFieldHelpers as fields
+
+    with complaints() as said:
+        found = chem.MolFromSmiles(text) if text.strip() else None
+        if found is None or found.GetNumAtoms() == 0:
+            raise ValueError(f"the SMILES {text[:60]!r} cannot be read{_reason(said)}")
+        if found.GetNumAtoms() > 1000:
+            raise ValueError(f"the SMILES has {found.GetNumAtoms()} heavy atoms, more than 1000")
+        found = chem.AddHs(found)
+        if shapes.EmbedMolecule(found, randomSeed=seed) != 0 and (
+            shapes.EmbedMolecule(found, randomSeed=seed, useRandomCoords=True) != 0
+        ):
+            raise ValueError(f"no shape in space was found for the SMILES {text[:60]!r}{_reason(said)}")
+        if fields.MMFFHasAllMoleculeParams(found):
+            fields.MMFFOptimizeMolecule(found)
+    molecule = _from_rdkit(found)
+    molecule.title = text
+    check_places(molecule, f"SMILES {text[:60]!r}")
+    return molecule
+
+
+def _reason(said: list[str]) -> str:
+    """The first thing that RDKit said, without the time of day and its log's punctuation."""
+    for text in said:
+        lines = [re.sub(r"^(\[[\d:]+\]\s*)?(SMILES Parse Error:\s*)?", "", line).strip() for line in text.splitlines()]
+        plain = next((line for line in lines if line and not set(line) <= set("*~^-")), "")
+        if plain:
+            return ": " + plain[:200]
+    return ""
+
+
+def _from_rdkit(found: Any) -> Molecule:
+    atoms = [_known(atom.GetSymbol()) for atom in found.GetAtoms()]
+    bonds = [(bond.GetBeginAtomIdx(), bond.GetEndAtomIdx()) for bond in found.GetBonds()]
+    orders = [bond.GetBondTypeAsDouble() or 1.0 for bond in found.GetBonds()]
+    return Molecule(
+        "", atoms, np.array(found.GetConformer().GetPositions(), float).reshape(-1, 3),
+        np.array(bonds, np.int64).reshape(-1, 2), np.array(orders, float),
+    )  # fmt: skip
+
+
+def _known(symbol: str) -> Element:
+    known = element(symbol)
+    if known is None:
+        raise ValueError(f"{symbol!r} is not an element that can be simulated")
+    return known
+
+
+def _element_at(symbol: str, path: PathLike, line: int) -> Element:
+    known = element(symbol)
+    if known is None:
+        raise FileError(path, f"{symbol.strip()[:20]!r} is not an element", line)
+    return known
+
+
+# --- Protein Data Bank ------------------------------------------------------------------------------------------------
+
+
+def _read_pdb(text: str, path: PathLike) -> Molecule:
+    """The first model; of atoms in several places, the first place. RDKit finds the bonds; what it does not tell, lines with
+    wrong numbers, is looked for first."""
+    kept: list[str] = []
+    names: list[str] = []
+    kind_of_residue: dict[str, str] = {}
+    seen: set[tuple[str, str]] = set()
+    others = models = 0
+    for at, line in enumerate(with_progress(text.splitlines(), "reading atoms"), 1):
+        record = line[:6].strip()
+        if record == "MODEL":
+            models += 1
+        if record not in ("ATOM", "HETATM"):
+            kept.append(line)
+            continue
+        if models > 1:
+            continue
+        if len(line) < 54:
+            raise FileError(path, "this atom's line is cut off before its place in space", at)
+        for begin, what in ((30, "x"), (38, "y"), (46, "z")):
+            number(line[begin : begin + 8], path, at, what)
+        residue, kind, name = line[21:27], line[17:20].strip(), line[12:16].strip()
+        is_other = (residue, name) in seen or kind_of_residue.setdefault(residue, kind) != kind
+        if is_other and line[16] != " ":
+            others += 1
+            continue
+        seen.add((residue, name))
+        names.append(f"{name} of {kind} {residue[1:].strip()}")
+        check_count(len(names), path, at)
+        if line[76:78].strip():
+            _element_at(line[76:78], path, at)
+        kept.append(line[:16] + " " + line[17:])
+    if not names:
+        raise FileError(path, "has no ATOM or HETATM lines: it is not a PDB file, or is cut off")
+    with complaints() as said:
+        found = rdkit().MolFromPDBBlock("\n".join(kept), sanitize=False, removeHs=False, flavor=0)
+    if found is None:
+        raise FileError(path, f"RDKit cannot read it{_reason(said)}")
+    if found.GetNumAtoms() != len(names):
+        raise FileError(path, f"{found.GetNumAtoms()} of its {len(names)} atoms can be read{_reason(said)}")
+    molecule = _from_rdkit(found)
+    molecule.names, molecule.residues = names, len(kind_of_residue)
+    molecule.title = next((line[10:].strip().title() for line in kept if line.startswith("TITLE ")), "")
+    if others:
+        molecule.notes.append(f"{others} alternate places of atoms are left out")
+    if models > 1:
+        molecule.notes.append(f"the first of {models} models is taken")
+    if not any(line.startswith("END") for line in kept):
+        molecule.notes.append("the file has no END line: it may be cut off")
+    return molecule
+
+
+# --- MDL molfiles -----------------------------------------------------------------------------------------------------
+
+
+def _read_sdf(text: str, path: PathLike) -> Molecule:
+    """The first molecule."""
+    lines = text.splitlines()
+    if len(lines) < 4:
+        raise FileError(path, f"a molfile begins with four lines, this one has {len(lines)}")
+    counts = lines[3]
+    if "V3000" not in counts and "V2000" not in counts:
+        raise FileError(path, "the counts line must name V2000 or V3000: this is not a molfile", 4)
+    if "V2000" in counts:
+        atoms, bonds = whole(counts[:3], path, 4, "the number of atoms"), whole(counts[3:6], path, 4, "that of bonds")
+        check_count(atoms, path, 4)
+        if atoms < 1:
+            raise FileError(path, "has no atoms", 4)
+        if len(lines) < 4 + atoms + bonds:
+            raise FileError(path, f"ends before its {atoms} atoms and {bonds} bonds are told", len(lines))
+        for at in range(5, 5 + atoms):
+            row = lines[at - 1]
+            for begin, what in ((0, "x"), (10, "y"), (20, "z")):
+                number(row[begin : begin + 10], path, at, what)
+            _element_at(row[31:34], path, at)
+        for at in range(5 + atoms, 5 + atoms + bonds):
+            for begin in (0, 3):
+                end = whole(lines[at - 1][begin : begin + 3], path, at, "an end of a bond")
+                if not 1 <= end <= atoms:
+                    raise FileError(path, f"this bond names atom {end}; there are 1..{atoms}", at)
+    end_at = next((at for at, line in enumerate(lines) if line.startswith("M  END")), None)
+    if end_at is None:
+        raise FileError(path, "has no 'M  END': it is cut off", len(lines))
+    with complaints() as said:
+        found = rdkit().MolFromMolBlock("\n".join(lines[: end_at + 1]), sanitize=False, removeHs=False)
+    if found is None:
+        raise FileError(path, f"RDKit cannot read it{_reason(said)}")
+    if found.GetNumAtoms() == 0:
+        raise FileError(path, "has no atoms")
+    check_count(found.GetNumAtoms(), path)
+    molecule = _from_rdkit(found)
+    molecule.title = lines[0].strip()
+    molecules = sum(line.startswith("M  END") for line in lines)
+    if molecules > 1:
+        molecule.notes.append(f"the first of {molecules} molecules is taken")
+    if not found.GetConformer().Is3D():
+        molecule.notes.append("the file has a drawing in a plane, not a shape in space")
+    return molecule
+
+
+# --- XYZ --------------------------------------------------------------------------------------------------------------
+
+
+def _read_xyz(text: str, path: PathLike) -> Molecule:
+    """The first frame; bonds are perceived. Columns behind x y z are passed over."""
+    lines = text.splitlines()
+    count = whole(lines[0], path, 1, "the first line of an XYZ file, the number of atoms,")
+    if count < 1:
+        raise FileError(path, f"the number of atoms must be above 0, not {count}", 1)
+    check_count(count, path, 1)
+    if len(lines) < count + 2:
+        raise FileError(path, f"ends after {max(len(lines) - 2, 0)} of {count} atoms", len(lines))
+    atoms, places = [], []
+    for at, line in enumerate(with_progress(lines[2 : count + 2], "reading atoms"), 3):
+        words = line.split()
+        if len(words) < 4:
+            raise FileError(path, f"an atom is an element and three numbers, not {line.strip()[:40]!r}", at)
+        symbol = words[0]
+        if symbol.isdigit():
+            table = rdkit().GetPeriodicTable()
+            symbol = table.GetElementSymbol(int(symbol)) if 1 <= int(symbol) <= 118 else symbol
+        atoms.append(_element_at(symbol, path, at))
+        places.append([number(word, path, at, what) for word, what in zip(words[1:4], "xyz", strict=True)])
+    molecule = _perceived(lines[1].strip(), atoms, np.array(places), path)
+    if any(line.strip() for line in lines[count + 2 :]):
+        molecule.notes.append("the first frame is taken; the file goes on behind it")
+    return molecule
+
+
+def _perceived(
+    title: str, atoms: list[Element], position: Any, path: PathLike, names: list[str] | None = None
+) -> Molecule:
+    unbonded = Molecule(title, atoms, position, np.empty((0, 2), np.int64), np.empty(0), names or [])
+    check_places(unbonded, path)
+    unbonded.bonds = perceive_bonds(atoms, position)
+    unbonded.orders = np.ones(len(unbonded.bonds))
+    unbonded.notes.append("its bonds are guessed from distances, all of them single")
+    return unbonded
+
+
+# --- CIF --------------------------------------------------------------------------------------------------------------
+
+
+def _read_cif(text: str, path: PathLike) -> Molecule:
+    """The first block. In crystals the atoms as listed are taken, without their images under the symmetry."""
+    tables = cif.read_first_block(text, path)
+    table = tables.get("_atom_site")
+    if table is None or not table.rows:
+        raise FileError(path, "has no _atom_site table: no atoms")
+    symbols = table.column("type_symbol") or table.column("label")
+    if symbols is None:
+        raise FileError(path, "_atom_site has neither type_symbol nor label", table.lines[0])
+    columns = [table.column(f"cartn_{axis}") for axis in "xyz"]
+    cell = np.eye(3)
+    if None in columns:
+        columns = [table.column(f"fract_{axis}") for axis in "xyz"]
+        if None in columns:
+            raise FileError(path, "_atom_site has neither Cartn_x, y, z nor fract_x, y, z", table.lines[0])
+        cell = _cell(tables.get("_cell"), path)
+    alternates = table.column("label_alt_id") or table.column("disorder_group")
+    models = table.column("pdbx_pdb_model_num")
+    parts = [table.column(name) for name in ("label_asym_id", "label_seq_id", "label_comp_id", "label_atom_id")]
+    is_protein = None not in parts
+    kind_of_residue: dict[tuple[str, ...], str] = {}
+    seen: set[tuple[str, ...]] = set()
+    atoms, places, names = [], [], []
+    others = other_models = 0
+    for row, at in enumerate(with_progress(table.lines, "reading atoms")):
+        if models and models[row] != models[0]:
+            other_models += 1
+            continue
+        chain, residue, kind, name = (column[row] if column else "" for column in parts)
+        key = (chain, residue, name)
+        is_other = kind_of_residue.setdefault(key[:2], kind) != kind or key in seen or not is_protein
+        if alternates and alternates[row] not in (".", "?", "1") and is_other:
+            others += 1
+            continue
+        seen.add(key)
+        symbol = symbols[row] if table.column("type_symbol") else re.sub(r"[^A-Za-z].*", "", symbols[row])
+        atoms.append(_element_at(re.sub(r"\d*[+-]?$", "", symbol), path, at))
+        check_count(len(atoms), path, at)
+        # A number of a crystal has its uncertainty behind it: 0.1234(5).
+        place = [number(column[row].split("(")[0], path, at, "a coordinate") for column in columns if column]
+        places.append(cell @ place)
+        names.append(f"{name} of {kind} {residue}" if is_protein else f"{atoms[-1].symbol}{len(atoms)}")
+    molecule = _perceived("", atoms, np.array(places), path, names)
+    molecule.residues = len(kind_of_residue) if is_protein else 0
+    if others:
+        molecule.notes.append(f"{others} alternate places of atoms are left out")
+    if other_models:
+        molecule.notes.append("the first model is taken")
+    return molecule
+
+
+def _cell(table: cif.Table | None, path: PathLike) -> Any:
+    """The columns are the edges of the unit cell, angstrom."""
+    names = ("length_a", "length_b", "length_c", "angle_alpha", "angle_beta", "angle_gamma")
+    columns = [table.column(name) if table else None for name in names]
+    if table is None or any(column is None for column in columns):
+        raise FileError(path, "has coordinates in a unit cell, but not the six numbers of _cell")
+    a, b, c, *angles = (number(column[0].split("(")[0], path, table.lines[0], "_cell") for column in columns if column)
+    if not (min(a, b, c) > 0 and all(0 < angle < 180 for angle in angles)):
+        raise FileError(path, f"no unit cell has edges {a}, {b}, {c} and angles {angles}", table.lines[0])
+    alpha, beta, gamma = np.radians(angles)
+    along = (np.cos(alpha) - np.cos(beta) * np.cos(gamma)) / np.sin(gamma)
+    height = 1 - np.cos(beta) ** 2 - along**2
+    if not height > 0:
+        raise FileError(path, f"no unit cell has the angles {angles}", table.lines[0])
+    return np.array(
+        [[a, b * np.cos(gamma), c * np.cos(beta)], [0, b * np.sin(gamma), c * along], [0, 0, c * np.sqrt(height)]]
+    )
+
+
+READERS: dict[str, Callable[[str, PathLike], Molecule]] = {
+    ".pdb": _read_pdb, ".ent": _read_pdb, ".sdf": _read_sdf, ".mol": _read_sdf, ".xyz": _read_xyz, ".cif": _read_cif,
+    ".mmcif": _read_cif,
+}  # fmt: skip

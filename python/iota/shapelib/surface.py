@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A surface of polygons, and what is wrong with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iota.shapelib.files import FileError, PathLike
+from iota.shapelib.graphs import pieces
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Numbers = NDArray[np.int64]
+
+MOST_FACES = 1_000_000
+
+
+@dataclass
+class Surface:
+    """vertices: (n, 3). faces: the numbers of their vertices, from outside counter-clockwise. groups: a name for each face,
+    "" for none. lines: where the file tells each face; empty where it does not say."""
+
+    vertices: Array
+    faces: list[list[int]]
+    groups: list[str] = field(default_factory=list)
+    lines: list[int] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def place(self, face: int) -> str:
+        """ "face 5 (of 6, line 15)" for messages; counted from 1."""
+        line = f", line {self.lines[face]}" if self.lines else ""
+        return f"face {face + 1} (of {len(self.faces)}{line})"
+
+    def weld(self) -> None:
+        """Makes vertices at one place one, and takes away faces that have no area then."""
+        places, number = np.unique(self.vertices + 0.0, axis=0, return_inverse=True)
+        first = np.full(len(places), len(self.vertices))
+        number = number.ravel()
+        np.minimum.at(first, number, np.arange(len(number)))
+        order = np.argsort(first)  # the file's order
+        rank = np.empty_like(order)
+        rank[order] = np.arange(len(order))
+        self.vertices = self.vertices[first[order]]
+        new = rank[number].tolist()
+        kept, left_out = [], 0
+        for at, face in enumerate(self.faces):
+            welded = [new[v] for v in face]
+            welded = [v for i, v in enumerate(welded) if v != welded[i - 1]]
+            if len(welded) < 3:
+                left_out += 1
+                continue
+            kept.append(at)
+            self.faces[at] = welded
+        if left_out:
+            self.notes.append(f"{left_out} faces without area are left out")
+        self.faces = [self.faces[at] for at in kept]
+        self.groups = [self.groups[at] for at in kept] if self.groups else []
+        self.lines = [self.lines[at] for at in kept] if self.lines else []
+
+    def edges(self) -> Numbers:
+        """(k, 2), each once, smaller number first, sorted."""
+        return np.unique(np.sort(self._sides(), axis=1), axis=0)
+
+    def _sides(self) -> Numbers:
+        """Every side of every face, as the face goes round: (k, 2)."""
+        return np.array([(v, face[(i + 1) % len(face)]) for face in self.faces for i, v in enumerate(face)], np.int64)
+
+    def check(self, path: PathLike) -> None:
+        """Raises FileError where the surface does not enclose a volume: the first edge that is open, is in three faces or
+        more, or whose faces go round it in the same direction."""
+        sides = self._sides()
+        owner = np.repeat(np.arange(len(self.faces)), [len(face) for face in self.faces])
+        pairs, number, uses = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
+        number = number.ravel()
+        way = np.bincount(number, np.where(sides[:, 0] < sides[:, 1], 1.0, -1.0), len(pairs))
+        for wrong, what in (
+            (uses > 2, "is in {n} faces, so the surface is not that of a solid"),
+            (uses < 2, "is in one face only, so the surface is open"),
+            (way != 0, "has two faces that go round it the same way: one of them is inside out"),
+        ):
+            found = np.flatnonzero(wrong)
+            if len(found):
+                edge = int(found[0])
+                p, q = pairs[edge].tolist()
+                face = int(owner[number == edge][-1])
+                more = f"; {len(found)} such edges" if len(found) > 1 else ""
+                text = what.format(n=int(uses[edge]))
+                line = self.lines[face] if self.lines else None
+                raise FileError(
+                    path, f"the edge of the vertices {p} and {q}, of {self.place(face)}, {text}{more}", line
+                )
+
+    def triangles(self) -> tuple[Numbers, Numbers]:
+        """Three vertices each, (k, 3), and the face that each is of, (k,)."""
+        found, owner = [], []
+        for at, face in enumerate(self.faces):
+            parts = [face] if len(face) == 3 else _cut(self.vertices[face], face)
+            found += parts
+            owner += [at] * len(parts)
+        return np.array(found, np.int64).reshape(-1, 3), np.array(owner, np.int64)
+
+    def volume(self) -> float:
+        """Enclosed; negative inside out."""
+        triangles, _ = self.triangles()
+        a, b, c = (self.vertices[triangles[:, i]] - self.vertices.mean(axis=0) for i in range(3))
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+    def area(self) -> float:
+        """Of all faces."""
+        triangles, _ = self.triangles()
+        a, b, c = (self.vertices[triangles[:, i]] for i in range(3))
+        return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+
+    def split(self) -> list[Surface]:
+        """Its connected pieces, each with its own vertices."""
+        part = pieces(len(self.vertices), self.edges())
+        of_face = part[[face[0] for face in self.faces]]
+        found = []
+        for piece in np.unique(of_face):
+            chosen = np.flatnonzero(of_face == piece).tolist()
+            used = np.unique(np.concatenate([self.faces[at] for at in chosen]))
+            new = dict(zip(used.tolist(), range(len(used)), strict=True))
+            found.append(
+                Surface(
+                    self.vertices[used],
+                    [[new[v] for v in self.faces[at]] for at in chosen],
+                    [self.groups[at] for at in chosen] if self.groups else [],
+                )
+            )
+        return found
+
+
+def _cut(places: Array, face: list[int]) -> list[list[int]]:
+    """A polygon as triangles, by cutting off ears (Meisters 1975); a convex one becomes a fan."""
+    normal = np.cross(places, np.roll(places, -1, axis=0)).sum(axis=0)
+    left, found = list(range(len(face))), []
+
+    def turn(a: int, b: int, c: int) -> float:
+        return float(np.dot(np.cross(places[b] - places[a], places[c] - places[b]), normal))
+
+    while len(left) > 3:
+        for at in range(len(left)):
+            # Beginning at the second corner makes the fan of a convex polygon begin at its first.
+            a, b, c = left[at], left[(at + 1) % len(left)], left[(at + 2) % len(left)]
+            others = [p for p in left if p not in (a, b, c)]
+            if turn(a, b, c) > 0 and not any(min(turn(a, b, p), turn(b, c, p), turn(c, a, p)) > 0 for p in others):
+                break
+        else:  # nowhere an ear: flat or crossing itself
+            at = 0
+            a, b, c = left[:3]
+        found.append([face[a], face[b], face[c]])
+        left.remove(b)
+    return [*found, [face[i] for i in left]]

@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Robots as URDF files: http://wiki.ros.org/urdf/XML. Read here, because a message has to name the line."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from iota import looks
+from iota._core import Box, Cylinder, Mesh, Shape, Sphere
+from iota.builder.parts import JointKind
+from iota.shapelib.files import FileError, PathLike
+from iota.shapelib.frames import Frame, from_rpy, solid_of
+from iota.shapelib.mechanism_data import Link, LinkJoint, Mechanism
+from iota.shapelib.surface_files import READERS, read_surface
+from iota.shapelib.trees import Element, read_tree
+
+JOINTS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+MOST_LINKS = 10_000
+# A cylinder of URDF is long along z, ours along x.
+X_TO_Z = np.array([[0.0, 0, -1], [0, 1, 0], [1, 0, 0]])
+LIGHTEST = 1e-6  # kg: a link without mass that something has to carry
+
+
+def read_urdf(path: PathLike, root: Element | None = None, base: str | None = None) -> Mechanism:
+    """base: "fixed" or "free"; None: fixed. Raises FileError."""
+    robot = root or read_tree(path)
+    if robot.tag != "robot":
+        raise robot.wrong(f"a URDF file has <robot> at its top, not <{robot.tag}>")
+    links = {}
+    for element in robot.all("link"):
+        name = element.text("name")
+        if name in links:
+            raise element.wrong(f"there are two links named {name}")
+        links[name] = element
+    if not links:
+        raise robot.wrong("the robot has no links")
+    if len(links) > MOST_LINKS:
+        raise robot.wrong(f"has {len(links)} links, more than {MOST_LINKS}")
+    joint_of, order, world = _tree(robot, links)
+    mechanism = Mechanism(robot.text("name", "") or Path(path).stem)
+    colors = _materials(robot)
+    missing: list[str] = []
+    frames: dict[str, Frame] = {name: Frame() for name in order if name not in joint_of}
+    if world:
+        frames["world"] = Frame()
+    for name in order:
+        joint = joint_of.get(name)
+        if joint is not None:
+            frames[name] = frames[joint.need("parent").text("link")] @ _origin(joint)
+        if name != "world":
+            mechanism.links.append(_link(links[name], frames[name], colors, path, missing, mechanism.notes))
+    moving = mimics = 0
+    for name in order:
+        joint = joint_of.get(name)
+        if joint is not None:
+            made = _joint(joint, frames[name], mechanism.notes)
+            moving += joint.text("type") != "fixed"
+            mimics += joint.first("mimic") is not None
+            if made is not None:
+                mechanism.joints.append(made)
+        elif name != "world" and base != "free":
+            mechanism.joints.append(LinkJoint("weld", f"{name} to the world", name, None, frames[name].place))
+    if missing:
+        listed = ", ".join(sorted(set(missing))[:3]) + (" ..." if len(set(missing)) > 3 else "")
+        mechanism.notes.append(f"{len(missing)} meshes are missing, of which nothing is drawn: {listed}")
+    for tag in ("transmission", "gazebo", "sensor"):
+        if count := sum(1 for _ in robot.all(tag)):
+            mechanism.notes.append(f"{count} <{tag}> are left out")
+    mechanism.counts = {
+        "links": len(links) - ("world" in links), "joints": len(joint_of), "moving joints": moving,
+        "independent joints": moving - mimics,
+        "mass": math.fsum(_mass(element) for element in links.values()), "missing meshes": len(missing),
+    }  # fmt: skip
+    return mechanism
+
+
+def _tree(robot: Element, links: dict[str, Element]) -> tuple[dict[str, Element], list[str], bool]:
+    """The joint above each link, all links from the roots down, and whether the world is a parent that is not declared."""
+    joint_of: dict[str, Element] = {}
+    children: dict[str, list[str]] = {}
+    names: set[str] = set()
+    for joint in robot.all("joint"):
+        name, parent, child = joint.text("name"), joint.need("parent").text("link"), joint.need("child").text("link")
+        if name in names:
+            raise joint.wrong(f"there are two joints named {name}")
+        names.add(name)
+        if joint.text("type") not in JOINTS:
+            raise joint.wrong(f"the joint {name} is of no known type: {joint.text('type')}")
+        for link in (parent, child):
+            if link not in links and not (link == "world" and link == parent):
+                raise joint.wrong(f"the joint {name} names the link {link}, which is not there")
+        if child in joint_of:
+            both = f"{joint_of[child].text('name')}, {name}"
+            raise joint.wrong(f"{child} has two parents ({both}): URDF must be a tree")
+        joint_of[child] = joint
+        children.setdefault(parent, []).append(child)
+    world = "world" in children and "world" not in links
+    order = (["world"] if world else []) + [name for name in links if name not in joint_of]
+    for name in order:
+        order += children.get(name, [])
+        if len(order) > len(links) + 1:
+            break
+    reached = set(order)
+    for name in links:
+        if name not in reached:
+            raise joint_of[name].wrong(f"the links round {name} form a loop without a root: URDF must be a tree")
+    return joint_of, order, world
+
+
+def _origin(element: Element) -> Frame:
+    origin = element.first("origin")
+    if origin is None:
+        return Frame()
+    return Frame(np.array(origin.numbers("xyz", 3, "0 0 0")), from_rpy(*origin.numbers("rpy", 3, "0 0 0")))
+
+
+def _mass(link: Element) -> float:
+    inertial = link.first("inertial")
+    return inertial.need("mass").number("value") if inertial is not None else 0.0
+
+
+def _link(
+    element: Element, frame: Frame, colors: dict[str, str], path: PathLike, missing: list[str], notes: list[str]
+) -> Link:
+    name, mass = element.text("name"), _mass(element)
+    inertial = element.first("inertial")
+    inertia, at = np.zeros((3, 3)), Frame()
+    if inertial is not None:
+        at = _origin(inertial)
+        told = inertial.first("inertia")
+        if told is not None:
+            xx, xy, xz, yy, yz, zz = (told.number(key, 0.0) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+            inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    if mass < 0 or (np.linalg.eigvalsh(inertia) < -1e-9).any():
+        raise (inertial or element).wrong(f"the link {name} has a negative mass or inertia")
+    if mass == 0:
+        if element.first("inertial") is not None:
+            notes.append(f"the link {name} has no mass; it is given {LIGHTEST} kg")
+        mass, inertia = LIGHTEST, LIGHTEST * 1e-2 * np.eye(3)
+    solid = solid_of(mass, inertia, at)
+    if solid.is_changed:
+        notes.append(f"the inertia of the link {name} is that of no rigid body; the nearest one is taken")
+    link = Link(name, frame, solid)
+    for visual in element.all("visual"):
+        found = _shape(visual.need("geometry"), path, missing)
+        if found is not None:
+            shape, turn = found
+            color = _color(visual, colors)
+            where = _origin(visual)
+            link.drawn.append((looks.Look(shape, "paint", color), Frame(where.place, where.turn @ turn)))
+    for collision in element.all("collision"):  # not used, but what is missing there is missing
+        mesh = collision.need("geometry").first("mesh")
+        if mesh is not None and _find(mesh.text("filename"), Path(path)) is None:
+            missing.append(mesh.text("filename"))
+    return link
+
+
+def _shape(geometry: Element, path: PathLike, missing: list[str]) -> tuple[Shape, np.ndarray] | None:
+    """A shape and its turn; None for a mesh that cannot be read, which goes into `missing`."""
+    for child in geometry.children:
+        try:
+            if child.tag == "box":
+                return Box(child.numbers("size", 3)), np.eye(3)
+            if child.tag == "cylinder":
+                return Cylinder(child.number("radius"), child.number("length")), X_TO_Z
+            if child.tag == "sphere":
+                return Sphere(child.number("radius")), np.eye(3)
+        except ValueError as error:
+            raise error if isinstance(error, FileError) else child.wrong(str(error)) from None
+        if child.tag == "mesh":
+            name = child.text("filename")
+            file = _find(name, Path(path))
+            if file is None or file.suffix.lower() not in READERS:
+                missing.append(name)
+                return None
+            surface = read_surface(file)
+            surface.weld()
+            scale = np.array(child.numbers("scale", 3, "1 1 1"))
+            try:
+                return Mesh(surface.vertices * scale, surface.triangles()[0]), np.eye(3)
+            except ValueError as error:
+                raise child.wrong(f"the mesh {name}: {error}") from None
+    raise geometry.wrong("a geometry is a box, cylinder, sphere or mesh")
+
+
+def _find(name: str, path: Path) -> Path | None:
+    """A mesh file: beside the URDF file, or for package://name/rest in a folder above it that has such a file. Never outside
+    of the tree that the URDF file is in."""
+    plain = name.removeprefix("file://")
+    folders = [path.parent]
+    if name.startswith("package://"):
+        plain = name.removeprefix("package://")
+        folders += list(path.resolve().parent.parents)[:4]
+    for folder in folders:
+        for part in (plain, plain.partition("/")[2]) if name.startswith("package://") else (plain,):
+            if part and not Path(part).is_absolute() and ".." not in Path(part).parts and (folder / part).is_file():
+                return folder / part
+    return None
+
+
+def _materials(robot: Element) -> dict[str, str]:
+    colors = {}
+    for material in robot.all("material"):
+        color = material.first("color")
+        if color is not None:
+            colors[material.text("name", "")] = _hex(color)
+    return colors
+
+
+def _color(visual: Element, colors: dict[str, str]) -> str | None:
+    material = visual.first("material")
+    if material is None:
+        return None
+    color = material.first("color")
+    if color is None:
+        return colors.get(material.text("name", ""))
+    found = _hex(color)
+    if material.text("name", ""):
+        colors.setdefault(material.text("name"), found)
+    return found
+
+
+def _hex(color: Element) -> str:
+    red, green, blue, _ = (round(255 * min(max(value, 0.0), 1.0)) for value in color.numbers("rgba", 4))
+    return f"#{red:02x}{green:02x}{blue:02x}"
+
+
+def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
+    """frame: of its child, where the joint is. None for one that leaves its child free."""
+    name, kind = joint.text("name"), joint.text("type")
+    parent, child = joint.need("parent").text("link"), joint.need("child").text("link")
+    b = None if parent == "world" else parent
+    if kind == "fixed":
+        return LinkJoint("weld", name, child, b, frame.place)
+    if kind == "floating":
+        return None
+    axis_element = joint.first("axis")
+    axis = np.array(axis_element.numbers("xyz", 3)) if axis_element else np.array([1.0, 0, 0])
+    if not np.linalg.norm(axis) > 0:
+        raise (axis_element or joint).wrong(f"the axis of {name} is zero")
+    if kind == "planar":
+        notes.append(f"the joint {name} is planar, which is left out: its link is free")
+        return None
+    options: dict[str, object] = {}
+    limit = joint.first("limit")
+    if limit is not None and kind != "continuous" and {"lower", "upper"} & limit.attributes.keys():
+        lower, upper = limit.number("lower", 0.0), limit.number("upper", 0.0)
+        if lower > upper:
+            raise limit.wrong(f"the lower limit of {name}, {lower}, is above the upper one, {upper}")
+        if lower <= 0 <= upper and lower < upper:
+            options["limits"] = (lower, upper)
+        else:
+            notes.append(
+                f"the limits of {name}, {lower} to {upper}, exclude its first place or leave no room: left out"
+            )
+    dynamics = joint.first("dynamics")
+    if dynamics is not None:
+        damping, friction = dynamics.number("damping", 0.0), dynamics.number("friction", 0.0)
+        if damping > 0:
+            options["spring"] = (0.0, damping, 0.0)
+        if friction > 0:
+            options["friction"] = friction
+    if joint.first("mimic") is not None:
+        notes.append(f"{name} mimics {joint.need('mimic').text('joint')}, which is left out: it moves by itself")
+    ours: JointKind = "prismatic" if kind == "prismatic" else "revolute"
+    return LinkJoint(ours, name, child, b, frame.place, frame.turn @ axis, options)

@@ -1,0 +1,696 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From file to structure. Every file here is made by its test."""
+
+from __future__ import annotations
+
+import json
+import math
+import struct
+from collections.abc import Callable
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import iota
+from iota import shapelib
+from iota.shapelib.convex import dual
+from iota.shapelib.johnson import johnson
+from iota.shapelib.named import named_polyhedron
+from iota.shapelib.nearest import near_pairs
+from iota.shapelib.surface import Surface
+from iota.shapelib.uniform import SNUB, UNIFORM, uniform
+
+WATER_XYZ = "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n"
+
+ETHANOL_PDB = """\
+TITLE     ETHANOL
+ATOM      1  C1  EOH A   1      -0.888   0.181   0.000  1.00  0.00           C
+ATOM      2  C2  EOH A   1       0.463  -0.511   0.000  1.00  0.00           C
+ATOM      3  O   EOH A   1       1.437   0.548   0.000  1.00  0.00           O
+HETATM    4  O   HOH A   2       6.000   0.000   0.000  1.00  0.00           O
+END
+"""
+
+# Ethane-like, with one atom in two places.
+ALTERNATES_PDB = """\
+ATOM      1  C1  XXX A   1       0.000   0.000   0.000  1.00  0.00           C
+ATOM      2  C2 AXXX A   1       1.500   0.000   0.000  0.50  0.00           C
+ATOM      3  C2 BXXX A   1       1.400   0.500   0.000  0.50  0.00           C
+END
+"""
+
+CARBON_MONOXIDE_MOL = """\
+carbon monoxide
+  iota
+
+  2  1  0  0  0  0  0  0  0  0999 V2000
+    0.0000    0.0000    0.0000 C   0  0
+    1.1300    0.0000    0.5000 O   0  0
+  1  2  3  0
+M  END
+"""
+
+GLYCINE_CIF = """\
+data_gly
+loop_
+_atom_site.group_PDB
+_atom_site.type_symbol
+_atom_site.label_atom_id
+_atom_site.label_alt_id
+_atom_site.label_comp_id
+_atom_site.label_asym_id
+_atom_site.label_seq_id
+_atom_site.Cartn_x
+_atom_site.Cartn_y
+_atom_site.Cartn_z
+ATOM N N   . GLY A 1 0.0 0.0 0.0
+ATOM C CA  . GLY A 1 1.46 0.0 0.0
+ATOM C C   . GLY A 1 2.0 1.42 0.0
+ATOM O 'O' . GLY A 1 1.25 2.4 0.0
+ATOM O "O''" . GLY A 1 3.3 1.6 0.0
+"""
+
+SALT_CIF = """\
+data_salt
+_cell_length_a 5.64(1)
+_cell_length_b 5.64
+_cell_length_c 5.64
+_cell_angle_alpha 90
+_cell_angle_beta 90
+_cell_angle_gamma 60
+_description
+;two atoms in
+a slanting cell
+;
+loop_
+_atom_site_label
+_atom_site_fract_x
+_atom_site_fract_y
+_atom_site_fract_z
+Na1 0 0 0
+Cl1 0.5(1) 0.5 0
+"""
+
+CUBE_OFF = """\
+OFF # a comment
+8 6 0
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0 0 1
+1 0 1
+1 1 1 # another one
+0 1 1
+4 3 2 1 0
+4 4 5 6 7 0.5 0.5 0.5 1
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+"""
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[[str, str | bytes], Path]:
+    def make(name: str, contents: str | bytes) -> Path:
+        path = tmp_path / name
+        path.write_bytes(contents if isinstance(contents, bytes) else contents.encode())
+        return path
+
+    return make
+
+
+Write = Callable[[str, "str | bytes"], Path]
+
+
+def fails(source: Path | str, *parts: str, load: Callable[..., object] = shapelib.load) -> None:
+    """Refused in one line that names the file and holds all parts."""
+    with pytest.raises(shapelib.FileError) as caught:
+        load(source)
+    text = str(caught.value)
+    assert text.startswith(str(source)) and "\n" not in text
+    for part in parts:
+        assert part in text, text
+
+
+# --- molecules --------------------------------------------------------------------------------------------------------
+
+
+def test_a_pdb_file_gives_its_atoms_bonds_and_residues(write: Write) -> None:
+    found = shapelib.molecule(write("ethanol.pdb", ETHANOL_PDB))
+    assert found.title == "Ethanol"
+    assert found.counts == {"atoms": 4, "bonds": 2, "pieces": 2, "residues": 2, "formula": "C2O2"}
+    assert len(found.bodies) == 1 and sorted(map(sorted, found.lines)) == [[0, 1], [1, 2]]
+    # A nanometer is 1 m and a dalton a gram.
+    length = np.linalg.norm(found.points.position[0] - found.points.position[1])
+    assert length == pytest.approx(0.1 * math.dist((-0.888, 0.181), (0.463, -0.511)), abs=1e-12)
+    assert found.points.mass.sum() == pytest.approx(0.001 * (2 * 12.011 + 2 * 15.999))
+    assert found.points.mass @ found.points.position == pytest.approx(np.zeros(3), abs=1e-12)
+
+
+def test_of_an_atom_in_two_places_the_first_is_taken(write: Write) -> None:
+    found = shapelib.molecule(write("two.pdb", ALTERNATES_PDB))
+    assert (found.counts["atoms"], found.counts["bonds"]) == (2, 1)
+    assert found.notes == ["1 alternate places of atoms are left out"]
+
+
+def test_the_first_model_of_several_is_taken(write: Write) -> None:
+    model = "".join(line for line in ETHANOL_PDB.splitlines(True) if line[:4] in ("ATOM", "HETA"))
+    found = shapelib.molecule(write("m.pdb", f"MODEL 1\n{model}ENDMDL\nMODEL 2\n{model}ENDMDL\nEND\n"))
+    assert found.counts["atoms"] == 4 and found.notes == ["the first of 2 models is taken"]
+
+
+def test_a_molfile_keeps_its_bonds(write: Write) -> None:
+    for name in ("co.mol", "co.sdf"):
+        found = shapelib.molecule(write(name, CARBON_MONOXIDE_MOL + ("$$$$\n" if name.endswith("sdf") else "")))
+        assert (found.title, found.counts["atoms"], found.counts["bonds"]) == ("carbon monoxide", 2, 1)
+
+
+def test_an_xyz_file_has_its_bonds_guessed(write: Write) -> None:
+    found = shapelib.molecule(write("water.xyz", WATER_XYZ))
+    assert found.counts["formula"] == "H2O" and found.counts["bonds"] == 2
+    assert "guessed" in found.notes[0]
+    padded = "3\n  water   \n O 0 0 0  1 2 3\n H 0.96 0 0  2 1\n 1 -0.24 0.93 0 3 1\n\n"
+    assert shapelib.molecule(write("padded.xyz", padded)).counts["bonds"] == 2
+
+
+def test_a_cif_file_of_a_protein_and_one_of_a_crystal(write: Write) -> None:
+    glycine = shapelib.molecule(write("gly.cif", GLYCINE_CIF))
+    assert glycine.counts == {"atoms": 5, "bonds": 4, "pieces": 1, "residues": 1, "formula": "C2NO2"}
+    salt = shapelib.molecule(write("salt.cif", SALT_CIF), scale=1)
+    place = salt.points.position
+    assert place[1] - place[0] == pytest.approx([0.75 * 5.64, 0.5 * 5.64 * math.sin(math.pi / 3), 0], abs=1e-9)
+
+
+def test_a_smiles_string_gets_hydrogens_and_a_shape() -> None:
+    found = shapelib.molecule("CCO", kind="flexible")
+    assert found.counts["formula"] == "C2H6O" and found.counts["joints"] == 2
+    again = shapelib.molecule("CCO", kind="flexible")
+    assert (found.points.position == again.points.position).all()
+
+
+def test_a_flexible_molecule_turns_about_its_bonds_and_keeps_all_lengths_and_angles() -> None:
+    chain = shapelib.molecule("CCCC", kind="flexible", at=(0, 2, 0))
+    atoms = int(chain.counts["atoms"])
+    assert chain.counts["joints"] == 3 and len(chain.bodies) == 4
+    before = chain.points.position[:atoms].copy()
+    system = iota.System()
+    made = chain.realize(system)
+    made.points[0].nail()
+    made.points[atoms - 1].velocity = (0, 0, 3)
+    for _ in range(240):
+        assert system.step(1 / 240).unconverged == 0
+    after = np.array([tuple(point.position) for point in made.points[:atoms]])
+    bonds, _ = near_pairs(before, 0.16)
+    angles = {(a, b) for p, q in bonds for r, s in bonds if len({p, q, r, s}) == 3 for a, b in [({p, q} ^ {r, s})]}
+    for p, q in [*map(tuple, bonds), *angles]:
+        assert np.linalg.norm(after[p] - after[q]) == pytest.approx(np.linalg.norm(before[p] - before[q]), abs=1e-7)
+    first, last = np.linalg.norm(before[0] - before[3]), np.linalg.norm(after[0] - after[3])
+    assert abs(first - last) > 1e-3  # the ends of the chain come nearer as it turns
+
+
+def test_amides_and_rings_do_not_turn() -> None:
+    amide = shapelib.molecule("CC(=O)NC", kind="flexible")
+    assert amide.counts["joints"] == 2  # two methyl groups
+    assert shapelib.molecule("c1ccccc1", kind="flexible").counts["joints"] == 0
+
+
+def test_a_soft_molecule_hangs_longer_than_a_rigid_one() -> None:
+    lengths = []
+    for kind in ("rigid", "soft"):
+        system = iota.System(damping=2.0)
+        made = shapelib.molecule("CCCCCC", kind=kind).realize(system)  # type: ignore[arg-type]
+        made.points[0].nail()
+        for _ in range(1200):
+            system.step(1 / 120)
+        lengths.append(max(made.points[0].position.y - point.position.y for point in made.points))
+    assert lengths[1] > 1.05 * lengths[0]
+
+
+def test_atoms_are_drawn_as_the_callback_says() -> None:
+    found = shapelib.molecule("O", atom_look=lambda symbol: (0.2 if symbol == "O" else 0.1, (0.5, 0, 0)))
+    assert found.points.radius.tolist() == [0.2, 0.1, 0.1] and found.points.color[0].tolist() == [0.5, 0, 0]
+
+
+@pytest.mark.parametrize("smiles", ["c1ccccc", "X(", "C(C)(C)(C)(C)C", ""])
+def test_a_smiles_that_cannot_be_read_is_refused_in_one_line(smiles: str, capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(ValueError, match="the SMILES") as caught:
+        shapelib.molecule(smiles)
+    assert "\n" not in str(caught.value)
+    assert capfd.readouterr().err == ""
+
+
+def test_damaged_molecules_are_refused_with_file_and_line(write: Write) -> None:
+    fails(write("a.pdb", ""), "is empty")
+    fails(write("a.xyz", b"\0\1\2"), "not a text file")
+    fails(write("b.pdb", "HEADER\nEND\n"), "no ATOM")
+    fails(write("c.pdb", ETHANOL_PDB.replace("0.463", "xxxxx")), "line 3", "x must be a number")
+    fails(write("d.pdb", ETHANOL_PDB[:150]), "line 3", "cut off")
+    fails(write("e.pdb", ETHANOL_PDB.replace("           O\nHET", "          Qq\nHET")), "line 4", "not an element")
+    fails(write("f.xyz", "3\nwater\nO 0 0 0\nH 1 0 0\n"), "line 4", "2 of 3 atoms")
+    fails(write("g.xyz", WATER_XYZ.replace("H 0.96", "Zz 0.96")), "line 4", "'Zz' is not an element")
+    fails(write("h.xyz", WATER_XYZ.replace("0.96", "nan")), "line 4", "finite")
+    fails(write("i.xyz", WATER_XYZ.replace("0.96", "0.01")), "O1 and H2 are 0.01 angstrom apart")
+    fails(write("j.xyz", "1000000\n\n"), "more than 100000 atoms")
+    fails(write("k.mol", CARBON_MONOXIDE_MOL.replace("  1  2  3", "  1  7  3")), "line 7", "atom 7")
+    fails(write("l.mol", CARBON_MONOXIDE_MOL.replace("M  END\n", "")), "cut off")
+    fails(write("m.mol", CARBON_MONOXIDE_MOL[:80]), "ends before")
+    fails(write("n.mol", "a picture\n"), "four lines")
+    fails(write("o.cif", GLYCINE_CIF.replace(" 1.6 0.0\n", " 1.6\n")), "line 17", "9 values for 10 names")
+    fails(write("p.cif", GLYCINE_CIF.replace("data_gly\n", "")), "line 1", "data_")
+    fails(write("q.cif", SALT_CIF.replace("slanting cell\n;", "slanting cell\n")), "line 9", "no end")
+    fails(write("r.cif", SALT_CIF.replace("gamma 60", "gamma 0")), "unit cell")
+    fails(write("s.cif", "data_x\n_a 'b\n"), "line 2", "quote without an end")
+    fails("nothing/here.pdb", "no such file")
+    fails(write("t.docx", "x"), "files that end in '.docx' are not read")
+
+
+def test_a_file_of_a_million_atoms_is_refused_before_it_is_read_through(write: Write) -> None:
+    rows = "".join(f"C {i % 100} {i // 100 % 100} {i // 10000}\n" for i in range(100_001))
+    fails(write("big.xyz", f"100001\n\n{rows}"), "more than 100000 atoms")
+
+
+def test_near_pairs_are_those_of_a_search_through_all() -> None:
+    random = np.random.default_rng(3)
+    for count, reach in ((2, 0.5), (200, 0.2), (300, 0.05)):
+        places = random.random((count, 3)) * [1, 0.3, 1]
+        pairs, distances = near_pairs(places, reach)
+        slow = [(i, j) for i, j in combinations(range(count), 2) if np.linalg.norm(places[i] - places[j]) < reach]
+        assert [tuple(pair) for pair in pairs] == slow
+        assert distances == pytest.approx([np.linalg.norm(places[i] - places[j]) for i, j in slow])
+
+
+# --- polyhedra --------------------------------------------------------------------------------------------------------
+
+
+def faces_of(surface: Surface) -> dict[int, int]:
+    """How many faces have so many corners."""
+    sizes = [len(face) for face in surface.faces]
+    return {size: sizes.count(size) for size in sorted(set(sizes))}
+
+
+def assert_regular(surface: Surface) -> None:
+    """All edges are 1 long, all faces regular polygons; closed, convex, of Euler's number 2."""
+    places, edges = surface.vertices, surface.edges()
+    lengths = np.linalg.norm(places[edges[:, 0]] - places[edges[:, 1]], axis=1)
+    assert np.abs(lengths - 1).max() < 1e-9
+    for face in surface.faces:
+        corners = places[face]
+        radii = np.linalg.norm(corners - corners.mean(axis=0), axis=1)
+        assert np.abs(radii - 1 / (2 * math.sin(math.pi / len(face)))).max() < 1e-9
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[1])
+        assert ((places - corners[0]) @ normal < 1e-9).all()
+    surface.check("")
+    assert len(places) - len(edges) + len(surface.faces) == 2
+
+
+def test_uniform_polyhedra_have_regular_faces_and_one_kind_of_corner() -> None:
+    shapes = set()
+    for name in [*UNIFORM, *SNUB]:
+        solid = uniform(name)
+        assert_regular(solid)
+        radii = np.linalg.norm(solid.vertices, axis=1)
+        assert np.ptp(radii) < 1e-9
+        shapes.add((len(solid.vertices), *faces_of(solid).items()))
+        assert len(dual(solid).faces) == len(solid.vertices)
+    assert len(shapes) == 18
+    assert faces_of(uniform("truncated icosidodecahedron")) == {4: 30, 6: 20, 10: 12}
+    assert faces_of(uniform("snub dodecahedron")) == {3: 80, 5: 12}
+
+
+def test_johnson_solids_have_regular_faces_and_no_two_are_alike() -> None:
+    known = {uniform_signature(uniform(name)) for name in [*UNIFORM, *SNUB]}
+    assert len(known) == 18
+    for number in range(1, 88):
+        solid = johnson(number)
+        assert_regular(solid)
+        known.add(uniform_signature(solid))
+    assert len(known) == 18 + 87
+    assert faces_of(johnson(5)) == {3: 5, 4: 5, 5: 1, 10: 1}
+    assert faces_of(johnson(84)) == {3: 12}
+    with pytest.raises(ValueError, match="J1 to J87, not J93"):
+        johnson(93)
+
+
+def uniform_signature(solid: Surface) -> tuple[float, ...]:
+    """Two different ones have different distances between corners."""
+    p, q = np.triu_indices(len(solid.vertices), 1)
+    distances = np.sort(np.linalg.norm(solid.vertices[p] - solid.vertices[q], axis=1))
+    weights = np.arange(1, len(distances) + 1) ** 0.5
+    return (len(solid.vertices), round(float(distances.sum()), 5), round(float((distances * weights).sum()), 4))
+
+
+def test_geodesic_balls_and_fullerenes() -> None:
+    ball = named_polyhedron("geodesic 3")
+    assert (len(ball.vertices), len(ball.faces)) == (92, 180)
+    ball.check("")
+    for atoms in (20, 60, 80, 140, 180, 240):
+        cage = named_polyhedron(f"fullerene {atoms}")
+        assert len(cage.vertices) == atoms and faces_of(cage) == {5: 12} | ({6: atoms // 2 - 10} if atoms > 20 else {})
+        lengths = [np.linalg.norm(cage.vertices[p] - cage.vertices[q]) for p, q in cage.edges()]
+        assert max(lengths) < 1.25 * min(lengths)
+        cage.check("")
+    with pytest.raises(ValueError, match=r"have 20, 60, 80, .* atoms, not 70"):
+        shapelib.polyhedron("C70")
+
+
+def test_every_name_gives_a_polyhedron() -> None:
+    names = shapelib.polyhedron_names()
+    assert len(names) == len(set(names)) and "Rhombic-Triacontahedron".lower().replace("-", " ") in names
+    for name in names:
+        if not name.startswith("J"):
+            solid = shapelib.polyhedron(name.replace(" N", " 5") if "fuller" not in name else "C 60".replace(" ", ""))
+            assert solid.counts["volume"] > 0 and solid.problems() == []  # type: ignore[operator]
+    with pytest.raises(ValueError, match="did you mean 'icosahedron'"):
+        shapelib.polyhedron("icosahedrn")
+
+
+STL = """\
+solid Left half
+facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet
+facet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet
+facet normal -1 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\nvertex 0 1 0\nendloop\nendfacet
+facet normal 1 1 1\nouter loop\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 0 1\nendloop\nendfacet
+endsolid Left half
+"""
+
+
+def triangles_of(text: str) -> bytes:
+    """A text STL as a binary one, without its names."""
+    rows = [list(map(float, line.split()[1:])) for line in text.splitlines() if line.startswith("vertex")]
+    body = b"".join(
+        struct.pack("<12fH", 0, 0, 0, *rows[i], *rows[i + 1], *rows[i + 2], 0) for i in range(0, len(rows), 3)
+    )
+    return b"solid? no: binary".ljust(80) + struct.pack("<I", len(rows) // 3) + body
+
+
+def gltf(vertices: list[list[float]], triangles: list[list[int]], moved: list[float]) -> str:
+    import base64
+
+    data = np.array(vertices, "<f4").tobytes() + np.array(triangles, "<u2").tobytes()
+    split = 12 * len(vertices)
+    return json.dumps(
+        {
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0, "translation": moved}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "buffers": [{
+                "byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+            }],
+            "bufferViews": [
+                {"buffer": 0, "byteOffset": 0, "byteLength": split},
+                {"buffer": 0, "byteOffset": split, "byteLength": len(data) - split},
+            ],
+            "accessors": [
+                {"bufferView": 0, "componentType": 5126, "count": len(vertices), "type": "VEC3"},
+                {"bufferView": 1, "componentType": 5123, "count": 3 * len(triangles), "type": "SCALAR"},
+            ],
+        }
+    )  # fmt: skip
+
+
+TETRAHEDRON = ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+PLY = (
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+)
+OBJ = "o thing\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 3 2\nf 1/1 2/1 4/2\ng b\nf 1//1 4//1 3//1\nf -3 -2 -1\n"
+
+
+def test_one_tetrahedron_in_every_format(write: Write) -> None:
+    off = "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+    files = [
+        write("a.off", off), write("a.obj", OBJ), write("a.stl", STL), write("b.stl", triangles_of(STL)),
+        write("a.ply", PLY), write("a.gltf", gltf(*TETRAHEDRON, moved=[5.0, 0, 0])),
+    ]  # fmt: skip
+    for path in files:
+        found = shapelib.polyhedron(path, at=(0, 1, 0))
+        assert found.notes == []
+        counts = {name: found.counts[name] for name in ("welded vertices", "edges", "faces", "triangles", "pieces")}
+        assert list(counts.values()) == [4, 6, 4, 4, 1], (path, counts)
+        assert found.counts["volume"] == pytest.approx(1 / 6) and found.counts["area"] == pytest.approx(
+            1.5 + math.sqrt(3) / 2
+        )
+        system = iota.System()
+        (body,) = found.realize(system).bodies
+        assert body.mass == pytest.approx(1000 / 6, rel=1e-5)
+        assert tuple(body.center_of_mass) == pytest.approx((0, 1, 0), abs=1e-6)
+
+
+def test_polygons_stay_polygons_and_pieces_become_bodies(write: Write) -> None:
+    cube = shapelib.polyhedron(write("cube.off", CUBE_OFF))
+    assert (cube.counts["faces"], cube.counts["triangles"], cube.counts["edges"]) == (6, 12, 12)
+    far = "\n".join(
+        f"vertex {float(line.split()[1]) + 5} {' '.join(line.split()[2:])}" if line.startswith("vertex") else line
+        for line in STL.replace("Left", "RIGHT").splitlines()
+    )
+    two = shapelib.polyhedron(write("two.stl", STL + far + "\n"))
+    assert [body.name for body in two.bodies] == ["Left half", "RIGHT half"]
+    assert two.counts["pieces"] == 2 and two.counts["triangles"] == 8
+    distance = np.asarray(two.bodies[1].position) - np.asarray(two.bodies[0].position)
+    assert distance == pytest.approx([5, 0, 0])
+
+
+def test_a_concave_face_is_cut_into_triangles_within_it(write: Write) -> None:
+    arrow = [(0, 0), (2, 1), (4, 0), (2, 4)]  # the second corner points inwards
+    rows = [f"{x} {y} {z}" for z in (0, 1) for x, y in arrow]
+    sides = [f"4 {i} {(i + 1) % 4} {(i + 1) % 4 + 4} {i + 4}" for i in range(4)]
+    text = "OFF\n8 6 0\n" + "\n".join([*rows, "4 3 2 1 0", "4 4 5 6 7", *sides]) + "\n"
+    found = shapelib.polyhedron(write("arrow.off", text))
+    assert found.counts["volume"] == pytest.approx(6.0)
+    perimeter = 2 * math.hypot(2, 1) + 2 * math.hypot(2, 4)
+    assert found.counts["area"] == pytest.approx(12 + perimeter)
+
+
+def test_a_surface_that_is_inside_out_is_turned_and_says_so(write: Write) -> None:
+    rows = CUBE_OFF.splitlines()
+    turned = rows[:10] + [" ".join([row.split()[0], *row.split()[4:0:-1]]) for row in rows[10:]]
+    found = shapelib.polyhedron(write("inside.off", "\n".join(turned)))
+    assert found.counts["volume"] == pytest.approx(1) and found.notes == [
+        "its faces went round the wrong way and were turned"
+    ]
+
+
+def test_a_cavity_stays_in_its_body(write: Write) -> None:
+    outer = CUBE_OFF.splitlines()[2:10]
+    shell = [[float(v) for v in row.split()[:3]] for row in outer]
+    inner = [[0.25 + 0.5 * v for v in row] for row in shell]
+    faces = [row.split()[1:5] for row in CUBE_OFF.splitlines()[10:]]
+    hollow = [[str(int(v) + 8) for v in face[::-1]] for face in faces]
+    text = "OFF\n16 12 0\n" + "\n".join(
+        [" ".join(map(str, row)) for row in shell + inner] + ["4 " + " ".join(face) for face in faces + hollow]
+    )
+    found = shapelib.polyhedron(write("hollow.off", text))
+    assert len(found.bodies) == 1 and found.counts["volume"] == pytest.approx(1 - 0.125)
+
+
+def test_damaged_surfaces_are_refused_with_file_and_line(write: Write) -> None:
+    fails(
+        write("a.off", CUBE_OFF.replace("4 2 3 7 6", "4 2 3 8 6")),
+        "line 15",
+        "face 5 (of 6, line 15) uses vertex 8",
+        "0..7",
+    )
+    fails(write("b.off", "\n".join(CUBE_OFF.splitlines()[:7])), "ends after 5 of 8 vertices")
+    fails(write("c.off", "\n".join(CUBE_OFF.splitlines()[:12])), "ends after 2 of 6 faces")
+    fails(write("d.off", CUBE_OFF.replace("OFF", "PNG")), "line 1", "begins with OFF")
+    fails(write("e.off", "\n".join([*CUBE_OFF.splitlines()[:1], "8 5 0", *CUBE_OFF.splitlines()[2:15]])), "open")
+    twice = CUBE_OFF.replace("8 6 0", "8 7 0") + "4 3 0 4 7\n"
+    fails(write("f.off", twice), "is in 3 faces")
+    fails(write("g.off", CUBE_OFF.replace("4 3 0 4 7", "4 7 4 0 3")), "the same way", "line 16")
+    fails(write("h.off", "OFF\n99999999 1 0\n"), "line 2", "more than 1000000")
+    fails(write("i.obj", OBJ.replace("f 1 3 2", "f 1 9 2")), "line 7", "face 1 (of 4, line 7) uses vertex 9", "1..4")
+    fails(write("j.obj", OBJ.replace("v 1 0 0", "v 1 zero 0")), "line 3", "'zero'")
+    fails(write("k.obj", "<html>\n"), "line 1", "no lines that begin with")
+    fails(write("l.stl", STL[:200]), "cut off")
+    fails(write("m.stl", triangles_of(STL)[:-7]), "4 triangles need 284 bytes, it has 277")
+    fails(write("n.stl", "solid x\nendsolid x\n"), "no faces")
+    fails(write("o.stl", STL.replace("vertex 0 1 0\nvertex 1 0 0\nendloop", "vertex 0 1 0\nendloop", 1)), "2 vertices")
+    fails(write("p.ply", PLY[: PLY.index("end_header")]), "end_header")
+    fails(write("q.ply", "\n".join(PLY.splitlines()[:-1])), "q.ply")
+    fails(write("r.ply", PLY.replace("3 1 2 3", "3 1 2 9")), "r.ply")
+    fails(write("s.gltf", "{"), "not glTF")
+    fails(write("t.glb", b"glTF" + bytes(20)), "cut off")
+    fails(write("u.off", CUBE_OFF.replace("1 1 1 #", "inf 1 1 #")), "line 9", "finite")
+
+
+def test_a_frame_of_rods_keeps_their_lengths_and_a_soft_one_bounces() -> None:
+    frame = shapelib.polyhedron("octahedron", kind="flexible", at=(0, 2, 0))
+    system = iota.System()
+    made = frame.realize(system)
+    made.points[0].nail()
+    for _ in range(120):
+        assert system.step(1 / 120).worst_gap < 1e-8
+    assert len(made.bodies) == 12 and system.articulate_count == 1
+    soft = shapelib.polyhedron("octahedron", kind="soft", stiffness=500)
+    assert len(soft.bonds) == 12 + 3 and soft.points.mass.sum() == pytest.approx(1)
+
+
+# --- mechanisms -------------------------------------------------------------------------------------------------------
+
+PENDULUM_URDF = """\
+<robot name="pendulum">
+  <link name="base"/>
+  <link name="arm">
+    <inertial><origin xyz="0 0 -0.5"/><mass value="2"/><inertia ixx="0.3" iyy="0.2" izz="0.1"/></inertial>
+    <visual><origin xyz="0 0 -0.5"/><geometry><cylinder radius="0.05" length="1"/></geometry>
+      <material name="red"><color rgba="1 0 0 1"/></material></visual>
+  </link>
+  <joint name="shoulder" type="revolute">
+    <parent link="base"/><child link="arm"/><origin xyz="0 0 2"/><axis xyz="1 0 0"/>
+    <limit lower="-3" upper="3" effort="1" velocity="1"/><dynamics damping="0.0" friction="0"/>
+  </joint>
+</robot>
+"""
+
+
+def test_a_urdf_pendulum_swings_with_the_period_of_its_inertia(write: Write) -> None:
+    found = shapelib.mechanism(write("pendulum.urdf", PENDULUM_URDF))
+    assert (found.counts["links"], found.counts["joints"], found.counts["mass"]) == (2, 1, 2.0)
+    system = iota.System()
+    made = found.realize(system)
+    arm, angle = made["arm"], made["shoulder"].angle
+    assert tuple(arm.center_of_mass) == pytest.approx((0, 1.5, 0), abs=1e-9)
+    assert arm.inertia == pytest.approx(np.diag([0.3, 0.1, 0.2]), abs=1e-4)  # z up becomes y up
+    arm.angular_velocity = (0.05, 0, 0)
+    crossings, before = [], angle.value
+    for step in range(2000):
+        system.step(1 / 500)
+        if before < 0 <= angle.value:
+            crossings.append((step + 1 - angle.value / (angle.value - before)) / 500)
+        before = angle.value
+    period = 2 * math.pi * math.sqrt((0.3 + 2 * 0.25) / (2 * 9.81 * 0.5))
+    assert crossings[1] - crossings[0] == pytest.approx(period, rel=2e-3)
+
+
+def test_what_a_urdf_has_that_we_have_not_is_listed(write: Write) -> None:
+    more = """
+  <link name="finger"/><link name="other"/><link name="cover"><visual><geometry><mesh filename="package://x/lid.stl"/>
+  </geometry></visual></link>
+  <joint name="slide" type="prismatic"><parent link="arm"/><child link="finger"/><limit lower="-1" upper="2"/></joint>
+  <joint name="copy" type="prismatic"><parent link="arm"/><child link="other"/><mimic joint="slide"/></joint>
+  <joint name="lid" type="fixed"><parent link="arm"/><child link="cover"/></joint>
+  <transmission name="t"/>
+</robot>"""
+    found = shapelib.mechanism(write("more.urdf", PENDULUM_URDF.replace("</robot>", more)))
+    assert found.counts["moving joints"] == 3 and found.counts["independent joints"] == 2
+    text = " ".join(found.notes)
+    for part in ("copy mimics slide", "1 meshes are missing", "package://x/lid.stl", "1 <transmission>"):
+        assert part in text
+    slide = next(joint for joint in found.joints if joint.name == "slide")
+    assert slide.kind == "prismatic" and slide.options["limits"] == (-1, 2)
+
+
+def test_meshes_beside_a_urdf_are_drawn_but_never_ones_outside(write: Write, tmp_path: Path) -> None:
+    write("lid.off", CUBE_OFF)
+    cover = '<visual><geometry><mesh filename="{}" scale="2 2 2"/></geometry></visual></link>\n  <link name="arm">'
+    path = write(
+        "a.urdf",
+        PENDULUM_URDF.replace(
+            '<link name="base"/>\n  <link name="arm">', '<link name="base">' + cover.format("lid.off")
+        ),
+    )
+    assert isinstance(shapelib.mechanism(path).looks["base"][0].shape, iota.Mesh)  # type: ignore[index, union-attr]
+    (tmp_path / "inner").mkdir()
+    path = write("inner/b.urdf", path.read_text().replace('"lid.off"', '"../lid.off"'))
+    assert "missing" in " ".join(shapelib.mechanism(path).notes)
+
+
+def test_damaged_mechanisms_are_refused_with_file_and_line(write: Write) -> None:
+    loop = '<joint name="back" type="fixed"><parent link="arm"/><child link="arm"/></joint>\n</robot>'
+    fails(write("a.urdf", PENDULUM_URDF.replace("</robot>", loop)), "line 12", "arm has two parents (shoulder, back)")
+    ring = (
+        '<robot name="r"><link name="a"/><link name="b"/>\n<joint name="x" type="fixed"><parent link="a"/><child link="b"/>'
+        '</joint>\n<joint name="y" type="fixed"><parent link="b"/><child link="a"/></joint></robot>'
+    )
+    fails(write("b.urdf", ring), "loop without a root")
+    fails(write("c.urdf", PENDULUM_URDF[:300]), "not XML", "line")
+    fails(write("d.urdf", '<!DOCTYPE r [<!ENTITY a "b">]>\n' + PENDULUM_URDF), "line 1", "DTD")
+    fails(write("e.urdf", PENDULUM_URDF.replace('"2"', '"heavy"')), "line 4", "'heavy'")
+    fails(write("f.urdf", PENDULUM_URDF.replace('child link="arm"', 'child link="leg"')), "line 8", "leg")
+    fails(write("g.urdf", PENDULUM_URDF.replace('upper="3"', 'upper="-4"')), "line 10", "limit")
+    fails(write("h.urdf", PENDULUM_URDF.replace("<axis xyz=", "<axis xyz='0 0'")), "not XML")
+    fails(write("i.urdf", PENDULUM_URDF.replace('xyz="1 0 0"', 'xyz="0 0 0"')), "line 9", "axis")
+    fails(write("j.xml", "<html/>"), "neither <robot>")
+    fails(write("k.urdf", "<robot>" * 300 + "</robot>" * 300), "deep")
+    fails(write("l.mjcf", "<mujoco>\n<oops/></mujoco>"), "line 2", "MuJoCo cannot read it")
+    fails(write("m.urdf", PENDULUM_URDF.replace('radius="0.05"', 'radius="-1"')), "line 5", "radius")
+
+
+MJCF = """\
+<mujoco model="arm">
+  <compiler angle="radian"/>
+  <default><geom type="capsule" size="0.05" density="900"/></default>
+  <worldbody>
+    <geom type="plane" size="5 5 1"/>
+    <body name="upper" pos="0 0 2">
+      <joint name="yaw" axis="0 0 1"/><joint name="pitch" axis="0 1 0" damping="0.2"/>
+      <geom fromto="0 0 0 0.6 0 0"/>
+      <body name="lower" pos="0.6 0 0">
+        <joint name="elbow" axis="0 1 0" range="-2 2" limited="true"/>
+        <geom fromto="0 0 0 0.5 0 0.1"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator><motor joint="elbow"/></actuator>
+</mujoco>
+"""
+
+
+def test_an_mjcf_arm_falls_as_mujoco_lets_it_fall(write: Write) -> None:
+    import mujoco
+
+    found = shapelib.mechanism(write("arm.xml", MJCF))
+    assert (found.counts["bodies"], found.counts["joints"], found.counts["degrees of freedom"]) == (2, 3, 3)
+    assert any("actuator" in note for note in found.notes)
+    system = iota.System()
+    made = found.realize(system)
+    model = mujoco.MjModel.from_xml_string(MJCF)
+    state = mujoco.MjData(model)
+    model.opt.timestep = 1 / 4000
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    made["yaw"].angle  # noqa: B018
+    for _ in range(120):
+        system.step(1 / 400)
+    mujoco.mj_step(model, state, 1200)
+    for number, name in ((1, "upper"), (2, "lower")):
+        x, y, z = state.xipos[number]
+        assert tuple(made[name].center_of_mass) == pytest.approx((x, z, -y), abs=3e-3)
+        assert made[name].mass == pytest.approx(model.body_mass[number], rel=2e-3)  # a thousandth is in the ring
+    assert abs(made["lower"].center_of_mass.y - 2) > 0.2
+    assert sum(body.mass for body in system.bodies) == pytest.approx(model.body_mass.sum())
+
+
+def test_mjcf_loops_and_ropes_become_ours(write: Write) -> None:
+    more = """
+  <equality><connect body1="lower" anchor="0.5 0 0.1"/></equality>
+</mujoco>"""
+    found = shapelib.mechanism(write("loop.xml", MJCF.replace("</mujoco>", more)))
+    ball = found.joints[-1]
+    assert ball.kind == "ball" and ball.b is None and ball.options["at"] == pytest.approx((1.1, 2.1, 0))
+    system = iota.System()
+    found.realize(system)
+    for _ in range(60):
+        assert system.step(1 / 120).worst_gap < 1e-8
+    sites = MJCF.replace('<geom type="plane"', '<site name="p" pos="0 0 3"/><geom type="plane"').replace(
+        '<geom fromto="0 0 0 0.5 0 0.1"/>', '<geom fromto="0 0 0 0.5 0 0.1"/><site name="q" pos="0.5 0 0.1"/>'
+    )
+    rope = '<tendon><spatial limited="true" range="0 1.5"><site site="p"/><site site="q"/></spatial></tendon></mujoco>'
+    tied = shapelib.mechanism(write("rope.xml", sites.replace("</mujoco>", rope)))
+    assert [(tie.kind, tie.length) for tie in tied.ties] == [("rope", 1.5)]
+    assert tied.problems() == []
+
+
+def test_structures_from_files_can_be_saved(write: Write) -> None:
+    for source in (write("a.xyz", WATER_XYZ), write("a.urdf", PENDULUM_URDF), write("a.off", CUBE_OFF)):
+        found = shapelib.load(source)
+        again = iota.builder.Structure.from_json(json.loads(json.dumps(found.to_json())))
+        assert (again.points.radius == found.points.radius).all() and (again.points.color == found.points.color).all()
+        first, second = iota.System(), iota.System()
+        found.realize(first)
+        again.realize(second)
+        assert first.state_hash() == second.state_hash()
