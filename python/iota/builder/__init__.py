@@ -2,9 +2,12 @@
 """Builders: whole structures as plain data, and their way into a system."""
 
 from iota.builder.chain import chain
+from iota.builder.lines import ring, rope, snake
 from iota.builder.parts import Joint, RigidBody, SoftBond, Tie
 from iota.builder.points import Points
 from iota.builder.realized import Realized
+from iota.builder.sheets import cloth, leaf, net
+from iota.builder.solids import bridge, cuboid, ladder, soft_block, tower, tree
 from iota.builder.structure import Shift, Structure
 
 __all__ = [
@@ -16,5 +19,17 @@ __all__ = [
     "SoftBond",
     "Structure",
     "Tie",
+    "bridge",
     "chain",
+    "cloth",
+    "cuboid",
+    "ladder",
+    "leaf",
+    "net",
+    "ring",
+    "rope",
+    "snake",
+    "soft_block",
+    "tower",
+    "tree",
 ]

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What makers share: checks of their numbers, and looks that a callback may replace."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from iota.builder.points import Vector
+from iota.builder.structure import Structure
+from iota.looks import Drawn
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Dress: TypeAlias = Callable[[str, int], Drawn | None]
+"""Takes what a body is ("plank") and which of them, counted from 0; returns its look, None for the usual one."""
+
+MOST_PARTS = 1_000_000
+
+
+def check(**numbers: float) -> None:
+    """Raises ValueError for one that is not finite and above 0."""
+    for name, value in numbers.items():
+        if not 0 < value < math.inf:
+            raise ValueError(f"{name} must be above 0 and finite, not {value}")
+
+
+def check_counts(least: int = 1, **counts: int) -> None:
+    """Raises ValueError for one that is no whole number from `least` up, and for too many parts in all."""
+    for name, count in counts.items():
+        if not (isinstance(count, int | np.integer) and count >= least):
+            raise ValueError(f"{name} must be a whole number from {least} up, not {count!r}")
+    if math.prod(counts.values()) > MOST_PARTS:
+        raise ValueError(f"{' x '.join(counts)} must be at most {MOST_PARTS} parts")
+
+
+def place(name: str, vector: Vector) -> NDArray[np.float64]:
+    """A finite vector. Raises ValueError."""
+    found = np.array([*vector, 0.0][:3], float)
+    if not np.isfinite(found).all():
+        raise ValueError(f"{name} must be finite, not {tuple(vector)}")
+    return found
+
+
+def dress(structure: Structure, usual: dict[str, Drawn], look: Dress | None) -> Structure:
+    """Gives each body whose `look` is a name in `usual` that look, or what the callback says for it. Returns the structure."""
+    count = dict.fromkeys(usual, 0)
+    structure.looks |= usual
+    for body in structure.bodies:
+        what = body.look
+        if what not in usual:
+            continue
+        number = count[what]
+        count[what] += 1
+        own = look(what, number) if look is not None else None
+        if own is not None:
+            body.look = f"{what} {number}"
+            structure.looks[body.look] = own
+    return structure
