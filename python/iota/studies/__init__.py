@@ -3,9 +3,17 @@
 
 from __future__ import annotations
 
+import importlib
 import pkgutil
+from types import ModuleType
 
 
 def names() -> list[str]:
     """The names that `iota run` takes, sorted."""
-    return sorted(module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_"))
+    modules = (module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_"))
+    return sorted(name.replace("_", "-") for name in modules)
+
+
+def module(name: str) -> ModuleType:
+    """The module of a study: `soft-molecule` is soft_molecule.py."""
+    return importlib.import_module(f"{__name__}.{name.replace('-', '_')}")

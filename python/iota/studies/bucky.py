@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sixty carbon atoms in a cage of springs breathe in and out; b gives a breath, v looks from within. 1 m is 0.71 nm."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import iota
+from iota import looks, shapelib
+
+RADIUS = 0.5  # m
+CENTER = iota.Vec3(0, 1.3, 0)
+PERIOD = 1.6  # s, of a breath
+PRESSURE = (
+    "energy = 0.5*k*(r - r0)^2"  # from the particle at the center to each atom: it keeps the cage from collapsing
+)
+SHARE = 0.5  # of the stiffness against breathing that is the center's
+
+
+def build() -> iota.World:
+    """The world of the study."""
+    system = iota.System(gravity=(0, 0, 0))
+    world = iota.World(system, title="bucky: C60, 1 m is 0.71 nm")
+    cage = shapelib.polyhedron("fullerene 60", "soft", scale=RADIUS, mass=0.72, at=CENTER, damping=0.0, radius=0.035)
+    tune(cage)
+    middle = cage.point(CENTER, mass=1.0)
+    for atom in range(60):
+        cage.bond(middle, atom, PRESSURE, k=SHARE * breathing_stiffness() / 60, r0=RADIUS)
+    cage.points.radius[:60], cage.points.color[:60] = 0.035, (0.25, 0.28, 0.32)
+    cage.points.radius[60], cage.points.color[60] = 0.02, (0.9, 0.5, 0.1)
+    made = cage.realize(system)
+    made.points[60].nail()
+    breathe(system, 0.22)
+    present(world)
+
+    @world.action("breathe", key="b", help="sends a breath through the ball", on="world")
+    def breath() -> None:
+        breathe(system, 0.15)
+
+    @world.action("within", key="v", help="looks from within", on="world")
+    def within() -> None:
+        world.camera = iota.Camera(position=tuple(CENTER + (0, 0, 0.15)), target=tuple(CENTER + (1, 0.3, -1)))
+
+    return world
+
+
+def breathing_stiffness() -> float:
+    """Of the radius: with the mass of all atoms it has the period."""
+    return 0.72 * (2 * math.pi / PERIOD) ** 2
+
+
+def tune(cage: shapelib.Imported) -> None:
+    """Makes the springs so stiff that they are the rest of it: a spring of length L resists with k (L / R)^2."""
+    ends = np.array([(bond.p, bond.q) for bond in cage.bonds])
+    length = np.linalg.norm(cage.points.position[ends[:, 0]] - cage.points.position[ends[:, 1]], axis=1)
+    names = ["stiffness" if "stiffness" in bond.parameters else "k" for bond in cage.bonds]
+    present = [float(bond.parameters[name] or 0) for bond, name in zip(cage.bonds, names, strict=True)]
+    factor = (1 - SHARE) * breathing_stiffness() / float(np.dot(present, (length / RADIUS) ** 2))
+    for bond, name, k in zip(cage.bonds, names, present, strict=True):
+        bond.parameters[name] = factor * k
+
+
+def breathe(system: iota.System, speed: float) -> None:
+    """Outwards all at once, m/s, and a little less above than below: no breath is quite even."""
+    velocities = system.velocities
+    way = system.positions - np.asarray(CENTER)
+    velocities += speed / RADIUS * way * (1 - 0.3 * way[:, 1:2] / RADIUS)
+    system.velocities = velocities
+
+
+def present(world: iota.World) -> None:
+    """A ring that does not move, of the ball's size at rest, on a stand: what breathes is the ball, not the camera."""
+    world.draw_ties("spring", looks.cylinder(0.012, "brass"))
+    x, y, z = CENTER
+    world.add_static(looks.torus(RADIUS + 0.19, 0.008, "steel"), (x, y, z))
+    world.add_strut((x, 0, z), (x, y - RADIUS - 0.19, z), looks.cylinder(0.015, "steel"))
+    world.add_static(looks.cylinder(0.16, "steel", length=0.02, rotation=(0, 0, 0.5**0.5, 0.5**0.5)), (x, 0.01, z))
+    world.camera = iota.Camera(position=(0.9, 1.6, 1.9), target=(x, y, z))

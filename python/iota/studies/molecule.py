@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A rigid ring of atoms swings on a nail; two of its bonds break, and half of it falls. 1 m is 0.77 nm; b breaks, r mends."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import iota
+from iota import looks, shapelib
+
+FILE = Path(__file__).with_name("cyclooctane.xyz")
+SCALE = 0.13  # m for an angstrom
+NAIL = iota.Vec3(0, 1.9, 0)
+BREAKS = ((0, 7), (3, 4))  # bonds between carbon atoms
+TIMES = (6.0, 9.0)  # s, when they break
+
+
+def build(repeat: bool = True) -> iota.World:
+    """The world of the study. repeat: begins anew some seconds after the ring has broken."""
+    system = iota.System(damping=0.02)
+    world = iota.World(system, title="molecule: C8H16, 1 m is 0.77 nm")
+    ring = shapelib.molecule(FILE, "rigid", scale=SCALE)
+    made = (ring + (NAIL - ring.points.position[1])).realize(system, world)
+    made.points[1].nail()
+    present(world)
+
+    def snap(p: int, q: int) -> None:
+        ends = {made.points[p], made.points[q]}
+        for bond in system.cosmetic_bonds:
+            if set(bond.ends) == ends:
+                bond.destroy()
+                return
+
+    for time, pair in zip(TIMES, BREAKS, strict=True):
+        world.at(time)(lambda pair=pair: snap(*pair))
+    if repeat:
+        world.at(TIMES[1] + 4.0)(world.reset)
+
+    @world.action("break", key="b", button="b", help="breaks the next bond of the ring", on="world")
+    def break_next(event: iota.Event) -> None:
+        there = {frozenset(bond.ends) for bond in system.cosmetic_bonds}
+        for p, q in BREAKS:
+            if {made.points[p], made.points[q]} in there:
+                return snap(p, q)
+        event.notice("Both bonds are broken", "r puts the ring together again.")
+
+    @world.action("mend", key="r", button="a", help="puts the ring together again", on="world")
+    def mend() -> None:
+        world.reset()
+
+    return world
+
+
+def present(world: iota.World, nail: iota.Vec3 = NAIL) -> None:
+    """What the molecule hangs from: an arm on a post."""
+    x, y, z = nail
+    world.add_static(looks.sphere(0.03, "steel"), (x, y, z))
+    world.add_strut((x, y, z - 0.5), (x, y, z), looks.cylinder(0.012, "steel"))
+    world.add_strut((x, 0, z - 0.5), (x, y + 0.06, z - 0.5), looks.cylinder(0.025, "wood"))
+    world.add_static(looks.box((0.7, 0.03, 0.5), "wood"), (x, 0.015, z - 0.5))
+    world.camera = iota.Camera(position=(1.0, 1.6, 2.4), target=(x, y - 0.5, z))

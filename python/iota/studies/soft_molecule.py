@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The molecule of the study `molecule`, with springs for bonds: it hangs longer than it is. 1 m is 0.77 nm."""
+
+from __future__ import annotations
+
+import iota
+from iota import looks, shapelib
+from iota.studies.molecule import FILE, NAIL, SCALE, present
+
+
+def build() -> iota.World:
+    """The world of the study."""
+    system = iota.System(damping=0.3)
+    world = iota.World(system, title="soft-molecule: C8H16, 1 m is 0.77 nm")
+    ring = shapelib.molecule(FILE, "soft", scale=SCALE, damping=0.02)
+    made = (ring + (NAIL - ring.points.position[1])).realize(system, world)
+    made.points[1].nail()
+    present(world)
+    world.draw_ties("spring", looks.capsule(0.022, "rubber", color="#c8842c"))
+
+    @world.action("push", key="p", help="pushes what you hold, or what you have selected")
+    def push(event: iota.Event) -> None:
+        for particle in event.body.particles:
+            particle.velocity += (1.5, 0, 0)
+
+    return world

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The studies bucky, molecule and soft-molecule."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import iota
+from iota.studies import bucky, molecule, soft_molecule
+
+
+def test_the_ball_breathes_with_the_period_of_its_springs_and_never_collapses() -> None:
+    system = bucky.build().system
+    particles = system.particles[:60]
+    radii, spread = [], []
+    for _ in range(1200):
+        assert system.step(1 / 120).unconverged == 0
+        places = np.array([tuple(particle.position) for particle in particles])
+        own = np.linalg.norm(places - np.asarray(bucky.CENTER), axis=1)
+        radii.append(own.mean())
+        spread.append(np.ptp(own))
+    swing = np.array(radii) - np.mean(radii)
+    rising = np.flatnonzero((swing[:-1] < 0) & (swing[1:] >= 0))
+    period = float(np.mean(np.diff(rising))) / 120
+    assert abs(period - bucky.PERIOD) < 0.03 * bucky.PERIOD  # in the limit of small breaths; this one is not small
+    assert 0.06 * bucky.RADIUS < np.ptp(radii) < 0.4 * bucky.RADIUS
+    assert max(spread) > 0.02 * bucky.RADIUS  # not too uniformly
+    assert min(radii) > 0.7 * bucky.RADIUS
+
+
+def period_about_nail(system: iota.System, body: iota.Body) -> float:
+    """Of a small swing about z, from mass and inertia."""
+    arm = abs(body.center_of_mass - molecule.NAIL)
+    inertia = body.inertia[2, 2] + body.mass * arm**2
+    return 2 * math.pi * math.sqrt(inertia / (body.mass * 9.81 * arm))
+
+
+def swing_about(system: iota.System, body: iota.Body) -> float:
+    """The period of a small swing of a body that hangs still from the nail, as it is seen."""
+    body.angular_velocity = (0, 0, 0.1)
+    times, before = [], 0.0
+    for step in range(1, 1500):
+        system.step(1 / 240)
+        now = body.center_of_mass.x - molecule.NAIL.x
+        if before < 0 <= now:
+            times.append((step - now / (now - before)) / 240)
+        before = now
+    return float(np.diff(times).mean())
+
+
+def settle(system: iota.System) -> None:
+    system.damping = 3.0
+    for _ in range(2400):
+        system.step(1 / 120)
+    system.damping = 0.0
+
+
+def test_the_molecule_swings_as_its_inertia_says() -> None:
+    system = molecule.build().system
+    (body,) = system.bodies
+    settle(system)
+    body.velocity = (0, 0, 0)
+    expected = period_about_nail(system, body)
+    assert abs(swing_about(system, body) - expected) < 0.03 * expected
+
+
+def test_two_bonds_break_on_time_and_the_freed_half_falls() -> None:
+    world = molecule.build(repeat=False)
+    system = world.system
+    bonds = len(system.cosmetic_bonds)
+
+    def run(until: float) -> None:
+        while system.time < until - 1e-9:
+            world.step()
+
+    run(molecule.TIMES[0] - 0.1)
+    assert len(system.cosmetic_bonds) == bonds and len(system.bodies) == 1
+    mass = system.bodies[0].mass
+    run(molecule.TIMES[0] + 0.1)
+    assert len(system.cosmetic_bonds) == bonds - 1 and len(system.bodies) == 1
+    run(molecule.TIMES[1] + 0.02)
+    assert len(system.cosmetic_bonds) == bonds - 2 and len(system.bodies) == 2
+    held = next(body for body in system.bodies if any(p.is_nailed for p in body.particles))
+    freed = next(body for body in system.bodies if body != held)
+    assert abs(held.mass + freed.mass - mass) < 1e-12 and freed.mass > 0.3 * mass
+    speed, time = freed.velocity.y, system.time
+    run(molecule.TIMES[1] + 0.2)
+    assert abs((freed.velocity.y - speed) / (system.time - time) + 9.81) < 0.1  # a little air
+    settle(system)
+    expected = period_about_nail(system, held)
+    assert abs(swing_about(system, held) - expected) < 0.03 * expected
+
+
+def test_the_soft_molecule_settles_longer_than_the_rigid_one() -> None:
+    lengths = []
+    for study in (molecule, soft_molecule):
+        system = study.build().system  # type: ignore[attr-defined]
+        settle(system)
+        lengths.append(molecule.NAIL.y - min(particle.position.y for particle in system.particles))
+    assert lengths[1] > 1.1 * lengths[0]
