@@ -54,6 +54,7 @@ try {
   main();
 } catch (error) {
   // No WebGL, most likely: say so where it can be read.
+  document.getElementById("loading")?.remove();
   const text = error instanceof Error ? error.message : String(error);
   const card = document.createElement("section");
   card.className = "card error";

@@ -30,6 +30,7 @@ export class Overlay implements PageListener, FramePart {
 
   private readonly page_: OverlayPage;
   private readonly canvas_: HTMLCanvasElement;
+  private readonly loading_ = byId("loading", HTMLElement);
   private readonly hint_ = byId("hint", HTMLElement);
   private readonly menu_ = byId("menu", HTMLElement);
   private readonly strip_ = byId("strip", HTMLElement);
@@ -115,6 +116,7 @@ export class Overlay implements PageListener, FramePart {
 
   ready(): void {
     this.canvas_.classList.remove("waiting");
+    this.loading_.hidden = true;
   }
 
   changed(what: Change | "selection"): void {
@@ -137,6 +139,7 @@ export class Overlay implements PageListener, FramePart {
         this.cards.remove(linkCard);
         break;
       case "lost":
+        this.loading_.hidden = true;
         this.cards.show({
           level: "warning",
           title: this.everConnected_ ? "The world is not answering" : "No world here yet",
@@ -145,6 +148,7 @@ export class Overlay implements PageListener, FramePart {
         }, linkCard, true);
         break;
       case "refused":
+        this.loading_.hidden = true;
         this.cards.show({ level: "error", title: "The world does not let this page in", text: reason, hint: "" }, linkCard, true);
         break;
       case "connecting":
