@@ -85,6 +85,43 @@ void cut_and_rejoin(benchmark::State& state) {
 }
 BENCHMARK(cut_and_rejoin)->Name("restructure/cut_and_rejoin")->Arg(10000)->Iterations(100);
 
+/// Links of a chain at rest into one rigid body, within one edit, time of a link; and the taking apart of that body, part by
+/// part from random places, time of a part.
+void make_one_body(benchmark::State& state, bool apart) {
+  const int links = static_cast<int>(state.range(0));
+  std::mt19937 random(1);
+  for (auto _ : state) {
+    state.PauseTiming();
+    Chain chain(links, false, IntegrationMode::robust);
+    (void)chain.system.step(1e-4);
+    std::vector<BodyId> parts(chain.parts.links.begin() + 1, chain.parts.links.end());
+    std::shuffle(parts.begin(), parts.end(), random);
+    if (!apart) state.ResumeTiming();
+    chain.system.edits().begin();
+    for (int i = 1; i < links; ++i)
+      (void)chain.system.edits().combine(chain.parts.links[0], chain.parts.links[static_cast<std::size_t>(i)]);
+    (void)chain.system.edits().end();
+    if (apart) {
+      state.ResumeTiming();
+      for (const BodyId part : parts) (void)chain.system.edits().separate(chain.parts.links[0], part);
+    }
+  }
+  state.counters["us_per_link"] =
+      benchmark::Counter(1e-6 * links, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK_CAPTURE(make_one_body, combine, false)
+    ->Name("restructure/one_body")
+    ->Arg(200)
+    ->Arg(800)
+    ->Arg(5100)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(make_one_body, separate, true)
+    ->Name("restructure/part_by_part")
+    ->Arg(200)
+    ->Arg(800)
+    ->Arg(5100)
+    ->Unit(benchmark::kMillisecond);
+
 /// Building the whole chain: bodies, particles, hinges, nail.
 void build(benchmark::State& state) {
   const int links = static_cast<int>(state.range(0));

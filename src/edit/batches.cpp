@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/batches.h"
 
+#include "edit/settle.h"
+
 namespace iota::edit {
 
 void apply(Editor& e, const BeginEdit&) {
@@ -17,6 +19,7 @@ RestructureReport apply(Editor& e, const EndEdit&) {
   if (--e.batch->depth > 0) return {};
   e.held.book_edits();
   RestructureReport report = e.batch->finish(e.model);
+  settle_batch(e, report);
   e.undo.push(std::move(e.batch->before));
   e.redo.clear();
   e.batch.reset();

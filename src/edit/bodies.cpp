@@ -183,10 +183,11 @@ void apply(Editor& e, const SetKind& c) {
     model.articulates[body.articulate].jolted = 1;
   };
   if (before == BodyKind::inactive) {  // what it is hinged to may have gone elsewhere meanwhile
-    Restructuring restored(e, {{slot}}, Restructuring::Kind::moving);
+    RestructureReport report;
+    Restructuring restored(e, {{slot}}, Restructuring::Kind::moving, report);
     change();
-    restored.report.changed = true;
-    (void)restored.finish({true, true});
+    report.changed = true;
+    restored.finish({true, true});
     return;
   }
   change();

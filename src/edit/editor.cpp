@@ -11,21 +11,28 @@ namespace {
 
 constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '5'}, "snapshot"};
 
-template <class Table, class IdType>
-std::uint32_t slot_of(const Table& table, std::string_view kind, IdType id,
-                      const std::optional<IdType>& survivor = std::nullopt) {
+/// `survivor()`: what absorbed it, asked only where it is gone.
+template <class Table, class IdType, class Survivor>
+std::uint32_t slot_of(const Table& table, std::string_view kind, IdType id, Survivor survivor) {
   if (table.contains(id)) return id.slot;
   if (!id) throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
-  if (survivor)
-    throw StaleIdError(text(kind, " ", id.slot, " is gone: it was absorbed by ", kind, " ", survivor->slot));
+  if (const std::optional<IdType> other = survivor())
+    throw StaleIdError(text(kind, " ", id.slot, " is gone: it was absorbed by ", kind, " ", other->slot));
   throw StaleIdError(text(kind, " ", id.slot, " is gone: it was destroyed"));
+}
+
+template <class Table, class IdType>
+std::uint32_t slot_of(const Table& table, std::string_view kind, IdType id) {
+  return slot_of(table, kind, id, [] { return std::optional<IdType>(); });
 }
 
 }  // namespace
 
-std::uint32_t require(const model::Model& m, BodyId id) { return slot_of(m.bodies, "body", id, m.survivor_of(id)); }
+std::uint32_t require(const model::Model& m, BodyId id) {
+  return slot_of(m.bodies, "body", id, [&] { return m.survivor_of(id); });
+}
 std::uint32_t require(const model::Model& m, ParticleId id) {
-  return slot_of(m.particles, "particle", id, m.survivor_of(id));
+  return slot_of(m.particles, "particle", id, [&] { return m.survivor_of(id); });
 }
 std::uint32_t require(const model::Model& m, BondId id) { return slot_of(m.bonds, "bond", id); }
 std::uint32_t require(const model::Model& m, CosmeticBondId id) {

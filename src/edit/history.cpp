@@ -19,9 +19,10 @@ void note_changes(const std::vector<IdType>& before, const std::vector<IdType>& 
 
 template <class IdType, class Absorbed>
 void forget_absorbed(std::vector<IdType>& gone, const std::vector<Absorbed>& absorbed) {
-  std::erase_if(gone, [&](IdType id) {
-    return std::any_of(absorbed.begin(), absorbed.end(), [&](const auto& pair) { return pair.retired == id; });
-  });
+  std::vector<IdType> retired;
+  for (const auto& pair : absorbed) retired.push_back(pair.retired);
+  std::sort(retired.begin(), retired.end());
+  std::erase_if(gone, [&](IdType id) { return std::binary_search(retired.begin(), retired.end(), id); });
 }
 
 }  // namespace
@@ -37,7 +38,7 @@ void add_report(RestructureReport& sum, const RestructureReport& report) {
   sum.articulates_after = report.articulates_after;
   sum.structure_version = report.structure_version;
   sum.closed_distance = std::max(sum.closed_distance, report.closed_distance);
-  sum.remaining_gap = report.remaining_gap;
+  sum.remaining_gap = std::max(sum.remaining_gap, report.remaining_gap);
   sum.energy_change += report.energy_change;
   sum.momentum_change += report.momentum_change;
   sum.angular_momentum_change += report.angular_momentum_change;

@@ -22,13 +22,17 @@ void apply(Editor& e, const Nail& c) {
     model.nails.at(slot).position = position;  // moves there during the next step
     return;
   }
-  Restructuring change(e, {{model.particles[particle].body}}, Restructuring::Kind::moving);
   const bool moved = ring.position != position;
+  bool gentle = !moved && ring.velocity == Vec3{};  // it is at rest there already
+  model.for_each_in_ring(slot, [&](std::uint32_t p) { gentle = gentle && model.follows_basis(p); });
+  RestructureReport report;
+  Restructuring change(e, {{model.particles[particle].body}},
+                       gentle ? Restructuring::Kind::gentle : Restructuring::Kind::moving, report);
   ring.nailed = 1, ring.position = position, ring.velocity = {};
   model.nails.make(slot) = {position, position, {}};
   model.touch_ring(slot);
-  change.report.changed = true;
-  (void)change.finish({moved, true});
+  report.changed = true;
+  change.finish({moved, true});
 }
 
 void apply(Editor& e, const Release& c) {

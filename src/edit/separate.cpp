@@ -14,17 +14,23 @@ RestructureReport apply(Editor& e, const Separate& c) {
                        : body_p != body_q && model.particles[p].ring == model.particles[q].ring;
   model.for_each_in_ring(model.particles[q].ring, [&](std::uint32_t r) { gentle = gentle && model.follows_basis(r); });
   const Vec3 place = model.position(q);
+  RestructureReport report;
   Restructuring change(e, std::array{body_p, body_q},
-                       gentle ? Restructuring::Kind::gentle : Restructuring::Kind::moving);
-  model::Edit owed = separate_particles(model, p, q, change.report);
+                       gentle ? Restructuring::Kind::gentle : Restructuring::Kind::moving, report);
+  model::Edit owed = separate_particles(model, p, q, report);
   owed.jolted = !gentle;
-  return change.finish(owed, {ViewEvent::Kind::break_, place});
+  change.finish(owed, {ViewEvent::Kind::break_, place});
+  return report;
 }
 
 RestructureReport apply(Editor& e, const SeparatePart& c) {
   const std::uint32_t body = e.require(c.body);
-  Restructuring change(e, {{body}}, Restructuring::Kind::moving);
-  RestructureReport report = change.finish(separate_part(e.model, body, c.part, change.report));
+  RestructureReport report;
+  // Points stay where they are and as fast. Only an inertia that is torn apart has to be made good.
+  const bool gentle = e.model.bodies[body].first_inertia == model::none;
+  Restructuring change(e, {{body}}, gentle ? Restructuring::Kind::gentle : Restructuring::Kind::moving, report);
+  change.finish(separate_part(e.model, body, c.part, report));
+  if (gentle && report.changed) e.mark_velocity_dirty(e.model.bodies[body].first);
   for (const BodyId created : report.created_bodies)
     e.model.scene.note(ViewEvent::Kind::break_, e.model.center_of_mass(created.slot));
   return report;
@@ -46,8 +52,9 @@ RestructureReport apply(Editor& e, const Destroy<CosmeticBondId>& c) {
   const std::uint32_t bond = e.require(c.id);
   const auto [p, q] = std::pair(model.cosmetic_bonds[bond].p, model.cosmetic_bonds[bond].q);
   const Vec3 middle = 0.5 * (model.position(p) + model.position(q));
-  Restructuring change(e, {{model.particles[p].body}}, Restructuring::Kind::moving);
-  RestructureReport report = change.finish(ingredient::CosmeticBonds::break_(model, bond, change.report));
+  RestructureReport report;
+  Restructuring change(e, {{model.particles[p].body}}, Restructuring::Kind::moving, report);
+  change.finish(ingredient::CosmeticBonds::break_(model, bond, report));
   if (!report.created_bodies.empty()) model.scene.note(ViewEvent::Kind::break_, middle);
   return report;
 }

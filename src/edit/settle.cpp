@@ -90,54 +90,70 @@ bool give_back_momenta(model::Model& model, std::span<const std::uint32_t> bodie
 
 }  // namespace
 
-Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodies, Kind kind)
-    : editor_(editor), bodies_(bodies.begin(), bodies.end()), kind_(kind), followers_(editor.model, bodies) {
+Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodies, Kind kind,
+                             RestructureReport& report)
+    : editor_(editor), report_(report), body_count_(bodies.size()), kind_(kind), followers_(editor.model, bodies) {
+  std::copy(bodies.begin(), bodies.end(), bodies_.begin());
   report.articulates_before = editor.model.articulates.size();
   if (kind == Kind::gentle) return;
   affected_ = editor.model.tied_bodies(bodies);
   before_ = conserved(editor.model, affected_);
 }
 
-RestructureReport Restructuring::finish(const model::Edit& owed) {
+void Restructuring::finish(const model::Edit& owed) {
   model::Model& model = editor_.model;
-  const auto with_created = [&](std::vector<std::uint32_t> bodies) {
-    for (const BodyId body : report.created_bodies) bodies.push_back(body.slot);
-    std::erase_if(bodies, [&](std::uint32_t body) { return !model.bodies.is_alive(body); });
-    return bodies;
-  };
-  if (report.changed) {
-    ingredient::settle(model, with_created(bodies_), report.notes);
+  if (report_.changed) {
+    ingredient::settle(model, with_created(edited()), report_.notes);
     followers_.follow(model);
     editor_.structure_changed();
   }
-  report.articulates_after = model.articulates.size();
-  report.structure_version = model.structure_version;
-  if (kind_ == Kind::gentle || !report.changed) return std::move(report);
+  report_.articulates_after = model.articulates.size();
+  report_.structure_version = model.structure_version;
+  if (kind_ == Kind::moving && report_.changed) settle_and_measure(owed);
+}
 
+void settle_batch(Editor& e, RestructureReport& report) {
+  model::Model& model = e.model;
+  std::vector<std::uint32_t> bodies;
+  for (const auto& absorbed : report.absorbed_bodies)
+    if (const auto body = model.survivor_of(absorbed.survivor)) bodies.push_back(body->slot);
+  sort_unique(bodies);
+  if (bodies.empty()) return;
+  const std::vector<std::uint32_t> affected = model.tied_bodies(bodies);
+  const Conserved before = conserved(model, affected);
+  settle(e, bodies, false, report);
+  const Conserved after = conserved(model, affected);
+  report.energy_change += after.energies.total() - before.energies.total();
+  report.momentum_change += after.momenta.linear - before.momenta.linear;
+  report.angular_momentum_change += after.momenta.angular - before.momenta.angular;
+}
+
+std::vector<std::uint32_t> Restructuring::with_created(std::span<const std::uint32_t> known) const {
+  std::vector<std::uint32_t> bodies(known.begin(), known.end());
+  for (const BodyId body : report_.created_bodies) bodies.push_back(body.slot);
+  std::erase_if(bodies, [&](std::uint32_t body) { return !editor_.model.bodies.is_alive(body); });
+  return bodies;
+}
+
+void Restructuring::settle_and_measure(const model::Edit& owed) {
+  model::Model& model = editor_.model;
   const std::vector<std::uint32_t> affected = with_created(affected_);
   bool pinned = false;
   if (owed.moved || owed.jolted) {
-    const std::vector<std::uint32_t> touched = with_created(bodies_);
-    settle(editor_, touched, owed.moved, report);
+    const std::vector<std::uint32_t> touched = with_created(edited());
+    settle(editor_, touched, owed.moved, report_);
     pinned = !give_back_momenta(model, touched, affected, before_);
   }
   const Conserved after = conserved(model, affected);
-  report.energy_change =
+  report_.energy_change =
       after.energies.kinetic + after.energies.potential - before_.energies.kinetic - before_.energies.potential;
-  report.momentum_change = after.momenta.linear - before_.momenta.linear;
-  report.angular_momentum_change = after.momenta.angular - before_.momenta.angular;
-  const double spin_change = norm(report.angular_momentum_change);
+  report_.momentum_change = after.momenta.linear - before_.momenta.linear;
+  report_.angular_momentum_change = after.momenta.angular - before_.momenta.angular;
+  const double spin_change = norm(report_.angular_momentum_change);
   if (!pinned && spin_change > 1e-9 * (norm(before_.momenta.angular) + 1e-3 * spin_change))
-    report.notes.push_back(
+    report_.notes.push_back(
         "the bodies that are left (a point, a rod, or bodies almost in one place) cannot carry all of the angular "
         "momentum; angular_momentum_change tells the rest");
-  return std::move(report);
-}
-
-RestructureReport Restructuring::finish(const model::Edit& owed, const ViewEvent& event) {
-  RestructureReport done = finish(owed);
-  if (done.changed) editor_.model.scene.note(event.kind, event.position);
-  return done;
 }
 
 }  // namespace iota::edit

@@ -6,6 +6,7 @@
 #include "ingredient/scope.h"
 #include "model/restructure.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -20,26 +21,40 @@ struct Conserved {
   ingredient::Momenta momenta;
 };
 
+/// Makes velocities fit what a batch has made rigid, once for all of it, and adds to its report what that changes.
+void settle_batch(Editor&, RestructureReport&);
+
 /// One change of structure: measures before it, settles and measures after it, and makes the report.
 ///
-///     Restructuring change(editor, bodies, Restructuring::Kind::moving);
-///     return change.finish(model::combine_bodies(editor.model, a, b, change.report));
+///     RestructureReport report;
+///     Restructuring change(editor, bodies, Restructuring::Kind::moving, report);
+///     change.finish(model::combine_bodies(editor.model, a, b, report));
+///     return report;
 class Restructuring {
  public:
   /// A gentle change moves nothing and no mass: there is nothing to measure or to settle, and it costs what it touches.
   enum class Kind : bool { gentle, moving };
-  Restructuring(Editor&, std::span<const std::uint32_t> bodies, Kind);
-
-  RestructureReport report;  ///< the change says here what it made, and whether it did anything
+  /// One body or two. The change says in the report what it made, and whether it did anything.
+  Restructuring(Editor&, std::span<const std::uint32_t> bodies, Kind, RestructureReport&);
 
   /// After the change, which says what it owes.
-  RestructureReport finish(const model::Edit& owed);
+  void finish(const model::Edit& owed);
   /// Also shows viewers the event, if anything has changed.
-  RestructureReport finish(const model::Edit& owed, const ViewEvent& event);
+  void finish(const model::Edit& owed, const ViewEvent& event) {
+    finish(owed);
+    if (report_.changed) editor_.model.scene.note(event.kind, event.position);
+  }
 
  private:
+  void settle_and_measure(const model::Edit& owed);
+  /// Of some bodies and those that the change has created, the ones that are alive.
+  std::vector<std::uint32_t> with_created(std::span<const std::uint32_t> bodies) const;
+  std::span<const std::uint32_t> edited() const { return {bodies_.data(), body_count_}; }
+
   Editor& editor_;
-  std::vector<std::uint32_t> bodies_;
+  RestructureReport& report_;
+  std::array<std::uint32_t, 2> bodies_{};  // most edits cost less than a vector for them would
+  std::size_t body_count_;
   Kind kind_;
   ingredient::Followers followers_;
   // Nothing beyond the bodies that bonds and constraints tie to the edited ones can move or change its velocity.

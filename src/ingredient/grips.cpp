@@ -130,6 +130,7 @@ void Grips::anchor(const Model& model, Grip& grip, const Vec3& point) {
 
 Grips::Memory Grips::remember(const Model& model, std::span<const std::uint32_t> bodies) {
   Memory held;
+  if (model.grips.size() == 0) return held;
   model.grips.for_each([&](std::uint32_t slot, const Grip& g) {
     if (std::find(bodies.begin(), bodies.end(), g.body) == bodies.end()) return;
     const Vec3 place = point(model, g);

@@ -6,12 +6,14 @@
 namespace iota::model {
 
 void Structure::touch(std::uint32_t articulate, Touch what) {
-  ++articulates[articulate].version;
-  articulates[articulate].disturbed = 1;
-  articulates[articulate].standing_gap = 0;  // a conflict may be solvable now
+  Articulate& a = articulates[articulate];
+  ++a.version;
+  a.disturbed = 1;
+  a.standing_gap = 0;  // a conflict may be solvable now
   if (touch_of_.size() <= articulate) touch_of_.resize(articulates.slot_count(), untouched);
-  if (touch_of_[articulate] == untouched) touched_.push_back(articulate);
-  touch_of_[articulate] = std::max(touch_of_[articulate], what);
+  Touch& touched = touch_of_[articulate];
+  if (touched == untouched) touched_.push_back(articulate);
+  touched = std::max(touched, what);
 }
 
 namespace {
@@ -29,7 +31,16 @@ void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
   // Without room the bodies of the ring are in islands that are built anew, and nobody asks for the ring.
   if (local_change_.bodies.size() < most_local_changes || rings[ring].count == 0)
     local_change_.rings.push_back({ring, split_from});
-  for_each_in_ring(ring, [&](std::uint32_t p) { touch_locally(particles[p].body); });
+  const bool few = local_change_.bodies.size() + rings[ring].count <= most_local_changes;
+  std::uint32_t articulate = none;  // of all of them, unless they are about to be hinged
+  for_each_in_ring(ring, [&](std::uint32_t p) {
+    const std::uint32_t body = particles[p].body;
+    if (few) local_change_.bodies.push_back(body);
+    scene.bodies.note(body);
+    if (bodies[body].articulate == articulate) return;
+    articulate = bodies[body].articulate;
+    touch(articulate, few ? locally : anything);
+  });
 }
 
 void Structure::take_touched(Touched& taken) {
@@ -61,36 +72,64 @@ void Structure::join_articulates(std::uint32_t a, std::uint32_t b) {
   articulates.destroy(b);
 }
 
+namespace {
+
+/// From one articulate to another.
+void move_bodies(Structure& model, std::span<const std::uint32_t> moved, std::uint32_t from, std::uint32_t into) {
+  Articulate &a = model.articulates[from], &b = model.articulates[into];
+  for (const std::uint32_t slot : moved) {
+    Body& body = model.bodies[slot];
+    const std::uint32_t before = body.previous_in_articulate, after = body.next_in_articulate;
+    (before == none ? a.first : model.bodies[before].next_in_articulate) = after;
+    (after == none ? a.last : model.bodies[after].previous_in_articulate) = before;
+    (b.last == none ? b.first : model.bodies[b.last].next_in_articulate) = slot;
+    body.previous_in_articulate = b.last, body.next_in_articulate = none;
+    body.articulate = into;
+    b.last = slot;
+  }
+  const auto count = static_cast<std::uint32_t>(moved.size());
+  a.count -= count, b.count += count;
+  if (model.scene.is_on())
+    for (const std::uint32_t slot : moved) model.scene.memberships.note(slot);
+}
+
+}  // namespace
+
 bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   if (body_a == body_b) return false;
   // Two breadth-first floods in turn, each a list of bodies that also serves as its queue. A mark says whose a body is.
   Marks& marks = body_marks_;
-  marks.of.resize(bodies.slot_count(), 0);
+  const std::size_t slots = bodies.slot_count();
+  if (marks.of.size() < slots) {
+    marks.of.resize(slots, 0);
+    for (std::vector<std::uint32_t>& flood : floods_) flood.resize(slots);
+  }
   if (marks.current > 0xfffffff0u) std::fill(marks.of.begin(), marks.of.end(), marks.current = 0);
   const std::uint32_t first_mark = marks.current + 1;
   marks.current += 2;
-  std::array<std::size_t, 2> next{};
+  std::uint32_t* const mark_of = marks.of.data();
+  const std::array flood{floods_[0].data(), floods_[1].data()};
+  std::array<std::size_t, 2> next{0, 0}, end{1, 1};
+  flood[0][0] = body_a, mark_of[body_a] = first_mark;
+  flood[1][0] = body_b, mark_of[body_b] = first_mark + 1;
   bool met = false;
-  const auto reach = [&](std::uint32_t which, std::uint32_t body) {
-    std::uint32_t& mark = marks.of[body];
-    if (mark < first_mark) {
-      mark = first_mark + which;
-      floods_[which].push_back(body);
-    } else {
-      met = met || mark != first_mark + which;
-    }
-  };
-  for (const std::uint32_t which : {0u, 1u}) floods_[which].clear(), reach(which, which ? body_b : body_a);
-  const auto advance = [&](std::uint32_t which) {
-    for_each_particle_of(floods_[which][next[which]++], [&](std::uint32_t p) {
-      for_each_in_ring(particles[p].ring, [&](std::uint32_t hinged) {
-        if (hinged != p) reach(which, particles[hinged].body);
-      });
-      visit_joined(p, [&](std::uint32_t body) { reach(which, body); });
-    });
-  };
   std::uint32_t which = 0;
-  for (; !met && next[which] < floods_[which].size(); which = 1 - which) advance(which);
+  for (; !met && next[which] < end[which]; which = 1 - which) {
+    const std::uint32_t own_mark = first_mark + which;
+    const auto reach = [&](std::uint32_t body) {
+      if (mark_of[body] < first_mark)
+        mark_of[body] = own_mark, flood[which][end[which]++] = body;
+      else
+        met = met || mark_of[body] != own_mark;
+    };
+    for_each_particle_of(flood[which][next[which]++], [&](std::uint32_t p) {
+      const Ring& ring = rings[particles[p].ring];
+      if (ring.count > 1)
+        for (std::uint32_t hinged = ring.first; hinged != none; hinged = particles[hinged].next_in_ring)
+          if (hinged != p) reach(particles[hinged].body);
+      if (particles[p].uses > 0) visit_joined(p, reach);  // what joins it uses it
+    });
+  }
   if (met) return false;
 
   const std::uint32_t own = articulates.create({}).slot;
@@ -98,10 +137,7 @@ bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   articulates[own].jolted = articulates[whole].jolted;
   touch(whole, locally), touch(own, locally);
   touch_of_[own] = std::max(touch_of_[own], touch_of_[whole]);
-  for (const std::uint32_t body : floods_[which]) {
-    leave_articulate(body);
-    enter_articulate(body, own);
-  }
+  move_bodies(*this, {flood[which], end[which]}, whole, own);
   return true;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 namespace iota::model {
@@ -99,18 +100,61 @@ void Structure::rebuild_basis(std::uint32_t body_slot) {
     if (old_basis != body.basis) rigid.multiplier = 0;  // a warm start of other rows would mislead
   }
 
-  const BasisWeights weights(*this, body_slot);
+  std::optional<BasisWeights> weights;  // of bodies that have more points than their basis
   for_each_particle_of(body_slot, [&](std::uint32_t p) {
     Particle& particle = particles[p];
     particle.basis_index = -1;
     for (std::int8_t i = 0; i < body.rank; ++i)
       if (body.basis[static_cast<std::size_t>(i)] == p) particle.basis_index = i;
-    if (particle.basis_index >= 0)
-      ties.erase(p);
-    else
-      ties.make(p) = {weights.of(position(p)), {}};
+    if (particle.basis_index >= 0) return ties.erase(p);
+    if (!weights) weights.emplace(*this, body_slot);
+    ties.make(p) = {weights->of(position(p)), {}};
   });
   keep_inertia_positive(body_slot);
+}
+
+namespace {
+
+// Below this many particles a basis is chosen anew at each change: that costs microseconds.
+constexpr std::uint32_t large = 64;
+
+}  // namespace
+
+bool carry_by_basis(Structure& model, std::uint32_t body_slot, std::uint32_t before,
+                    std::span<const std::uint32_t> particles) {
+  constexpr double far = 1.5;  // of the basis' lengths: places farther out would amplify its round-off
+  const Body& body = model.bodies[body_slot];
+  if (before < large || body.rank < 2) return false;
+  const BasisWeights weights(model, body_slot);
+  const double flat = 1e-9 * model.extent(body_slot);
+  std::vector<Tie> ties;
+  for (const std::uint32_t p : particles) {
+    Tie tie{weights.of(model.position(p)), {}};
+    Vec3 carried;
+    for (int i = 0; i < body.rank; ++i) {
+      if (!(std::abs(tie.weights[i]) < far)) return false;
+      carried += tie.weights[i] * model.position(body.basis[i]);
+    }
+    if (norm(carried - model.position(p)) > flat) return false;
+    ties.push_back(tie);
+  }
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    model.particles[particles[i]].basis_index = -1;
+    model.ties.make(particles[i]) = ties[i];
+  }
+  model.scene.bodies.note(body_slot);
+  return true;
+}
+
+bool keeps_basis(const Structure& model, std::uint32_t body_slot) {
+  const Body& body = model.bodies[body_slot];
+  if (body.count < large || body.rank == 0) return false;
+  for (int i = 0; i < body.rank; ++i) {
+    const std::uint32_t p = body.basis[i];
+    if (!model.particles.is_alive(p) || model.particles[p].body != body_slot || model.particles[p].basis_index != i)
+      return false;
+  }
+  return true;
 }
 
 // Rods have less inertia than point masses at their ends: a negative pair. With less mass at an end than the rod had

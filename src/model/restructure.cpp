@@ -41,8 +41,11 @@ bool is_fixed(const Structure& model, std::uint32_t ring, std::uint32_t except_b
 Edit merge_rings(Structure& model, std::uint32_t into, std::uint32_t from) {
   Ring& r = model.rings[into];
   const Ring s = model.rings[from];
-  const double m_r = model.ring_mass(into), m_s = model.ring_mass(from),
-               share = m_r + m_s > 0 ? m_s / (m_r + m_s) : 0.5;
+  double share = 0;  // of `from` in the means, where they differ
+  if (r.position != s.position || r.velocity != s.velocity) {
+    const double m_r = model.ring_mass(into), m_s = model.ring_mass(from);
+    share = m_r + m_s > 0 ? m_s / (m_r + m_s) : 0.5;
+  }
   Edit edit{r.position != s.position, r.velocity != s.velocity || r.nailed || s.nailed};
   const bool stays = r.nailed || is_fixed(model, into);  // the first one's nail wins
   const bool replaces = !stays && (s.nailed || is_fixed(model, from));
@@ -78,60 +81,112 @@ void absorb_particle(Structure& model, std::uint32_t p, std::uint32_t q, Restruc
   model.remove_particle(q);
 }
 
-/// All particles of body b become body a's; where both have one in the same ring, one absorbs the other.
-void absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
-  const BodyKind kind = model.bodies[a].kind;
-  if (is_endless(model, b) && kind != BodyKind::static_ && kind != BodyKind::scripted)
-    throw std::invalid_argument("combine: body " + std::to_string(b) + " is a half-space, which has no mass, so body " +
-                                std::to_string(a) + " could not move with it; name body " + std::to_string(b) +
-                                " first, or make body " + std::to_string(a) + " static");
-  // Inertia pairs move with their particles, so take the list away before the particles leave.
-  const std::uint32_t pairs = model.bodies[b].first_inertia;
-  model.bodies[b].first_inertia = none;
-  for (std::uint32_t last = pairs; last != none; last = model.inertia_pairs[last].next) {
-    model.inertia_pairs[last].body = a;
-    if (model.inertia_pairs[last].next != none) continue;
-    model.inertia_pairs[last].next = model.bodies[a].first_inertia;
-    model.bodies[a].first_inertia = pairs;
-    break;
+/// What the rigid union of two bodies is, in either order: what holds one of them still, or moves it, holds or moves both;
+/// only where neither takes part does the union not take part, and only where both rest does it rest.
+BodyKind kind_of_union(BodyKind a, BodyKind b) {
+  for (const BodyKind kind : {BodyKind::static_, BodyKind::scripted, BodyKind::dynamic})
+    if (a == kind || b == kind) return kind;
+  return a == b ? a : BodyKind::dynamic;
+}
+
+/// Damping is by mass.
+double damping_of_union(const Structure& model, std::uint32_t a, std::uint32_t b) {
+  const double of_a = model.bodies[a].damping, of_b = model.bodies[b].damping;
+  if (of_a == of_b) return of_a;
+  const double mass_a = model.body_mass(a), mass_b = model.body_mass(b);
+  return (mass_a * of_a + mass_b * of_b) / (mass_a + mass_b);
+}
+
+const char* name_of(BodyKind kind) {
+  switch (kind) {
+    case BodyKind::dynamic: return "dynamic";
+    case BodyKind::static_: return "static";
+    case BodyKind::scripted: return "scripted";
+    case BodyKind::inactive: return "inactive";
+    case BodyKind::resting: return "resting";
   }
-  std::uint32_t* last_solid = &model.bodies[a].first_solid;  // a's first one goes on giving the frame
-  while (*last_solid != none) last_solid = &model.solids[*last_solid].next;
-  *last_solid = std::exchange(model.bodies[b].first_solid, none);
-  model.for_each_solid_of(a, [&](std::uint32_t s) { model.solids[s].body = a; });
-  const auto twin_in = [&](std::uint32_t body, std::uint32_t particle) {
+  return "";
+}
+
+/// A body that has all particles of the union gets its kind. Says so where one of the two was of another kind.
+void unite_kinds(Structure& model, std::uint32_t body, BodyKind of_a, BodyKind of_b, RestructureReport& report) {
+  if (of_a == of_b) return;
+  const BodyKind kind = kind_of_union(of_a, of_b);
+  const bool acted = model.bodies[body].kind != BodyKind::inactive;
+  model.bodies[body].kind = kind;
+  if (!acted) model.for_each_particle_of(body, [&](std::uint32_t p) { model.acting_changed(p); });
+  if (is_free(of_a) && is_free(of_b)) return;
+  const auto [first, second] = std::minmax(of_a, of_b);
+  report.notes.push_back("body " + std::to_string(body) + " is " + name_of(kind) +
+                         " now: one of the two bodies that it was "
+                         "combined of was " +
+                         name_of(first) + ", the other " + name_of(second));
+}
+
+/// All particles of body b become body a's; where both have one in the same ring, one absorbs the other. Costs what b has,
+/// but where a needs another basis.
+Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
+  const BodyKind kind_a = model.bodies[a].kind, kind_b = model.bodies[b].kind;
+  const BodyKind kind = kind_of_union(kind_a, kind_b);
+  for (const std::uint32_t body : {a, b})
+    if (is_endless(model, body) && kind != BodyKind::static_ && kind != BodyKind::scripted)
+      throw std::invalid_argument("combine: body " + std::to_string(body) +
+                                  " is a half-space, which has no mass, so that what is combined with it cannot move; "
+                                  "make it static or scripted first");
+  const double damping = damping_of_union(model, a, b);
+  const BodyKind kind_before = kind_of_union(model.bodies[a].kind_before, model.bodies[b].kind_before);
+  // Inertia pairs and solids move with their particles, so take the lists away before the particles leave.
+  const std::uint32_t pairs = std::exchange(model.bodies[b].first_inertia, none);
+  const std::uint32_t solids = std::exchange(model.bodies[b].first_solid, none);
+  std::uint32_t* last_pair = nullptr;
+  for (std::uint32_t i = pairs; i != none; i = model.inertia_pairs[i].next) {
+    model.inertia_pairs[i].body = a;
+    last_pair = &model.inertia_pairs[i].next;
+  }
+  for (std::uint32_t s = solids; s != none; s = model.solids[s].next) model.solids[s].body = a;
+  std::vector<std::uint32_t> moved;
+  const std::uint32_t count_before = model.bodies[a].count;
+  while (model.bodies[b].first != none) {
+    const std::uint32_t particle = model.bodies[b].first;
     std::uint32_t twin = none;
     model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t other) {
-      if (model.particles[other].body == body) twin = other;
+      if (model.particles[other].body == a) twin = other;
     });
-    return twin;
-  };
-  while (model.bodies[b].first != none) {
-    const std::uint32_t moved = model.bodies[b].first;
-    const std::uint32_t twin = twin_in(a, moved);
-    model.take_from_body(moved);
-    model.add_to_body(moved, a);
-    model.acting_changed(moved);
-    if (twin == none) continue;
-    model.for_each_inertia_of(a, [&](std::uint32_t i) {
+    if (twin == none) {
+      model.take_from_body(particle);
+      model.add_to_body(particle, a);
+      model.acting_changed(particle);
+      moved.push_back(particle);
+      continue;
+    }
+    for (std::uint32_t i = pairs; i != none; i = model.inertia_pairs[i].next) {
       InertiaPair& pair = model.inertia_pairs[i];
-      if (pair.p == moved) pair.p = twin;
-      if (pair.q == moved) pair.q = twin;
-    });
-    model.for_each_solid_of(a, [&](std::uint32_t s) {
-      std::replace(model.solids[s].points.begin(), model.solids[s].points.end(), moved, twin);
-    });
-    const Twin absorbed{twin, 0, model.particles[moved].part, model.particles[moved].mass};
-    absorb_particle(model, twin, moved, report);
+      if (pair.p == particle) pair.p = twin;
+      if (pair.q == particle) pair.q = twin;
+    }
+    for (std::uint32_t s = solids; s != none; s = model.solids[s].next)
+      std::replace(model.solids[s].points.begin(), model.solids[s].points.end(), particle, twin);
+    const Twin absorbed{twin, 0, model.particles[particle].part, model.particles[particle].mass};
+    absorb_particle(model, twin, particle, report);
     model.twins.create(absorbed);
+  }
+  if (last_pair) *last_pair = std::exchange(model.bodies[a].first_inertia, pairs);
+  if (solids != none) {
+    std::uint32_t* last_solid = &model.bodies[a].first_solid;  // a's first one goes on giving the frame
+    while (*last_solid != none) last_solid = &model.solids[*last_solid].next;
+    *last_solid = solids;
   }
   model.join_articulates(model.bodies[a].articulate, model.bodies[b].articulate);
   const BodyId retired = model.bodies.id(b), survivor = model.bodies.id(a);
   model.record_survivor(retired, survivor);
   report.absorbed_bodies.push_back({retired, survivor});
   model.remove_body(b);
-  model.rebuild_basis(a);
+  model.bodies[a].damping = damping;
+  model.bodies[a].kind_before = kind_before;
+  unite_kinds(model, a, kind_a, kind_b, report);
+  if (!carry_by_basis(model, a, count_before, moved)) model.rebuild_basis(a);
   model.touch_body(a);
+  return {false, true};
 }
 
 std::uint32_t massive_count(const Structure& model, std::uint32_t body) {
@@ -232,8 +287,7 @@ Edit combine_particles(Structure& model, std::uint32_t p, std::uint32_t q, Restr
   }
 
   if (ring_p == ring_q) {  // a hinge: made rigid
-    absorb_body(model, body_p, body_q, report);
-    return {false, true};
+    return absorb_body(model, body_p, body_q, report);
   }
 
   require_no_shared_body(model, ring_p, ring_q, none);
@@ -248,8 +302,7 @@ Edit combine_particles(Structure& model, std::uint32_t p, std::uint32_t q, Restr
 Edit combine_bodies(Structure& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
   if (a == b) return {};
   report.changed = true;
-  absorb_body(model, a, b, report);
-  return {false, true};
+  return absorb_body(model, a, b, report);
 }
 
 Edit separate_particles(Structure& model, std::uint32_t p, std::uint32_t q, RestructureReport& report) {

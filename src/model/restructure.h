@@ -27,6 +27,13 @@ Edit separate_part(Structure&, std::uint32_t body, BodyId part, RestructureRepor
 /// by a solid, which is one piece. The body keeps the piece with p. Particles that hang on neither go with the nearer one.
 Edit fall_apart(Structure&, std::uint32_t p, std::uint32_t q, RestructureReport&);
 
+/// Hangs particles that a body has got on the basis that it has, where that spans their places well: a large body that
+/// grows bit by bit needs another basis once in a while only. False where it must be rebuilt; nothing has changed then.
+/// `before`: how many particles it had.
+bool carry_by_basis(Structure&, std::uint32_t body, std::uint32_t before, std::span<const std::uint32_t> particles);
+/// The same for a body that has lost particles: false where a basis point is among them.
+bool keeps_basis(const Structure&, std::uint32_t body);
+
 /// Destroys a particle and everything that refers to it; also its body if no massive particle is left.
 void destroy_particle(Structure&, std::uint32_t particle);
 void destroy_body(Structure&, std::uint32_t body);

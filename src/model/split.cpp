@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -62,9 +63,14 @@ std::uint32_t split_off(Structure& model, std::uint32_t body, std::vector<std::u
 }
 
 /// The last part of a split, after the particles were moved.
-void finish_split(Structure& model, std::uint32_t body, std::uint32_t own, std::vector<std::string>& notes) {
+/// `back`: particles that have been made since.
+void finish_split(Structure& model, std::uint32_t body, std::uint32_t own, std::span<const ParticleId> back,
+                  std::vector<std::string>& notes) {
   for (const std::uint32_t b : {body, own}) {
-    model.rebuild_basis(b);
+    std::vector<std::uint32_t> newcomers;
+    for (const ParticleId p : back)
+      if (model.particles[p.slot].body == b) newcomers.push_back(p.slot);
+    if (!keeps_basis(model, b) || !carry_by_basis(model, b, model.bodies[b].count, newcomers)) model.rebuild_basis(b);
     model.touch_body(b);
   }
   split_where_apart(model, std::vector{body, own});  // before markers go, whose cuts split for themselves
@@ -101,8 +107,10 @@ class Pieces {
 
 std::vector<BodyId> parts_of(const Structure& model, std::uint32_t body) {
   std::vector<BodyId> parts;
+  std::set<BodyId> known;
   const auto add = [&](BodyId part) {
-    if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
+    if (!parts.empty() && parts.back() == part) return;
+    if (known.insert(part).second) parts.push_back(part);
   };
   model.for_each_particle_of(body, [&](std::uint32_t p) { add(model.particles[p].part); });
   model.twins.for_each([&](std::uint32_t, const Twin& t) {
@@ -112,18 +120,21 @@ std::vector<BodyId> parts_of(const Structure& model, std::uint32_t body) {
 }
 
 Edit separate_part(Structure& model, std::uint32_t body, BodyId part, RestructureReport& report) {
-  const std::vector<BodyId> parts = parts_of(model, body);
-  if (parts.size() < 2 || std::find(parts.begin(), parts.end(), part) == parts.end()) return {};
   std::vector<std::uint32_t> leaving;
-  bool goes = false, stays = false;  // something with mass
+  bool goes = false, stays = false;              // something with mass
+  bool is_part = false, has_other_part = false;  // of anything
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     const bool leaves = model.particles[p].part == part;
     if (leaves) leaving.push_back(p);
+    (leaves ? is_part : has_other_part) = true;
     if (!model.particles[p].is_marker()) (leaves ? goes : stays) = true;
   });
   model.twins.for_each([&](std::uint32_t, const Twin& t) {
-    if (model.particles[t.particle].body == body) (t.part == part ? goes : stays) = true;
+    if (model.particles[t.particle].body != body) return;
+    (t.part == part ? is_part : has_other_part) = true;
+    (t.part == part ? goes : stays) = true;
   });
+  if (!is_part || !has_other_part) return {};
   if (!goes || !stays)
     throw std::invalid_argument("separate: part " + std::to_string(part.slot) + " of body " + std::to_string(body) +
                                 (goes ? " has all of its mass" : " has no mass of its own"));
@@ -153,7 +164,7 @@ Edit separate_part(Structure& model, std::uint32_t body, BodyId part, Restructur
     report.created_particles.push_back(model.particles.id(slot));
     shared = true;
   }
-  finish_split(model, body, own, report.notes);
+  finish_split(model, body, own, report.created_particles, report.notes);
   return {false, torn || shared};
 }
 
@@ -206,7 +217,7 @@ Edit fall_apart(Structure& model, std::uint32_t p, std::uint32_t q, RestructureR
   const std::uint32_t own = split_off(model, body, leaving, report, torn);
   if (parts_of(model, own).size() == 1)
     for (const std::uint32_t particle : leaving) model.particles[particle].part = model.bodies.id(own);
-  finish_split(model, body, own, report.notes);
+  finish_split(model, body, own, {}, report.notes);
   if (followed > 0)
     report.notes.push_back(std::to_string(followed) + " particles without a cosmetic bond went with the nearer piece");
   return {false, torn};

@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
+#include <string>
 
 namespace iota {
 namespace {
@@ -223,6 +227,156 @@ TEST(Grip, hangs_on_what_is_left_when_a_particle_that_it_holds_is_destroyed) {
   EXPECT_EQ(plate.system.validate(), std::vector<std::string>{});
   for (int i = 0; i < 30; ++i) (void)plate.system.step(1.0 / 60);
   EXPECT_EQ(plate.system.validate(), std::vector<std::string>{});
+}
+
+// --- what combining makes of kinds, damping and many bodies at once ------------------------------------------------------
+
+TEST(CombineBodies, means_the_same_in_either_order_for_all_pairs_of_kinds) {
+  struct Made {
+    System system{SystemOptions{.gravity = {0, -9.81, 0}, .threads = 1}};
+    BodyId moving_along;
+    RestructureReport report;
+    BodyId whole;
+    ParticleId far_a, far_b, hinged;
+
+    Made(BodyKind kind_a, BodyKind kind_b, double mass_a, double mass_b, bool swapped) {
+      const auto body = [&](double x, double mass, double damping) {
+        const BodyId made = system.bodies().create({.damping = damping});
+        for (const Vec3& at : {Vec3{x, 0, 0}, Vec3{x + 1, 0, 0}, Vec3{x, 1, 0}, Vec3{x, 0, 1}})
+          system.particles().create(made, at, mass, {0.3 * x, 0.2, -0.1});
+        return made;
+      };
+      const BodyId a = body(0, mass_a, 0.1), b = body(2, mass_b, 0.4), c = body(3, 1, 0);
+      far_a = system.bodies().particles(a)[2], far_b = system.bodies().particles(b)[3];
+      hinged = system.bodies().particles(c)[1];
+      (void)system.edits().combine(system.bodies().particles(b)[1], system.bodies().particles(c)[0]);
+      system.bodies().set_kind(a, kind_a), system.bodies().set_kind(b, kind_b);
+      report = swapped ? system.edits().combine(b, a) : system.edits().combine(a, b);
+      whole = swapped ? b : a;
+    }
+  };
+  const std::array kinds{BodyKind::dynamic, BodyKind::static_, BodyKind::scripted, BodyKind::inactive,
+                         BodyKind::resting};
+  std::mt19937 random(3);
+  for (const BodyKind kind_a : kinds)
+    for (const BodyKind kind_b : kinds) {
+      const double mass_a = std::exp(static_cast<double>(random() % 9)), mass_b = 1.5;
+      Made one(kind_a, kind_b, mass_a, mass_b, false), other(kind_a, kind_b, mass_a, mass_b, true);
+      const auto pair = [&] {
+        return std::to_string(static_cast<int>(kind_a)) + " with " + std::to_string(static_cast<int>(kind_b));
+      };
+      EXPECT_EQ(one.system.bodies().kind(one.whole), other.system.bodies().kind(other.whole)) << pair();
+      EXPECT_NEAR(one.system.bodies().damping(one.whole), other.system.bodies().damping(other.whole), 1e-15) << pair();
+      EXPECT_EQ(one.report.notes.size(), other.report.notes.size()) << pair();
+      const bool is_held = kind_a == BodyKind::static_ || kind_b == BodyKind::static_ || kind_a == BodyKind::scripted ||
+                           kind_b == BodyKind::scripted;
+      const bool is_free = (kind_a == BodyKind::dynamic || kind_a == BodyKind::resting) &&
+                           (kind_b == BodyKind::dynamic || kind_b == BodyKind::resting);
+      EXPECT_EQ(one.report.notes.empty(), is_free || kind_a == kind_b) << pair() << ": a change of kind is told";
+      EXPECT_LT(norm(one.report.momentum_change - other.report.momentum_change), 1e-9 * (1 + mass_a)) << pair();
+      const Vec3 before = one.system.particles().position(one.far_a);
+      for (int i = 0; i < 30; ++i) (void)one.system.step(1.0 / 60), (void)other.system.step(1.0 / 60);
+      for (const auto particle : {&Made::far_a, &Made::far_b, &Made::hinged})
+        EXPECT_LT(
+            norm(one.system.particles().position(one.*particle) - other.system.particles().position(other.*particle)),
+            0.02)  // another basis solves with other errors of the step
+            << pair();
+      if (is_held) {
+        EXPECT_LT(norm(one.system.particles().position(one.far_a) - before), 1e-9) << pair() << " stays";
+      }
+      EXPECT_EQ(one.system.validate(), std::vector<std::string>{}) << pair();
+    }
+}
+
+/// A chain that turns and flies, of points off one line, so that the bodies made of it are solid.
+struct FlyingChain {
+  System system{SystemOptions{.gravity = {}, .threads = 1}};
+  std::vector<BodyId> links;
+
+  explicit FlyingChain(int count) {
+    const auto joint = [](int i) { return Vec3{0.1 * i, 0.05 * (i % 2), 0.03 * (i % 3)}; };
+    for (int i = 0; i < count; ++i) {
+      links.push_back(system.bodies().create());
+      const auto particle = [&](const Vec3& x, double mass) {
+        return system.particles().create(links.back(), x, mass, {0.1 - 0.5 * x.y, 0.2 + 0.5 * x.x, -0.3 * x.x});
+      };
+      const ParticleId upper = particle(joint(i), 1 + 0.1 * (i % 4));
+      particle(joint(i + 1), 0.7);
+      if (i > 0)
+        (void)system.edits().combine(system.bodies().particles(links[static_cast<std::size_t>(i) - 1])[1], upper);
+    }
+    (void)system.step(1e-3);
+  }
+};
+
+TEST(Batch, of_many_rigid_joins_gives_the_motion_that_they_give_one_by_one) {
+  constexpr int count = 90;  // beyond 64 points a body keeps its basis where it can
+  FlyingChain batch(count), single(count);
+  const Vec3 momentum = batch.system.momentum(), spin = batch.system.angular_momentum();
+  batch.system.edits().begin();
+  for (int i = 1; i < count; ++i)
+    (void)batch.system.edits().combine(batch.links[0], batch.links[static_cast<std::size_t>(i)]);
+  const RestructureReport report = batch.system.edits().end();
+  double lost = 0;
+  for (int i = 1; i < count; ++i)
+    lost += single.system.edits().combine(single.links[0], single.links[static_cast<std::size_t>(i)]).energy_change;
+  EXPECT_EQ(batch.system.validate(), std::vector<std::string>{});
+  EXPECT_EQ(report.absorbed_bodies.size(), count - 1u);
+  EXPECT_LT(lost, -1e-4) << "turning about each other takes energy with it";
+  EXPECT_NEAR(report.energy_change, lost, 1e-6 * std::abs(lost));
+  EXPECT_LT(norm(batch.system.momentum() - momentum), 1e-9 * norm(momentum));
+  EXPECT_LT(norm(batch.system.angular_momentum() - spin), 1e-9 * norm(spin));
+  const std::vector<ParticleId> points = batch.system.bodies().particles(batch.links[0]);
+  ASSERT_EQ(points, single.system.bodies().particles(single.links[0]));
+  std::vector<Vec3> at;
+  for (const ParticleId p : points) {
+    EXPECT_LT(norm(batch.system.particles().velocity(p) - single.system.particles().velocity(p)), 1e-8);
+    at.push_back(batch.system.particles().position(p));
+  }
+  for (int i = 0; i < 100; ++i) (void)batch.system.step(1e-2);
+  for (std::size_t i = 7; i < points.size(); i += 7) {
+    const double now =
+        norm(batch.system.particles().position(points[i]) - batch.system.particles().position(points[3]));
+    EXPECT_NEAR(now, norm(at[i] - at[3]), 1e-9) << "it is rigid";
+  }
+  EXPECT_TRUE(batch.system.edits().undo());
+  EXPECT_EQ(batch.system.bodies().ids().size(), std::size_t{count});
+}
+
+TEST(SeparatePart, of_a_large_body_part_by_part_gives_the_chain_back) {
+  constexpr std::size_t count = 90;
+  FlyingChain chain(count);
+  System& system = chain.system;
+  system.edits().begin();
+  for (std::size_t i = 1; i < count; ++i) (void)system.edits().combine(chain.links[0], chain.links[i]);
+  (void)system.edits().end();
+  (void)system.step(1e-3);
+  const Vec3 momentum = system.momentum(), spin = system.angular_momentum();
+  const double energy = system.energy().kinetic;
+  std::vector<BodyId> parts(chain.links.begin() + 1, chain.links.end());
+  std::shuffle(parts.begin(), parts.end(), std::mt19937(5));
+  for (const BodyId part : parts) {
+    const RestructureReport report = system.edits().separate(chain.links[0], part);
+    ASSERT_EQ(report.created_bodies.size(), 1u);
+    ASSERT_EQ(system.validate(), std::vector<std::string>{});
+  }
+  EXPECT_EQ(system.bodies().ids().size(), count);
+  EXPECT_EQ(system.bodies().articulate_count(), 1u) << "its hinges are back";
+  EXPECT_LT(norm(system.momentum() - momentum), 1e-9 * norm(momentum));
+  EXPECT_LT(norm(system.angular_momentum() - spin), 1e-9 * norm(spin));
+  EXPECT_NEAR(system.energy().kinetic, energy, 1e-9 * energy);
+  EXPECT_LT(system.step(1e-3).worst_gap, 1e-9);
+}
+
+TEST(Nail, of_a_particle_at_rest_where_it_is_moves_nothing) {
+  System system({.mode = IntegrationMode::robust, .threads = 1});
+  const scenes::Chain chain = scenes::make_chain(system, {.links = 5, .nailed = false});
+  for (const ParticleId p : chain.upper) system.particles().set_velocity(p, {0, 0, 0});
+  system.particles().nail(chain.upper[2]);
+  EXPECT_EQ(system.energy().kinetic, 0);
+  for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 60);
+  EXPECT_LT(norm(system.particles().position(chain.upper[2]) - Vec3{0.2, 0, 0}), 1e-9);
+  EXPECT_LT(system.particles().position(chain.upper[0]).y, -0.1) << "the rest swings about it";
 }
 
 }  // namespace

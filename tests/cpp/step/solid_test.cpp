@@ -443,13 +443,17 @@ TEST(HalfSpace, has_no_mass_and_cannot_move) {
   const BodyId wall = system.bodies().create(HalfSpace{{1, 0, 0}}, {.kind = BodyKind::static_});
   const BodyId box = system.bodies().create(Box{}, {.position = {2, 0, 0}});
   EXPECT_THROW(system.bodies().set_kind(wall, BodyKind::dynamic), std::invalid_argument);
-  EXPECT_THROW((void)system.edits().combine(box, wall), std::invalid_argument);
   system.bodies().set_active(wall, false);
   system.bodies().set_active(wall, true);
   EXPECT_EQ(system.bodies().kind(wall), BodyKind::static_);
   EXPECT_TRUE(system.validate().empty());
-  (void)system.edits().combine(wall, box);
-  EXPECT_EQ(system.bodies().kind(wall), BodyKind::static_);
+  (void)system.edits().combine(box, wall);
+  EXPECT_EQ(system.bodies().kind(box), BodyKind::static_) << "what is combined with it does not move either";
+  system.bodies().set_active(box, false);
+  const BodyId ball = system.bodies().create(Sphere{}, {.position = {5, 0, 0}});
+  EXPECT_THROW((void)system.edits().combine(ball, box), std::invalid_argument);
+  EXPECT_THROW((void)system.edits().combine(box, ball), std::invalid_argument);
+  EXPECT_TRUE(system.validate().empty());
 }
 
 }  // namespace
