@@ -2,6 +2,7 @@
 #include "island/island.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace iota::step {
@@ -185,6 +186,18 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     given += problem_.kinetic_energy();
   }
   report.external_work += given;
+  if (!std::isfinite(report.dissipated + report.external_work)) {
+    // Forces beyond all reason (1e300 N) drive numbers beyond what a double holds. Nothing has gone to the model yet: the
+    // points stay where they are, at rest, and the report says that the step was given up.
+    memory.standing_gap = 0;
+    load(model, h);
+    report = {};
+    report.converged = false;
+    report.dissipated = problem_.kinetic_energy() + virtual_energy(model);
+    std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
+    store_step(model, h);
+    return report;
+  }
   double dissipated = 0;
   for_each_ingredient([&](auto& i) { dissipated += i.after_step(model, h, problem_); });
   report.dissipated += dissipated;

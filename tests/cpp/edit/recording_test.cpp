@@ -250,10 +250,8 @@ TEST_P(DamagedRecording, leaves_a_whole_system) {
     } catch (const std::invalid_argument&) {
       ++refused;
     }
-    // A damaged number may be a force of 1e300 N, which is a number like any other to a command; a step makes infinite
-    // places of it. All the rest must be whole.
-    for (const std::string& sentence : system.validate())
-      ASSERT_TRUE(sentence.ends_with("is not finite")) << sentence << ", damaged recording " << n;
+    // Also where a damaged number is a stiffness of 1e300 N/m, which is a number like any other to a command.
+    ASSERT_EQ(system.validate(), std::vector<std::string>{}) << "damaged recording " << n;
   }
   EXPECT_GT(refused, 400);
   EXPECT_GT(done, 400);
