@@ -12,7 +12,8 @@ namespace {
 template <class Combine>
 RestructureReport make_rigid(Editor& e, std::uint32_t a, std::uint32_t b, const Vec3& middle, Combine combine) {
   RestructureReport report;
-  const bool later = e.batch.has_value();
+  // But the spin of a rod, which its points know nothing of, goes over to the whole at once.
+  const bool later = e.batch.has_value() && !e.model.spins.has(a) && !e.model.spins.has(b);
   Restructuring change(e, std::array{a, b}, later ? Restructuring::Kind::gentle : Restructuring::Kind::moving, report);
   const model::Edit owed = combine(report);
   if (e.model.bodies[a].kind != BodyKind::dynamic) e.model.spins.erase(a);  // of a rod that has become static
