@@ -8,6 +8,14 @@ from dataclasses import dataclass
 
 from iota.world.callbacks import Hook
 
+# What the page does by a key as long as no action has it: web/src/page/page_commands.ts and web/src/ui.
+PAGE_KEYS = {
+    " ": "pause", ".": "one step", "r": "reset", "[": "slower", "]": "faster", "l": "next look", "f": "fly", "g": "grid",
+    "m": "sound", "0": "first view", "Home": "first view", "?": "help", "Escape": "select nothing",
+    "ArrowRight": "select next", "ArrowDown": "select next", "ArrowLeft": "select previous", "ArrowUp": "select previous",
+    **dict.fromkeys("wasdqe", "walk"),
+}  # fmt: skip
+
 
 @dataclass
 class Action:
@@ -20,6 +28,12 @@ class Action:
     help: str
     label: str
     on: str
+
+    @property
+    def line(self) -> str:
+        """For the terminal: its key, what it does, and what of the page's it takes the key from."""
+        taken = PAGE_KEYS.get(self.key or "")
+        return f"  {self.key}  {self.help or self.label}" + (f"  (instead of the page's: {taken})" if taken else "")
 
     def describe(self) -> tuple[str, str, str, str, bool, str]:
         """As a room takes it."""

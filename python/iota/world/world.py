@@ -461,7 +461,7 @@ class World:
 
     def _announce(self, show: bool) -> None:
         lines = [f"{self.title}: {self.url}"]
-        lines += [f"  {action.key}  {action.help or action.label}" for action in self._state.actions if action.key]
+        lines += [action.line for action in self._state.actions if action.key]
         print("\n".join(lines), flush=True)
         if show and self.url and not webbrowser.open(self.url):
             print("iota: no browser could be opened", file=sys.stderr)
