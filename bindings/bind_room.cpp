@@ -12,7 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <span>
 #include <tuple>
+#include <utility>
 
 namespace iota::bindings {
 
@@ -78,7 +81,10 @@ void set_actions(RoomObject& self, const std::vector<ActionTuple>& actions) {
 }
 
 void publish_changes(RoomObject& self, const PoseSnapshot& snapshot, const SceneChanges& changes) {
-  self.use().publish(snapshot, self.presenter.present(changes));
+  // What the script attached to bodies comes after them.
+  net::EntityChanges out = self.presenter.present(changes);
+  out.append(std::exchange(self.own, {}));
+  self.use().publish(snapshot, std::move(out));
   for (const ViewEvent& event : changes.events)
     self.use().effect(event.kind == ViewEvent::Kind::join ? "join" : "break", narrow(event.position));
 }
@@ -153,7 +159,34 @@ void publish_simulated(RoomObject& self, std::optional<std::vector<SimulatedBody
   if (bodies)
     publish_changes(self, snapshot, scene_of(*bodies, extent));
   else
-    self.use().publish(snapshot);
+    self.use().publish(snapshot, std::exchange(self.own, {}));
+}
+
+// ---------------------------------------------------------------------------------------------- entities of the script
+
+template <std::size_t... I>
+bool is_record(std::uint8_t kind, std::span<const std::uint8_t> bytes, std::index_sequence<I...>) {
+  return ((kind == I && protocol::decode_records<std::tuple_element_t<I, protocol::EntityKinds>>(bytes)) || ...);
+}
+
+std::uint8_t kind_named(const std::string& name) {
+  const std::optional<std::uint8_t> kind = net::entity_kind_of(name);
+  if (!kind) throw nb::value_error(("there is no kind of entities named '" + name + "'").c_str());
+  return *kind;
+}
+
+void set_entity(RoomObject& self, const std::string& kind, std::uint32_t slot, std::uint32_t generation,
+                const nb::bytes& fields) {
+  std::vector<std::uint8_t> record(8 + fields.size());
+  for (int byte = 0; byte < 4; ++byte) {
+    record[byte] = static_cast<std::uint8_t>(slot >> (8 * byte));
+    record[4 + byte] = static_cast<std::uint8_t>(generation >> (8 * byte));
+  }
+  std::memcpy(record.data() + 8, fields.data(), fields.size());
+  const std::uint8_t number = kind_named(kind);
+  if (!is_record(number, record, std::make_index_sequence<net::entity_kind_count>()))
+    throw nb::value_error(("these bytes are no record of the kind '" + kind + "'").c_str());
+  self.own.set(number, {slot, generation}, record);
 }
 
 /// The body that an event is on, or None once it is gone.
@@ -226,6 +259,26 @@ void bind_room(nb::module_& module) {
           "set_statics",
           [](RoomObject& self, std::vector<protocol::Part> parts) { self.presenter.set_statics(std::move(parts)); },
           "parts"_a, "What is only drawn.")
+      .def(
+          "set_entity", &set_entity, "kind"_a, "slot"_a, "generation"_a, "fields"_a,
+          "An entity of the script, as protocol/entities describes its kind; pages are told with the next poses. Raises\n"
+          "ValueError for bytes that are no such record.")
+      .def(
+          "destroy_entity",
+          [](RoomObject& self, const std::string& kind, std::uint32_t slot, std::uint32_t generation) {
+            self.own.destroy(kind_named(kind), {slot, generation});
+          },
+          "kind"_a, "slot"_a, "generation"_a, "The entity is gone.")
+      .def(
+          "set_listens",
+          [](RoomObject& self, bool clicks, bool hovers, std::vector<std::string> keys) {
+            self.use().set(protocol::Listens{clicks, hovers, std::move(keys)});
+          },
+          nb::kw_only(), "clicks"_a, "hovers"_a, "keys"_a, "What else pages tell of their users.")
+      .def(
+          "ask_picture",
+          [](RoomObject& self, std::uint32_t client, std::uint32_t number) { self.use().ask_picture(client, number); },
+          "client"_a, "number"_a, "Asks one client for a picture; its parts come as input with this number.")
       .def("publish", &publish, "system"_a, "The newest poses of a system, and what has changed in it.")
       .def("publish_simulated", &publish_simulated, "bodies"_a.none(), "slots"_a, "places"_a, "holds"_a, nb::kw_only(),
            "step"_a, "time"_a, "structure_version"_a, "energy"_a, "gap"_a, "extent"_a,

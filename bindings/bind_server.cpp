@@ -4,6 +4,7 @@
 
 #include "net/token.h"
 
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 
@@ -34,6 +35,10 @@ const char* kind_name_of(InputEvent::Kind kind) {
     case InputEvent::Kind::grab_end: return "grab_end";
     case InputEvent::Kind::action: return "action";
     case InputEvent::Kind::control: return "control";
+    case InputEvent::Kind::change: return "change";
+    case InputEvent::Kind::pointer: return "pointer";
+    case InputEvent::Kind::key: return "key";
+    case InputEvent::Kind::picture: return "picture";
   }
   return "unknown";
 }
@@ -75,17 +80,34 @@ void bind_input(nb::module_& module) {
   nb::class_<InputEvent>(module, "InputEvent", "What a user did, or that one came or went.")
       .def_prop_ro(
           "kind", [](const InputEvent& e) { return kind_name_of(e.kind); },
-          "join, leave, select, grab_start, grab_move, grab_end, action or control")
+          "join, leave, select, grab_start, grab_move, grab_end, action, control, change, pointer, key or picture")
       .def_ro("client", &InputEvent::client, "From 1, never used twice in a world.")
       .def_ro("hold", &InputEvent::hold, "The client's own number for this hand.")
       .def_prop_ro(
-          "names_body", [](const InputEvent& e) { return static_cast<bool>(e.body); },
+          "names_body",
+          [](const InputEvent& e) { return static_cast<bool>(e.body) && e.kind != InputEvent::Kind::change; },
           "Whether it is on a body: `Room.body_of` tells which, if it is still there.")
       .def_prop_ro(
           "local_point", [](const InputEvent& e) { return widen(e.local_point); }, "Body frame, m.")
       .def_prop_ro(
           "target", [](const InputEvent& e) { return widen(e.target); }, "World frame, m.")
-      .def_ro("name", &InputEvent::name, "The client's name, or the action's.")
+      .def_prop_ro(
+          "origin", [](const InputEvent& e) { return widen(e.origin); }, "Of a pointer's ray, world frame, m.")
+      .def_prop_ro(
+          "direction", [](const InputEvent& e) { return widen(e.direction); },
+          "Of a pointer's ray, unit vector, world frame.")
+      .def_prop_ro(
+          "widget", [](const InputEvent& e) { return std::pair(e.body.slot, e.body.generation); },
+          "Slot and generation of the control that was changed.")
+      .def_prop_ro(
+          "pointer", [](const InputEvent& e) { return static_cast<int>(e.pointer); }, "A PointerKind.")
+      .def_prop_ro(
+          "data",
+          [](const InputEvent& e) { return nb::bytes(reinterpret_cast<const char*>(e.data.data()), e.data.size()); },
+          "A part of a picture.")
+      .def_ro("number", &InputEvent::number, "Of the request for a picture.")
+      .def_ro("is_final", &InputEvent::is_final, "A key was let go; the last part of a picture.")
+      .def_ro("name", &InputEvent::name, "Of the client, action, pointer or key; the text of a text field.")
       .def_prop_ro(
           "command", [](const InputEvent& e) { return static_cast<int>(e.command); }, "A ControlCommand.")
       .def_ro("value", &InputEvent::value)

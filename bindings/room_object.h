@@ -44,6 +44,7 @@ struct RoomObject {
 
   std::unique_ptr<net::Room> room;
   net::Presenter presenter;
+  net::EntityChanges own;      ///< entities that the script made, to be told with the next poses
   protocol::WorldState state;  ///< that pages have been told of
 };
 

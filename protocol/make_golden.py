@@ -90,6 +90,32 @@ CLIENT: list[Vector] = [
     ("control_pause", "control", b"\x07\x00" + pack("<f", 0.0), {"command": 0, "value": 0.0}),
     ("control_speed", "control", b"\x07\x04" + pack("<f", 0.25), {"command": 4, "value": 0.25}),
     ("ping", "ping", b"\x08" + pack("<d", 1234.5678), {"client_time": 1234.5678}),
+    (
+        "change",
+        "change",
+        b"\x09" + identity(3, 1) + pack("<d", 9.81) + text("Ada"),
+        {"widget": {"slot": 3, "generation": 1}, "value": 9.81, "text": "Ada"},
+    ),
+    (
+        "pointer",
+        "pointer",
+        b"\x0a\x01" + identity(12, 1) + text("mouse") + vec3([0.5, 1, 2]) + vec3([0, 1.5, 4]) + vec3([0, 0, -1]),
+        {
+            "kind": 1,
+            "body": {"slot": 12, "generation": 1},
+            "name": "mouse",
+            "point": [0.5, 1.0, 2.0],
+            "origin": [0.0, 1.5, 4.0],
+            "direction": [0.0, 0.0, -1.0],
+        },
+    ),
+    ("key", "key", b"\x0b" + text("ArrowUp") + b"\x01", {"key": "ArrowUp", "down": True}),
+    (
+        "picture",
+        "picture",
+        b"\x0c" + pack("<I", 7) + b"\x01" + pack("<I", 3) + b"PNG",
+        {"request": 7, "is_last": True, "data": [80, 78, 71]},
+    ),
 ]
 
 BODIES = [
@@ -260,6 +286,13 @@ SERVER: list[Vector] = [
         b"\x4d" + pack("<I", 1) + text("push") + text("p") + text("push it") + text("") + b"\x01\x02",
         {"actions": [{"name": "push", "key": "p", "label": "push it", "help": "", "on": 1, "button": 2}]},
     ),
+    (
+        "listens",
+        "listens",
+        b"\x4e\x01\x00" + pack("<I", 2) + text("k") + text(" "),
+        {"clicks": True, "hovers": False, "keys": ["k", " "]},
+    ),
+    ("ask_picture", "ask_picture", b"\x4f" + pack("<I", 7), {"request": 7}),
 ]
 
 PART = {
@@ -338,6 +371,88 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
     ("nail", anchor(A), {"at": A}),
     ("particle_set", b"\x01" + pack("<I", 1000), {"active": True, "capacity": 1000}),
     ("static_shape", part(PART), {"part": PART}),
+    (
+        "label",
+        anchor(A) + anchor(B) + vec3([0.0, 0.5, 0.0]) + text("K\u00e4tte") + pack("<fI", 0.125, 0xFF8000),
+        {"a": A, "b": B, "offset": [0.0, 0.5, 0.0], "text": "K\u00e4tte", "height": 0.125, "color": 0xFF8000},
+    ),
+    (
+        "line",
+        array("I", [12, 0xFFFFFFFF]) + array("f", [0, 1, 2, 3, 4, 5]) + pack("<fBI", 0.25, 1, NO_COLOR),
+        {
+            "bodies": [12, 0xFFFFFFFF],
+            "points": [0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
+            "radius": 0.25,
+            "closed": True,
+            "color": NO_COLOR,
+        },
+    ),
+    (
+        "arrow",
+        anchor(A) + anchor(B) + vec3([1.0, 0.0, -0.5]) + pack("<fI", 0.0, 0xFF8000),
+        {"a": A, "b": B, "vector": [1.0, 0.0, -0.5], "radius": 0.0, "color": 0xFF8000},
+    ),
+    (
+        "axes",
+        anchor(A) + quat([0.5, 0.5, 0.5, 0.5]) + pack("<f", 0.75),
+        {"at": A, "rotation": [0.5, 0.5, 0.5, 0.5], "length": 0.75},
+    ),
+    (
+        "trace",
+        anchor(A) + pack("<fIfI", 2.5, 1000, 0.0, NO_COLOR),
+        {"at": A, "seconds": 2.5, "capacity": 1000, "radius": 0.0, "color": NO_COLOR},
+    ),
+    (
+        "point_cloud",
+        anchor(B) + array("f", [0, 1, 2, 3, 4, 5]) + array("f", [0.5]) + array("I", [0xFF8000, 0x80FF]),
+        {"at": B, "points": [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], "radii": [0.5], "colors": [0xFF8000, 0x80FF]},
+    ),
+    ("marker", pack("<I", 12) + part(PART), {"body": 12, "part": PART}),
+    (
+        "widget",
+        b"\x01"
+        + text("gravity")
+        + text("")
+        + text("m/s\u00b2")
+        + pack("<4d", 9.81, 0, 20, 0.5)
+        + text("")
+        + pack("<I", 1)
+        + text("one")
+        + b"\x01",
+        {
+            "kind": 1,
+            "label": "gravity",
+            "help": "",
+            "unit": "m/s\u00b2",
+            "value": 9.81,
+            "minimum": 0.0,
+            "maximum": 20.0,
+            "step": 0.5,
+            "text": "",
+            "options": ["one"],
+            "enabled": True,
+        },
+    ),
+    (
+        "plot",
+        text("energy")
+        + text("J")
+        + pack("<fI", 10, 2)
+        + text("kinetic")
+        + text("potential")
+        + array("I", [1, 2])
+        + array("f", [0.5, 1])
+        + array("f", [1, 2, 3, 4]),
+        {
+            "label": "energy",
+            "unit": "J",
+            "seconds": 10.0,
+            "curves": ["kinetic", "potential"],
+            "colors": [1, 2],
+            "times": [0.5, 1.0],
+            "values": [1.0, 2.0, 3.0, 4.0],
+        },
+    ),
 ]
 
 NAN, INFINITY = float("nan"), float("inf")
@@ -345,7 +460,7 @@ NAN, INFINITY = float("nan"), float("inf")
 # name, who sends it, bytes, a part of the reason that every decoder gives
 BAD: list[tuple[str, str, bytes, str]] = [
     ("bad_empty", "client", b"", "the frame is empty"),
-    ("bad_type", "client", b"\x09", "has the type 9"),
+    ("bad_type", "client", b"\x3f", "has the type 63"),
     ("bad_direction", "client", b"\x40\x01\x00", "has the type 64"),
     ("bad_short_select", "client", b"\x02\x01\x00\x00", "select.body ends early"),
     ("bad_long_select", "client", b"\x02" + bytes(9), "the frame has 1 bytes too many"),

@@ -38,6 +38,20 @@ void EntityChanges::set(std::uint8_t kind, protocol::Id id, std::span<const std:
 
 void EntityChanges::destroy(std::uint8_t kind, protocol::Id id) { items_.push_back({kind, id, bytes_.size(), 0}); }
 
+void EntityChanges::append(const EntityChanges& later) {
+  for (Item item : later.items_) {
+    item.begin += bytes_.size();
+    items_.push_back(item);
+  }
+  bytes_.insert(bytes_.end(), later.bytes_.begin(), later.bytes_.end());
+}
+
+std::optional<std::uint8_t> entity_kind_of(std::string_view name) {
+  for (std::uint8_t kind = 0; kind < entity_kind_count; ++kind)
+    if (entity_kind_name(kind) == name) return kind;
+  return std::nullopt;
+}
+
 void EntityStore::apply(const EntityChanges& changes) {
   changes.for_each([&](std::uint8_t kind, protocol::Id id, std::span<const std::uint8_t> record) {
     Entry& entry = entry_at(kind, id.slot);

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -29,6 +30,7 @@ constexpr std::uint8_t entity_kind() {
 }
 
 std::string_view entity_kind_name(std::uint8_t kind);
+std::optional<std::uint8_t> entity_kind_of(std::string_view name);
 
 /// Changes of entities, in order: records, and ids of what is gone.
 class EntityChanges {
@@ -36,6 +38,7 @@ class EntityChanges {
   void set(std::uint8_t kind, protocol::Id id, std::span<const std::uint8_t> record);
   void destroy(std::uint8_t kind, protocol::Id id);
   bool empty() const { return items_.empty(); }
+  void append(const EntityChanges& later);
 
   /// visit(kind, id, record): without a record the entity is gone.
   template <class Visit>

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t max_waiting_input = 4096;
 constexpr std::size_t max_holds = 32;
 constexpr std::string_view clients_key = "clients";
+constexpr std::size_t max_picture_bytes = 64 << 20;
 constexpr std::size_t max_kept_notices = 8;
 constexpr auto reset_pause = std::chrono::seconds(1);  // of one client
 constexpr float farthest = 1e9F;                       // m, as the engine's limit
@@ -113,6 +114,16 @@ bool Hub::notice(std::uint32_t client, std::uint8_t level, std::string_view titl
 bool Hub::forget_notice(std::string_view title) {
   return post([this, title = std::string(title)] {
     std::erase_if(kept_notices_, [&](const auto& kept) { return title.empty() || kept.first == title; });
+  });
+}
+
+bool Hub::ask_picture(std::uint32_t client, std::uint32_t number) {
+  return post([this, client, number, frame = make_frame(protocol::AskPicture{number})] {
+    const auto found = clients_.find(client);
+    if (found == clients_.end()) return;
+    found->second.picture = number;
+    found->second.picture_bytes = 0;
+    found->second.link->send(frame, {});
   });
 }
 
@@ -254,6 +265,14 @@ void Hub::push_input(InputEvent event) {
         return;
       }
     }
+    if (event.kind == InputEvent::Kind::change) {
+      // Only the newest value of a control counts, as far as nothing else was done after the one before.
+      if (!input_.empty() && input_.back().kind == event.kind && input_.back().client == client &&
+          input_.back().body == event.body) {
+        input_.back() = std::move(event);
+        return;
+      }
+    }
     if (event.kind == InputEvent::Kind::control && has_waiting_twin(input_, event)) return;
     const bool is_own = event.kind == InputEvent::Kind::join || event.kind == InputEvent::Kind::leave;
     if (is_own || input_counts_[client]++ < max_waiting_input) {
@@ -328,6 +347,50 @@ void Hub::handle(std::uint32_t client, const protocol::Control& message) {
   InputEvent event{.kind = InputEvent::Kind::control, .client = client};
   event.command = message.command;
   event.value = message.value;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::Change& message) {
+  if (!may_act(client)) return;
+  InputEvent event{.kind = InputEvent::Kind::change, .client = client};
+  event.body = message.widget;
+  event.value = message.value;
+  event.name = message.text;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::Pointer& message) {
+  if (clients_.at(client).role == protocol::Role::viewer) return;
+  if (!is_near(message.point) || !is_near(message.origin)) return refuse_frame(client, "pointer: it is beyond 1e9 m");
+  InputEvent event{.kind = InputEvent::Kind::pointer, .client = client};
+  event.pointer = message.kind;
+  event.body = message.body;
+  event.name = message.name;
+  event.target = message.point;
+  event.origin = message.origin;
+  event.direction = message.direction;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::Key& message) {
+  if (clients_.at(client).role == protocol::Role::viewer) return;
+  InputEvent event{.kind = InputEvent::Kind::key, .client = client};
+  event.name = message.key;
+  event.is_final = !message.down;
+  push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::Picture& message) {
+  Client& self = clients_.at(client);
+  if (self.picture == 0 || message.request != self.picture) return refuse_frame(client, "picture: none was asked for");
+  self.picture_bytes += message.data.size();
+  const bool is_too_large = self.picture_bytes > max_picture_bytes;
+  if (message.is_last || is_too_large) self.picture = 0;
+  if (is_too_large) return refuse_frame(client, "picture: it is above 64 MiB");
+  InputEvent event{.kind = InputEvent::Kind::picture, .client = client};
+  event.number = message.request;
+  event.is_final = message.is_last;
+  event.data = message.data;
   push_input(std::move(event));
 }
 

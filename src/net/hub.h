@@ -65,6 +65,7 @@ class Hub {
                             std::string_view hint, bool is_kept);
   /// The kept notices with this title, or all for an empty one, are not told to those who join later.
   [[nodiscard]] bool forget_notice(std::string_view title);
+  [[nodiscard]] bool ask_picture(std::uint32_t client, std::uint32_t number);
   [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position);
   std::vector<InputEvent> take_input();
 
@@ -96,6 +97,8 @@ class Hub {
     std::set<std::uint32_t> holds;
     Clock::time_point reset_at = Clock::time_point::min();  ///< when it asked for a reset last
     bool is_told_to_wait = false;                           ///< that it asks for resets too often
+    std::uint32_t picture = 0;                              ///< number of the one that it was asked for; 0: none
+    std::size_t picture_bytes = 0;                          ///< of it that came
   };
   using Edit = std::function<void()>;
 
@@ -120,6 +123,10 @@ class Hub {
   void handle(std::uint32_t client, const protocol::Action& message);
   void handle(std::uint32_t client, const protocol::Control& message);
   void handle(std::uint32_t client, const protocol::Ping& message);
+  void handle(std::uint32_t client, const protocol::Change& message);
+  void handle(std::uint32_t client, const protocol::Pointer& message);
+  void handle(std::uint32_t client, const protocol::Key& message);
+  void handle(std::uint32_t client, const protocol::Picture& message);
 
   const std::string world_;
   const std::size_t max_clients_;

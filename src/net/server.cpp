@@ -291,6 +291,8 @@ void Room::publish(const PoseSnapshot& snapshot, EntityChanges changes) {
 void Room::set(const protocol::WorldSettings& settings) { deliver_if(hub_->set(settings)); }
 void Room::set(const protocol::WorldState& state) { deliver_if(hub_->set(state)); }
 void Room::set(const protocol::Actions& actions) { deliver_if(hub_->set(actions)); }
+void Room::set(const protocol::Listens& listens) { deliver_if(hub_->set(listens)); }
+void Room::ask_picture(std::uint32_t client, std::uint32_t number) { deliver_if(hub_->ask_picture(client, number)); }
 
 void Room::notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
                   std::string_view hint, bool is_kept) {

@@ -35,16 +35,34 @@ struct ServerOptions {
 
 /// What a user did, or that one came or went. Fields that a kind does not need are left at their defaults.
 struct InputEvent {
-  enum class Kind : std::uint8_t { join, leave, select, grab_start, grab_move, grab_end, action, control };
+  enum class Kind : std::uint8_t {
+    join,
+    leave,
+    select,
+    grab_start,
+    grab_move,
+    grab_end,
+    action,
+    control,
+    change,
+    pointer,
+    key,
+    picture
+  };
   Kind kind = Kind::join;
-  std::uint32_t client = 0;  ///< from 1, never used twice in a world
-  std::uint32_t hold = 0;    ///< grab_...: the client's own number for this hand
-  protocol::Id body;         ///< of an entity, not checked: it may be gone; null: none
-  Vec3f local_point{};       ///< grab_start: body frame
-  Vec3f target{};            ///< grab_start, grab_move: world frame
-  std::string name;          ///< join: the client's name; action: the action's name
+  std::uint32_t client = 0;        ///< from 1, never used twice in a world
+  std::uint32_t hold = 0;          ///< grab_...: the client's own number for this hand
+  protocol::Id body;               ///< of an entity, not checked: it may be gone; null: none. change: of the widget
+  Vec3f local_point{};             ///< grab_start: body frame
+  Vec3f target{};                  ///< grab_start, grab_move: world frame; pointer: where it hit the body
+  Vec3f origin{}, direction{};     ///< pointer: its ray, world frame
+  std::string name;                ///< of the client (join), action, pointer or key; change: the text of a text field
+  std::vector<std::uint8_t> data;  ///< picture: a part of it
   protocol::ControlCommand command{};
-  float value = 0;  ///< control: speed in times real time
+  protocol::PointerKind pointer{};
+  double value = 0;          ///< control: speed in times real time; change: of the widget
+  bool is_final = false;     ///< key: let go; picture: the last part
+  std::uint32_t number = 0;  ///< picture: of the request
 };
 
 struct ServerStatistics {
@@ -78,6 +96,9 @@ class Room {
   void set(const protocol::WorldSettings& settings);
   void set(const protocol::WorldState& state);
   void set(const protocol::Actions& actions);
+  void set(const protocol::Listens& listens);
+  /// Asks one client for a picture of what it shows; its parts come as input with this number. One at a time.
+  void ask_picture(std::uint32_t client, std::uint32_t number);
   /// A card on one client's page, or on all (client 0). Level 0 info, 1 warning, 2 error. Too long a text is cut.
   /// Kept ones are shown to later clients too, at most eight, until `forget_notice` with their title, or an empty one for all.
   void notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,

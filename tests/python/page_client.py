@@ -35,8 +35,8 @@ def encode(name: str, /, **values: Any) -> bytes:
     out = bytes([message["type"]])
     for field in message["fields"]:
         value, kind = values.pop(field["name"]), field["type"]
-        if kind == "string":
-            text = value.encode()
+        if kind in ("string", "bytes"):
+            text = value.encode() if kind == "string" else value
             out += struct.pack("<I", len(text)) + text
         else:
             out += struct.pack("<" + NUMBERS[kind], *(value if kind in GROUPS else (value,)))

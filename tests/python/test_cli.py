@@ -220,6 +220,47 @@ def test_a_script_error_does_not_end_the_world_where_the_terminal_cannot_be_writ
         assert done.returncode == 0, redirect
 
 
+def test_watch_runs_a_script_anew_when_it_is_saved_and_pages_find_it(tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    text = textwrap.dedent("""
+        import iota, other
+        system = iota.System()
+        system.body().particle((0, 1, 0))
+        iota.World(system, title=other.TITLE).run()
+        """)
+    path.write_text(text)
+    (tmp_path / "other.py").write_text("TITLE = 'first'")
+    words = [sys.executable, "-m", "iota", "run", str(path), "--watch", "--port", "0", "--no-open"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None and process.stderr is not None
+        try:
+
+            def url_of(title: str) -> str:
+                said = process.stdout.readline() if process.stdout else ""
+                assert said.startswith(f"{title}: http"), said
+                return said.split(": ", 1)[1].strip()
+
+            first = url_of("first")
+            with PageClient(first) as page:
+                path.write_text(text + "this is no Python")
+                assert "mine.py, line" in process.stderr.readline()
+                step = page.last["poses"]["step"]
+                page.wait_for(lambda: page.last["poses"]["step"] > step + 5)
+                path.write_text(text)
+                assert "was saved" in process.stderr.readline()
+                assert page.closed.wait(20)
+            assert url_of("first") == first
+            (tmp_path / "other.py").write_text("TITLE = 1 / 0")
+            for _ in range(20):
+                if "waiting" in process.stderr.readline():
+                    break
+            (tmp_path / "other.py").write_text("TITLE = 'second'")
+            assert url_of("second") == first, "the address stays"
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.wait(20)
+
+
 def test_the_token_can_be_renewed() -> None:
     first = run("token").stdout
     assert re.fullmatch("[0-9a-f]{32}\n", first) and run("token").stdout == first

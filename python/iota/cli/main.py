@@ -12,7 +12,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, bench_forces, imports, run, verify
+from iota.cli import bench, bench_forces, imports, run, verify, watch
 from iota.cli.failure import Failure
 
 MOST_LINKS = 1_000_000  # some GB
@@ -71,7 +71,8 @@ def make_parser() -> Parser:
         "--headless", action="store_true", help="serve nothing; run so many simulated seconds (default: 10)"
     )
     running.add_argument("--json", action="store_true", help="print the run's figures as one JSON object at its end")
-    running.set_defaults(function=run.run)
+    running.add_argument("--watch", action="store_true", help="run the file anew whenever it is saved")
+    running.set_defaults(function=lambda a: (watch.watch if a.watch else run.run)(a))
 
     token = commands.add_parser("token", help="prints the secret in the page's address, or makes a new one")
     token.add_argument("--renew", action="store_true", help="a new one: addresses from before are refused from then on")

@@ -5,19 +5,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from iota._core import Body, System
+from iota._core import Body, System, Vec3
 from iota.world.notices import Notices
 
 
 @dataclass(frozen=True)
 class Event:
     """What a callback is given. name: of the action, or of what happened. client: whose it is, 0 for no user's. target: the
-    held or selected body, None where there is none."""
+    body that it is on, for actions the held or selected one; None where there is none.
+
+    point: where a pointer hit the body, or where a hand is, world, m; None where nothing was hit. origin, direction: of the
+    pointer's ray, where it is known. pointer: "mouse", "touch 1", "left", "right". phase: "start", "update" or "end" of a
+    drag or hover. hold: number of the hand. key: that was pressed or let go."""
 
     system: System
     name: str
     client: int = 0
     target: Body | None = None
+    point: Vec3 | None = None
+    origin: Vec3 | None = None
+    direction: Vec3 | None = None
+    pointer: str = ""
+    phase: str = ""
+    hold: int = 0
+    key: str = ""
     notices: Notices = field(default_factory=Notices, repr=False, compare=False)
 
     @property

@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from iota._core import Body, Grip, InputEvent, System
 from iota.simulator import SimulatedGrip
+
+TakePicture = Callable[[int, float], bytes]  # client, longest wait in s
 
 
 @dataclass
@@ -26,6 +30,17 @@ class Client:
     name: str = ""
     selected: Body | None = None
     holds: dict[int, Hold] = field(default_factory=dict)
+    take_picture: TakePicture | None = field(default=None, repr=False, compare=False)
+
+    def screenshot(self, file: str | Path | None = None, seconds: float = 20.0) -> bytes:
+        """What this page shows now, as a PNG file; also written to `file`. The world waits for it, `seconds` at most. Raises
+        TimeoutError when it does not come (the page is in the background), RuntimeError when the world is on no page."""
+        if self.take_picture is None:
+            raise RuntimeError("this client is on no page")
+        picture = self.take_picture(self.id, seconds)
+        if file is not None:
+            Path(file).write_bytes(picture)
+        return picture
 
 
 def alive(body: Body | None) -> Body | None:
@@ -39,11 +54,12 @@ class Hands:
     def __init__(self, system: System) -> None:
         self._system = system
         self.clients: dict[int, Client] = {}
+        self.take_picture: TakePicture | None = None
 
     def take(self, event: InputEvent, body: Any) -> None:
         """One event of kind join, leave, select or grab_*. body: that it is on, if any."""
         if event.kind == "join":
-            self.clients[event.client] = Client(event.client, event.name)
+            self.clients[event.client] = Client(event.client, event.name, take_picture=self.take_picture)
             return
         client = self.clients.get(event.client)
         if client is None:

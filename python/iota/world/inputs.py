@@ -8,11 +8,14 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from iota._core import InputEvent
-from iota._protocol import ControlCommand
+from iota._protocol import ControlCommand, PointerKind
 from iota.world.callbacks import Guard, one_line
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event
+from iota.world.hands import alive
+from iota.world.listeners import Drag, Listener
 from iota.world.state import State
+from iota.world.widgets import Widget
 
 
 class Inputs:
@@ -20,6 +23,7 @@ class Inputs:
 
     def __init__(self, state: State, guard: Guard, step: Callable[[], object], reset: Callable[[], None]) -> None:
         self._state, self._guard, self._step, self._reset = state, guard, step, reset
+        self._waiting: list[tuple[InputEvent, Any]] = []
         self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
     def call(self, function: Callable[[], None]) -> None:
@@ -32,8 +36,14 @@ class Inputs:
 
     def take(self, events: Iterable[tuple[InputEvent, Any]]) -> None:
         """Everything that users did, each with the body that it is on, if that is there."""
-        for event, body in events:
+        waited, self._waiting = self._waiting, []
+        for event, body in (*waited, *events):
+            if event.kind == "picture":
+                self._state.pictures.take(event)
+                continue
             if event.names_body and body is None:
+                if event.kind == "pointer":
+                    continue
                 text = "It was destroyed, or made one with another body."
                 self._state.notices.send("That is gone", text, client=event.client)
                 if event.kind != "select":
@@ -42,10 +52,98 @@ class Inputs:
                 self._act(event, body)
             elif event.kind == "control":
                 self._control(event)
+            elif event.kind == "change":
+                self._change(event)
+            elif event.kind == "pointer":
+                self._point(event, body)
+            elif event.kind == "key":
+                for listener in self._state.listeners.of_key(event.name, event.is_final):
+                    self._tell(listener, event, key=event.name)
             else:
                 self._take_hands(event, body)
 
+    def take_pictures(self, events: Iterable[tuple[InputEvent, Any]]) -> None:
+        """Only parts of pictures; all else waits for `take`."""
+        for event, body in events:
+            if event.kind == "picture":
+                self._state.pictures.take(event)
+            else:
+                self._waiting.append((event, body))
+
+    def frame(self) -> None:
+        """Calls the functions for each frame."""
+        state = self._state
+        for listener in state.listeners.of("frame"):
+            arguments = (Event(state.system, "frame", notices=state.notices),) if listener.hook.takes_event else ()
+            if not self._guard.call(f"on_frame ({listener.hook.name})", listener.hook.function, *arguments):
+                state.listeners.remove(listener.hook.function)  # sixty errors a second help nobody
+
+    def _tell(self, listener: Listener, event: InputEvent, body: Any = None, **more: Any) -> None:
+        """Calls one of the script's functions."""
+        state, hook = self._state, listener.hook
+        given = Event(state.system, listener.kind, event.client, body, notices=state.notices, **more)
+        self._guard.call(f"on_{listener.kind} ({hook.name})", hook.function, *((given,) if hook.takes_event else ()))
+
+    def _change(self, event: InputEvent) -> None:
+        widget = self._state.things.find("widget", event.widget)
+        if not isinstance(widget, Widget):
+            self._state.notices.send("That is gone", "The script has taken it off the page.", client=event.client)
+            return
+        given = Event(self._state.system, widget.label, event.client, notices=self._state.notices)
+        widget.take(event.value, event.name, given, self._guard)
+
+    def _point(self, event: InputEvent, body: Any) -> None:
+        kind = "click" if event.pointer == PointerKind.CLICK else "hover"
+        phase = {PointerKind.HOVER: "start", PointerKind.HOVER_END: "end"}.get(PointerKind(event.pointer), "")
+        point = None if body is None else event.target
+        ray = {"origin": event.origin, "direction": event.direction}
+        for listener in self._state.listeners.of(kind, body):
+            self._tell(listener, event, body, point=point, pointer=event.name, phase=phase, **ray)
+
     def _take_hands(self, event: InputEvent, body: Any) -> None:
+        """Hands of users, and who is there. The script hears of both; it may move by itself what they would pull."""
+        listeners, kind = self._state.listeners, event.kind
+        if kind == "grab_start" and body is not None and body.kind != "inactive":
+            drag = Drag(body, list(listeners.of("drag", body)))
+            is_taken = any(listener.takes_over for listener in drag.listeners)
+            listeners.drags[event.client, event.hold] = drag
+            if not is_taken:
+                self._move_hands(event, body)
+            self._tell_of_hand("press", event, drag)
+            self._tell_drag("start", event, drag)
+        elif kind in ("grab_move", "grab_end"):
+            self._move_hands(event, body)
+            found = listeners.drags.get((event.client, event.hold))
+            if found is not None and kind == "grab_move":
+                self._tell_drag("update", event, found)
+            elif found is not None:
+                self._end(event, (event.client, event.hold))
+        else:
+            if kind == "leave":
+                for hand in [hand for hand in listeners.drags if hand[0] == event.client]:
+                    self._end(event, hand)
+            self._move_hands(event, body)
+            if kind in ("join", "leave"):
+                for listener in listeners.of(kind):
+                    self._tell(listener, event)
+
+    def _end(self, event: InputEvent, hand: tuple[int, int]) -> None:
+        drag = self._state.listeners.drags.pop(hand)
+        self._tell_drag("end", event, drag)
+        self._tell_of_hand("release", event, drag)
+
+    def _tell_of_hand(self, kind: str, event: InputEvent, drag: Drag) -> None:
+        body = alive(drag.body)
+        for listener in self._state.listeners.of(kind, body) if body is not None else ():
+            self._tell(listener, event, body, point=event.target if kind == "press" else None, hold=event.hold)
+
+    def _tell_drag(self, phase: str, event: InputEvent, drag: Drag) -> None:
+        body = alive(drag.body)
+        point = None if phase == "end" else event.target
+        for listener in drag.listeners if body is not None else ():
+            self._tell(listener, event, body, point=point, phase=phase, hold=event.hold)
+
+    def _move_hands(self, event: InputEvent, body: Any) -> None:
         """What a page asks for that the system refuses is that page's error alone, and nothing of the script's."""
         try:
             self._state.hands.take(event, body)
@@ -66,7 +164,7 @@ class Inputs:
             title = f"Nothing to {action.label}"
             state.notices.send(title, "Nothing is held or selected.", hint, client=event.client)
             return
-        given = Event(state.system, action.name, event.client, body, state.notices)
+        given = Event(state.system, action.name, event.client, body, notices=state.notices)
         arguments = (given,) if action.hook.takes_event else ()
         self._guard.call(f"The action {action.name!r}", action.hook.function, *arguments)
 

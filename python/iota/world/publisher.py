@@ -22,6 +22,7 @@ class Publisher:
         self.url = server.url if is_alone else server.url_of(room.world)
         state.notices.show, state.notices.forget = room.notice, room.forget_notice
         state.scene.tell_anew()
+        state.things.tell_anew()
         state.is_changed = True
 
     @classmethod
@@ -49,6 +50,7 @@ class Publisher:
             state.is_changed = False
         clock = state.clock
         self.room.set_state(paused=clock.paused, speed=clock.speed, step_ms=state.step_ms, dt=clock.dt)
+        state.things.tell(self.room, state.system.structure_version)
         self._source.publish(self.room)
         for text in self.room.take_warnings():
             state.notices.warn_once(text)
@@ -68,5 +70,8 @@ class Publisher:
             camera=None if state.camera is None else (Vec3(*state.camera.position), Vec3(*state.camera.target)),
             ground=state.ground,
         )
+        listeners = state.listeners
+        clicks, hovers = listeners.has("click"), listeners.has("hover")
+        self.room.set_listens(clicks=clicks, hovers=hovers, keys=listeners.keys)
         self.room.set_actions([action.describe() for action in state.actions])
         state.scene.tell(self.room, state.statics)

@@ -13,8 +13,11 @@ from iota.looks import Looks
 from iota.world.actions import Actions
 from iota.world.clock import Clock
 from iota.world.hands import Hands
+from iota.world.listeners import Listeners
 from iota.world.notices import Notices
+from iota.world.pictures import Pictures
 from iota.world.scene import Camera, Scene
+from iota.world.things import Things
 
 TIES = ("spring", "rope", "rod")  # what is drawn between two points, by classes of these names
 
@@ -31,6 +34,9 @@ class State:
     camera: Camera | None = None
     statics: list[dict[str, Any]] = field(default_factory=list)
     actions: Actions = field(default_factory=Actions)
+    things: Things = field(default_factory=Things)
+    listeners: Listeners = field(default_factory=Listeners)
+    pictures: Pictures = field(default_factory=Pictures)
     notices: Notices = field(default_factory=Notices)
     step_ms: float = 0.0  # what a step takes, smoothed
     is_changed: bool = True  # what pages were told of it, poses apart, does not hold any more
@@ -49,6 +55,12 @@ class State:
         if self._usual_thickness is None:
             self._usual_thickness = usual_thickness(self.system)
         return self._usual_thickness if len(body.particles) > 1 else 2 * self._usual_thickness
+
+    def forget_hands(self) -> None:
+        """The system is another than a moment ago: what users held is not held any more."""
+        self.hands.forget()
+        self.listeners.drags.clear()
+        self.is_changed = True
 
     def class_of(self, looks: Looks) -> str:
         """The class of bodies that are drawn so, as pages name it: a new one where there is none."""

@@ -78,10 +78,9 @@ class Stepper:
         if self._start is None:
             return
         self._state.system.restore(self._start)
-        self._state.hands.forget()
+        self._state.forget_hands()
         if self._floor is not None:
             self._floor.forget()
-        self._state.is_changed = True
         self.schedule.rewind()
         self._off.clear()
         self._state.notices.over()

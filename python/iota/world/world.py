@@ -20,16 +20,19 @@ from iota.world import options as run_options
 from iota.world.actions import Action
 from iota.world.callbacks import Guard, Hook
 from iota.world.clock import Clock
+from iota.world.drawing import Drawing
 from iota.world.floor import level_below
 from iota.world.frames import turn_from_x
 from iota.world.hands import Client
 from iota.world.inputs import Inputs
+from iota.world.listening import Listening
 from iota.world.publisher import Publisher
 from iota.world.scene import Camera
 from iota.world.server import Server
 from iota.world.state import TIES, State
 from iota.world.stepper import Stepper
 from iota.world.summary import RunSummary
+from iota.world.widgets import Plot
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 Result = TypeVar("Result")
@@ -37,7 +40,7 @@ Result = TypeVar("Result")
 HEADLESS_SECONDS = 10.0  # where nobody says how long
 
 
-class World:
+class World(Drawing, Listening):
     """Runs a system in real time and serves a page that shows it.
 
     system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. style: the style of
@@ -71,6 +74,7 @@ class World:
         self._guard = Guard(self._state.notices.error, self._state.notices.warning, self._state.notices.over)
         self._stepper = Stepper(self._state, self._guard)
         self._inputs = Inputs(self._state, self._guard, self._stepper.step, self._stepper.reset)
+        self._state.hands.take_picture = self._take_picture
         self._publisher: Publisher | None = None
         self._runner: int | None = None
         self._background: threading.Thread | None = None
@@ -254,8 +258,7 @@ class World:
 
     def _moved_in_history(self, moved: bool) -> bool:
         if moved:
-            self._state.hands.forget()
-            self._state.is_changed = True
+            self._state.forget_hands()
         return moved
 
     # --- running --------------------------------------------------------------------------------------------------
@@ -443,8 +446,37 @@ class World:
         if self._publisher is not None:
             self._inputs.take(self._publisher.take_input())
 
+    def _take_picture(self, client: int, seconds: float) -> bytes:
+        """Waits for it without a step; what users do meanwhile comes after it."""
+
+        def wait() -> bytes:
+            if self._publisher is None:
+                raise RuntimeError("this world is not on a page")
+            pictures = self._state.pictures
+            number = pictures.ask()
+            self._publisher.frame()  # it shows what the script has just done
+            self._publisher.room.ask_picture(client, number)
+            end = time.monotonic() + seconds
+            try:
+                while (picture := pictures.ready(number)) is None:
+                    if time.monotonic() > end:
+                        raise TimeoutError(f"no picture came from client {client} within {seconds:g} s")
+                    time.sleep(0.005)
+                    self._inputs.take_pictures(self._publisher.take_input())
+            finally:
+                pictures.forget(number)
+            if not picture:
+                raise RuntimeError(f"client {client} could not make a picture")
+            return picture
+
+        return self.call(wait)
+
     def _send_frame(self) -> None:
         assert self._publisher is not None
+        self._inputs.frame()
+        for thing in self.things:
+            if isinstance(thing, Plot):
+                thing.sample(self.system.time, self._guard)
         self._publisher.frame()
         if self.reached_speed < 0.8:
             text = "This world is too much for real time on this machine: it runs in slow motion."

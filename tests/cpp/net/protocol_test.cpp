@@ -32,6 +32,10 @@ const std::map<std::string, ClientMessage>& client_vectors() {
       {"control_pause", Control{ControlCommand::pause, 0}},
       {"control_speed", Control{ControlCommand::speed, 0.25F}},
       {"ping", Ping{1234.5678}},
+      {"change", Change{{3, 1}, 9.81, "Ada"}},
+      {"pointer", Pointer{PointerKind::hover, {12, 1}, "mouse", {0.5F, 1, 2}, {0, 1.5F, 4}, {0, 0, -1}}},
+      {"key", Key{"ArrowUp", true}},
+      {"picture", Picture{7, true, {'P', 'N', 'G'}}},
   };
   return vectors;
 }
@@ -64,6 +68,8 @@ const std::map<std::string, ServerMessage>& server_vectors() {
        WorldSettings{"K\u00e4tte", {"rope", "chain"}, "rope", true, {2.5F, 1.5F, 3.5F}, {0, 1.25F, 0}, true, -0.5F}},
       {"world_state", WorldState{true, 0.5F, 0.375F, 1.0 / 120}},
       {"actions", Actions{{{"push", "p", "push it", "", ActionTarget::body, ControllerButton::b}}}},
+      {"listens", Listens{true, false, {"k", " "}}},
+      {"ask_picture", AskPicture{7}},
   };
   return vectors;
 }
@@ -76,7 +82,8 @@ const Part mesh{"chain", {"mesh", {}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}}, {
 
 /// A record of each kind, as in vectors.json.
 const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEntity, NailEntity, ParticleSetEntity,
-                 StaticShapeEntity>
+                 StaticShapeEntity, LabelEntity, LineEntity, ArrowEntity, AxesEntity, TraceEntity, PointCloudEntity,
+                 MarkerEntity, WidgetEntity, PlotEntity>
     entity_vectors{{entity_id, "link", {torus, mesh}},
                    {entity_id, BodyKind::scripted, 9, true, 0.125F},
                    {entity_id, 40000},
@@ -84,7 +91,16 @@ const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEnti
                    {entity_id, "revolute", on_body, in_world, {0, 0, 1}},
                    {entity_id, on_body},
                    {entity_id, true, 1000},
-                   {entity_id, torus}};
+                   {entity_id, torus},
+                   {entity_id, on_body, in_world, {0, 0.5F, 0}, "K\u00e4tte", 0.125F, 0xFF8000},
+                   {entity_id, {12, no_body}, {0, 1, 2, 3, 4, 5}, 0.25F, true, no_color},
+                   {entity_id, on_body, in_world, {1, 0, -0.5F}, 0, 0xFF8000},
+                   {entity_id, on_body, {0.5F, 0.5F, 0.5F, 0.5F}, 0.75F},
+                   {entity_id, on_body, 2.5F, 1000, 0, no_color},
+                   {entity_id, in_world, {0, 1, 2, 3, 4, 5}, {0.5F}, {0xFF8000, 0x80FF}},
+                   {entity_id, 12, torus},
+                   {entity_id, WidgetKind::slider, "gravity", "", "m/s\u00b2", 9.81, 0, 20, 0.5, "", {"one"}, true},
+                   {entity_id, "energy", "J", 10, {"kinetic", "potential"}, {1, 2}, {0.5F, 1}, {1, 2, 3, 4}}};
 
 template <class Variant>
 std::vector<std::uint8_t> encode_any(const Variant& message) {
@@ -148,7 +164,7 @@ TEST(Protocol, every_golden_file_is_used_and_every_message_has_one) {
 TEST(Protocol, bad_golden_bytes_are_refused_with_their_reason) {
   const std::map<std::string, std::string> client_reasons{
       {"bad_empty", "the frame is empty"},
-      {"bad_type", "has the type 9"},
+      {"bad_type", "has the type 63"},
       {"bad_direction", "has the type 64"},
       {"bad_short_select", "select.body ends early"},
       {"bad_long_select", "the frame has 1 bytes too many"},

@@ -9,6 +9,7 @@ import { Resolution } from "../page/resolution.ts";
 import { Role } from "../protocol/generated.ts";
 import { Overlay } from "../ui/overlay.ts";
 import { byId } from "../ui/dom.ts";
+import { Panel } from "../ui/panel.ts";
 import { offerHeadset } from "../xr/entry.ts";
 import { makeDebug } from "./debug.ts";
 
@@ -39,6 +40,7 @@ function main(): void {
     active: () => overlay.showBar(),
   });
   events.add(overlay);
+  viewer.add(new Panel(page));
   viewer.add(overlay, new Resolution(viewer), {
     aim: () => {
       if (viewer.presenting) input.mouse.active = false;

@@ -199,6 +199,8 @@ export class Framing implements FramePart, PageListener {
     entities.body.addPoints(points, true, every);
     if (points.count === 0) entities.particleSet.addPoints(points);
     if (points.count === 0) entities.body.addPoints(points, false, every);
+    if (points.count === 0) entities.pointCloud.addPoints(points);
+    if (points.count === 0) entities.line.addPoints(points);
     let bounds = points.bounds();
     if (bounds === null) return null;
     const most = settingSize * Math.max(bounds.radius, 1e-12);
@@ -211,6 +213,10 @@ export class Framing implements FramePart, PageListener {
     };
     setting.clear();
     entities.body.addPoints(setting, false, every);
+    take(setting);
+    setting.clear();
+    entities.pointCloud.addPoints(setting);
+    entities.line.addPoints(setting);
     take(setting);
     entities.staticShape.forEachCorners(setting, take);
     bounds = points.bounds()!;

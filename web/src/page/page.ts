@@ -15,6 +15,7 @@ import { Framing } from "./framing.ts";
 import { Highlights } from "./highlights.ts";
 import { pageCommands, scriptCommands } from "./page_commands.ts";
 import type { PageParts } from "./page_parts.ts";
+import { Reports } from "./reports.ts";
 import { Selection } from "./selection.ts";
 import { Session } from "./session.ts";
 import { Sound } from "./sound.ts";
@@ -55,8 +56,9 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
   };
   events.add(actions, selection, flashesOf(flashes, parts), sound, applySettings(parts), framing);
   viewer.lookDistance = () => navigation.distance;
+  viewer.add({ draw: () => void viewer.camera.getWorldPosition(world.eye) });
   // Bodies are where they are drawn before the camera is placed.
-  viewer.add(selection, ...Object.values<EntityView<never>>(world.entities), framing, flatCamera(parts), highlights, flashes);
+  viewer.add(new Reports(parts), selection, ...Object.values<EntityView<never>>(world.entities), framing, flatCamera(parts), highlights, flashes);
   return {
     ...parts,
     commands,

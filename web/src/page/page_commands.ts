@@ -4,6 +4,7 @@
 import type { Choice, Command, Entry, ScriptCommand } from "../commands/command.ts";
 import { ActionTarget, ControlCommand, ControllerButton, NoticeLevel, type ActionEntry } from "../protocol/generated.ts";
 import type { PageParts } from "./page_parts.ts";
+import { savePicture } from "./picture.ts";
 
 /** Times real time. */
 const speeds: readonly number[] = [0.1, 0.25, 0.5, 1, 2];
@@ -131,6 +132,13 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
         if (viewer.stage.gridShown) say("grid", `Fine lines each ${lengthName(viewer.stage.gridCell)}, stronger ones each ten`);
         viewer.invalidate();
       },
+    },
+    {
+      name: "picture",
+      help: "saves a picture",
+      keys: ["p"],
+      title: () => "Picture",
+      run: () => void savePicture(viewer, world.settings.title).catch((error: unknown) => say("picture", String(error))),
     },
     {
       name: "sound",

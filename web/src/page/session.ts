@@ -6,6 +6,7 @@ import { Connection, type ConnectionListener, type LinkState, type JoinRequest }
 import type { ClientMessage, ControlCommand, Id, PosesBuffer, ServerMessage } from "../protocol/generated.ts";
 import type { World } from "../world/world.ts";
 import type { Events } from "./events.ts";
+import { sendPicture } from "./picture.ts";
 import { smooth, type Viewer } from "./viewer.ts";
 
 const noId: Id = { slot: 0, generation: 0 };
@@ -58,6 +59,7 @@ export class Session implements ConnectionListener {
   message(message: ServerMessage): void {
     this.viewer_.invalidate();
     if (message.type === "notice") this.events_.notice(message);
+    else if (message.type === "askPicture") void sendPicture(this.viewer_, message.request, (part) => this.send(part));
     else if (message.type === "effect") this.events_.effect(message.kind, message.position);
     else this.world_.take(message);
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The world as the server described it: settings, state, entities and poses. It knows nothing of the rest of the page.
 
+import { Vector3 } from "three";
 import {
-  NO_BODY, type ActionEntry, type ClientEntry, type PosesBuffer, type ServerMessage, type WorldSettings,
+  NO_BODY, type ActionEntry, type ClientEntry, type Listens, type PosesBuffer, type ServerMessage, type WorldSettings,
 } from "../protocol/generated.ts";
 import { makeEntityViews, type Entities } from "../scene/entities/entity_list.ts";
 import { PoseBuffer } from "../scene/pose_buffer.ts";
@@ -53,6 +54,10 @@ export class World {
   readonly holds: Hold[] = [];
   holdCount = 0;
   readonly poses = new PoseBuffer();
+  /** Where the viewer is, world, m; written by the page. */
+  readonly eye = new Vector3();
+  /** What the script wants to be told of, beside holds and selections. */
+  listens: Pick<Listens, "clicks" | "hovers" | "keys"> = { clicks: false, hovers: false, keys: [] };
   readonly entities: Entities;
 
   private readonly store_: EntityStore;
@@ -64,7 +69,9 @@ export class World {
   constructor(listener: WorldListener) {
     this.listener_ = listener;
     const warn = (title: string, text: string) => listener.warn(title, text);
-    this.entities = makeEntityViews({ poses: this.poses, bodyGone: (body) => listener.bodyGone(body), warn });
+    this.entities = makeEntityViews({
+      poses: this.poses, eye: this.eye, time: () => this.time, bodyGone: (body) => listener.bodyGone(body), warn,
+    });
     this.store_ = new EntityStore(this.entities, warn);
   }
 
@@ -104,6 +111,9 @@ export class World {
       case "actions":
         this.actions = message.actions;
         this.listener_.changed("actions");
+        break;
+      case "listens":
+        this.listens = message;
         break;
       case "clients":
         this.clients = message.clients;

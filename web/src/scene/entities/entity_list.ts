@@ -1,21 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one list of entity kinds: a kind of protocol/entities is one file beside this one and one line here.
 
+import type { Vector3 } from "three";
 import type { EntityKind, EntityRecords } from "../../protocol/generated.ts";
+import type { PlotEntity, WidgetEntity } from "../../protocol/generated.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
+import { ArrowView } from "./arrow.ts";
+import { AxesView } from "./axes.ts";
 import { BodyView } from "./body.ts";
 import type { EntityView } from "./entity.ts";
 import { JointView } from "./joint.ts";
+import { LabelView } from "./label.ts";
+import { LineView } from "./line.ts";
+import { MarkerView } from "./marker.ts";
 import { Memberships } from "./membership.ts";
 import { NailView } from "./nail.ts";
 import { ParticleSetView } from "./particle_set.ts";
+import { PointCloudView } from "./point_cloud.ts";
 import { StaticShapeView } from "./static_shape.ts";
 import { Styles } from "./style.ts";
 import { TieView } from "./tie.ts";
+import { TraceView } from "./trace.ts";
+import { WatchedRecords } from "./widget.ts";
 
 /** What views ask of the page. */
 export interface EntityHost {
   readonly poses: PoseBuffer;
+  /** Where the viewer is, world, m; kept up to date. */
+  readonly eye: Vector3;
+  /** Simulated, s. */
+  time(): number;
   /** A body is gone; called before its slot can be used again. */
   bodyGone(body: number): void;
   /** Something cannot be drawn: `title` says what, `text` why. */
@@ -26,7 +40,7 @@ export interface EntityHost {
 export type EntityViews = { readonly [K in EntityKind]: EntityView<EntityRecords[K]> };
 
 /** In the order in which their frames go: bodies are interpolated before what hangs on them is drawn. */
-export function makeEntityViews({ poses, bodyGone, warn }: EntityHost) {
+export function makeEntityViews({ poses, eye, time, bodyGone, warn }: EntityHost) {
   const style = new Styles(warn);
   return {
     style,
@@ -37,6 +51,15 @@ export function makeEntityViews({ poses, bodyGone, warn }: EntityHost) {
     nail: new NailView(poses),
     particleSet: new ParticleSetView(),
     staticShape: new StaticShapeView(warn),
+    label: new LabelView(poses, eye),
+    line: new LineView(poses),
+    arrow: new ArrowView(poses),
+    axes: new AxesView(poses),
+    trace: new TraceView(poses, time),
+    pointCloud: new PointCloudView(poses),
+    marker: new MarkerView(poses, warn),
+    widget: new WatchedRecords<WidgetEntity>(),
+    plot: new WatchedRecords<PlotEntity>(),
   } satisfies EntityViews;
 }
 

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`iota run --watch`: runs a script in a process of its own, and anew whenever it or a module beside it is saved.
+
+Open pages find the new world by themselves, as the address stays, and keep their camera. A script that cannot be read
+leaves the world before it running; one that fails is waited for.
+"""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from iota.cli import run
+from iota.cli.failure import Failure
+
+EVERY = 0.2  # s, between two looks at the files
+PATIENCE = 5.0  # s, for a world to end
+MOST_FILES = 2000
+OTHERS = {"__pycache__", "node_modules", "site-packages"}
+
+
+def watch(arguments: argparse.Namespace) -> None:
+    """Until Ctrl-C, or until the script ends by itself without an error."""
+    path = Path(arguments.what)
+    if not path.is_file():
+        raise Failure(f"--watch needs a file, and there is no {arguments.what}")
+    run.parse(path)
+    arguments.port = free_port() if arguments.port == 0 else arguments.port
+    seen = stamps(path)
+    child: subprocess.Popen[bytes] | None = start(arguments, is_first=True)
+    try:
+        while True:
+            time.sleep(EVERY)
+            now = stamps(path)
+            if now != seen:
+                seen = now
+                child = again(arguments, path, child)
+            elif child is not None and child.poll() is not None:
+                if child.returncode == 0:
+                    return
+                say(f"waiting for {path} to be saved")
+                child = None
+    finally:
+        end(child)
+
+
+def start(arguments: argparse.Namespace, is_first: bool) -> subprocess.Popen[bytes]:
+    words = [sys.executable, "-m", "iota", "run", arguments.what]
+    for name in ("links", "port", "seconds"):
+        value = getattr(arguments, name)
+        words += [] if value is None else [f"--{name}", str(value)]
+    words += ["--no-open"] if arguments.no_open or not is_first else []
+    return subprocess.Popen(words)
+
+
+def again(
+    arguments: argparse.Namespace, path: Path, child: subprocess.Popen[bytes] | None
+) -> subprocess.Popen[bytes] | None:
+    """The new world; the one before where the script cannot be read."""
+    try:
+        run.parse(path)
+    except Failure as failure:
+        say(f"{failure}; the world before goes on" if child is not None else str(failure))
+        return child
+    end(child)
+    say(f"{path} was saved: again")
+    return start(arguments, is_first=False)
+
+
+def end(child: subprocess.Popen[bytes] | None) -> None:
+    if child is None or child.poll() is not None:
+        return
+    child.send_signal(signal.SIGTERM)
+    try:
+        child.wait(PATIENCE)
+    except subprocess.TimeoutExpired:  # a callback that hangs
+        child.kill()
+        child.wait()
+
+
+def stamps(path: Path) -> dict[Path, tuple[int, int]]:
+    """When the script and the modules beside it were changed last, and their sizes. An editor may replace a file: one that is
+    not there for a moment counts when it is back."""
+    found = {}
+    for file in [path, *modules(path.resolve().parent)]:
+        try:
+            status = file.stat()
+        except OSError:
+            continue
+        found[file] = (status.st_mtime_ns, status.st_size)
+    return found
+
+
+def modules(folder: Path) -> list[Path]:
+    """Beside the script, and in packages there."""
+    found = sorted(folder.glob("*.py"))
+    for package in sorted(folder.glob("*/__init__.py")):
+        if package.parent.name not in OTHERS and len(found) < MOST_FILES:
+            found += sorted(package.parent.rglob("*.py"))
+    return found[:MOST_FILES]
+
+
+def free_port() -> int:
+    """One for all worlds that follow each other."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def say(text: str) -> None:
+    print(f"iota: {text}", file=sys.stderr, flush=True)

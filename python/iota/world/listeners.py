@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The script's functions for what users do: with a body, with anything, with nothing, or with a key."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from iota._core import Body, Particle
+from iota.simulator import SimulatedBody
+from iota.world.callbacks import Hook
+
+KINDS = ("click", "press", "release", "drag", "hover", "key", "join", "leave", "frame")
+
+
+@dataclass(frozen=True, eq=False)
+class Listener:
+    """A function and what it is for. bodies: None for any, none of them for nothing. takes_over: in place of what happens by
+    default. on_release: of a key, when it is let go."""
+
+    kind: str
+    hook: Hook
+    bodies: frozenset[Any] | None = None
+    key: str | None = None
+    on_release: bool = False
+    takes_over: bool = False
+
+    def hears(self, body: Any) -> bool:
+        if self.kind in ("join", "leave", "frame"):
+            return True
+        if body is None:
+            return self.bodies is not None and not self.bodies
+        if self.bodies is None:
+            return True
+        # A body that was absorbed is what has absorbed it.
+        return body in self.bodies or any(each.survivor == body for each in self.bodies)
+
+
+def bodies_of(target: Any) -> frozenset[Any] | None:
+    """What a target stands for. Raises TypeError for what is none."""
+    if target == "anything":
+        return None
+    if target == "nothing":
+        return frozenset()
+    if isinstance(target, Body | SimulatedBody):
+        return frozenset([target])
+    if isinstance(target, Particle):
+        return frozenset([target.body])
+    if isinstance(target, Iterable) and not isinstance(target, str):
+        found = frozenset().union(*(bodies_of(each) or () for each in target))
+        if found:
+            return found
+    raise TypeError(f"must be a body, bodies, 'anything' or 'nothing', not {target!r}")
+
+
+@dataclass
+class Drag:
+    """A hand that the script moves things by."""
+
+    body: Any
+    listeners: list[Listener] = field(default_factory=list)
+
+
+class Listeners:
+    """All of a world. version: rises when what pages have to tell may have changed."""
+
+    def __init__(self) -> None:
+        self._by_kind: dict[str, list[Listener]] = {kind: [] for kind in KINDS}
+        self.drags: dict[tuple[int, int], Drag] = {}  # by client and hold
+        self.version = 0
+
+    def add(self, listener: Listener) -> None:
+        self._by_kind[listener.kind].append(listener)
+        self.version += 1
+
+    def remove(self, function: Callable[..., Any]) -> bool:
+        """Forgets a function, whatever it was for; False where it is not known."""
+        before = sum(map(len, self._by_kind.values()))
+        for kind, listeners in self._by_kind.items():
+            self._by_kind[kind] = [each for each in listeners if each.hook.function is not function]
+        self.version += 1
+        return sum(map(len, self._by_kind.values())) < before
+
+    def of(self, kind: str, body: Any = None) -> Iterator[Listener]:
+        """Those for a kind and a body; None: nothing was hit, or it is about no body."""
+        return iter([each for each in self._by_kind[kind] if each.hears(body)])
+
+    def of_key(self, key: str, released: bool) -> Iterator[Listener]:
+        listeners = self._by_kind["key"]
+        return iter([each for each in listeners if each.key == key and each.on_release == released])
+
+    def has(self, kind: str) -> bool:
+        return bool(self._by_kind[kind])
+
+    @property
+    def keys(self) -> list[str]:
+        """In the order in which they were asked for."""
+        return list(dict.fromkeys(each.key for each in self._by_kind["key"] if each.key is not None))

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a World tells the script of its users."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from iota.world.callbacks import Hook
+from iota.world.listeners import Listener, bodies_of
+from iota.world.state import State
+
+Callback = TypeVar("Callback", bound=Callable[..., Any])
+
+
+class Listening:
+    """Decorators for functions that are called when users do something. They get one `Event`, or nothing; the event names the
+    client, the body and the place.
+
+    on: a body, several, "anything" (any body) or "nothing" (no body was hit). `world.forget(function)` ends it.
+    """
+
+    _state: State
+
+    def on_click(self, on: Any = "anything") -> Any:
+        """Decorator: pressed and let go at once, by mouse, finger, controller or hand.
+
+        @world.on_click(ball)
+        def hit(event): event.body.velocity += (0, 3, 0)
+
+        @world.on_click("nothing")
+        def drop(event): print(event.origin, event.direction)  # the ray that hit nothing
+        """
+        return self._listen("click", on)
+
+    def on_press(self, on: Any = "anything") -> Any:
+        """Decorator: a hand closes on a body; event.point is where."""
+        return self._listen("press", on)
+
+    def on_release(self, on: Any = "anything") -> Any:
+        """Decorator: the hand opens again."""
+        return self._listen("release", on)
+
+    def on_drag(self, on: Any = "anything", grab: bool = True) -> Any:
+        """Decorator: a hand takes hold of a body (event.phase "start"), moves ("update") and lets go ("end"); event.point is
+        where the hand is, world, m. grab: the hand also pulls by its spring; False: nothing happens but what the function
+        does."""
+        return self._listen("drag", on, takes_over=not grab)
+
+    def on_hover(self, on: Any = "anything") -> Any:
+        """Decorator: a pointer comes over a body (event.phase "start") or leaves it ("end")."""
+        return self._listen("hover", on)
+
+    def on_key(self, key: str, release: bool = False) -> Callable[[Callback], Callback]:
+        """Decorator: a key is pressed, or let go; it is the script's then and does nothing else on the page. key: as browsers
+        name it: "k", " ", "ArrowUp", "Enter". Actions have a button and a line in the help as well: see `action`."""
+        if not key:
+            raise ValueError("a key needs a name")
+        return self._add("key", key=key, on_release=release)
+
+    def on_join(self, function: Callback) -> Callback:
+        """Decorator: a page was opened; event.client is its number."""
+        return self._add("join")(function)
+
+    def on_leave(self, function: Callback) -> Callback:
+        """Decorator: a page was closed, or lost."""
+        return self._add("leave")(function)
+
+    def on_frame(self, function: Callback) -> Callback:
+        """Decorator: calls a function before each picture that pages are sent, 60 times a second, paused or not."""
+        return self._add("frame")(function)
+
+    def forget(self, function: Callable[..., Any]) -> bool:
+        """Ends calls that were asked for by the decorators above; False for a function that they do not know."""
+        self._state.is_changed = True
+        return self._state.listeners.remove(function)
+
+    def _listen(self, kind: str, on: Any, **more: Any) -> Any:
+        if callable(on):  # without parentheses
+            return self._add(kind, **more)(on)
+        return self._add(kind, bodies=bodies_of(on), **more)
+
+    def _add(self, kind: str, **more: Any) -> Callable[[Callback], Callback]:
+        def register(function: Callback) -> Callback:
+            self._state.listeners.add(Listener(kind, Hook.of(function), **more))
+            self._state.is_changed = True
+            return function
+
+        return register

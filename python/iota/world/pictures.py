@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures that pages take of themselves."""
+
+from __future__ import annotations
+
+from iota._core import InputEvent
+
+
+class Pictures:
+    """Puts them together from their parts."""
+
+    def __init__(self) -> None:
+        self._parts: dict[int, list[bytes]] = {}
+        self._ready: dict[int, bytes] = {}
+        self._number = 0
+
+    def ask(self) -> int:
+        """Number of a new request."""
+        self._number += 1
+        self._parts[self._number] = []
+        return self._number
+
+    def take(self, event: InputEvent) -> None:
+        parts = self._parts.get(event.number)
+        if parts is None:
+            return
+        parts.append(event.data)
+        if event.is_final:
+            self._ready[event.number] = b"".join(self._parts.pop(event.number))
+
+    def ready(self, number: int) -> bytes | None:
+        """A PNG file, empty where the page could make none; None while it has not come."""
+        return self._ready.pop(number, None)
+
+    def forget(self, number: int) -> None:
+        self._parts.pop(number, None)
+        self._ready.pop(number, None)

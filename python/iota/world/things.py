@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a script adds to the page beside bodies. Each thing is a handle: assigning one of its attributes is the update."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, ClassVar, Generic, TypeVar, overload
+
+import numpy as np
+
+from iota._core import Body, Bond, Particle, Room, Vec3
+from iota._protocol import NO_BODY, NO_COLOR
+from iota.simulator import SimulatedBody, SimulatedParticle
+from iota.world.frames import into_frame
+from iota.world.records import encode
+
+Value = TypeVar("Value")
+Attachable = Particle | Body | Bond | SimulatedBody | SimulatedParticle
+Place = Attachable | Vec3 | Sequence[float] | None
+FARTHEST = 1e9  # m
+
+
+class Field(Generic[Value]):
+    """An attribute of a thing: `check` turns what is assigned into what is kept, or raises ValueError or TypeError."""
+
+    def __init__(self, check: Callable[[Any], Value]) -> None:
+        self._check = check
+
+    def __set_name__(self, owner: type[Thing], name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, thing: None, owner: type[Thing]) -> Field[Value]: ...
+
+    @overload
+    def __get__(self, thing: Thing, owner: type[Thing]) -> Value: ...
+
+    def __get__(self, thing: Thing | None, owner: type[Thing]) -> Field[Value] | Value:
+        if thing is None:
+            return self
+        return thing._values[self._name]  # type: ignore[no-any-return]
+
+    def __set__(self, thing: Thing, value: Any) -> None:
+        try:
+            thing._values[self._name] = self._check(value)
+        except (ValueError, TypeError) as error:
+            raise type(error)(f"{self._name}: {error}") from None
+        thing._changed()
+
+
+class Thing:
+    """One entity that a script made. visible: pages show it. Destroyed, or once the thing that it is on is gone, it is shown
+    no more."""
+
+    kind: ClassVar[str]
+
+    def __init__(self, things: Things, **values: Any) -> None:
+        self._things: Things | None = None
+        self._values: dict[str, Any] = {"visible": True}
+        for name, value in values.items():
+            setattr(self, name, value)
+        self._things = things
+        things.add(self)
+
+    visible = Field(bool)
+
+    @property
+    def alive(self) -> bool:
+        """It has not been destroyed."""
+        return self._things is not None
+
+    def destroy(self) -> None:
+        """Takes it off the page; once more does nothing."""
+        if self._things is not None:
+            self._things.remove(self)
+            self._things = None
+
+    def _changed(self) -> None:
+        if self._things is not None:
+            self._things.mark(self)
+
+    def _record(self) -> dict[str, Any] | None:
+        """Its fields as the protocol names them; None where what it is on is gone."""
+        raise NotImplementedError
+
+    def _is_attached(self) -> bool:
+        """On something of the system, so that an edit may move it to another body."""
+        return any(isinstance(value, Attachable) for value in self._values.values())
+
+
+class Things:
+    """All things of a world. Pages are told only of those that differ from what was told last."""
+
+    def __init__(self) -> None:
+        self._ids: dict[Thing, tuple[int, int]] = {}
+        self._free: dict[str, list[tuple[int, int]]] = {}
+        self._counts: dict[str, int] = {}
+        self._dirty: dict[Thing, None] = {}
+        self._gone: list[tuple[str, int, int]] = []
+        self._told: dict[Thing, bytes] = {}
+        self._structure = -1
+
+    def __iter__(self) -> Iterator[Thing]:
+        return iter(self._ids)
+
+    def add(self, thing: Thing) -> None:
+        free = self._free.get(thing.kind)
+        if free:
+            slot, generation = free.pop()
+        else:
+            slot, generation = self._counts.get(thing.kind, 0), 0
+            self._counts[thing.kind] = slot + 1
+        self._ids[thing] = (slot, generation + 1)
+        self.mark(thing)
+
+    def remove(self, thing: Thing) -> None:
+        slot, generation = self._ids.pop(thing)
+        self._dirty.pop(thing, None)
+        if self._told.pop(thing, None) is not None:
+            self._gone.append((thing.kind, slot, generation))
+        self._free.setdefault(thing.kind, []).append((slot, generation))
+
+    def mark(self, thing: Thing) -> None:
+        """It is to be told anew."""
+        self._dirty[thing] = None
+
+    def find(self, kind: str, id: tuple[int, int]) -> Thing | None:
+        """By what pages call it."""
+        return next((thing for thing, known in self._ids.items() if known == id and thing.kind == kind), None)
+
+    def tell_anew(self) -> None:
+        """The next room knows nothing."""
+        self._told.clear()
+        self._gone.clear()
+        self._dirty = dict.fromkeys(self._ids)
+
+    def tell(self, room: Room, structure: int) -> None:
+        """What the room has not been told. structure: rises when bodies change, and with them what is on which."""
+        if structure != self._structure:
+            self._structure = structure
+            self._dirty |= dict.fromkeys(thing for thing in self._ids if thing._is_attached())
+        for kind, slot, generation in self._gone:
+            room.destroy_entity(kind, slot, generation)
+        self._gone.clear()
+        dirty, self._dirty = self._dirty, {}
+        for thing in dirty:
+            self._tell(room, thing)
+
+    def _tell(self, room: Room, thing: Thing) -> None:
+        record = thing._record() if thing.visible else None
+        slot, generation = self._ids[thing]
+        if record is None:
+            if self._told.pop(thing, None) is not None:
+                room.destroy_entity(thing.kind, slot, generation)
+                self._ids[thing] = (slot, generation + 1)
+            return
+        fields = encode(thing.kind, record)
+        if self._told.get(thing) != fields:
+            room.set_entity(thing.kind, slot, generation, fields)
+            self._told[thing] = fields
+
+
+# --- what fields may be -------------------------------------------------------------------------------------------------
+
+
+def number(least: float = -math.inf, most: float = math.inf) -> Callable[[Any], float]:
+    def check(value: Any) -> float:
+        found = float(value)
+        if not (math.isfinite(found) and least <= found <= most):
+            bounds = f" from {least:g} to {most:g}" if math.isfinite(least) or math.isfinite(most) else ""
+            raise ValueError(f"must be a finite number{bounds}, not {value}")
+        return found
+
+    return check
+
+
+length = number(0, FARTHEST)
+
+
+def text(value: Any) -> str:
+    return str(value)
+
+
+def vector(value: Any) -> Vec3:
+    """World, m, or a direction."""
+    found = Vec3(*value)
+    if not all(math.isfinite(x) and abs(x) <= FARTHEST for x in (found.x, found.y, found.z)):
+        raise ValueError(f"must be finite and within {FARTHEST:g} m, not {found}")
+    return found
+
+
+def place(value: Any) -> Place:
+    """A particle, body or bond, or a place in the world (m)."""
+    if isinstance(value, Attachable):
+        return value
+    return vector((0, 0, 0) if value is None else value)
+
+
+def color(value: Any) -> int:
+    """From "#rrggbb", 0xRRGGBB, three numbers from 0 to 1, or None: the page's own."""
+    if value is None:
+        return NO_COLOR
+    if isinstance(value, str):
+        digits = value.removeprefix("#")
+        if len(digits) != 6 or value == digits:
+            raise ValueError(f'a color is "#rrggbb", 0xRRGGBB or three numbers from 0 to 1, not {value!r}')
+        return int(digits, 16)
+    if isinstance(value, int | np.integer):
+        if value == NO_COLOR or 0 <= value <= 0xFFFFFF:
+            return int(value)
+        raise ValueError(f"a color is from 0 to 0xFFFFFF, not {value:#x}")
+    red, green, blue = (round(255 * min(max(float(part), 0.0), 1.0)) for part in value)
+    return red << 16 | green << 8 | blue
+
+
+def points(value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Shape (n, 2) or (n, 3), m."""
+    rows = np.array(value, np.float64)
+    if rows.size == 0:
+        rows = rows.reshape(0, 3)
+    if rows.ndim != 2 or rows.shape[1] not in (2, 3):
+        raise ValueError(f"must have the shape (n, 2) or (n, 3), not {rows.shape}")
+    if not (np.abs(rows) <= FARTHEST).all():
+        raise ValueError(f"must be finite and within {FARTHEST:g} m")
+    return rows if rows.shape[1] == 3 else np.column_stack([rows, np.zeros(len(rows))])
+
+
+# --- where things are ---------------------------------------------------------------------------------------------------
+
+
+def anchor(at: Place) -> dict[str, Any] | None:
+    """A place as pages are told of it, on what is there of it now; None where that is gone. Of a bond its first end."""
+    if isinstance(at, Bond):
+        return anchor(at.ends[0]) if at.alive else None
+    if isinstance(at, Body):
+        return None if at.survivor is None else {"body": at.survivor.slot, "point": (0, 0, 0)}
+    if isinstance(at, Particle):
+        now = at.survivor
+        return None if now is None else _on_body(now.body, now.position)
+    if isinstance(at, SimulatedBody):
+        return None if at.survivor is None else {"body": at.slot, "point": (0, 0, 0)}
+    if isinstance(at, SimulatedParticle):
+        return None if at.body.survivor is None else _on_body(at.body, at.position)
+    return {"body": NO_BODY, "point": Vec3(*(at or (0, 0, 0)))}
+
+
+def ends(at: Place, to: Place = None) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
+    """Both ends of a bond; else from one place to another, or twice the same."""
+    if isinstance(at, Bond) and to is None:
+        return (anchor(at.ends[0]), anchor(at.ends[1])) if at.alive else (None, None)
+    first = anchor(at)
+    return first, (first if to is None else anchor(to))
+
+
+def _on_body(body: Any, position: Any) -> dict[str, Any]:
+    orientation = [float(v) for v in body.orientation]
+    return {"body": body.slot, "point": into_frame(Vec3(*position), body.center_of_mass, orientation)}

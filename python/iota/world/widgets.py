@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Controls of the script on the page: what users change there, and what it shows them."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeVar
+
+from iota._protocol import WidgetKind
+from iota.world.callbacks import Guard, Hook
+from iota.world.event import Event
+from iota.world.things import Field, Thing, Things, color, number, text
+
+Callback = TypeVar("Callback", bound=Callable[..., Any])
+CURVES = ("#2f9d92", "#e8452c", "#3f7fd0", "#f2a324", "#8d6fd1", "#4c9a52")
+MOST_SAMPLES = 400  # of a plot
+
+
+class Widget(Thing):
+    """A control. value: what it is set to; assigning it changes all pages and calls nothing. enabled: users may change it."""
+
+    kind = "widget"
+    form: WidgetKind
+    label, help, enabled = Field(text), Field(text), Field(bool)
+
+    def __init__(self, things: Things, label: str, **values: Any) -> None:
+        self._hooks: list[Hook] = []
+        super().__init__(things, label=label, **{"help": "", "enabled": True} | values)
+
+    def on_change(self, function: Callback) -> Callback:
+        """Decorator: calls a function after a user has changed it (pressed it, for a button); it gets one Event, or nothing."""
+        self._hooks.append(Hook.of(function))
+        return function
+
+    def take(self, value: float, typed: str, event: Event, guard: Guard) -> None:
+        """What a user did. Values that do not fit are made to."""
+        if not self.enabled:
+            return
+        self._set(value, typed)
+        for hook in list(self._hooks):
+            arguments = (event,) if hook.takes_event else ()
+            guard.call(f"{self.label!r} ({hook.name})", hook.function, *arguments)
+
+    def _set(self, value: float, typed: str) -> None:
+        raise NotImplementedError
+
+    def _record(self) -> dict[str, Any] | None:
+        usual = {"unit": "", "value": 0.0, "minimum": 0.0, "maximum": 0.0, "step": 0.0, "text": "", "options": ()}
+        return usual | self._values | {"kind": self.form}
+
+
+class Button(Widget):
+    """Pressed by users."""
+
+    form = WidgetKind.BUTTON
+
+    def _set(self, value: float, typed: str) -> None:
+        pass
+
+
+class Slider(Widget):
+    """A number from `minimum` to `maximum`, any or a whole number of `step` above the minimum."""
+
+    form = WidgetKind.SLIDER
+    minimum, maximum, step, unit = Field(number()), Field(number()), Field(number(0)), Field(text)
+    value = Field(number())
+
+    def __init__(self, things: Things, label: str, minimum: float, maximum: float, value: float, **values: Any) -> None:
+        if not minimum < maximum:
+            raise ValueError(f"a slider needs a minimum below its maximum, not {minimum} and {maximum}")
+        super().__init__(things, label, minimum=minimum, maximum=maximum, value=value, **values)
+
+    def _set(self, value: float, typed: str) -> None:
+        if self.step > 0:
+            value = self.minimum + self.step * round((value - self.minimum) / self.step)
+        self.value = min(max(value, self.minimum), self.maximum)
+
+
+class Checkbox(Widget):
+    """On or off."""
+
+    form = WidgetKind.CHECKBOX
+    value = Field(bool)
+
+    def _set(self, value: float, typed: str) -> None:
+        self.value = value != 0
+
+
+class Choice(Widget):
+    """One of several texts."""
+
+    form = WidgetKind.CHOICE
+
+    def __init__(self, things: Things, label: str, options: Sequence[str], value: str | None, **values: Any) -> None:
+        self._options = [str(option) for option in options]
+        if not self._options:
+            raise ValueError("a choice needs at least one option")
+        super().__init__(things, label, value=self._options[0] if value is None else value, **values)
+
+    @property
+    def options(self) -> list[str]:
+        return list(self._options)
+
+    @property
+    def value(self) -> str:
+        return self._options[int(self._values["value"])]
+
+    @value.setter
+    def value(self, value: str) -> None:
+        if value not in self._options:
+            raise ValueError(f"value must be one of {', '.join(self._options)}, not {value!r}")
+        self._values["value"] = self._options.index(value)
+        self._changed()
+
+    def _set(self, value: float, typed: str) -> None:
+        if 0 <= value < len(self._options):
+            self._values["value"] = int(value)
+            self._changed()
+
+    def _record(self) -> dict[str, Any] | None:
+        record = super()._record()
+        return None if record is None else record | {"options": self._options}
+
+
+class TextField(Widget):
+    """A line that users can write."""
+
+    form = WidgetKind.TEXT
+    value = Field(text)
+
+    def _set(self, value: float, typed: str) -> None:
+        self.value = typed
+
+    def _record(self) -> dict[str, Any] | None:
+        record = super()._record()
+        return None if record is None else record | {"value": 0.0, "text": self.value}
+
+
+class Plot(Thing):
+    """Curves over the last `seconds` of simulated time. With functions it takes samples by itself, else by `add`."""
+
+    kind = "plot"
+    label, unit, seconds = Field(text), Field(text), Field(number(1e-6, 1e6))
+
+    def __init__(
+        self, things: Things, label: str, curves: Mapping[str, Callable[[], float] | None], unit: str, seconds: float
+    ) -> None:
+        if not curves or len(curves) > len(CURVES):
+            raise ValueError(f"a plot has 1 to {len(CURVES)} curves, not {len(curves)}")
+        self._functions = dict(curves)
+        self._samples: deque[tuple[float, tuple[float, ...]]] = deque(maxlen=MOST_SAMPLES)
+        self._off = False
+        super().__init__(things, label=label, unit=unit, seconds=seconds)
+
+    @property
+    def curves(self) -> list[str]:
+        """Their names."""
+        return list(self._functions)
+
+    def add(self, time: float, *values: float) -> None:
+        """A sample of each curve at a simulated time, s. What is not finite, or comes sooner after the sample before than shows,
+        is left out. Going back in time begins anew."""
+        if len(values) != len(self._functions):
+            raise ValueError(f"this plot has {len(self._functions)} curves, not {len(values)}")
+        if self._samples and time < self._samples[-1][0]:
+            self._samples.clear()
+        if not self.is_due(time) or not all(map(math.isfinite, values)):
+            return
+        self._samples.append((float(time), tuple(map(float, values))))
+        while self._samples[0][0] < time - self.seconds:
+            self._samples.popleft()
+        self._changed()
+
+    def clear(self) -> None:
+        self._samples.clear()
+        self._changed()
+
+    def is_due(self, time: float) -> bool:
+        """A sample at that time would show."""
+        return not self._samples or not 0 <= time - self._samples[-1][0] < 0.99 * self.seconds / MOST_SAMPLES
+
+    def sample(self, time: float, guard: Guard) -> None:
+        """Takes one by its functions, where it is due."""
+        functions = [function for function in self._functions.values() if function is not None]
+        if self._off or len(functions) < len(self._functions) or not self.is_due(time):
+            return
+
+        def take() -> None:
+            self.add(time, *(function() for function in functions))
+
+        self._off = not guard.call(f"The plot {self.label!r}", take, hint="It is switched off. Correct the script.")
+
+    def _record(self) -> dict[str, Any] | None:
+        times = [time for time, _ in self._samples]
+        values = [values[curve] for curve in range(len(self._functions)) for _, values in self._samples]
+        own = {"curves": self.curves, "colors": [color(CURVES[i]) for i in range(len(self._functions))]}
+        return self._values | own | {"times": times, "values": values}

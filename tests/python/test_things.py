@@ -1,0 +1,351 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a script adds to the page beside bodies, as a page is told of it."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from page_client import NOTHING, PageClient
+
+import iota
+from iota import looks
+from iota._protocol import NO_BODY, NO_COLOR, PointerKind, WidgetKind
+
+Runner = Callable[[iota.World], str]
+
+
+@pytest.fixture
+def rod(system: iota.System) -> iota.Body:
+    """From (0, 1, 0) to (1, 1, 0), held still at both ends."""
+    body = system.body()
+    body.particle((0, 1, 0)).nail()
+    body.particle((1, 1, 0)).nail()
+    return body
+
+
+def entity(page: PageClient, kind: str, slot: int = 0) -> dict[str, Any]:
+    found: dict[str, Any] = page.wait_for(lambda: page.entities[kind].get(slot))
+    return found
+
+
+def test_assigning_is_updating_and_only_what_changed_is_told(rod: iota.Body, run_world: Runner) -> None:
+    world = iota.World(rod.system)
+    label = world.label("one", at=rod.particles[1], offset=(0, 0.25, 0), color="#ff8000")
+    others = [world.label(number) for number in range(50)]
+    with PageClient(run_world(world)) as page:
+        seen = entity(page, "label")
+        assert seen["text"] == "one" and seen["color"] == 0xFF8000 and seen["offset"] == (0, 0.25, 0)
+        assert seen["a"] == seen["b"] == {"body": rod.slot, "point": pytest.approx((0.5, 0, 0))}
+        assert page.wait_for(lambda: len(page.entities["label"]) == 51)
+        told = page.told
+        world.call(lambda: setattr(label, "text", "two"))
+        page.wait_for(lambda: page.entities["label"][0]["text"] == "two")
+        assert page.told == told + 1, "one label of 51"
+        world.call(lambda: setattr(label, "text", "two"))
+        world.call(lambda: setattr(others[3], "visible", False))
+        page.wait_for(lambda: 4 not in page.entities["label"])
+        world.call(lambda: setattr(others[3], "visible", True))
+        page.wait_for(lambda: 4 in page.entities["label"])
+        world.call(label.destroy)
+        page.wait_for(lambda: 0 not in page.entities["label"])
+        assert page.told == told + 2 and not label.alive and len(world.things) == 50
+        new = world.call(lambda: world.label("in the place of the first"))
+        assert entity(page, "label")["id"][1] > seen["id"][1], "another one in that slot"
+        assert new.text == "in the place of the first"
+
+
+def test_what_is_on_a_particle_stays_on_it_when_bodies_are_cut(run_world: Runner) -> None:
+    system = iota.System()
+    body, other = system.body(), system.body()
+    first = body.particle((0, 1, 0))
+    body.particle((1, 1, 0))
+    last = other.particle((2, 1, 0))
+    world = iota.World(system)
+    world.label("end", at=last)
+    arrow = world.arrow(first, last)
+    bond = system.bond(first, last, "spring", stiffness=1, length=2)
+    world.label("middle", at=bond)
+    world.paused = True
+    with PageClient(run_world(world)) as page:
+        before = entity(page, "label")["a"]
+        assert before["body"] == other.slot
+        assert entity(page, "label", 1)["a"] != entity(page, "label", 1)["b"], "between the ends of the bond"
+        world.call(lambda: body.combine(other))
+        page.wait_for(lambda: len(page.entities["body"]) == 1)
+        page.wait_for(lambda: page.entities["label"][0]["a"]["body"] == body.slot)
+        assert page.entities["label"][0]["a"]["point"] == pytest.approx((1, 0, 0), abs=0.6)
+        world.call(body.destroy)
+        page.wait_for(lambda: not page.entities["label"] and not page.entities["arrow"])
+        assert arrow.alive, "the script may give it another place"
+        world.call(lambda: (setattr(arrow, "at", (0, 0, 0)), setattr(arrow, "to", (0, 3, 0))))
+        assert entity(page, "arrow")["b"] == {"body": NO_BODY, "point": (0, 3, 0)}
+
+
+def test_thousands_are_set_by_one_array(rod: iota.Body, run_world: Runner) -> None:
+    world = iota.World(rod.system)
+    places = np.random.default_rng(1).uniform(-1, 1, (5000, 3))
+    points = world.points(places, radius=0.01, color=np.linspace(0, 1, 15000).reshape(5000, 3))
+    with PageClient(run_world(world)) as page:
+        seen = entity(page, "point_cloud")
+        np.testing.assert_allclose(np.reshape(seen["points"], (5000, 3)), places, atol=1e-6)
+        assert len(seen["colors"]) == 5000 and seen["colors"][-1] == 0xFFFFFF and seen["radii"] == [pytest.approx(0.01)]
+        began = time.perf_counter()
+        world.call(lambda: setattr(points, "points", places + 1))
+        page.wait_for(lambda: page.entities["point_cloud"][0]["points"][0] > seen["points"][0] + 0.5)
+        assert time.perf_counter() - began < 2.0
+
+
+def test_lines_axes_traces_and_shapes_have_the_records_of_the_protocol(rod: iota.Body, run_world: Runner) -> None:
+    world = iota.World(rod.system)
+    line = world.line(rod.particles[0], (0, 0, 0), radius=0.02, closed=True)
+    world.line(np.zeros((4, 2)))
+    world.axes(rod, length=0.3)
+    world.trace(rod.particles[1], seconds=2, color=(1, 0, 0))
+    world.shape(looks.sphere(0.1, "steel"), position=(0, 0.5, 0), on=rod, color=0x112233)
+    with PageClient(run_world(world)) as page:
+        seen = entity(page, "line")
+        assert seen["bodies"] == [rod.slot, NO_BODY] and seen["points"] == pytest.approx([-0.5, 0, 0, 0, 0, 0])
+        assert seen["closed"] and seen["radius"] == pytest.approx(0.02) and seen["color"] == NO_COLOR
+        assert entity(page, "line", 1)["points"] == [0] * 12
+        assert entity(page, "axes")["at"] == {"body": rod.slot, "point": (0, 0, 0)}
+        assert entity(page, "trace")["seconds"] == 2 and page.entities["trace"][0]["color"] == 0xFF0000
+        marker = entity(page, "marker")
+        assert marker["body"] == rod.slot and marker["part"]["shape"]["kind"] == "sphere"
+        assert marker["part"]["color"] == 0x112233 and marker["part"]["offset"] == (0, 0.5, 0)
+        world.call(lambda: setattr(line, "points", [(0, 0, 0), rod.particles[1], (1, 2, 3)]))
+        page.wait_for(lambda: len(page.entities["line"][0]["bodies"]) == 3)
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda w: w.label("x", at=(float("nan"), 0, 0)), "at: must be finite"),
+        (lambda w: w.label("x", color="red"), 'color: a color is "#rrggbb"'),
+        (lambda w: w.label("x", height=-1), "height: must be a finite number from 0"),
+        (lambda w: w.points(np.zeros((3, 4))), r"points: must have the shape \(n, 2\) or \(n, 3\)"),
+        (lambda w: w.points([[0, 0, np.inf]]), "points: must be finite"),
+        (lambda w: w.slider("s", 3, 2), "a minimum below its maximum"),
+        (lambda w: w.choice("c", []), "at least one option"),
+        (lambda w: w.choice("c", ["a"], "b"), "value must be one of a"),
+        (lambda w: w.plot("p", ["a", "b"]).add(0, 1), "has 2 curves, not 1"),
+        (lambda w: w.on_key(""), "a key needs a name"),
+    ],
+)
+def test_bad_values_are_refused_by_name(make: Callable[[iota.World], Any], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        make(iota.World(iota.System()))
+
+
+def test_a_bad_assignment_leaves_a_thing_as_it_was() -> None:
+    label = iota.World(iota.System()).label("x", at=(1, 2, 3))
+    with pytest.raises(ValueError, match="at"):
+        label.at = (1, 2, float("inf"))
+    assert label.at == iota.Vec3(1, 2, 3)
+
+
+# --- controls -----------------------------------------------------------------------------------------------------------
+
+
+def test_controls_reach_the_script_and_all_pages(system: iota.System, run_world: Runner) -> None:
+    world = iota.World(system)
+    heard: list[Any] = []
+    slider = world.slider("gravity", 0, 20, 9.5, step=0.5, unit="m/s²")
+    check = world.checkbox("wind")
+    choice = world.choice("law", ["spring", "rope"], "rope")
+    text = world.text("name", "Ada")
+    slider.on_change(lambda: heard.append(slider.value))
+    check.on_change(lambda event: heard.append((event.client, event.name, check.value)))
+
+    @world.button("go", help="starts")
+    def go(event: iota.Event) -> None:
+        heard.append("go")
+        event.notice("gone")
+
+    with PageClient(run_world(world)) as page, PageClient(world.url or "") as other:
+        seen = entity(page, "widget")
+        assert seen["kind"] == WidgetKind.SLIDER and seen["value"] == 9.5 and seen["unit"] == "m/s²"
+        assert entity(page, "widget", 2)["options"] == ["spring", "rope"] and page.entities["widget"][2]["value"] == 1
+
+        def change(slot: int, value: float = 0.0, typed: str = "") -> None:
+            page.send("change", widget=entity(page, "widget", slot)["id"], value=value, text=typed)
+
+        change(0, 3.2)
+        other.wait_for(lambda: other.entities["widget"][0]["value"] == 3.0)
+        change(0, 1e9)
+        other.wait_for(lambda: other.entities["widget"][0]["value"] == 20.0)
+        change(2, 0)
+        change(1, 1)
+        change(2, 17)  # no such option
+        change(3, typed="Grace")
+        change(4)
+        page.wait_for(lambda: page.notices)
+        assert heard == [3.0, 20.0, (page.id, "wind", True), "go"]
+        assert (choice.value, text.value) == ("spring", "Grace")
+        world.call(lambda: setattr(slider, "value", 5))
+        other.wait_for(lambda: other.entities["widget"][0]["value"] == 5.0)
+        assert len(heard) == 4, "the script's own assignments call nothing"
+        world.call(lambda: setattr(check, "enabled", False))
+        other.wait_for(lambda: not other.entities["widget"][1]["enabled"])
+        change(1, 0)
+        page.send("change", widget=(999, 1), value=0, text="")
+        page.wait_for(lambda: page.notices[-1]["title"] == "That is gone")
+        assert check.value is True
+
+
+def test_a_control_that_raises_is_told_and_the_world_goes_on(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+    slider = world.slider("s", 0, 1)
+
+    @slider.on_change
+    def bad() -> None:
+        raise RuntimeError("no such thing")
+
+    with PageClient(run_world(world)) as page:
+        page.send("change", widget=entity(page, "widget")["id"], value=1, text="")
+        (notice,) = page.wait_for(lambda: page.notices)
+        assert "'s'" in notice["title"] and "no such thing" in notice["text"] and slider.value == 1
+
+
+def test_a_plot_samples_by_itself_and_begins_anew_after_reset(run_world: Runner) -> None:
+    system = iota.System()
+    ball = system.body().particle((0, 100, 0))
+    world = iota.World(system, ground=None)
+    world.plot("height", lambda: ball.position.y, unit="m", seconds=1)
+    own = world.plot("mine", ["a", "b"])
+    world.on_step(lambda: own.add(system.time, 1, 2))
+    with PageClient(run_world(world)) as page:
+        seen = page.wait_for(lambda: (p := page.entities["plot"].get(0)) and p["times"] and p["times"][-1] > 1.3 and p)
+        assert seen["times"] == sorted(seen["times"]) and seen["times"][0] > seen["times"][-1] - 1.01
+        at, height = seen["times"][-1], seen["values"][-1]
+        assert height == pytest.approx(100 - 9.81 * at**2 / 2, abs=0.1)
+        assert page.entities["plot"][1]["curves"] == ["a", "b"] and len(page.entities["plot"][1]["times"]) > 5
+        world.call(world.reset)
+        page.wait_for(lambda: page.entities["plot"][0]["times"][-1] < 1)
+
+
+# --- what users do ------------------------------------------------------------------------------------------------------
+
+
+def point(page: PageClient, kind: PointerKind, body: tuple[int, int] = NOTHING) -> None:
+    places = {"point": (1, 2, 3), "origin": (0, 1, 5), "direction": (0, 0, -1)}
+    page.send("pointer", kind=kind, body=body, name="mouse", **places)
+
+
+def test_clicks_and_hovers_reach_who_asked_for_that_body(rod: iota.Body, run_world: Runner) -> None:
+    other = rod.system.body()
+    other.particle((0, 3, 0)).nail()
+    world = iota.World(rod.system)
+    heard: list[Any] = []
+    world.on_click(rod)(lambda e: heard.append(("rod", e.client, tuple(e.point), e.pointer)))
+    world.on_click(lambda e: heard.append(("any", e.body.slot)))
+    world.on_click("nothing")(lambda e: heard.append(("nothing", e.target, e.point, tuple(e.direction))))
+    world.on_click([other])(lambda: heard.append("other"))
+    world.on_hover(rod)(lambda e: heard.append(e.phase))
+    with PageClient(run_world(world)) as page:
+        assert page.wait_for(lambda: page.last.get("listens")) == {"clicks": True, "hovers": True, "keys": []}
+        point(page, PointerKind.CLICK, page.body(rod.slot))
+        point(page, PointerKind.CLICK)
+        point(page, PointerKind.HOVER, page.body(rod.slot))
+        point(page, PointerKind.HOVER_END, page.body(rod.slot))
+        point(page, PointerKind.CLICK, page.body(other.slot))
+        point(page, PointerKind.CLICK, (4000, 1))  # gone: nobody is told
+        page.wait_for(lambda: len(heard) == 7)
+        assert heard[:2] == [("rod", page.id, (1, 2, 3), "mouse"), ("any", rod.slot)]
+        assert heard[2] == ("nothing", None, None, (0, 0, -1))
+        assert heard[3:5] == ["start", "end"] and set(map(str, heard[5:])) == {"other", str(("any", other.slot))}
+        assert page.notices == []
+
+
+def test_a_drag_may_be_the_scripts_own(rod: iota.Body, run_world: Runner) -> None:
+    world = iota.World(rod.system)
+    heard: list[Any] = []
+    world.on_drag(rod, grab=False)(lambda e: heard.append((e.phase, e.point and tuple(e.point))))
+    world.on_press(lambda: heard.append("press"))
+    world.on_release(lambda: heard.append("release"))
+    with PageClient(run_world(world)) as page:
+        page.send("grab_start", hold=1, body=page.body(rod.slot), local_point=(0, 0, 0), target=(1, 0, 0))
+        page.wait_for(lambda: len(heard) == 2)
+        page.send("grab_move", hold=1, target=(2, 0, 0))
+        page.wait_for(lambda: len(heard) == 3)
+        assert not page.last["poses"]["holds"] and world.held() is None, "no spring pulls"
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: len(heard) == 5)
+        assert heard == ["press", ("start", (1, 0, 0)), ("update", (2, 0, 0)), ("end", None), "release"]
+        page.send("grab_start", hold=2, body=page.body(rod.slot), local_point=(0, 0, 0), target=(1, 0, 0))
+        page.wait_for(lambda: len(heard) == 7)
+    world.call(lambda: None)
+    for _ in range(200):
+        if len(heard) == 9:
+            break
+        time.sleep(0.02)
+    assert heard[7:] == [("end", None), "release"], "a page that leaves lets go"
+
+
+def test_keys_joins_and_frames_are_told_until_forgotten(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+    heard: list[Any] = []
+
+    @world.on_key("k")
+    def pressed(event: iota.Event) -> None:
+        heard.append(event.key)
+
+    world.on_key("k", release=True)(lambda: heard.append("up"))
+    world.on_join(lambda e: heard.append(("join", e.client)))
+    world.on_leave(lambda e: heard.append(("leave", e.client)))
+    frames: list[float] = []
+    world.on_frame(lambda: frames.append(world.system.time))
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.last.get("listens", {}).get("keys") == ["k"])
+        page.send("key", key="k", down=True)
+        page.send("key", key="k", down=False)
+        page.send("key", key="j", down=True)
+        page.wait_for(lambda: len(heard) == 3 and len(frames) > 5)
+        assert heard == [("join", page.id), "k", "up"]
+        assert world.call(lambda: world.forget(pressed)) and not world.call(lambda: world.forget(print))
+        page.send("key", key="k", down=True)
+        number = page.id
+    for _ in range(200):
+        if len(heard) == 4:
+            break
+        time.sleep(0.02)
+    assert heard[3] == ("leave", number)
+
+
+def test_an_on_frame_that_raises_is_told_once(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+
+    @world.on_frame
+    def bad() -> None:
+        raise RuntimeError("each time")
+
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.pose_frames > 10)
+        assert len(page.notices) == 1
+
+
+def test_a_picture_comes_from_the_page(run_world: Runner, tmp_path: Path) -> None:
+    world = iota.World(iota.System())
+    with PageClient(run_world(world)) as page:
+        (client,) = page.wait_for(lambda: world.clients)
+
+        def answer() -> None:
+            number = page.wait_for(lambda: page.last.get("ask_picture"))["request"]
+            page.send("key", key="x", down=True)  # waits until the picture is there
+            page.send("picture", request=number, is_last=False, data=b"PN")
+            page.send("picture", request=number, is_last=True, data=b"G")
+
+        thread = threading.Thread(target=answer)
+        thread.start()
+        assert client.screenshot(tmp_path / "shot.png") == b"PNG"
+        thread.join()
+        assert (tmp_path / "shot.png").read_bytes() == b"PNG"
+        with pytest.raises(TimeoutError, match=r"0\.2 s"):
+            client.screenshot(seconds=0.2)
+        page.send("picture", request=77, is_last=True, data=b"spam")
+        page.wait_for(lambda: any("none was asked for" in n["text"] for n in page.notices))

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of what the page shows: for the script, in parts that fit a frame, and as a file for the user.
+
+import type { ClientMessage } from "../protocol/generated.ts";
+import type { Viewer } from "./viewer.ts";
+
+const partBytes = 60_000;
+
+/** A PNG of the world as it is drawn now, without the controls; null where the browser can make none. */
+export async function takePicture({ renderer, scene, camera }: Pick<Viewer, "renderer" | "scene" | "camera">): Promise<Blob | null> {
+  // What was drawn before is gone once the browser has shown it.
+  renderer.render(scene, camera);
+  return new Promise((resolve) => {
+    renderer.domElement.toBlob(resolve, "image/png");
+  });
+}
+
+/** Answers the server's request; an empty part where there is no picture. */
+export async function sendPicture(viewer: Viewer, request: number, send: (part: ClientMessage) => void): Promise<void> {
+  const picture = await takePicture(viewer).catch(() => null);
+  const bytes = picture === null ? new Uint8Array() : new Uint8Array(await picture.arrayBuffer());
+  for (let from = 0; from === 0 || from < bytes.length; from += partBytes) {
+    const data = bytes.subarray(from, from + partBytes);
+    send({ type: "picture", request, isLast: from + partBytes >= bytes.length, data });
+  }
+}
+
+/** Hands the user a file. */
+export async function savePicture(viewer: Viewer, name: string): Promise<void> {
+  const picture = await takePicture(viewer);
+  if (picture === null) throw new Error("the browser could not make a picture");
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(picture);
+  link.download = `${name.replaceAll(/[^\p{L}\p{N}]+/gu, "_") || "iota"}.png`;
+  link.click();
+  window.setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tells the script what it listens to: clicks, hovers, keys. Holds and selections are told anyway.
+
+import type { Grab, Pointer } from "../interact/gestures.ts";
+import { PointerKind, type Vec3 } from "../protocol/generated.ts";
+import type { PageListener } from "./events.ts";
+import type { PageParts } from "./page_parts.ts";
+import type { FramePart } from "./viewer.ts";
+
+/** A press that ends sooner, and whose ray has turned less, is a click. */
+const clickMs = 350;
+const clickTurn = 0.02;
+
+interface Press {
+  readonly at: number;
+  readonly direction: readonly number[];
+  /** Null: on nothing. */
+  readonly grab: Grab | null;
+}
+
+export class Reports implements PageListener, FramePart {
+  private readonly parts_: Pick<PageParts, "world" | "session" | "gestures">;
+  private readonly presses_ = new Map<Pointer, Press>();
+  private readonly hovered_ = new Map<Pointer, number>();
+  private readonly down_ = new Set<string>();
+
+  constructor(parts: Pick<PageParts, "world" | "session" | "gestures" | "events">) {
+    this.parts_ = parts;
+    parts.events.add(this);
+    // Before the page's own keys: what the script listens to is the script's.
+    window.addEventListener("keydown", (event) => this.key_(event, true), true);
+    window.addEventListener("keyup", (event) => this.key_(event, false), true);
+    window.addEventListener("blur", () => {
+      for (const key of this.down_) parts.session.send({ type: "key", key, down: false });
+      this.down_.clear();
+    });
+  }
+
+  // --- PageListener
+
+  grab(grab: Grab, phase: "start" | "end"): void {
+    if (phase === "start") this.presses_.set(grab.pointer, { at: performance.now(), direction: [...grab.pointer.direction], grab });
+    else this.release_(grab.pointer);
+  }
+
+  pressNothing(pointer: Pointer): void {
+    this.presses_.set(pointer, { at: performance.now(), direction: [...pointer.direction], grab: null });
+  }
+
+  hover(pointer: Pointer, body: number): void {
+    if (!this.parts_.world.listens.hovers) return;
+    const before = this.hovered_.get(pointer) ?? -1;
+    if (before >= 0) this.send_(PointerKind.hoverEnd, pointer, before);
+    if (body >= 0) this.send_(PointerKind.hover, pointer, body);
+    this.hovered_.set(pointer, body);
+  }
+
+  // --- FramePart
+
+  /** A press on nothing has no grab that would end. */
+  interact(): void {
+    for (const [pointer, { grab }] of this.presses_) if (grab === null && !(pointer.active && pointer.pressed)) this.release_(pointer);
+  }
+
+  // --- inside
+
+  private release_(pointer: Pointer): void {
+    const press = this.presses_.get(pointer);
+    this.presses_.delete(pointer);
+    if (press === undefined || !this.parts_.world.listens.clicks || performance.now() - press.at > clickMs) return;
+    const { direction } = pointer;
+    const turned = Math.hypot(direction[0] - press.direction[0], direction[1] - press.direction[1], direction[2] - press.direction[2]);
+    if (turned < clickTurn) this.send_(PointerKind.click, pointer, press.grab?.body ?? -1, press.grab?.start);
+  }
+
+  private send_(kind: PointerKind, pointer: Pointer, body: number, point?: ArrayLike<number>): void {
+    const origin = vec3(pointer.origin);
+    this.parts_.session.send({
+      type: "pointer", kind, body: this.parts_.session.idOf(body), name: pointer.name.slice(0, 16),
+      point: body >= 0 ? vec3(point ?? pointer.hit.point) : origin, origin, direction: vec3(pointer.direction),
+    });
+  }
+
+  private key_(event: KeyboardEvent, down: boolean): void {
+    const { key } = event;
+    if (!down && this.down_.delete(key)) {
+      this.parts_.session.send({ type: "key", key, down: false });
+      return;
+    }
+    if (!down || !this.parts_.world.listens.keys.includes(key)) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || isForElement(event.target)) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    if (event.repeat) return;
+    this.down_.add(key);
+    this.parts_.session.send({ type: "key", key, down: true });
+  }
+}
+
+/** A control that is typed into, or a dialog, keeps its keys. */
+function isForElement(target: EventTarget | null): boolean {
+  return target instanceof HTMLElement && target.closest("input, select, textarea, button, summary, dialog[open]") !== null;
+}
+
+function vec3(from: ArrayLike<number>): Vec3 {
+  return [from[0], from[1], from[2]];
+}

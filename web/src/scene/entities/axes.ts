@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Axes of bodies and of the world: x red, y green, z blue.
+
+import { Quaternion, Vector3 } from "three";
+import type { AxesEntity } from "../../protocol/generated.ts";
+import { placeOf, turnOf } from "../anchors.ts";
+import { addArrow } from "./arrow.ts";
+import { onBody, Stroked } from "./stroked.ts";
+
+const colors = [0xd0402b, 0x4c9a52, 0x3f7fd0];
+
+export class AxesView extends Stroked<AxesEntity> {
+  private readonly origin_ = new Vector3();
+  private readonly tip_ = new Vector3();
+  private readonly turn_ = new Quaternion();
+  private readonly own_ = new Quaternion();
+
+  protected isAttached_({ at }: AxesEntity): boolean {
+    return onBody(at);
+  }
+
+  protected write_({ at, rotation, length }: AxesEntity): void {
+    if (!placeOf(this.poses_, at, this.origin_) || !turnOf(this.poses_, at.body, this.turn_)) return;
+    this.turn_.multiply(this.own_.set(...rotation).normalize());
+    colors.forEach((color, axis) => {
+      this.tip_.set(0, 0, 0).setComponent(axis, length).applyQuaternion(this.turn_).add(this.origin_);
+      addArrow(this.strokes_, this.origin_, this.tip_, 0, color);
+    });
+  }
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Labels: text on a small plate that faces the viewer. Those without a height are as large on the screen wherever they are, and
+// in front of all else.
+
+import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector3 } from "three";
+import type { LabelEntity } from "../../protocol/generated.ts";
+import { placeOf } from "../anchors.ts";
+import type { PoseBuffer } from "../pose_buffer.ts";
+import { noColor } from "../strokes.ts";
+import type { EntityView } from "./entity.ts";
+
+/** px of the drawn text. */
+const fontSize = 44;
+const padding = { x: 22, y: 12 };
+const plateHeight = fontSize + 2 * padding.y;
+const mostWidth = 2048;
+/** Height of a capital, as a part of the plate's. */
+const capital = (0.72 * fontSize) / plateHeight;
+/** Height of the plate at a distance of 1 m, m. */
+const usualHeight = 0.036;
+const font = `600 ${fontSize}px system-ui, sans-serif`;
+
+interface Label {
+  entity: LabelEntity;
+  readonly sprite: Sprite;
+  readonly canvas: HTMLCanvasElement;
+  texture: CanvasTexture | null;
+}
+
+export class LabelView implements EntityView<LabelEntity> {
+  readonly root = new Group();
+
+  private readonly poses_: PoseBuffer;
+  private readonly eye_: Vector3;
+  private readonly labels_ = new Map<number, Label>();
+  private readonly b_ = new Vector3();
+
+  /** `eye`: where the viewer is, world, m; kept up to date by its owner. */
+  constructor(poses: PoseBuffer, eye: Vector3) {
+    this.poses_ = poses;
+    this.eye_ = eye;
+  }
+
+  /** Text of a label; undefined where there is none. */
+  textOf(slot: number): string | undefined {
+    return this.labels_.get(slot)?.entity.text;
+  }
+
+  create(entity: LabelEntity): void {
+    const material = new SpriteMaterial({ transparent: true, toneMapped: false, fog: false, depthWrite: false });
+    const label: Label = { entity, sprite: new Sprite(material), canvas: document.createElement("canvas"), texture: null };
+    this.labels_.set(entity.id.slot, label);
+    this.root.add(label.sprite);
+    paint(label);
+  }
+
+  change(entity: LabelEntity): void {
+    const label = this.labels_.get(entity.id.slot);
+    if (label === undefined) return;
+    const { text, color } = label.entity;
+    label.entity = entity;
+    if (text !== entity.text || color !== entity.color) paint(label);
+  }
+
+  destroy(slot: number): void {
+    const label = this.labels_.get(slot);
+    if (label === undefined) return;
+    this.labels_.delete(slot);
+    label.sprite.removeFromParent();
+    label.sprite.material.dispose();
+    label.texture?.dispose();
+  }
+
+  draw(): void {
+    for (const { entity: { a, b, offset, height }, sprite, canvas } of this.labels_.values()) {
+      const { position } = sprite;
+      sprite.visible = canvas.width > 0 && placeOf(this.poses_, a, position) && placeOf(this.poses_, b, this.b_);
+      if (!sprite.visible) continue;
+      position.add(this.b_).multiplyScalar(0.5);
+      position.x += offset[0];
+      position.y += offset[1];
+      position.z += offset[2];
+      const tall = height > 0 ? height / capital : usualHeight * position.distanceTo(this.eye_);
+      sprite.scale.set((tall * canvas.width) / canvas.height, tall, 1);
+      sprite.material.depthTest = height > 0;
+      sprite.renderOrder = height > 0 ? 0 : 10;
+    }
+  }
+}
+
+function paint(label: Label): void {
+  const { canvas, entity: { text, color }, sprite } = label;
+  const context = canvas.getContext("2d");
+  if (context === null) return;
+  context.font = font;
+  const width = Math.min(Math.ceil(context.measureText(text).width) + 2 * padding.x, mostWidth);
+  if (canvas.width !== width || canvas.height !== plateHeight || label.texture === null) {
+    canvas.width = width;
+    canvas.height = plateHeight;
+    // A texture cannot change its size.
+    label.texture?.dispose();
+    label.texture = new CanvasTexture(canvas);
+    label.texture.colorSpace = SRGBColorSpace;
+    sprite.material.map = label.texture;
+    sprite.material.needsUpdate = true;
+  }
+  context.clearRect(0, 0, width, plateHeight);
+  if (text !== "") {
+    context.fillStyle = "rgba(250, 248, 243, 0.86)";
+    context.beginPath();
+    context.roundRect(1, 1, width - 2, plateHeight - 2, plateHeight / 2);
+    context.fill();
+    context.fillStyle = color === noColor ? "#23272b" : `#${color.toString(16).padStart(6, "0")}`;
+    context.font = font;
+    context.textBaseline = "middle";
+    context.fillText(text, padding.x, plateHeight / 2 + 2, width - 2 * padding.x);
+  }
+  label.texture.needsUpdate = true;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Controls and plots of the script: kept here, shown by the panel of the page.
+
+import type { Id } from "../../protocol/generated.ts";
+import { EntityRecords } from "./entity.ts";
+
+export class WatchedRecords<Record extends { readonly id: Id }> extends EntityRecords<Record> {
+  /** Rises with each change. */
+  version = 0;
+
+  override create(entity: Record): void {
+    super.create(entity);
+    this.version++;
+  }
+
+  override change(entity: Record): void {
+    super.change(entity);
+    this.version++;
+  }
+
+  override destroy(slot: number): void {
+    super.destroy(slot);
+    this.version++;
+  }
+
+  /** In the order in which the script made them. */
+  all(): Record[] {
+    return [...this.records_.values()].sort((a, b) => a.id.slot - b.id.slot);
+  }
+}

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// The script's controls and plots, at the right edge; nothing is there where the script has none.
+
+import type { Page } from "../page/page.ts";
+import type { FramePart } from "../page/viewer.ts";
+import { WidgetKind, type PlotEntity, type WidgetEntity } from "../protocol/generated.ts";
+import { make } from "./dom.ts";
+import { drawPlot } from "./plot.ts";
+
+type PanelPage = Pick<Page, "world" | "session" | "viewer">;
+
+/** A control as it is shown. */
+interface Shown {
+  readonly element: HTMLElement;
+  /** Of the record that it was made for: what cannot change without another element. */
+  readonly face: string;
+  show(widget: WidgetEntity): void;
+}
+
+interface ShownPlot {
+  readonly element: HTMLElement;
+  readonly canvas: HTMLCanvasElement;
+  readonly legend: HTMLElement;
+}
+
+/** Space on a phone is for the world: there the panel opens at a touch. */
+const roomy = "(min-width: 700px)";
+
+export class Panel implements FramePart {
+  private readonly page_: PanelPage;
+  private readonly root_ = make("details", "panel");
+  private readonly list_ = make("div", "controls");
+  private readonly shown_ = new Map<number, Shown>();
+  private readonly plots_ = new Map<number, ShownPlot>();
+  private widgetsSeen_ = 0;
+  private plotsSeen_ = 0;
+
+  constructor(page: PanelPage) {
+    this.page_ = page;
+    this.root_.id = "panel";
+    this.root_.open = matchMedia(roomy).matches;
+    this.root_.hidden = true;
+    this.root_.setAttribute("aria-label", "Controls of the world");
+    this.root_.append(make("summary", "", "Controls"), this.list_);
+    this.root_.addEventListener("toggle", () => {
+      this.plotsSeen_ = -1;
+    });
+    document.body.append(this.root_);
+  }
+
+  draw(): void {
+    const { widget, plot } = this.page_.world.entities;
+    if (widget.version !== this.widgetsSeen_) {
+      this.widgetsSeen_ = widget.version;
+      this.showWidgets_(widget.all());
+    }
+    if (plot.version !== this.plotsSeen_) {
+      this.plotsSeen_ = plot.version;
+      this.showPlots_(plot.all());
+    }
+    this.root_.hidden = widget.size + plot.size === 0;
+  }
+
+  private showWidgets_(widgets: readonly WidgetEntity[]): void {
+    const known = new Set(widgets.map(({ id }) => id.slot));
+    for (const [slot, { element }] of this.shown_) {
+      if (known.has(slot)) continue;
+      element.remove();
+      this.shown_.delete(slot);
+    }
+    let before: Element | null = null;
+    for (const widget of widgets) {
+      const element = this.showWidget_(widget);
+      const place: Element | null = before === null ? this.list_.firstElementChild : before.nextElementSibling;
+      if (place !== element) this.list_.insertBefore(element, place);
+      before = element;
+    }
+  }
+
+  private showWidget_(widget: WidgetEntity): HTMLElement {
+    const { slot, generation } = widget.id;
+    const face = JSON.stringify([generation, widget.kind, widget.label, widget.help, widget.options]);
+    let shown = this.shown_.get(slot);
+    if (shown?.face !== face) {
+      shown?.element.remove();
+      shown = { face, ...this.make_(widget) };
+      if (widget.help !== "") shown.element.title = widget.help;
+      this.shown_.set(slot, shown);
+    }
+    shown.show(widget);
+    return shown.element;
+  }
+
+  private make_(widget: WidgetEntity): Omit<Shown, "face"> {
+    const send = (value: number, text = "") => {
+      this.page_.session.send({ type: "change", widget: widget.id, value, text });
+    };
+    switch (widget.kind) {
+      case WidgetKind.button: return makePress(widget, send);
+      case WidgetKind.slider: return makeSlider(widget, send);
+      case WidgetKind.checkbox: return makeCheck(widget, send);
+      case WidgetKind.choice: return makeChoice(widget, send);
+      default: return makeText(widget, send);
+    }
+  }
+
+  private showPlots_(plots: readonly PlotEntity[]): void {
+    const known = new Set(plots.map(({ id }) => id.slot));
+    for (const [slot, { element }] of this.plots_) {
+      if (known.has(slot)) continue;
+      element.remove();
+      this.plots_.delete(slot);
+    }
+    for (const plot of plots) {
+      let shown = this.plots_.get(plot.id.slot);
+      if (shown === undefined) {
+        shown = makePlot(plot);
+        this.plots_.set(plot.id.slot, shown);
+        this.list_.append(shown.element);
+      }
+      if (this.root_.open) drawPlot(shown.canvas, shown.legend, plot);
+    }
+  }
+}
+
+type Send = (value: number, text?: string) => void;
+
+function labeled(widget: WidgetEntity, ...parts: readonly HTMLElement[]): HTMLElement {
+  const label = make("label", "control");
+  label.append(make("span", "name", widget.label), ...parts);
+  return label;
+}
+
+function makePress(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
+  const button = make("button", "press", widget.label);
+  button.type = "button";
+  button.addEventListener("click", () => send(1));
+  return { element: button, show: ({ enabled }) => {
+    button.disabled = !enabled;
+  } };
+}
+
+/** As few digits as tell it apart on the slider. */
+export function written(value: number, span: number): string {
+  const digits = span > 0 ? Math.min(Math.max(2 - Math.floor(Math.log10(span)), 0), 8) : 3;
+  return String(Number(value.toFixed(digits)));
+}
+
+function makeSlider(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
+  const input = make("input");
+  input.type = "range";
+  const value = make("output");
+  let shown = widget;
+  const write = (now: number) => {
+    value.textContent = `${written(now, shown.maximum - shown.minimum)}${shown.unit === "" ? "" : ` ${shown.unit}`}`;
+    input.setAttribute("aria-valuetext", value.textContent);
+  };
+  input.addEventListener("input", () => {
+    write(input.valueAsNumber);
+    send(input.valueAsNumber);
+  });
+  const element = labeled(widget, value, input);
+  element.classList.add("slider");
+  return { element, show: (now) => {
+    shown = now;
+    input.min = String(now.minimum);
+    input.max = String(now.maximum);
+    input.step = now.step > 0 ? String(now.step) : "any";
+    input.disabled = !now.enabled;
+    // What is in the user's hand is the user's.
+    if (input.matches(":active")) return;
+    input.value = String(now.value);
+    write(now.value);
+  } };
+}
+
+function makeCheck(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
+  const input = make("input");
+  input.type = "checkbox";
+  input.addEventListener("change", () => send(input.checked ? 1 : 0));
+  return { element: labeled(widget, input), show: ({ value, enabled }) => {
+    input.checked = value !== 0;
+    input.disabled = !enabled;
+  } };
+}
+
+function makeChoice(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
+  const select = make("select");
+  widget.options.forEach((option, index) => select.append(new Option(option, String(index))));
+  select.addEventListener("change", () => send(select.selectedIndex));
+  return { element: labeled(widget, select), show: ({ value, enabled }) => {
+    select.selectedIndex = value;
+    select.disabled = !enabled;
+  } };
+}
+
+function makeText(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
+  const input = make("input");
+  input.type = "text";
+  input.maxLength = 1000;
+  input.addEventListener("change", () => send(0, input.value));
+  return { element: labeled(widget, input), show: ({ text, enabled }) => {
+    input.disabled = !enabled;
+    if (document.activeElement !== input) input.value = text;
+  } };
+}
+
+function makePlot({ label, unit }: PlotEntity): ShownPlot {
+  const element = make("figure", "plot");
+  const caption = make("figcaption", "", unit === "" ? label : `${label}, ${unit}`);
+  const canvas = make("canvas");
+  const legend = make("div", "legend");
+  canvas.setAttribute("role", "img");
+  canvas.setAttribute("aria-label", `Plot of ${label}`);
+  element.append(caption, canvas, legend);
+  return { element, canvas, legend };
+}
