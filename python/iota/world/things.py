@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, ClassVar, Generic, TypeVar, overload
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -30,15 +30,10 @@ class Field(Generic[Value]):
     def __set_name__(self, owner: type[Thing], name: str) -> None:
         self._name = name
 
-    @overload
-    def __get__(self, thing: None, owner: type[Thing]) -> Field[Value]: ...
-
-    @overload
-    def __get__(self, thing: Thing, owner: type[Thing]) -> Value: ...
-
-    def __get__(self, thing: Thing | None, owner: type[Thing]) -> Field[Value] | Value:
+    # No @overload: its registry would keep this module, and with it the engine's types, alive at exit.
+    def __get__(self, thing: Thing | None, owner: type[Thing]) -> Value:
         if thing is None:
-            return self
+            raise AttributeError(f"{self._name} is an attribute of each {owner.__name__}")
         return thing._values[self._name]  # type: ignore[no-any-return]
 
     def __set__(self, thing: Thing, value: Any) -> None:
