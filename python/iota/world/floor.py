@@ -102,7 +102,7 @@ class Floor:
         friction: float = 0.6,
     ) -> None:
         self._system, self.height, self._friction, self._thickness_of = system, height, friction, thickness_of
-        self._version = -1
+        self._version = self._row_count = -1
         self._touches: Touches | None = None
         self._particles: list[Particle] = []
         self._bodies: list[Body] = []
@@ -122,12 +122,17 @@ class Floor:
         if not (gravity > 0 and len(positions)):
             return
         velocities = self._system.velocities
-        if self._version != self._system.structure_version:
-            self._version = self._system.structure_version
-            self._take_structure(positions)
-        assert self._touches is not None
         lowest = positions[:, 1].min() - self.height - self._reach
-        if lowest > 0 and lowest + (velocities[:, 1].min() - gravity * dt) * dt > 0:
+        is_clear = lowest > 0 and lowest + (velocities[:, 1].min() - gravity * dt) * dt > 0
+        version = self._system.structure_version
+        # What is cut or joined high above the floor is of no concern; what is new may reach farther than all before.
+        if self._touches is None or (self._version != version and not (is_clear and len(positions) == self._row_count)):
+            self._version, self._row_count = version, len(positions)
+            self._take_structure(positions)
+            lowest = positions[:, 1].min() - self.height - self._reach
+            is_clear = lowest > 0 and lowest + (velocities[:, 1].min() - gravity * dt) * dt > 0
+        assert self._touches is not None
+        if is_clear:
             self._touches.leave()
         elif self._touches.keys:
             self._push(self._touches, positions, velocities, gravity, dt)
