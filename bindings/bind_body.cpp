@@ -143,8 +143,12 @@ void bind_body(nb::module_& module) {
                 .set_damping(self.id, finite_not_negative(value, "damping", "1/s"));
           },
           "1/s, adds to the system's.")
-      .def_prop_ro(
-          "mass", [](const BodyHandle& self) { return self.use().bodies().mass(self.id); }, "kg")
+      .def_prop_rw(
+          "mass", [](const BodyHandle& self) { return self.use().bodies().mass(self.id); },
+          [](const BodyHandle& self, double value) {
+            between_steps(self, "mass = ...").bodies().set_mass(self.id, finite_positive(value, "mass", "kg"));
+          },
+          "kg. Assigning scales the masses of its particles, and its inertia with them.")
       .def_prop_ro(
           "center_of_mass", [](const BodyHandle& self) { return self.use().bodies().center_of_mass(self.id); }, "m")
       .def_prop_rw(
@@ -199,6 +203,38 @@ void bind_body(nb::module_& module) {
       .def_prop_ro(
           "angular_momentum", [](const BodyHandle& self) { return self.use().bodies().angular_momentum(self.id); },
           "About its center of mass, kg m^2/s.")
+      .def_prop_rw(
+          "name", [](const BodyHandle& self) { return self.use().bodies().name(self.id); },
+          [](const BodyHandle& self, const std::string& name) {
+            between_steps(self, "name = ...").bodies().set_name(self.id, name);
+          },
+          "What the script calls it: at most 63 bytes, '' for none. Names need not be unique.")
+      .def_prop_ro(
+          "energy",
+          [](const BodyHandle& self) {
+            const BodyEnergy energy = self.use().bodies().energy(self.id);
+            return Energy{.kinetic = energy.kinetic, .potential = energy.potential};
+          },
+          "Kinetic, and potential of its weight and of bonds and joints that it is the first body of, J.")
+      .def(
+          "apply_force",
+          [](const BodyHandle& self, VectorArgument force, std::optional<VectorArgument> at) {
+            auto bodies = between_steps(self, "apply_force").bodies();
+            if (at)
+              bodies.apply_force(self.id, to_vec3(force, "force"), to_vec3(*at, "at"));
+            else
+              bodies.apply_force(self.id, to_vec3(force, "force"));
+          },
+          "force"_a, "at"_a = nb::none(),
+          "Adds a force (N) during the next step only, at a place (world, m) or the center of mass.")
+      .def(
+          "apply_torque",
+          [](const BodyHandle& self, VectorArgument torque) {
+            between_steps(self, "apply_torque").bodies().apply_torque(self.id, to_vec3(torque, "torque"));
+          },
+          "torque"_a,
+          "Adds a torque (N m, world axes) during the next step only. ValueError about what has no inertia: a point, or the\n"
+          "line that all particles are on.")
       .def_prop_ro(
           "solids", [](const BodyHandle& self) { return self.use().bodies().solids(self.id); },
           "What it was given as; several once bodies were combined, none for a body of particles alone.")

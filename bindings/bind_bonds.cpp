@@ -55,19 +55,6 @@ nb::object function_called(const System& engine, const std::string& word) {
   return {};
 }
 
-/// How stiff a bond is has no usual value: a predefined law does not choose one unasked.
-void require_stiffness(const System& engine, LawId law, const std::vector<LawParameter>& given) {
-  if (engine.laws().kind(law) != "predefined") return;
-  const auto has = [](const std::vector<LawParameter>& list, const std::string& name) {
-    return std::any_of(list.begin(), list.end(), [&](const LawParameter& p) { return p.name == name; });
-  };
-  const std::vector<LawParameter> known = engine.laws().parameters(law);
-  for (const LawParameter& p : given)
-    if (!has(known, p.name)) return;  // refused with a better text
-  if (has(known, "stiffness") && !has(given, "stiffness"))
-    throw nb::value_error(("a " + engine.laws().name(law) + " needs stiffness=..., N/m").c_str());
-}
-
 BondHandle make_bond(SystemObject& self, const ParticleHandle& p, const ParticleHandle& q, nb::object law,
                      std::optional<bool> implicit, double break_force, const nb::kwargs& keywords) {
   check_ends(self, p, q, "bond");
@@ -256,6 +243,18 @@ void bind_cosmetic_bond(nb::module_& module) {
 }
 
 }  // namespace
+
+void require_stiffness(const System& engine, LawId law, const std::vector<LawParameter>& given) {
+  if (engine.laws().kind(law) != "predefined") return;
+  const auto has = [](const std::vector<LawParameter>& list, const std::string& name) {
+    return std::any_of(list.begin(), list.end(), [&](const LawParameter& p) { return p.name == name; });
+  };
+  const std::vector<LawParameter> known = engine.laws().parameters(law);
+  for (const LawParameter& p : given)
+    if (!has(known, p.name)) return;  // refused with a better text
+  if (has(known, "stiffness") && !has(given, "stiffness"))
+    throw nb::value_error(("a " + engine.laws().name(law) + " needs stiffness=..., N/m").c_str());
+}
 
 void bind_bonds(nb::module_& module) {
   bind_bond_state(module);

@@ -56,7 +56,26 @@ void read_limits(const std::optional<Pair>& limits, CoordinateOptions& options) 
 }
 
 void read_motor(const std::optional<Pair>& motor, CoordinateOptions& options) {
+  options.servo = std::numeric_limits<double>::quiet_NaN();
   std::tie(options.motor_speed, options.motor_max) = motor.value_or(Pair{0, 0});
+}
+
+/// (aim, largest effort, largest speed=inf).
+void read_servo(nb::handle servo, CoordinateOptions& options) {
+  std::vector<double> numbers;
+  if (!servo.is_none() && (!nb::try_cast(servo, numbers) || numbers.size() < 2 || numbers.size() > 3))
+    throw nb::type_error(
+        ("servo must be (aim, largest torque or force) or (aim, largest torque or force, largest speed), not " +
+         describe(servo))
+            .c_str());
+  if (servo.is_none()) {
+    if (!std::isnan(options.servo)) read_motor(std::nullopt, options);
+    return;
+  }
+  options.servo = finite(numbers[0], "the aim of a servo");
+  options.motor_max = finite_not_negative(numbers[1], "the largest torque or force of a servo", "N m or N");
+  options.motor_speed =
+      numbers.size() == 3 ? finite_not_negative(numbers[2], "the largest speed of a servo", "rad/s or m/s") : infinity;
 }
 
 CoordinateOptions to_options(const CoordinateArguments& arguments) {
@@ -195,12 +214,19 @@ ConstraintHandle& holder_of(CoordinateView& coordinate) { return coordinate.join
 
 void bind_coordinate(nb::module_& module) {
   nb::class_<CoordinateView>(module, "JointCoordinate", coordinate_doc, nb::type_slots(handle_slots<CoordinateView>))
-      .def_prop_ro(
+      .def_prop_rw(
           "value",
           [](const CoordinateView& self) {
             return self.joint.use().joints().state(self.joint.id).coordinate[self.index()];
           },
-          "rad, counted on through full turns, or m.")
+          [](const CoordinateView& self, double value) {
+            self.joint.use();
+            System& engine = self.joint.system->use_between_steps("value = ...");
+            engine.joints().set_value(self.joint.id, self.which, finite(value, "value"));
+          },
+          "rad, counted on through full turns, or m. Assigning moves the mechanism: what hangs on a as one rigid thing (or on\n"
+          "b, where a is held), and in a loop all bodies as little as they can. ValueError beyond the limits and where the\n"
+          "rest cannot follow; everything is then as it was.")
       .def("__float__",
            [](const CoordinateView& self) {
              return self.joint.use().joints().state(self.joint.id).coordinate[self.index()];
@@ -212,9 +238,19 @@ void bind_coordinate(nb::module_& module) {
       .def_prop_ro(
           "effort",
           [](const CoordinateView& self) {
-            return self.joint.use().joints().state(self.joint.id).effort[self.index()];
+            return self.joint.use().joints().state(self.joint.id).effort[self.index()].total();
           },
           "By stops, motor, friction and spring along it on a in the last step, N m or N.")
+      .def_prop_ro(
+          "efforts",
+          [](const CoordinateView& self) {
+            const CoordinateEfforts of = self.joint.use().joints().state(self.joint.id).effort[self.index()];
+            nb::dict all;
+            all["stop"] = of.stop, all["motor"] = of.motor, all["friction"] = of.friction, all["spring"] = of.spring;
+            return all;
+          },
+          nb::sig("def efforts(self) -> dict[str, float]"),
+          "Its effort in parts, by name: stop, motor, friction, spring.")
       .def_prop_rw(
           "limits",
           [](const CoordinateView& self) {
@@ -232,7 +268,8 @@ void bind_coordinate(nb::module_& module) {
           "motor",
           [](const CoordinateView& self) {
             const CoordinateOptions o = self.options();
-            return o.motor_max > 0 ? std::optional<Pair>({o.motor_speed, o.motor_max}) : std::nullopt;
+            return o.motor_max > 0 && std::isnan(o.servo) ? std::optional<Pair>({o.motor_speed, o.motor_max})
+                                                          : std::nullopt;
           },
           [](const CoordinateView& self, std::optional<Pair> motor) {
             CoordinateOptions options = self.options();
@@ -241,6 +278,21 @@ void bind_coordinate(nb::module_& module) {
           },
           nb::for_setter(nb::arg("motor").none()),
           "(speed, largest torque or force); None for none. Speed 0 is a brake.")
+      .def_prop_rw(
+          "servo",
+          [](const CoordinateView& self) -> std::optional<std::tuple<double, double, double>> {
+            const CoordinateOptions o = self.options();
+            if (std::isnan(o.servo) || o.motor_max == 0) return std::nullopt;
+            return std::tuple{o.servo, o.motor_max, o.motor_speed};
+          },
+          [](const CoordinateView& self, ServoArgument servo) {
+            CoordinateOptions options = self.options();
+            read_servo(servo.value, options);
+            self.set(options);
+          },
+          nb::for_setter(nb::arg("servo").none()),
+          "(aim, largest torque or force, largest speed=inf): a motor that goes to the aim and holds there; None for none. It\n"
+          "slows down such that what is left falls as exp(-t / 0.05 s). A motor and a servo replace each other.")
       .def_prop_rw(
           "friction", [](const CoordinateView& self) { return self.options().friction; },
           [](const CoordinateView& self, double friction) {
@@ -418,6 +470,44 @@ void bind_broken(nb::module_& module) {
                                                         : name_of(self.broken.particle);
         return "<Broken: " + what + " at " + std::to_string(self.broken.force) + " N, " +
                std::to_string(self.broken.torque) + " N m>";
+      });
+}
+
+// --- meeting and parting ----------------------------------------------------------------------------------------------
+
+struct ContactView {
+  nb::object system_object;
+  SystemObject* system;
+  ContactEvent event;
+};
+
+void bind_contact(nb::module_& module) {
+  nb::class_<ContactView>(
+      module, "ContactEvent",
+      "Something one-sided began or ended to carry a load: surfaces met or parted, a rope went taut or slack, a coordinate\n"
+      "reached or left a stop.",
+      nb::type_slots(handle_slots<ContactView>))
+      .def_prop_ro(
+          "met", [](const ContactView& self) { return self.event.kind == ContactEvent::Kind::met; },
+          "True where it began, False where it ended.")
+      .def_prop_ro(
+          "constraint", [](const ContactView& self) { return sibling(self, self.event.constraint); }, "What carries.")
+      .def_prop_ro(
+          "stop",
+          [](const ContactView& self) -> std::optional<std::string> {
+            if (!self.event.stop) return std::nullopt;
+            return coordinate_names[static_cast<std::size_t>(*self.event.stop)];
+          },
+          "'angle', 'slide' or 'second_angle', whose stop it is; None where it is the constraint itself.")
+      .def_prop_ro(
+          "position", [](const ContactView& self) { return self.event.position; }, "Where it acts on a, m.")
+      .def("__repr__", [](const ContactView& self) {
+        const ContactEvent& e = self.event;
+        const std::string what =
+            e.stop ? std::string(" a stop of its ") + coordinate_names[static_cast<std::size_t>(*e.stop)] : "";
+        const bool met = e.kind == ContactEvent::Kind::met;
+        return "<ContactEvent: " + name_of(e.constraint) +
+               (e.stop ? (met ? " reached" : " left") : (met ? " met" : " parted")) + what + ">";
       });
 }
 
@@ -610,6 +700,17 @@ void bind_makers(nb::class_<SystemObject>& type) {
       },
       nb::sig("def constraints(self) -> list[Constraint]"), "In order of slots.");
   type.def_prop_ro(
+      "contacts",
+      [](nb::handle_t<SystemObject> self) {
+        SystemObject* object = nb::inst_ptr<SystemObject>(self);
+        object->use();
+        std::vector<ContactView> out;
+        for (const ContactEvent& event : object->contacts) out.push_back({nb::borrow(self), object, event});
+        return out;
+      },
+      nb::sig("def contacts(self) -> list[ContactEvent]"),
+      "What met, parted, reached or left a stop in the last step.");
+  type.def_prop_ro(
       "broken",
       [](nb::handle_t<SystemObject> self) {
         SystemObject* object = nb::inst_ptr<SystemObject>(self);
@@ -627,6 +728,7 @@ void bind_constraints(nb::module_& module) {
   bind_coordinate(module);
   bind_handle(module);
   bind_broken(module);
+  bind_contact(module);
   nb::object system = module.attr("System");
   auto type = nb::borrow<nb::class_<SystemObject>>(system);
   bind_makers(type);

@@ -40,8 +40,10 @@ constexpr const char* pair_force_doc =
 constexpr const char* make_pair_force_doc =
     "A new force between all pairs of particles of a group, or of all, that are nearer than `cutoff` (m); taken once a step and\n"
     "held. law is a predefined law, an expression or a Law with a derivative, as for `bond`. Points of one body do not feel\n"
-    "each other.\n\n"
-    "    system.pair_force('lennard_jones', cutoff=2.5, depth=1, size=1)";
+    "each other. other: only pairs of one of `group` and one of this group. shifted: a constant and a linear term are taken\n"
+    "off the energy, so that it and the force are zero at the cut-off, and pairs that cross it change no energy; for laws\n"
+    "that have an energy and do not depend on masses.\n\n"
+    "    system.pair_force('lennard_jones', cutoff=2.5, shifted=True, depth=1, size=1)";
 
 constexpr const char* batch_doc =
     "The particles of a field, as its function sees them: arrays with a row a particle, in the order of `particles`. Good\n"
@@ -149,7 +151,7 @@ FieldHandle make_field(nb::handle_t<SystemObject> self, nb::object field, nb::ha
 }
 
 PairsHandle make_pair_force(nb::handle_t<SystemObject> self, nb::object law, double cutoff, nb::handle group,
-                            const nb::kwargs& keywords) {
+                            nb::handle other, bool shifted, const nb::kwargs& keywords) {
   SystemObject* system = nb::inst_ptr<SystemObject>(self);
   System& engine = system->use_between_steps("pair_force(...)");
   finite_positive(cutoff, "cutoff", "m");
@@ -165,7 +167,8 @@ PairsHandle make_pair_force(nb::handle_t<SystemObject> self, nb::object law, dou
   } else {
     throw nb::type_error(("law must be a predefined law, an expression or a Law, not " + describe(law)).c_str());
   }
-  return handle_of(self, engine.pairs().create(shared, {cutoff, to_group(group, system)}));
+  return handle_of(self,
+                   engine.pairs().create(shared, {cutoff, to_group(group, system), to_group(other, system), shifted}));
 }
 
 /// All or none of several changes.
@@ -302,8 +305,10 @@ void bind_pair_force(nb::module_& module) {
   nb::class_<PairsHandle> type(module, "PairForce", pair_force_doc, nb::type_slots(handle_slots<PairsHandle>),
                                nb::is_weak_referenceable());
   nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
-      .def("pair_force", &make_pair_force, "law"_a, nb::kw_only(), "cutoff"_a, "group"_a = nb::none(), "parameters"_a,
+      .def("pair_force", &make_pair_force, "law"_a, nb::kw_only(), "cutoff"_a, "group"_a = nb::none(),
+           "other"_a = nb::none(), "shifted"_a = false, "parameters"_a,
            nb::sig("def pair_force(self, law: str | Law, *, cutoff: float, group: Group | None = None, "
+                   "other: Group | None = None, shifted: bool = False, "
                    "**parameters: float) -> PairForce"),
            make_pair_force_doc);
   def_force(type);

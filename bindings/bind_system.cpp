@@ -175,9 +175,11 @@ void bind_poses(nb::class_<SystemObject>& type) {
 
 void bind_time(nb::class_<SystemObject>& type) {
   type.def(
-          "step", [](SystemObject& self, double dt) { return self.step(dt); }, "dt"_a = 1.0 / 120,
-          "Advances by dt seconds, 0 < dt <= 1. Never raises for numerical reasons: see the report.\n\n"
-          "Raises BondError, after the step is done, for a bond whose function raised or that had no finite force, ForceError\n"
+          "step", [](SystemObject& self, double dt, int count) { return self.step(dt, count); }, "dt"_a = 1.0 / 120,
+          "count"_a = 1,
+          "Advances by dt seconds, 0 < dt <= 1, `count` times. Never raises for numerical reasons: see the report. That of\n"
+          "several steps has the energy of the last, sums of what is counted and the largest gap.\n\n"
+          "Raises BondError, after the step is done and without the steps after it, for a bond whose function raised or that had no finite force, ForceError\n"
           "for a function that serves many; what failed is switched off. See `force_errors`.")
       .def_prop_rw(
           "force_errors", [](SystemObject& self) { return self.use(), self.warn_of_forces ? "warn" : "raise"; },

@@ -23,6 +23,7 @@ using Vector3Array = nb::ndarray<nb::numpy, double, nb::shape<-1, 3>, nb::c_cont
 
 Vector3Array make_vector3_array(std::vector<double> numbers);
 
+void bind_arrays(nb::module_&);
 void bind_vector(nb::module_&);
 void bind_shapes(nb::module_&);
 void bind_reports(nb::module_&);

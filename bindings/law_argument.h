@@ -19,4 +19,7 @@ nb::dict to_dict(const std::vector<LawParameter>& parameters);
 /// `parameters` are its defaults.
 LawId law_of_text(SystemObject& system, const std::string& text, const std::vector<LawParameter>& parameters);
 
+/// How stiff a bond is has no usual value: a predefined law does not choose one unasked. ValueError where it is not given.
+void require_stiffness(const System& engine, LawId law, const std::vector<LawParameter>& given);
+
 }  // namespace iota::bindings

@@ -21,6 +21,7 @@ NB_MODULE(_core, module) {
   bind_grip(module);
   bind_constraints(module);
   bind_restructuring(module);
+  bind_arrays(module);
   bind_parts(module);
   bind_articulates(module);
   bind_edits(module);

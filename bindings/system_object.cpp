@@ -172,15 +172,21 @@ double SystemObject::call_surface(const std::shared_ptr<ScriptFunction>& functio
   return phi;
 }
 
-StepReport SystemObject::step(double dt) {
+StepReport SystemObject::step(double dt, int count) {
   System& system = use_between_steps("step");
   finite_positive(dt, "dt", "s");
+  if (count < 1) throw nb::value_error(("count must be at least 1, not " + std::to_string(count)).c_str());
   std::erase_if(failures, [](const ForceFailure& failure) { return !failure.source->constraint; });
   StepReport report;
   {
     nb::gil_scoped_release unlocked;
     report = system.step(dt);
+    const auto has_failed = [&] {
+      return !failures.empty() || !report.switched_off.empty() || !report.switched_off_constraints.empty();
+    };
+    for (int i = 1; i < count && !has_failed(); ++i) add_step(report, system.step(dt));
   }
+  contacts = report.contacts;
   step_edits = report.edits;
   broken = report.broken;
   // Functions that the engine has dropped: ours is the only reference left.

@@ -70,7 +70,7 @@ class SystemObject {
   System& use_between_steps(const char* what);
 
   void adopt();
-  StepReport step(double dt);
+  StepReport step(double dt, int count);
   /// phi of a surface of the script, m; throws std::runtime_error for what is no finite number. Called on any thread.
   double call_surface(const std::shared_ptr<ScriptFunction>& function, const Vec3& r);
   BondLaw make_scripted_law(std::shared_ptr<BondFunction> function, std::string name);
@@ -96,6 +96,7 @@ class SystemObject {
   std::map<std::string, LawId> written_laws;    ///< of expressions given to bonds: by text and parameters
   std::optional<RestructureReport> step_edits;  ///< asked for during the last step
   std::vector<Broken> broken;                   ///< in the last step
+  std::vector<ContactEvent> contacts;           ///< in the last step
 
  private:
   [[noreturn]] static void raise_foreign_thread();
@@ -216,7 +217,8 @@ bool Handle<IdType>::is_alive() const {
 
 template <class IdType>
 System& Handle<IdType>::use() const {
-  if (!system) throw nb::value_error("this handle has no system: it comes from a report that was pickled, or was cleared");
+  if (!system)
+    throw nb::value_error("this handle has no system: it comes from a report that was pickled, or was cleared");
   System& engine = system->use();
   if (!view_of(engine, id).contains(id)) raise_stale(*this);
   return engine;

@@ -27,6 +27,7 @@ struct TypedArgument {
 };
 
 using SpringArgument = TypedArgument<"float | collections.abc.Sequence[float]">;
+using ServoArgument = TypedArgument<"tuple[float, float] | tuple[float, float, float]">;
 using PlaceArgument = TypedArgument<"Vec3 | collections.abc.Sequence[float]">;
 using QuaternionArgument = TypedArgument<"collections.abc.Sequence[float]">;
 using PathArgument = TypedArgument<

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace iota {
@@ -37,6 +39,13 @@ struct SolidOptions {
   std::vector<Vec3> attachments;                           ///< particles to hinge, nail or bond at; shape's frame, m
   BodyKind kind = BodyKind::dynamic;
   double damping = 0;  ///< 1/s
+};
+
+/// Of one body, J.
+struct BodyEnergy {
+  double kinetic = 0;
+  double potential = 0;  ///< of its weight, and of bonds and joints that it is the first body of
+  double total() const { return kinetic + potential; }
 };
 
 /// One of the solids that a body was given as: combining bodies makes it one of several.
@@ -71,6 +80,9 @@ class Bodies : public View {
   /// What a retired id became (itself if alive), if it was absorbed within the last 65 536 retirements.
   std::optional<BodyId> survivor_of(BodyId) const;
   std::vector<BodyId> ids() const;  ///< in order of slots
+  std::string name(BodyId) const;   ///< empty unless it was given one
+  /// At most 63 bytes; need not be unique. What absorbs a body keeps its own name.
+  void set_name(BodyId, std::string_view);
   ///@}
 
   /// @name Structure
@@ -103,6 +115,8 @@ class Bodies : public View {
   /// @name Place and motion
   ///@{
   double mass(BodyId) const;
+  /// Scales the masses of its particles, and its inertia with them; its shape, place and velocities stay.
+  void set_mass(BodyId, double kg);
   Vec3 center_of_mass(BodyId) const;
   Matrix3 inertia(BodyId) const;         ///< about the center of mass, world axes, kg m^2 (thesis, Eq. 2.28)
   Quaternion orientation(BodyId) const;  ///< of the drawn frame: that of its first solid, or of its basis
@@ -117,6 +131,16 @@ class Bodies : public View {
   /// Throws std::invalid_argument for a component along such an axis.
   void set_angular_velocity(BodyId, const Vec3&);
   Vec3 angular_momentum(BodyId) const;  ///< about its center of mass, kg m^2/s
+  BodyEnergy energy(BodyId) const;
+  ///@}
+
+  /// @name Forces during the next step only. They are put on the body's particles such that their sum and their moment are
+  /// what is asked for, and that they deform nothing. Throws std::invalid_argument for a moment about what has no inertia:
+  /// a point, or the line through all points of a body.
+  ///@{
+  void apply_force(BodyId, const Vec3& newtons);                  ///< at the center of mass
+  void apply_force(BodyId, const Vec3& newtons, const Vec3& at);  ///< world, m; need not be on the body
+  void apply_torque(BodyId, const Vec3& newton_meters);
   ///@}
 
   /// @name Loads in the last step

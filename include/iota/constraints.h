@@ -50,6 +50,10 @@ struct CoordinateOptions {
   double upper = std::numeric_limits<double>::infinity();
   double motor_speed = 0;
   double motor_max = 0;  ///< largest torque or force of the motor; 0: none. With speed 0 it is a brake
+  /// Where the motor goes, rad or m; NaN: on and on. motor_speed is then the largest speed, and within servo_time (s) of
+  /// its aim it slows down such that what is left falls as exp(-t / servo_time).
+  double servo = std::numeric_limits<double>::quiet_NaN();
+  double servo_time = 0.05;
   double friction = 0;   ///< dry: up to this torque or force against any motion
   double stiffness = 0;  ///< of a spring towards `rest`
   double damping = 0;
@@ -131,6 +135,12 @@ struct SurfacePairSpec {
   BreakLimits breaks;
 };
 
+/// What acts along a coordinate on a, N m or N.
+struct CoordinateEfforts {
+  double stop = 0, motor = 0, friction = 0, spring = 0;
+  double total() const { return stop + motor + friction + spring; }
+};
+
 /// The state of a constraint.
 struct ConstraintState {
   ConstraintKind kind = ConstraintKind::ball;
@@ -144,9 +154,8 @@ struct ConstraintState {
   double length = 0;    ///< rod, rope: m
   /// Angle (rad, counted through full turns), slide (m), second angle (rad).
   std::array<double, joint_coordinates.size()> coordinate{};
-  std::array<double, joint_coordinates.size()> speed{};  ///< rad/s, m/s, rad/s
-  /// By limits, motor, friction and spring along the coordinate on a, N m, N, N m.
-  std::array<double, joint_coordinates.size()> effort{};
+  std::array<double, joint_coordinates.size()> speed{};              ///< rad/s, m/s, rad/s
+  std::array<CoordinateEfforts, joint_coordinates.size()> effort{};  ///< in the last step
 };
 
 }  // namespace iota

@@ -124,6 +124,10 @@ struct FieldOptions {
 struct PairsOptions {
   double cutoff = 1;             ///< m: pairs farther apart do not feel each other
   std::optional<GroupId> group;  ///< unset: all particles
+  std::optional<GroupId> other;  ///< set: only pairs of one of `group` and one of these
+  /// Takes a constant and a linear term off the law's energy, such that force and energy are zero at the cut-off and pairs
+  /// that cross it change no energy. The law must have an energy.
+  bool shifted = false;
 };
 
 }  // namespace iota

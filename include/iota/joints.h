@@ -28,6 +28,11 @@ class Joints : public View {
   std::vector<ParticleId> particles(ConstraintId) const;  ///< that it refers to, markers included
   /// True repairs a broken one; bodies keep the relative place they were joined in.
   void set_active(ConstraintId, bool);
+  /// Puts a coordinate at a value (rad, m) and lets the rest of the mechanism follow. Where the joint is in no loop, what
+  /// hangs on a turns or slides as one rigid thing, or, where a hangs on something fixed, what hangs on b; in a loop all
+  /// bodies move as little as they can. Velocities stay as far as the joints allow. Throws std::invalid_argument, with
+  /// everything as it was, beyond the coordinate's limits and where the rest cannot follow.
+  void set_value(ConstraintId, JointCoordinate, double value);
   CoordinateOptions coordinate(ConstraintId, JointCoordinate) const;
   void set_coordinate(ConstraintId, JointCoordinate, const CoordinateOptions&);
   void set_length(ConstraintId, double);  ///< of a rod or rope, m: reached during the next step

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iota/constraints.h>
 #include <iota/ids.h>
 #include <iota/vec3.h>
 
@@ -31,6 +32,16 @@ struct Broken {
   Vec3 position;            ///< m
   double force = 0;         ///< N
   double torque = 0;        ///< N m
+};
+
+/// Something one-sided began or ended to carry a load: surfaces met or parted, a rope went taut or slack, a coordinate
+/// reached or left a stop.
+struct ContactEvent {
+  enum class Kind : std::uint8_t { met, parted };
+  Kind kind = Kind::met;
+  ConstraintId constraint;
+  std::optional<JointCoordinate> stop;  ///< of which coordinate; unset: the constraint itself
+  Vec3 position;                        ///< where it acts on a, m
 };
 
 /// Something that happened and that a viewer shows for a moment, where it happened.
@@ -84,10 +95,15 @@ struct [[nodiscard]] StepReport {
   std::vector<BondId> switched_off;                    ///< bonds whose force was not finite, or whose function threw
   std::vector<ConstraintId> switched_off_constraints;  ///< the same of the functions of their surfaces
   std::vector<Broken> broken;
+  std::vector<ContactEvent> contacts;
   std::vector<ParticleId> born, died;      ///< of emitters, and of those with a lifetime
   std::optional<RestructureReport> edits;  ///< asked for during the step and made right after it, as one
   std::vector<std::string> warnings;       ///< plain sentences: a quarantined bond, a conflict ...
 };
+
+/// One report of several steps in a row: numbers of the last one, sums of what is counted, the largest of what is largest,
+/// and all that happened.
+void add_step(StepReport& sum, const StepReport& next);
 
 /// Whether the constraints of bodies that are solved together contradict or repeat each other, by singular value
 /// decomposition of their Jacobian at the present positions (the thesis, C.3). Rows are scaled to length 1, unknowns by

@@ -12,6 +12,7 @@
 #include <iota/ids.h>
 #include <iota/joints.h>
 #include <iota/laws.h>
+#include <iota/many.h>
 #include <iota/particles.h>
 #include <iota/record.h>
 #include <iota/reports.h>
@@ -79,6 +80,7 @@ class System {
   Pairs pairs() { return Pairs(*core_); }
   Groups groups() { return Groups(*core_); }
   Grips grips() { return Grips(*core_); }
+  Many many() { return Many(*core_); }
   Emitters emitters() { return Emitters(*core_); }
   Edits edits() { return Edits(*core_); }
   Record record() { return Record(*core_); }
@@ -94,6 +96,7 @@ class System {
   const Pairs pairs() const { return Pairs(*core_); }
   const Groups groups() const { return Groups(*core_); }
   const Grips grips() const { return Grips(*core_); }
+  const Many many() const { return Many(*core_); }
   const Emitters emitters() const { return Emitters(*core_); }
   const Edits edits() const { return Edits(*core_); }
   const Viewer viewer() const { return Viewer(*core_); }
@@ -103,6 +106,7 @@ class System {
   ///@{
   /// Advances by dt seconds (0 < dt <= 1). Never throws for numerical reasons.
   StepReport step(double dt);
+  StepReport step(double dt, int count);  ///< count steps of dt; one report of all, see add_step
   bool is_stepping() const;
   double time() const;
   std::uint64_t step_count() const;

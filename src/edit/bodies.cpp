@@ -220,7 +220,9 @@ void add_motion(Editor& e, std::uint32_t body, Motion motion) {
   e.mark_velocity_dirty(model.bodies[body].first);
 }
 
-/// Points on a line have no inertia about it: there is nothing that could keep such a spin. A rod has.
+}  // namespace
+
+// Points on a line have no inertia about it: there is nothing that could keep such a spin. A rod has.
 void require_can_spin(const model::Model& model, std::uint32_t slot, const Vec3& spin) {
   constexpr double along = 1e-6;  // of the spin: round-off
   const model::Body& body = model.bodies[slot];
@@ -233,7 +235,12 @@ void require_can_spin(const model::Model& model, std::uint32_t slot, const Vec3&
            "; a body given by shape can, or a rod (set_rod)"));
 }
 
-}  // namespace
+void set_axial_spin(model::Model& model, std::uint32_t body, const Vec3& spin) {
+  if (!(model.axial_inertia(body) > 0)) return;
+  constexpr double round_off = 1e-12;
+  const double axial = dot(spin, model.rod_axis(body));
+  ingredient::RodSpins::set(model, body, std::abs(axial) > round_off * norm(spin) ? axial : 0);
+}
 
 // The whole articulate moves as if it were rigid, so that no joint notices.
 void apply(Editor& e, const SetPose& c) {
@@ -296,10 +303,7 @@ void apply(Editor& e, const SetAngularVelocity& c) {
   require_can_spin(model, body, c.value);
   const Vec3 change = c.value - body_angular_velocity(model, body), center = model.center_of_mass(body);
   add_motion(e, body, [&](const Vec3& x) { return cross(change, x - center); });
-  if (!(model.axial_inertia(body) > 0)) return;
-  constexpr double round_off = 1e-12;
-  const double spin = dot(c.value, model.rod_axis(body));
-  ingredient::RodSpins::set(model, body, std::abs(spin) > round_off * norm(c.value) ? spin : 0);
+  set_axial_spin(model, body, c.value);
 }
 
 // Mass, momentum and energy go with it.

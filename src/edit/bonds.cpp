@@ -8,23 +8,41 @@
 
 namespace iota::edit {
 
-BondId apply(Editor& e, const CreateBond& c) {
-  model::Model& model = e.model;
+namespace {
+
+double parameter_of(const Editor& e, const CreateBond& c, std::uint32_t i) {
+  const model::Model& model = e.model;
+  return std::isnan(c.parameters[i]) ? norm(model.position(c.q.slot) - model.position(c.p.slot)) : c.parameters[i];
+}
+
+}  // namespace
+
+void check(const Editor& e, const CreateBond& c) {
+  const model::Model& model = e.model;
   const std::uint32_t p = e.require(c.p), q = e.require(c.q), slot = e.require(c.law);
   if (p == q) throw std::invalid_argument(text("a bond needs two particles, got particle ", p, " twice"));
   const ingredient::Law& law = model.laws[slot];
   if (c.implicit && !law.has_derivative())
     throw std::invalid_argument(
         text("the law ", law.name.data(), " is code without a derivative: its bonds cannot be implicit"));
+  for (std::uint32_t i = 0; i < law.parameter_count; ++i) require_parameter_value(law, i, parameter_of(e, c, i));
+}
+
+BondId apply(Editor& e, const CreateBond& c) {
+  check(e, c);
+  model::Model& model = e.model;
   ingredient::Bond bond;
-  bond.p = p, bond.q = q, bond.law = slot, bond.implicit = c.implicit, bond.script = c.script;
-  for (std::uint32_t i = 0; i < law.parameter_count; ++i) {
-    const double value = c.parameters[i];
-    bond.parameters[i] = std::isnan(value) ? norm(model.position(q) - model.position(p)) : value;
-    require_parameter_value(law, i, bond.parameters[i]);
-  }
+  bond.p = c.p.slot, bond.q = c.q.slot, bond.law = c.law.slot, bond.implicit = c.implicit, bond.script = c.script;
+  for (std::uint32_t i = 0; i < model.laws[bond.law].parameter_count; ++i) bond.parameters[i] = parameter_of(e, c, i);
   e.structure_changed();
   return model.bonds.id(ingredient::Bonds::add(model, bond));
+}
+
+void check(const Editor& e, const SetBondParameter& c) {
+  const model::Model& model = e.model;
+  const auto& law = model.laws[model.bonds[e.require(c.bond)].law];
+  if (c.index >= law.parameter_count) throw std::invalid_argument("set_parameter: no such parameter");
+  require_parameter_value(law, c.index, c.value);
 }
 
 void apply(Editor& e, const SetBondParameter& c) {

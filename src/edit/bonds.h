@@ -27,7 +27,9 @@ struct SetBondBreakForce {
   double force;
 };
 
+void check(const Editor&, const CreateBond&);
 BondId apply(Editor&, const CreateBond&);
+void check(const Editor&, const SetBondParameter&);
 void apply(Editor&, const SetBondParameter&);
 void apply(Editor&, const SetBondActive&);
 void apply(Editor&, const SetBondBreakForce&);

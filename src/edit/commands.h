@@ -4,13 +4,16 @@
 #include "edit/attributes.h"
 #include "edit/batches.h"
 #include "edit/bodies.h"
+#include "edit/body_forces.h"
 #include "edit/bonds.h"
 #include "edit/combine.h"
 #include "edit/constraints.h"
 #include "edit/emitters.h"
 #include "edit/fields.h"
 #include "edit/grips.h"
+#include "edit/joint_pose.h"
 #include "edit/laws.h"
+#include "edit/many.h"
 #include "edit/nails.h"
 #include "edit/particles.h"
 #include "edit/separate.h"
@@ -108,7 +111,19 @@ using Command = std::variant<
     EndEdit,
     CancelEdit,
     Undo,
-    Redo>;
+    Redo,
+    SetBodyName,
+    SetBodyMass,
+    ApplyBodyForce,
+    ApplyBodyTorque,
+    SetCoordinateValue,
+    CreatePoints,
+    CreateRods,
+    CreateBonds,
+    CombineMany,
+    AssignParticles,
+    AssignBodies,
+    AssignBonds>;
 // clang-format on
 
 /// Whether a command may be asked for during a step; it is then applied right after it. Such a command says how users

@@ -23,7 +23,9 @@ void require_options(std::string_view name, const CoordinateOptions& o) {
     throw std::invalid_argument(text(name, " limits: lower must not be above upper, got ", o.lower, " and ", o.upper));
   if (o.lower == std::numeric_limits<double>::infinity() || o.upper == -std::numeric_limits<double>::infinity())
     throw std::invalid_argument(text(name, " limits leave no place, got ", o.lower, " and ", o.upper));
-  require_number("motor_speed", o.motor_speed);
+  if (std::isnan(o.servo) || std::isnan(o.motor_speed)) require_number("motor_speed", o.motor_speed);
+  if (std::isinf(o.servo)) throw std::invalid_argument(text("servo must be finite, got ", o.servo));
+  require_not_negative("servo_time", o.servo_time);
   if (!(o.motor_max >= 0)) throw std::invalid_argument(text("motor_max must be zero or more, got ", o.motor_max));
   require_not_negative("friction", o.friction);
   require_not_negative("stiffness", o.stiffness);
@@ -177,7 +179,7 @@ void apply(Editor& e, const SetConstraintActive& c) {
   constraint.active = c.active;
   if (c.active) ingredient::Joints::renew_geometry(model, slot);  // a surface that has failed gets another chance
   ingredient::refresh_coordinates(model, slot);
-  constraint.multipliers.fill(0), constraint.efforts = {}, constraint.gap = 0;
+  constraint.multipliers.fill(0), constraint.efforts = {}, constraint.carries = {}, constraint.gap = 0;
   constraint_changed(e, slot);
 }
 
@@ -196,6 +198,7 @@ void apply(Editor& e, const SetCoordinate& c) {
   const ingredient::RowsOf rows = ingredient::rows_of(options);
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (!rows[i]) constraint.efforts[static_cast<std::size_t>(c.coordinate)][i] = 0;
+  if (!rows[0]) constraint.carries.set(1 + static_cast<int>(c.coordinate), false);
   constraint_changed(e, slot);
 }
 

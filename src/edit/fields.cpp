@@ -42,7 +42,7 @@ void apply(Editor& e, const Destroy<GroupId>& c) {
     if (field.group == slot) refuse("field", f);
   });
   model.pairs.for_each([&](std::uint32_t p, const ingredient::PairForce& pairs) {
-    if (pairs.group == slot) refuse("pairwise force", p);
+    if (pairs.group == slot || pairs.other == slot) refuse("pairwise force", p);
   });
   model.particles.for_each(
       [&](std::uint32_t p, const model::Particle&) { model.particles[p].groups &= ~(1u << slot); });
@@ -129,6 +129,12 @@ PairsId apply(Editor& e, const CreatePairs& c) {
     throw std::invalid_argument(text("pairwise forces take a predefined law or an expression, not the law ", slot));
   ingredient::PairForce pairs;
   pairs.law = slot, pairs.cutoff = c.cutoff, pairs.group = c.group ? e.require(c.group) : model::none;
+  pairs.other = c.other ? e.require(c.other) : model::none;
+  if (c.other && !c.group) throw std::invalid_argument("pairs between two groups need both: give group and other");
+  if (c.shifted && (!model.compiled(slot).has_energy() || model.compiled(slot).depends_on_mass()))
+    throw std::invalid_argument(text("the law ", law.name.data(),
+                                     " cannot be shifted: that needs an energy, of the distance and not of masses"));
+  pairs.shifted = c.shifted;
   for (std::uint32_t i = 0; i < law.parameter_count; ++i) {
     if (std::isnan(c.parameters[i]))
       throw std::invalid_argument(text("pairwise forces need a value for ", law.parameters[i].data()));

@@ -34,6 +34,8 @@ struct SetFieldActive {
 struct CreatePairs {
   LawId law;
   GroupId group;  ///< null: all particles
+  GroupId other;  ///< null: none
+  bool shifted;
   double cutoff;
   std::array<double, max_law_parameters> parameters;
 };

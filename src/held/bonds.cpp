@@ -253,7 +253,7 @@ std::size_t HeldForces::rehearse_pairs(std::uint32_t pairs, double h) {
   StepReport report;
   report.dt = h;
   sets_.update(model_);
-  ParticleSet& set = loaded_set(model_.pairs[pairs].group, 0);
+  ParticleSet& set = loaded_set(model_.pairs[pairs].group, 0, model_.pairs[pairs].other);
   take_pairs(pairs, set, report);
   return set.rings.size();
 }

@@ -18,13 +18,13 @@ void HeldForces::take_fields(StepReport& report) {
       take_field(slot, loaded_set(model_.fields[slot].group, ahead), report);
   for (std::uint32_t slot = 0; slot < model_.pairs.slot_count(); ++slot)
     if (model_.pairs.is_alive(slot) && model_.pairs[slot].active)
-      take_pairs(slot, loaded_set(model_.pairs[slot].group, ahead), report);
+      take_pairs(slot, loaded_set(model_.pairs[slot].group, ahead, model_.pairs[slot].other), report);
   for (const auto& set : sets_.sets)
     if (set->is_loaded) set->unload(model_, parallel_);
 }
 
-ParticleSet& HeldForces::loaded_set(std::uint32_t group, double ahead) {
-  ParticleSet& set = sets_.of(model_, group);
+ParticleSet& HeldForces::loaded_set(std::uint32_t group, double ahead, std::uint32_t other) {
+  ParticleSet& set = sets_.of(model_, group, other);
   if (!set.is_loaded) set.load(model_, ahead, parallel_);
   return set;
 }
@@ -88,8 +88,9 @@ bool HeldForces::call_field(std::uint32_t slot, ParticleSet& set, StepReport& re
 
 void HeldForces::take_pairs(std::uint32_t slot, ParticleSet& set, StepReport& report) {
   const ingredient::PairForce& pairs = model_.pairs[slot];
-  const auto bad = sets_.sum(slot).add_forces(set.arrays, set.family, model_.compiled(pairs.law),
-                                              pairs.parameters.data(), pairs.cutoff, model_.time, parallel_);
+  const auto bad =
+      sets_.sum(slot).add_forces(set.arrays, {set.family, set.sides}, model_.compiled(pairs.law),
+                                 pairs.parameters.data(), {pairs.cutoff, pairs.shifted != 0}, model_.time, parallel_);
   if (bad.count > 0)
     report.warnings.push_back(text("pairwise force ", slot, " gives no finite force between particles ",
                                    set.ids[bad.i].slot, " and ", set.ids[bad.j].slot,

@@ -55,9 +55,9 @@ double HeldForces::calc_energy() {
   });
   model_.pairs.for_each([&](std::uint32_t slot, const ingredient::PairForce& p) {
     if (!p.active || !model_.compiled(p.law).has_energy()) return;
-    const ParticleSet& set = loaded_set(p.group, 0);
-    sum += sets_.sum(slot).energy(set.arrays, set.family, model_.compiled(p.law), p.parameters.data(), p.cutoff,
-                                  model_.time, parallel_);
+    const ParticleSet& set = loaded_set(p.group, 0, p.other);
+    sum += sets_.sum(slot).energy(set.arrays, {set.family, set.sides}, model_.compiled(p.law), p.parameters.data(),
+                                  {p.cutoff, p.shifted != 0}, model_.time, parallel_);
   });
   energy_ = sum, energy_is_known_ = true;
   return sum;
@@ -79,11 +79,12 @@ Energy HeldForces::book() {
 double HeldForces::energy_of_pairs(std::uint32_t slot) const {
   const ingredient::PairForce& pairs = model_.pairs[slot];
   ParticleSet set;  // of its own: this may be asked for while others are in use
-  set.group = pairs.group;
+  set.group = pairs.group, set.other = pairs.other;
   set.find(model_);
   set.load(model_, 0, parallel_);
-  return neighbors::PairSum().energy(set.arrays, set.family, model_.compiled(pairs.law), pairs.parameters.data(),
-                                     pairs.cutoff, model_.time, parallel_);
+  return neighbors::PairSum().energy(set.arrays, {set.family, set.sides}, model_.compiled(pairs.law),
+                                     pairs.parameters.data(), {pairs.cutoff, pairs.shifted != 0}, model_.time,
+                                     parallel_);
 }
 
 }  // namespace iota::held

@@ -68,7 +68,7 @@ class HeldForces {
   void take_field(std::uint32_t field, ParticleSet&, StepReport&);
   bool call_field(std::uint32_t field, ParticleSet&, StepReport&);
   void take_pairs(std::uint32_t pairs, ParticleSet&, StepReport&);
-  ParticleSet& loaded_set(std::uint32_t group, double ahead);
+  ParticleSet& loaded_set(std::uint32_t group, double ahead, std::uint32_t other = model::none);
 
   double calc_energy();
 

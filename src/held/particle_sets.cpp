@@ -6,12 +6,14 @@
 namespace iota::held {
 
 void ParticleSet::find(const model::Model& model) {
-  rings.clear(), family.clear(), ids.clear(), is_pushed.clear();
+  rings.clear(), family.clear(), ids.clear(), is_pushed.clear(), sides.clear();
   std::vector<std::uint8_t> seen(model.rings.slot_count(), 0);
   model.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
-    if (group != model::none && !(p.groups >> group & 1)) return;
+    const auto is_in = [&](std::uint32_t g) { return g != model::none && (p.groups >> g & 1); };
+    if (group != model::none && !is_in(group) && !is_in(other)) return;
     if (!model.acts(slot) || p.is_marker() || seen[p.ring]) return;
     seen[p.ring] = 1;
+    if (other != model::none) sides.push_back(static_cast<std::uint8_t>(is_in(group) | is_in(other) << 1));
     rings.push_back(p.ring), family.push_back(p.body), ids.push_back(model.particles.id(slot));
     is_pushed.push_back(model::is_free(model.bodies[p.body].kind));
   });
@@ -53,11 +55,11 @@ void ParticleSets::update(const model::Model& model) {
   seen_structure = model.structure_version, seen_members = model.members_revision;
 }
 
-ParticleSet& ParticleSets::of(const model::Model& model, std::uint32_t group) {
+ParticleSet& ParticleSets::of(const model::Model& model, std::uint32_t group, std::uint32_t other) {
   for (auto& set : sets)
-    if (set->group == group) return *set;
+    if (set->group == group && set->other == other) return *set;
   sets.push_back(std::make_unique<ParticleSet>());
-  sets.back()->group = group;
+  sets.back()->group = group, sets.back()->other = other;
   sets.back()->find(model);
   return *sets.back();
 }

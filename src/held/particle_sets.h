@@ -13,6 +13,8 @@ namespace iota::held {
 /// The particles that a field or a pairwise force acts on, as arrays; what is hinged together is one row, with all its mass.
 struct ParticleSet {
   std::uint32_t group = model::none;  ///< none: all
+  std::uint32_t other = model::none;  ///< with those of this group too; none: nothing more
+  std::vector<std::uint8_t> sides;    ///< of pairs between two groups: bit 0 of `group`, bit 1 of `other`; else empty
   std::vector<std::uint32_t> rings, family;
   std::vector<ParticleId> ids;          ///< the first of each ring
   std::vector<std::uint8_t> is_pushed;  ///< not those of static and scripted bodies, which only act on others
@@ -33,7 +35,7 @@ struct ParticleSet {
 struct ParticleSets {
   void update(const model::Model&);
   void forget() { sets.clear(), sums.clear(), seen_structure = seen_members = ~0ull; }
-  ParticleSet& of(const model::Model&, std::uint32_t group);
+  ParticleSet& of(const model::Model&, std::uint32_t group, std::uint32_t other = model::none);
   neighbors::PairSum& sum(std::uint32_t pairs);
 
   std::vector<std::unique_ptr<ParticleSet>> sets;

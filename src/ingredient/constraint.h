@@ -87,8 +87,16 @@ struct Constraint {
   enum class Alignment : std::uint8_t { none, axis_of_a, axis_of_b, axes } alignment = Alignment::none;
   /// Which two directions at right angles hold the turn about the axis: a's side and b's third, or a's third and b's side.
   enum class Lock : std::uint8_t { none, side_of_a, third_of_a } lock = Lock::none;
-  std::uint8_t aligned = 0;                            ///< how many directions the axis keeps its angle with
-  std::uint8_t line_side = 0;                          ///< whose side and third direction hold the line: 0 a's, 1 b's
+  std::uint8_t aligned = 0;    ///< how many directions the axis keeps its angle with
+  std::uint8_t line_side = 0;  ///< whose side and third direction hold the line: 0 a's, 1 b's
+  /// Of what is one-sided, which did something in the last step: bit 0 itself, the others the stops of its coordinates.
+  struct Bits {
+    std::uint8_t bits = 0;
+    void set(int bit, bool on) { bits = static_cast<std::uint8_t>((bits & ~(1 << bit)) | on << bit); }
+    bool operator[](int bit) const { return bits >> bit & 1; }
+  };
+  Bits carries, told;  ///< now; and when that was last reported
+  std::uint8_t padding = 0;
   std::array<std::uint32_t, place_count> particles{};  ///< `none` where a place is not needed, or in the world
   /// Each particle lists the places that it is at, as links place_count * slot + place.
   std::array<std::uint32_t, place_count> next{}, previous{};

@@ -11,6 +11,7 @@
 #include "ingredient/laws.h"
 #include "ingredient/masses.h"
 #include "ingredient/nails.h"
+#include "ingredient/names.h"
 #include "ingredient/oriented_particles.h"
 #include "ingredient/pairs.h"
 #include "ingredient/pushes.h"
@@ -39,6 +40,7 @@ using Ingredients = std::tuple<  //
     Pairs,                       //
     Emitters,                    //
     Grips,                       //
+    Names,                       //
     CosmeticBonds>;
 
 template <class List>

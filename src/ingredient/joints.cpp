@@ -26,6 +26,13 @@ void load_limit(Row& row, const CoordinateOptions& o, double now, solver::RowLaw
   (at_lower ? law.upper : law.lower) = 0;
 }
 
+/// What a motor turns at, or what brings a servo to its aim.
+double motor_rate(const CoordinateOptions& o, double now, double h) {
+  if (std::isnan(o.servo)) return o.motor_speed;
+  const double time = std::max(h, o.servo_time), most = std::abs(o.motor_speed);
+  return time > 0 ? std::clamp((o.servo - now) / time, -most, most) : 0;
+}
+
 /// Each once, in the order of slots.
 std::vector<std::uint32_t> active_joints_of(const IslandMap& map) {
   std::vector<std::uint32_t> joints;
@@ -97,7 +104,7 @@ void Joints::add(const IslandMap& map, std::uint32_t slot, Problem& problem) {
   JointRowBuilder<decltype(sink)>(c, model.geometry(slot), places, sink).run();
 }
 
-void Joints::load(const Model& model, const IslandNodes&, double, Problem& problem) {
+void Joints::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
   if (joints_.empty()) return;
   problem.for_each_constraint_pool([&]<class C>(solver::ConstraintPool<C>& pool) {
     for_each_item_of<C>(owner, problem, [&](std::size_t item, solver::ItemKey key) {
@@ -120,7 +127,7 @@ void Joints::load(const Model& model, const IslandNodes&, double, Problem& probl
       switch (use.role) {
         case Role::limit: load_limit(row, o, now, law); break;
         case Role::motor:
-          law = {.lower = -o.motor_max, .upper = o.motor_max, .rate = o.motor_speed, .hold = true};
+          law = {.lower = -o.motor_max, .upper = o.motor_max, .rate = motor_rate(o, now, h), .hold = true};
           break;
         case Role::friction: law = {.lower = -o.friction, .upper = o.friction, .hold = true}; break;
         default:
@@ -144,8 +151,12 @@ void Joints::store(Model& model, const IslandNodes&, double, const Problem& prob
       const RowUse use = use_of(key);
       if (use.role != Role::hold) {
         c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1] = *pool.multiplier(item);
+        const CoordinateOptions& o = c.options[use.coordinate];
+        if (use.role == Role::limit && o.lower < o.upper)
+          c.carries.set(1 + use.coordinate, *pool.multiplier(item) != 0);
         return;
       }
+      if (info(c.kind).sign != 0) c.carries.set(0, *pool.multiplier(item) != 0);
       save_held(pool.items[item], c, use, pool.multiplier(item));
       double g[C::rows];
       pool.items[item].value(problem.position.data(), 1, g);

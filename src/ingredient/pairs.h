@@ -10,8 +10,9 @@ namespace iota::ingredient {
 struct PairForce {
   std::uint32_t law = none;
   std::uint32_t group = none;  ///< none: all particles
-  std::uint8_t active = 1;
-  std::array<std::uint8_t, 7> padding{};
+  std::uint32_t other = none;  ///< only pairs of one of `group` and one of these; none: within `group`
+  std::uint8_t active = 1, shifted = 0;
+  std::array<std::uint8_t, 2> padding{};
   double cutoff = 1;  ///< m
   std::array<double, laws::max_parameters> parameters{};
 };

@@ -21,7 +21,8 @@ std::uint64_t cell_number(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
 
 }  // namespace
 
-void PairList::build(const laws::ParticleArrays& p, double radius, const std::vector<std::uint32_t>& family) {
+void PairList::build(const laws::ParticleArrays& p, double radius, std::span<const std::uint32_t> family,
+                     std::span<const std::uint8_t> sides) {
   const std::size_t n = p.size();
   double low[3] = {INFINITY, INFINITY, INFINITY};
   const std::vector<double>* const axes[3] = {&p.x, &p.y, &p.z};
@@ -88,6 +89,14 @@ void PairList::build(const laws::ParticleArrays& p, double radius, const std::ve
       for (int k = 0; k < 4; ++k) look(a, begin[k], end[k]);
     }
     first = last;
+  }
+
+  if (!sides.empty()) {
+    const auto is_apart = [&](const Pair& q) {
+      return !((sides[q.i] & 1 && sides[q.j] & 2) || (sides[q.i] & 2 && sides[q.j] & 1));
+    };
+    const auto end = found_.begin() + static_cast<std::ptrdiff_t>(count);
+    count = static_cast<std::size_t>(std::remove_if(found_.begin(), end, is_apart) - found_.begin());
   }
 
   // Two counting sorts, by the second and then by the first, leave every row in rising order.

@@ -4,6 +4,7 @@
 #include "laws/particle_arrays.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// Pairs of particles that are near each other.
@@ -13,8 +14,10 @@ namespace iota::neighbors {
 /// particles into cells; the particles may be anywhere, memory is linear in their number. A particle at a place that is not finite has no pairs.
 class PairList {
  public:
-  /// `family`: pairs of equal numbers are left out (points of one rigid body), except where it is empty.
-  void build(const laws::ParticleArrays& particles, double radius, const std::vector<std::uint32_t>& family);
+  /// `family`: pairs of equal numbers are left out (points of one rigid body), except where it is empty. `sides`: only pairs
+  /// of one with bit 0 and one with bit 1, except where it is empty.
+  void build(const laws::ParticleArrays& particles, double radius, std::span<const std::uint32_t> family,
+             std::span<const std::uint8_t> sides = {});
 
   std::size_t row_count() const { return start_.empty() ? 0 : start_.size() - 1; }
   const std::uint32_t* row(std::size_t i) const { return partners_.data() + start_[i]; }

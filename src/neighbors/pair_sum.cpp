@@ -24,7 +24,7 @@ IOTA_WIDER void divide(std::size_t count, double* values, const double* by) {
 
 }  // namespace
 
-void PairSum::update(const laws::ParticleArrays& p, const std::vector<std::uint32_t>& family, double cutoff) {
+void PairSum::update(const laws::ParticleArrays& p, const Choice& choice, double cutoff) {
   const std::size_t n = p.size();
   const double radius = cutoff * (1 + skin), allowed = cutoff * skin / 2;
   if (built_at_x_.size() == n && built_radius_ == radius) {
@@ -35,16 +35,17 @@ void PairSum::update(const laws::ParticleArrays& p, const std::vector<std::uint3
     }
     if (near) return;
   }
-  list_.build(p, radius, family);
+  list_.build(p, radius, choice.family, choice.sides);
   built_at_x_ = p.x, built_at_y_ = p.y, built_at_z_ = p.z;
   built_radius_ = radius;
   ++builds_;
 }
 
 PairSum::Task PairSum::make_task(const laws::ParticleArrays& p, const laws::PairLaw& law, const double* parameters,
-                                 double cutoff, double t) {
-  Task task{p, law, {}, cutoff, t};
+                                 Cutoff cutoff, double t) {
+  Task task{p, law, {}, cutoff.at, t, cutoff.shifted, {}};
   for (std::size_t k = 0; k < task.parameters.size(); ++k) task.parameters[k] = parameters + k;
+  if (cutoff.shifted) task.at_cutoff = law.elastic({.r = cutoff.at, .t = t}, parameters);
   return task;
 }
 
@@ -55,10 +56,9 @@ std::size_t PairSum::in_parts(const Parallel& parallel, Work work) {
   return count;
 }
 
-PairSum::Bad PairSum::add_forces(laws::ParticleArrays& p, const std::vector<std::uint32_t>& family,
-                                 const laws::PairLaw& law, const double* parameters, double cutoff, double t,
-                                 const Parallel& parallel) {
-  update(p, family, cutoff);
+PairSum::Bad PairSum::add_forces(laws::ParticleArrays& p, const Choice& choice, const laws::PairLaw& law,
+                                 const double* parameters, Cutoff cutoff, double t, const Parallel& parallel) {
+  update(p, choice, cutoff.at);
   const Task task = make_task(p, law, parameters, cutoff, t);
   const std::size_t n = list_.row_count();
   const std::size_t count = in_parts(parallel, [&](Part& part, std::size_t first, std::size_t last) {
@@ -83,11 +83,10 @@ PairSum::Bad PairSum::add_forces(laws::ParticleArrays& p, const std::vector<std:
   return bad;
 }
 
-double PairSum::energy(const laws::ParticleArrays& p, const std::vector<std::uint32_t>& family,
-                       const laws::PairLaw& law, const double* parameters, double cutoff, double t,
-                       const Parallel& parallel) {
+double PairSum::energy(const laws::ParticleArrays& p, const Choice& choice, const laws::PairLaw& law,
+                       const double* parameters, Cutoff cutoff, double t, const Parallel& parallel) {
   if (!law.has_energy()) return 0;
-  update(p, family, cutoff);
+  update(p, choice, cutoff.at);
   const Task task = make_task(p, law, parameters, cutoff, t);
   const std::size_t count = in_parts(parallel, [&](Part& part, std::size_t first, std::size_t last) {
     part.energy = {};
@@ -155,6 +154,9 @@ void PairSum::add_energies(Part& b, const Task& task, std::size_t count) {
   laws::PairBatch batch = prepare(b, task, count);
   double* const energy = batch.energy = b.force.data();
   task.law.energies(batch);
+  if (task.shifted)
+    for (std::size_t k = 0; k < count; ++k)
+      energy[k] -= task.at_cutoff.energy + (b.r[k] - task.cutoff) * task.at_cutoff.slope;
   std::fill(energy + count, energy + (count + lanes - 1) / lanes * lanes, 0.0);
   const auto add = [&](auto value) {
     auto sum = b.energy;
@@ -178,6 +180,8 @@ void PairSum::add_block(Part& b, const Task& task, std::size_t count, double* fx
     }
   batch.force = b.force.data(), batch.drag = b.drag.data();
   task.law.evaluate(batch);
+  if (task.shifted)
+    for (std::size_t k = 0; k < count; ++k) b.force[k] += task.at_cutoff.slope;  // f = -U'
   divide(count, b.force.data(), b.r.data());
 
   const bool has_drag = task.law.has_drag();

@@ -7,6 +7,8 @@
 #include "neighbors/pair_list.h"
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace iota::neighbors {
@@ -16,18 +18,31 @@ namespace iota::neighbors {
 /// four parts for any number of threads, so the bits do not depend on when the list was made or by which thread.
 class PairSum {
  public:
+  /// Which pairs there are: see PairList::build.
+  struct Choice {
+    std::span<const std::uint32_t> family{};
+    std::span<const std::uint8_t> sides{};
+  };
+  /// shifted: a constant and a linear term are taken off the energy, so that it and the force are zero at the cut-off. Of
+  /// laws that have an energy and do not depend on masses.
+  struct Cutoff {
+    Cutoff(double at, bool shifted = false) : at(at), shifted(shifted) {}  // NOLINT(google-explicit-constructor)
+    double at;                                                             ///< m
+    bool shifted;
+  };
+
   /// Adds the forces to particles.fx, fy, fz. Pairs whose force is not finite add nothing; returns their number and
   /// the first of them.
   struct Bad {
     std::size_t count = 0;
     std::uint32_t i = 0, j = 0;
   };
-  Bad add_forces(laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family, const laws::PairLaw& law,
-                 const double* parameters, double cutoff, double t, const Parallel& parallel);
+  Bad add_forces(laws::ParticleArrays& particles, const Choice&, const laws::PairLaw& law, const double* parameters,
+                 Cutoff cutoff, double t, const Parallel& parallel);
 
   /// Energy of all pairs within the cut-off, J; 0 for laws without one. A pair whose energy is not finite adds nothing.
-  double energy(const laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family,
-                const laws::PairLaw& law, const double* parameters, double cutoff, double t, const Parallel& parallel);
+  double energy(const laws::ParticleArrays& particles, const Choice&, const laws::PairLaw& law,
+                const double* parameters, Cutoff cutoff, double t, const Parallel& parallel);
 
   std::size_t build_count() const { return builds_; }  ///< for reports
 
@@ -45,10 +60,11 @@ class PairSum {
     const laws::PairLaw& law;
     std::array<const double*, laws::max_parameters> parameters;
     double cutoff, t;
+    bool shifted;
+    laws::Elastic at_cutoff;  ///< what is shifted away
   };
-  static Task make_task(const laws::ParticleArrays&, const laws::PairLaw&, const double* parameters, double cutoff,
-                        double t);
-  void update(const laws::ParticleArrays& particles, const std::vector<std::uint32_t>& family, double cutoff);
+  static Task make_task(const laws::ParticleArrays&, const laws::PairLaw&, const double* parameters, Cutoff, double t);
+  void update(const laws::ParticleArrays& particles, const Choice&, double cutoff);
   /// Calls work(part, first row, last row) for each part; returns the number of parts.
   template <class Work>
   std::size_t in_parts(const Parallel& parallel, Work work);

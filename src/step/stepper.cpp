@@ -6,6 +6,7 @@
 #include "ingredient/quantities.h"
 #include "step/breaking.h"
 #include "step/closings.h"
+#include "step/contacts.h"
 #include "step/lifetimes.h"
 
 #include <algorithm>
@@ -120,6 +121,7 @@ void Stepper::fill(StepReport& report) {
   report.worst_gap = ingredient::worst_gap(model);
   const ingredient::Energies energies = ingredient::calc_energies(model);
   ingredient::book_edits(model, energies.total());
+  tell_contacts(model, report);
   report.energy = {energies.kinetic, energies.potential + editor_.held.energy(), model.dissipated, model.external_work,
                    model.edit_energy};
   report.articulates = model.articulates.size();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/loads.h"
+#include "ingredient/quantities.h"
 #include "model/restructure.h"
 #include "model/solid.h"
 #include "system/core.h"
@@ -28,6 +29,34 @@ ParticleId Bodies::create_attachment(BodyId body, const Vec3& position) {
 
 void Bodies::set_pose(BodyId body, const Vec3& position, const Quaternion& orientation) {
   core_.execute(edit::SetPose{body, position, orientation});
+}
+
+std::string Bodies::name(BodyId id) const {
+  const std::uint32_t body = core_.slot(id);
+  return core_.model.names[body].data();
+}
+
+void Bodies::set_name(BodyId body, std::string_view name) {
+  core_.execute(edit::SetBodyName{body, std::string(name)});
+}
+
+void Bodies::set_mass(BodyId body, double kg) { core_.execute(edit::SetBodyMass{body, kg}); }
+
+void Bodies::apply_force(BodyId body, const Vec3& newtons) {
+  core_.execute(edit::ApplyBodyForce{body, newtons, true, {}});
+}
+
+void Bodies::apply_force(BodyId body, const Vec3& newtons, const Vec3& at) {
+  core_.execute(edit::ApplyBodyForce{body, newtons, false, at});
+}
+
+void Bodies::apply_torque(BodyId body, const Vec3& newton_meters) {
+  core_.execute(edit::ApplyBodyTorque{body, newton_meters});
+}
+
+BodyEnergy Bodies::energy(BodyId id) const {
+  const ingredient::Energies energies = ingredient::calc_energies(ingredient::Scope(core_.model, core_.slot(id)));
+  return {energies.kinetic, energies.potential};
 }
 
 void Bodies::set_velocity(BodyId body, const Vec3& value) { core_.execute(edit::SetBodyVelocity{body, value}); }

@@ -63,6 +63,10 @@ void Joints::set_coordinate(ConstraintId id, JointCoordinate coordinate, const C
   core_.execute(edit::SetCoordinate{id, coordinate, options});
 }
 
+void Joints::set_value(ConstraintId id, JointCoordinate coordinate, double value) {
+  core_.execute(edit::SetCoordinateValue{id, coordinate, value});
+}
+
 void Joints::set_length(ConstraintId id, double value) { core_.execute(edit::SetLength{id, value}); }
 
 void Joints::set_break_limits(ConstraintId id, const BreakLimits& limits) {
@@ -94,7 +98,7 @@ ConstraintState Joints::state(ConstraintId id) const {
     const auto i = static_cast<std::size_t>(which);
     if (!has_coordinate(c.kind, which)) continue;
     std::tie(state.coordinate[i], state.speed[i]) = ingredient::calc_coordinate(m, slot, which);
-    for (const double multiplier : c.efforts[i]) state.effort[i] -= multiplier;
+    state.effort[i] = {-c.efforts[i][0], -c.efforts[i][1], -c.efforts[i][2], -c.efforts[i][3]};
   }
   return state;
 }

@@ -8,7 +8,12 @@ PairsId Pairs::create(const SharedLaw& shared, const PairsOptions& options) {
   const ingredient::Law& law = core_.model.laws[core_.slot(shared.law)];
   if (shared.implicit.value_or(false))
     throw std::invalid_argument("pairwise forces are taken once a step and held: they cannot be implicit");
-  edit::CreatePairs command{shared.law, options.group.value_or(GroupId{}), options.cutoff, law.standard};
+  edit::CreatePairs command{shared.law,
+                            options.group.value_or(GroupId{}),
+                            options.other.value_or(GroupId{}),
+                            options.shifted,
+                            options.cutoff,
+                            law.standard};
   for (const LawParameter& p : shared.parameters) command.parameters[edit::require_parameter(law, p.name)] = p.value;
   return core_.execute(command);
 }

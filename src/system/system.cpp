@@ -4,6 +4,7 @@
 #include "system/core.h"
 
 #include <algorithm>
+#include <string>
 
 namespace iota {
 
@@ -57,6 +58,33 @@ void System::set_threads(int threads) {
 }
 
 StepReport System::step(double dt) { return core_->execute(edit::Step{dt}); }
+
+StepReport System::step(double dt, int count) {
+  if (count < 1) throw std::invalid_argument("step: count must be at least 1, got " + std::to_string(count));
+  StepReport sum = step(dt);
+  for (int i = 1; i < count; ++i) add_step(sum, step(dt));
+  return sum;
+}
+
+void add_step(StepReport& sum, const StepReport& next) {
+  const auto append = [](auto& list, const auto& more) { list.insert(list.end(), more.begin(), more.end()); };
+  sum.iterations_mean += (next.iterations_mean - sum.iterations_mean) * next.dt / (sum.dt + next.dt);
+  sum.dt += next.dt;
+  sum.iterations_max = std::max(sum.iterations_max, next.iterations_max);
+  sum.substeps_max = std::max(sum.substeps_max, next.substeps_max);
+  sum.fallbacks += next.fallbacks, sum.unconverged += next.unconverged;
+  sum.step = next.step, sum.time = next.time, sum.energy = next.energy;
+  sum.worst_gap = std::max(sum.worst_gap, next.worst_gap);
+  sum.articulates = next.articulates, sum.resting = next.resting, sum.structure_version = next.structure_version;
+  append(sum.switched_off, next.switched_off);
+  append(sum.switched_off_constraints, next.switched_off_constraints);
+  append(sum.broken, next.broken);
+  append(sum.contacts, next.contacts);
+  append(sum.born, next.born), append(sum.died, next.died);
+  append(sum.warnings, next.warnings);
+  if (next.edits && !sum.edits) sum.edits.emplace();
+  if (next.edits) edit::add_report(*sum.edits, *next.edits);
+}
 
 Vec3 System::gravity() const { return core_->model.gravity; }
 

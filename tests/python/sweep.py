@@ -240,6 +240,23 @@ def calls(c: Scene) -> dict[str, Call]:
         "emitter.move": (c.fountain.move, {"position": V, "orientation": (0, 0, 0, 1)}),
         "align": (c.surfel.align, {"direction": V, "stiffness": 2.0, "damping": 0.1}),
         "apply_torque": (c.surfel.apply_torque, {"torque": V}),
+        "Body.apply_force": (c.box.apply_force, {"force": V, "at": V}),
+        "Body.apply_torque": (c.box.apply_torque, {"torque": V}),
+        "hinge.value": (lambda value: assign(c.hinge.angle, "value", value), {"value": 0.1}),
+        "hinge.servo": (lambda value: assign(c.hinge.angle, "servo", value), {"value": (0.1, 2.0, 3.0)}),
+        "array": (s.array, {"handles": [c.box, c.ball]}),
+        "particle_array": (
+            s.particle_array,
+            {"positions": np.eye(3), "masses": np.ones(3), "velocities": np.eye(3), "kind": "dynamic", "damping": 0.1},
+        ),
+        "rod_array": (
+            s.rod_array,
+            {"starts": np.eye(3), "ends": 2 * np.eye(3), "masses": 0.5, "radii": np.ones(3), "kind": "dynamic"},
+        ),
+        "bond_array": (
+            lambda p, q, law, stiffness: s.bond_array([p], [q], law, stiffness=stiffness),
+            {"p": c.point, "q": c.corner, "law": "spring", "stiffness": 5.0},
+        ),
         "chain": (
             lambda links, length, top, direction: iota.builder.chain(links, length, top=top, direction=direction).realize(s).bodies,
             {"links": 3, "length": 1.0, "top": V, "direction": (1, 0, 0)},
@@ -253,6 +270,10 @@ def calls(c: Scene) -> dict[str, Call]:
         table[f"System.{name}"] = (set_member(name), {"of": thing, "value": value})
     for name, value in (("kind", "static"), ("damping", 0.1), ("velocity", V), ("angular_velocity", V)):
         table[f"Body.{name}"] = (set_member(name), {"of": c.plate, "value": value})
+    for name, value in (("position", V), ("orientation", (0, 0, 1, 1)), ("mass", 2.0), ("name", "box")):
+        table[f"Body.{name}"] = (set_member(name), {"of": c.box, "value": value})
+    for name, width in (("positions", 3), ("orientations", 4), ("poses", 7), ("velocities", 3), ("motions", 6)):
+        table[f"BodyArray.{name}"] = (set_member(name), {"of": s.array([c.box, c.ball]), "value": np.ones((2, width))})
     for name, value in (("position", V), ("velocity", V), ("mass", 2.0)):
         table[f"Particle.{name}"] = (set_member(name), {"of": c.point, "value": value})
     for name, value in (("lifetime", 2.0), ("radius", 0.1), ("color", (1, 0.5, 0)), ("spin", V),

@@ -271,3 +271,47 @@ def test_forces_on_many_are_saved_and_restored(space: iota.System) -> None:
         hashes.append(space.state_hash())
         space.restore(saved)
     assert hashes[0] == hashes[1]
+
+
+def test_pairs_between_two_groups_are_those_of_one_and_the_other() -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    a, b, both, none = (system.body().particle(place) for place in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    left, right = system.group("left"), system.group("right")
+    left.add(a, both), right.add(b, both)
+    system.pair_force("coulomb", cutoff=3.0, group=left, other=right, strength=2.0)
+    system.step(1e-6)
+
+    def push(p: iota.Particle, q: iota.Particle) -> np.ndarray:
+        line = np.array(p.position - q.position)
+        return 2 * line / np.linalg.norm(line) ** 3
+
+    # a-b, a-both and both-b; but never twice, and nothing on what is in neither.
+    wanted = [push(a, b) + push(a, both), push(b, a) + push(b, both), push(both, a) + push(both, b), np.zeros(3)]
+    np.testing.assert_allclose(system.array([a, b, both, none]).forces, wanted, rtol=1e-6, atol=1e-9)
+    c = system.body().particle((0, 3.5, 0))
+    left.add(c)
+    assert system.pair_forces[0].energy == pytest.approx(2 * (1 + 1 + 1 / np.sqrt(2) + 1 / 2.5))
+    with pytest.raises(ValueError, match="acts on"):
+        right.destroy()
+    with pytest.raises(ValueError, match="give group and other"):
+        system.pair_force("coulomb", cutoff=3.0, other=right, strength=2.0)
+
+
+def test_a_shifted_cut_off_has_no_jump() -> None:
+    def pair(distance: float, shifted: bool) -> tuple[float, float]:
+        system = iota.System(gravity=(0, 0, 0))
+        p, q = (system.body().particle((x, 0, 0)) for x in (0, distance))
+        force = system.pair_force("lennard_jones", cutoff=2.0, shifted=shifted, depth=1.0, size=1.0)
+        energy = force.energy
+        system.step(1e-9)
+        return energy, system.array([q]).forces[0, 0]
+
+    for distance in (1.0, 1.3, 1.9):
+        low, high = (pair(distance + step, True)[0] for step in (-1e-5, 1e-5))
+        assert pair(distance, True)[1] == pytest.approx(-(high - low) / 2e-5, rel=1e-6)
+    energy, force = pair(2 - 1e-6, True)
+    assert abs(energy) < 1e-11 and abs(force) < 1e-5
+    assert abs(pair(2 - 1e-6, False)[1]) > 0.1
+    system = iota.System()
+    with pytest.raises(ValueError, match="gravity cannot be shifted"):
+        system.pair_force("gravity", cutoff=2.0, shifted=True, strength=1.0)

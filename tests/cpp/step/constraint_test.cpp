@@ -296,7 +296,7 @@ TEST(Motor, reaches_its_speed_and_a_weak_one_stalls) {
       EXPECT_NEAR(state.coordinate[0], 4, 0.02);
     } else {  // 0.5 + 5 N m of friction hold 0.5 * g = 4.9 N m: it does not move
       EXPECT_NEAR(state.coordinate[0], 0, 1e-6);
-      EXPECT_NEAR(state.effort[0], 0.5 * g, 1e-3);
+      EXPECT_NEAR(state.effort[0].total(), 0.5 * g, 1e-3);
     }
   }
 }
@@ -324,7 +324,7 @@ TEST(Limit, stops_a_swinging_block) {
     EXPECT_LT(system.joints().state(joint).coordinate[0], 0.3 + 1e-7);
   });
   EXPECT_NEAR(system.joints().state(joint).coordinate[0], -0.7, 1e-6);
-  EXPECT_NEAR(system.joints().state(joint).effort[0], 0.5 * g * std::cos(0.7), 1e-3);
+  EXPECT_NEAR(system.joints().state(joint).effort[0].total(), 0.5 * g * std::cos(0.7), 1e-3);
 }
 
 TEST(Friction, a_block_on_an_incline_sticks_below_the_threshold_and_slides_above) {

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "edit/editor.h"
+
+namespace iota {
+
+template <>
+struct LastEnumerator<Quantity> : std::integral_constant<Quantity, Quantity::motion> {};
+
+}  // namespace iota
+
+/// Commands that carry arrays: each does what one of the commands for a single thing does, for many.
+namespace iota::edit {
+
+struct CreatePoints {
+  PointRows rows;
+};
+struct CreateRods {
+  RodRows rows;
+};
+struct CreateBonds {
+  std::vector<ParticleId> p, q;
+  LawId law;
+  bool implicit;
+  std::vector<std::array<double, max_law_parameters>> parameters;  ///< one for each, or one for all
+};
+struct CombineMany {
+  std::vector<ParticleId> p, q;
+};
+/// values: width(quantity) for each thing.
+struct AssignParticles {
+  Quantity quantity;
+  std::vector<ParticleId> particles;
+  std::vector<double> values;
+};
+struct AssignBodies {
+  Quantity quantity;
+  std::vector<BodyId> bodies;
+  std::vector<double> values;
+};
+struct AssignBonds {
+  std::vector<std::uint32_t> index;  ///< of the parameter, one for each
+  std::vector<BondId> bonds;
+  std::vector<double> values;
+};
+
+std::vector<ParticleId> apply(Editor&, const CreatePoints&);
+std::vector<BodyId> apply(Editor&, const CreateRods&);
+std::vector<BondId> apply(Editor&, const CreateBonds&);
+RestructureReport apply(Editor&, const CombineMany&);
+void apply(Editor&, const AssignParticles&);
+void apply(Editor&, const AssignBodies&);
+void apply(Editor&, const AssignBonds&);
+
+}  // namespace iota::edit

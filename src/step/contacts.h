@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ingredient/model.h"
+
+namespace iota::step {
+
+/// Reports which one-sided constraints and stops have begun or ended to carry a load since the last call.
+void tell_contacts(model::Model&, StepReport&);
+
+}  // namespace iota::step
