@@ -48,6 +48,21 @@ class BlockFactor {
   Leaves<Pivot, N> leaves(std::size_t first, double* unknowns);
   template <int Pivot, bool Symmetric>
   int eliminate(const BlockPattern::Vertex&);
+  template <bool Symmetric>
+  int eliminate(const BlockPattern::Panel&);
+  void place_rows(const BlockPattern::Panel&);
+  template <bool Symmetric>
+  void gather(const BlockPattern::Panel&);
+  template <bool Symmetric, int Pivot>
+  int factor_columns(const BlockPattern::Vertex&, std::uint32_t at, std::uint32_t rows);
+  template <bool Symmetric>
+  void store(const BlockPattern::Panel&);
+  template <bool Symmetric>
+  void update_later(const BlockPattern::Panel&);
+  void size_panels();
+  /// visit(vertex) for each in an order in which the right-hand side can be substituted forward.
+  template <class Visit>
+  void for_each_forward(Visit visit) const;
   template <int Pivot>
   void forward(const BlockPattern::Vertex&, double* b) const;
   template <int Pivot, bool Symmetric>
@@ -57,6 +72,11 @@ class BlockFactor {
   bool symmetric_ = true;
   std::vector<double> diagonals_, lower_, upper_;
   std::vector<double> unscaled_;  // L D of the front at hand, symmetric case
+
+  // The panel at hand: by columns, `stride_` apart.
+  std::vector<double> panel_lower_, panel_upper_, product_;  // L; L D or U'; what is left for later vertices
+  std::size_t stride_ = 0;
+  std::vector<std::uint32_t> row_of_;  // of a vertex: where its unknowns begin in the panel
 };
 
 }  // namespace iota::solver

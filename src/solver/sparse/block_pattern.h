@@ -32,7 +32,9 @@ class BlockPattern {
 
     bool is_node() const { return positives > 0; }
     bool holds(std::uint32_t u) const { return u >= unknown && u < unknown + pivot; }
-    std::uint32_t pair_count() const { return entry_count * (entry_count + 1) / 2; }
+    /// Whether it is eliminated in a panel, which needs no list of pairs: that would take more memory than the matrix.
+    bool is_wide() const { return entry_count >= 8; }
+    std::uint32_t pair_count() const { return is_wide() ? 0 : entry_count * (entry_count + 1) / 2; }
   };
   /// An off-diagonal block: the first `width` unknowns of a later vertex by the pivot columns of this one, row-major.
   /// Offsets of diagonal and off-diagonal blocks count separately: both triangles have the former in common.
@@ -41,6 +43,13 @@ class BlockPattern {
     std::uint32_t offset = 0;
     std::uint32_t unknown = 0;
     std::uint8_t width = 3;
+  };
+  /// Vertices that are eliminated together as one dense block of columns: each is coupled first with the next one, and
+  /// with little but what the last one is coupled with. They are eliminated in the turn of the last.
+  struct Panel {
+    std::uint32_t first = 0, count = 0;  ///< of `panel_vertices`
+    std::uint32_t columns = 0;           ///< unknowns of its vertices
+    std::uint32_t rows = 0;              ///< columns, and unknowns of the last vertex's entries
   };
   /// Where the 3 x 3 block of two nodes lies: in the block of the first-eliminated one.
   struct PairSlot {
@@ -80,6 +89,11 @@ class BlockPattern {
 
   std::span<const Vertex> vertices() const { return vertices_; }
   std::span<const Entry> entries() const { return entries_; }
+  std::span<const Panel> panels() const { return panels_; }
+  std::span<const std::uint32_t> panel_vertices() const { return panel_vertices_; }
+  /// Of each vertex the panel that it is in, or `no_panel`; empty: there are none.
+  std::span<const std::uint32_t> panel_of() const { return panel_of_; }
+  static constexpr std::uint32_t no_panel = 0xffffffff;
   std::span<const std::uint32_t> pair_targets() const { return pair_targets_; }
   std::uint32_t diagonal_count() const { return diagonal_storage_.size(); }  ///< values in diagonal blocks
   std::uint32_t lower_count() const { return lower_storage_.size(); }  ///< values in off-diagonal blocks, one triangle
@@ -98,6 +112,7 @@ class BlockPattern {
 
  private:
   friend class PatternBuilder;
+  void find_panels();
   std::uint32_t find_entry(std::uint32_t vertex, std::uint32_t later_vertex) const;
   std::uint32_t find_home(std::span<const std::uint32_t> nodes, std::uint32_t unknown) const;
 
@@ -105,14 +120,18 @@ class BlockPattern {
   std::vector<Entry> entries_;    // of each vertex, in order of elimination
   std::vector<std::uint32_t> pair_targets_;
   std::vector<std::uint32_t> node_vertex_;
+  std::vector<Panel> panels_;  // in order of elimination
+  std::vector<std::uint32_t> panel_vertices_, panel_of_;
   BlockStorage diagonal_storage_, lower_storage_, unknown_storage_, entry_storage_, pair_storage_;
   std::uint32_t widest_front_ = 0;
   std::uint32_t analyzed_fill_ = 0;  // of the latest analysis
   std::vector<std::uint8_t> moved_;  // of each unknown
 };
 
-/// Nodes in order of elimination: minimum degree, ties by number. O(n) on trees.
-std::vector<std::uint32_t> minimum_degree_order(std::uint32_t node_count,
-                                                std::span<const std::array<std::uint32_t, 2>> edges);
+/// Nodes in order of elimination. Minimum degree, O(n) on trees; where that makes much fill, nested dissection by places,
+/// O(n log^2 n).
+std::vector<std::uint32_t> elimination_order(std::uint32_t node_count,
+                                             std::span<const std::array<std::uint32_t, 2>> edges,
+                                             std::span<const Vec3> places);
 
 }  // namespace iota::solver

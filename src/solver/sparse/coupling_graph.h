@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iota/vec3.h>
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -27,6 +29,7 @@ struct CouplingGraph {
   std::uint32_t node_count = 0;
   std::vector<std::array<std::uint32_t, 2>> couplings;
   std::vector<Constraint> constraints;
+  std::vector<Vec3> places;  ///< of the nodes, which a dissection cuts apart; or empty
 };
 
 /// How a coupling graph has changed since its pattern was made.

@@ -2,16 +2,21 @@
 #include "solver/sparse/block_pattern.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
 
 namespace iota::solver {
 
 namespace {
 
+using Edge = std::array<std::uint32_t, 2>;
+
 /// Adjacency lists of an undirected graph without duplicates or loops, in one array.
 struct Adjacency {
   std::vector<std::uint32_t> first, neighbors;
 
-  Adjacency(std::uint32_t n, std::span<const std::array<std::uint32_t, 2>> edges) : first(n + 1, 0) {
+  Adjacency(std::uint32_t n, std::span<const Edge> edges) : first(n + 1, 0) {
     for (auto [a, b] : edges)
       if (a != b) ++first[a + 1], ++first[b + 1];
     for (std::uint32_t i = 0; i < n; ++i) first[i + 1] += first[i];
@@ -31,14 +36,16 @@ struct Adjacency {
   }
 };
 
-}  // namespace
-
 // An elimination graph with explicit fill. Leaves are taken first come, first served: the ends of a chain take turns, so
 // that successive eliminations do not wait for each other's divisions (512 rods: a step takes 0.23 instead of 0.27 us a
 // link). Others are taken last come, first served: a sixth less work in a net of 100 x 100 than the other way. Lists are
 // cleaned of eliminated neighbors only when they are read, so that a hub with a thousand leaves costs O(1) a leaf; the
 // degree itself is counted exactly.
-std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::span<const std::array<std::uint32_t, 2>> edges) {
+//
+// Of n nodes those from `own` on stay to the end and are left out: the surroundings of a part. Gives up, and returns
+// nothing, where the pairs of neighbors that eliminations couple are more than `most_pairs`.
+std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::uint32_t own, std::span<const Edge> edges,
+                                                std::size_t most_pairs) {
   const Adjacency graph(n, edges);
   std::vector<std::uint32_t> degree(n);
   std::vector<std::vector<std::uint32_t>> filled(n);  // lists that fill has changed; empty: still the graph's own
@@ -54,14 +61,14 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::span<const
   };
   for (std::uint32_t i = 0; i < n; ++i) degree[i] = graph.first[i + 1] - graph.first[i];
   for (std::uint32_t i = n; i-- > 0;)
-    if (degree[i] > 1) push(i);  // taken from the back
+    if (i < own && degree[i] > 1) push(i);  // taken from the back
   for (std::uint32_t i = 0; i < n; ++i)
-    if (degree[i] <= 1) push(i);
+    if (i < own && degree[i] <= 1) push(i);
 
   std::vector<std::uint32_t> order, front, merged;
-  order.reserve(n);
-  std::size_t lowest = 0;
-  while (order.size() < n) {
+  order.reserve(own);
+  std::size_t lowest = 0, pairs = 0;
+  while (order.size() < own) {
     while (buckets[lowest].next == buckets[lowest].nodes.size()) ++lowest;
     Queue& queue = buckets[lowest];
     const std::uint32_t node = lowest <= 1 ? queue.nodes[queue.next++] : queue.nodes.back();
@@ -80,6 +87,8 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::span<const
     else
       collect(filled[node].begin(), filled[node].end());
     filled[node] = {};
+    pairs += front.size() * (front.size() + 1) / 2;
+    if (pairs > most_pairs) return {};
 
     for (const std::uint32_t neighbor : front) {
       if (front.size() == 1) {
@@ -98,11 +107,112 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::span<const
         filled[neighbor] = merged;
         degree[neighbor] = static_cast<std::uint32_t>(merged.size());
       }
+      if (neighbor >= own) continue;
       push(neighbor);
       lowest = std::min<std::size_t>(lowest, degree[neighbor]);
     }
   }
   return order;
+}
+
+/// Nested dissection by places (George 1973): the smallest of three planes' sets of nodes that couple across it is
+/// eliminated after what lies on either side, which is cut in the same way. Parts of some tens of nodes are ordered by
+/// minimum degree, among the nodes around them (Pellegrini, Roman, Amestoy 2000: without these a tenth more fill).
+class Dissection {
+ public:
+  Dissection(std::uint32_t n, std::span<const Edge> edges, std::span<const Vec3> places)
+      : graph_(n, edges), places_(places), number_(n, none) {}
+
+  std::vector<std::uint32_t> order() {
+    std::vector<std::uint32_t> all(number_.size());
+    std::iota(all.begin(), all.end(), 0u);
+    cut(std::move(all));
+    return std::move(order_);
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffff;
+  static constexpr std::size_t small_part = 100;
+
+  std::span<const std::uint32_t> neighbors(std::uint32_t node) const {
+    return {graph_.neighbors.data() + graph_.first[node], graph_.first[node + 1] - graph_.first[node]};
+  }
+
+  void order_part(std::vector<std::uint32_t> part) {
+    const auto own = static_cast<std::uint32_t>(part.size());
+    std::vector<Edge> edges;
+    for (std::uint32_t i = 0; i < own; ++i) number_[part[i]] = i;
+    for (std::uint32_t i = 0; i < own; ++i)
+      for (const std::uint32_t other : neighbors(part[i])) {
+        if (number_[other] == none) number_[other] = static_cast<std::uint32_t>(part.size()), part.push_back(other);
+        if (number_[other] > i) edges.push_back({i, number_[other]});
+      }
+    for (const std::uint32_t node : part) number_[node] = none;
+    for (const std::uint32_t i : minimum_degree_order(static_cast<std::uint32_t>(part.size()), own, edges, ~0ull))
+      order_.push_back(part[i]);
+  }
+
+  void cut(std::vector<std::uint32_t> part) {
+    if (part.size() <= small_part) return order_part(std::move(part));
+    std::vector<std::uint32_t> separator, left, right, one_side, other_side;
+    bool found = false;
+    for (const int axis : {0, 1, 2}) {
+      const auto place = [&](std::uint32_t node) {
+        const Vec3& x = places_[node];
+        return axis == 0 ? x.x : axis == 1 ? x.y : x.z;
+      };
+      const auto middle = part.begin() + static_cast<std::ptrdiff_t>(part.size() / 2);
+      std::nth_element(part.begin(), middle, part.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::pair(place(a), a) < std::pair(place(b), b);
+      });
+      for (auto node = part.begin(); node != part.end(); ++node) number_[*node] = node < middle ? 0 : 1;
+      one_side.clear(), other_side.clear();
+      for (const std::uint32_t node : part) {
+        const std::uint32_t across = 1 - number_[node];
+        const auto near = neighbors(node);
+        if (std::none_of(near.begin(), near.end(), [&](std::uint32_t other) { return number_[other] == across; }))
+          continue;
+        (across == 1 ? one_side : other_side).push_back(node);
+      }
+      const auto& smaller = one_side.size() <= other_side.size() ? one_side : other_side;
+      if (!found || smaller.size() < separator.size()) {
+        found = true;
+        separator = smaller;
+        std::vector<std::uint8_t>& is_separating = is_separating_;
+        is_separating.resize(number_.size());
+        for (const std::uint32_t node : separator) is_separating[node] = 1;
+        left.clear(), right.clear();
+        for (const std::uint32_t node : part)
+          if (!is_separating[node]) (number_[node] == 0 ? left : right).push_back(node);
+        for (const std::uint32_t node : separator) is_separating[node] = 0;
+      }
+      for (const std::uint32_t node : part) number_[node] = none;
+    }
+    if (left.empty() || right.empty()) return order_part(std::move(part));  // all couple with all
+    std::sort(separator.begin(), separator.end());
+    part = {};
+    cut(std::move(left)), cut(std::move(right));
+    order_.insert(order_.end(), separator.begin(), separator.end());
+  }
+
+  Adjacency graph_;
+  std::span<const Vec3> places_;
+  std::vector<std::uint32_t> number_;  // none, except while a part is at hand
+  std::vector<std::uint8_t> is_separating_;
+  std::vector<std::uint32_t> order_;
+};
+
+}  // namespace
+
+// Up to some hundred pairs a node (chains, trees, bodies, nets of a thousand knots) minimum degree makes a tenth to a third
+// less fill and takes a millisecond for a thousand nodes. Beyond, its lists grow with the fill: a net of 223 x 223 takes 2.4 s
+// and 126 million pairs, dissection 0.4 s and 94 million; a lattice of 14^3 with diagonals 0.6 s and 44, 0.05 s and 20.
+std::vector<std::uint32_t> elimination_order(std::uint32_t n, std::span<const std::array<std::uint32_t, 2>> edges,
+                                             std::span<const Vec3> places) {
+  constexpr std::size_t most_pairs = 300;  // a node
+  const std::size_t limit = places.size() == n ? most_pairs * n : ~std::size_t{0};
+  std::vector<std::uint32_t> order = minimum_degree_order(n, n, edges, limit);
+  return order.size() == n ? order : Dissection(n, edges, places).order();
 }
 
 }  // namespace iota::solver

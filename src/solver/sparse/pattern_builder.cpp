@@ -43,7 +43,7 @@ void PatternBuilder::order_all_nodes() {
   for (const auto& c : graph_.constraints)
     for (int i = 0; i < c.node_count; ++i)
       for (int j = i + 1; j < c.node_count; ++j) edges.push_back({c.nodes[i], c.nodes[j]});
-  node_order_ = minimum_degree_order(graph_.node_count, edges);
+  node_order_ = elimination_order(graph_.node_count, edges, graph_.places);
   rank_.resize(graph_.node_count);
   for (std::uint32_t i = 0; i < graph_.node_count; ++i) rank_[node_order_[i]] = i;
 }
@@ -383,10 +383,11 @@ void PatternBuilder::set_targets() {
     const std::span<Entry> front(pattern_.entries_.data() + vertices[v].first_entry, vertices[v].entry_count);
     if (!is_moved_[v] && std::none_of(front.begin(), front.end(), [&](const Entry& e) { return is_moved_[e.vertex]; }))
       continue;
+    for (Entry& e : front) e.unknown = vertices[e.vertex].unknown;
+    if (vertices[v].is_wide()) continue;
     std::uint32_t at = vertices[v].first_pair;
     for (std::size_t a = 0; a < front.size(); ++a) {
       const std::uint32_t va = front[a].vertex;
-      front[a].unknown = vertices[va].unknown;
       pattern_.pair_targets_[at++] = vertices[va].diagonal;
       for (std::size_t b = a + 1; b < front.size(); ++b)
         pattern_.pair_targets_[at++] = pattern_.entries_[pattern_.find_entry(va, front[b].vertex)].offset;

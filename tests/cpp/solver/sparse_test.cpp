@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/sparse/block_factor.h"
 #include "solver/sparse/block_pattern.h"
+#include "solver/sparse/panel_product.h"
 
 #include <gtest/gtest.h>
 
@@ -222,7 +223,7 @@ TEST(Ordering, of_a_chain_makes_no_fill) {
 TEST(Ordering, of_a_star_keeps_the_hub_for_last) {
   std::vector<Edge> edges;
   for (std::uint32_t i = 1; i <= 5000; ++i) edges.push_back({0, i});
-  const auto order = minimum_degree_order(5001, edges);
+  const auto order = elimination_order(5001, edges, {});
   EXPECT_GE(std::find(order.begin(), order.end(), 0u) - order.begin(), 4999);
 }
 
@@ -230,10 +231,115 @@ TEST(Ordering, is_a_permutation_of_any_graph) {
   std::mt19937 random(3);
   for (int round = 0; round < 100; ++round) {
     const CouplingGraph graph = random_graph(random);
-    auto order = minimum_degree_order(graph.node_count, graph.couplings);
+    auto order = elimination_order(graph.node_count, graph.couplings, {});
     std::sort(order.begin(), order.end());
     for (std::uint32_t i = 0; i < graph.node_count; ++i) ASSERT_EQ(order[i], i);
   }
+}
+
+/// A square net of side x side nodes, coupled with their neighbors, also diagonally, by blocks or by rows.
+CouplingGraph net(std::uint32_t side, bool diagonals, bool rows) {
+  CouplingGraph graph;
+  graph.node_count = side * side;
+  const auto tie = [&](std::uint32_t a, std::uint32_t b) {
+    if (rows)
+      graph.constraints.push_back({1, 2, {a, b}});
+    else
+      graph.couplings.push_back({a, b});
+  };
+  for (std::uint32_t i = 0; i < side; ++i)
+    for (std::uint32_t j = 0; j < side; ++j) {
+      const std::uint32_t node = i * side + j;
+      graph.places.push_back({static_cast<double>(i), 0, static_cast<double>(j)});
+      if (j + 1 < side) tie(node, node + 1);
+      if (i + 1 < side) tie(node, node + side);
+      if (diagonals && i + 1 < side && j + 1 < side) tie(node, node + side + 1), tie(node + 1, node + side);
+    }
+  return graph;
+}
+
+TEST(Panels, give_the_solution_of_a_dense_one) {
+  std::mt19937 random(17);
+  for (const bool symmetric : {true, false})
+    for (const bool diagonals : {false, true})
+      for (const bool rows : {false, true}) {
+        if (rows && !symmetric) continue;  // pivots of random rows may then have any sign
+        Twin twin(net(9, diagonals, rows), symmetric, random);
+        EXPECT_FALSE(twin.pattern.panels().empty());
+        twin.expect_equal_solutions();
+      }
+}
+
+TEST(Panels, hold_all_wide_vertices_and_nothing_twice) {
+  BlockPattern pattern;
+  CouplingGraph graph = net(40, true, true);
+  pattern.analyze(graph);
+  std::vector<int> times(pattern.vertices().size(), 0);
+  std::uint32_t last_before = 0;
+  for (const auto& panel : pattern.panels()) {
+    const auto members = pattern.panel_vertices().subspan(panel.first, panel.count);
+    std::uint32_t columns = 0;
+    for (const std::uint32_t v : members) ++times[v], columns += pattern.vertices()[v].pivot;
+    EXPECT_EQ(columns, panel.columns);
+    EXPECT_LE(last_before, members.back()) << "in order of elimination";
+    last_before = members.back();
+    for (std::size_t i = 0; i + 1 < members.size(); ++i)
+      EXPECT_EQ(pattern.entries()[pattern.vertices()[members[i]].first_entry].vertex, members[i + 1]);
+  }
+  for (std::size_t v = 0; v < times.size(); ++v) {
+    EXPECT_LE(times[v], 1);
+    if (pattern.vertices()[v].is_wide()) EXPECT_EQ(times[v], 1);
+  }
+}
+
+TEST(Panels, multiply_like_three_loops_in_every_size) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int rows : {1, 3, 15, 16, 17, 40, 48})
+    for (int columns = 1; columns <= 6; ++columns)
+      for (int depth : {1, 2, 7}) {
+        const std::size_t stride = 48;
+        std::vector<double> x(stride * 8 + panel_slack), y(stride * 8), t(stride * 8);
+        for (double& v : x) v = number(random);
+        for (double& v : y) v = number(random);
+        multiply_panel(t.data(), x.data(), y.data(), rows, columns, depth, stride);
+        for (int r = 0; r < rows; ++r)
+          for (int c = 0; c < columns; ++c) {
+            double sum = 0;
+            for (int k = 0; k < depth; ++k) sum += x[k * stride + r] * y[k * stride + c];
+            ASSERT_EQ(t[c * stride + r], sum) << "the same bits on all processors";
+          }
+      }
+}
+
+TEST(Ordering, is_a_permutation_of_a_net_that_is_dissected) {
+  const CouplingGraph graph = net(60, true, false);
+  auto order = elimination_order(graph.node_count, graph.couplings, graph.places);
+  ASSERT_EQ(order.size(), graph.node_count);
+  std::sort(order.begin(), order.end());
+  for (std::uint32_t i = 0; i < graph.node_count; ++i) ASSERT_EQ(order[i], i);
+}
+
+// Fill of a net grows as n log n by theory (George 1973).
+TEST(Ordering, makes_fill_of_a_net_grow_as_n_log_n) {
+  for (const std::uint32_t side : {20, 40, 80, 120}) {
+    CouplingGraph graph = net(side, false, false);
+    BlockPattern pattern;
+    pattern.analyze(graph);
+    const double n = side * side;
+    EXPECT_LT(static_cast<double>(pattern.entries().size()), 2.1 * n * std::log2(n)) << side;
+  }
+}
+
+TEST(Ordering, keeps_going_where_all_places_are_one_and_all_nodes_couple) {
+  CouplingGraph graph;
+  graph.node_count = 300;
+  graph.places.assign(300, {1, 2, 3});
+  for (std::uint32_t i = 0; i < 300; ++i)
+    for (std::uint32_t j = 0; j < i; ++j) graph.couplings.push_back({j, i});
+  BlockPattern pattern;
+  pattern.analyze(graph);
+  EXPECT_EQ(pattern.entries().size(), 300u * 299u / 2);
 }
 
 /// A graph whose nodes, couplings and constraints of all kinds come and go, and the pattern that follows.
