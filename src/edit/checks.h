@@ -31,7 +31,7 @@ inline void require_positive(std::string_view name, double v) {
 
 inline void require_mass(std::string_view name, double v) {
   require_positive(name, v);
-  if (v < 1e-12 || v > 1e15) throw std::invalid_argument(text(name, " must be between 1e-12 and 1e15 kg, got ", v));
+  if (v < 1e-30 || v > 1e15) throw std::invalid_argument(text(name, " must be between 1e-30 and 1e15 kg, got ", v));
 }
 
 inline void require_not_negative(std::string_view name, double v) {

@@ -57,7 +57,7 @@ void Grips::load(const Model& model, const IslandNodes&, double, Problem& proble
   for_each_item_of<solver::GripForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Grip& g = model.grips[key.slot];
     const double omega = 2 * std::numbers::pi * g.frequency, mass = felt_mass(key.slot);
-    forces[i].arm.origin = g.target;
+    forces[i].arm.origin = g.target - problem.origin;
     arms_[i] = forces[i].arm.value(problem.position.data());
     // The stiffness gives the largest force at this distance where the body is far away.
     const double distance = norm(arms_[i]);

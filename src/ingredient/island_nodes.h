@@ -37,6 +37,7 @@ struct IslandNodes {
   void remove(std::uint32_t node);
 
   std::size_t size() const { return rings.size(); }
+  std::size_t pinned_count() const { return static_cast<std::size_t>(std::count(pinned.begin(), pinned.end(), 1)); }
   template <class Visit>
   void for_each_ring(const model::Structure& model,
                      Visit visit) const {  ///< visit(ring): of the nodes, then of the carried

@@ -34,8 +34,8 @@ void Nails::load(const Model& model, const IslandNodes&, double h, Problem& prob
   for_each_item_of<solver::AffineConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Nail& from = model.nails.at(key.slot);
     auto& nail = affines.items[i];
-    nail.target = from.position;
-    nail.target_start = model.rings[key.slot].nailed && h > 0 ? from.position_before : nail.target;
+    nail.target = from.position - problem.origin;
+    nail.target_start = model.rings[key.slot].nailed && h > 0 ? from.position_before - problem.origin : nail.target;
     double* const l = affines.multiplier(i);
     l[0] = from.multiplier.x, l[1] = from.multiplier.y, l[2] = from.multiplier.z;
   });

@@ -37,6 +37,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   for_each_ingredient([&](auto& i) { i.owner = ++owner; });
   const ingredient::IslandMap map(model, nodes_, nodes_.bodies, node_of_ring);
   for_each_ingredient([&](auto& i) { i.build(map, problem_); });
+  for (std::size_t i = 0; i < nodes_.size(); ++i) problem_.position[i] = model.rings[nodes_.rings[i]].position;
   integrator_.compile(problem_);
   for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
 }
@@ -63,11 +64,28 @@ void Island::carry_along(Model& model) {
   for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, false); });  // a new basis has its places elsewhere
 }
 
+// Zero near the world's origin. Far from it, the place of the first point: differences of neighbors are then exact, and what
+// a step computes has the digits of the island's size instead of the place's. At 1e7 m a chain of 2 cm links hung in the air.
+// Not where something holds on to a place of the world other than a nail or a hand: a path, a surface, a joint's axis.
+Vec3 Island::choose_origin(const Model& model) const {
+  constexpr double far = 1e4;  // mean lengths of links: closer by, 1e-12 of one is resolved
+  if (nodes_.size() == 0) return {};
+  const Vec3& first = model.rings[nodes_.rings.front()].position;
+  const double distance = std::max({std::abs(first.x), std::abs(first.y), std::abs(first.z)});
+  if (!(distance > far * integrator_.reference_length())) return {};
+  std::size_t held = 0;
+  problem_.for_each_constraint_pool([&](const auto& pool) {
+    for (const auto& c : pool.items) held += !c.is_internal();
+  });
+  return held == nodes_.pinned_count() ? first : Vec3{};
+}
+
 void Island::load(const Model& model, double h) {
   problem_.gravity = model.acting_gravity();
+  problem_.origin = choose_origin(model);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Ring& r = model.rings[nodes_.rings[i]];
-    problem_.position[i] = r.position;
+    problem_.position[i] = r.position - problem_.origin;
     problem_.velocity[i] = r.velocity;
   }
   for_each_ingredient([&](auto& i) { i.load(model, nodes_, h, problem_); });
@@ -86,7 +104,7 @@ void Island::store_step(Model& model, double h) const {
     r.acceleration = (1 / h) * (velocity - r.velocity);
     r.position = position, r.velocity = velocity;
   };
-  for (std::size_t i = 0; i < nodes_.size(); ++i) put(nodes_.rings[i], problem_.position[i], problem_.velocity[i]);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) put(nodes_.rings[i], problem_.origin + problem_.position[i], problem_.velocity[i]);
   for (const std::uint32_t p : nodes_.carried) {
     const auto [position, velocity] = model.carried(p);
     put(model.particles[p].ring, position, velocity);
@@ -97,7 +115,7 @@ void Island::store_step(Model& model, double h) const {
 void Island::store_projection(Model& model, bool moved) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     Ring& r = model.rings[nodes_.rings[i]];
-    r.position = problem_.position[i], r.velocity = problem_.velocity[i];
+    r.position = problem_.origin + problem_.position[i], r.velocity = problem_.velocity[i];
   }
   store_carried(model);
   for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, moved); });
@@ -170,7 +188,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
   const double virtual_before = virtual_energy(model);
   double given = 0;  // by prescribed velocities at once, J
   // The mid-point rule would carry a jump of a prescribed velocity along for ever, as a ringing of the reactions.
-  if (velocity_jump(h) > 1e-9) {
+  if (velocity_jump(h) * h > 1e-10 * integrator_.reference_length()) {
     given -= problem_.kinetic_energy();
     impose_velocities(h);
     integrator_.project_velocities(problem_, h);

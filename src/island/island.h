@@ -70,6 +70,7 @@ class Island {
     return std::apply([&](const auto&... ingredient) { return (test(ingredient) || ...); }, ingredients_);
   }
 
+  Vec3 choose_origin(const model::Model&) const;
   std::vector<std::uint32_t> find_changed_nodes(const model::Model&, const model::Model::LocalChange&,
                                                 std::vector<std::uint32_t>& node_of_ring);
   void remove_nodes(std::vector<std::uint32_t>);

@@ -55,6 +55,7 @@ void Assembly::add_momentum(const Problem& problem, const Stage& stage, const Ve
 template <bool Midpoint>
 Residual Assembly::residual(const Problem& problem, const Stage& stage, const Vec3* x, const Vec3* u) {
   add_momentum<Midpoint>(problem, stage, x, u);
+  if (has_extreme_masses()) resistance_.assign(problem.mass.begin(), problem.mass.end());
   worst_ = violation_ = largest_multiplier_ = 0;
   problem.for_each_constraint_pool([&](const auto& pool) {
     pool.has_laws() ? add_rows<Midpoint, true>(problem, stage, pool, x)
@@ -63,7 +64,7 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
   double worst_force = 0, mass_there = 1, lightest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const double* const r = unknowns_.data() + node_unknown_[i];
-    const double mass = problem.mass[i], size = largest_component({r[0], r[1], r[2]});
+    const double mass = has_extreme_masses() ? resistance_[i] : problem.mass[i], size = largest_component({r[0], r[1], r[2]});
     if (!(size * mass_there <= worst_force * mass)) worst_force = size, mass_there = mass;  // by the mass, undivided
     lightest = std::min(lightest, mass);
   }
@@ -107,10 +108,12 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
       for (int r = 0; r < C::rows; ++r) {
         const Vec3 direction = Midpoint ? 0.5 * (rows[r] + start_rows[r]) : rows[r];
         add_force(c.nodes[i], lambda[r] * direction);
+        if (has_extreme_masses())
+          resistance_[c.nodes[i]] += std::abs(lambda[r]) * norm(direction) * inverse_scale(stage);
       }
     }
     const double per_length = 1 / c.reference_length();
-    compliance *= stage.compliance / stage.inertia;
+    compliance *= row_compliance_ * stage.compliance / stage.inertia;
     for (int r = 0; r < C::rows; ++r) {
       double value, gap = g[r];
       if constexpr (Laws) {
@@ -119,7 +122,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
         if (state.side != 0)
           value = gap = 0;
         else
-          value = equation.value - (equation.softness + compliances[r] * stage.compliance / stage.inertia) * lambda[r];
+          value = equation.value - (equation.softness + compliances[r] * row_compliance_ * stage.compliance / stage.inertia) * lambda[r];
         if (equation.softness > 0) gap = 0;
         if (pool.law(k)[r].hold && state.side == 0) gap = equation.value;
       } else {
@@ -265,10 +268,10 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
       if constexpr (Laws) {
         const RowState& state = pool.states[k * C::rows + r];
         diagonal = state.side != 0 ? -1
-                                   : -compliances[r] * stage.compliance / stage.inertia -
+                                   : -compliances[r] * row_compliance_ * stage.compliance / stage.inertia -
                                          equation_of(pool.law(k)[r], state, 0, stage).softness;
       } else {
-        diagonal = -compliance * stage.compliance / stage.inertia;
+        diagonal = -compliance * row_compliance_ * stage.compliance / stage.inertia;
       }
     }
     if constexpr (C::has_curvature) {

@@ -69,6 +69,8 @@ class Assembly {
   template <class IsDue>
   void place_items(Problem&, const CouplingGraph&, IsDue);
   void place_nodes(const Problem&);
+  void weigh(const Problem&);
+  bool has_extreme_masses() const { return row_compliance_ < 1; }
 
   template <bool Midpoint>
   void add_momentum(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
@@ -96,6 +98,9 @@ class Assembly {
   std::vector<std::uint8_t> node_stride_;
   std::vector<double> unknowns_;  // residuals, and then the step
   double reference_length_ = 1;
+  /// Only where masses are extreme: of each node its mass, and what the rows that pull at it resist like, kg.
+  std::vector<double> resistance_;
+  double row_compliance_ = 1;  ///< a factor of the stage's, below 1 where masses are extreme
   double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // of the rows, while a residual is being summed up
 };
 

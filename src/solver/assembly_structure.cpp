@@ -5,6 +5,7 @@
 #include "base/slack.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace iota::solver {
 
@@ -35,6 +36,7 @@ namespace {
 CouplingGraph graph_of(const Problem& problem) {
   CouplingGraph graph;
   graph.node_count = static_cast<std::uint32_t>(problem.size());
+  graph.places = problem.position;
   graph.couplings.reserve(problem.mass_couplings.size());
   std::size_t constraints = 0;
   problem.for_each_constraint_pool([&](const auto& pool) { constraints += pool.items.size(); });
@@ -62,30 +64,49 @@ CouplingGraph graph_of(const Problem& problem) {
   return graph;
 }
 
-/// Of what bodies are made of; joints and curves have lengths of their own.
+/// Of the rods that bodies are made of; joints and curves have lengths of their own. Where there are none, of the forces
+/// between points; else 1 m.
 double mean_reference_length(const Problem& problem) {
   double sum = 0;
   std::size_t count = 0;
-  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
-    if constexpr (!GeneralConstraint<C>) {
-      for (const C& c : pool.items) sum += c.reference_length();
-      count += pool.items.size();
-    }
-  });
-  return count ? sum / static_cast<double>(count) : 1;
+  for (const auto& c : problem.pool_of<DistanceConstraint>().items) sum += c.reference_length(), ++count;
+  if (count == 0)
+    problem.for_each_force_pool([&](const auto& pool) {
+      for (const auto& f : pool.items)
+        if (f.arm.is_internal()) sum += norm(f.arm.value(problem.position.data())), ++count;
+    });
+  return sum > 0 ? sum / static_cast<double>(count) : 1;
+}
+
+/// Rows of nails and of carried points are measured by the same length.
+double set_reference_lengths(Problem& problem) {
+  const double length = mean_reference_length(problem);
+  for (auto& c : problem.pool_of<AffineConstraint>().items) c.reference = length;
+  return length;
 }
 
 }  // namespace
 
 void Assembly::compile(Problem& problem) {
-  reference_length_ = mean_reference_length(problem);
+  reference_length_ = set_reference_lengths(problem);
   CouplingGraph graph = graph_of(problem);
   pattern_.analyze(graph);
   factor_.reset(pattern_);
   problem.fit_pools();
   place_items(problem, graph, [](auto...) { return true; });
   place_nodes(problem);
+  weigh(problem);
   problem.note_compiled();
+}
+
+// A row gives by its compliance times the force in it, and a light link may carry the weight of all the others: beyond a
+// ratio of 1e7 the gap would show. Then forces are measured by how far they move a point against the rows that pull at it,
+// not against its mass alone: between two heavy loads the balance of a light point is round-off of their tension.
+void Assembly::weigh(const Problem& problem) {
+  constexpr double usual = 1e7;
+  double heaviest = 0, lightest = std::numeric_limits<double>::infinity();
+  for (const double m : problem.mass) heaviest = std::max(heaviest, m), lightest = std::min(lightest, m);
+  row_compliance_ = lightest > 0 ? std::clamp(usual * lightest / heaviest, 1e-6, 1.0) : 1;
 }
 
 void Assembly::follow(Problem& problem) {
@@ -93,10 +114,11 @@ void Assembly::follow(Problem& problem) {
   const bool order_suits = pattern_.follow(graph, problem.changes());
   problem.remove_nodes(problem.changes().removed);
   if (!order_suits) return compile(problem);
-  reference_length_ = mean_reference_length(problem);
+  reference_length_ = set_reference_lengths(problem);
   factor_.grow();
   problem.fit_pools();
   place_nodes(problem);
+  weigh(problem);
   const auto has_moved = [&](std::uint32_t node) { return pattern_.has_moved(node_unknown_[node]); };
   place_items(problem, graph, [&](const auto& nodes, std::size_t count, std::uint32_t unknown) {
     return std::any_of(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(count), has_moved) ||

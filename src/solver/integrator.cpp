@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace iota::solver {
@@ -117,7 +118,15 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
 }
 
 bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& report) {
-  const NewtonReport newton = newton_.solve(problem, stage);
+  if (iterations_left_ <= 0) {
+    cut_short_ = true;
+    return false;
+  }
+  Stage limited = stage;
+  limited.max_iterations = std::min(stage.max_iterations, iterations_left_);
+  const NewtonReport newton = newton_.solve(problem, limited);
+  iterations_left_ -= newton.iterations;
+  cut_short_ = cut_short_ || (!newton.converged && iterations_left_ <= 0);
   ++report.solves;
   met_ = newton.met, violation_ = newton.violation;
   report.handed_back += newton.handed_back;
@@ -396,7 +405,8 @@ void Integrator::remove_excess_energy(Problem& problem, double excess, double fr
 // velocities on the constraints after each. If a projection fails, the points stay and lose half of their speed. First
 // order and without energy balance, but plausible, finite and reported.
 void Integrator::last_resort_step(Problem& problem, double h, AdvanceReport& report) {
-  constexpr int pieces = 8;
+  constexpr int pieces = 8, own_iterations = 24;  // these it may take beyond a budget
+  iterations_left_ = std::max(iterations_left_, own_iterations);
   problem.set_multipliers(multipliers_saved_);
   const double before = energy_;
   bool whole = true;
@@ -450,6 +460,8 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
     for (const RowLaw& law : pool.laws) conservative_ = conservative_ && (law.rate == 0 || law.is_off());
   });
   step_length_ = h;
+  constexpr int unlimited = std::numeric_limits<int>::max();
+  iterations_left_ = care.max_iterations > 0 ? care.max_iterations : unlimited;
   close_gaps(problem, report);
   keeps_start_ = false;
   if (!conservative_ || !report.converged) keep_start(problem);
@@ -491,6 +503,11 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
     }
   }
   restore_bounds(problem);
+  if (std::exchange(cut_short_, false)) {
+    report.cut_short = true;
+    report.gap = problem.worst_gap(problem.position.data());
+  }
+  iterations_left_ = unlimited;
   return report;
 }
 

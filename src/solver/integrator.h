@@ -17,6 +17,7 @@ struct Care {
   double max_turn = 1.1, max_turn_cosine = 0.4536;  ///< rad: a mid-point (sub-)step that turns a link further is halved
   int max_depth = 6;                                ///< sub-steps down to a 64th: a whip needs them, for a few steps
   int patience = 400;                               ///< Newton iterations after which sub-steps are no longer halved
+  int max_iterations = 0;                           ///< of all solves of a step, but for the last resort's; 0: unlimited
   double max_error = 0;  ///< estimated, of mid-point (sub-)steps, in link lengths per second; 0: not asked
 
   static Care plausible() { return {.scheme = Scheme::end_point, .tolerance = 100, .max_depth = 4}; }
@@ -41,6 +42,8 @@ struct [[nodiscard]] AdvanceReport {
   int handed_back = 0;  ///< solves in which the solver that was asked found no root
   int fallbacks = 0;    ///< mid-point sub-steps that had to be taken by the end-point scheme
   bool converged = true;
+  bool cut_short = false;     ///< by the settings' most iterations
+  double gap = 0;             ///< worst at the end of a step that was cut short, m
   double external_work = 0;   ///< of explicit forces, grips and moving targets, J
   double dissipated = 0;      ///< J
   double closing_energy = 0;  ///< by moving violated constraints together before the step, J
@@ -64,6 +67,8 @@ class Integrator {
   /// Moves positions by the least mass-weighted displacement that meets all constraints; velocities stay.
   /// Returns false where no solution was found: the violation is then shared, and smaller after each call.
   bool project_positions(Problem& problem);
+
+  double reference_length() const { return newton_.reference_length(); }  ///< of what is compiled, m
 
   /// Who solves the equations of steps; null: the built-in Newton.
   void set_external(Solver* solver) { newton_.set_external(solver); }
@@ -95,6 +100,7 @@ class Integrator {
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   void hold_offsets(Problem&, AdvanceReport&);
   void restore_bounds(Problem&);
+  bool share_gaps(Problem&, double fraction, AdvanceReport&);
   void keep_start(const Problem&);
   bool least_violation(Problem&, Stage, AdvanceReport&);
   void last_resort_step(Problem&, double h, AdvanceReport&);
@@ -112,6 +118,8 @@ class Integrator {
   double kinetic_ = 0, energy_ = 0;  ///< of the problem's state as it is now, J
   bool conservative_ = true;         ///< nothing outside does work during this step
   bool holds_offsets_ = false;
+  int iterations_left_ = std::numeric_limits<int>::max();
+  bool cut_short_ = false;
   bool keeps_start_ = false;
   double violation_ = 0;  ///< relative, left by the latest solve
   int met_ = 0;           ///< bounded rows that met in the latest solve

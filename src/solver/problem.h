@@ -134,6 +134,8 @@ struct Problem {
   ConstraintPools<ConstraintPool> constraints;
   ForcePools<ForcePool> forces;
   Vec3 gravity;
+  /// What positions and targets are relative to, m. Far from the world's origin they keep their digits that way.
+  Vec3 origin;
   double standing_gap = 0;           ///< of a conflict that the last attempt could not close, relative; 0: none
   std::uint64_t standing_steps = 0;  ///< since then
 

@@ -18,6 +18,12 @@ struct ForceArm {
   std::uint32_t count = 0;
   Vec3 origin;
 
+  /// Whether it is a difference of points: neither an end of it nor a hand is fixed in the world.
+  bool is_internal() const {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < count; ++i) sum += weights[i];
+    return count > 1 && std::abs(sum) < 1e-9;
+  }
   Vec3 value(const Vec3* x) const {
     Vec3 e = -1.0 * origin;
     for (std::uint32_t i = 0; i < count; ++i) e += weights[i] * x[nodes[i]];

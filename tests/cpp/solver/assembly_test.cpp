@@ -97,7 +97,7 @@ TEST(Assembly, counts_three_unknowns_for_each_point_and_one_for_each_row) {
   Assembly assembly;
   assembly.compile(problem);
   EXPECT_EQ(assembly.unknown_count(), 8u * 3 + 3 + 7);
-  EXPECT_DOUBLE_EQ(assembly.reference_length(), (7 * 0.5 + 1) / 8) << "of the rods, and 1 m of the nail";
+  EXPECT_DOUBLE_EQ(assembly.reference_length(), 0.5) << "of the rods, by which the nail is measured too";
   std::vector<bool> taken(assembly.unknown_count());
   const auto take = [&](std::uint32_t first, int count) {
     for (int i = 0; i < count; ++i) {

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same scene in other sizes, masses and places, and at sizes at which shortcuts show.
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace iota {
+namespace {
+
+constexpr IntegrationMode modes[] = {IntegrationMode::plausible, IntegrationMode::robust,
+                                     IntegrationMode::energy_keeping};
+
+/// Links on a line from `top` on, hinged; the first is nailed.
+struct Row {
+  std::vector<ParticleId> upper, lower;  ///< of each link
+
+  template <class MassOf>
+  Row(System& system, int links, const Vec3& top, double length, MassOf mass_of) {
+    for (int i = 0; i < links; ++i) {
+      const BodyId body = system.bodies().create();
+      const double half = mass_of(i) / 2;
+      upper.push_back(system.particles().create(body, top + Vec3{i * length, 0, 0}, half));
+      const ParticleId end = system.particles().create(body, top + Vec3{(i + 1) * length, 0, 0}, half);
+      if (i > 0) (void)system.edits().combine(lower.back(), upper.back());
+      lower.push_back(end);
+    }
+    system.particles().nail(upper.front());
+  }
+  Vec3 end(const System& system) const { return system.particles().position(lower.back()); }
+  /// The longest and the shortest link, as multiples of `length`.
+  std::pair<double, double> extremes(const System& system, double length) const {
+    std::pair<double, double> found{0, 1e300};
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+      const double l = norm(system.particles().position(lower[i]) - system.particles().position(upper[i])) / length;
+      found = {std::max(found.first, l), std::min(found.second, l)};
+    }
+    return found;
+  }
+};
+
+/// Where a zigzag of links with a ball on a spring is after half a second, lengths, masses and times in the given units.
+std::vector<Vec3> swing_in_units(double length, double mass, IntegrationMode mode) {
+  const double time = std::sqrt(length);  // gravity stays
+  System system({.mode = mode});
+  std::vector<ParticleId> points;
+  const auto joint = [&](int i) { return length * Vec3{0.1 * i, 0.05 * (i % 2), 0}; };
+  for (int i = 0; i < 8; ++i) {
+    const BodyId body = system.bodies().create();
+    const ParticleId upper = system.particles().create(body, joint(i), 0.05 * mass);
+    const ParticleId lower = system.particles().create(body, joint(i + 1), 0.05 * mass);
+    if (i > 0)
+      (void)system.edits().combine(points.back(), upper);
+    else
+      system.particles().nail(upper);
+    points.push_back(lower);
+  }
+  points.push_back(system.particles().create(system.bodies().create(), length * Vec3{0.9, 0.1, 0}, 0.1 * mass));
+  system.bonds().create(points[7], points[8], SpringLaw{.stiffness = 50 * mass / length});
+  for (int step = 0; step < 60; ++step) (void)system.step(time / 120);
+  std::vector<Vec3> places;
+  for (const ParticleId p : points) places.push_back((1 / length) * system.particles().position(p));
+  return places;
+}
+
+TEST(Scale, of_lengths_and_masses_changes_nothing_but_the_units) {
+  for (const IntegrationMode mode : modes) {
+    const std::vector<Vec3> usual = swing_in_units(1, 1, mode);
+    for (const auto& [length, mass] : {std::pair{1e-9, 1e-12}, {1e-6, 1e6}, {1e-3, 1.0}, {1e3, 1e-6}, {1e4, 1e12}}) {
+      const std::vector<Vec3> scaled = swing_in_units(length, mass, mode);
+      for (std::size_t i = 0; i < usual.size(); ++i)
+        EXPECT_LT(norm(scaled[i] - usual[i]), 1e-6) << "unit of length " << length << ", of mass " << mass;
+    }
+  }
+}
+
+TEST(Scale, of_masses_over_twelve_decades_leaves_joints_closed) {
+  for (const IntegrationMode mode : modes)
+    for (const double ratio : {1e8, 1e10, 1e12})
+      for (const bool falling : {false, true}) {
+        System system({.mode = mode});
+        const Row row(system, 20, {0, 2, 0}, 0.1,
+                      [&](int i) { return std::pow(ratio, (falling ? 19 - i : i) / 19.0 - 0.5); });
+        double gap = 0;
+        for (int step = 0; step < 120; ++step) gap = std::max(gap, system.step(1.0 / 60).worst_gap);
+        EXPECT_LT(gap, 2e-7) << "ratio " << ratio << (falling ? ", heavy end first" : ", light end first");
+      }
+}
+
+// Positions are doubles: at 1e7 m they are 2e-9 m apart.
+TEST(Scale, of_places_to_ten_million_meters_lets_a_chain_swing_as_at_home) {
+  for (const IntegrationMode mode : modes) {
+    std::vector<Vec3> ends;
+    for (const double far : {0.0, 1e5, 1e7}) {
+      System system({.mode = mode});
+      const Row row(system, 50, {far, -far, 0}, 0.02, [](int) { return 0.01; });
+      const double start = system.energy().total();
+      int failed = 0;
+      double kinetic = 0;
+      for (int step = 0; step < 60; ++step) {
+        const StepReport report = system.step(1.0 / 120);
+        failed += report.unconverged + report.fallbacks;
+        kinetic = std::max(kinetic, report.energy.kinetic);
+      }
+      EXPECT_EQ(failed, 0) << far;
+      if (mode == IntegrationMode::energy_keeping)
+        EXPECT_NEAR(system.energy().total(), start, 1e-4 * kinetic + 1e-15 * std::abs(start)) << far;
+      ends.push_back(row.end(system) - Vec3{far, -far, 0});
+    }
+    EXPECT_LT(norm(ends[1] - ends[0]), 1e-6);
+    EXPECT_LT(norm(ends[2] - ends[0]), 1e-3);
+  }
+}
+
+TEST(Conflict, is_shared_by_all_links_of_a_chain_of_any_length) {
+  for (const int links : {2, 20, 50, 100, 400}) {
+    System system;
+    const double length = 1.0 / links;
+    const Row row(system, links, {0, 2, 0}, length, [&](int) { return 1.0 / links; });
+    system.particles().nail(row.lower.back(), {1.5, 2, 0});
+    int unconverged = 0;
+    for (int step = 0; step < 20; ++step) unconverged += system.step(1.0 / 60).unconverged;
+    const auto [longest, shortest] = row.extremes(system, length);
+    EXPECT_LT(longest, 2) << links << " links, half as long again";
+    EXPECT_GT(shortest, 1.1) << links << " links";
+    EXPECT_EQ(unconverged, 20) << "reported, step by step";
+  }
+}
+
+}  // namespace
+}  // namespace iota
