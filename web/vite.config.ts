@@ -1,10 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 import { defineConfig } from "vitest/config";
+
+/** Puts compressed copies beside the files, which the server sends to browsers that take them. */
+function compressed() {
+  let folder = "";
+  return {
+    name: "compressed",
+    apply: "build" as const,
+    configResolved: ({ root, build }: { root: string; build: { outDir: string } }) => {
+      folder = path.resolve(root, build.outDir);
+    },
+    closeBundle: () => {
+      for (const file of readdirSync(folder, { recursive: true, encoding: "utf8" })) {
+        if (!/\.(js|css|html|svg|txt)$/.test(file)) continue;
+        const bytes = readFileSync(path.join(folder, file));
+        const quality = { params: { [constants.BROTLI_PARAM_QUALITY]: 11, [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } };
+        for (const [ending, copy] of [[".br", brotliCompressSync(bytes, quality)], [".gz", gzipSync(bytes, { level: 9 })]] as const) {
+          if (copy.length < 0.9 * bytes.length) writeFileSync(path.join(folder, file + ending), copy);
+        }
+      }
+    },
+  };
+}
 
 // base "./": the page is served from any folder of the Python package.
 // No inlined assets: the server sends a content security policy without data: or inline sources.
 export default defineConfig({
   base: "./",
+  plugins: [compressed()],
   build: {
     outDir: "dist",
     emptyOutDir: true,

@@ -360,13 +360,17 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   }
 
   void send_file(const std::string& path) {
-    const auto file = find_static_file(context_.options.page_folder, path);
+    const auto file = find_static_file(context_.options.page_folder, path,
+                                       to_view(parser_->get()[http::field::accept_encoding]));
     if (!file) {
       return send_text(http::status::not_found,
                        path == "/" ? "the page has not been built: there is no index.html" : "there is no such file");
     }
     Response response = make_response(http::status::ok);
     response.set(http::field::etag, file->etag);
+    response.set(http::field::vary, "Accept-Encoding");
+    if (!file->encoding.empty())
+      response.set(http::field::content_encoding, beast::string_view(file->encoding.data(), file->encoding.size()));
     response.set(http::field::cache_control,
                  beast::string_view(file->cache_control.data(), file->cache_control.size()));
     if (parser_->get()[http::field::if_none_match] == file->etag) {

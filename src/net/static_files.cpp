@@ -58,9 +58,36 @@ bool is_inside(const fs::path& folder, const fs::path& file) {
   return end == folder.end();
 }
 
+/// Whether an Accept-Encoding header names a coding, and not with the weight zero.
+bool accepts(std::string_view header, std::string_view coding) {
+  while (!header.empty()) {
+    const std::size_t end = std::min(header.find(','), header.size());
+    std::string_view item = header.substr(0, end);
+    header.remove_prefix(std::min(end + 1, header.size()));
+    const auto trim = [](std::string_view& text) {
+      while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+      while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+    };
+    const std::size_t semicolon = std::min(item.find(';'), item.size());
+    std::string_view weight = item.substr(semicolon);
+    item = item.substr(0, semicolon);
+    trim(item);
+    if (item != coding) continue;
+    const std::size_t equals = weight.find('=');
+    if (equals == std::string_view::npos) return true;
+    weight.remove_prefix(equals + 1);
+    trim(weight);
+    return weight.find_first_not_of("0.") != std::string_view::npos;
+  }
+  return false;
+}
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 2> codings{{{"br", ".br"}, {"gzip", ".gz"}}};
+
 }  // namespace
 
-std::optional<StaticFile> find_static_file(const fs::path& folder, std::string_view path) {
+std::optional<StaticFile> find_static_file(const fs::path& folder, std::string_view path,
+                                           std::string_view accepted) {
   if (!is_plain(path)) return std::nullopt;
   const std::string_view name = path == "/" ? "index.html" : path.substr(1);
   std::error_code error;
@@ -69,12 +96,20 @@ std::optional<StaticFile> find_static_file(const fs::path& folder, std::string_v
   StaticFile file;
   file.path = fs::canonical(root / fs::path(name), error);  // follows links, so that a link to outside is seen
   if (error || !is_inside(root, file.path) || !fs::is_regular_file(file.path, error)) return std::nullopt;
+  file.mime_type = mime_type_of(file.path);
+  for (const auto& [coding, ending] : codings) {
+    if (!accepts(accepted, coding)) continue;
+    const fs::path copy = fs::canonical(fs::path(file.path).concat(ending), error);
+    if (error || !is_inside(root, copy) || !fs::is_regular_file(copy, error)) continue;
+    file.path = copy;
+    file.encoding = coding;
+    break;
+  }
   const auto size = fs::file_size(file.path, error);
   if (error) return std::nullopt;
   const auto changed = fs::last_write_time(file.path, error).time_since_epoch().count();
   if (error) return std::nullopt;
   file.etag = '"' + std::to_string(size) + '-' + std::to_string(changed) + '"';
-  file.mime_type = mime_type_of(file.path);
   // The page's build puts a hash of the contents into the names below assets/.
   file.cache_control = path.rfind("/assets/", 0) == 0 ? "public, max-age=31536000, immutable" : "no-cache";
   return file;

@@ -107,6 +107,26 @@ TEST(StaticFiles, change_their_tag_when_they_change) {
   EXPECT_NE(find_static_file(folder.path(), "/")->etag, before);
 }
 
+TEST(StaticFiles, a_compressed_copy_is_found_for_who_takes_it) {
+  const TemporaryFolder folder;
+  folder.write("index.html", "<p>hello hello hello</p>");
+  folder.write("index.html.gz", "gz");
+  folder.write("index.html.br", "br!");
+  const auto encoding = [&](std::string_view accepted) {
+    return std::string(find_static_file(folder.path(), "/", accepted)->encoding);
+  };
+  EXPECT_EQ(encoding(""), "");
+  EXPECT_EQ(encoding("identity, x-gzip"), "");
+  EXPECT_EQ(encoding("gzip, deflate"), "gzip");
+  EXPECT_EQ(encoding("gzip, deflate, br"), "br");
+  EXPECT_EQ(encoding("br;q=0, gzip;q=0.5"), "gzip");
+  EXPECT_EQ(encoding("gzip; q=0.0"), "");
+  const auto copy = find_static_file(folder.path(), "/", "br");
+  EXPECT_EQ(copy->mime_type, "text/html; charset=utf-8");
+  EXPECT_EQ(read_static_file(*copy), "br!");
+  EXPECT_NE(copy->etag, find_static_file(folder.path(), "/")->etag);
+}
+
 TEST(StaticFiles, outside_of_the_folder_are_not_found) {
   const TemporaryFolder folder;
   folder.write("secret.txt", "x");
