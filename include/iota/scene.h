@@ -31,6 +31,13 @@ struct DrawnLine {
   double length = 0;
 };
 
+/// A particle of a body of several, with a radius.
+struct DrawnBall {
+  Vec3 center;
+  double radius = 0;
+  Color color;
+};
+
 struct DrawnBody {
   BodyId id;
   bool is_new = true;  ///< created since the last call: no body that was known in its slot
@@ -40,6 +47,7 @@ struct DrawnBody {
   std::vector<DrawnLine> lines;
   std::uint32_t particles = 0;
   std::optional<ParticleAttributes> attributes;  ///< of a single particle that has some
+  std::vector<DrawnBall> balls;                  ///< of particles that have a radius, if there are several
 };
 
 /// Which articulate a body belongs to.

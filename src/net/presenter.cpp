@@ -79,6 +79,18 @@ Vec3 rotated(const Quaternion& q, const Vec3& v) {
   return v + q.w * t + cross(u, t);
 }
 
+/// Radius and color in steps, so that many share a style.
+protocol::Part ball(double radius, const Color& color) {
+  const double step = std::pow(10, std::floor(std::log10(radius)));
+  protocol::Part part = make_part(every_look, to_wire(Sphere{std::round(radius / step) * step}), "paint");
+  part.color = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double share = std::round(std::clamp<double>(color[i], 0, 1) * 7);
+    part.color = part.color << 8 | static_cast<std::uint32_t>(share * 255 / 7);
+  }
+  return part;
+}
+
 std::pair<Vec3, Box> box_around(const Mesh& mesh) {
   Vec3 low = mesh.vertices.front(), high = low;
   for (const Vec3& v : mesh.vertices) {
@@ -258,10 +270,10 @@ std::uint32_t Presenter::style_of(const DrawnBody& body, const Assignment* assig
   if (!body.solids.empty() && (!assignment || body.solids.size() > 1 || (own && own->is_solid)))
     return use_style("(solid)", parts_of_solids(body, own));
   if (assignment && !own) return protocol::no_style;
-  if (own && (body.particles <= 2 || !body.solids.empty()))
+  if (own && ((body.particles <= 2 && body.balls.empty()) || !body.solids.empty()))
     return own->is_solid ? protocol::no_style : use_style(assignment->name, own->parts);
   if (body.particles == 1) return use_style("(particle)", {part_of_particle(body)});
-  if (body.particles == 2)
+  if (body.particles == 2 && body.balls.empty())
     return use_style("(rod)", {make_part(every_look, to_wire(Capsule{thickness_, of_body}), "steel")});
   return use_style("(body)", parts_along_lines(body, own));
 }
@@ -318,26 +330,21 @@ std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, 
       part.offset = rounded(line.center);
       part.rotation = to_wire(line.turn);
     }
+    for (const DrawnBall& drawn : body.balls) {
+      protocol::Part& part = parts.emplace_back(ball(drawn.radius, drawn.color));
+      part.look = look;
+      part.offset = rounded(drawn.center);
+    }
     if (parts.size() == before) add(to_wire(Sphere{radius}));
   }
   return parts;
 }
 
-/// A ball; one with attributes has its radius and color, in steps, so that many share a style.
+/// A ball; one with attributes has its radius and color.
 protocol::Part Presenter::part_of_particle(const DrawnBody& body) const {
   if (!body.attributes) return make_part(every_look, to_wire(Sphere{2 * thickness_}), "brass");
-  double radius = 2 * thickness_;
-  if (body.attributes->radius > 0) {
-    const double step = std::pow(10, std::floor(std::log10(body.attributes->radius)));
-    radius = std::round(body.attributes->radius / step) * step;
-  }
-  protocol::Part part = make_part(every_look, to_wire(Sphere{radius}), "paint");
-  part.color = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double share = std::round(std::clamp<double>(body.attributes->color[i], 0, 1) * 7);
-    part.color = part.color << 8 | static_cast<std::uint32_t>(share * 255 / 7);
-  }
-  return part;
+  const double radius = body.attributes->radius > 0 ? body.attributes->radius : 2 * thickness_;
+  return ball(radius, body.attributes->color);
 }
 
 std::uint32_t Presenter::use_tie_style(std::size_t kind) {

@@ -29,6 +29,15 @@ bool is_drawn(const model::Structure& model, std::uint32_t body) {
   return b.count > 0 && !model.is_spark(b.first);
 }
 
+void add_balls(Core& core, const ingredient::SceneView& view, std::uint32_t slot, DrawnBody& drawn) {
+  core.model.for_each_particle_of(slot, [&](std::uint32_t p) {
+    const ParticleId id = core.model.particles.id(p);
+    if (!Particles(core).has_attributes(id)) return;
+    const ParticleAttributes look = Particles(core).attributes(id);
+    if (look.radius > 0) drawn.balls.push_back({view.point_in(slot, core.model.position(p)), look.radius, look.color});
+  });
+}
+
 void describe_body(Core& core, const ingredient::SceneView& view, std::uint32_t slot, SceneChanges& changes) {
   const model::Model& model = core.model;
   if (!is_drawn(model, slot)) return changes.bodies.gone.push_back(slot);
@@ -46,6 +55,7 @@ void describe_body(Core& core, const ingredient::SceneView& view, std::uint32_t 
     const ParticleId only = model.particles.id(body.first);
     if (Particles(core).has_attributes(only)) drawn.attributes = Particles(core).attributes(only);
   }
+  if (body.count > 1) add_balls(core, view, slot, drawn);
   ingredient::for_each_type<ingredient::Ingredients>([&]<class I>() { I::draw(view, slot, drawn); });
 }
 

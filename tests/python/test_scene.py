@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import pytest
 from shown import show
@@ -58,6 +59,30 @@ def test_a_body_is_drawn_along_its_cosmetic_bonds(system: iota.System) -> None:
     system.cosmetic_bond(a, c)
     with show(system) as shown:
         assert [part["shape"]["sizes"][1] for part in shown.parts(body)] == pytest.approx([1, 1])
+
+
+def test_particles_with_a_radius_are_drawn_as_balls_on_their_body_and_go_with_its_pieces(system: iota.System) -> None:
+    body = system.body()
+    points = [body.particle((x, 1, 0)) for x in (0, 1, 2)]
+    lines = [system.cosmetic_bond(p, q) for p, q in pairwise(points)]
+    for point in points[1:]:
+        point.radius, point.color = 0.2, (1, 0, 0)
+    with show(system) as shown:
+        balls = [part for part in shown.parts(body) if part["shape"]["kind"] == "sphere"]
+        assert [ball["shape"]["sizes"][0] for ball in balls] == pytest.approx([0.2, 0.2])
+        assert {ball["color"] for ball in balls} == {0xFF0000}
+        assert sorted(round(abs(ball["offset"][0]), 6) for ball in balls) == [0, 1]  # the middle one, and an outer one
+        lines[1].destroy()
+        shown.look()
+        kinds = [[part["shape"]["kind"] for part in shown.parts(piece)] for piece in system.bodies]
+        assert sorted(map(sorted, kinds)) == [["capsule", "sphere"], ["sphere"]]
+        points[2].radius = 0.5
+        shown.look()
+        (ball,) = shown.parts(points[2].body)
+        assert ball["shape"]["sizes"] == [0.5]
+        points[1].radius = 0.1
+        shown.look()
+        assert shown.parts(points[1].body)[-1]["shape"]["sizes"] == pytest.approx([0.1])
 
 
 def test_an_edit_tells_only_what_it_touches(system: iota.System) -> None:
