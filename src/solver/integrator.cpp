@@ -455,6 +455,9 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
   care_ = care;
   conservative_ = std::get<ForcePool<GripForce>>(problem.forces).items.empty();
   for (const Vec3& f : problem.force) conservative_ = conservative_ && f == Vec3{};
+  // The push of a law has no energy: what it gives a body is work, not a gain.
+  for (const auto& f : std::get<ForcePool<RadialForce>>(problem.forces).items)
+    conservative_ = conservative_ && !f.law->has_push();
   problem.for_each_constraint_pool([&](const auto& pool) {
     for (const auto& c : pool.items) conservative_ = conservative_ && !c.is_moving();
     for (const RowLaw& law : pool.laws) conservative_ = conservative_ && (law.rate == 0 || law.is_off());

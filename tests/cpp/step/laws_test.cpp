@@ -377,5 +377,19 @@ TEST(Bonds, break_beyond_their_force_and_are_mended) {
   EXPECT_THROW(system.bonds().set_break_force(bond, std::nan("")), std::invalid_argument);
 }
 
+TEST(Law, without_an_energy_pushes_as_much_in_every_mode) {
+  for (const auto mode : {IntegrationMode::plausible, IntegrationMode::robust, IntegrationMode::energy_keeping,
+                          IntegrationMode::accurate}) {
+    System system({.gravity = {}, .mode = mode});
+    const ParticleId a = system.particles().create(system.bodies().create(), {0, 0, 0});
+    const ParticleId b = system.particles().create(system.bodies().create(), {1, 0, 0});
+    system.particles().nail(a);
+    system.bonds().create(a, b, SharedLaw{system.laws().create(std::string("force = 2"))});
+    for (int i = 0; i < 60; ++i) (void)system.step(1.0 / 60);
+    EXPECT_NEAR(system.particles().velocity(b).x, 2, 1e-9) << "1 kg, 1 s";
+    EXPECT_NEAR(system.energy().external_work, 2, 0.05);
+  }
+}
+
 }  // namespace
 }  // namespace iota
