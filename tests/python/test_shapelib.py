@@ -209,7 +209,7 @@ def test_a_flexible_molecule_turns_about_its_bonds_and_keeps_all_lengths_and_ang
     for p, q in [*map(tuple, bonds), *angles]:
         assert np.linalg.norm(after[p] - after[q]) == pytest.approx(np.linalg.norm(before[p] - before[q]), abs=1e-7)
     first, last = np.linalg.norm(before[0] - before[3]), np.linalg.norm(after[0] - after[3])
-    assert abs(first - last) > 1e-3  # the ends of the chain come nearer as it turns
+    assert abs(first - last) > 1e-4  # the ends of the chain come nearer as it turns
 
 
 def test_amides_and_rings_do_not_turn() -> None:
