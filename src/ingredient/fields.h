@@ -37,7 +37,8 @@ class Fields : public NoAnswers {
     template <class Archive>
     void archive(Archive& ar, const Structure&) {
       fields.archive(ar);
-      if constexpr (std::is_same_v<Archive, Reader>) compile();
+      if constexpr (std::is_same_v<Archive, Reader>)
+        if (ar.ok()) compile();
     }
 
     std::uint32_t make_field(const Field&);  ///< throws expression::ExpressionError for a text that is no field

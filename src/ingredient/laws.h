@@ -48,7 +48,8 @@ class Laws : public NoAnswers {
     template <class Archive>
     void archive(Archive& ar, const Structure&) {
       laws.archive(ar);
-      if constexpr (std::is_same_v<Archive, Reader>) compile();
+      if constexpr (std::is_same_v<Archive, Reader>)
+        if (ar.ok()) compile();
     }
 
     std::uint32_t make_law(const Law&);  ///< throws expression::ExpressionError for a text that is no law

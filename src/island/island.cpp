@@ -204,7 +204,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     given += problem_.kinetic_energy();
   }
   report.external_work += given;
-  if (!std::isfinite(report.dissipated + report.external_work)) {
+  if (!std::isfinite(report.dissipated + report.external_work) || !has_finite_motion()) {
     // Forces beyond all reason (1e300 N) drive numbers beyond what a double holds. Nothing has gone to the model yet: the
     // points stay where they are, at rest, and the report says that the step was given up.
     memory.standing_gap = 0;
@@ -226,6 +226,13 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
   return report;
 }
 
+bool Island::has_finite_motion() const {
+  double sum = 0;  // zero times infinity is no number
+  for (const Vec3& x : problem_.position) sum += 0 * x.x + 0 * x.y + 0 * x.z;
+  for (const Vec3& v : problem_.velocity) sum += 0 * v.x + 0 * v.y + 0 * v.z;
+  return sum == 0;
+}
+
 bool Island::project(Model& model, bool positions) {
   if (!nodes_.bodies.empty()) articulate(model).standing_gap = 0;  // try again
   load(model, 0);
@@ -235,6 +242,11 @@ bool Island::project(Model& model, bool positions) {
   } else {
     met = !positions || integrator_.project_positions(problem_);
     integrator_.project_velocities(problem_);
+    if (!has_finite_motion()) {  // as in a step: nothing has gone to the model yet
+      load(model, 0);
+      std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
+      positions = met = false;
+    }
   }
   store_projection(model, positions && !idle_);
   return met;

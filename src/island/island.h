@@ -71,6 +71,7 @@ class Island {
   }
 
   Vec3 choose_origin(const model::Model&) const;
+  bool has_finite_motion() const;
   std::vector<std::uint32_t> find_changed_nodes(const model::Model&, const model::Model::LocalChange&,
                                                 std::vector<std::uint32_t>& node_of_ring);
   void remove_nodes(std::vector<std::uint32_t>);

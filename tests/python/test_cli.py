@@ -192,8 +192,8 @@ def test_run_serves_prints_the_address_and_keys_and_stops_by_itself() -> None:
     assert done.returncode == 0 and all("slow motion" in line for line in done.stderr.splitlines())
     lines = done.stdout.splitlines()
     assert re.fullmatch(r"chain: http://127\.0\.0\.1:\d+/\?token=[0-9a-f]{32}", lines[0])
-    assert [line.split()[0] for line in lines[1:3]] == ["b", "c"]
-    assert 1 <= json.loads(lines[3])["steps"] <= 125 and len(lines) == 4
+    assert [line.split()[0] for line in lines[1:4]] == ["b", "c", "t"]
+    assert 1 <= json.loads(lines[4])["steps"] <= 125 and len(lines) == 5
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full")
