@@ -26,8 +26,8 @@ def test_the_list_of_the_pages_keys_is_that_of_the_page() -> None:
 def test_a_key_that_is_taken_from_the_page_is_told_at_the_start(capsys: pytest.CaptureFixture[str]) -> None:
     world = iota.World(iota.System())
     world.action("mend", key="r", help="mends", on="world")(lambda: None)
-    world.action("push", key="p", help="pushes", on="world")(lambda: None)
+    world.action("push", key="k", help="pushes", on="world")(lambda: None)
     world._announce(False)
     lines = capsys.readouterr().out.splitlines()
     assert "  r  mends  (instead of the page's: reset)" in lines
-    assert "  p  pushes" in lines
+    assert "  k  pushes" in lines

@@ -256,7 +256,7 @@ describe("leaving and coming back", () => {
     await me.tab.page.evaluate(() => iotaXR!.leave());
     await me.tab.until("the session is over", () => !iotaXR!.presenting);
     await me.tab.until("the canvas lies under the bar again", () => document.getElementById("view")?.parentElement === document.body
-      && document.getElementById("view")?.nextElementSibling?.id === "cards" && iota.page.viewer.camera.aspect > 1.5);
+      && !!(document.getElementById("view")!.compareDocumentPosition(document.getElementById("cards")!) & Node.DOCUMENT_POSITION_FOLLOWING) && iota.page.viewer.camera.aspect > 1.5);
     const flat = await me.tab.page.evaluate(() => ({
       rig: iotaXR!.rig(), pointers: iota.page.gestures.pointers.map((pointer) => pointer.name),
       size: [iota.page.viewer.renderer.domElement.clientWidth, iota.page.viewer.renderer.domElement.clientHeight],
