@@ -232,8 +232,8 @@ void bind_room(nb::module_& module) {
             if (nb::try_cast(system, object) && object) object->use().viewer().stop_watching_scene();
           },
           "system"_a, "Tells its pages that the world has ended; changes of its system are noted no more.")
-      .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a,
-           "camera"_a.none(), "ground"_a.none())
+      .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a, "camera"_a.none(),
+           "ground"_a.none())
       .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a)
       .def("set_actions", &set_actions, "actions"_a,
            "Tuples of name, key, label, help, whether it is on a body, and button.")

@@ -104,7 +104,8 @@ void Island::store_step(Model& model, double h) const {
     r.acceleration = (1 / h) * (velocity - r.velocity);
     r.position = position, r.velocity = velocity;
   };
-  for (std::size_t i = 0; i < nodes_.size(); ++i) put(nodes_.rings[i], problem_.origin + problem_.position[i], problem_.velocity[i]);
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    put(nodes_.rings[i], problem_.origin + problem_.position[i], problem_.velocity[i]);
   for (const std::uint32_t p : nodes_.carried) {
     const auto [position, velocity] = model.carried(p);
     put(model.particles[p].ring, position, velocity);

@@ -360,8 +360,8 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   }
 
   void send_file(const std::string& path) {
-    const auto file = find_static_file(context_.options.page_folder, path,
-                                       to_view(parser_->get()[http::field::accept_encoding]));
+    const auto file =
+        find_static_file(context_.options.page_folder, path, to_view(parser_->get()[http::field::accept_encoding]));
     if (!file) {
       return send_text(http::status::not_found,
                        path == "/" ? "the page has not been built: there is no index.html" : "there is no such file");

@@ -55,7 +55,7 @@ class PoseQuantizer {
   std::optional<Bounds> box_;
   std::uint32_t box_version_ = 0;
   double widest_ = 0;  ///< longest edge of all bulks so far, m
-  double limit_ = 0;  ///< longest edge that the bodies in the box may span, m
+  double limit_ = 0;   ///< longest edge that the bodies in the box may span, m
   std::vector<float> sorted_;
 };
 

@@ -190,7 +190,8 @@ EntityChanges Presenter::present(const SceneChanges& changes) {
                                        anchored(tie.a),
                                        anchored(tie.b)});
   for (const DrawnJoint& joint : changes.joints.set)
-    tell(joint.slot, protocol::JointEntity{{}, joint.kind, anchored(joint.a), anchored(joint.b), unit_axis(joint.axis)});
+    tell(joint.slot,
+         protocol::JointEntity{{}, joint.kind, anchored(joint.a), anchored(joint.b), unit_axis(joint.axis)});
   for (const DrawnNail& nail : changes.nails.set) tell(nail.slot, protocol::NailEntity{{}, anchored(nail.at)});
   for (const DrawnParticleSet& set : changes.particle_sets.set)
     tell(set.slot, protocol::ParticleSetEntity{{}, set.active, set.capacity});

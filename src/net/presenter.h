@@ -100,7 +100,7 @@ class Presenter {
   std::vector<protocol::Part> statics_;
   bool needs_all_ = true, statics_changed_ = false;
   double quantum_ = 1e-6;  ///< finer than a page shows, m
-  double thickness_ = 0;  ///< radius that suits rods of this system, m; 0: not known yet
+  double thickness_ = 0;   ///< radius that suits rods of this system, m; 0: not known yet
 
   std::array<std::vector<Told>, entity_kind_count> told_;  ///< by slot
   std::vector<DrawnAs> bodies_;                            ///< by slot

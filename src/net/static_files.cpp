@@ -86,8 +86,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 2> codings{{
 
 }  // namespace
 
-std::optional<StaticFile> find_static_file(const fs::path& folder, std::string_view path,
-                                           std::string_view accepted) {
+std::optional<StaticFile> find_static_file(const fs::path& folder, std::string_view path, std::string_view accepted) {
   if (!is_plain(path)) return std::nullopt;
   const std::string_view name = path == "/" ? "index.html" : path.substr(1);
   std::error_code error;

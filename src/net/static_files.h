@@ -14,7 +14,7 @@ struct StaticFile {
   std::string_view mime_type;
   std::string_view cache_control;
   std::string_view encoding;  ///< "br" or "gzip" where the build's compressed copy is meant, else empty
-  std::string etag;  ///< from size and time of change
+  std::string etag;           ///< from size and time of change
 };
 
 /// The file under `folder` that the unescaped `path` of a request means ("/" is index.html). Nothing when there is no

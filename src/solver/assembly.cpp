@@ -64,7 +64,8 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
   double worst_force = 0, mass_there = 1, lightest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const double* const r = unknowns_.data() + node_unknown_[i];
-    const double mass = has_extreme_masses() ? resistance_[i] : problem.mass[i], size = largest_component({r[0], r[1], r[2]});
+    const double mass = has_extreme_masses() ? resistance_[i] : problem.mass[i],
+                 size = largest_component({r[0], r[1], r[2]});
     if (!(size * mass_there <= worst_force * mass)) worst_force = size, mass_there = mass;  // by the mass, undivided
     lightest = std::min(lightest, mass);
   }
@@ -122,7 +123,8 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
         if (state.side != 0)
           value = gap = 0;
         else
-          value = equation.value - (equation.softness + compliances[r] * row_compliance_ * stage.compliance / stage.inertia) * lambda[r];
+          value = equation.value -
+                  (equation.softness + compliances[r] * row_compliance_ * stage.compliance / stage.inertia) * lambda[r];
         if (equation.softness > 0) gap = 0;
         if (pool.law(k)[r].hold && state.side == 0) gap = equation.value;
       } else {

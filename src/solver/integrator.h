@@ -17,8 +17,8 @@ struct Care {
   double max_turn = 1.1, max_turn_cosine = 0.4536;  ///< rad: a mid-point (sub-)step that turns a link further is halved
   int max_depth = 6;                                ///< sub-steps down to a 64th: a whip needs them, for a few steps
   int patience = 400;                               ///< Newton iterations after which sub-steps are no longer halved
-  int max_iterations = 0;                           ///< of all solves of a step, but for the last resort's; 0: unlimited
-  double max_error = 0;  ///< estimated, of mid-point (sub-)steps, in link lengths per second; 0: not asked
+  int max_iterations = 0;  ///< of all solves of a step, but for the last resort's; 0: unlimited
+  double max_error = 0;    ///< estimated, of mid-point (sub-)steps, in link lengths per second; 0: not asked
 
   static Care plausible() { return {.scheme = Scheme::end_point, .tolerance = 100, .max_depth = 4}; }
   static Care robust() { return {.scheme = Scheme::end_point}; }

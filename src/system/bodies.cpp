@@ -36,9 +36,7 @@ std::string Bodies::name(BodyId id) const {
   return core_.model.names[body].data();
 }
 
-void Bodies::set_name(BodyId body, std::string_view name) {
-  core_.execute(edit::SetBodyName{body, std::string(name)});
-}
+void Bodies::set_name(BodyId body, std::string_view name) { core_.execute(edit::SetBodyName{body, std::string(name)}); }
 
 void Bodies::set_mass(BodyId body, double kg) { core_.execute(edit::SetBodyMass{body, kg}); }
 

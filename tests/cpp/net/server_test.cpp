@@ -600,7 +600,8 @@ TEST_F(ServerTest, entities_come_before_the_poses_that_were_published_with_them)
       if (poses == nullptr || poses->step < 2 * round) continue;
       EXPECT_EQ(generation, round);
       // A single body travels as floats: it tells nothing of the size of a box.
-      EXPECT_EQ(poses->bodies.size() + poses->far_bodies.size(), 1U) << "the pose of another body is new, wherever it is";
+      EXPECT_EQ(poses->bodies.size() + poses->far_bodies.size(), 1U)
+          << "the pose of another body is new, wherever it is";
       break;
     }
   }
