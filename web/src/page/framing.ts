@@ -6,6 +6,7 @@ import { MathUtils } from "three";
 import { fitView, shareOutside, type FittedView, type Frame } from "../navigate/framing.ts";
 import type { Navigation } from "../navigate/navigation.ts";
 import { Points, type Bounds } from "../scene/points.ts";
+import type { EntityView } from "../scene/entities/entity.ts";
 import type { World } from "../world/world.ts";
 import type { PageListener } from "./events.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
@@ -199,8 +200,7 @@ export class Framing implements FramePart, PageListener {
     entities.body.addPoints(points, true, every);
     if (points.count === 0) entities.particleSet.addPoints(points);
     if (points.count === 0) entities.body.addPoints(points, false, every);
-    if (points.count === 0) entities.pointCloud.addPoints(points);
-    if (points.count === 0) entities.line.addPoints(points);
+    if (points.count === 0) this.addDrawn_(points);
     let bounds = points.bounds();
     if (bounds === null) return null;
     const most = settingSize * Math.max(bounds.radius, 1e-12);
@@ -215,8 +215,7 @@ export class Framing implements FramePart, PageListener {
     entities.body.addPoints(setting, false, every);
     take(setting);
     setting.clear();
-    entities.pointCloud.addPoints(setting);
-    entities.line.addPoints(setting);
+    this.addDrawn_(setting);
     take(setting);
     entities.staticShape.forEachCorners(setting, take);
     bounds = points.bounds()!;
@@ -226,6 +225,11 @@ export class Framing implements FramePart, PageListener {
       bounds = points.bounds()!;
     }
     return bounds;
+  }
+
+  /** Adds what the script draws beside bodies. */
+  private addDrawn_(points: Points): void {
+    for (const view of Object.values<EntityView<never>>(this.world_.entities)) view.addPlaces?.(points);
   }
 }
 

@@ -6,13 +6,24 @@ import type { Viewer } from "./viewer.ts";
 
 const partBytes = 60_000;
 
-/** A PNG of the world as it is drawn now, without the controls; null where the browser can make none. */
-export async function takePicture({ renderer, scene, camera }: Pick<Viewer, "renderer" | "scene" | "camera">): Promise<Blob | null> {
-  // What was drawn before is gone once the browser has shown it.
-  renderer.render(scene, camera);
-  return new Promise((resolve) => {
+/**
+ * A PNG of the world as it is drawn now, without the controls, as sharp as the screen where the page draws more coarsely to keep up; null
+ * where the browser can make none.
+ */
+export async function takePicture({ renderer, scene, camera, presenting }: Viewer): Promise<Blob | null> {
+  const usual = renderer.getPixelRatio();
+  const draw = (pixelRatio: number) => {
+    if (!presenting && renderer.getPixelRatio() !== pixelRatio) renderer.setPixelRatio(pixelRatio);
+    // What was drawn before is gone once the browser has shown it.
+    renderer.render(scene, camera);
+  };
+  draw(Math.max(usual, Math.min(devicePixelRatio, 2)));
+  const picture = new Promise<Blob | null>((resolve) => {
     renderer.domElement.toBlob(resolve, "image/png");
   });
+  // The browser has copied the pixels when the call above is back.
+  draw(usual);
+  return picture;
 }
 
 /** Answers the server's request; an empty part where there is no picture. */

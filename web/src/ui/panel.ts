@@ -142,14 +142,15 @@ function makePress(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
 
 /** As few digits as tell it apart on the slider. */
 export function written(value: number, span: number): string {
-  const digits = span > 0 ? Math.min(Math.max(2 - Math.floor(Math.log10(span)), 0), 8) : 3;
+  const digits = span > 0 ? Math.min(Math.max(3 - Math.floor(Math.log10(span)), 0), 9) : 3;
   return String(Number(value.toFixed(digits)));
 }
 
 function makeSlider(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
   const input = make("input");
   input.type = "range";
-  const value = make("output");
+  // No <output>: that would be what the label names, in place of the slider.
+  const value = make("span", "value");
   let shown = widget;
   const write = (now: number) => {
     value.textContent = `${written(now, shown.maximum - shown.minimum)}${shown.unit === "" ? "" : ` ${shown.unit}`}`;

@@ -4,6 +4,7 @@
 import { Vector3 } from "three";
 import type { ArrowEntity } from "../../protocol/generated.ts";
 import { placeOf } from "../anchors.ts";
+import type { Points } from "../points.ts";
 import type { Strokes } from "../strokes.ts";
 import { onBody, Stroked } from "./stroked.ts";
 
@@ -26,6 +27,15 @@ export function addArrow(strokes: Strokes, from: Vector3, to: Vector3, radius: n
 export class ArrowView extends Stroked<ArrowEntity> {
   private readonly from_ = new Vector3();
   private readonly to_ = new Vector3();
+
+  /** Those of the world alone: what hangs on bodies, as forces do, shall not move the camera. */
+  addPlaces(points: Points): void {
+    for (const { a, b, vector } of this.records_.values()) {
+      if (onBody(a) || onBody(b)) continue;
+      points.add(...a.point);
+      points.add(b.point[0] + vector[0], b.point[1] + vector[1], b.point[2] + vector[2]);
+    }
+  }
 
   protected isAttached_({ a, b }: ArrowEntity): boolean {
     return onBody(a) || onBody(b);

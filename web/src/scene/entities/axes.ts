@@ -4,6 +4,7 @@
 import { Quaternion, Vector3 } from "three";
 import type { AxesEntity } from "../../protocol/generated.ts";
 import { placeOf, turnOf } from "../anchors.ts";
+import type { Points } from "../points.ts";
 import { addArrow } from "./arrow.ts";
 import { onBody, Stroked } from "./stroked.ts";
 
@@ -15,16 +16,30 @@ export class AxesView extends Stroked<AxesEntity> {
   private readonly turn_ = new Quaternion();
   private readonly own_ = new Quaternion();
 
+  /** Those of the world alone, as of arrows. */
+  addPlaces(points: Points): void {
+    for (const axes of this.records_.values()) {
+      if (onBody(axes.at)) continue;
+      points.add(...axes.at.point);
+      for (let axis = 0; axis < 3; axis++) if (this.aim_(axes, axis)) points.add(this.tip_.x, this.tip_.y, this.tip_.z);
+    }
+  }
+
   protected isAttached_({ at }: AxesEntity): boolean {
     return onBody(at);
   }
 
-  protected write_({ at, rotation, length }: AxesEntity): void {
-    if (!placeOf(this.poses_, at, this.origin_) || !turnOf(this.poses_, at.body, this.turn_)) return;
-    this.turn_.multiply(this.own_.set(...rotation).normalize());
+  protected write_(axes: AxesEntity): void {
     colors.forEach((color, axis) => {
-      this.tip_.set(0, 0, 0).setComponent(axis, length).applyQuaternion(this.turn_).add(this.origin_);
-      addArrow(this.strokes_, this.origin_, this.tip_, 0, color);
+      if (this.aim_(axes, axis)) addArrow(this.strokes_, this.origin_, this.tip_, 0, color);
     });
+  }
+
+  /** Works out where one of the arrows begins and ends; false where the body is not known yet. */
+  private aim_({ at, rotation, length }: AxesEntity, axis: number): boolean {
+    if (!placeOf(this.poses_, at, this.origin_) || !turnOf(this.poses_, at.body, this.turn_)) return false;
+    this.turn_.multiply(this.own_.set(...rotation).normalize());
+    this.tip_.set(0, 0, 0).setComponent(axis, length).applyQuaternion(this.turn_).add(this.origin_);
+    return true;
   }
 }

@@ -3,6 +3,7 @@
 
 import type { Object3D } from "three";
 import type { Id } from "../../protocol/generated.ts";
+import type { Points } from "../points.ts";
 
 /** Every record of the schema has an id. */
 export interface Entity {
@@ -24,6 +25,8 @@ export interface EntityView<Record extends Entity> {
   update?(seconds: number, now: number): void;
   /** Once a frame: writes what the renderer reads. */
   draw?(seconds: number): void;
+  /** Adds places of what it draws beside bodies, world, m: the camera frames them. */
+  addPlaces?(points: Points): void;
 }
 
 /** Keeps the records of a kind that is not drawn by itself. */

@@ -16,7 +16,7 @@ export class LineView extends Stroked<LineEntity> {
   private readonly first_ = new Vector3();
 
   /** Adds its points, world, m, to what the camera frames. */
-  addPoints(points: Points): void {
+  addPlaces(points: Points): void {
     for (const line of this.records_.values()) {
       const count = line.points.length / 3;
       for (let index = 0; index < count; index += Math.ceil(count / mostFramed)) {

@@ -7,6 +7,7 @@ import { turnOf } from "../anchors.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
 import { readPart } from "../parts.ts";
+import { addCorners, type Points } from "../points.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { makeGeometry } from "../shapes/shape.ts";
 import type { EntityView } from "./entity.ts";
@@ -75,6 +76,15 @@ export class MarkerView implements EntityView<MarkerEntity> {
     for (const marker of this.markers_.values()) if (marker.entity.body !== NO_BODY) this.placeNow_(marker);
     for (const pool of this.changed_) pool.upload();
     this.changed_.clear();
+  }
+
+  /** Corners of those in the world. */
+  addPlaces(points: Points): void {
+    for (const { entity: { body }, pool, index } of this.markers_.values()) {
+      if (body !== NO_BODY) continue;
+      pool.mesh.getMatrixAt(index, this.matrix_);
+      addCorners(points, pool.mesh.geometry, this.matrix_);
+    }
   }
 
   private placeNow_({ entity: { body, part: { offset, rotation } }, pool, index }: Marker): void {

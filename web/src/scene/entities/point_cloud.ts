@@ -57,7 +57,7 @@ export class PointCloudView implements EntityView<PointCloudEntity> {
   }
 
   /** Adds some of all points, world, m, to what the camera frames. */
-  addPoints(points: Points): void {
+  addPlaces(points: Points): void {
     for (const { entity: { at, points: own } } of this.clouds_.values()) {
       const every = Math.ceil(own.length / 3 / mostFramed);
       for (let index = 0; 3 * index < own.length; index += every) {

@@ -19,12 +19,24 @@ interface Trace {
   count: number;
 }
 
+/** Pieces for a bulge as high as they are long, and at most: a bulge of 0.2 % is left straight. */
+const straightEnough = 500;
+const mostPieces = 8;
+
+/** Index of the numbers of a point, counted from the oldest. */
+function at({ first, entity: { capacity } }: Trace, index: number): number {
+  return 4 * ((first + index) % capacity);
+}
+
 export class TraceView implements EntityView<TraceEntity> {
   private readonly strokes_ = new Strokes();
   private readonly poses_: PoseBuffer;
   private readonly time_: () => number;
   private readonly traces_ = new Map<number, Trace>();
   private readonly place_ = new Vector3();
+  private readonly next_ = new Vector3();
+  /** Of the piece that is drawn: way in its time at the velocity of its first end, and of its second, m. */
+  private readonly slopes_ = new Float64Array(6);
   private lastTime_ = 0;
   private changed_ = false;
 
@@ -99,11 +111,52 @@ export class TraceView implements EntityView<TraceEntity> {
     this.changed_ = true;
   }
 
-  private write_({ points, first, count, entity: { capacity, radius, color } }: Trace): void {
+  private write_(trace: Trace): void {
+    const { points, count, entity: { radius, color } } = trace;
+    const { place_: from, next_: to } = this;
     for (let index = 1; index < count; index++) {
-      const a = 4 * ((first + index - 1) % capacity);
-      const b = 4 * ((first + index) % capacity);
-      this.strokes_.add(points[a], points[a + 1], points[a + 2], points[b], points[b + 1], points[b + 2], radius, radius, color);
+      const a = at(trace, index - 1);
+      const b = at(trace, index);
+      from.fromArray(points, a);
+      const pieces = this.fitCurve_(trace, index, from);
+      for (let piece = 1; piece <= pieces; piece++) {
+        this.onCurve_(points, a, b, piece / pieces, to);
+        this.strokes_.add(from.x, from.y, from.z, to.x, to.y, to.z, radius, radius, color);
+        from.copy(to);
+      }
+    }
+  }
+
+  /**
+   * Works out the velocities at both ends of a piece, by the points around them, and returns how many straight lines show the curve
+   * between: a page that draws slowly sees few points of a path.
+   */
+  private fitCurve_(trace: Trace, index: number, start: Vector3): number {
+    const { points, count } = trace;
+    const a = at(trace, index - 1);
+    const b = at(trace, index);
+    const before = at(trace, Math.max(index - 2, 0));
+    const after = at(trace, Math.min(index + 1, count - 1));
+    const seconds = points[b + 3] - points[a + 3];
+    for (let axis = 0; axis < 3; axis++) {
+      this.slopes_[axis] = (seconds * (points[b + axis] - points[before + axis])) / Math.max(points[b + 3] - points[before + 3], 1e-12);
+      this.slopes_[3 + axis] = (seconds * (points[after + axis] - points[a + axis])) / Math.max(points[after + 3] - points[a + 3], 1e-12);
+    }
+    const length = Math.hypot(points[b] - start.x, points[b + 1] - start.y, points[b + 2] - start.z);
+    this.onCurve_(points, a, b, 0.5, this.next_);
+    const bulge = Math.hypot(
+      this.next_.x - (start.x + points[b]) / 2, this.next_.y - (start.y + points[b + 1]) / 2, this.next_.z - (start.z + points[b + 2]) / 2,
+    );
+    return Math.min(Math.ceil(Math.sqrt((straightEnough * bulge) / Math.max(length, 1e-12))) || 1, mostPieces);
+  }
+
+  /** A place between two points, 0 .. 1: a cubic with the velocities at its ends. */
+  private onCurve_(points: Float64Array, a: number, b: number, t: number, out: Vector3): void {
+    const [start, end] = [t * (1 - t) ** 2, t * t * (t - 1)];
+    const share = t * t * (3 - 2 * t);
+    for (let axis = 0; axis < 3; axis++) {
+      const value = points[a + axis] + share * (points[b + axis] - points[a + axis]) + start * this.slopes_[axis] + end * this.slopes_[3 + axis];
+      out.setComponent(axis, value);
     }
   }
 }

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// What scripts draw beside bodies, as pixels at the places where it has to be; the controls of the panel, clicks and keys, as the script
+// hears of them; pictures. build/artifacts/page_entities.png is for people to look at.
+
+import { readFileSync } from "node:fs";
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import { Browser, type Tab } from "./browser.ts";
+import { freePort, WorldServer } from "./server.ts";
+
+let server: WorldServer;
+let browser: Browser;
+let tab: Tab;
+
+beforeAll(async () => {
+  server = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
+  browser = await Browser.start({ width: 960, height: 540, density: 1 });
+  tab = await browser.open(server.url);
+  await tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+  await tab.until("there is a path", () => iota.page.world.entities.trace.countOf(0) > 12);
+  await tab.picture("page_entities");
+});
+
+afterAll(async () => {
+  await browser?.stop();
+  await server?.stop();
+});
+
+type Place = readonly [number, number, number];
+
+/**
+ * Color (0 .. 255) of the picture around a place of the world: the pixel within some px whose hue is nearest to what is wanted, once with
+ * the entities of that kind and once without.
+ */
+async function colorAt(kind: string, place: Place, wanted: Place): Promise<{ shown: number[]; hidden: number[] }> {
+  return tab.page.evaluate(([name, at, color]) => {
+    const { viewer, world } = iota.page;
+    const { renderer, camera } = viewer;
+    const gl = renderer.getContext();
+    const { root } = (world.entities as unknown as Record<string, { root: { visible: boolean } }>)[name];
+    const clip = viewer.camera.position.clone().set(...at).project(camera);
+    const reach = 4;
+    const x = Math.round(((clip.x + 1) / 2) * gl.drawingBufferWidth) - reach;
+    const y = Math.round(((clip.y + 1) / 2) * gl.drawingBufferHeight) - reach;
+    const side = 2 * reach + 1;
+    const pixels = new Uint8Array(4 * side * side);
+    const take = (): number[] => {
+      renderer.render(viewer.scene, camera);
+      gl.readPixels(x, y, side, side, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      let best: number[] = [];
+      let least = Infinity;
+      for (let index = 0; index < side * side; index++) {
+        const pixel = [...pixels.subarray(4 * index, 4 * index + 3)];
+        const [size, wantedSize] = [Math.hypot(...pixel) || 1, Math.hypot(...color)];
+        const apart = Math.hypot(...pixel.map((value, channel) => value / size - color[channel] / wantedSize));
+        if (apart < least) [best, least] = [pixel, apart];
+      }
+      return best;
+    };
+    const visible = root.visible;
+    const shown = take();
+    root.visible = false;
+    const hidden = take();
+    root.visible = visible;
+    return { shown, hidden };
+  }, [kind, place, wanted] as const);
+}
+
+/** How far two colors are apart in hue and saturation, whatever their brightness. */
+function apart(a: readonly number[], b: readonly number[]): number {
+  const [sizeA, sizeB] = [Math.hypot(...a) || 1, Math.hypot(...b) || 1];
+  return Math.hypot(...a.map((value, channel) => value / sizeA - b[channel] / sizeB));
+}
+
+describe("what a script draws", () => {
+  it.each<[string, string, Place, Place]>([
+    ["a thick line", "line", [-1.35, 0.58, 0], [208, 64, 43]],
+    ["a thin closed line", "line", [-1.4, 0.8, 0], [63, 127, 208]],
+    ["an arrow along a vector", "arrow", [-0.75, 0.5, 0], [47, 157, 146]],
+    ["a thick arrow", "arrow", [-0.72, 1.12, 0], [138, 79, 176]],
+    ["x of axes", "axes", [0.05, 0.3, 0], [208, 64, 43]],
+    ["y of axes", "axes", [-0.2, 0.6, 0], [76, 154, 82]],
+    ["z of axes", "axes", [-0.2, 0.3, 0.3], [63, 127, 208]],
+    ["the first of many points", "pointCloud", [0.5, 0.3, 0], [0, 102, 0]],
+    ["the last of many points", "pointCloud", [0.78, 0.72, 0], [255, 102, 255]],
+    ["a label of a height", "label", [0.65, 1.1, 0], [208, 64, 43]],
+    ["a box of wood", "marker", [1.1, 0.3, 0.12], [173, 127, 89]],
+    ["a green cone", "marker", [1.45, 0.75, 0.08], [76, 154, 82]],
+    ["a path", "trace", [-0.3, 0.2, 0.7], [242, 163, 36]],
+  ])("%s is where it belongs, in its color", async (_, kind, place, color) => {
+    const { shown, hidden } = await colorAt(kind, place, color);
+    expect(apart(shown, color), `${shown} in place of ${color}`).toBeLessThan(0.25);
+    expect(apart(hidden, color) - apart(shown, color), `${hidden} without it`).toBeGreaterThan(0.1);
+  });
+});
+
+describe("the script hears", () => {
+  const told = async (text: string) => {
+    await expect.poll(() => server.output, { timeout: 15_000, message: `"${text}" is told to the script` }).toContain(text);
+  };
+
+  it("of a slider, a check box, a choice, a text and a button, each by mouse or keyboard", async () => {
+    const panel = tab.page.locator("#panel");
+    await panel.getByLabel("gravity").focus();
+    await tab.page.keyboard.press("End");
+    await told('{"slider": 20.0}');
+    await panel.getByLabel("wind").click();
+    await told('{"checkbox": false}');
+    await panel.getByLabel("material").selectOption("glass");
+    await told('{"choice": "glass"}');
+    await panel.getByLabel("name").fill("Zoë");
+    await tab.page.keyboard.press("Enter");
+    await told('{"text": "Zo\\u00eb"}');
+    await panel.getByRole("button", { name: "throw" }).click();
+    await told('{"button": true}');
+    await panel.getByRole("img", { name: "Plot of wave" }).waitFor();
+  });
+
+  it("of clicks on a body and on nothing, and of its keys", async () => {
+    const [x, y] = await tab.place(0);
+    await tab.page.mouse.click(x, y);
+    await told('{"click": ');
+    // The front of the ball, 12 cm before its middle.
+    expect(/"click": \[(\S+), (\S+), (\S+)\]/.exec(server.output)!.slice(1).map(Number)[2]).toBeCloseTo(1.01, 1);
+    await tab.page.mouse.click(200, 80);
+    await told('{"missed": ');
+    await tab.page.keyboard.press("k");
+    await told('{"key": "k"}');
+  });
+
+  it("of a picture that it asks for, and a user takes one by a key", async () => {
+    await tab.page.keyboard.press("i");
+    // Whatever resolution the page draws at to keep up.
+    await told('{"screenshot": [960, 540]}');
+    await tab.page.evaluate(() => (document.activeElement as HTMLElement).blur());
+    const [file] = await Promise.all([tab.page.waitForEvent("download"), tab.page.keyboard.press("p")]);
+    expect(file.suggestedFilename()).toBe("entities.png");
+    const png = readFileSync(await file.path());
+    expect([png.toString("latin1", 1, 4), png.readUInt32BE(16), png.readUInt32BE(20)]).toEqual(["PNG", 960, 540]);
+    expect(tab.complaints).toEqual([]);
+  });
+});
