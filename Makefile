@@ -14,12 +14,14 @@ SUITES ?=
 BENCH ?=
 VERIFY ?=
 SOAK ?=
+# Which studies `make films` records; all when empty. `make films FILMS="chain cradle"`
+FILMS ?=
 
 iota = .venv/bin/iota
 cpp_presets = debug asan ubsan tsan coverage strict
 
 .DEFAULT_GOAL := help
-.PHONY: help build demo test bench verify soak check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
+.PHONY: help build demo films test bench verify soak check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
 
 help: ## what there is to make (this list)
 	@awk 'BEGIN { FS = ":.*## " } /^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -31,6 +33,10 @@ build: ## install what is missing, build engine, bindings and page; the command 
 demo: ## build, then serve the chain and print its address (PORT=8080, SECONDS= to stop by itself)
 	@$(PYTHON) tools/build.py build
 	@exec $(iota) run chain --port $(PORT) $(if $(SECONDS),--seconds $(SECONDS))
+
+films: ## build, then record every study: build/films, docs/pictures/studies (FILMS="chain cradle" for some)
+	@$(PYTHON) tools/build.py films
+	@.venv/bin/python tools/make_films.py $(FILMS)
 
 test: ## build, then run every test of every language (SUITES="cpp python" for some)
 	@$(PYTHON) tools/build.py test

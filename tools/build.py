@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds iota step by step: system packages, .venv with Node.js, page, engine, command line.
 
-    tools/build.py build | test | bench | verify | soak | wheel | lint
+    tools/build.py build | films | test | bench | verify | soak | wheel | lint
     tools/build.py cpp --preset asan
 
 Each step says in one line what it does and writes the rest to build/logs/STEP.log. A step whose inputs are unchanged
@@ -479,7 +479,7 @@ def steps_for(goal: str, preset: str) -> list[Step]:
             cmake_build(f"cpp-{preset}", title, preset, "iota_tests"),
         ]
     steps = [
-        system_packages("build", "test") if goal == "test" else system_packages("build"),
+        system_packages("build", "test") if goal in ("test", "films") else system_packages("build"),
         python_environment("build"),
         sundials(),
         page_packages(),
@@ -488,10 +488,12 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         command_line(),
     ]
     if goal == "test":
-        steps.insert(2, python_environment("test", "verify", "shapelib"))
+        steps.insert(2, python_environment("test", "verify", "shapelib", "film"))
         steps += [cmake_build("cpp-tests", "building the C++ tests", "release", "iota_tests"), wheel()]
     elif goal == "verify":
         steps.insert(2, python_environment("verify"))
+    elif goal == "films":
+        steps.insert(2, python_environment("film", "shapelib"))
     elif goal == "soak":
         steps.insert(2, python_environment("verify"))
         steps.append(cmake_build("soak", "building the long runs", "release", "iota_soak"))
@@ -536,7 +538,7 @@ def report_failure(step: Step, error: Exception, log: Path) -> None:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Builds iota step by step.")
-    parser.add_argument("goal", choices=["build", "test", "bench", "verify", "soak", "wheel", "lint", "cpp"])
+    parser.add_argument("goal", choices=["build", "films", "test", "bench", "verify", "soak", "wheel", "lint", "cpp"])
     parser.add_argument("--preset", default="debug", help="the CMake preset of the goal cpp")
     options = parser.parse_args()
     with only_one():

@@ -22,6 +22,16 @@ describe("the pose buffer", () => {
     expect(buffer.position[3]).toBeCloseTo(7, 1);
   });
 
+  it("draws all at their newest poses for a film, whenever they came", () => {
+    const buffer = new PoseBuffer();
+    buffer.exact = true;
+    for (let step = 0; step < 5; step++) {
+      buffer.push(frame(step, [body(0, step)]), 1000 + step * step * 33);
+      buffer.sample(1000 + step * step * 33, 1 / 30);
+      expect(buffer.position[0]).toBeCloseTo(step, 3);
+    }
+  });
+
   it("keeps what a frame does not list", () => {
     const buffer = new PoseBuffer();
     buffer.push(frame(0, [body(0, 1), body(3, 4)]), 0);

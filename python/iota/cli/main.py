@@ -8,11 +8,12 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, bench_forces, imports, run, verify, watch
+from iota.cli import bench, bench_forces, imports, record, run, verify, watch
 from iota.cli.failure import Failure
 
 MOST_LINKS = 1_000_000  # some GB
@@ -73,6 +74,19 @@ def make_parser() -> Parser:
     running.add_argument("--json", action="store_true", help="print the run's figures as one JSON object at its end")
     running.add_argument("--watch", action="store_true", help="run the file anew whenever it is saved")
     running.set_defaults(function=lambda a: (watch.watch if a.watch else run.run)(a))
+
+    recording = commands.add_parser("record", help="makes a film, or a contact sheet, of a study or a script")
+    recording.add_argument("what", metavar="NAME|FILE.py")
+    recording.add_argument("-o", "--output", type=Path, metavar="FILM.mp4", help="the film")
+    recording.add_argument("--sheet", type=Path, metavar="FILE.png|jpg", help="pictures of it side by side")
+    recording.add_argument("--seconds", type=positive, default=10.0, help="simulated, from the start (default: 10)")
+    recording.add_argument("--rate", type=count, default=30, help="frames a second (default: 30)")
+    recording.add_argument(
+        "--size", type=record.size, default=(640, 480), metavar="WxH", help="in px (default: 640x480)"
+    )
+    recording.add_argument("--pictures", type=count, default=12, help="on the sheet (default: 12)")
+    recording.add_argument("--columns", type=count, default=4, help="of the sheet (default: 4)")
+    recording.set_defaults(function=record.record_film)
 
     token = commands.add_parser("token", help="prints the secret in the page's address, or makes a new one")
     token.add_argument("--renew", action="store_true", help="a new one: addresses from before are refused from then on")

@@ -3,23 +3,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from iota.world.summary import RunSummary
+    from iota.world.world import World
 
 
 @dataclass
 class RunOptions:
-    """None: what the script says. `ran`, `summary`: filled in by the World that ran."""
+    """None: what the script says. drive: runs a World in place of real time, see `iota.film`. `ran`, `summary`: filled in by the
+    World that ran."""
 
     port: int | None = None
     seconds: float | None = None
     open: bool | None = None
     headless: bool = False
+    drive: Callable[[World], None] | None = None
     ran: bool = False
     summary: RunSummary | None = None
 

@@ -276,6 +276,9 @@ class World(Drawing, Listening):
         try:
             if options.headless:
                 summary = self._run_headless(HEADLESS_SECONDS if seconds is None else seconds)
+            elif options.drive is not None:
+                options.drive(self)
+                summary = self._stepper.summary()
             else:
                 self.serve(port if options.port is None else options.port)
                 self._announce(open if options.open is None else options.open)
@@ -383,6 +386,13 @@ class World(Drawing, Listening):
             self.close()
             raise SystemExit(0)
         return report
+
+    def advance(self, steps: int) -> None:
+        """So many steps as fast as they go, then users' input and a frame to the page: for films and tests, after `serve`."""
+        for _ in range(steps):
+            self._stepper.step()
+        self._take_inputs()
+        self._send_frame()
 
     def close(self) -> None:
         """Ends serving; open pages say so and wait for a new server."""

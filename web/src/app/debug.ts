@@ -3,6 +3,7 @@
 
 import { Vector3 } from "three";
 import type { Page } from "../page/page.ts";
+import { takeFilmFrame } from "../page/picture.ts";
 
 export interface IotaDebug {
   readonly clientId: number;
@@ -38,6 +39,8 @@ export interface IotaDebug {
   screenPosition(body: number): [number, number] | null;
   setLook(look: string): void;
   select(body: number): void;
+  /** The next frame of a film, as the address of a JPEG; the page draws by itself no more. `iota record` asks for it. */
+  filmFrame(): string;
   /** The parts themselves, for the console. */
   readonly page: Page;
 }
@@ -94,5 +97,6 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
     },
     setLook: (look) => page.world.setLook(look),
     select: (body) => page.selection.select(body),
+    filmFrame: () => takeFilmFrame(page),
   };
 }

@@ -184,7 +184,7 @@ export class Framing implements FramePart, PageListener {
   private calcFrame_(larger: number): Frame {
     const { camera } = this.viewer_;
     const up = Math.tan(MathUtils.degToRad(camera.fov / 2));
-    const bar = (innerWidth < narrowWidth ? tallBarHeight : barHeight) / innerHeight;
+    const bar = this.viewer_.filming ? 0.06 : (innerWidth < narrowWidth ? tallBarHeight : barHeight) / innerHeight;
     return {
       side: Math.min(0.9 * larger, 1) * up * camera.aspect,
       up: Math.min(0.88 * larger, 1) * up,

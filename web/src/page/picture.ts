@@ -2,6 +2,7 @@
 // Pictures of what the page shows: for the script, in parts that fit a frame, and as a file for the user.
 
 import type { ClientMessage } from "../protocol/generated.ts";
+import type { PageParts } from "./page_parts.ts";
 import type { Viewer } from "./viewer.ts";
 
 const partBytes = 60_000;
@@ -24,6 +25,14 @@ export async function takePicture({ renderer, scene, camera, presenting }: Viewe
   // The browser has copied the pixels when the call above is back.
   draw(usual);
   return picture;
+}
+
+/** The next frame of a film as the address of a JPEG, without the controls. It takes the picture in the task that draws it: the
+ * browser clears what it has shown. */
+export function takeFilmFrame({ viewer, world }: Pick<PageParts, "viewer" | "world">): string {
+  world.poses.exact = true;
+  viewer.drawFilmFrame();
+  return viewer.renderer.domElement.toDataURL("image/jpeg", 0.95);
 }
 
 /** Answers the server's request; an empty part where there is no picture. */

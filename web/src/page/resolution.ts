@@ -24,7 +24,7 @@ export class Resolution implements FramePart {
   }
 
   draw(seconds: number): void {
-    if (document.visibilityState !== "visible" || this.viewer_.presenting) return;
+    if (document.visibilityState !== "visible" || this.viewer_.presenting || this.viewer_.filming) return;
     this.slow_ = this.viewer_.timing.frameMs > slowFrameMs ? this.slow_ + seconds : 0;
     if (this.slow_ < patienceSeconds || this.scale_ < lowestScale) return;
     this.slow_ = 0;

@@ -54,6 +54,9 @@ export class Viewer {
   readonly stage: Stage;
   readonly timing: Timing = { frameMs: 16.7, scriptMs: 0, renderMs: 0, decodeMs: 0 };
 
+  /** A film is being made: frames are drawn when they are asked for, none is left out, and nothing covers the picture. */
+  filming = false;
+
   /** Distance from the camera to what it looks at, m. */
   lookDistance: () => number = () => this.stage.size;
 
@@ -99,6 +102,14 @@ export class Viewer {
     this.worthShowing_ = worthShowing;
     this.ready_ = ready;
     this.renderer.setAnimationLoop((now: number, frame?: XRFrame) => this.frame_(now, frame ?? null));
+  }
+
+  /** One frame of a film, at once. */
+  drawFilmFrame(): void {
+    this.filming = true;
+    this.renderer.setAnimationLoop(null);
+    this.invalidate();
+    this.frame_(performance.now(), null);
   }
 
   /** The picture is out of date. A page on which nothing changes does not draw, which spares batteries. */

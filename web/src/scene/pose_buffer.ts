@@ -57,6 +57,8 @@ export class PoseBuffer {
   intervalMs = 1000 / 60;
   /** Frames in the buffer. */
   count = 0;
+  /** Bodies are drawn where they were last told to be, as in a film, whose frames come when they are drawn. */
+  exact = false;
 
   private readonly frames_: Frame[] = [];
   private newest_ = 0;
@@ -127,7 +129,7 @@ export class PoseBuffer {
     for (let body = 0; body < this.capacity; body++) {
       if (this.known[body] === 0) continue;
       late[body] += (goal[body] - late[body]) * ease;
-      this.sampleBody_(body, now - late[body] * this.intervalMs);
+      this.sampleBody_(body, this.exact ? Infinity : now - late[body] * this.intervalMs);
     }
   }
 

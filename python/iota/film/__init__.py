@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Films of a world: `iota record`. Needs the extra packages of `pip install iota[film]`, and a Chromium."""
+
+from iota.film.files import Failed
+from iota.film.record import Film, record
+
+__all__ = ["Failed", "Film", "record"]

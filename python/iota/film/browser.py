@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A browser without a window that draws a world's page frame by frame, by a clock that only we move."""
+
+from __future__ import annotations
+
+import base64
+import os
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from iota.film.files import Failed
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+FLAGS = (
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--ignore-gpu-blocklist",
+    "--use-gl=angle",
+    "--use-angle=gl-egl",
+)
+PATIENCE = 30.0  # s, for the page to show what it has been sent
+
+
+class FilmPage:
+    """The page of a world. Its time stands still between two frames."""
+
+    def __init__(self, page: Any) -> None:
+        self._page = page
+
+    def wait_for(self, step: int, meanwhile: Callable[[], None] = lambda: None) -> None:
+        """Until it has been told of a step. Raises Failed when that takes too long."""
+        end = time.monotonic() + PATIENCE
+        while not self._page.evaluate(f"globalThis.iota?.page.world.poses.count > 0 && iota.step === {step}"):
+            if time.monotonic() > end:
+                raise Failed("the page does not show the world. Try: open it in a browser by iota run, and look there")
+            meanwhile()
+            time.sleep(0.002)
+
+    def picture(self, seconds: float) -> bytes:
+        """Lets so much time pass on the page, and draws it: a JPEG file."""
+        self._page.clock.fast_forward(round(seconds * 1000))
+        address: str = self._page.evaluate("iota.filmFrame()")
+        return base64.b64decode(address.split(",", 1)[1])
+
+
+@contextmanager
+def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
+    """A page of that size, px. Raises Failed where no browser can be started."""
+    try:
+        from playwright.sync_api import Error, sync_playwright
+    except ImportError:
+        raise Failed("films need the package playwright. Try: pip install 'iota[film]'") from None
+    environment = {**os.environ, "LIBGL_ALWAYS_SOFTWARE": os.environ.get("LIBGL_ALWAYS_SOFTWARE", "1")}
+    with sync_playwright() as playwright:
+        program = find_browser() or playwright.chromium.executable_path
+        if not Path(program).is_file():
+            raise Failed("films need Chromium. Try: apt-get install chromium, or: playwright install chromium")
+        try:
+            browser = playwright.chromium.launch(executable_path=program, args=list(FLAGS), env=environment)
+        except Error as error:
+            raise Failed(f"{program} cannot be started: {error.message.splitlines()[0]}") from None
+        try:
+            page = browser.new_page(viewport={"width": width, "height": height})
+            page.clock.install(time=0)
+            page.clock.pause_at(1)
+            page.goto(url)
+            yield FilmPage(page)
+        except Error as error:
+            raise Failed(f"the browser failed: {error.message.splitlines()[0]}") from None
+        finally:
+            browser.close()
+
+
+def find_browser() -> str | None:
+    """The one that $CHROMIUM names, or of the system; None: Playwright's own, if that is there."""
+    return os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)

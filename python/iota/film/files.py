@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes films and contact sheets. A file is there whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+GAP = 4  # px, between the pictures of a sheet
+WIDEST = 1280  # px, a sheet of more than one picture
+
+
+class Failed(Exception):
+    """What the user is told in one line."""
+
+
+def video_library() -> Any:
+    """PyAV. Raises Failed where it is not installed."""
+    try:
+        import av
+    except ImportError:
+        raise Failed("films need the package av. Try: pip install 'iota[film]'") from None
+    av.logging.set_level(av.logging.PANIC)
+    return av
+
+
+def check_name(path: Path, endings: Sequence[str]) -> None:
+    """Raises Failed for a file that cannot be made, before any work is done for it."""
+    if path.suffix.lower() not in endings:
+        raise Failed(f"{path} must end in {' or '.join(endings)}")
+    if path.is_dir() or not path.parent.is_dir():
+        raise Failed(
+            f"{path} cannot be written: " + ("it is a folder" if path.is_dir() else f"no folder {path.parent}")
+        )
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A new file beside `path`, which takes its place at the end; what fails leaves `path` as it was."""
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
+    except OSError as error:
+        raise Failed(f"{path} cannot be written: {error.strerror}") from None
+    os.close(handle)
+    fresh = Path(name)
+    try:
+        yield fresh
+        fresh.chmod(0o644)
+        fresh.replace(path)
+    except OSError as error:
+        raise Failed(f"{path} cannot be written: {error.strerror or error}") from None
+    finally:
+        fresh.unlink(missing_ok=True)
+
+
+class FilmFile:
+    """An MP4 file of JPEG pictures, H.264. `rate`: pictures a second."""
+
+    def __init__(self, path: Path, width: int, height: int, rate: int) -> None:
+        self._av = video_library()
+        self._container = self._av.open(str(path), "w", format="mp4", options={"movflags": "+faststart"})
+        self._stream = self._container.add_stream(
+            "libx264", rate=Fraction(rate), options={"crf": "23", "preset": "veryfast"}
+        )
+        self._stream.width, self._stream.height, self._stream.pix_fmt = width, height, "yuv420p"
+        self._reader = self._av.CodecContext.create("mjpeg", "r")
+        self._count = 0
+
+    def add(self, jpeg: bytes) -> None:
+        """The next picture."""
+        for picture in self._reader.decode(self._av.Packet(jpeg)):
+            frame = picture.reformat(format="yuv420p", src_color_range="JPEG", dst_color_range="MPEG")
+            frame.pts, frame.time_base = self._count, Fraction(1, int(self._stream.codec_context.framerate))
+            self._container.mux(self._stream.encode(frame))
+            self._count += 1
+
+    def close(self) -> None:
+        """All that is left goes into the file."""
+        try:
+            self._container.mux(self._stream.encode(None))
+        finally:
+            self._container.close()
+
+
+def read_picture(jpeg: bytes, shrink: float = 1.0) -> NDArray[np.uint8]:
+    """Its pixels: (height, width, 3)."""
+    av = video_library()
+    (frame,) = av.CodecContext.create("mjpeg", "r").decode(av.Packet(jpeg))
+    width, height = int(frame.width * shrink), int(frame.height * shrink)
+    pixels: NDArray[np.uint8] = frame.to_ndarray(format="rgb24", width=width, height=height, interpolation="AREA")
+    return pixels
+
+
+def write_sheet(path: Path, pictures: Sequence[bytes], columns: int, width: int) -> None:
+    """A contact sheet of JPEG pictures, row by row. width: of a picture, px; they are made smaller where many are side by side.
+    path ends in .png or .jpg."""
+    tiles = [read_picture(picture, min(1.0, (WIDEST / columns - GAP) / width)) for picture in pictures]
+    height, width = tiles[0].shape[:2]
+    rows = -(-len(tiles) // columns)
+    shape = rows * (height + GAP) - GAP, columns * (width + GAP) - GAP
+    sheet = np.full((*shape, 3), 255, np.uint8)
+    for number, tile in enumerate(tiles):
+        y, x = (number // columns) * (height + GAP), (number % columns) * (width + GAP)
+        sheet[y : y + height, x : x + width] = tile
+    path.write_bytes(encode_picture(sheet, path.suffix.lower()))
+
+
+def encode_picture(pixels: NDArray[np.uint8], ending: str) -> bytes:
+    """A PNG or JPEG file."""
+    av = video_library()
+    frame = av.VideoFrame.from_ndarray(pixels, format="rgb24")
+    codec: Any = av.CodecContext.create("png" if ending == ".png" else "mjpeg", "w")
+    codec.width, codec.height, codec.time_base = pixels.shape[1], pixels.shape[0], Fraction(1, 25)
+    if ending == ".png":
+        codec.pix_fmt = "rgb24"
+    else:
+        codec.pix_fmt, codec.qmin, codec.qmax, codec.options = "yuvj420p", 3, 3, {"huffman": "optimal"}
+        frame = frame.reformat(format="yuvj420p", dst_color_range="JPEG")
+    return b"".join(bytes(packet) for packet in [*codec.encode(frame), *codec.encode(None)])

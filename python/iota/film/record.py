@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Records a world frame by frame: however slow the machine, the film is smooth and runs at the world's own speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from iota.film.browser import FilmPage, film_page
+from iota.film.files import Failed, FilmFile, check_name, replacing, video_library, write_sheet
+from iota.world import World
+
+WARM_UP = 6  # frames before the first: light and camera settle
+MOST_PIXELS = 4096
+
+
+@dataclass
+class Film:
+    """What is to be made. film: an .mp4 file. sheet: a .png or .jpg file with `pictures` of its frames, evenly spaced in time,
+    `columns` in a row. seconds: simulated. rate: frames a second."""
+
+    film: Path | None = None
+    sheet: Path | None = None
+    seconds: float = 10.0
+    rate: int = 30
+    width: int = 640
+    height: int = 480
+    pictures: int = 12
+    columns: int = 4
+
+    @property
+    def frames(self) -> int:
+        return max(1, round(self.seconds * self.rate))
+
+    def check(self) -> None:
+        """Raises Failed for what cannot be made, before a world is built for it."""
+        if self.film is None and self.sheet is None:
+            raise Failed("nothing to make: name a film by -o FILE.mp4, a contact sheet by --sheet FILE.png, or both")
+        if self.film is not None:
+            check_name(self.film, [".mp4"])
+        if self.sheet is not None:
+            check_name(self.sheet, [".png", ".jpg"])
+        for side in (self.width, self.height):
+            if not 16 <= side <= MOST_PIXELS or side % 2:
+                raise Failed(f"width and height must be even, from 16 to {MOST_PIXELS}, not {self.width}x{self.height}")
+        video_library()
+
+    def on_sheet(self) -> set[int]:
+        """The frames that the sheet shows: the middle of each of its equal parts of the time."""
+        count = min(self.pictures, self.frames) if self.sheet is not None else 0
+        return {int((number + 0.5) * self.frames / count) for number in range(count)}
+
+
+def record(world: World, film: Film, progress: Callable[[int, int], None] = lambda done, all: None) -> None:
+    """Runs a world and makes its film. progress: called after each frame. Raises Failed; no file is half written."""
+    film.check()
+    with ExitStack() as stack:
+        sheet = stack.enter_context(replacing(film.sheet)) if film.sheet is not None else None
+        movie: FilmFile | None = None
+        if film.film is not None:
+            movie = FilmFile(stack.enter_context(replacing(film.film)), film.width, film.height, film.rate)
+            stack.callback(movie.close)
+        page = stack.enter_context(film_page(world.serve(port=0), film.width, film.height))
+        shown, wanted = [], film.on_sheet()
+        for number in range(film.frames):
+            picture = next_frame(world, page, film, number)
+            if movie is not None:
+                movie.add(picture)
+            if number in wanted:
+                shown.append(picture)
+            progress(number + 1, film.frames)
+        if sheet is not None:
+            write_sheet(sheet, shown, min(film.columns, len(shown)), film.width)
+
+
+def next_frame(world: World, page: FilmPage, film: Film, number: int) -> bytes:
+    """The picture of a frame; that of the first one shows the beginning."""
+    if number == 0:
+        page.wait_for(world.system.step_count, meanwhile=lambda: world.advance(0))
+        for _ in range(WARM_UP):
+            page.picture(1 / film.rate)
+    else:
+        steps = 1 / film.rate / world.dt
+        world.advance(round(number * steps) - round((number - 1) * steps))
+        page.wait_for(world.system.step_count)
+    return page.picture(1 / film.rate)

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Records every study: films in build/films, contact sheets in docs/pictures/studies, thumbnails of the gallery.
+
+    tools/make_films.py [NAME ...] [--no-films]
+
+The sheets and thumbnails are kept in the repository: look at them before they are committed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+IOTA = [sys.executable, "-m", "iota"]
+FILMS = ROOT / "build" / "films"
+SHEETS = ROOT / "docs" / "pictures" / "studies"
+# How long a film is, s, and when its thumbnail is taken, where the usual times miss the point.
+SECONDS = {"molecule": 12.0}
+USUAL = 10.0
+
+
+def record(name: str, *arguments: str | Path) -> None:
+    command = [*IOTA, "record", name, *map(str, arguments)]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+
+
+def make(name: str, with_film: bool) -> None:
+    """A sheet of twelve pictures from the film, or, without it, from as many frames."""
+    seconds = SECONDS.get(name, USUAL)
+    film = ["-o", FILMS / f"{name}.mp4"] if with_film else ["--rate", "2"]
+    record(name, "--seconds", str(seconds), "--sheet", SHEETS / f"{name}.jpg", *film)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="of studies (default: all)")
+    parser.add_argument("--no-films", action="store_true", help="only the sheets: a minute instead of many")
+    options = parser.parse_args()
+    listed = subprocess.run([*IOTA, "list"], check=True, capture_output=True, text=True).stdout
+    names = options.names or [line.split()[0] for line in listed.splitlines()]
+    for folder in (FILMS, SHEETS):
+        folder.mkdir(parents=True, exist_ok=True)
+    for number, name in enumerate(names, 1):
+        print(f"[{number}/{len(names)}] {name} ...", end="", flush=True)
+        began = time.monotonic()
+        make(name, not options.no_films)
+        print(f" {time.monotonic() - began:.0f} s", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
