@@ -39,9 +39,9 @@ struct RowLaw {
   double upper_impulse() const { return upper == unbounded && !is_compliant() && !hold ? unbounded : 0; }
   /// How far g is on a forbidden side.
   double violation(double g) const { return g > 0 ? (upper_impulse() > 0 ? g : 0) : (lower_impulse() < 0 ? -g : 0); }
-  /// Energy that a spring row stores, J.
+  /// Energy that a spring row stores, J; a pure dashpot stores none.
   double energy(double g) const {
-    if (!is_compliant() || hold) return 0;
+    if (!is_compliant() || hold || std::isinf(compliance)) return 0;
     const double force = std::clamp(g / compliance, lower, upper);
     return force * (g - 0.5 * compliance * force);
   }

@@ -300,7 +300,7 @@ def test_pairs_between_two_groups_are_those_of_one_and_the_other() -> None:
 def test_a_shifted_cut_off_has_no_jump() -> None:
     def pair(distance: float, shifted: bool) -> tuple[float, float]:
         system = iota.System(gravity=(0, 0, 0))
-        p, q = (system.body().particle((x, 0, 0)) for x in (0, distance))
+        _, q = (system.body().particle((x, 0, 0)) for x in (0, distance))
         force = system.pair_force("lennard_jones", cutoff=2.0, shifted=shifted, depth=1.0, size=1.0)
         energy = force.energy
         system.step(1e-9)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ def arm(system: iota.System, links: int = 3, held: bool = True) -> list[iota.Con
     joints = [system.revolute(boxes[0], None, at=(0, 0, 0), axis=(0, 0, 1))] if held else []
     return joints + [
         system.revolute(b, a, at=(i + 1, 0, 0), axis=(0, 0, 1))
-        for i, (a, b) in enumerate(zip(boxes, boxes[1:], strict=False))
+        for i, (a, b) in enumerate(pairwise(boxes))
     ]
 
 

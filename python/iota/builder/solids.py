@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise, product
+from typing import Any
 
 import numpy as np
 
@@ -114,7 +115,7 @@ def tower(
         middle = start + [0, (number + 0.5) * y, 0]
         made.body(shape=Box((x, y, z)), density=density, position=tuple(middle.tolist()), look="storey")
         seam = tuple((middle - [0, y / 2, 0]).tolist())
-        limit = {"break_torque": strength} if strength < math.inf else {}
+        limit: dict[str, Any] = {"break_torque": strength} if strength < math.inf else {}
         made.joint("weld", number, number - 1 if number else None, at=seam, **limit)
     return dress(made, {"storey": looks.solid("wood")}, look)
 

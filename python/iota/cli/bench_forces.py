@@ -64,7 +64,8 @@ def measure() -> list[ForceCost]:
         system = iota.System(gravity=(0, 0, 0))
         for i in range(20**3):  # about 30 neighbors within the cut-off
             system.body().particle((1.3 * (i % 20), 1.3 * (i // 20 % 20), 1.3 * (i // 400)))
-        system.pair_force(text, cutoff=2.5, group=None, **dict.fromkeys(names, 1.0))
+        parameters: dict[str, Any] = dict.fromkeys(names, 1.0)
+        system.pair_force(text, cutoff=2.5, **parameters)
         (row,) = profile(system)
         rows.append(ForceCost(name, "particle", row.count, row.ns))
     return rows

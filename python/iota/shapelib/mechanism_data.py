@@ -13,9 +13,6 @@ from iota.builder.parts import BodyKind, JointKind, RigidBody
 from iota.shapelib.frames import Y_UP, Frame, LinkSolid, look_in, to_quaternion
 from iota.shapelib.imported import Imported
 
-# N m/rad or N/m: a dashpot of ours has a spring, and the energy of one without stiffness is not a number.
-SOFTEST = 1e-9
-
 
 @dataclass
 class Link:

@@ -13,7 +13,7 @@ from iota import looks
 from iota._core import Box, Capsule, Cylinder, Ellipsoid, Mesh, Shape, Sphere
 from iota.shapelib.files import FileError, PathLike
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
-from iota.shapelib.mechanism_data import SOFTEST, Link, LinkJoint, Mechanism
+from iota.shapelib.mechanism_data import Link, LinkJoint, Mechanism
 from iota.shapelib.trees import read_tree
 from iota.shapelib.urdf import LIGHTEST, X_TO_Z
 
@@ -183,7 +183,7 @@ class _Reader:
         stiffness, damping = float(np.ravel(m.jnt_stiffness[joint])[0]), float(np.ravel(m.dof_damping[dof])[0])
         if stiffness > 0 or damping > 0:
             rest = float(m.qpos_spring[m.jnt_qposadr[joint]]) - first
-            options["spring"] = (max(stiffness, SOFTEST), damping, rest)
+            options["spring"] = (stiffness, damping, rest)
         if m.dof_frictionloss[dof] > 0:
             options["friction"] = float(m.dof_frictionloss[dof])
         if m.jnt_limited[joint]:

@@ -13,7 +13,7 @@ from iota._core import Box, Cylinder, Mesh, Shape, Sphere
 from iota.builder.parts import JointKind
 from iota.shapelib.files import FileError, PathLike
 from iota.shapelib.frames import Frame, from_rpy, solid_of
-from iota.shapelib.mechanism_data import SOFTEST, Link, LinkJoint, Mechanism
+from iota.shapelib.mechanism_data import Link, LinkJoint, Mechanism
 from iota.shapelib.surface_files import READERS, read_surface
 from iota.shapelib.trees import Element, read_tree
 
@@ -260,7 +260,7 @@ def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
     if dynamics is not None:
         damping, friction = dynamics.number("damping", 0.0), dynamics.number("friction", 0.0)
         if damping > 0:
-            options["spring"] = (SOFTEST, damping, 0.0)
+            options["spring"] = (0.0, damping, 0.0)
         if friction > 0:
             options["friction"] = friction
     if joint.first("mimic") is not None:
