@@ -6,6 +6,7 @@
 #include "ingredient/joint_rows.h"
 #include "ingredient/model.h"
 #include "model/restructure.h"
+#include "solver/largest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -234,11 +235,11 @@ void Joints::add_energy(const Scope& scope, Energies& sum) {
 }
 
 double Joints::worst_gap(const Model& model) {
-  double worst = 0;
+  solver::Largest worst;
   model.constraints.for_each([&](std::uint32_t, const Constraint& c) {
-    if (is_in_force(model, c) && !(c.gap <= worst)) worst = c.gap;
+    if (is_in_force(model, c)) worst.add(c.gap);
   });
-  return worst;
+  return worst.value;
 }
 
 void Joints::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include "ingredient/model.h"
+#include "solver/largest.h"
 
 namespace iota::ingredient {
 
@@ -113,17 +114,16 @@ void Nails::validate(const Model& model, model::Audit& audit) {
 }
 
 double Nails::worst_gap(const Model& model) {
-  double worst = 0;
+  solver::Largest worst;
   model.nails.for_each([&](std::uint32_t ring, const Nail& nail) {
     if (!model.rings[ring].nailed) return;
     bool moves = false;
     model.for_each_in_ring(
         ring, [&](std::uint32_t p) { moves = moves || is_free(model.bodies[model.particles[p].body].kind); });
     if (!moves) return;
-    const double gap = norm(model.rings[ring].position - nail.position_before);
-    if (!(gap <= worst)) worst = gap;
+    worst.add(norm(model.rings[ring].position - nail.position_before));
   });
-  return worst;
+  return worst.value;
 }
 
 // A nail is drawn at the first particle of its ring.

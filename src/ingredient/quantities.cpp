@@ -3,6 +3,7 @@
 
 #include "ingredient/ingredient_list.h"
 #include "ingredient/model.h"
+#include "solver/largest.h"
 
 namespace iota::ingredient {
 
@@ -43,12 +44,9 @@ Momenta calc_momenta(const model::Model& model, std::span<const std::uint32_t> b
 }
 
 double worst_gap(const model::Model& model) {
-  double worst = 0;
-  for_each_type<Ingredients>([&]<class I>() {
-    const double gap = I::worst_gap(model);
-    if (!(gap <= worst)) worst = gap;  // also where it is not a number
-  });
-  return worst;
+  solver::Largest worst;
+  for_each_type<Ingredients>([&]<class I>() { worst.add(I::worst_gap(model)); });
+  return worst.value;
 }
 
 void begin_edits(model::Model& model) {

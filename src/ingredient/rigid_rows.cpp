@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "ingredient/model.h"
+#include "solver/largest.h"
 
 #include <algorithm>
 #include <array>
@@ -74,17 +75,16 @@ void RigidRows::validate(const Model& model, model::Audit& audit) {
 }
 
 double RigidRows::worst_gap(const Model& model) {
-  double worst = 0;
+  solver::Largest worst;
   model.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
     if (!is_free(b.kind)) return;  // nothing holds it: it is where it was put
     for (int row = 0; row < b.row_count; ++row) {
       const auto [i, j] = model::basis_pairs[row];
       const double length = norm(model.position(b.basis[j]) - model.position(b.basis[i]));
-      const double gap = std::abs(length - model.row(slot, row).length);
-      if (!(gap <= worst)) worst = gap;
+      worst.add(std::abs(length - model.row(slot, row).length));
     }
   });
-  return worst;
+  return worst.value;
 }
 
 void RigidRows::add_loads(const LastStep& step, std::uint32_t slot, LoadReader& reader) {

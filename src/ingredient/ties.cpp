@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "ingredient/model.h"
+#include "solver/largest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,13 +91,12 @@ void Ties::validate(const Model& model, model::Audit& audit) {
 }
 
 double Ties::worst_gap(const Model& model) {
-  double worst = 0;
+  solver::Largest worst;
   model.ties.for_each([&](std::uint32_t p, const model::Tie&) {
     if (!is_free(model.bodies[model.particles[p].body].kind)) return;  // nothing holds it: it is where it was put
-    const double gap = norm(model.carried(p).first - model.position(p));
-    if (!(gap <= worst)) worst = gap;
+    worst.add(norm(model.carried(p).first - model.position(p)));
   });
-  return worst;
+  return worst.value;
 }
 
 // The multiplier of AffineConstraint, with weight 1 for the particle and minus its weights for the basis.

@@ -2,6 +2,7 @@
 #include "solver/problem.h"
 
 #include "base/slack.h"
+#include "solver/largest.h"
 
 #include <algorithm>
 #include <array>
@@ -153,7 +154,7 @@ double Problem::row_energy(const Vec3* x, double fraction) const {
 }
 
 double Problem::worst_gap(const Vec3* x, double fraction, bool relative) const {
-  double worst = 0;
+  Largest worst;
   for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t i = 0; i < pool.items.size(); ++i) {
       const C& c = pool.items[i];
@@ -163,11 +164,10 @@ double Problem::worst_gap(const Vec3* x, double fraction, bool relative) const {
         for (int r = 0; r < C::rows; ++r) g[r] = pool.law(i)[r].violation(g[r]);
       double size2 = 0;
       for (const double v : g) size2 += v * v;
-      const double size = std::sqrt(size2) / (relative ? c.reference_length() : 1);
-      if (!(size <= worst)) worst = size;
+      worst.add(std::sqrt(size2) / (relative ? c.reference_length() : 1));
     }
   });
-  return worst;
+  return worst.value;
 }
 
 }  // namespace iota::solver

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace iota::ingredient {
 namespace {
@@ -85,6 +86,19 @@ TEST(Quantities, the_energy_of_a_spring_is_that_of_its_text) {
   EXPECT_DOUBLE_EQ(Bonds::energy(m.model, bond), 0.5 * 7 * 4);
   EXPECT_DOUBLE_EQ(calc_energies(m.model).potential, 0.5 * 7 * 4);
   EXPECT_LT(norm(Bonds::force(m.model, bond) - Vec3{-14, 0, 0}), 1e-13) << "on the second particle, towards the first";
+}
+
+TEST(Quantities, a_gap_that_is_not_a_number_is_the_largest) {
+  SmallModel m;
+  const std::vector<std::uint32_t> links = m.chain(4);
+  ASSERT_LT(worst_gap(m.model), 1e-12);
+  for (const std::uint32_t link : links) {
+    Vec3& place = m.model.rings[m.model.particles[m.particle(link, 1)].ring].position;
+    const Vec3 before = place;
+    place.x = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(std::isinf(worst_gap(m.model))) << "link " << link;
+    place = before;
+  }
 }
 
 TEST(Quantities, what_edits_change_is_booked_once) {
