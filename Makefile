@@ -30,9 +30,9 @@ help: ## what there is to make (this list)
 build: ## install what is missing, build engine, bindings and page; the command line is .venv/bin/iota
 	@$(PYTHON) tools/build.py build
 
-demo: ## build, then serve the chain and print its address (PORT=8080, SECONDS= to stop by itself)
+demo: ## build, then serve the gallery of all studies and print its address (PORT=8080, SECONDS= to stop by itself)
 	@$(PYTHON) tools/build.py build
-	@exec $(iota) run chain --port $(PORT) $(if $(SECONDS),--seconds $(SECONDS))
+	@exec $(iota) gallery --port $(PORT) $(if $(SECONDS),--seconds $(SECONDS))
 
 films: ## build, then record every study: build/films, docs/pictures/studies (FILMS="chain cradle" for some)
 	@$(PYTHON) tools/build.py films

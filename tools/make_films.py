@@ -18,10 +18,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 IOTA = [sys.executable, "-m", "iota"]
 FILMS = ROOT / "build" / "films"
+THUMBNAILS = ROOT / "python" / "iota" / "studies" / "pictures"
 SHEETS = ROOT / "docs" / "pictures" / "studies"
 # How long a film is, s, and when its thumbnail is taken, where the usual times miss the point.
 SECONDS = {"molecule": 12.0}
 USUAL = 10.0
+MOMENT = {"chain": 0.6}
+USUAL_MOMENT = 2.0
 
 
 def record(name: str, *arguments: str | Path) -> None:
@@ -34,6 +37,8 @@ def make(name: str, with_film: bool) -> None:
     seconds = SECONDS.get(name, USUAL)
     film = ["-o", FILMS / f"{name}.mp4"] if with_film else ["--rate", "2"]
     record(name, "--seconds", str(seconds), "--sheet", SHEETS / f"{name}.jpg", *film)
+    once = ["--pictures", "1", "--size", "480x270", "--rate", "5"]
+    record(name, "--seconds", str(2 * MOMENT.get(name, USUAL_MOMENT)), "--sheet", THUMBNAILS / f"{name}.jpg", *once)
 
 
 def main() -> int:
@@ -43,7 +48,7 @@ def main() -> int:
     options = parser.parse_args()
     listed = subprocess.run([*IOTA, "list"], check=True, capture_output=True, text=True).stdout
     names = options.names or [line.split()[0] for line in listed.splitlines()]
-    for folder in (FILMS, SHEETS):
+    for folder in (FILMS, SHEETS, THUMBNAILS):
         folder.mkdir(parents=True, exist_ok=True)
     for number, name in enumerate(names, 1):
         print(f"[{number}/{len(names)}] {name} ...", end="", flush=True)

@@ -39,6 +39,7 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1200,
     // The minifier drops notices: the texts of everything that was bundled go along in a file of their own.
+    rolldownOptions: { input: ["index.html", "gallery.html"] },
     license: { fileName: "licenses.txt" },
   },
   test: { include: ["test/**/*.test.ts"] },

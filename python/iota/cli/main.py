@@ -13,7 +13,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, bench_forces, imports, record, run, verify, watch
+from iota.cli import bench, bench_forces, gallery, imports, record, run, verify, watch
 from iota.cli.failure import Failure
 
 MOST_LINKS = 1_000_000  # some GB
@@ -74,6 +74,12 @@ def make_parser() -> Parser:
     running.add_argument("--json", action="store_true", help="print the run's figures as one JSON object at its end")
     running.add_argument("--watch", action="store_true", help="run the file anew whenever it is saved")
     running.set_defaults(function=lambda a: (watch.watch if a.watch else run.run)(a))
+
+    showing = commands.add_parser("gallery", help="serves a page with pictures of all studies, each a click away")
+    showing.add_argument("--port", type=port, help="of the page; 0 for any free one (default: 8080)")
+    showing.add_argument("--seconds", type=positive, help="stop by itself after so long")
+    showing.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
+    showing.set_defaults(function=gallery.run)
 
     recording = commands.add_parser("record", help="makes a film, or a contact sheet, of a study or a script")
     recording.add_argument("what", metavar="NAME|FILE.py")

@@ -33,8 +33,7 @@ def list_studies(arguments: argparse.Namespace) -> None:
     names = studies.names()
     width = max(map(len, names))
     for name in names:
-        doc = inspect.getdoc(studies.module(name)) or ""
-        print(f"{name:{width}}  {doc.splitlines()[0] if doc else ''}")
+        print(f"{name:{width}}  {studies.description(name)}")
 
 
 def run(arguments: argparse.Namespace) -> None:

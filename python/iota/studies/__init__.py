@@ -4,8 +4,12 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import pkgutil
+from pathlib import Path
 from types import ModuleType
+
+PICTURES = Path(__file__).with_name("pictures")  # a thumbnail of each, NAME.jpg, made by tools/make_films.py
 
 
 def names() -> list[str]:
@@ -17,3 +21,8 @@ def names() -> list[str]:
 def module(name: str) -> ModuleType:
     """The module of a study: `soft-molecule` is soft_molecule.py."""
     return importlib.import_module(f"{__name__}.{name.replace('-', '_')}")
+
+
+def description(name: str) -> str:
+    """The first line of a study's docstring."""
+    return (inspect.getdoc(module(name)) or "").partition("\n")[0]

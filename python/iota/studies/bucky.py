@@ -76,5 +76,5 @@ def present(world: iota.World) -> None:
     x, y, z = CENTER
     world.add_static(looks.torus(RADIUS + 0.19, 0.008, "steel"), (x, y, z))
     world.add_strut((x, 0, z), (x, y - RADIUS - 0.19, z), looks.cylinder(0.015, "steel"))
-    world.add_static(looks.cylinder(0.16, "steel", length=0.02, rotation=(0, 0, 0.5**0.5, 0.5**0.5)), (x, 0.01, z))
-    world.camera = iota.Camera(position=(0.9, 1.6, 1.9), target=(x, y, z))
+    world.add_static(looks.cylinder(0.16, "steel", length=0.02), (x, 0.01, z), (0, 0, 0.5**0.5, 0.5**0.5))
+    world.camera = iota.Camera(position=(1.2, 1.5, 2.5), target=(x, 1.02, z))

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from iota import _core
 from iota.world import page
 
@@ -11,13 +13,15 @@ class Server(_core.Server):
     """Serves the page for several worlds on one port; each is given it by `World.serve` or `World.start`.
 
     A page asks for a world by `world=ID` in its address, see `World.url`; without it, it is shown the first. hello_time: s,
-    from the upgrade of a connection to its first frame. Raises OSError where the port is taken.
+    from the upgrade of a connection to its first frame. folder: of the page, None: the built one. Raises OSError where the port is taken.
 
         server = iota.Server(port=8080)
         for name, world in worlds.items():
             print(world.start(server=server, id=name))
     """
 
-    def __init__(self, host: str = "127.0.0.1", port: int = 8080, hello_time: float = 10.0) -> None:
-        folder, token = str(page.page_folder()), page.token()
-        super().__init__(host=host, port=port, page_folder=folder, token=token, hello_time=hello_time)
+    def __init__(
+        self, host: str = "127.0.0.1", port: int = 8080, hello_time: float = 10.0, folder: str | Path | None = None
+    ) -> None:
+        folder = page.page_folder() if folder is None else folder
+        super().__init__(host=host, port=port, page_folder=str(folder), token=page.token(), hello_time=hello_time)

@@ -10,6 +10,7 @@ import { savePicture } from "./picture.ts";
 const speeds: readonly number[] = [0.1, 0.25, 0.5, 1, 2];
 
 const signs = {
+  studies: "M5 5h6v6h-6zM14 5h6v6h-6zM5 14h6v6h-6zM14 14h6v6h-6z",
   play: "M8 5l11 7-11 7z",
   pause: "M8 5v14M16 5v14",
   step: "M6 5l9 7-9 7zM18 5v14",
@@ -36,6 +37,15 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
     choose: (option) => session.control(ControlCommand.speed, Number(option)),
   };
   const commands: Entry[] = [
+    {
+      name: "studies",
+      places: ["bar"],
+      title: () => "All studies",
+      sign: () => signs.studies,
+      // A gallery serves the page by this name, and itself as /.
+      offered: () => location.pathname.endsWith("/world.html"),
+      run: () => location.assign("./"),
+    },
     {
       name: "play",
       help: "pause, play",

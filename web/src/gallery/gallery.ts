@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page with pictures of all studies; each leads to its world on the same server. Served by `iota gallery`.
+
+import { takeToken } from "../net/token.ts";
+
+interface Study {
+  readonly name: string;
+  readonly text: string;
+}
+
+function element(tag: string, text: string): HTMLElement {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  return made;
+}
+
+/** A picture with the name and a sentence below it. */
+function makeCard({ name, text }: Study): HTMLAnchorElement {
+  const card = document.createElement("a");
+  card.href = `world.html?${new URLSearchParams({ world: name }).toString()}`;
+  const picture = document.createElement("img");
+  picture.src = `studies/${name}.jpg`;
+  picture.alt = "";
+  picture.width = 480;
+  picture.height = 270;
+  picture.addEventListener("error", () => picture.classList.add("missing"));
+  card.append(picture, element("h2", name), element("p", text));
+  return card;
+}
+
+async function main(): Promise<void> {
+  // Kept for this tab, so that the worlds' pages find it.
+  takeToken();
+  const list = document.querySelector("main")!;
+  try {
+    const answer = await fetch("studies.json");
+    if (!answer.ok) throw new Error(`the server answered ${answer.status}`);
+    list.append(...((await answer.json()) as Study[]).map(makeCard));
+  } catch (error) {
+    list.append(element("p", `The list of studies did not come: ${error instanceof Error ? error.message : String(error)}. Reload the page.`));
+  }
+  list.removeAttribute("aria-busy");
+}
+
+void main();
