@@ -117,6 +117,8 @@ export class Strokes {
   reserve(count: number): void {
     if (count <= this.capacity_) return;
     this.capacity_ = Math.max(count, 2 * this.capacity_);
+    // Else the renderer goes on drawing as many as there was room for when it saw the geometry first.
+    this.geometry_.dispose();
     this.from_ = grown(this.from_, this.capacity_);
     this.to_ = grown(this.to_, this.capacity_);
     this.radii_ = grown(this.radii_, this.capacity_);

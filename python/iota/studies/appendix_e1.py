@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Appendix E.1 of the thesis: one rigid body of two particles, 30 m long, falls under a gentle gravity of 1 m/s^2."""
+
+from __future__ import annotations
+
+import iota
+from iota import looks
+
+GROUND = -40.0  # m
+
+
+def build() -> iota.World:
+    """The world of the study."""
+    system = iota.System(gravity=(0, -1))
+    body1 = system.body()
+    particle1 = body1.particle()
+    particle2 = body1.particle((30, 0, 0))
+    # Something to be seen between them; the body is rigid without it.
+    system.cosmetic_bond(particle1, particle2)
+    return present(iota.World(system, title="Appendix E.1", ground=GROUND))
+
+
+def present(world: iota.World) -> iota.World:
+    """What all three scripts of the appendix look like: balls with sticks between them, below a frame that tells how far they fall."""
+    system = world.system
+    world.draw([body for body in system.bodies if len(body.particles) > 1], looks.capsule(0.5, "brass"))
+    for particle, color in zip(system.particles, ((0.9, 0.3, 0.2), (0.15, 0.5, 0.55)) * 2, strict=False):
+        particle.radius, particle.color = 2.0, color
+    world.draw_ties("spring", looks.capsule(0.3, "rope"))
+    for x in (-36, 58):
+        world.add_strut((x, GROUND, -20), (x, 15, -20), looks.cylinder(0.8, "wood"))
+    world.add_strut((-38, 15, -20), (60, 15, -20), looks.cylinder(0.8, "wood"))
+    world.camera = iota.Camera(position=(25, -5, 125), target=(11, -13, 0))
+    return world

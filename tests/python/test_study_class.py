@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The studies physics-class, fireworks and the scripts of Appendix E, and the story that waits for its user."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import iota
+from iota import studies
+from iota.studies import appendix_e1, appendix_e2, appendix_e3, fireworks, physics_class
+from iota.studies._story import Story
+
+
+def run(world: iota.World, seconds: float) -> None:
+    """Without a page, as fast as it goes."""
+    for _ in range(round(seconds / world.dt)):
+        world.step()
+
+
+def widget(world: iota.World, label: str):  # type: ignore[no-untyped-def]
+    return next(thing for thing in world.things if getattr(thing, "label", None) == label and hasattr(thing, "value"))
+
+
+def change(world: iota.World, label: str, value: float) -> None:
+    """As a user does."""
+    thing = widget(world, label)
+    thing.take(value, "", iota.Event(world.system, label), world._guard)
+
+
+def labels(world: iota.World) -> list[str]:
+    return [thing.text for thing in world.things if hasattr(thing, "text")]
+
+
+def test_the_appendix_scripts_fall_swing_and_fold_and_land_on_the_ground() -> None:
+    first, second, third = (study.build() for study in (appendix_e1, appendix_e2, appendix_e3))
+    for world in (first, second, third):
+        run(world, 2.0)
+    assert [p.position.y for p in first.system.particles] == pytest.approx([-2, -2], abs=0.02)
+    p, q = (particle.position for particle in second.system.particles)
+    assert p.y == q.y == pytest.approx(-2, abs=0.02) and p.x + q.x == pytest.approx(30)
+    assert third.system.articulate_count == 1 and third.system.worst_gap < 1e-7
+    distances = []
+    for _ in range(400):
+        second.step()
+        distances.append(abs(second.system.particles[0].position - second.system.particles[1].position))
+    assert min(distances) < 11 and max(distances) > 29, "about 20 m, without loss"
+    for world in (first, second, third):
+        run(world, 12.0)
+        lowest = min(particle.position.y for particle in world.system.particles)
+        assert lowest > appendix_e1.GROUND - 0.1
+
+
+def test_the_class_measures_what_the_formulas_say() -> None:
+    world = physics_class.build()
+    system = world.system
+    run(world, 9.0)
+    pendulum, orbit, spring = labels(world)
+    swing = float(pendulum.split()[1])
+    amplitude = 1 + physics_class.START**2 / 16 + 11 * physics_class.START**4 / 3072  # of the series for large swings
+    assert swing == pytest.approx(2 * math.pi * math.sqrt(1 / 9.81) * amplitude, abs=0.015)
+    half = physics_class.ORBIT / (
+        2 - physics_class.LAUNCH**2
+    )  # vis-viva, launched across at a circle's speed times LAUNCH
+    year = 2 * math.pi * math.sqrt(half**3 / physics_class.PULL)
+    assert float(orbit.split()[1]) == pytest.approx(year, abs=0.01)
+    places = []
+    for _ in range(round(year / world.dt)):
+        places.append(tuple(system.particles[3].position))
+        world.step()
+    gone = np.linalg.norm(np.array(places) - np.array(system.particles[3].position), axis=1)
+    assert gone[0] < 0.02 and gone.max() == pytest.approx(2 * half, rel=0.1), "it closes after the year that is told"
+    assert float(spring.split()[1]) == pytest.approx(2 * math.pi / math.sqrt(40), abs=0.01)
+    before = system.energy.total
+    run(world, 5.0)
+    assert system.energy.total == pytest.approx(before, abs=1e-6)
+
+
+def test_the_sliders_of_the_class_do_what_they_say() -> None:
+    world = physics_class.build()
+    change(world, "length", 0.5)
+    change(world, "gravity", 4.0)
+    change(world, "stiffness", 100.0)
+    change(world, "launch", 1.2)
+    far = 0.0
+    planet = world.system.particles[3]
+    for _ in range(round(10 / world.dt)):
+        world.step()
+        far = max(far, abs(planet.position - physics_class.SUN))
+    pendulum, orbit, spring = labels(world)
+    assert float(pendulum.split()[1]) == pytest.approx(2 * math.pi * math.sqrt(0.5 / 4) * 1.0158, abs=0.02)
+    assert float(spring.split()[1]) == pytest.approx(2 * math.pi / 10, abs=0.01)
+    # Kepler: launched across at 1.2 times the circle's speed, e = 0.44.
+    assert far == pytest.approx(physics_class.ORBIT * 1.44 / 0.56, rel=0.01)
+    assert float(orbit.split()[1]) == pytest.approx(2 * math.pi * math.sqrt((0.4 / 0.56) ** 3 / 0.4), abs=0.02)
+    world.reset()
+    assert widget(world, "stiffness").value == 40
+
+
+def test_rockets_climb_burst_at_their_top_and_stand_in_their_tubes_again() -> None:
+    world = fireworks.build()
+    system = world.system
+    rockets = system.particles[: len(fireworks.COLORS)]
+    world._state.actions["finale"].hook.function()
+    tops, sparks = np.zeros(len(rockets)), 0
+    for _ in range(round(2.5 / world.dt)):
+        world.step()
+        tops = np.maximum(tops, [rocket.position.y for rocket in rockets])
+        sparks = max(sparks, sum(body.is_spark for body in system.bodies))
+    climb = fireworks.CLIMB
+    assert ((climb - 1.1) ** 2 / 19.62 < tops - fireworks.TUBE).all()
+    assert (tops - fireworks.TUBE < (climb + 1.1) ** 2 / 19.62).all()
+    assert sparks > 1000
+    assert all(rocket.is_nailed and abs(rocket.position.y - fireworks.TUBE) < 1e-9 for rocket in rockets)
+    run(world, 1.4)
+    assert sum(body.is_spark for body in system.bodies) < 400, "stars die; the fires go on"
+
+
+def test_a_story_waits_tells_itself_and_stops_when_it_is_touched() -> None:
+    system = iota.System()
+    ball = system.body().particle((0, 1, 0))
+    world = iota.World(system)
+    told: list[str] = []
+    story = Story(world, wait=1.0, on_stop=lambda: told.append("stopped"))
+    story.at(0.5)(lambda: told.append("one"))
+    story.at(1.0)(lambda: told.append("two"))
+    run(world, 1.2)
+    assert told == [] and story.is_told
+    run(world, 1.0)
+    assert told == ["one", "two"] and not story.is_told
+    run(world, 1.2)
+    assert told == ["one", "two"] and story.is_told
+    run(world, 0.6)
+    story.touch()
+    assert told == ["one", "two", "one", "stopped"] and not story.is_told
+    run(world, 0.5)
+    world.reset()
+    run(world, 0.9)
+    assert not story.is_told
+    run(world, 0.7)
+    assert told[-1] == "one"
+    assert ball.alive
+
+
+def test_stories_and_helpers_are_no_studies() -> None:
+    assert {"appendix-e1", "appendix-e2", "appendix-e3", "physics-class", "fireworks"} <= set(studies.names())
+    assert not any("story" in name for name in studies.names())
