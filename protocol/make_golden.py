@@ -453,6 +453,55 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
             "values": [1.0, 2.0, 3.0, 4.0],
         },
     ),
+    (
+        "surface",
+        anchor(B)
+        + array("I", [12, 0xFFFFFFFF, 0x80000001])
+        + array("f", [0, 0, 0, 1, 0, 0, 0, 1, 0])
+        + array("I", [0, 1, 2])
+        + text("paint")
+        + pack("<I", 0x40FF8000),
+        {
+            "at": B,
+            "bodies": [12, 0xFFFFFFFF, 0x80000001],
+            "points": [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+            "triangles": [0, 1, 2],
+            "material": "paint",
+            "color": 0x40FF8000,
+        },
+    ),
+    ("paint", array("I", [12, 13]) + array("I", [0xFF8000]), {"bodies": [12, 13], "colors": [0xFF8000]}),
+    (
+        "shape_set",
+        anchor(A)
+        + part(PART)
+        + array("f", [0, 1, 2])
+        + array("f", [0.5, 0.5, 0.5, 0.5])
+        + array("f", [2])
+        + array("I", [0x80FF]),
+        {
+            "at": A,
+            "part": PART,
+            "places": [0.0, 1.0, 2.0],
+            "rotations": [0.5, 0.5, 0.5, 0.5],
+            "scales": [2.0],
+            "colors": [0x80FF],
+        },
+    ),
+    ("strut", anchor(A) + anchor(B) + part(PART) + pack("<f", 0.75), {"a": A, "b": B, "part": PART, "length": 0.75}),
+    (
+        "tube",
+        array("I", []) + array("f", [0, 1, 2, 3, 4, 5]) + pack("<fB", 0.25, 1) + text("rope") + pack("<I", NO_COLOR),
+        {
+            "bodies": [],
+            "points": [0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
+            "radius": 0.25,
+            "closed": True,
+            "material": "rope",
+            "color": NO_COLOR,
+        },
+    ),
+    ("frame", anchor(A) + quat([0.5, 0.5, 0.5, 0.5]), {"at": A, "rotation": [0.5, 0.5, 0.5, 0.5]}),
 ]
 
 NAN, INFINITY = float("nan"), float("inf")

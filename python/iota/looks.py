@@ -19,8 +19,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from iota import shapes
-from iota._core import Box, Capsule, Cylinder, Mesh, Shape, Sphere, Torus
+from iota._core import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
 
 MATERIALS = ("steel", "brass", "rubber", "wood", "rope", "glass", "paint")
 MOST_TRIANGLES = 50_000
@@ -32,7 +34,7 @@ class Look:
 
     shape: Shape | None  #: None: the body's own shape, see `solid`
     material: str = "paint"
-    color: str | None = None  #: "#rrggbb"; None: that of the material
+    color: str | None = None  #: "#rrggbb", or "#rrggbbaa" to be seen through; None: that of the material
     offset: Sequence[float] = (0.0, 0.0, 0.0)  #: of the shape's origin, in the body's frame, m
     rotation: Sequence[float] = (0.0, 0.0, 0.0, 1.0)  #: of the shape's frame, quaternion x y z w
     turn: float = 0.0  #: of every other body that is drawn so, about the body's x axis, rad
@@ -41,13 +43,28 @@ class Look:
     def __post_init__(self) -> None:
         object.__setattr__(self, "offset", tuple(float(v) for v in self.offset))
         object.__setattr__(self, "rotation", tuple(float(v) for v in self.rotation))
-        if self.material not in MATERIALS:
-            raise ValueError(f"material must be one of {', '.join(MATERIALS)}, not {self.material!r}")
+        if self.color is not None:
+            color_number(self.color)
+        material_of(self.material)
         if isinstance(self.shape, Mesh) and len(self.shape.triangles) > MOST_TRIANGLES:
             raise ValueError(
                 f"the page draws meshes of at most {MOST_TRIANGLES} triangles, this one has "
                 f"{len(self.shape.triangles)}: make it coarser, or give its body another look"
             )
+
+    @property
+    def length(self) -> float:
+        """Of the shape along its x axis, m; of a capsule that of its cylinder."""
+        shape = self.shape
+        if isinstance(shape, Cylinder | Capsule | Cone):
+            return shape.length
+        if isinstance(shape, Box | Ellipsoid):
+            return shape.size[0]
+        if isinstance(shape, Torus):
+            return 2 * (shape.radius + shape.tube) + shape.stretch
+        if isinstance(shape, Mesh):
+            return float(np.ptp(np.asarray(shape.vertices)[:, 0]))
+        return 2 * shape.radius if isinstance(shape, Sphere) else 1.0
 
     def of_length(self, length: float) -> Look:
         """The same, as long as what it is drawn for (m) where it fits itself to that."""
@@ -68,6 +85,21 @@ class Look:
         if self.turn:
             described["turn"] = self.turn
         return described | {"offset": list(self.offset), "rotation": list(self.rotation)}
+
+
+def material_of(name: str) -> str:
+    """The name itself. Raises ValueError for one of no material."""
+    if name not in MATERIALS:
+        raise ValueError(f"material must be one of {', '.join(MATERIALS)}, not {name!r}")
+    return name
+
+
+def color_number(text: str) -> int:
+    """0xRRGGBB of "#rrggbb"; of "#rrggbbaa" with how much is seen through it in the highest byte. Raises ValueError."""
+    digits = text.removeprefix("#")
+    if text == digits or len(digits) not in (6, 8) or not all(digit in "0123456789abcdefABCDEF" for digit in digits):
+        raise ValueError(f'a color is "#rrggbb" or "#rrggbbaa", not {text!r}')
+    return 255 - int(digits[6:] or "ff", 16) << 24 | int(digits[:6], 16)
 
 
 Looks: TypeAlias = dict[str, Look | list[Look]]
@@ -108,6 +140,95 @@ def torus(radius: float, tube: float, material: str = "steel", stretch: float = 
 def box(size: Sequence[float], material: str = "wood", rounding: float = 0.0, **more: Any) -> Look:
     """A box with edges `size` = (x, y, z), rounded by arcs of `rounding`."""
     return Look(Box(size, rounding), material, **more)
+
+
+def cone(radius: float, length: float, material: str = "paint", **more: Any) -> Look:
+    """Along local x: its base at -length/2, its tip at +length/2."""
+    return Look(Cone(radius, length), material, **more)
+
+
+def ellipsoid(size: Sequence[float], material: str = "paint", **more: Any) -> Look:
+    """Its whole axes are `size` = (x, y, z)."""
+    return Look(Ellipsoid(size), material, **more)
+
+
+def disc(radius: float, thickness: float | None = None, material: str = "paint", **more: Any) -> Look:
+    """Across local x; without `thickness` a hundredth of its radius."""
+    return Look(Cylinder(radius, thickness or radius / 100), material, **more)
+
+
+def pyramid(size: Sequence[float], material: str = "paint", **more: Any) -> Look:
+    """Along local x: a base of size (y, z) at -x/2, its tip at +x/2. size: (x, y, z)."""
+    x, y, z = (side / 2 for side in size)
+    vertices = [(-x, -y, -z), (-x, y, -z), (-x, y, z), (-x, -y, z), (x, 0, 0)]
+    return mesh(vertices, [(0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)], material, **more)
+
+
+def half_sphere(radius: float, material: str = "paint", segments: int = 32, **more: Any) -> Look:
+    """Round towards +x, flat at x = 0."""
+    angles = np.linspace(0, math.pi / 2, segments // 4 + 1)[:-1]
+    profile = [(radius * math.sin(a), radius * math.cos(a)) for a in angles]
+    return _revolved([(0.0, 0.0), *profile, (radius, 0.0)], segments, material, **more)
+
+
+def polygon(corners: Sequence[Sequence[float]], thickness: float, material: str = "paint", **more: Any) -> Look:
+    """A plate with these corners (x, y), m, in the local x-y plane, in order, without crossings; `thickness` along z. Raises
+    ValueError for corners that are no outline."""
+    outline = np.array(corners, float)
+    if outline.ndim != 2 or outline.shape[1] != 2 or len(outline) < 3:
+        raise ValueError("a polygon needs at least three corners (x, y)")
+    x, y = outline.T
+    if np.dot(x, np.roll(y, -1)) < np.dot(y, np.roll(x, -1)):
+        outline = outline[::-1]
+    count, half = len(outline), np.full((len(outline), 1), thickness / 2)
+    top = [tuple(row) for row in ears(outline)]
+    sides = [(i, j, i + count) for i in range(count) for j in [(i + 1) % count]]
+    sides += [(j, j + count, i + count) for i in range(count) for j in [(i + 1) % count]]
+    bottom = [(a, c, b) for a, b, c in top]
+    vertices = np.vstack([np.hstack([outline, -half]), np.hstack([outline, half])])
+    return mesh(vertices, bottom + [(a + count, b + count, c + count) for a, b, c in top] + sides, material, **more)
+
+
+def ears(outline: Any) -> list[tuple[int, int, int]]:
+    """Triangles of a simple polygon, corners (n, 2) counter-clockwise, by cutting off ears (Meisters 1975). Raises ValueError
+    where there are none: it crosses itself."""
+
+    def turn(a: Any, b: Any, c: Any) -> float:
+        return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+
+    left, triangles = list(range(len(outline))), []
+    while len(left) > 3:
+        for place, own in enumerate(left):
+            before, after = left[place - 1], left[(place + 1) % len(left)]
+            a, b, c = outline[before], outline[own], outline[after]
+            others = [outline[k] for k in left if k not in (before, own, after)]
+            inside = any(min(turn(a, b, p), turn(b, c, p), turn(c, a, p)) >= 0 for p in others)
+            if turn(a, b, c) > 0 and not inside:
+                triangles.append((before, own, after))
+                del left[place]
+                break
+        else:
+            raise ValueError("the corners are not the outline of a polygon: it crosses or touches itself")
+    return [*triangles, (left[0], left[1], left[2])]
+
+
+def _revolved(profile: Sequence[tuple[float, float]], segments: int, material: str, **more: Any) -> Look:
+    """About local x: (x, radius) from the axis to the axis, seen with +x to the right, outside above."""
+    rings = [
+        [(x, r * math.cos(a), r * math.sin(a)) for a in np.arange(segments) * 2 * math.pi / segments]
+        for x, r in profile[1:-1]
+    ]
+    vertices = [(profile[0][0], 0.0, 0.0), *(v for ring in rings for v in ring), (profile[-1][0], 0.0, 0.0)]
+    last = len(vertices) - 1
+    triangles = []
+    for k in range(segments):
+        j = (k + 1) % segments
+        triangles.append((0, 1 + j, 1 + k))
+        triangles.append((last, last - segments + k, last - segments + j))
+        for ring in range(len(rings) - 1):
+            a, b = 1 + ring * segments, 1 + (ring + 1) * segments
+            triangles += [(a + k, a + j, b + k), (a + j, b + j, b + k)]
+    return mesh(vertices, triangles, material, **more)
 
 
 def mesh(vertices: Any, triangles: Any, material: str = "paint", **more: Any) -> Look:

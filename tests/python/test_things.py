@@ -15,7 +15,7 @@ from page_client import NOTHING, PageClient
 
 import iota
 from iota import looks
-from iota._protocol import NO_BODY, NO_COLOR, PointerKind, WidgetKind
+from iota._protocol import FIRST_FRAME, NO_BODY, NO_COLOR, PointerKind, WidgetKind
 
 Runner = Callable[[iota.World], str]
 
@@ -349,3 +349,131 @@ def test_a_picture_comes_from_the_page(run_world: Runner, tmp_path: Path) -> Non
             client.screenshot(seconds=0.2)
         page.send("picture", request=77, is_last=True, data=b"spam")
         page.wait_for(lambda: any("none was asked for" in n["text"] for n in page.notices))
+
+
+def test_surfaces_lose_the_triangles_whose_thread_is_gone(run_world: Runner) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    knots = [system.body().particle(place) for place in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0))]
+    pairs = [(0, 1), (0, 2), (1, 3), (2, 3), (1, 2)]
+    threads = [system.bond(knots[a], knots[b], "spring", stiffness=1) for a, b in pairs]
+    slots = [knot.body.slot for knot in knots]
+    world = iota.World(system)
+    surface = world.surface(knots, [(0, 1, 2), (1, 3, 2)], threads=threads, color="#ff800080")
+    with PageClient(run_world(world)) as page:
+        seen = entity(page, "surface")
+        assert seen["triangles"] == [0, 1, 2, 1, 3, 2] and seen["bodies"] == slots
+        assert seen["color"] == 0x7FFF8000, "half is seen through it"
+        world.call(threads[2].destroy)
+        page.wait_for(lambda: page.entities["surface"][0]["triangles"] == [0, 1, 2])
+        world.call(threads[4].destroy)
+        page.wait_for(lambda: page.entities["surface"][0]["triangles"] == [])
+        with pytest.raises(ValueError, match="triangles: name point 4, but there are 4"):
+            world.call(lambda: (setattr(surface, "triangles", [(0, 1, 4)]), surface._record()))
+
+
+def test_bodies_are_painted_by_one_array_and_the_survivor_keeps_its_own(run_world: Runner) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    bodies = [system.body(shape=iota.Sphere(0.1), mass=1, position=(i, 0, 0)) for i in range(300)]
+    slots = [body.slot for body in bodies]
+    world = iota.World(system)
+    paint = world.paint(bodies, np.linspace(0, 1, 900).reshape(300, 3))
+    with PageClient(run_world(world)) as page:
+        seen = entity(page, "paint")
+        assert seen["bodies"] == slots and seen["colors"][-1] == 0xFEFFFF
+        world.call(bodies[5].destroy)
+        page.wait_for(lambda: len(page.entities["paint"][0]["bodies"]) == 299)
+        assert slots[5] not in page.entities["paint"][0]["bodies"], "what comes into its slot is not painted"
+        world.call(lambda: setattr(paint, "color", "#102030"))
+        page.wait_for(lambda: page.entities["paint"][0]["colors"] == [0x102030])
+    with pytest.raises(TypeError, match="bodies: must be bodies"):
+        world.paint("all", "#102030")
+
+
+def test_frames_carry_hide_and_take_away_what_is_on_them(rod: iota.Body, run_world: Runner) -> None:
+    slot = rod.slot
+    world = iota.World(rod.system)
+    outer = world.frame(rod, rotation=(0, 0, 0, 2))
+    inner = world.frame(outer.point((0, 1, 0)))
+    world.shape(looks.sphere(0.1), on=inner, position=(0, 0, 0.5))
+    world.line(inner.point((1, 0, 0)), rod)
+    with PageClient(run_world(world)) as page:
+        assert entity(page, "frame") | {"id": None} == {
+            "id": None,
+            "at": {"body": slot, "point": (0, 0, 0)},
+            "rotation": (0, 0, 0, 1),
+        }
+        assert entity(page, "frame", 1)["at"] == {"body": FIRST_FRAME, "point": (0, 1, 0)}
+        marker = entity(page, "marker")
+        assert marker["body"] == FIRST_FRAME + 1 and marker["part"]["offset"] == (0, 0, 0.5)
+        assert entity(page, "line")["bodies"] == [FIRST_FRAME + 1, slot]
+        world.call(lambda: setattr(outer, "visible", False))
+        page.wait_for(lambda: not page.entities["marker"] and not page.entities["line"])
+        world.call(lambda: setattr(outer, "visible", True))
+        page.wait_for(lambda: page.entities["marker"] and page.entities["line"])
+        with pytest.raises(ValueError, match="a frame cannot be on itself"):
+            world.call(lambda: setattr(outer, "at", inner))
+        world.call(inner.destroy)
+        page.wait_for(lambda: not page.entities["marker"] and not page.entities["line"])
+
+
+def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, run_world: Runner) -> None:
+    slot = rod.slot
+    world = iota.World(rod.system)
+    strut = world.strut(rod.particles[0], (0, 4, 0), looks.cylinder(0.02), color=(1, 0, 0))
+    world.strut(rod, (0, 4, 0), looks.box((0.5, 0.1, 0.1)))
+    world.tube(rod.particles[0], (0, 0, 0), radius=0.05)
+    places = np.random.default_rng(1).uniform(-1, 1, (5000, 3))
+    shapes = world.shapes(looks.cone(0.1, 0.2), places, sizes=np.linspace(1, 2, 5000), at=rod)
+    with PageClient(run_world(world)) as page:
+        seen = entity(page, "strut")
+        assert seen["length"] == pytest.approx(3) and seen["part"]["shape"]["sizes"][1] == pytest.approx(3), (
+            "it fits itself"
+        )
+        assert seen["part"]["color"] == 0xFF0000 and seen["a"]["body"] == slot
+        assert entity(page, "strut", 1)["length"] == pytest.approx(0.5), "it is stretched"
+        assert entity(page, "tube")["material"] == "rope"
+        seen = entity(page, "shape_set")
+        np.testing.assert_allclose(np.reshape(seen["places"], (5000, 3)), places, atol=1e-6)
+        assert seen["part"]["shape"]["kind"] == "cone" and len(seen["scales"]) == 5000 and seen["rotations"] == []
+        world.call(lambda: setattr(shapes, "rotations", np.tile([0, 0, 0, 1.0], (5000, 1))))
+        page.wait_for(lambda: len(page.entities["shape_set"][0]["rotations"]) == 20000)
+        world.call(lambda: setattr(strut, "to", (0, 2, 0)))
+        page.wait_for(lambda: page.entities["strut"][0]["length"] == pytest.approx(1))
+
+
+@pytest.mark.parametrize(
+    ("make", "says"),
+    [
+        (lambda w: w.surface([(0, 0, 0)], [(0, 1.5, 2)]), "triangles: must have the shape"),
+        (lambda w: w.surface("no.stl"), "a surface needs triangles"),
+        (
+            lambda w: w.shapes(looks.sphere(0.1), [(0, 0, 0)], rotations=[(0, 0, 0, 0)]),
+            "rotations: must have the shape",
+        ),
+        (lambda w: w.shape(looks.sphere(0.1), rotation=(0, 0, 0, 0)), "rotation: a rotation is a quaternion"),
+        (lambda w: w.tube((0, 0, 0), (1, 0, 0), radius=0), "radius: must be a finite number"),
+        (lambda w: w.tube((0, 0, 0), (1, 0, 0), radius=1, material="silk"), "material must be one of"),
+        (lambda w: looks.sphere(0.1, color="#12345"), "a color is"),
+        (
+            lambda w: looks.polygon([(0, 0), (1, 1), (1, 0), (0, 1)], 0.1),
+            "it crosses or touches itself|encloses no volume",
+        ),
+    ],
+)
+def test_wrong_shapes_are_refused_with_what_is_wrong(system: iota.System, make: Callable[..., Any], says: str) -> None:
+    with pytest.raises((ValueError, TypeError), match=says):
+        make(iota.World(system))
+
+
+def test_looks_of_all_shapes_enclose_their_volume() -> None:
+    volume = {
+        looks.pyramid((3, 2, 1)): 2.0,
+        looks.half_sphere(1.0, segments=96): 2 / 3 * np.pi,
+        looks.polygon([(0, 0), (0, 2), (1, 1), (2, 2), (2, 0)], 0.5): 1.5,
+        looks.disc(1.0, 0.5): np.pi / 2,
+        looks.cone(1.0, 3.0): np.pi,
+        looks.ellipsoid((2, 4, 6)): 8 * np.pi,
+    }
+    for look, wanted in volume.items():
+        body = iota.System().body(shape=look.shape, density=1.0)
+        assert body.mass == pytest.approx(wanted, rel=0.01), look

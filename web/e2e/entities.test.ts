@@ -10,13 +10,18 @@ import { freePort, WorldServer } from "./server.ts";
 let server: WorldServer;
 let browser: Browser;
 let tab: Tab;
+/** Slot of the ball that runs to and fro, and a place where it was drawn. */
+const runner = 2;
+let passed: Place;
 
 beforeAll(async () => {
   server = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
   browser = await Browser.start({ width: 960, height: 540, density: 1 });
   tab = await browser.open(server.url);
   await tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
-  await tab.until("there is a path", () => iota.page.world.entities.trace.countOf(0) > 12);
+  const drawn = await tab.page.evaluate((runner) => ({ place: iota.bodyPosition(runner), time: iota.time }), runner);
+  passed = drawn.place;
+  await tab.until("the runner has gone on", (time) => iota.time > time + 0.8, drawn.time);
   await tab.picture("page_entities");
 });
 
@@ -85,11 +90,24 @@ describe("what a script draws", () => {
     ["a label of a height", "label", [0.65, 1.1, 0], [208, 64, 43]],
     ["a box of wood", "marker", [1.1, 0.3, 0.12], [173, 127, 89]],
     ["a green cone", "marker", [1.45, 0.75, 0.08], [76, 154, 82]],
-    ["a path", "trace", [-0.3, 0.2, 0.7], [242, 163, 36]],
+    ["a tube", "tube", [-1.3, 1.58, 0.04], [76, 154, 82]],
+    ["a strut", "strut", [-0.7, 1.6, 0.03], [208, 64, 43]],
+    ["a surface, from behind as from before", "surface", [-0.2, 1.5, 0], [63, 127, 208]],
+    ["the first of a set of shapes", "shapeSet", [0.2, 1.65, 0.05], [138, 79, 176]],
+    ["the second, after the set was moved", "shapeSet", [0.35, 1.65, 0.06], [242, 163, 36]],
+    ["what is on a frame, after that was moved", "marker", [0.6, 1.45, 0.05], [47, 157, 146]],
+    ["a painted body of wood", "body", [-1.0, 0.2, 1.0], [138, 79, 176]],
   ])("%s is where it belongs, in its color", async (_, kind, place, color) => {
     const { shown, hidden } = await colorAt(kind, place, color);
-    expect(apart(shown, color), `${shown} in place of ${color}`).toBeLessThan(0.25);
+    expect(apart(shown, color), `${shown} in place of ${color}`).toBeLessThan(0.3);
     expect(apart(hidden, color) - apart(shown, color), `${hidden} without it`).toBeGreaterThan(0.1);
+  });
+
+  it("a path goes where its body was drawn", async () => {
+    const color = [242, 163, 36] as const;
+    const { shown, hidden } = await colorAt("trace", passed, color);
+    expect(apart(shown, color), `${shown} in place of ${color}`).toBeLessThan(0.3);
+    expect(apart(hidden, color)).toBeGreaterThan(0.4);
   });
 });
 

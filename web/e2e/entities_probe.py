@@ -27,6 +27,7 @@ def build() -> iota.World:
     ball = system.body(shape=iota.Sphere(0.12), mass=1.0, position=(0, 0.2, 0.9))
     world.draw(ball, looks.solid("brass"))
     draw(world)
+    draw_more(world)
     follow(world)
     ask(world)
     listen(world, ball)
@@ -52,6 +53,29 @@ def draw(world: iota.World) -> None:
     world.shape(looks.sphere(0.12, "glass"), position=(1.45, 0.3, 0))
     world.shape(looks.torus(0.12, 0.04, "steel"), position=(1.1, 0.8, 0))
     world.shape(looks.Look(iota.Cone(0.12, 0.3), "paint", "#4c9a52"), position=(1.45, 0.8, 0), rotation=UPRIGHT)
+
+
+def draw_more(world: iota.World) -> None:
+    """Above and before the others."""
+    world.tube((-1.6, 1.4, 0), (-1.3, 1.6, 0), (-1.0, 1.4, 0), radius=0.04, material="paint", color="#4c9a52")
+    world.strut((-0.8, 1.4, 0), (-0.6, 1.8, 0), looks.cylinder(0.03, "paint"), color="#d0402b")
+    world.surface([(-0.4, 1.4, 0), (0, 1.4, 0), (-0.2, 1.8, 0)], [(0, 2, 1)], color="#3f7fd0")
+    cubes = world.shapes(
+        looks.box((0.1, 0.1, 0.1), "paint"),
+        [(0.2, 1.45, 0), (0.35, 1.45, 0)],
+        sizes=[1, 1.2],
+        color=["#8a4fb0", "#f2a324"],
+    )
+    frame = world.frame((9, 9, 9))
+    world.shape(looks.pyramid((0.2, 0.2, 0.2), color="#2f9d92"), on=frame, position=(0, 0.1, 0), rotation=UPRIGHT)
+    painted = world.system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1.0, position=(-1.0, 0.2, 0.9))
+    world.draw(painted, looks.solid("wood"))
+    world.paint(painted, "#8a4fb0")
+
+    @world.after(0.2)
+    def move() -> None:
+        frame.at = (0.6, 1.4, 0)
+        cubes.positions = np.array([(0.2, 1.65, 0), (0.35, 1.65, 0)])
 
 
 def follow(world: iota.World) -> None:

@@ -20,7 +20,7 @@ def build() -> iota.World:
     wind = system.field(
         "current", group=made.groups["cloth"], velocity=(0.3, 0, 1.2), drag=0.004, speed=1.0, size=0.6, evolution=1.0
     )
-    present(world)
+    present(world, made)
 
     @world.action("wind", key="g", help="the wind drops, or comes back", on="world")
     def blow() -> None:
@@ -39,9 +39,13 @@ def build() -> iota.World:
     return world
 
 
-def present(world: iota.World) -> None:
-    """Threads, and the frame with the bar that holds the upper edge."""
-    world.draw_ties("spring", looks.cylinder(0.004, "rope", color="#b0303a"))
+def present(world: iota.World, made: iota.builder.Realized) -> None:
+    """The cloth between its threads, and the frame with the bar that holds the upper edge."""
+    world.draw_ties("spring", [])
+    corners = [(row * COLUMNS + column, COLUMNS) for row in range(ROWS - 1) for column in range(COLUMNS - 1)]
+    triangles = [t for k, below in corners for t in ((k, k + below, k + 1), (k + 1, k + below, k + below + 1))]
+    world.surface(list(made.points), triangles, threads=made.bonds, color="#b0303a")
+    world.paint([point.body for point in made.points], "#b0303a")
     left, right, y = CORNER.x - 0.08, CORNER.x + (COLUMNS - 1) * SPACING + 0.08, CORNER.y
     world.add_strut((left, y, 0), (right, y, 0), looks.cylinder(0.014, "wood"))
     for x in (left, right):

@@ -4,22 +4,38 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
-from iota.looks import Look
+from iota.looks import Look, material_of
 from iota.simulator import SimulatedBody
-from iota.world.shown import Arrow, Axes, Label, Line, Marker, Points, Trace
+from iota.world.shown import Arrow, Axes, Label, Line, Marker, Paint, Points, Shapes, Strut, Surface, Trace, Tube
 from iota.world.state import State
-from iota.world.things import Attachable, Place, Thing
+from iota.world.things import Attachable, Frame, Place, Thing
 from iota.world.widgets import Button, Callback, Checkbox, Choice, Plot, Slider, TextField
 
 Color = Any  # "#rrggbb", 0xRRGGBB, three numbers from 0 to 1, or None
 
 
-class Drawing:
-    """Labels, lines, arrows, axes, traces, points, shapes, buttons, sliders, check boxes, choices, texts and plots.
+def _listed(points: tuple[Any, ...]) -> Any:
+    """One array, or places one by one."""
+    return points[0] if len(points) == 1 and not isinstance(points[0], Attachable) else points
 
-    A place is a particle, a body, a bond or a point of the world (m). What is on one of these moves with it, at no cost, stays
+
+def _triangles_of(surface: Any) -> tuple[Any, Any]:
+    """Vertices and triangles of something that has vertices and faces."""
+    if not hasattr(surface, "vertices") or not hasattr(surface, "faces"):
+        raise TypeError(
+            "a surface needs triangles beside its points, or vertices and faces, as of iota.shapelib.read_surface"
+        )
+    return surface.vertices, [(face[0], b, c) for face in surface.faces for b, c in pairwise(face[1:])]
+
+
+class Drawing:
+    """Labels, lines, tubes, arrows, axes, traces, points, shapes, struts, surfaces, colors of bodies, frames; buttons, sliders,
+    check boxes, choices, texts and plots.
+
+    A place is a particle, a body, a bond, a frame or a point of the world (m). What is on one of these moves with it, at no cost, stays
     on it when bodies are cut and joined, and goes when it goes. `handle.destroy()` takes a thing off the page, `handle.visible`
     hides it. Reset leaves all of them as they are.
 
@@ -50,8 +66,7 @@ class Drawing:
 
     def line(self, *points: Any, radius: float = 0.0, color: Color = None, closed: bool = False) -> Line:
         """A line through particles, bodies and places, or through an array of shape (n, 3). radius: m; 0: a few pixels."""
-        given = points[0] if len(points) == 1 and not isinstance(points[0], Attachable) else points
-        return Line(self._state.things, points=given, radius=radius, color=color, closed=closed)
+        return Line(self._state.things, points=_listed(points), radius=radius, color=color, closed=closed)
 
     def arrow(
         self,
@@ -98,6 +113,90 @@ class Drawing:
             on=on,
             color=color,
         )
+
+    def shapes(
+        self,
+        look: Look,
+        positions: Any,
+        rotations: Any = None,
+        sizes: Any = None,
+        color: Any = None,
+        at: Place = None,
+    ) -> Shapes:
+        """A look thousands of times. positions: (n, 3), m, in the frame of `at`. rotations: (n, 4), quaternions x y z w. sizes:
+        times the look's, one, (n,) or (n, 3) along its axes. color: one, a list of n or an array (n, 3) from 0 to 1. An
+        array assigned changes all of them.
+
+        bricks = world.shapes(looks.box((0.2, 0.1, 0.1)), places)
+        bricks.positions = places + (0, 1, 0)
+        """
+        return Shapes(
+            self._state.things, look=look, positions=positions, rotations=rotations, sizes=sizes, color=color, at=at
+        )
+
+    def strut(self, at: Place, to: Place, look: Look, color: Color = None) -> Strut:
+        """A look from one place to another: its x axis runs along the line, and it is stretched to its length.
+
+        world.strut(piston, crank, looks.cylinder(0.02, "steel"))
+        """
+        return Strut(self._state.things, at=at, to=to, look=look, color=color)
+
+    def tube(
+        self, *points: Any, radius: float, material: str = "rope", color: Color = None, closed: bool = False
+    ) -> Tube:
+        """A round tube along a smooth curve through particles, bodies and places, or through an array of shape (n, 3)."""
+        return Tube(
+            self._state.things,
+            points=_listed(points),
+            radius=radius,
+            material=material_of(material),
+            color=color,
+            closed=closed,
+        )
+
+    def surface(
+        self,
+        points: Any,
+        triangles: Any = None,
+        at: Place = None,
+        color: Color = None,
+        material: str = "paint",
+        threads: Sequence[Any] = (),
+    ) -> Surface:
+        """Triangles, seen from both sides. points: an array (n, 3) in the frame of `at`, m; or particles, bodies and places,
+        with which it bends; or what `iota.shapelib.read_surface` has read (then without triangles). triangles: (k, 3) numbers
+        of points. threads: springs or ropes; once one is gone, the triangles along it are as well.
+
+        world.surface(iota.shapelib.read_surface("teapot.obj"), at=body, color="#4c9a52")
+        world.surface(knots, triangles, threads=springs, color="#b0303a")
+        """
+        if triangles is None:
+            points, triangles = _triangles_of(points)
+        return Surface(
+            self._state.things,
+            points=points,
+            triangles=triangles,
+            at=at,
+            color=color,
+            material=material_of(material),
+            threads=threads,
+        )
+
+    def paint(self, bodies: Any, color: Any) -> Paint:
+        """Colors of bodies, in place of those of their materials. color: one, one for each body, or an array (n, 3) from 0 to 1.
+
+        world.paint(links, "#e8452c")
+        """
+        return Paint(self._state.things, bodies=bodies, color=color)
+
+    def frame(self, at: Place = None, rotation: Sequence[float] = (0, 0, 0, 1)) -> Frame:
+        """A frame that other things are put on, in place of a body: they move, hide and go with it. rotation: quaternion x y z w.
+
+        hand = world.frame((0, 1, 0))
+        world.shape(looks.sphere(0.1), on=hand, position=(0.2, 0, 0))
+        hand.at = (0, 2, 0)
+        """
+        return Frame(self._state.things, at=at, rotation=rotation)
 
     # --- to be changed by users -----------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from iota._core import Body, Capsule, Cylinder, DrawnPart, Room, Sphere, Torus
-from iota.looks import Look, Looks
+from iota.looks import Look, Looks, color_number
 from iota.simulator import SimulatedBody
 
 
@@ -33,7 +33,7 @@ def part_of(described: dict[str, Any], style: str = "*", **place: Any) -> DrawnP
         described.get("sizes", []),
         look=style,
         material=described["material"],
-        color=None if color is None else int(color.removeprefix("#"), 16),
+        color=None if color is None else color_number(color),
         offset=tuple(where["offset"]),
         rotation=tuple(where["rotation"]),
         turn=described.get("turn", 0.0),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Things that are only drawn: labels, lines, arrows, axes, traces, points, shapes. Each is one kind of the protocol."""
+"""Things that are only drawn: labels, lines, arrows, axes, traces, points, shapes, surfaces, colors. Each is one kind of the
+protocol."""
 
 from __future__ import annotations
 
@@ -8,9 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from iota._core import Body, Vec3
 from iota._protocol import NO_BODY, NO_COLOR
 from iota.looks import Look
+from iota.simulator import SimulatedBody
 from iota.world.things import (
+    FARTHEST,
     Attachable,
     Field,
     Thing,
@@ -22,8 +26,10 @@ from iota.world.things import (
     place,
     points,
     text,
+    unit_quaternion,
     vector,
 )
+from iota.world.things import color as any_color
 
 MOST_TRACE = 16384
 
@@ -40,28 +46,50 @@ class Label(Thing):
         return None if a is None or b is None else self._values | {"a": a, "b": b}
 
 
+def _points(value: Any) -> Any:
+    """An array, or a list of places."""
+    if isinstance(value, np.ndarray) or not any(isinstance(at, Attachable) for at in value):
+        return points(value)
+    return [place(at) for at in value]
+
+
+def _on_bodies(given: Any) -> dict[str, Any] | None:
+    """Points as pages are told of them; None where what one of them is on is gone."""
+    if isinstance(given, np.ndarray):
+        return {"bodies": (), "points": given}
+    anchors = [anchor(at) for at in given]
+    there = [a for a in anchors if a is not None]
+    if len(there) < len(anchors):
+        return None
+    return {"bodies": [a["body"] for a in there], "points": [tuple(a["point"]) for a in there]}
+
+
 class Line(Thing):
     """Straight pieces through points: each a particle, body or place. radius: m; 0: a few pixels. closed: back to the first."""
 
     kind = "line"
     radius, color, closed = Field(length), Field(color), Field(bool)
 
-    @staticmethod
-    def _points(value: Any) -> Any:
-        if isinstance(value, np.ndarray) or not any(isinstance(at, Attachable) for at in value):
-            return points(value)
-        return [place(at) for at in value]
-
     points = Field(_points)
 
     def _record(self) -> dict[str, Any] | None:
-        if isinstance(self.points, np.ndarray):
-            return self._values | {"bodies": ()}
-        anchors = [anchor(at) for at in self.points]
-        if None in anchors:
-            return None
-        rows = [tuple(a["point"]) for a in anchors if a is not None]
-        return self._values | {"bodies": [a["body"] for a in anchors if a is not None], "points": rows}
+        placed = _on_bodies(self.points)
+        return None if placed is None else self._values | placed
+
+    def _is_attached(self) -> bool:
+        return not isinstance(self.points, np.ndarray)
+
+
+class Tube(Thing):
+    """A round tube along a smooth curve through points, as of `Line`. radius: m. closed: back to the first."""
+
+    kind = "tube"
+    points, color, closed, material = Field(_points), Field(color), Field(bool), Field(text)
+    radius = Field(number(1e-15, FARTHEST))
+
+    def _record(self) -> dict[str, Any] | None:
+        placed = _on_bodies(self.points)
+        return None if placed is None else self._values | placed
 
     def _is_attached(self) -> bool:
         return not isinstance(self.points, np.ndarray)
@@ -84,7 +112,7 @@ class Axes(Thing):
 
     kind = "axes"
     at, length = Field(place), Field(length)
-    rotation = Field(lambda value: tuple(float(x) for x in value))
+    rotation = Field(unit_quaternion)
 
     def _record(self) -> dict[str, Any] | None:
         at = anchor(self.at)
@@ -104,6 +132,15 @@ class Trace(Thing):
         return None if at is None else self._values | {"at": at}
 
 
+def _colors(value: Any) -> NDArray[np.uint32]:
+    """One color, or one for each."""
+    if isinstance(value, np.ndarray) and value.ndim == 2:
+        parts = np.round(255 * np.clip(value.astype(float), 0, 1)).astype(np.uint32)
+        return np.asarray(parts[:, 0] << 16 | parts[:, 1] << 8 | parts[:, 2], np.uint32)
+    is_one = value is None or isinstance(value, str | int) or (len(value) == 3 and isinstance(value[0], float))
+    return np.array([any_color(each) for each in ([value] if is_one else value)], np.uint32)
+
+
 class Points(Thing):
     """Many balls, set by one array. points: shape (n, 3), m, in the frame of `at`. radius: m, one or n. color: one, or n of
     them: an array of shape (n, 3) from 0 to 1, or a list of n colors."""
@@ -118,14 +155,6 @@ class Points(Thing):
             raise ValueError("must be one radius, or one for each point, of 0 m or more")
         return radii
 
-    @staticmethod
-    def _colors(value: Any) -> NDArray[np.uint32]:
-        if isinstance(value, np.ndarray) and value.ndim == 2:
-            parts = np.round(255 * np.clip(value.astype(float), 0, 1)).astype(np.uint32)
-            return np.asarray(parts[:, 0] << 16 | parts[:, 1] << 8 | parts[:, 2], np.uint32)
-        is_one = value is None or isinstance(value, str | int) or (len(value) == 3 and isinstance(value[0], float))
-        return np.array([color(each) for each in ([value] if is_one else value)], np.uint32)
-
     radius, color = Field(_radii), Field(_colors)
 
     def _record(self) -> dict[str, Any] | None:
@@ -138,24 +167,33 @@ class Points(Thing):
         return self._values | {"at": at, "radii": self.radius, "colors": self.color}
 
 
+def _look(value: Any) -> Look:
+    if not isinstance(value, Look) or value.shape is None:
+        raise TypeError(f"must be a Look with a shape, not {value!r}")
+    return value
+
+
+def _part(look: Look, color: int = NO_COLOR, **place: Any) -> dict[str, Any]:
+    """A look as pages are told of it. color: in place of its own. place: offset and rotation in place of its own."""
+    described = look.describe() | place
+    shape = {"kind": described["kind"], "sizes": described["sizes"]}
+    shape |= {"vertices": described.get("vertices", ()), "triangles": described.get("triangles", ())}
+    own = any_color(described.get("color")) if color == NO_COLOR else color
+    part = {"look": "*", "shape": shape, "turn": 0.0, "material": described["material"], "color": own}
+    return part | {"offset": described["offset"], "rotation": described["rotation"]}
+
+
 class Marker(Thing):
-    """A look on a body, or in the world. position: of its origin, in the frame of the body or the world, m. rotation:
+    """A look on a body or frame, or in the world. position: of its origin, in the frame of that or of the world, m. rotation:
     quaternion x y z w. color: in place of the look's."""
 
     kind = "marker"
-    position, color = Field(vector), Field(color)
-    rotation = Field(lambda value: tuple(float(x) for x in value))
-
-    @staticmethod
-    def _look(value: Any) -> Look:
-        if not isinstance(value, Look) or value.shape is None:
-            raise TypeError(f"must be a Look with a shape, not {value!r}")
-        return value
+    position, color, rotation = Field(vector), Field(color), Field(unit_quaternion)
 
     @staticmethod
     def _on(value: Any) -> Any:
         if value is not None and not isinstance(value, Attachable):
-            raise TypeError(f"must be a body, a particle or None, not {type(value).__name__}")
+            raise TypeError(f"must be a body, a particle, a frame or None, not {type(value).__name__}")
         return value
 
     look, on = Field(_look), Field(_on)
@@ -164,12 +202,158 @@ class Marker(Thing):
         at = anchor(self.on)
         if at is None:
             return None
-        described = self.look.describe()
-        own = color(described.get("color"))
-        shape = {"kind": described["kind"], "sizes": described["sizes"]}
-        shape |= {"vertices": described.get("vertices", ()), "triangles": described.get("triangles", ())}
-        part = {"look": "*", "shape": shape, "turn": 0.0, "material": described["material"]}
-        part |= {"color": own if self.color == NO_COLOR else self.color, "rotation": self.rotation}
         x, y, z = at["point"] if at["body"] != NO_BODY else (0, 0, 0)
-        part["offset"] = (x + self.position.x, y + self.position.y, z + self.position.z)
-        return {"body": at["body"], "part": part}
+        offset = (x + self.position.x, y + self.position.y, z + self.position.z)
+        return {"body": at["body"], "part": _part(self.look, self.color, offset=offset, rotation=self.rotation)}
+
+
+class Strut(Thing):
+    """A look from one place to another: its x axis runs along the line, and it is stretched to its length. It never rolls about
+    it at once; where both places are the same it is not drawn."""
+
+    kind = "strut"
+    look, at, to, color = Field(_look), Field(place), Field(place), Field(color)
+
+    def _record(self) -> dict[str, Any] | None:
+        a, b = anchor(self.at), anchor(self.to)
+        if a is None or b is None:
+            return None
+        # What fits itself is made about as long as it is drawn, so that its ends keep their form.
+        look = self.look.of_length(_apart(self.at, self.to) or 1.0)
+        return {"a": a, "b": b, "part": _part(look, self.color), "length": look.length}
+
+
+def _apart(at: Any, to: Any) -> float:
+    """Distance of two places now, m; 0 where one has none of its own."""
+    places = [getattr(place, "position", getattr(place, "center_of_mass", place)) for place in (at, to)]
+    return abs(Vec3(*places[0]) - Vec3(*places[1])) if all(isinstance(place, Vec3) for place in places) else 0.0
+
+
+class Shapes(Thing):
+    """The same look many times. positions: (n, 3), m, in the frame of `at`. rotations: (n, 4), quaternions x y z w, or None.
+    sizes: times the look's, one number, (n,) or (n, 3) along its axes, or None. color: one, n, or an array (n, 3) from 0 to 1."""
+
+    kind = "shape_set"
+    look, at, positions = Field(_look), Field(place), Field(points)
+
+    @staticmethod
+    def _rotations(value: Any) -> NDArray[np.float64]:
+        rows = np.zeros((0, 4)) if value is None else np.array(value, float)
+        if rows.ndim != 2 or rows.shape[1] != 4 or not (np.linalg.norm(rows, axis=1) > 1e-9).all():
+            raise ValueError("must have the shape (n, 4), each row a quaternion that is not zero")
+        return rows
+
+    @staticmethod
+    def _sizes(value: Any) -> NDArray[np.float64]:
+        sizes = np.zeros(0) if value is None else np.atleast_1d(np.array(value, float))
+        if sizes.ndim > 2 or sizes.shape[1:] not in ((), (3,)) or not np.isfinite(sizes).all():
+            raise ValueError("must be one number, (n,) or (n, 3), all finite")
+        return sizes
+
+    rotations, sizes, color = Field(_rotations), Field(_sizes), Field(_colors)
+
+    def _record(self) -> dict[str, Any] | None:
+        at, count = anchor(self.at), len(self.positions)
+        if at is None:
+            return None
+        for name, many in (("rotations", (0, count)), ("sizes", (0, 1, count)), ("color", (1, count))):
+            if len(getattr(self, name)) not in many:
+                raise ValueError(
+                    f"{name} must be {many[-1]}, one for each of the positions, not {len(getattr(self, name))}"
+                )
+        one = self.color[0] if len(self.color) == 1 else NO_COLOR
+        return {
+            "at": at,
+            "part": _part(self.look, int(one)),
+            "places": self.positions,
+            "rotations": self.rotations,
+            "scales": self.sizes,
+            "colors": self.color if len(self.color) > 1 else (),
+        }
+
+
+class Surface(Thing):
+    """Triangles, seen from both sides. points: an array (n, 3) in the frame of `at`, m, or particles, bodies and places; it then
+    bends with them. triangles: (k, 3) numbers of points. threads: springs or ropes: a triangle is not drawn any more once one
+    that ran along one of its edges has gone."""
+
+    kind = "surface"
+    at, points, color, material = Field(place), Field(_points), Field(color), Field(text)
+
+    @staticmethod
+    def _triangles(value: Any) -> NDArray[np.int64]:
+        rows = np.array(value)
+        if rows.size == 0:
+            rows = np.zeros((0, 3), np.int64)
+        if rows.ndim != 2 or rows.shape[1] != 3 or rows.dtype.kind not in "iu" or rows.min(initial=0) < 0:
+            raise ValueError("must have the shape (k, 3), whole numbers of points from 0")
+        return rows
+
+    @staticmethod
+    def _threads(value: Any) -> list[Any]:
+        return list(value)
+
+    triangles, threads = Field(_triangles), Field(_threads)
+
+    def _record(self) -> dict[str, Any] | None:
+        at, count = anchor(self.at), len(self.points)
+        if self.triangles.max(initial=-1) >= count:
+            raise ValueError(f"triangles: name point {self.triangles.max()}, but there are {count}")
+        placed = _on_bodies(self.points)
+        if at is None or placed is None:
+            return None
+        return {"at": at, "material": self.material, "color": self.color, "triangles": self._whole()} | placed
+
+    def _is_attached(self) -> bool:
+        return super()._is_attached() or not isinstance(self.points, np.ndarray)
+
+    def _whole(self) -> NDArray[np.int64]:
+        """The triangles without those that have lost a thread along an edge."""
+        torn = self._torn()
+        if not torn:
+            return self.triangles
+        edges = ((0, 1), (1, 2), (2, 0))
+        kept = [not any(frozenset((row[a], row[b])) in torn for a, b in edges) for row in self.triangles.tolist()]
+        return self.triangles[kept]
+
+    def _torn(self) -> set[frozenset[int]]:
+        """Edges whose thread is gone."""
+        if isinstance(self.points, np.ndarray) or not self.threads:
+            return set()
+        if self._edges is None:
+            number = {getattr(at, "body", at): index for index, at in enumerate(self.points)}
+            ends = (
+                (thread, {number[end.body] for end in thread.ends if end.body in number}) for thread in self.threads
+            )
+            self._edges = [(thread, frozenset(pair)) for thread, pair in ends if len(pair) == 2]
+        return {edge for thread, edge in self._edges if not thread.alive}
+
+    _edges: list[tuple[Any, frozenset[int]]] | None = None
+
+
+class Paint(Thing):
+    """Colors of bodies in place of those of their materials. color: one, one for each body, or an array (n, 3) from 0 to 1."""
+
+    kind = "paint"
+
+    @staticmethod
+    def _bodies(value: Any) -> list[Any]:
+        bodies = [value] if isinstance(value, Body | SimulatedBody) else list(value)
+        for body in bodies:
+            if not isinstance(body, Body | SimulatedBody):
+                raise TypeError(f"must be bodies, not {body!r}")
+        return bodies
+
+    bodies, color = Field(_bodies), Field(_colors)
+
+    def _record(self) -> dict[str, Any] | None:
+        if len(self.color) not in (1, len(self.bodies)):
+            raise ValueError(
+                f"color must be one, or one for each of the {len(self.bodies)} bodies, not {len(self.color)}"
+            )
+        there = [index for index, body in enumerate(self.bodies) if body.survivor is not None]
+        slots = [self.bodies[index].survivor.slot for index in there]
+        return {"bodies": slots, "colors": self.color if len(self.color) == 1 else self.color[there]}
+
+    def _is_attached(self) -> bool:
+        return True

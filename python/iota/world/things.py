@@ -5,19 +5,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
 from iota._core import Body, Bond, Particle, Room, Vec3
-from iota._protocol import NO_BODY, NO_COLOR
+from iota._protocol import FIRST_FRAME, NO_BODY, NO_COLOR
+from iota.looks import color_number
 from iota.simulator import SimulatedBody, SimulatedParticle
 from iota.world.frames import into_frame
 from iota.world.records import encode
 
 Value = TypeVar("Value")
-Attachable = Particle | Body | Bond | SimulatedBody | SimulatedParticle
-Place = Attachable | Vec3 | Sequence[float] | None
 FARTHEST = 1e9  # m
 
 
@@ -84,6 +84,59 @@ class Thing:
         return any(isinstance(value, Attachable) for value in self._values.values())
 
 
+class Frame(Thing):
+    """A frame that other things are put on in place of a body: they go where it goes, hide with it and go with it. at: its
+    origin, on a body, on another frame or in the world. rotation: quaternion x y z w. Things on it have their places in
+    its frame; `frame.point((x, y, z))` is a place in it for ends of lines and arrows."""
+
+    kind = "frame"
+
+    def _place(self, value: Any) -> Place:
+        inner = value
+        while isinstance(inner, Frame | FramePoint):
+            inner = inner.frame if isinstance(inner, FramePoint) else inner
+            if inner is self:
+                raise ValueError("a frame cannot be on itself")
+            inner = inner.at
+        return place(value)
+
+    @property
+    def at(self) -> Place:
+        return self._values.get("at")
+
+    @at.setter
+    def at(self, value: Place) -> None:
+        self._values["at"] = self._place(value)
+        self._changed()
+
+    rotation = Field(lambda value: unit_quaternion(value))
+
+    def point(self, position: Sequence[float]) -> FramePoint:
+        """A place in it, m, that things can be on."""
+        return FramePoint(self, vector(position))
+
+    def _changed(self) -> None:
+        super()._changed()
+        if self._things is not None:
+            self._things.mark_attached()
+
+    def _record(self) -> dict[str, Any] | None:
+        at = anchor(self.at)
+        return None if at is None else {"at": at, "rotation": self.rotation}
+
+
+@dataclass(frozen=True)
+class FramePoint:
+    """A place in a frame."""
+
+    frame: Frame
+    position: Vec3  #: m
+
+
+Attachable = Particle | Body | Bond | SimulatedBody | SimulatedParticle | Frame | FramePoint
+Place = Attachable | Vec3 | Sequence[float] | None
+
+
 class Things:
     """All things of a world. Pages are told only of those that differ from what was told last."""
 
@@ -115,10 +168,20 @@ class Things:
         if self._told.pop(thing, None) is not None:
             self._gone.append((thing.kind, slot, generation))
         self._free.setdefault(thing.kind, []).append((slot, generation))
+        if isinstance(thing, Frame):
+            self.mark_attached()
+
+    def slot_of(self, thing: Thing) -> int:
+        """What pages call it."""
+        return self._ids[thing][0]
 
     def mark(self, thing: Thing) -> None:
         """It is to be told anew."""
         self._dirty[thing] = None
+
+    def mark_attached(self) -> None:
+        """What is on something may be elsewhere, or nowhere."""
+        self._dirty |= dict.fromkeys(thing for thing in self._ids if thing._is_attached())
 
     def find(self, kind: str, id: tuple[int, int]) -> Thing | None:
         """By what pages call it."""
@@ -134,7 +197,7 @@ class Things:
         """What the room has not been told. structure: rises when bodies change, and with them what is on which."""
         if structure != self._structure:
             self._structure = structure
-            self._dirty |= dict.fromkeys(thing for thing in self._ids if thing._is_attached())
+            self.mark_attached()
         for kind, slot, generation in self._gone:
             room.destroy_entity(kind, slot, generation)
         self._gone.clear()
@@ -193,20 +256,27 @@ def place(value: Any) -> Place:
 
 
 def color(value: Any) -> int:
-    """From "#rrggbb", 0xRRGGBB, three numbers from 0 to 1, or None: the page's own."""
+    """From "#rrggbb", "#rrggbbaa" (aa: 00 is not seen at all), 0xRRGGBB, three or four numbers from 0 to 1, or None: the
+    page's own."""
     if value is None:
         return NO_COLOR
     if isinstance(value, str):
-        digits = value.removeprefix("#")
-        if len(digits) != 6 or value == digits:
-            raise ValueError(f'a color is "#rrggbb", 0xRRGGBB or three numbers from 0 to 1, not {value!r}')
-        return int(digits, 16)
+        return color_number(value)
     if isinstance(value, int | np.integer):
         if value == NO_COLOR or 0 <= value <= 0xFFFFFF:
             return int(value)
         raise ValueError(f"a color is from 0 to 0xFFFFFF, not {value:#x}")
-    red, green, blue = (round(255 * min(max(float(part), 0.0), 1.0)) for part in value)
-    return red << 16 | green << 8 | blue
+    red, green, blue, *alpha = (round(255 * min(max(float(part), 0.0), 1.0)) for part in value)
+    return (255 - alpha[0] if alpha else 0) << 24 | red << 16 | green << 8 | blue
+
+
+def unit_quaternion(value: Any) -> tuple[float, ...]:
+    """x y z w, made one of length 1."""
+    turn = np.array(value, float)
+    size = np.linalg.norm(turn)
+    if turn.shape != (4,) or not size > 1e-9 or not np.isfinite(size):
+        raise ValueError(f"a rotation is a quaternion x y z w that is not zero, not {value}")
+    return tuple((turn / size).tolist())
 
 
 def points(value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -233,6 +303,10 @@ def anchor(at: Place) -> dict[str, Any] | None:
     if isinstance(at, Particle):
         now = at.survivor
         return None if now is None else _on_body(now.body, now.position)
+    if isinstance(at, Frame):
+        return _on_frame(at, Vec3())
+    if isinstance(at, FramePoint):
+        return _on_frame(at.frame, at.position)
     if isinstance(at, SimulatedBody):
         return None if at.survivor is None else {"body": at.slot, "point": (0, 0, 0)}
     if isinstance(at, SimulatedParticle):
@@ -246,6 +320,12 @@ def ends(at: Place, to: Place = None) -> tuple[dict[str, Any] | None, dict[str, 
         return (anchor(at.ends[0]), anchor(at.ends[1])) if at.alive else (None, None)
     first = anchor(at)
     return first, (first if to is None else anchor(to))
+
+
+def _on_frame(frame: Frame, position: Vec3) -> dict[str, Any] | None:
+    if frame._things is None or not frame.visible or anchor(frame.at) is None:
+        return None
+    return {"body": FIRST_FRAME + frame._things.slot_of(frame), "point": position}
 
 
 def _on_body(body: Any, position: Any) -> dict[str, Any]:

@@ -83,7 +83,8 @@ const Part mesh{"chain", {"mesh", {}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}}, {
 /// A record of each kind, as in vectors.json.
 const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEntity, NailEntity, ParticleSetEntity,
                  StaticShapeEntity, LabelEntity, LineEntity, ArrowEntity, AxesEntity, TraceEntity, PointCloudEntity,
-                 MarkerEntity, WidgetEntity, PlotEntity>
+                 MarkerEntity, WidgetEntity, PlotEntity, SurfaceEntity, PaintEntity, ShapeSetEntity, StrutEntity,
+                 FrameEntity, TubeEntity>
     entity_vectors{{entity_id, "link", {torus, mesh}},
                    {entity_id, BodyKind::scripted, 9, true, 0.125F},
                    {entity_id, 40000},
@@ -100,7 +101,19 @@ const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEnti
                    {entity_id, in_world, {0, 1, 2, 3, 4, 5}, {0.5F}, {0xFF8000, 0x80FF}},
                    {entity_id, 12, torus},
                    {entity_id, WidgetKind::slider, "gravity", "", "m/s\u00b2", 9.81, 0, 20, 0.5, "", {"one"}, true},
-                   {entity_id, "energy", "J", 10, {"kinetic", "potential"}, {1, 2}, {0.5F, 1}, {1, 2, 3, 4}}};
+                   {entity_id, "energy", "J", 10, {"kinetic", "potential"}, {1, 2}, {0.5F, 1}, {1, 2, 3, 4}},
+                   {entity_id,
+                    in_world,
+                    {12, no_body, first_frame + 1},
+                    {0, 0, 0, 1, 0, 0, 0, 1, 0},
+                    {0, 1, 2},
+                    "paint",
+                    0x40FF8000},
+                   {entity_id, {12, 13}, {0xFF8000}},
+                   {entity_id, on_body, torus, {0, 1, 2}, {0.5F, 0.5F, 0.5F, 0.5F}, {2}, {0x80FF}},
+                   {entity_id, on_body, in_world, torus, 0.75F},
+                   {entity_id, on_body, {0.5F, 0.5F, 0.5F, 0.5F}},
+                   {entity_id, {}, {0, 1, 2, 3, 4, 5}, 0.25F, true, "rope", no_color}};
 
 template <class Variant>
 std::vector<std::uint8_t> encode_any(const Variant& message) {

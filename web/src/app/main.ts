@@ -4,12 +4,12 @@
 import { ScreenInput } from "../interact/screen_input.ts";
 import type { JoinRequest } from "../net/connection.ts";
 import { takeToken } from "../net/token.ts";
-import { makePage } from "../page/page.ts";
+import { makePage, type Page } from "../page/page.ts";
 import { Resolution } from "../page/resolution.ts";
+import type { FramePart } from "../page/viewer.ts";
 import { Role } from "../protocol/generated.ts";
 import { Overlay } from "../ui/overlay.ts";
 import { byId } from "../ui/dom.ts";
-import { Panel } from "../ui/panel.ts";
 import { offerHeadset } from "../xr/entry.ts";
 import { makeDebug } from "./debug.ts";
 
@@ -28,6 +28,22 @@ function requestOf(search: string): JoinRequest {
   return { world: asked.get("world") ?? "", role: asked.get("role") === "viewer" ? Role.viewer : Role.actor, name: "" };
 }
 
+/** Controls of the script are fetched with the first of them: most worlds have none. */
+function panelWhenNeeded({ world, session, viewer }: Page): FramePart {
+  const { widget, plot } = world.entities;
+  let asked = false;
+  return {
+    draw: () => {
+      if (asked || widget.size + plot.size === 0) return;
+      asked = true;
+      void import("../ui/panel.ts").then(({ Panel }) => {
+        viewer.add(new Panel({ world, session, viewer }));
+        viewer.invalidate();
+      });
+    },
+  };
+}
+
 function main(): void {
   const canvas = byId("view", HTMLCanvasElement);
   canvas.classList.add("waiting");
@@ -40,7 +56,7 @@ function main(): void {
     active: () => overlay.showBar(),
   });
   events.add(overlay);
-  viewer.add(new Panel(page));
+  viewer.add(panelWhenNeeded(page));
   viewer.add(overlay, new Resolution(viewer), {
     aim: () => {
       if (viewer.presenting) input.mouse.active = false;

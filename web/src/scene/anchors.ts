@@ -1,20 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places on bodies, as drawn in this frame.
+// Places on bodies and frames, as drawn in this frame of the picture.
 
 import { Quaternion, type Vector3 } from "three";
-import { NO_BODY, type Anchor } from "../protocol/generated.ts";
+import { FIRST_FRAME, NO_BODY, type Anchor, type FrameEntity } from "../protocol/generated.ts";
 import type { PoseBuffer } from "./pose_buffer.ts";
 
+/** Frames within frames; more are a circle. */
+const deepest = 32;
 const turn = new Quaternion();
 
-/** World place of an anchor; false where its body is not known yet. */
+/** World place of an anchor; false where its body or frame is not known yet. */
 export function placeOf(poses: PoseBuffer, { body, point }: Anchor, out: Vector3): boolean {
   out.set(point[0], point[1], point[2]);
   return fromBody(poses, body, out);
 }
 
-/** Turns a place in the frame of a body (or the world) into one of the world; false where the body is not known yet. */
+/** Turns a place in the frame of a body (or a frame, or the world) into one of the world; false where that is not known yet. */
 export function fromBody(poses: PoseBuffer, body: number, place: Vector3): boolean {
+  for (let depth = 0; body >= FIRST_FRAME && body !== NO_BODY; depth++) {
+    const frame = frameOf(poses, body);
+    if (frame === undefined || depth === deepest) return false;
+    const { at: { point }, rotation } = frame;
+    place.applyQuaternion(turn.fromArray(rotation));
+    place.x += point[0];
+    place.y += point[1];
+    place.z += point[2];
+    body = frame.at.body;
+  }
   if (body === NO_BODY) return true;
   if (poses.known[body] !== 1) return false;
   const { position, rotation } = poses;
@@ -25,13 +37,26 @@ export function fromBody(poses: PoseBuffer, body: number, place: Vector3): boole
   return true;
 }
 
-/** Orientation of a body, or of the world; false where it is not known yet. */
+/** Orientation of a body, a frame or the world; false where it is not known yet. */
 export function turnOf(poses: PoseBuffer, body: number, out: Quaternion): boolean {
-  if (body === NO_BODY) {
-    out.identity();
-    return true;
+  out.identity();
+  for (let depth = 0; body >= FIRST_FRAME && body !== NO_BODY; depth++) {
+    const frame = frameOf(poses, body);
+    if (frame === undefined || depth === deepest) return false;
+    out.premultiply(turn.fromArray(frame.rotation));
+    body = frame.at.body;
   }
+  if (body === NO_BODY) return true;
   if (poses.known[body] !== 1) return false;
-  out.fromArray(poses.rotation, 4 * body);
+  out.premultiply(turn.fromArray(poses.rotation, 4 * body));
   return true;
+}
+
+/** On a body, or on a frame, so that it may move. */
+export function moves({ body }: Anchor): boolean {
+  return body !== NO_BODY;
+}
+
+function frameOf(poses: PoseBuffer, body: number): FrameEntity | undefined {
+  return poses.frames.get(body - FIRST_FRAME);
 }

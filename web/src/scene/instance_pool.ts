@@ -2,7 +2,7 @@
 // One instanced mesh whose members come and go. It grows in place and is never made anew: what one member costs to add or to
 // remove does not depend on how many others there are.
 
-import { InstancedBufferAttribute, InstancedMesh, type BufferGeometry, type MeshStandardMaterial, type Object3D } from "three";
+import { InstancedBufferAttribute, InstancedMesh, type BufferGeometry, type Color, type MeshStandardMaterial, type Object3D } from "three";
 import { casterLayer } from "./contact_shadow.ts";
 
 export class InstancePool {
@@ -14,6 +14,8 @@ export class InstancePool {
   readonly pieces: number;
 
   private capacity_: number;
+  /** Colors plus 1, 0: none; there from the first one on. */
+  private hues_: InstancedBufferAttribute | null = null;
   /** What of the arrays is in use, for the upload. */
   private readonly matrixRange_ = { start: 0, count: 0 };
   private readonly tintRange_ = { start: 0, count: 0 };
@@ -47,6 +49,7 @@ export class InstancePool {
     const index = this.count++;
     this.members[index] = slot;
     this.mesh.count = this.count * this.pieces;
+    this.setHue(index, null);
     this.matrices.fill(0, 16 * index * this.pieces, 16 * (index + 1) * this.pieces);
     return index;
   }
@@ -58,8 +61,28 @@ export class InstancePool {
     if (index === last) return -1;
     const { pieces, matrices } = this;
     this.members[index] = this.members[last];
+    this.hues_?.array.copyWithin(3 * index * pieces, 3 * last * pieces, 3 * (last + 1) * pieces);
+    if (this.hues_ !== null) this.hues_.needsUpdate = true;
     matrices.copyWithin(16 * index * pieces, 16 * last * pieces, 16 * (last + 1) * pieces);
     return this.members[index];
+  }
+
+  /** Draws a member in a color in place of its material's; null: in that again. */
+  setHue(index: number, color: Color | null): void {
+    if (color === null && this.hues_ === null) return;
+    this.hues_ ??= this.setHues_(new InstancedBufferAttribute(new Float32Array(3 * this.capacity_ * this.pieces), 3));
+    for (let piece = 0; piece < this.pieces; piece++) {
+      const [r, g, b] = color === null ? [0, 0, 0] : [color.r + 1, color.g + 1, color.b + 1];
+      this.hues_.setXYZ(index * this.pieces + piece, r, g, b);
+    }
+    this.hues_.needsUpdate = true;
+  }
+
+  /** Draws all in the color of the material again. */
+  clearHues(): void {
+    if (this.hues_ === null) return;
+    (this.hues_.array as Float32Array).fill(0);
+    this.hues_.needsUpdate = true;
   }
 
   /** To be called after the arrays were written. */
@@ -73,6 +96,7 @@ export class InstancePool {
   setGeometry(geometry: BufferGeometry): void {
     const before = this.mesh.geometry;
     geometry.setAttribute("tint", before.getAttribute("tint"));
+    if (this.hues_ !== null) geometry.setAttribute("hue", this.hues_);
     this.mesh.geometry = geometry;
     before.dispose();
   }
@@ -97,6 +121,12 @@ export class InstancePool {
     const instances = this.capacity_ * this.pieces;
     this.mesh.instanceMatrix = larger(this.matrices, 16, instances);
     this.mesh.geometry.setAttribute("tint", larger(this.tints, 4, instances));
+    if (this.hues_ !== null) this.hues_ = this.setHues_(larger(this.hues_.array as Float32Array, 3, instances));
+  }
+
+  private setHues_(hues: InstancedBufferAttribute): InstancedBufferAttribute {
+    this.mesh.geometry.setAttribute("hue", hues);
+    return hues;
   }
 }
 

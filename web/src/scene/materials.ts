@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The small palette that all worlds share, and the shader patches for tinted instances and outlines.
 
-import { BackSide, Color, MeshBasicMaterial, MeshStandardMaterial, type Material, type MeshStandardMaterialParameters, type Texture } from "three";
+import {
+  BackSide, Color, FrontSide, MeshBasicMaterial, MeshStandardMaterial, type Material, type MeshStandardMaterialParameters, type Side, type Texture,
+} from "three";
 import { makeBrushedRoughness, makePlain, makeRopeColor, makeRopeNormals, makeWoodColor } from "./textures.ts";
 
 /** Colors that mean something, the same everywhere (page, headset, bar). */
@@ -67,16 +69,24 @@ function makeBase(name: string): MeshStandardMaterial {
   return material;
 }
 
-function tint(material: MeshStandardMaterial): void {
+/** Mean light of the texture that a material has its color from; of plain ones 1. */
+const meanLight: Record<string, number> = { wood: 0.19, rope: 0.24 };
+
+function tint(material: MeshStandardMaterial, light: number): void {
   material.onBeforeCompile = (shader) => {
+    shader.uniforms["meanLight"] = { value: light };
     shader.vertexShader = shader.vertexShader
-      .replace("#include <common>", "#include <common>\nattribute vec4 tint;\nvarying vec4 vTint;")
-      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvTint = tint;");
+      .replace("#include <common>", "#include <common>\nattribute vec4 tint;\nattribute vec3 hue;\nvarying vec4 vTint;\nvarying vec3 vHue;")
+      .replace("#include <begin_vertex>", "#include <begin_vertex>\nvTint = tint;\nvHue = hue;");
     shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", "#include <common>\nvarying vec4 vTint;")
+      .replace("#include <common>", "#include <common>\nvarying vec4 vTint;\nvarying vec3 vHue;\nuniform float meanLight;\nconst vec3 luma = vec3(0.3, 0.6, 0.1);")
       .replace(
         "#include <color_fragment>",
-        "#include <color_fragment>\nfloat shade = 0.55 + 0.45 * min(1.0, 1.6 * max(diffuseColor.r, diffuseColor.g));\ndiffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * shade, vTint.a);",
+        `#include <color_fragment>
+// Between 0 and 1 there is nothing: half is far from rounding. The texture keeps its light and dark.
+if (vHue.r > 0.5) diffuseColor.rgb = (vHue - 1.0) * dot(diffuseColor.rgb, luma) / (meanLight * max(dot(diffuse, luma), 0.02));
+float shade = 0.55 + 0.45 * min(1.0, 1.6 * max(diffuseColor.r, diffuseColor.g));
+diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * shade, vTint.a);`,
       )
       .replace("#include <metalnessmap_fragment>", "#include <metalnessmap_fragment>\nmetalnessFactor *= 1.0 - 0.8 * vTint.a;")
       .replace("#include <emissivemap_fragment>", "#include <emissivemap_fragment>\ntotalEmissiveRadiance += vTint.rgb * vTint.a * 0.3;");
@@ -86,17 +96,28 @@ function tint(material: MeshStandardMaterial): void {
 
 const materials = new Map<string, MeshStandardMaterial>();
 
+export interface MaterialOptions {
+  /** Its name; unknown ones are paint. */
+  readonly material: string;
+  /** "#rrggbb" in place of its own. */
+  readonly color: string | null;
+  readonly opacity?: number;
+  readonly side?: Side;
+}
+
 /**
- * Material of a name in the scene description, for instanced meshes with a `tint` attribute an instance (rgb and amount),
- * which also dulls metal and glows a little. Unknown names are paint; `color` replaces the base color. Shared: do not dispose of it.
+ * For meshes with an attribute `tint` (rgb and amount), which also dulls metal and glows a little, and perhaps one `hue`: 0, or a color to
+ * draw in place of the material's, plus 1. Shared: do not dispose of it.
  */
-export function materialOf(name: string, color: string | null): MeshStandardMaterial {
-  const key = `${name} ${color ?? ""}`;
+export function materialOf({ material: name, color, opacity = 1, side = FrontSide }: MaterialOptions): MeshStandardMaterial {
+  const key = `${name} ${color ?? ""} ${opacity} ${side}`;
   let material = materials.get(key);
   if (material === undefined) {
     material = makeBase(name);
+    material.side = side;
     if (color !== null && /^#[0-9a-fA-F]{6}$/.test(color)) material.color.set(color);
-    tint(material);
+    if (opacity < 1) material.setValues({ transparent: true, opacity: opacity * material.opacity });
+    tint(material, meanLight[name] ?? 1);
     materials.set(key, material);
   }
   return material;

@@ -4,6 +4,16 @@
 import { NO_COLOR, type Part } from "../protocol/generated.ts";
 import { parseShape, type Shape } from "./shapes/shape.ts";
 
+/** "#rrggbb"; null: that of the material. */
+export function textOf(color: number): string | null {
+  return color === NO_COLOR ? null : `#${(color & 0xffffff).toString(16).padStart(6, "0")}`;
+}
+
+/** 1: nothing is seen through it. */
+export function opacityOf(color: number): number {
+  return color === NO_COLOR ? 1 : 1 - (color >>> 24) / 255;
+}
+
 /** Throws an Error that says what is wrong. */
 export function readPart({ shape, offset, rotation, turn, material, color }: Part): Shape {
   return parseShape({
@@ -14,6 +24,7 @@ export function readPart({ shape, offset, rotation, turn, material, color }: Par
     rotation,
     turn,
     material,
-    color: color === NO_COLOR ? undefined : `#${color.toString(16).padStart(6, "0")}`,
+    color: textOf(color) ?? undefined,
+    opacity: opacityOf(color),
   });
 }

