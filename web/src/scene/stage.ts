@@ -22,14 +22,16 @@ interface Theme {
 }
 
 const themes: Record<"light" | "dark", Theme> = {
-  light: { far: "#dad6ce", horizon: "#f0eeea", zenith: "#ccd3d9", ground: "#c9c3b8", key: 3.1, fill: 0.3, environment: 0.8 },
-  dark: { far: "#202225", horizon: "#353a40", zenith: "#0f1114", ground: "#3f3e3d", key: 2.3, fill: 0.22, environment: 0.6 },
+  light: { far: "#d6d5d1", horizon: "#eceded", zenith: "#9fb0bd", ground: "#c9c0b2", key: 3.2, fill: 0.3, environment: 0.8 },
+  dark: { far: "#24272b", horizon: "#3a4148", zenith: "#0d1013", ground: "#5a5651", key: 2.4, fill: 0.22, environment: 0.6 },
 };
 
 /** In sizes of the scene (half the diagonal of its box): the ground, its texture, and where it begins and ends to fade. */
 const groundRadius = 120;
 const tileSize = 2;
 const contactStrength = 0.75;
+/** Light on the ground beside that of the lamps: what a shadow leaves. */
+const groundAmbient = 1.15;
 const fogNear = 4;
 const fogFar = 26;
 
@@ -114,6 +116,21 @@ diffuseColor.rgb *= 1.0 - contactStrength * (1.0 - exp(-5.0 * contact));`);
   };
 }
 
+/** The studio stands in a pool of light, which gives depth; its ground is flat and has one normal, so what comes from all sides is one number. */
+function addPool(material: MeshLambertMaterial): void {
+  const before = material.onBeforeCompile;
+  material.onBeforeCompile = (shader, renderer) => {
+    before.call(material, shader, renderer);
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nvarying vec2 vSizes;")
+      .replace("#include <project_vertex>", "#include <project_vertex>\nvSizes = position.xy;");
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", "#include <common>\nvarying vec2 vSizes;")
+      .replace("#include <lights_fragment_maps>", `iblIrradiance += vec3(${groundAmbient.toFixed(2)});`)
+      .replace("#include <color_fragment>", "#include <color_fragment>\ndiffuseColor.rgb *= 1.0 - 0.3 * smoothstep(0.8, 8.0, length(vSizes));");
+  };
+}
+
 /** Fine lines each cell, stronger each ten, fading with distance; compiled in only while it is shown. */
 function addGrid(material: MeshLambertMaterial, cell: { value: number }): void {
   material.defines = {};
@@ -178,6 +195,7 @@ export class Stage {
     addGrid(material, this.cell_);
     this.contact_ = new ContactShadow(renderer);
     addContactShadow(material, this.contact_);
+    addPool(material);
     this.ground = new Mesh(new CircleGeometry(groundRadius, 64), material);
     this.ground.rotation.x = -Math.PI / 2;
     this.ground.receiveShadow = true;

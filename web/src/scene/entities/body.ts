@@ -11,7 +11,7 @@ import type { Pickable } from "../pickable.ts";
 import { addCorners, type Points } from "../points.ts";
 import { mostSlots, type PoseBuffer } from "../pose_buffer.ts";
 import type { Detail } from "../shapes/kind.ts";
-import { bodyReach, makeGeometry, placeShape, sizeOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
+import { bodyReach, makeGeometry, placeShape, shapeReach, sizeOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
 import type { EntityView } from "./entity.ts";
 import type { Styles, StyleUser } from "./style.ts";
 
@@ -21,6 +21,8 @@ const fineUpTo = 160;
 const finePixels = 22;
 const coarsePixels = 5;
 const clearly = 1.25;
+/** Half the length of a rod in radii, from which on its thickness counts. */
+const thinness = 6;
 /** Frames between two looks at how large a batch is on the screen, and how many of its members are looked at. */
 const lookEvery = 6;
 const mostLookedAt = 64;
@@ -62,7 +64,11 @@ class Batch {
 
   /** Draws in the detail that a radius on the screen asks for, px. */
   fit(pixels: number): void {
-    const { detail_: now } = this;
+    const { detail_: now, shape_: shape } = this;
+    // Of what is long and thin the thickness counts.
+    const radius = sizeOf(shape, "radius");
+    const length = sizeOf(shape, "length");
+    if (length > 0) pixels *= Math.min(1, (thinness * radius) / shapeReach(shape));
     const fine = finePixels * (now === "fine" ? 1 : clearly);
     const coarse = coarsePixels * (now === "tiny" ? clearly : 1);
     const few = this.pool.count <= fineUpTo;
