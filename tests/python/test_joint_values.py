@@ -17,8 +17,7 @@ def arm(system: iota.System, links: int = 3, held: bool = True) -> list[iota.Con
     boxes = [system.body(shape=iota.Box((1, 0.1, 0.2)), mass=1, position=(i + 0.5, 0, 0)) for i in range(links)]
     joints = [system.revolute(boxes[0], None, at=(0, 0, 0), axis=(0, 0, 1))] if held else []
     return joints + [
-        system.revolute(b, a, at=(i + 1, 0, 0), axis=(0, 0, 1))
-        for i, (a, b) in enumerate(pairwise(boxes))
+        system.revolute(b, a, at=(i + 1, 0, 0), axis=(0, 0, 1)) for i, (a, b) in enumerate(pairwise(boxes))
     ]
 
 

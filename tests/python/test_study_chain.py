@@ -74,22 +74,3 @@ def test_a_cut_off_part_lies_on_the_floor() -> None:
     run(world, 3.5)
     lowest = world.system.positions[:, 1].min()
     assert -0.05 < lowest < 0.1
-
-
-def test_the_link_above_is_the_one_towards_the_nail() -> None:
-    world = study.build()
-    links = world.system.bodies
-    assert study.hinge_above(links[0]) is None
-    hinge = study.hinge_above(links[7])
-    assert hinge == (links[6].particles[1], links[7].particles[0])
-    hinge[0].separate(hinge[1])
-    assert study.hinge_above(links[7]) is None or study.hinge_above(links[23]) is not None
-
-
-def test_join_finds_the_nearest_loose_ends() -> None:
-    world = study.build()
-    links = world.system.bodies
-    assert study.nearest_ends(links[5]) is None
-    links[9].particles[1].separate(links[10].particles[0])
-    assert study.nearest_ends(links[12]) == (links[9].particles[1], links[10].particles[0])
-    assert study.nearest_ends(links[2]) == (links[10].particles[0], links[9].particles[1])

@@ -4,14 +4,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 
 import iota
 from iota import looks
 
 NAIL = (0.0, 2.8, 0.0)
 LENGTH = 2.4
-JOIN_SPEED = 1.2  # m/s, of ends that are drawn together
 
 
 def build(links: int = 24, demonstrate: bool = False) -> iota.World:
@@ -23,24 +21,7 @@ def build(links: int = 24, demonstrate: bool = False) -> iota.World:
     world = iota.World(system, title="chain", style="rope")
     present(world, chain)
 
-    @world.action("break", key="b", button="b", help="separates the held or selected link from the one above")
-    def break_link(event: iota.Event) -> None:
-        hinge = hinge_above(event.body)
-        if hinge is None:
-            event.notice("Nothing to break", "This link has none above it.")
-        else:
-            above, own = hinge
-            above.separate(own)
-
-    @world.action("join", key="c", button="a", help="joins the held or selected part to the nearest loose end")
-    def join_part(event: iota.Event) -> None:
-        pair = nearest_ends(event.body)
-        if pair is None:
-            event.notice("Nothing to join", "Everything hangs together already.")
-        else:
-            end, own = pair
-            end.combine(own, over=max(0.3, abs(end.position - own.position) / JOIN_SPEED))
-
+    world.offer("break", "join")
     script_break(world, chain, demonstrate)
     return world
 
@@ -98,41 +79,6 @@ def script_break(world: iota.World, chain: list[iota.Body], demonstrate: bool) -
     )
     if demonstrate:
         world.at(4.0)(fall_off)
-
-
-# --- which link hangs on which ----------------------------------------------------------------------------------------
-
-
-def loose_ends(bodies: Iterable[iota.Body]) -> list[iota.Particle]:
-    """The particles that nothing is hinged to and no nail holds."""
-    return [p for body in bodies for p in body.particles if len(p.ring) == 1 and not p.is_nailed]
-
-
-def hinge_above(link: iota.Body) -> tuple[iota.Particle, iota.Particle] | None:
-    """The hinge towards the nail, or towards the highest end of a part that has none: (the one above, the link's own)."""
-    part = link.articulate
-    roots = [p for body in part for p in body.particles if p.is_nailed]
-    roots = roots or [max(loose_ends(part), key=lambda p: p.position.y)]
-    reached = {p.body for p in roots}
-    waiting = list(reached)
-    while waiting:
-        body = waiting.pop()
-        for above in body.particles:
-            for own in above.ring:
-                if own.body in reached:
-                    continue
-                if own.body == link:
-                    return above, own
-                reached.add(own.body)
-                waiting.append(own.body)
-    return None
-
-
-def nearest_ends(link: iota.Body) -> tuple[iota.Particle, iota.Particle] | None:
-    """The loose end elsewhere and the one of this link's part that are nearest to each other; None without any."""
-    others = [body for body in link.system.bodies if body not in link.articulate]
-    pairs = [(theirs, own) for theirs in loose_ends(others) for own in loose_ends(link.articulate)]
-    return min(pairs, key=lambda pair: abs(pair[0].position - pair[1].position), default=None)
 
 
 if __name__ == "__main__":

@@ -54,6 +54,12 @@ class Scene:
         for index, body in enumerate(bodies):
             self._class_of[body] = self._untold[body] = (name, index % 2)
 
+    def dress_alike(self, body: Body, like: Body) -> None:
+        """Draws a body as another one is drawn."""
+        if like in self._class_of:
+            name, odd = self._class_of[like]
+            self._class_of[body] = self._untold[body] = (name, 1 - odd)
+
     def thickness_of(self, body: Body) -> float | None:
         """Radius of what a body is drawn with, m, where that is round and about the body's line; None: it has no such look."""
         if body not in self._class_of:

@@ -25,7 +25,7 @@ from iota.world.floor import level_below
 from iota.world.frames import turn_from_x
 from iota.world.hands import Client
 from iota.world.inputs import Inputs
-from iota.world.listening import Listening
+from iota.world.interacting import Interacting
 from iota.world.publisher import Publisher
 from iota.world.scene import Camera
 from iota.world.server import Server
@@ -40,7 +40,7 @@ Result = TypeVar("Result")
 HEADLESS_SECONDS = 10.0  # where nobody says how long
 
 
-class World(Drawing, Listening):
+class World(Drawing, Interacting):
     """Runs a system in real time and serves a page that shows it.
 
     system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. style: the style of

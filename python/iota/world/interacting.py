@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ready parts of interaction: break, join, copy, undo, redo, measure; sockets that plugs snap into; forces as arrows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from iota._core import Body, Particle, Vec3
+from iota.looks import sphere
+from iota.world.event import Event
+from iota.world.joining import hinge_above, nearest_ends
+from iota.world.listening import Listening
+from iota.world.shown import Arrow, Label, Line, Marker
+
+if TYPE_CHECKING:
+    from iota.world.world import World
+
+JOIN_SPEED = 1.2  # m/s, of ends that are drawn together
+FREE, READY = "#2f9d92", "#f2a324"  # of a socket
+
+
+class Interacting(Listening):
+    """What users do in many worlds, by one call each."""
+
+    def offer(self, *parts: str) -> None:
+        """Lets users break ("break", key b), join ("join", c) and copy ("copy", n) what they hold or have selected, measure
+        ("measure", v) between two bodies, and take back and repeat ("undo", z; "redo", y) these edits and those that the
+        script makes in `with world.system.edit():`. Without names all of them. Raises ValueError for other names.
+
+        world.offer("break", "join")
+        """
+        for name in parts or PARTS:
+            if name not in PARTS:
+                raise ValueError(f"there are {', '.join(map(repr, PARTS))}, not {name!r}")
+            PARTS[name](self)  # type: ignore[arg-type]
+
+    def socket(
+        self,
+        place: Particle,
+        plugs: Iterable[Particle],
+        within: float = 0.1,
+        on_snap: Callable[[Particle], object] | None = None,
+    ) -> Socket:
+        """A place that plugs snap into: one that a user lets go of within `within` m of it is joined to it. While one of
+        them is held, a ball shows where, amber when letting go would join them. on_snap gets the plug that was joined.
+
+        world.socket(wall.particles[0], [cable.particles[-1]], within=0.2)
+        """
+        return Socket(self, place, plugs, within, on_snap)  # type: ignore[arg-type]
+
+    def show_forces(self, bodies: Iterable[Body] | None = None, scale: float | None = None) -> Forces:
+        """Arrows for what nails, hinges and hands do to bodies (None: all), red the nails, blue the hinges, as long as the
+        force times `scale` (m/N; None: the largest is a fifth of the scene). `forces.destroy()` ends it.
+
+        forces = world.show_forces()
+        """
+        return Forces(self, bodies, scale)  # type: ignore[arg-type]
+
+
+# --- parts --------------------------------------------------------------------------------------------------------------
+
+
+def _break(world: World) -> None:
+    @world.action("break", key="b", button="b", help="separates the held or selected body from the one above")
+    def break_it(event: Event) -> None:
+        hinge = hinge_above(event.body)
+        if hinge is None:
+            event.notice("Nothing to break", "This one has none above it.")
+            return
+        above, own = hinge
+        with world.system.edit():
+            above.separate(own)
+
+
+def _join(world: World) -> None:
+    @world.action("join", key="c", button="a", help="joins the held or selected part to the nearest loose end")
+    def join(event: Event) -> None:
+        pair = nearest_ends(event.body)
+        if pair is None:
+            event.notice("Nothing to join", "Everything hangs together already, or has no loose end.")
+            return
+        end, own = pair
+        with world.system.edit():
+            end.combine(own, over=max(0.3, abs(end.position - own.position) / JOIN_SPEED))
+
+
+def _copy(world: World) -> None:
+    @world.action("copy", key="n", help="another one of the held or selected body, beside it")
+    def copy_it(event: Event) -> None:
+        with world.system.edit():
+            made = copy_body(event.body)
+        world._state.scene.dress_alike(made, event.body)
+        world._state.is_changed = True
+
+
+def _undo(world: World) -> None:
+    @world.action("undo", key="z", help="takes the last edit back", on="world")
+    def undo(event: Event) -> None:
+        if not world.undo():
+            event.notice("Nothing to undo")
+
+
+def _redo(world: World) -> None:
+    @world.action("redo", key="y", help="repeats what was taken back", on="world")
+    def redo(event: Event) -> None:
+        if not world.redo():
+            event.notice("Nothing to redo")
+
+
+def _measure(world: World) -> None:
+    first: list[Body] = []
+    shown: list[tuple[Body, Body, Line, Label]] = []
+
+    def clear() -> None:
+        first.clear()
+        while shown:
+            *_, line, label = shown.pop()
+            line.destroy()
+            label.destroy()
+
+    @world.action("measure", key="v", help="the distance of two bodies: press it on one, then on the other")
+    def measure(event: Event) -> None:
+        if shown or not first or first[0] == event.body or not first[0].alive:
+            clear()
+            first.append(event.body)
+            event.notice("Measure from here", "Select the other body and press v again.")
+            return
+        line = world.line(first[0], event.body, color=READY)
+        label = world.label("", at=event.body, color="#23272b")
+        shown.append((first[0], event.body, line, label))
+        follow()
+
+    @world.on_frame
+    def follow() -> None:
+        for a, b, _, label in shown:
+            if a.alive and b.alive:
+                apart = b.center_of_mass - a.center_of_mass
+                label.text = f"{abs(apart):.4g} m"
+                label.offset = apart * -0.5
+
+    world.on_reset(clear)
+
+
+PARTS: dict[str, Callable[[World], None]] = {
+    "break": _break, "join": _join, "copy": _copy, "undo": _undo, "redo": _redo, "measure": _measure,
+}  # fmt: skip
+
+
+def copy_body(body: Body) -> Body:
+    """Another one of the same shape, mass and motion, beside it along x; without its hinges, nails and bonds. Raises
+    ValueError for a body of several solids."""
+    system = body.system
+    places = [p.position for p in body.particles]
+    reach = max(abs(place - body.center_of_mass) for place in places)
+    aside = Vec3(2.2 * reach or 0.1, 0, 0)
+    if len(body.solids) > 1:
+        raise ValueError("a body of several solids cannot be copied; make its parts again instead")
+    if body.solids:
+        solid = body.solids[0]
+        made = system.body(
+            shape=solid.shape,
+            mass=body.mass,
+            position=solid.position + aside,
+            orientation=solid.orientation,
+            velocity=body.velocity,
+            spin=body.angular_velocity,
+        )
+        for particle in body.attachments:
+            made.attachment(particle.position + aside)
+        return made
+    made = system.body()
+    for particle in body.particles:
+        made.particle(particle.position + aside, particle.mass).velocity = particle.velocity
+    return made
+
+
+class Socket:
+    """A place that plugs snap into."""
+
+    def __init__(
+        self,
+        world: World,
+        place: Particle,
+        plugs: Iterable[Particle],
+        within: float,
+        on_snap: Callable[[Particle], object] | None,
+    ) -> None:
+        if not within > 0:
+            raise ValueError(f"within must be more than 0 m, not {within}")
+        self.place, self.within, self._world, self._on_snap = place, within, world, on_snap
+        self.plugs = list(plugs)
+        self._ghost: Marker = world.shape(sphere(0.3 * within, "glass", color=FREE), on=place)
+        self._ghost.visible = False
+        self._drag = world.on_drag("anything")(self._dragged)
+
+    def destroy(self) -> None:
+        """It takes no plugs any more; what is joined stays so."""
+        self._world.forget(self._drag)
+        self._ghost.destroy()
+
+    def _held(self, body: Body) -> Particle | None:
+        """The plug on the held part that is nearest, unless it is in already."""
+        mine = [p for p in self.plugs if p.alive and self.place.alive and p.body.articulate == body.articulate]
+        free = [p for p in mine if p.body != self.place.body and p not in self.place.ring]
+        return min(free, key=lambda p: abs(p.position - self.place.position), default=None)
+
+    def _dragged(self, event: Event) -> None:
+        plug = None if event.target is None else self._held(event.target)
+        self._ghost.visible = plug is not None and event.phase != "end"
+        if plug is None:
+            return
+        apart = abs(plug.position - self.place.position)
+        self._ghost.color = READY if apart <= self.within else FREE
+        if event.phase != "end" or apart > self.within:
+            return
+        with self._world.system.edit():
+            self.place.combine(plug, over=max(0.1, apart / JOIN_SPEED))
+        if self._on_snap is not None:
+            self._on_snap(plug)
+
+
+class Forces:
+    """Arrows that follow the forces on bodies. scale: m/N."""
+
+    def __init__(self, world: World, bodies: Iterable[Body] | None, scale: float | None) -> None:
+        self.scale = scale
+        self._world, self._bodies = world, None if bodies is None else list(bodies)
+        self._arrows: dict[tuple[Particle, str], Arrow] = {}
+        self._follow = world.on_frame(self._write)
+
+    def destroy(self) -> None:
+        """Takes them off the page."""
+        self._world.forget(self._follow)
+        for arrow in self._arrows.values():
+            arrow.destroy()
+        self._arrows.clear()
+
+    def _write(self) -> None:
+        bodies: Sequence[Body] = (
+            self._world.system.bodies if self._bodies is None else [b for b in self._bodies if b.alive]
+        )
+        forces: dict[tuple[Particle, str], Vec3] = {}
+        for body in bodies:
+            for particle in body.particles:
+                if particle.is_nailed:
+                    forces[particle, "nail"] = particle.nail_force
+                if len(particle.ring) > 1:
+                    forces[particle, "hinge"] = particle.hinge_force
+        for gone in self._arrows.keys() - forces.keys():
+            self._arrows.pop(gone).destroy()
+        largest = max(map(abs, forces.values()), default=0.0)
+        scale = self.scale if self.scale is not None else 0.2 * _size(self._world) / (largest or 1.0)
+        for key, force in forces.items():
+            arrow = self._arrows.get(key)
+            if arrow is None:
+                colors = {"nail": "#d0402b", "hinge": "#3f7fd0"}
+                arrow = self._arrows[key] = self._world.arrow(key[0], color=colors[key[1]])
+            arrow.vector = force * scale
+
+
+def _size(world: World) -> float:
+    """Of all that is there, m."""
+    places: Any = world.system.positions
+    return float(abs(places.max(axis=0) - places.min(axis=0)).max()) if len(places) else 1.0

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Ready parts of interaction, asked for by a page."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import pytest
+from page_client import NOTHING, PageClient
+
+import iota
+from iota import looks
+from iota.world.joining import hinge_above, nearest_ends
+
+Runner = Callable[[iota.World], str]
+
+
+@pytest.fixture
+def chain(system: iota.System) -> list[iota.Body]:
+    """Six links of 0.2 m on a nail at (0, 2, 0)."""
+    system.gravity = (0, -9.81, 0)
+    system.damping = 1.0
+    return iota.builder.chain(6, 1.2, top=(0, 2, 0)).realize(system).bodies
+
+
+def act(page: PageClient, name: str, body: tuple[int, int] = NOTHING) -> None:
+    page.send("action", name=name, body=body)
+
+
+def test_the_link_above_is_the_one_towards_the_nail(chain: list[iota.Body]) -> None:
+    assert hinge_above(chain[0]) is None
+    hinge = hinge_above(chain[3])
+    assert hinge == (chain[2].particles[1], chain[3].particles[0])
+    hinge[0].separate(hinge[1])
+    assert hinge_above(chain[3]) is None or hinge_above(chain[5]) is not None
+
+
+def test_join_finds_the_nearest_loose_ends(chain: list[iota.Body]) -> None:
+    assert nearest_ends(chain[4]) is None
+    chain[2].particles[1].separate(chain[3].particles[0])
+    assert nearest_ends(chain[4]) == (chain[2].particles[1], chain[3].particles[0])
+    assert nearest_ends(chain[1]) == (chain[3].particles[0], chain[2].particles[1])
+
+
+def test_solids_are_joined_at_their_attachments_not_at_their_own_points(system: iota.System) -> None:
+    balls = [system.body(shape=iota.Sphere(0.1), mass=1, position=(x, 0, 0)) for x in (0, 1)]
+    assert nearest_ends(balls[0]) is None
+    eyes = [ball.attachment((x, 0, 0)) for ball, x in zip(balls, (0.1, 0.9), strict=True)]
+    assert nearest_ends(balls[0]) == (eyes[1], eyes[0])
+
+
+def test_users_break_join_and_take_it_back(chain: list[iota.Body], run_world: Runner) -> None:
+    system = chain[0].system
+    world = iota.World(system)
+    world.offer()
+    slot = chain[3].slot
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: len(page.entities["body"]) == 6 and page.parts() == 1)
+        act(page, "break", page.body(slot))
+        page.wait_for(lambda: page.parts() == 2)
+        act(page, "undo")
+        page.wait_for(lambda: page.parts() == 1)
+        act(page, "redo")
+        page.wait_for(lambda: page.parts() == 2)
+        act(page, "join", page.body(slot))
+        page.wait_for(lambda: page.parts() == 1)
+    with pytest.raises(ValueError, match="there are 'break', 'join'"):
+        world.offer("dance")
+
+
+def test_a_copy_has_the_same_shape_mass_motion_and_look(system: iota.System, run_world: Runner) -> None:
+    system.gravity = (0, 0, 0)
+    turned = (0.0, 0.6, 0.0, 0.8)
+    box = system.body(
+        shape=iota.Box((0.1, 0.2, 0.3)),
+        mass=3,
+        position=(0, 1, 0),
+        orientation=turned,
+        velocity=(0, 0.01, 0),
+        spin=(0, 0, 1),
+    )
+    box.attachment((0, 1.1, 0))
+    rod = system.body()
+    rod.particle((0, 0, 2), 1.0)
+    rod.particle((0.5, 0, 2), 2.0)
+    slots = box.slot, rod.slot
+    world = iota.World(system, ground=None)
+    world.draw([box, rod], looks.capsule(0.02, "brass"))
+    world.offer("copy")
+    world.paused = True
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: len(page.entities["body"]) == 2)
+        for slot in slots:
+            act(page, "copy", page.body(slot))
+        page.wait_for(lambda: len(page.entities["body"]) == 4)
+
+        def figures() -> list[tuple[object, ...]]:
+            found = []
+            for body in system.bodies:
+                solid = body.solids[0] if body.solids else None
+                motion = [round(x, 9) for vector in (body.velocity, body.angular_velocity) for x in vector]
+                orientation = solid and [round(x, 9) for x in solid.orientation]
+                found.append((body.mass, motion, solid and str(solid.shape), orientation, len(body.particles)))
+            return found
+
+        first, second, third, fourth = world.call(figures)
+        assert first == third and second == fourth
+        styles = [page.style_of(slot)["name"] for slot in page.entities["body"]]
+        assert styles[1] == styles[3]
+        apart = world.call(lambda: abs(system.bodies[2].center_of_mass - system.bodies[0].center_of_mass))
+        assert 0.2 < apart < 1
+
+
+def test_two_bodies_are_measured(chain: list[iota.Body], run_world: Runner) -> None:
+    world = iota.World(chain[0].system)
+    world.offer("measure")
+    slots = chain[1].slot, chain[4].slot
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: len(page.entities["body"]) == 6)
+        for slot in slots:
+            act(page, "measure", page.body(slot))
+        label = page.wait_for(lambda: page.entities["label"].get(0))
+        assert float(label["text"].removesuffix(" m")) == pytest.approx(0.6, abs=0.05)
+        act(page, "measure", page.body(slots[0]))
+        page.wait_for(lambda: not page.entities["label"] and not page.entities["line"])
+
+
+def test_a_plug_that_is_let_go_near_its_socket_is_joined(system: iota.System, run_world: Runner) -> None:
+    system.gravity = (0, 0, 0)
+    wall = system.body()
+    place = wall.particle((0, 1, 0))
+    place.nail()
+    wall.particle((0, 2, 0)).nail()
+    cable = system.body()
+    plug = cable.particle((1, 1, 0))
+    cable.particle((2, 1, 0))
+    cable.damping = 5.0
+    slot = cable.slot
+    world = iota.World(system, ground=None)
+    joined: list[iota.Particle] = []
+    world.socket(place, [plug], within=0.2, on_snap=joined.append)
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: len(page.entities["body"]) == 2)
+        assert not page.entities["marker"], "nobody holds a plug"
+
+        def carry(x: float) -> None:
+            page.send("grab_start", hold=1, body=page.body(slot), local_point=(-0.5, 0, 0), target=(1, 1, 0))
+            ghost = page.wait_for(lambda: page.entities["marker"].get(0))
+            assert ghost["part"]["color"] == 0x2F9D92
+            began = time.monotonic()
+            while abs(world.call(lambda: plug.position.x) - x) > 0.05 and time.monotonic() - began < 20:
+                page.send("grab_move", hold=1, target=(x, 1, 0))
+                time.sleep(0.05)
+
+        carry(0.5)
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: not page.entities["marker"])
+        assert page.parts() == 2 and not joined, "too far away"
+        carry(0.1)
+        page.wait_for(lambda: page.entities["marker"][0]["part"]["color"] == 0xF2A324)
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: page.parts() == 1)
+        assert world.call(lambda: joined == [plug])
+
+
+def test_forces_are_shown_as_they_are(chain: list[iota.Body], run_world: Runner) -> None:
+    system = chain[0].system
+    for _ in range(2400):
+        system.step(1 / 120)
+    weight = 9.81 * sum(link.mass for link in chain)
+    world = iota.World(system)
+    forces = world.show_forces(scale=1.0)
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: len(page.entities["arrow"]) == 1 + 2 * 5)
+        nail = next(arrow for arrow in page.entities["arrow"].values() if arrow["color"] == 0xD0402B)
+        assert nail["vector"] == pytest.approx((0, weight, 0), abs=0.02 * weight)
+        world.call(lambda: chain[2].particles[1].separate(chain[3].particles[0]))
+        page.wait_for(lambda: len(page.entities["arrow"]) == 1 + 2 * 4)
+        world.call(forces.destroy)
+        page.wait_for(lambda: not page.entities["arrow"])
