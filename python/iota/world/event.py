@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from iota._core import Body, System, Vec3
+from iota._core import Body, Broken, ContactEvent, System, Vec3
 from iota.world.notices import Notices
 
 
@@ -16,7 +16,8 @@ class Event:
 
     point: where a pointer hit the body, or where a hand is, world, m; None where nothing was hit. origin, direction: of the
     pointer's ray, where it is known. pointer: "mouse", "touch 1", "left", "right". phase: "start", "update" or "end" of a
-    drag or hover. hold: number of the hand. key: that was pressed or let go."""
+    drag or hover, "start" or "end" of a contact. hold: number of the hand. key: that was pressed or let go. contact, broken:
+    what has met or parted, and what has broken."""
 
     system: System
     name: str
@@ -29,6 +30,8 @@ class Event:
     phase: str = ""
     hold: int = 0
     key: str = ""
+    contact: ContactEvent | None = None
+    broken: Broken | None = None
     notices: Notices = field(default_factory=Notices, repr=False, compare=False)
 
     @property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The script's functions for what users do: with a body, with anything, with nothing, or with a key."""
+"""The script's functions for what users do: with a body, with anything, with nothing, or with a key; and for what happens."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from iota._core import Body, Particle
+from iota._core import Body, Constraint, Particle
 from iota.simulator import SimulatedBody
 from iota.world.callbacks import Hook
 
-KINDS = ("click", "press", "release", "drag", "hover", "key", "join", "leave", "frame")
+KINDS = ("click", "press", "release", "drag", "hover", "key", "join", "leave", "frame", "contact", "break")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,20 @@ class Listener:
         if self.bodies is None:
             return True
         # A body that was absorbed is what has absorbed it.
-        return body in self.bodies or any(each.survivor == body for each in self.bodies)
+        return body in self.bodies or any(isinstance(each, Body) and each.survivor == body for each in self.bodies)
+
+
+def things_of(target: Any) -> frozenset[Any] | None:
+    """Bodies and constraints that a target of what happens stands for. Raises TypeError for what is none."""
+    if target == "anything" or isinstance(target, Body | SimulatedBody | Particle):
+        return bodies_of(target)
+    if isinstance(target, Constraint):
+        return frozenset([target])
+    if isinstance(target, Iterable) and not isinstance(target, str):
+        found = frozenset().union(*(things_of(each) or () for each in target))
+        if found:
+            return found
+    raise TypeError(f"must be a body, a constraint, several, or 'anything', not {target!r}")
 
 
 def bodies_of(target: Any) -> frozenset[Any] | None:
@@ -85,6 +98,11 @@ class Listeners:
     def of(self, kind: str, body: Any = None) -> Iterator[Listener]:
         """Those for a kind and a body; None: nothing was hit, or it is about no body."""
         return iter([each for each in self._by_kind[kind] if each.hears(body)])
+
+    def of_any(self, kind: str, things: Iterable[Any]) -> Iterator[Listener]:
+        """Those for a kind and at least one of some bodies and constraints."""
+        told = [each for each in things if each is not None]
+        return iter([each for each in self._by_kind[kind] if each.bodies is None or any(map(each.hears, told))])
 
     def of_key(self, key: str, released: bool) -> Iterator[Listener]:
         listeners = self._by_kind["key"]

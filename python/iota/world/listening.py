@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a World tells the script of its users."""
+"""What a World tells the script of its users, and of what happens."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from iota.world.callbacks import Hook
-from iota.world.listeners import Listener, bodies_of
+from iota.world.listeners import Listener, bodies_of, things_of
 from iota.world.state import State
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 
 
 class Listening:
-    """Decorators for functions that are called when users do something. They get one `Event`, or nothing; the event names the
+    """Decorators for functions that are called when users do something, or something happens. They get one `Event`, or nothing; the event names the
     client, the body and the place.
 
     on: a body, several, "anything" (any body) or "nothing" (no body was hit). `world.forget(function)` ends it.
@@ -70,6 +70,22 @@ class Listening:
         """Decorator: calls a function before each picture that pages are sent, 60 times a second, paused or not."""
         return self._add("frame")(function)
 
+    def on_contact(self, on: Any = "anything") -> Any:
+        """Decorator: what is one-sided begins (event.phase "start") or ends ("end") to carry a load: surfaces meet and part, a
+        rope goes taut or slack, a joint reaches or leaves a stop. Called between two steps; event.contact says which
+        constraint and stop, event.point where. on: a body, a constraint, several, or "anything".
+
+        @world.on_contact(door_hinge)
+        def stopped(event):
+            if event.phase == "start" and event.contact.stop == "angle": print("shut")
+        """
+        return self._hear("contact", on)
+
+    def on_break(self, on: Any = "anything") -> Any:
+        """Decorator: a load beyond its limit has broken a constraint, bond, hinge or nail: event.broken says which and how
+        large the load was. on: a body, a constraint, several, or "anything"."""
+        return self._hear("break", on)
+
     def forget(self, function: Callable[..., Any]) -> bool:
         """Ends calls that were asked for by the decorators above; False for a function that they do not know."""
         self._state.is_changed = True
@@ -79,6 +95,11 @@ class Listening:
         if callable(on):  # without parentheses
             return self._add(kind, **more)(on)
         return self._add(kind, bodies=bodies_of(on), **more)
+
+    def _hear(self, kind: str, on: Any) -> Any:
+        if callable(on):  # without parentheses
+            return self._add(kind)(on)
+        return self._add(kind, bodies=things_of(on))
 
     def _add(self, kind: str, **more: Any) -> Callable[[Callback], Callback]:
         def register(function: Callback) -> Callback:

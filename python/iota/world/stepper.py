@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
-from iota._core import StepReport, System
+from iota._core import Broken, StepReport, System
 from iota.errors import ForceError
 from iota.world.callbacks import GO_ON, Guard, Hook
 from iota.world.event import Event
@@ -71,7 +72,29 @@ class Stepper:
             self._tally.add(report, dt)
         for warning in report.warnings:
             state.notices.warn_once(warning)
+        self._tell_what_happened()
         return report
+
+    def _tell_what_happened(self) -> None:
+        """Calls the script's functions for contacts and for what broke."""
+        system, listeners = self._state.system, self._state.listeners
+        if listeners.has("contact"):
+            for contact in system.contacts:
+                joint = contact.constraint
+                if not joint.alive:  # a function before has ended it
+                    continue
+                phase, place = "start" if contact.met else "end", contact.position
+                for each in listeners.of_any("contact", (joint, joint.a, joint.b)):
+                    self._tell(each.hook, "contact", target=joint.a, contact=contact, phase=phase, point=place)
+        if listeners.has("break"):
+            for broken in system.broken:
+                things = _broken_things(broken)
+                for each in listeners.of_any("break", things):
+                    self._tell(each.hook, "break", broken=broken, point=broken.position)
+
+    def _tell(self, hook: Hook, name: str, **more: Any) -> None:
+        if hook not in self._off and not self._call(f"on_{name} ({hook.name})", hook, name, again=True, **more):
+            self._off.add(hook)
 
     def reset(self) -> None:
         """Back to where the run began, with timed events as they were asked for before it."""
@@ -87,7 +110,17 @@ class Stepper:
         for hook in self.on_reset:
             self._call(f"on_reset ({hook.name})", hook, "reset")
 
-    def _call(self, what: str, hook: Hook, name: str, again: bool = False) -> bool:
+    def _call(self, what: str, hook: Hook, name: str, again: bool = False, **more: Any) -> bool:
         """Calls one of the script's functions; False when it raised."""
-        arguments = (Event(self._state.system, name, notices=self._state.notices),) if hook.takes_event else ()
+        arguments = (Event(self._state.system, name, notices=self._state.notices, **more),) if hook.takes_event else ()
         return self._guard.call(what, hook.function, *arguments, hint=SWITCHED_OFF if again else GO_ON)
+
+
+def _broken_things(broken: Broken) -> tuple[Any, ...]:
+    """What broke and the bodies that it held."""
+    constraint, bond, particle = broken.constraint, broken.bond, broken.particle
+    if constraint is not None and constraint.alive:
+        return (constraint, constraint.a, constraint.b)
+    if bond is not None and bond.alive:
+        return tuple(end.body for end in bond.ends)
+    return (particle.body,) if particle is not None and particle.alive else ()
