@@ -184,10 +184,11 @@ void Structure::prefer_unknowns(std::uint32_t body_slot) {
   std::uint32_t needs = 0;
   bool outside = false, in_shape = true;
   for_each_particle_of(body_slot, [&](std::uint32_t p) {
-    if (!is_needed(particles[p]) || particles[p].is_marker()) return;
+    if (!is_needed(particles[p])) return;
+    in_shape = in_shape && follows_basis(p);  // also of a marker that was just combined: it would stay where it is
+    if (particles[p].is_marker()) return;
     ++needs;
     outside = outside || particles[p].basis_index < 0;
-    in_shape = in_shape && follows_basis(p);
   });
   // Decided once for each number of needs, so that the result does not depend on when this is called.
   if (needs == body.basis_needs) return;

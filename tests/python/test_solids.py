@@ -218,3 +218,24 @@ def test_parts_of_a_locked_pair_are_told_apart_and_unlocked(system: iota.System)
     (unlocked,) = part.separate().created_bodies
     assert unlocked.articulate == a.articulate and len(p.ring) == 2
     assert system.validate() == []
+
+
+def test_a_massless_particle_that_is_combined_keeps_its_place_on_its_body(system: iota.System) -> None:
+    """Two boxes on one hinge are laid flat on each other by their markers, just after one of them was hinged to a third."""
+    lower = system.body(shape=iota.Box((0.01, 0.08, 0.05)), position=(0, 0.92, 0))
+    corners = [lower.attachment((x, y, 0)) for x in (-0.005, 0.005) for y in (0.88, 0.96)]
+    marker = lower.particle((0, 0.96, 0), mass=0)
+    upper = system.body(shape=iota.Box((0.01, 0.08, 0.05)), position=(0, 1, 0))
+    mark_above = upper.particle((0, 0.96, 0), mass=0)
+    hinge = upper.attachment((-0.005, 0.96, 0))
+    turn, arm = 0.03, lower.position - hinge.position
+    place = (arm.x * math.cos(turn) - arm.y * math.sin(turn), arm.x * math.sin(turn) + arm.y * math.cos(turn), 0)
+    lower.set_pose(hinge.position + place, (0, 0, math.sin(turn / 2), math.cos(turn / 2)))
+    hinge.combine(corners[1])
+    third = system.body(shape=iota.Box((0.01, 0.08, 0.05)), position=(0, 0.84, 0))
+    before = [abs(marker.position - p.position) for p in lower.particles]
+    corners[3].combine(third.attachment(corners[3].position))
+    report = mark_above.combine(marker)
+    assert report.closed_distance == pytest.approx(0.005 * turn, rel=1e-3)
+    assert [abs(marker.position - p.position) for p in lower.particles] == pytest.approx(before, abs=1e-12)
+    assert system.worst_gap < 1e-12
