@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The long runs, one after the other; the build makes what they need.
 
-    tools/soak.py [NAME ...]      scenes edits verify; all without a name
+    tools/soak.py [NAME ...]      scenes edits verify ladder; all without a name
 
 Exit code 0 only when none failed. A random scene that fails is printed as the shortest script that still does.
 """
@@ -19,6 +19,10 @@ RUNS = {
     "scenes": [str(ROOT / "build" / "iota_soak"), "scenes", "10000"],
     "edits": [str(ROOT / "build" / "iota_soak"), "edits", "10000000"],
     "verify": [str(ROOT / ".venv" / "bin" / "iota"), "verify", "--long"],
+    "ladder": [
+        *("env", "IOTA_LADDER_MINUTES=10", str(ROOT / ".venv" / "bin" / "python"), "-m", "pytest", "-q"),
+        *(str(ROOT / "tests" / "python" / "test_study_ladder.py"), "-k", "never_stuck"),
+    ],
 }
 
 

@@ -101,7 +101,7 @@ def test_headless_runs_ten_seconds_by_itself_and_takes_links() -> None:
         (["run", "chian"], "iota: there is no study 'chian'. Did you mean chain?", 1),
         (
             ["run", "zzz"],
-            "iota: there is no study 'zzz'. There is: bucky, chain, cloth, cradle, mechanisms, molecule, shoal, "
+            "iota: there is no study 'zzz'. There is: bucky, chain, cloth, cradle, ladder, mechanisms, molecule, shoal, "
             "soft-molecule, weather; or a file that ends in .py",
             1,
         ),

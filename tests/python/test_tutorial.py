@@ -48,3 +48,10 @@ def test_the_blocks_of_the_page_on_builders_run() -> None:
     names: dict[str, object] = {}
     for block in blocks(ROOT / "docs" / "builder.md"):
         exec(compile(block, "docs/builder.md", "exec"), names)
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs" / "studies").glob("*.md")), ids=lambda page: page.stem)
+def test_the_blocks_of_the_page_on_a_study_run(page: Path) -> None:
+    names: dict[str, object] = {}
+    for number, block in enumerate(blocks(page), start=1):
+        exec(compile(block, f"docs/studies/{page.name}, block {number}", "exec"), names)
