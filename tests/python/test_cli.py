@@ -17,6 +17,7 @@ import pytest
 from page_client import PageClient
 
 import iota
+from iota import studies
 from iota.cli import main
 
 KEYS = [
@@ -101,8 +102,7 @@ def test_headless_runs_ten_seconds_by_itself_and_takes_links() -> None:
         (["run", "chian"], "iota: there is no study 'chian'. Did you mean chain?", 1),
         (
             ["run", "zzz"],
-            "iota: there is no study 'zzz'. There is: bucky, chain, cloth, cradle, ladder, mechanisms, molecule, shoal, "
-            "soft-molecule, weather; or a file that ends in .py",
+            f"iota: there is no study 'zzz'. There is: {', '.join(studies.names())}; or a file that ends in .py",
             1,
         ),
         (["run", "missing.py"], "iota: there is no file missing.py", 1),
