@@ -1,13 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/bonds.h"
 
-#include <algorithm>
-#include <cmath>
-#include <string_view>
 #include "ingredient/model.h"
 #include "laws/pair_laws.h"
 
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
 namespace iota::ingredient {
+
+namespace {
+
+/// `time`: at the end of the step, where a law that changes with time is taken.
+void set_parameters(solver::SpringForce& spring, const Bond& bond, double /*time*/) {
+  spring.stiffness = bond.parameters[0], spring.damping = bond.parameters[1], spring.length = bond.parameters[2];
+}
+void set_parameters(solver::DragForce& drag, const Bond& bond, double /*time*/) { drag.damping = bond.parameters[0]; }
+void set_parameters(solver::RadialForce& radial, const Bond& bond, double time) {
+  radial.parameters = bond.parameters;
+  radial.time = time;
+}
+
+/// visit(force): with the solver's force for a bond, without its arm and parameters.
+template <class Visit>
+void visit_force_of(const Model& model, const Bond& bond, Visit visit) {
+  if (bond.law == spring_law) return visit(solver::SpringForce{});
+  if (bond.law == drag_law) return visit(solver::DragForce{});
+  solver::RadialForce force;
+  force.law = &model.compiled(bond.law);
+  force.m_p = model.particles[bond.p].mass, force.m_q = model.particles[bond.q].mass;
+  visit(force);
+}
+
+}  // namespace
 
 void Bonds::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
@@ -27,33 +53,23 @@ void Bonds::build(const IslandMap& map, Problem& problem) {
     arm.weights = {-1, 1};
     arm.count = 2;
     if (arm.nodes[0] == none || arm.nodes[1] == none || arm.nodes[0] == arm.nodes[1]) continue;
-    const solver::ItemKey key{owner, {}, slot};
-    if (b.law == spring_law) {
-      problem.add(solver::SpringForce{arm}, key);
-    } else if (b.law == drag_law) {
-      problem.add(solver::DragForce{arm}, key);
-    } else {
-      solver::RadialForce force{arm, &model.compiled(b.law)};
-      force.m_p = model.particles[b.p].mass, force.m_q = model.particles[b.q].mass;
-      problem.add(force, key);
-    }
+    visit_force_of(model, b, [&](auto force) {
+      force.arm = arm;
+      problem.add(force, {owner, {}, slot});
+    });
   }
 }
 
 void Bonds::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
-  const auto for_each = [&]<class Force>(auto load) {
+  const auto load_all = [&]<class Force>() {
     auto& forces = problem.pool_of<Force>().items;
-    for_each_item_of<Force>(
-        owner, problem, [&](std::size_t i, solver::ItemKey key) { load(forces[i], model.bonds[key.slot].parameters); });
+    for_each_item_of<Force>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+      set_parameters(forces[i], model.bonds[key.slot], model.time + h);
+    });
   };
-  for_each.operator()<solver::SpringForce>([](solver::SpringForce& spring, const auto& p) {
-    spring.stiffness = p[0], spring.damping = p[1], spring.length = p[2];
-  });
-  for_each.operator()<solver::DragForce>([](solver::DragForce& drag, const auto& p) { drag.damping = p[0]; });
-  for_each.operator()<solver::RadialForce>([&](solver::RadialForce& radial, const auto& p) {
-    radial.parameters = p;
-    radial.time = model.time + h;  // a law that changes with time is taken at the end of the step
-  });
+  load_all.operator()<solver::SpringForce>();
+  load_all.operator()<solver::DragForce>();
+  load_all.operator()<solver::RadialForce>();
 }
 
 void Bonds::validate(const Model& model, model::Audit& audit) {
@@ -113,11 +129,16 @@ void Bonds::add_energy(const Scope& scope, Energies& sum) {
 
 void Bonds::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   const Model& model = step.model;
+  if (!(step.h() > 0)) return;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     model.bonds.for_each_of(p, [&](std::uint32_t slot) {
       const Bond& bond = model.bonds[slot];
       if (!bond.ties()) return;  // forces that are held are applied as pushes
-      const Vec3 on_q = force(model, slot);
+      Vec3 on_q;
+      visit_force_of(model, bond, [&](auto force) {
+        set_parameters(force, bond, model.time);
+        on_q = force.force(step.start(bond.q) - step.start(bond.p), step.end(bond.q) - step.end(bond.p), step.stage);
+      });
       reader.take({.particle = p, .force = bond.p == p ? -on_q : on_q, .part = model.particles[p].part});
     });
   });

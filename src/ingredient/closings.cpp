@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "ingredient/model.h"
+#include "ingredient/row_loads.h"
 #include "model/restructure.h"
 
 #include <algorithm>
@@ -20,6 +21,10 @@ double closing_factor(double elapsed, double duration) {
   return 1 - 0.99 * s * s * (3 - 2 * s);
 }
 
+solver::DistanceConstraint constraint_of(const Closing& closing, std::uint32_t a, std::uint32_t b) {
+  return {{a, b}, closing.distance, closing.distance};
+}
+
 }  // namespace
 
 void Closings::build(const IslandMap& map, Problem& problem) {
@@ -34,7 +39,7 @@ void Closings::build(const IslandMap& map, Problem& problem) {
     const Closing& c = model.closings[slot];
     const std::uint32_t a = map.node_of(c.p), b = map.node_of(c.q);
     if (a == none || b == none) continue;  // of an inactive body
-    problem.add(solver::DistanceConstraint{{a, b}, c.distance, c.distance}, {owner, {}, slot});
+    problem.add(constraint_of(c, a, b), {owner, {}, slot});
   }
 }
 
@@ -70,6 +75,21 @@ void Closings::validate(const Model& model, model::Audit& audit) {
                   " has nothing to close");
   });
   audit.require_listed("closing", model.closings);
+}
+
+void Closings::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
+  const Model& model = step.model;
+  if (model.closings.size() == 0) return;
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    model.closings.for_each_of(p, [&](std::uint32_t slot) {
+      const Closing& closing = model.closings[slot];
+      for_each_row_force(step, constraint_of(closing, 0, 1), &closing.multiplier, std::array{closing.p, closing.q},
+                         [&](std::uint32_t particle, const Vec3& force) {
+                           if (particle == p)
+                             reader.take({.particle = p, .force = force, .part = model.particles[p].part});
+                         });
+    });
+  });
 }
 
 bool Closings::holds(const Model& model, std::uint32_t particle) { return model.closings.ends_at(particle); }

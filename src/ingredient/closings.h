@@ -31,6 +31,7 @@ class Closings : public NoAnswers {
   static void drop(Model&, std::uint32_t particle);
   static bool call_off(Model&, std::uint32_t p, std::uint32_t q);
   static void settle(Model&, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes);
+  static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
 
   static std::uint32_t add(Model&, const Closing&);  ///< returns the slot; the two articulates must become one
   static void remove(Model&, std::uint32_t closing);

@@ -64,18 +64,25 @@ IslandMap::IslandMap(const Model& model, const IslandNodes& nodes, std::span<con
                      const std::vector<std::uint32_t>& node_of_ring)
     : model(model), nodes(nodes), bodies(bodies), structure_(model), node_of_ring_(node_of_ring) {}
 
-WeightedNodes IslandMap::nodes_of(std::uint32_t particle) const {
+WeightedNodes rings_that_carry(const Model& model, std::uint32_t particle) {
   const model::Particle& p = model.particles[particle];
   WeightedNodes list{};
   if (model.is_unknown(p)) {
-    list[0] = {node_of(particle), 1.0};
+    list[0] = {p.ring, 1.0};
     return list;
   }
   const model::Body& body = model.bodies[p.body];
   const auto& weights = model.ties[particle].weights;
   int used = 0;
   for (int i = 0; i < body.rank; ++i)
-    if (weights[i] != 0) list[used++] = {node_of(body.basis[i]), weights[i]};
+    if (weights[i] != 0) list[used++] = {model.particles[body.basis[i]].ring, weights[i]};
+  return list;
+}
+
+WeightedNodes IslandMap::nodes_of(std::uint32_t particle) const {
+  WeightedNodes list = rings_that_carry(model, particle);
+  for (auto& [node, weight] : list)
+    if (weight != 0) node = node_of_ring_[node];
   return list;
 }
 

@@ -52,6 +52,8 @@ struct IslandNodes {
 };
 
 std::string name_of_ring(const Model&, std::uint32_t ring);  ///< for a sentence
+/// The particle's own ring where that is an unknown, or those of the basis that carries it.
+WeightedNodes rings_that_carry(const Model&, std::uint32_t particle);
 
 /// The nodes of an island by the model's numbers, and the bodies whose items are to be added; lives while the island is
 /// being built or follows a change.

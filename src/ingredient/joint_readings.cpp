@@ -3,6 +3,7 @@
 
 #include "ingredient/joint_rows.h"
 #include "ingredient/model.h"
+#include "ingredient/row_loads.h"
 
 #include <algorithm>
 #include <array>
@@ -22,11 +23,13 @@ void refresh_coordinates(Model& model, std::uint32_t slot) {
 
 namespace {
 
-/// The forces of a constraint on all its places.
-std::array<Vec3, place_count> forces_at(const Model& model, std::uint32_t slot, const JointPlaces& places) {
+/// The forces of a constraint on all its places in the last step.
+std::array<Vec3, place_count> forces_at(const LastStep& step, std::uint32_t slot, const JointPlaces& places) {
+  const Model& model = step.model;
   const Constraint& c = model.constraints[slot];
   std::array<Vec3, place_count> forces{};
   if (!is_in_force(model, c)) return forces;
+  const std::array<Vec3, place_count> start = places.calc_start(step, c);
   auto sink = [&]<class Row>(const Row& row, RowUse use) {
     Row loaded = row;
     double multipliers[Row::rows];
@@ -34,12 +37,8 @@ std::array<Vec3, place_count> forces_at(const Model& model, std::uint32_t slot, 
       load_held(loaded, c, use, multipliers);
     else
       multipliers[0] = c.efforts[use.coordinate][static_cast<std::size_t>(use.role) - 1];
-    const solver::Gradients<Row> gradients(loaded, places.position.data(), 1);
-    for (int i = 0; i < row.node_count(); ++i) {
-      Vec3 direction[Row::rows];
-      gradients.of_node(i, direction);
-      for (int r = 0; r < Row::rows; ++r) forces[row.nodes[i]] -= multipliers[r] * direction[r];
-    }
+    for_each_row_force(loaded, multipliers, step.stage.midpoint, start.data(), places.position.data(),
+                       [&](std::uint32_t place, const Vec3& force) { forces[place] += force; });
   };
   JointRowBuilder<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
   return forces;
@@ -47,13 +46,13 @@ std::array<Vec3, place_count> forces_at(const Model& model, std::uint32_t slot, 
 
 }  // namespace
 
-Vec3 calc_force_at(const Model& model, std::uint32_t slot, int place) {
-  return forces_at(model, slot, JointPlaces(model, model.constraints[slot]))[static_cast<std::size_t>(place)];
+Vec3 calc_force_at(const LastStep& step, std::uint32_t slot, int place) {
+  return forces_at(step, slot, JointPlaces(step.model, step.model.constraints[slot]))[static_cast<std::size_t>(place)];
 }
 
 Reaction calc_reaction(const Model& model, std::uint32_t slot) {
   const JointPlaces places(model, model.constraints[slot]);
-  const std::array<Vec3, place_count> forces = forces_at(model, slot, places);
+  const std::array<Vec3, place_count> forces = forces_at(LastStep(model), slot, places);
   Reaction reaction;
   reaction.position = places.position[a_origin];
   for (int place = a_origin; place < b_origin; ++place) {

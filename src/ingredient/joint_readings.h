@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingredient/loads.h"
 #include "ingredient/model.h"
 
 #include <cstdint>
@@ -14,14 +15,14 @@ void refresh_coordinates(model::Model&, std::uint32_t joint);
 /// Finds where two surfaces are nearest, for those that a joint brings together.
 void start_contact(model::Model&, std::uint32_t joint);
 
-/// Force and torque of a joint on its side a, about `position`, from the last step's multipliers at the present places.
+/// Force and torque of a joint on its side a in the last step, about `position`.
 struct Reaction {
   Vec3 position, force, torque;
 };
 Reaction calc_reaction(const model::Model&, std::uint32_t joint);
 
-/// Force of a joint on one of its places, N, as `calc_reaction` has it.
-Vec3 calc_force_at(const model::Model&, std::uint32_t joint, int place);
+/// Force of a joint on one of its places in the last step, N.
+Vec3 calc_force_at(const LastStep&, std::uint32_t joint, int place);
 
 /// The largest violation of what a joint holds, limits apart, at the present places: absolute (m; rad where it is about
 /// directions), and over the reference length of its row.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingredient/loads.h"
 #include "ingredient/model.h"
 
 #include <algorithm>
@@ -289,6 +290,20 @@ class JointRowBuilder {
 struct JointPlaces {
   PlaceArms arms{};
   std::array<Vec3, place_count> position{}, velocity{};
+
+  /// Where they were at the start of the last step.
+  std::array<Vec3, place_count> calc_start(const LastStep& step, const Constraint& c) const {
+    std::array<Vec3, place_count> start = position;
+    for (int place = 0; place < place_count; ++place) {
+      if (!c.has(place) || c.particles[place] == none) continue;
+      const model::Body& body = step.model.bodies[step.model.particles[c.particles[place]].body];
+      const std::array<double, 4> weights = step.model.weights(c.particles[place]);
+      start[place] = {};
+      for (int i = 0; i < body.rank; ++i)
+        if (weights[i] != 0) start[place] += weights[i] * step.start(body.basis[i]);
+    }
+    return start;
+  }
 
   JointPlaces(const Model& model, const Constraint& c) {
     for (int place = 0; place < place_count; ++place) {

@@ -248,7 +248,7 @@ void Joints::add_loads(const LastStep& step, std::uint32_t body, LoadReader& rea
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     model.for_each_constraint_of(p, [&](std::uint32_t slot, int place) {
       reader.take({.particle = p,
-                   .force = calc_force_at(model, slot, place),
+                   .force = calc_force_at(step, slot, place),
                    .through_basis = true,
                    .part = model.particles[p].part});
     });

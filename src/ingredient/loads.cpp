@@ -77,11 +77,25 @@ class PartLoads final : public LoadReader {
 }  // namespace
 
 LastStep::LastStep(const model::Model& model)
-    : model(model), h(model.last_dt), structure_(model), back_(model.steps_to_end_point() ? 0 : model.last_dt / 2) {}
+    : model(model), stage{.h = model.last_dt, .midpoint = !model.steps_to_end_point()}, structure_(model) {}
 
 Vec3 LastStep::damping(std::uint32_t particle) const {
-  const double c = model.damping + model.bodies[model.particles[particle].body].damping;
-  return c > 0 && h > 0 ? (std::expm1(c * h) / h) * ring(particle).velocity : Vec3{};
+  if (!(h() > 0)) return {};
+  const auto of_ring = [&](std::uint32_t slot) {
+    const double rate = Masses::damping_rate(model, slot);
+    return rate > 0 ? (std::expm1(rate * h()) / h()) * model.rings[slot].velocity : Vec3{};
+  };
+  Vec3 sum;  // a carried particle has the velocity of its basis, each point of which has a rate of its own
+  for (const auto& [ring, weight] : rings_that_carry(model, particle))
+    if (weight != 0) sum += weight * of_ring(ring);
+  return sum;
+}
+
+Vec3 LastStep::moved(std::uint32_t particle) const {
+  const Vec3 at_end = ring(particle).velocity + h() * damping(particle);
+  if (!stage.midpoint) return h() * at_end;
+  const Vec3 at_start = ring(particle).velocity - h() * acceleration(particle);
+  return (0.5 * h()) * (at_start + at_end);
 }
 
 void read_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {

@@ -2,39 +2,41 @@
 #pragma once
 
 #include "model/structure.h"
+#include "solver/forces/force_arm.h"
 
 #include <cstdint>
 
 namespace iota::ingredient {
 
-/// The last step of a model as the solver took it.
+/// The last step of a model as the solver took it, from x0, v0 to x1, v1: x1 - x0 is h v1, or h (v0 + v1) / 2 by the mid-point
+/// rule. Damping came after that and made v1 the velocity that the model has, v1 exp(-c h).
+/// Exact where the step was taken as one: of a step in parts, multipliers are those of its last part. The mid-point rule
+/// also leaves the mean of the last two multipliers, see docs/constraints.md.
 class LastStep {
  public:
   explicit LastStep(const model::Model& model);
 
   const model::Model& model;
-  double h;  ///< s
+  const solver::ForceStage stage;  ///< how the solver's forces were taken
 
-  /// Where the scheme took forces: at the end of the step, or half way, at (x0 + x1) / 2 = x1 - h (v0 + v1) / 4.
+  double h() const { return stage.h; }
+  Vec3 end(std::uint32_t particle) const { return ring(particle).position; }            ///< x1
+  Vec3 start(std::uint32_t particle) const { return end(particle) - moved(particle); }  ///< x0
+  /// Where forces act: x1, or (x0 + x1) / 2.
   Vec3 place(std::uint32_t particle) const {
-    const model::Ring& r = ring(particle);
-    return r.position - back_ * mean_velocity(particle);
+    return stage.midpoint ? end(particle) - 0.5 * moved(particle) : end(particle);
   }
-  /// Displacement over h: v1, or (v0 + v1) / 2.
-  Vec3 mean_velocity(std::uint32_t particle) const {
-    const model::Ring& r = ring(particle);
-    return r.velocity - back_ * r.acceleration;
-  }
+  /// Of the velocity that the model has, (v1 exp(-c h) - v0) / h.
   const Vec3& acceleration(std::uint32_t particle) const { return ring(particle).acceleration; }
-  /// What damping did to a body's particle, as a deceleration: after the scheme's step velocities fell by exp(-c h).
+  /// The share of damping in that, (v1 - v1 exp(-c h)) / h.
   Vec3 damping(std::uint32_t particle) const;
 
  private:
+  Vec3 moved(std::uint32_t particle) const;
   const model::Ring& ring(std::uint32_t particle) const {
     return structure_.rings[structure_.particles[particle].ring];
   }
   const model::Structure& structure_;
-  double back_;
 };
 
 /// A force that one of a body's particles felt in the last step.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/masses.h"
 
+#include "ingredient/model.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
-#include "ingredient/model.h"
 
 namespace iota::ingredient {
 
@@ -27,26 +29,59 @@ std::span<const Term> used(const WeightedNodes& list) {
   return {list.begin(), end};
 }
 
-void add_inertia_pair(const IslandMap& map, const model::InertiaPair& pair, Problem& problem) {
-  std::array<Term, 8> difference{};
-  std::size_t count = 0;
-  const auto add = [&](const WeightedNodes& list, double sign) {
-    for (const auto& [node, weight] : used(list)) {
-      Term* const end = difference.data() + count;
-      Term* const found =
-          std::find_if(difference.data(), end, [node = node](const Term& t) { return t.first == node; });
-      if (found == end) difference[count++] = {node, 0};
-      found->second += sign * weight;
-    }
-  };
-  add(map.nodes_of(pair.p), 1);
-  add(map.nodes_of(pair.q), -1);
-  add_mass({difference.data(), count}, pair.inertia, problem);
+/// A marker that is an unknown of its own would leave an empty pivot. It gets mass that acts only against leaving its place
+/// in the body; the rows that tie it there make that motion zero.
+bool has_virtual_mass(const Model& model, std::uint32_t marker) {
+  const model::Particle& particle = model.particles[marker];
+  return particle.is_marker() && model.is_unknown(particle) && model.ring_mass(particle.ring) == 0;
 }
-
-/// Of a marker that is an unknown of its own, kg.
 double virtual_mass(const Model& model, std::uint32_t marker) {
   return 0.1 * model.body_mass(model.particles[marker].body);
+}
+
+/// A sum of velocities of nodes.
+class Difference {
+ public:
+  void add(std::span<const Term> terms, double sign) {
+    for (const auto& [node, weight] : terms) {
+      Term* const end = terms_.data() + count_;
+      Term* const found = std::find_if(terms_.data(), end, [node = node](const Term& t) { return t.first == node; });
+      if (found == end) terms_[count_++] = {node, 0};
+      found->second += sign * weight;
+    }
+  }
+  std::span<const Term> terms() const { return {terms_.data(), count_}; }
+
+ private:
+  std::array<Term, 8> terms_{};
+  std::size_t count_ = 0;
+};
+
+/// visit(terms, mass) for each part 1/2 mass |sum_i w_i v_i|^2 of a body's kinetic energy. nodes_of(particle): its own node,
+/// or those that carry it.
+template <class NodesOf, class Visit>
+void for_each_mass(const Model& model, std::uint32_t body, NodesOf nodes_of, Visit visit) {
+  model.for_each_particle_of(body, [&](std::uint32_t p) {
+    const WeightedNodes own = nodes_of(p);
+    if (const model::Particle& particle = model.particles[p]; !particle.is_marker()) {
+      visit(used(own), particle.mass);
+    } else if (has_virtual_mass(model, p)) {
+      Difference off;
+      off.add(used(own), 1);
+      const model::Body& record = model.bodies[body];
+      for (int i = 0; i < record.rank; ++i)
+        if (const double weight = model.ties[p].weights[i]; weight != 0)
+          off.add(used(nodes_of(record.basis[i])), -weight);
+      visit(off.terms(), virtual_mass(model, p));
+    }
+  });
+  model.for_each_inertia_of(body, [&](std::uint32_t i) {
+    const model::InertiaPair& pair = model.inertia_pairs[i];
+    Difference difference;
+    difference.add(used(nodes_of(pair.p)), 1);
+    difference.add(used(nodes_of(pair.q)), -1);
+    visit(difference.terms(), pair.inertia);
+  });
 }
 
 }  // namespace
@@ -55,55 +90,48 @@ void Masses::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
   auto& damping = problem.damping;
   for (const std::uint32_t body : map.bodies) {
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      if (has_virtual_mass(model, p)) virtual_.push_back(p);
+    });
     const double own = model.bodies[body].damping;
-    if (!(own > 0)) {
-      add_body(map, body, problem);
-      continue;
-    }
-    // Bodies damp a node in the proportion of the masses that they give it.
-    damping.resize(problem.size());
-    const auto for_each_node = [&](auto visit) {
-      model.for_each_particle_of(body, [&](std::uint32_t p) {
-        if (!model.is_unknown(model.particles[p])) return;
-        if (const std::uint32_t node = map.node_of(p); problem.is_open(node)) visit(node);
-      });
-    };
-    for_each_node([&](std::uint32_t node) { damping[node] -= own * problem.mass[node]; });
-    add_body(map, body, problem);
-    for_each_node([&](std::uint32_t node) { damping[node] += own * problem.mass[node]; });
+    if (own > 0) damping.resize(problem.size());
+    for_each_mass(
+        model, body, [&](std::uint32_t p) { return map.nodes_of(p); },
+        [&](std::span<const Term> terms, double mass) {
+          add_mass(terms, mass, problem);
+          if (!(own > 0)) return;
+          for (const auto& [node, weight] : terms)
+            if (problem.is_open(node)) damping[node] += own * mass * weight * weight;
+        });
   }
   for (std::uint32_t node = 0; node < damping.size(); ++node)
     if (problem.is_open(node)) damping[node] /= problem.mass[node];
 }
 
+double Masses::damping_rate(const Model& model, std::uint32_t ring) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  const auto for_each_body = [&](auto visit) {
+    model.for_each_in_ring(ring, [&](std::uint32_t p) {
+      const model::Body& body = model.bodies[model.particles[p].body];
+      if (body.kind != BodyKind::inactive) visit(model.particles[p].body, body.damping);
+    });
+  };
+  for_each_body([&](std::uint32_t, double own) { least = std::min(least, own), most = std::max(most, own); });
+  if (!(least < most)) return model.damping + most;
+  double mass = 0, damped = 0;
+  for_each_body([&](std::uint32_t body, double own) {
+    for_each_mass(
+        model, body, [&](std::uint32_t p) { return rings_that_carry(model, p); },
+        [&](std::span<const Term> terms, double of_terms) {
+          for (const auto& [node, weight] : terms)
+            if (node == ring) mass += of_terms * weight * weight, damped += own * of_terms * weight * weight;
+        });
+  });
+  return model.damping + (mass > 0 ? damped / mass : 0);
+}
+
 void Masses::leave(const IslandMap& map) {
   std::erase_if(virtual_, [&](std::uint32_t marker) { return map.has(map.model.particles[marker].body); });
-}
-
-void Masses::add_body(const IslandMap& map, std::uint32_t body, Problem& problem) {
-  const Model& model = map.model;
-  model.for_each_particle_of(body, [&](std::uint32_t p) {
-    const model::Particle& particle = model.particles[p];
-    const Term own{map.node_of(p), 1.0};
-    if (!particle.is_marker())
-      add_mass(model.is_unknown(particle) ? std::span(&own, 1) : used(map.nodes_of(p)), particle.mass, problem);
-    else if (model.is_unknown(particle) && model.ring_mass(particle.ring) == 0)
-      add_virtual_mass(map, p, problem);
-  });
-  model.for_each_inertia_of(body, [&](std::uint32_t i) { add_inertia_pair(map, model.inertia_pairs[i], problem); });
-}
-
-// A marker that is an unknown of its own would leave an empty pivot. It gets mass that acts only against leaving its place
-// in the body; the rows that tie it there make that motion zero.
-void Masses::add_virtual_mass(const IslandMap& map, std::uint32_t marker, Problem& problem) {
-  const model::Body& body = map.model.bodies[map.model.particles[marker].body];
-  std::array<Term, 5> difference{{{map.node_of(marker), 1.0}}};
-  const auto& weights = map.model.ties[marker].weights;
-  std::size_t count = 1;
-  for (int i = 0; i < body.rank; ++i)
-    if (weights[i] != 0) difference[count++] = {map.node_of(body.basis[i]), -weights[i]};
-  add_mass({difference.data(), count}, virtual_mass(map.model, marker), problem);
-  virtual_.push_back(marker);
 }
 
 double Masses::virtual_energy(const Model& model) const {

@@ -12,6 +12,9 @@ class Masses : public NoAnswers {
   static void add_energy(const Scope&, Energies&);
   static void add_momentum(const Scope&, Momenta&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
+  /// At which the velocity of a ring that is an unknown falls, 1/s: that of the world, and those of its bodies in the
+  /// proportion of the masses that they give it.
+  static double damping_rate(const Model&, std::uint32_t ring);
 
   void build(const IslandMap&, Problem&);
   double after_step(Model&, double h, Problem&);
@@ -19,9 +22,6 @@ class Masses : public NoAnswers {
   void leave(const IslandMap&);
 
  private:
-  void add_body(const IslandMap&, std::uint32_t body, Problem&);
-  void add_virtual_mass(const IslandMap&, std::uint32_t marker, Problem&);
-
   std::vector<std::uint32_t> virtual_;  // markers with a virtual mass
 };
 

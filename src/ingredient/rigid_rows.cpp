@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "ingredient/model.h"
+#include "ingredient/row_loads.h"
 #include "solver/largest.h"
 
 #include <algorithm>
@@ -10,6 +11,14 @@
 #include <cmath>
 
 namespace iota::ingredient {
+
+namespace {
+
+solver::DistanceConstraint constraint_of(const model::RigidRow& row, std::uint32_t a, std::uint32_t b) {
+  return {{a, b}, row.length, row.length};
+}
+
+}  // namespace
 
 void RigidRows::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
@@ -25,8 +34,7 @@ void RigidRows::build(const IslandMap& map, Problem& problem) {
         if (is_free(body.kind)) pinned_.push_back({slot, row});
         continue;
       }
-      const double length = model.row(slot, row).length;
-      problem.add(solver::DistanceConstraint{{a, b}, length, length}, {owner, {row}, slot});
+      problem.add(constraint_of(model.row(slot, row), a, b), {owner, {row}, slot});
     }
   }
 }
@@ -91,16 +99,12 @@ void RigidRows::add_loads(const LastStep& step, std::uint32_t slot, LoadReader& 
   const model::Body& body = step.model.bodies[slot];
   for (int row = 0; row < body.row_count; ++row) {
     const model::RigidRow& record = step.model.row(slot, row);
-    const std::array<Vec3, 2> places{step.place(body.basis[model::basis_pairs[row][0]]),
-                                     step.place(body.basis[model::basis_pairs[row][1]])};
-    const solver::DistanceConstraint constraint{{0, 1}, record.length, record.length};
-    for (int end = 0; end < 2; ++end) {
-      Vec3 gradient;
-      constraint.gradient(places.data(), end, &gradient);
-      reader.take({.particle = body.basis[model::basis_pairs[row][static_cast<std::size_t>(end)]],
-                   .force = -record.multiplier * gradient,
-                   .kind = Load::Kind::within});
-    }
+    const auto [i, j] = model::basis_pairs[row];
+    const std::array points{body.basis[i], body.basis[j]};
+    for_each_row_force(step, constraint_of(record, 0, 1), &record.multiplier, points,
+                       [&](std::uint32_t particle, const Vec3& force) {
+                         reader.take({.particle = particle, .force = force, .kind = Load::Kind::within});
+                       });
   }
 }
 

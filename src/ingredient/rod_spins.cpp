@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/rod_spins.h"
 
-#include <cmath>
 #include "ingredient/model.h"
 
+#include <cmath>
+
 namespace iota::ingredient {
+
+namespace {
+
+/// As the solver's force has it, kg m/s.
+double spin_of(const Model& model, std::uint32_t body) {
+  return model.spins.at(body).momentum / model.bodies[body].first_row.length;
+}
+double damping_rate(const Model& model, std::uint32_t body) { return model.damping + model.bodies[body].damping; }
+
+}  // namespace
 
 void RodSpins::build(const IslandMap& map, Problem& problem) {
   const Model& model = map.model;
@@ -22,9 +33,8 @@ void RodSpins::build(const IslandMap& map, Problem& problem) {
 
 void RodSpins::load(const Model& model, const IslandNodes&, double, Problem& problem) {
   auto& forces = problem.pool_of<solver::GyroscopicForce>().items;
-  for_each_item_of<solver::GyroscopicForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
-    forces[i].spin = model.spins[key.slot].momentum / model.bodies[key.slot].first_row.length;
-  });
+  for_each_item_of<solver::GyroscopicForce>(
+      owner, problem, [&](std::size_t i, solver::ItemKey key) { forces[i].spin = spin_of(model, key.slot); });
 }
 
 double RodSpins::after_step(Model& model, double h, Problem& problem) {
@@ -32,7 +42,7 @@ double RodSpins::after_step(Model& model, double h, Problem& problem) {
   for_each_item_of<solver::GyroscopicForce>(owner, problem, [&](std::size_t, solver::ItemKey key) {
     RodSpin& spin = model.spins.at(key.slot);
     lost += energy(model, key.slot);
-    spin.momentum *= std::exp(-(model.damping + model.bodies[key.slot].damping) * h);
+    spin.momentum *= std::exp(-damping_rate(model, key.slot) * h);
     lost -= energy(model, key.slot);
     spin.angle += h * spin.momentum / model.axial_inertia(key.slot);
   });
@@ -70,12 +80,12 @@ void RodSpins::add_momentum(const Scope& scope, Momenta& sum) {
 // A force of inertia: with the axis the momentum of the spin turns.
 void RodSpins::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   const Model& model = step.model;
-  if (!model.spins.has(body) || !(step.h > 0)) return;
+  if (!model.spins.has(body) || !(step.h() > 0)) return;
   const model::InertiaPair& pair = model.inertia_pairs[model.bodies[body].first_inertia];
-  const Vec3 end = model.position(pair.q) - model.position(pair.p);
-  const Vec3 start = end - step.h * (step.mean_velocity(pair.q) - step.mean_velocity(pair.p));
-  const solver::GyroscopicForce gyroscopic{.spin = model.spins.at(body).momentum / norm(end)};
-  const Vec3 on_q = gyroscopic.force(start, end, {.h = step.h});
+  const double before_damping = std::exp(damping_rate(model, body) * step.h());
+  const solver::GyroscopicForce gyroscopic{.spin = spin_of(model, body) * before_damping};
+  const Vec3 on_q =
+      gyroscopic.force(step.start(pair.q) - step.start(pair.p), step.end(pair.q) - step.end(pair.p), step.stage);
   const BodyId part = model.particles[pair.p].part;
   reader.take({.particle = pair.p, .force = -on_q, .kind = Load::Kind::inertia, .part = part});
   reader.take({.particle = pair.q, .force = on_q, .kind = Load::Kind::inertia, .part = part});

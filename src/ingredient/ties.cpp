@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "ingredient/model.h"
+#include "ingredient/row_loads.h"
 #include "solver/largest.h"
 
 #include <algorithm>
@@ -18,6 +19,21 @@ double reference_length(const Model& model, std::uint32_t body) {
   return extent > 0 ? extent : 1;
 }
 
+/// What ties a particle to the basis of its body; its nodes are the particles.
+solver::AffineConstraint constraint_of(const Model& model, std::uint32_t particle) {
+  solver::AffineConstraint tie;
+  const auto add = [&](std::uint32_t p, double weight) {
+    tie.nodes[tie.count] = p;
+    tie.weights[tie.count++] = weight;
+  };
+  add(particle, 1);
+  const model::Body& body = model.bodies[model.particles[particle].body];
+  const auto& weights = model.ties[particle].weights;
+  for (int i = 0; i < body.rank; ++i)
+    if (weights[i] != 0) add(body.basis[i], -weights[i]);
+  return tie;
+}
+
 }  // namespace
 
 void Ties::build(const IslandMap& map, Problem& problem) {
@@ -29,16 +45,12 @@ void Ties::build(const IslandMap& map, Problem& problem) {
     model.for_each_particle_of(slot, [&](std::uint32_t p) {
       const model::Particle& particle = model.particles[p];
       if (particle.basis_index >= 0 || !model.is_unknown(particle)) return;
-      solver::AffineConstraint tie;
-      tie.nodes[0] = map.node_of(p), tie.weights[0] = 1, tie.count = 1;
+      solver::AffineConstraint tie = constraint_of(model, p);
       tie.reference = reference;
-      const auto& weights = model.ties[p].weights;
-      bool movable = !map.is_pinned(tie.nodes[0]);
-      for (int i = 0; i < body.rank; ++i) {
-        if (weights[i] == 0) continue;
-        tie.nodes[tie.count] = map.node_of(body.basis[i]);
-        movable = movable || !map.is_pinned(tie.nodes[tie.count]);
-        tie.weights[tie.count++] = -weights[i];
+      bool movable = false;
+      for (std::uint32_t i = 0; i < tie.count; ++i) {
+        tie.nodes[i] = map.node_of(tie.nodes[i]);
+        movable = movable || !map.is_pinned(tie.nodes[i]);
       }
       if (!movable) {
         if (is_free(body.kind)) pinned_.push_back(p);
@@ -99,7 +111,6 @@ double Ties::worst_gap(const Model& model) {
   return worst.value;
 }
 
-// The multiplier of AffineConstraint, with weight 1 for the particle and minus its weights for the basis.
 void Ties::add_loads(const LastStep& step, std::uint32_t slot, LoadReader& reader) {
   const Model& model = step.model;
   const model::Body& body = model.bodies[slot];
@@ -107,11 +118,12 @@ void Ties::add_loads(const LastStep& step, std::uint32_t slot, LoadReader& reade
   model.for_each_particle_of(slot, [&](std::uint32_t p) {
     const model::Particle& particle = model.particles[p];
     if (particle.basis_index >= 0 || !model.is_unknown(particle)) return;
-    const model::Tie& tie = model.ties[p];
-    const Vec3 multiplier{tie.multiplier[0], tie.multiplier[1], tie.multiplier[2]};
-    reader.take({.particle = p, .force = -multiplier, .kind = Load::Kind::within});
-    for (int i = 0; i < body.rank; ++i)
-      reader.take({.particle = body.basis[i], .force = tie.weights[i] * multiplier, .kind = Load::Kind::within});
+    const solver::AffineConstraint tie = constraint_of(model, p);
+    const std::array<Vec3, solver::AffineConstraint::max_nodes> anywhere{};  // its gradient is the same everywhere
+    for_each_row_force(tie, model.ties[p].multiplier.data(), false, anywhere.data(), anywhere.data(),
+                       [&](std::uint32_t particle_of_tie, const Vec3& force) {
+                         reader.take({.particle = particle_of_tie, .force = force, .kind = Load::Kind::within});
+                       });
   });
 }
 

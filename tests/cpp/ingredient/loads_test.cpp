@@ -11,8 +11,8 @@
 namespace iota {
 namespace {
 
-/// A bit of everything, hanging on a nail: rods that spin, blocks, a locked pair, a motor hinge with a spring, a rope, bonds
-/// of three laws, damping and a grip.
+/// A bit of everything, hanging on a nail: rods that spin, blocks, a locked pair, a motor hinge with a spring, bonds of three
+/// laws, different dampings, a grip; and a stone that flies by itself.
 struct Contraption {
   System system;
   std::vector<BodyId> bodies;
@@ -60,43 +60,73 @@ struct Contraption {
     const ParticleId low = system.bodies().attachments(third)[2];
     system.bonds().create(low, free_ends[0], SpringLaw{50, 1, 0.3});
     system.bonds().create(free_ends[1], low, DragLaw{0.4});
+    const BodyId stone = system.bodies().create();
+    (void)system.particles().create(stone, {2, 0, 0}, 0.5, somewhere(1));
+    system.bodies().set_damping(stone, random(0, 1));
     const BodyId ball = system.bodies().create();
     const ParticleId weight = system.particles().create(ball, at + Vec3{0.3, -0.9, 0.1});
     system.bonds().create(weight, low, SpringLaw{20, 0, 0.4});
-    bodies.insert(bodies.end(), {first, third, ball});
+    bodies.insert(bodies.end(), {first, third, ball, stone});
     system.bodies().set_damping(third, random(0, 1));
+    system.bodies().set_damping(bodies[2], random(0, 1));  // not that of the rods that it is hinged to
     const double violence = mode == IntegrationMode::robust ? 1 : 0.1;
     (void)system.grips().create(first, {0.1, 0, 0}, at + somewhere(0.3 * violence));
     system.bodies().set_angular_velocity(bodies[1], violence * (somewhere(2) + Vec3{40, 0, 0}));
   }
 };
 
-// Exact where forces are those at the end of the step. With the mid-point rule the two differ by about 2 % in these scenes;
-// why is not known (perhaps the impulses of projected velocities, which are not among the loads).
+constexpr double h = 1.0 / 240;
+
+/// The largest difference between the load from outside and the change of momenta, over the forces that the solver balances:
+/// 2 kg by 1 m / h^2. It stops at 1e-9 of those (the mid-point rule at 1e-10).
+double calc_worst_imbalance(const Contraption& c) {
+  double worst = 0;
+  for (const BodyId body : c.bodies) {
+    const Vec3 force = c.system.bodies().outside_force(body, {}), torque = c.system.bodies().outside_torque(body, {});
+    worst = std::max(
+        {worst, norm(force - c.system.bodies().net_force(body)), norm(torque - c.system.bodies().net_torque(body))});
+  }
+  return worst / (2 / (h * h));
+}
+
+StepReport push_and_step(Contraption& c) {
+  for (const ParticleId p : c.free_ends) c.system.particles().apply_force(p, {1, -2, 0.5});
+  return c.system.step(h);
+}
+
 TEST(Loads, from_outside_are_mass_times_acceleration) {
-  for (const IntegrationMode mode : {IntegrationMode::energy_keeping, IntegrationMode::robust})
-    for (std::uint32_t seed = 0; seed < 10; ++seed) {
+  for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::plausible}) {
+    int checked = 0;
+    for (std::uint32_t seed = 0; seed < 50; ++seed) {
       Contraption c(seed, mode);
-      const double tolerance = mode == IntegrationMode::robust ? 1e-3 : 0.1;
-      int checked = 0;
       for (int i = 0; i < 40; ++i) {
-        for (const ParticleId p : c.free_ends) c.system.particles().apply_force(p, {1, -2, 0.5});
-        const StepReport report = c.system.step(1e-3);
+        const StepReport report = push_and_step(c);
         if (report.substeps_max > 1 || report.fallbacks > 0) continue;  // multipliers are of the last sub-step
         ++checked;
-        double scale = 1;
-        for (const BodyId body : c.bodies) scale = std::max(scale, norm(c.system.bodies().net_force(body)));
-        for (const BodyId body : c.bodies) {
-          const Vec3 force = c.system.bodies().outside_force(body, {}),
-                     torque = c.system.bodies().outside_torque(body, {});
-          ASSERT_LT(norm(force - c.system.bodies().net_force(body)), tolerance * scale)
-              << "seed " << seed << " step " << i << " body " << body.slot;
-          ASSERT_LT(norm(torque - c.system.bodies().net_torque(body)), tolerance * scale)
-              << "seed " << seed << " step " << i << " body " << body.slot;
-        }
+        ASSERT_LT(calc_worst_imbalance(c), mode == IntegrationMode::robust ? 1e-9 : 1e-7)
+            << "seed " << seed << " step " << i;
       }
-      EXPECT_GT(checked, 20);
     }
+    EXPECT_GT(checked, 1500);
+  }
+}
+
+// The mid-point rule finds the mean of two successive multipliers and leaves that, which is off by some percent of the forces
+// here. In the first step there is no other.
+TEST(Loads, from_outside_are_mass_times_acceleration_by_the_mid_point_rule_too) {
+  for (const IntegrationMode mode : {IntegrationMode::energy_keeping, IntegrationMode::accurate}) {
+    int checked = 0;
+    for (std::uint32_t seed = 0; seed < 100; ++seed) {
+      Contraption c(seed, mode);
+      const StepReport report = push_and_step(c);
+      if (report.substeps_max > 1 || report.fallbacks > 0) continue;
+      ++checked;
+      ASSERT_LT(calc_worst_imbalance(c), 1e-9) << "seed " << seed;
+    }
+    if (mode == IntegrationMode::energy_keeping) {
+      EXPECT_GT(checked, 50);
+    }
+  }
 }
 
 TEST(Loads, of_one_hinge_add_up_to_zero) {
