@@ -12,6 +12,7 @@ import iota
 from iota import studies
 from iota.studies import appendix_e1, appendix_e2, appendix_e3, fireworks, physics_class
 from iota.studies._story import Story
+from iota.world.actions import PAGE_KEYS
 
 
 def run(world: iota.World, seconds: float) -> None:
@@ -147,3 +148,9 @@ def test_a_story_waits_tells_itself_and_stops_when_it_is_touched() -> None:
 def test_stories_and_helpers_are_no_studies() -> None:
     assert {"appendix-e1", "appendix-e2", "appendix-e3", "physics-class", "fireworks"} <= set(studies.names())
     assert not any("story" in name for name in studies.names())
+
+
+@pytest.mark.parametrize("name", ["cloth", "fireworks", "physics-class", "shoal", "undersea", "weather"])
+def test_studies_leave_the_page_its_keys(name: str) -> None:
+    world = studies.module(name).build()
+    assert [action.key for action in world._state.actions if action.key in PAGE_KEYS] == []

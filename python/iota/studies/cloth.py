@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A cloth on a bar; pull, and it tears. g lets the wind blow, t tears a knot out."""
+"""A cloth on a bar; pull, and it tears. n lets the wind blow, b tears a knot out, c makes a new cloth."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ def build() -> iota.World:
     )
     present(world, made)
 
-    @world.action("wind", key="g", help="the wind drops, or comes back", on="world")
+    @world.action("wind", key="n", help="the wind drops, or comes back", on="world")
     def blow() -> None:
         wind.active = not wind.active
 
-    @world.action("tear", key="t", button="b", help="tears what you hold out of its threads")
+    @world.action("tear", key="b", button="b", help="tears what you hold out of its threads")
     def tear(event: iota.Event) -> None:
         for bond in system.bonds:
             if event.body in (end.body for end in bond.ends):
                 bond.destroy()
 
-    @world.action("mend", key="r", button="a", help="a new cloth", on="world")
+    @world.action("mend", key="c", button="a", help="a new cloth", on="world")
     def mend() -> None:
         world.reset()
 
@@ -46,9 +46,9 @@ def present(world: iota.World, made: iota.builder.Realized) -> None:
     triangles = [t for k, below in corners for t in ((k, k + below, k + 1), (k + 1, k + below, k + below + 1))]
     world.surface(list(made.points), triangles, threads=made.bonds, color="#b0303a")
     world.paint([point.body for point in made.points], "#b0303a")
-    left, right, y = CORNER.x - 0.08, CORNER.x + (COLUMNS - 1) * SPACING + 0.08, CORNER.y
+    left, right, y = CORNER.x - 0.3, CORNER.x + (COLUMNS - 1) * SPACING + 0.3, CORNER.y
     world.add_strut((left, y, 0), (right, y, 0), looks.cylinder(0.014, "wood"))
     for x in (left, right):
         world.add_strut((x, 0, 0), (x, y + 0.03, 0), looks.cylinder(0.02, "wood"))
         world.add_static(looks.box((0.06, 0.04, 0.5), "wood"), (x, 0.02, 0))
-    world.camera = iota.Camera(position=(0.9, 1.6, 2.6), target=(0, 1.25, 0))
+    world.camera = iota.Camera(position=(1.0, 1.5, 3.5), target=(0, 1.05, 0))

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A thousand fish keep together and apart, follow a leader, and drift with a current; c turns the current off, s scatters them."""
+"""A thousand fish keep together and apart, follow a leader, and drift with a current; c turns the current off, x scatters them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,48 +13,29 @@ import iota
 from iota import looks
 
 FISH = 1000
+MASS = 0.3  # kg, of a fish
 CRUISE = 1.2  # m/s
 KEEN = 2.0  # 1/s, how soon a fish has its speed again
 FOLLOW = 0.9  # m/s^2, towards the leader
-MIDDLE, WAY = (
-    np.array([0.0, 4.0, 0.0]),
-    np.array([6.0, 1.2, 4.5]),
-)  # of the leader's path, and how far it goes from there, m
+MIDDLE = np.array([0.0, 3.4, 0.0])  # of the leader's path, m
+WAY = np.array([4.0, 0.7, 2.2])  # how far it goes from there, m
+BED = 9.0  # m, how far the wall of water is behind the fish
 
 
 def build(fish: int = FISH) -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust", gravity=(0, 0, 0))
     world = iota.World(system, title="shoal", dt=1 / 60)
-    random = np.random.default_rng(5)
-    shoal = iota.builder.Structure()
-    shoal.points.add(leader_at(0) + random.normal(size=(fish, 3)) * [1.5, 0.8, 1.5], 1.0, (CRUISE, 0, 0))
-    shoal.group("shoal", range(fish))
-    made = shoal.realize(system)
-    group = made.groups["shoal"]
-    # Long-range attraction, short-range repulsion, and neighbors swim alike.
-    system.pair_force(
-        "attract_repel", cutoff=1.4, group=group, attraction=0.06, attraction_range=1.0, repulsion=1.3,
-        repulsion_range=0.15, alignment=0.03,
-    )  # fmt: skip
-    system.field(swim, group=group)
-    current = system.field("current", group=group, drag=0.5, speed=0.8, size=2.5, octaves=3, evolution=0.2)
-    present(world, [point.body for point in made.points])
-    phase = random.uniform(0, 2 * math.pi, fish)
-
-    @world.on_step
-    def steer() -> None:
-        if system.step_count % 2 == 0:
-            for particle, turn in zip(made.points, headings(system, phase).tolist(), strict=True):
-                particle.orientation = turn
+    school = School(world, fish, leader_at)
+    present(world)
 
     @world.action("current", key="c", button="a", help="turns the current off and on", on="world")
     def turn() -> None:
-        current.active = not current.active
+        school.current.active = not school.current.active
 
-    @world.action("scatter", key="s", button="b", help="scatters the shoal", on="world")
+    @world.action("scatter", key="x", button="b", help="scatters the shoal", on="world")
     def scatter() -> None:
-        system.velocities = system.velocities + random.normal(size=(fish, 3)) * 3
+        system.velocities = system.velocities + np.random.default_rng(0).normal(size=(fish, 3)) * 3
 
     return world
 
@@ -64,42 +46,77 @@ def leader_at(time: float) -> Any:
     return MIDDLE + WAY * np.array([math.cos(turn), math.sin(2 * turn), math.sin(turn)])
 
 
-def swim(batch: iota.types.ParticleBatch) -> Any:
-    """Each fish keeps its speed along its way, and turns towards the leader."""
-    speed = np.linalg.norm(batch.velocity, axis=1, keepdims=True)
-    to_leader = leader_at(batch.time) - batch.position
-    distance = np.linalg.norm(to_leader, axis=1, keepdims=True)
-    push = KEEN * (CRUISE / np.maximum(speed, 0.05) - 1) * batch.velocity
-    return batch.mass[:, None] * (push + FOLLOW * to_leader / np.maximum(distance, 0.5))
+class School:
+    """Fish about a leader: long-range attraction, short-range repulsion, neighbors swim alike, all drift with a turbulent
+    current. Who is taken out of `group` swims no more by itself."""
 
-
-def headings(system: iota.System, phase: Any) -> Any:
-    """Quaternions that look along each fish's way, level but for a bank into its turn, and wag from side to side: (n, 4)."""
-    velocity = system.velocities
-    speed = np.maximum(np.linalg.norm(velocity, axis=1), 1e-6)
-    wag = 0.22 * np.sin(2 * math.pi * (1.2 + 0.3 * np.sin(phase)) * system.time + phase)
-    yaw = np.arctan2(-velocity[:, 2], velocity[:, 0]) + wag
-    pitch = np.arcsin(np.clip(velocity[:, 1] / speed, -0.9, 0.9))
-    sideways = np.cross((leader_at(system.time) - system.positions), velocity)[:, 1]
-    roll = 0.5 * np.tanh(sideways / (3 * speed))
-    (cy, cp, cr), (sy, sp, sr) = ([f(angle / 2) for angle in (yaw, pitch, roll)] for f in (np.cos, np.sin))
-    # Roll about x, then pitch about z, then yaw about y.
-    x, y = sr * cp * cy + cr * sp * sy, cr * cp * sy + sr * sp * cy
-    z, w = cr * sp * cy - sr * cp * sy, cr * cp * cy - sr * sp * sy
-    return np.stack([x, y, z, w], axis=1)
-
-
-def present(world: iota.World, fish: list[iota.Body]) -> None:
-    """A body, a tail fin, and a reef of stones that does not move."""
-    world.draw(
-        fish,
-        [
-            looks.Look(iota.Ellipsoid((0.26, 0.1, 0.05)), "paint", "#5b86a8"),
-            looks.Look(iota.Cone(0.055, 0.09), "paint", "#e0a040", offset=(-0.14, 0, 0)),
-        ],
-    )
-    for x, z, size in ((-3, -2, 0.8), (2.5, 1.5, 0.6), (4.5, -3, 1.1), (-5, 2.5, 0.9), (0.5, -5, 1.3)):
-        world.add_static(
-            looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c"), (x, 0.3 * size, z)
+    def __init__(self, world: iota.World, fish: int, leader: Callable[[float], Any], spread: float = 1.5) -> None:
+        self._system, self._leader = world.system, leader
+        random = np.random.default_rng(5)
+        self._phase = random.uniform(0, 2 * math.pi, fish)
+        shoal = iota.builder.Structure()
+        shoal.points.add(
+            leader(0) + random.normal(size=(fish, 3)) * [spread, 0.5 * spread, spread], MASS, (0, 0, CRUISE)
         )
-    world.camera = iota.Camera(position=(4, 4.5, 12), target=(1.5, 4, 0))
+        shoal.group("shoal", range(fish))
+        made = shoal.realize(world.system)
+        self.fish, self.group = made.points, made.groups["shoal"]
+        self._bodies = world.system.array([fish.body for fish in self.fish])
+        world.system.pair_force(
+            "attract_repel", cutoff=0.9, group=self.group, attraction=0.03, attraction_range=0.8, repulsion=0.4,
+            repulsion_range=0.15, alignment=0.02,
+        )  # fmt: skip
+        world.system.field(self._swim, group=self.group)
+        self.current = world.system.field(
+            "current", group=self.group, drag=0.15, speed=0.6, size=2.5, octaves=3, evolution=0.2
+        )
+        world.draw(
+            [fish.body for fish in self.fish],
+            [
+                looks.Look(iota.Ellipsoid((0.26, 0.1, 0.05)), "paint", "#5b86a8"),
+                looks.Look(iota.Cone(0.055, 0.09), "paint", "#e0a040", offset=(-0.14, 0, 0)),
+            ],
+        )
+        world.on_step(self._steer)
+
+    def _swim(self, batch: iota.types.ParticleBatch) -> Any:
+        """Each keeps its speed along its way and turns towards the leader, by its own strength, whatever it has to carry."""
+        speed = np.linalg.norm(batch.velocity, axis=1, keepdims=True)
+        to_leader = self._leader(batch.time) - batch.position
+        distance = np.linalg.norm(to_leader, axis=1, keepdims=True)
+        push = KEEN * (CRUISE / np.maximum(speed, 0.05) - 1) * batch.velocity
+        return MASS * (push + FOLLOW * to_leader / np.maximum(distance, 0.5))
+
+    def _steer(self) -> None:
+        """Fish look along their way: every other step is enough."""
+        if self._system.step_count % 2 == 0:
+            self._bodies.orientations = self.headings()
+
+    def headings(self) -> Any:
+        """Quaternions along each fish's way, level but for a bank into its turn, wagging from side to side: (n, 4)."""
+        time, velocity = self._system.time, self._bodies.velocities
+        speed = np.maximum(np.linalg.norm(velocity, axis=1), 1e-6)
+        wag = 0.22 * np.sin(2 * math.pi * (1.2 + 0.3 * np.sin(self._phase)) * time + self._phase)
+        yaw = np.arctan2(-velocity[:, 2], velocity[:, 0]) + wag
+        pitch = np.arcsin(np.clip(velocity[:, 1] / speed, -0.9, 0.9))
+        sideways = np.cross(self._leader(time) - self._bodies.positions, velocity)[:, 1]
+        roll = 0.5 * np.tanh(sideways / (3 * speed))
+        (cy, cp, cr), (sy, sp, sr) = ([f(angle / 2) for angle in (yaw, pitch, roll)] for f in (np.cos, np.sin))
+        # Roll about x, then pitch about z, then yaw about y.
+        x, y = sr * cp * cy + cr * sp * sy, cr * cp * sy + sr * sp * cy
+        z, w = cr * sp * cy - sr * cp * sy, cr * cp * cy - sr * sp * sy
+        return np.stack([x, y, z, w], axis=1)
+
+
+def present(world: iota.World) -> None:
+    """A bed of sand with stones, and the blue of the water behind."""
+    for x, z, size in ((-3, -2, 0.8), (2.5, 1.5, 0.6), (4.5, -3, 1.1), (-5, 1.5, 0.9), (0.5, -5, 1.3)):
+        stone = looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c")
+        world.add_static(stone, (x, 0.25 * size, z))
+    world.add_static(looks.box((200, 0.02, 60), "paint", color="#b5ab88"), (0, 0.01, 0))
+    deep, bright = np.array([0x27, 0x62, 0x7A]), np.array([0x7F, 0xC1, 0xCF])
+    for band in range(16):
+        red, green, blue = (deep + (bright - deep) * band / 15).astype(int).tolist()
+        color = f"#{red:02x}{green:02x}{blue:02x}"
+        world.add_static(looks.box((200, 1.5, 0.1), "paint", color=color), (0, 1.5 * band + 0.75, -BED))
+    world.camera = iota.Camera(position=(0, 3.2, 13.0), target=(0, 3.2, 0))

@@ -20,11 +20,10 @@ WIND = iota.Vec3(4.0, 0.6, 0.6)  # m/s
 def build() -> iota.World:
     """The world of the study."""
     world = iota.World(iota.System(mode="robust", damping=0.05), title="weather")
-    world.draw_ties("spring", looks.cylinder(0.003, "rope"))
-    flag(world, iota.Vec3(-0.75, 1.9, 0))
-    fountain(world, iota.Vec3(0.35, 0.75, 0.1))
+    flag(world, iota.Vec3(-1.15, 1.9, 0))
+    fountain(world, iota.Vec3(0.3, 0.75, 0.1))
     beads(world, MIDDLE)
-    world.camera = iota.Camera(position=(0.18, 1.6, 2.1), target=(0.18, 1.3, 0))
+    world.camera = iota.Camera(position=(0.05, 1.5, 3.4), target=(0.05, 1.05, 0))
     return world
 
 
@@ -52,6 +51,10 @@ def flag(world: iota.World, corner: iota.Vec3) -> None:
     made = cloth.realize(system)
     for knot in made.points:
         knot.radius = 0.006
+    cells = [(int(knots[r, c]), int(knots[r + 1, c])) for r in range(ROWS - 1) for c in range(COLUMNS - 1)]
+    triangles = [t for k, below in cells for t in ((k, below, k + 1), (k + 1, below, below + 1))]
+    world.surface(list(made.points), triangles, threads=made.bonds, color="#c8842c")
+    world.draw_ties("spring", [])
     wind = system.field(
         "current", group=made.groups["cloth"], velocity=WIND, drag=0.025, speed=1.6, size=0.5, octaves=3, evolution=1.5
     )

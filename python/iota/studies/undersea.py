@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A fish leaves its shoal, feeds on seaweed, tears a piece off, lags behind with it, lets go and rejoins; n goes on by hand."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+import iota
+from iota import looks
+from iota.studies._story import Story
+from iota.studies.shoal import School, present
+
+FISH = 120
+KELPS = ((-2.2, -0.6), (2.6, -1.2), (0.7, 0.9))  # where they grow, m
+NODES, LENGTH = 10, 2.2  # of a kelp; m
+PIECE = 3  # links that a fish tears off
+BUOYANCY = 1.6  # m/s^2, upwards
+HIGHEST = 9.0  # m: what drifts away is gone there
+LURE = "force = -3*(r - r0 - 0.05*sin(7*t))/(r + 0.3) - 0.5*v; drag = 0.25"  # towards the food, and nibbling there
+
+
+def build(fish: int = FISH) -> iota.World:
+    """The world of the study."""
+    system = iota.System(mode="robust", gravity=(0, 0, 0))
+    world = iota.World(system, title="undersea", dt=1 / 60)
+    school = School(world, fish, leader_at, spread=0.8)
+    weed = system.group("weed")
+    system.field("uniform", group=weed, acceleration=(0, BUOYANCY, 0))
+    system.field("current", group=weed, velocity=(0.1, 0, 0), drag=0.02, speed=0.4, size=1.5, octaves=2, evolution=0.4)
+    school.current.set(speed=0.3)
+    kelps = [kelp(world, weed, x, z) for x, z in KELPS]
+    bush(world, weed, (-0.7, 0, -1.6))
+    bush(world, weed, (4.0, 0, 0.4))
+    for x, z in ((-3.4, 0.6), (1.6, -2.2), (-1.4, 1.3)):
+        ribbon(world, weed, (x, 0, z))
+    present(world)
+    world.camera = iota.Camera(position=(0.3, 2.1, 9.5), target=(0.3, 1.9, 0))
+    bubbles(world)
+    world.draw_ties("spring", looks.capsule(0.018, "rubber", color="#5c8a4a"))
+    meal = Meal(world, school, kelps)
+    story = Story(world, wait=8.0, first=3.0, on_stop=meal.call_off)
+    for time in (0.0, 7.0, 18.0):
+        story.at(time)(meal.go_on)
+    story.at(26.0)(lambda: None)
+
+    @world.action("go on", key="n", button="a", help="the next event of the story, by hand", on="world")
+    def go_on() -> None:
+        story.touch()
+        meal.go_on()
+
+    return world
+
+
+def leader_at(time: float) -> Any:
+    """Where the shoal wants to be, m: round the seaweed, nearly as fast as a fish can swim."""
+    turn = 2 * math.pi * time / 16
+    return np.array([3.3 * math.cos(turn), 2.8 + 0.4 * math.sin(3 * turn), 0.2 + 1.7 * math.sin(turn)])
+
+
+class Meal:
+    """The story of a fish, an event at a time: it leaves and feeds; tears a piece off and takes it along; lets go."""
+
+    def __init__(self, world: iota.World, school: School, kelps: list[list[iota.Body]]) -> None:
+        self._world, self._school, self._kelps = world, school, kelps
+        self._weed = next(group for group in world.system.groups if group.name == "weed")
+        # What is carried is as heavy as water, and drags.
+        self._load = world.system.group("load")
+        world.system.field("wind", group=self._load, drag=0.12)
+        self._label = world.label("", offset=(0, 0.3, 0))
+        self._start()
+        world.on_reset(self._start)
+        world.every(1.0)(self._clear)
+
+    def _start(self) -> None:
+        self.fish: iota.Particle | None = None  # that is away from the shoal, or carries
+        self.lure: iota.Bond | None = None
+        self.piece: list[iota.Body] = []
+        self.pieces: list[list[iota.Body]] = []  # that drift away
+        self._say("")
+        self._left = [list(kelp) for kelp in self._kelps]
+
+    def go_on(self) -> None:
+        """The next event."""
+        if self.fish is None:
+            self.leave()
+        elif self.lure is not None:
+            self.tear()
+        else:
+            self.let_go()
+
+    def leave(self) -> None:
+        """The fish nearest to the food forgets the shoal; a force draws it to the food instead."""
+        if all(len(kelp) <= 2 * PIECE for kelp in self._left):
+            self._world.reset()
+            return
+        kelp = max(self._left, key=len)
+        tip = kelp[-1].particles[-1]
+        self.fish = min(self._school.fish, key=lambda fish: abs(fish.position - tip.position))
+        self._school.group.remove(self.fish)
+        self._say("leaves the shoal and feeds")
+        self.lure = self._world.system.bond(self.fish, tip, LURE, r0=0.18)
+
+    def tear(self) -> None:
+        """The last links come off, and hang from the fish's mouth; it follows the shoal again."""
+        assert self.fish is not None
+        kelp = next(kelp for kelp in self._left if kelp[-1] == self._tip().body)
+        self.piece = [kelp.pop() for _ in range(PIECE)][::-1]
+        kelp[-1].particles[-1].separate(self.piece[0].particles[0])
+        self.fish.combine(self.piece[-1].particles[-1], over=0.5)
+        self._say("lags behind: it carries a piece")
+        self._weed.remove(*self.piece)
+        self._load.add(*self.piece)
+        self._end_lure()
+
+    def let_go(self) -> None:
+        """The piece drifts away."""
+        assert self.fish is not None
+        self._load.remove(*self.piece)
+        self._weed.add(*self.piece)
+        if self.fish.ring and len(self.fish.ring) > 1:
+            self.fish.separate(self.piece[-1].particles[-1])
+        self.pieces.append(self.piece)
+        self.fish, self.piece = None, []
+        self._say("")
+
+    def call_off(self) -> None:
+        """A fish that only feeds goes home; one that carries waits for the next event."""
+        if self.lure is not None:
+            self._end_lure()
+            self.fish = None
+            self._say("")
+
+    def _say(self, text: str) -> None:
+        """What the fish does, at the fish."""
+        self._label.visible = text != ""
+        if self.fish is not None:
+            self._label.text, self._label.at = text, self.fish
+
+    def _tip(self) -> iota.Particle:
+        assert self.lure is not None
+        return self.lure.ends[1]
+
+    def _end_lure(self) -> None:
+        assert self.lure is not None and self.fish is not None
+        self.lure.destroy()
+        self.lure = None
+        self._school.group.add(self.fish)
+
+    def _clear(self) -> None:
+        """Pieces that have drifted out of sight are gone."""
+        for piece in [piece for piece in self.pieces if piece[0].position.y > HIGHEST]:
+            self.pieces.remove(piece)
+            for link in piece:
+                link.destroy()
+
+
+# --- three kinds of seaweed -------------------------------------------------------------------------------------------
+
+
+def kelp(world: iota.World, weed: iota.Group, x: float, z: float) -> list[iota.Body]:
+    """An articulated chain of rigid links, each with a leaf, on the bed."""
+    stem = iota.builder.chain(NODES, LENGTH, top=(x, 0.02, z), direction=(0.1, 1, 0), mass=1.2)
+    links = stem.realize(world.system).bodies
+    link = LENGTH / NODES
+    leaf = looks.Look(iota.Ellipsoid((0.16, 0.34, 0.02)), "rubber", "#7d8f2e", offset=(0.04, 0.15, 0), turn=math.pi)
+    world.draw(links, [looks.capsule(0.02, "rubber", link, color="#5d7024"), leaf])
+    weed.add(*links)
+    return links
+
+
+def bush(world: iota.World, weed: iota.Group, foot: tuple[float, float, float]) -> None:
+    """Four rigid stems in one hinge at the bed, held apart by springs, with a soft strand on each (Faure 1999)."""
+    system, tops = world.system, []
+    base = system.body().particle(foot, mass=0.1)
+    base.radius = 0.05
+    base.nail()
+    for number in range(4):
+        angle = math.pi / 4 + number * math.pi / 2
+        stem = system.body()
+        low = stem.particle(foot, mass=0.05)
+        top = stem.particle(iota.Vec3(*foot) + (0.22 * math.cos(angle), 0.55, 0.22 * math.sin(angle)), mass=0.05)
+        base.combine(low)
+        world.draw(stem, looks.capsule(0.03, "rubber", color="#8a4a3a"))
+        weed.add(stem)
+        strand(world, weed, top, iota.Vec3(0.05 * math.cos(angle), 0.13, 0.05 * math.sin(angle)), 6, (0.75, 0.35, 0.3))
+        tops.append(top)
+    for p, q in [*pairwise(tops), (tops[-1], tops[0])]:
+        system.bond(p, q, "spring", stiffness=4, damping=0.05)
+
+
+def ribbon(world: iota.World, weed: iota.Group, foot: tuple[float, float, float]) -> None:
+    """A soft chain from the bed."""
+    base = world.system.body().particle(foot, mass=0.05)
+    base.radius = 0.03
+    base.nail()
+    strand(world, weed, base, iota.Vec3(0.01, 0.15, 0), 9, (0.35, 0.6, 0.3))
+
+
+def strand(
+    world: iota.World, weed: iota.Group, start: iota.Particle, way: iota.Vec3, nodes: int, color: tuple[float, ...]
+) -> None:
+    """Particles on springs, from a particle on; springs over two resist bending."""
+    points = [start]
+    for number in range(1, nodes + 1):
+        node = world.system.body().particle(start.position + way * number, mass=0.02)
+        node.radius, node.color = 0.034 - 0.002 * number, color
+        weed.add(node)
+        points.append(node)
+    for p, q in pairwise(points):
+        world.system.bond(p, q, "spring", stiffness=40, damping=0.1)
+    for p, q in zip(points, points[2:], strict=False):
+        world.system.bond(p, q, "spring", stiffness=2, damping=0.02)
+
+
+def bubbles(world: iota.World) -> None:
+    """They rise from between the stones."""
+    for x, z, rate in ((-4.2, 0.2, 9), (3.3, 0.9, 6)):
+        world.system.emitter(
+            rate=rate, source=iota.Sphere(0.08), position=(x, 0.4, z), velocity=(0, 0.7, 0), velocity_spread=0.12, mass=0.001,
+            lifetime=7, lifetime_spread=1, curve=[(0, 0.015, (0.8, 0.93, 1)), (1, 0.04, (0.9, 0.97, 1))],
+        )  # fmt: skip
