@@ -119,4 +119,4 @@ def present(world: iota.World) -> None:
         red, green, blue = (deep + (bright - deep) * band / 15).astype(int).tolist()
         color = f"#{red:02x}{green:02x}{blue:02x}"
         world.add_static(looks.box((200, 1.5, 0.1), "paint", color=color), (0, 1.5 * band + 0.75, -BED))
-    world.camera = iota.Camera(position=(0, 1.9, 13.5), target=(0, 3.1, 0))
+    world.camera = iota.Camera(position=(0, 3.4, 13.5), target=(0, 3.1, 0))
