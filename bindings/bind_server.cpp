@@ -2,11 +2,13 @@
 #include "binders.h"
 #include "room_object.h"
 
+#include "net/certificate.h"
 #include "net/token.h"
 
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
 
 #include <system_error>
 
@@ -23,6 +25,7 @@ constexpr const char* server_doc =
     "Serves the page and its WebSocket on one port, on a thread of its own, for one world or several.\n\n"
     "A World makes one for itself; worlds that are to share one are given it by `World.serve(server=...)`. page_folder: the\n"
     "built page. token: asked of every page. hello_time: s, from the upgrade of a connection to its first frame.\n"
+    "certificate, key: in PEM; with them other machines talk https to the same port.\n"
     "Raises OSError when the port is taken.";
 
 const char* kind_name_of(InputEvent::Kind kind) {
@@ -61,9 +64,20 @@ std::string token_of_state_folder(std::string (*get)(const std::filesystem::path
   }
 }
 
+std::pair<std::string, std::string> kept_certificate(const std::vector<std::string>& hosts) {
+  try {
+    const net::Certificate kept = net::load_or_make_certificate(hosts, net::state_folder());
+    return {kept.chain, kept.key};
+  } catch (const std::system_error& error) {
+    raise_os_error(error.code(), error.what());
+  }
+}
+
 std::unique_ptr<Server> make_server(const std::string& host, std::uint16_t port, const std::string& page_folder,
-                                    const std::string& token, double hello_time) {
+                                    const std::string& token, double hello_time, const std::string& certificate,
+                                    const std::string& key) {
   ServerOptions options;
+  options.certificate = {certificate, key};
   options.host = host;
   options.port = port;
   options.page_folder = page_folder;
@@ -140,15 +154,22 @@ void bind_server(nb::module_& module) {
       "renew_token", [] { return token_of_state_folder(&net::renew_token); },
       "A new secret in place of the kept one: pages that know the old one are refused by servers that start from now on.\n"
       "Raises OSError where it cannot be kept.");
+  module.def(
+      "kept_certificate", &kept_certificate, "hosts"_a,
+      "The server's own certificate for host names and addresses, and its key, both in PEM. Kept in the state folder;\n"
+      "made anew when it is not for one of them or ends soon. Raises OSError where it cannot be written.");
+  module.def("fingerprint", &net::fingerprint, "certificate"_a,
+             "SHA-256 of a certificate in PEM, as browsers show it. Raises ValueError for another text.");
   bind_room(module);
   nb::class_<ServerObject>(module, "Server", server_doc)
       .def(
           "__init__",
           [](ServerObject* self, const std::string& host, std::uint16_t port, const std::string& page_folder,
-             const std::string& token,
-             double hello_time) { new (self) ServerObject{make_server(host, port, page_folder, token, hello_time)}; },
+             const std::string& token, double hello_time, const std::string& certificate, const std::string& key) {
+            new (self) ServerObject{make_server(host, port, page_folder, token, hello_time, certificate, key)};
+          },
           nb::kw_only(), "host"_a = "127.0.0.1", "port"_a = 8080, "page_folder"_a = "", "token"_a,
-          "hello_time"_a = 10.0)
+          "hello_time"_a = 10.0, "certificate"_a = "", "key"_a = "")
       .def(
           "open", [](ServerObject& self, const std::string& world) { return new RoomObject(self.use().open(world)); },
           "world"_a,
@@ -161,6 +182,13 @@ void bind_server(nb::module_& module) {
       .def(
           "url_of", [](ServerObject& self, const std::string& world) { return self.use().url(world); }, "world"_a,
           "Address of a world's page.")
+      .def(
+          "url_at",
+          [](ServerObject& self, const std::string& host, const std::string& world) {
+            return self.use().url_at(host, world);
+          },
+          "host"_a, "world"_a = "",
+          "Address for other machines, to which this one is `host`. Without a world: the first one's.")
       .def_prop_ro("statistics", [](ServerObject& self) { return self.use().statistics(); });
 }
 

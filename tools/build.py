@@ -419,7 +419,7 @@ def wheel() -> Step:
         # Beside it, what it depends on, so that a test can install both without a network.
         run(
             log, PYTHON, "-m", "pip", "download", "--no-deps", "--only-binary", ":all:", "--dest", WHEELS / "depends",
-            f"numpy=={installed_version('numpy')}",
+            *(f"{package}=={installed_version(package)}" for package in ("numpy", "segno")),
         )  # fmt: skip
         write_stamp(stamp, now())
 

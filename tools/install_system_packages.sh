@@ -21,7 +21,7 @@ wanted=
 for group in $groups; do
   case "$group" in
     build)
-      wanted="$wanted ca-certificates g++ cmake ninja-build python3-dev python3-venv libboost1.81-dev libtbb-dev"
+      wanted="$wanted ca-certificates g++ cmake ninja-build python3-dev python3-venv libboost1.81-dev libssl-dev libtbb-dev"
       # One build tree has the targets of tests and benchmarks too, and CMake looks for these when it is set up.
       wanted="$wanted libgtest-dev libbenchmark-dev"
       ;;

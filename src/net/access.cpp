@@ -34,14 +34,17 @@ std::optional<std::string> unescape(std::string_view text) {
 
 struct HostAndPort {
   std::string host;
-  std::uint16_t port = 80;
+  std::uint16_t port = 0;
 };
 
+std::string prefix(Scheme scheme) { return scheme == Scheme::https ? "https://" : "http://"; }
+
 /// "[::1]:8080", "localhost:8080" or "localhost".
-std::optional<HostAndPort> split_host(std::string_view text) {
+std::optional<HostAndPort> split_host(std::string_view text, Scheme scheme) {
   const std::size_t bracket = text.rfind(']');
   const std::size_t colon = text.find(':', bracket == std::string_view::npos ? 0 : bracket);
   HostAndPort out;
+  out.port = scheme == Scheme::https ? 443 : 80;
   out.host = lower(text.substr(0, colon));
   if (!out.host.empty() && out.host.back() == '.') out.host.pop_back();
   if (out.host.empty()) return std::nullopt;
@@ -84,22 +87,22 @@ std::string query_value(std::string_view query, std::string_view name) {
 }
 
 std::optional<std::string> refuse_host(std::string_view host, const Endpoint& endpoint) {
-  const auto found = split_host(host);
+  const auto found = split_host(host, endpoint.scheme);
   if (!found) return "the Host header is missing or malformed";
   const std::array<std::string, 5> allowed{"localhost", "127.0.0.1", "[::1]", in_header(endpoint.bound_host),
                                            in_header(endpoint.local_address)};
   if (found->port != endpoint.port || std::find(allowed.begin(), allowed.end(), found->host) == allowed.end()) {
-    return "the Host header is not this server's, open http://localhost:" + std::to_string(endpoint.port);
+    return "the Host header is not this server's, open " + prefix(endpoint.scheme) +
+           "localhost:" + std::to_string(endpoint.port);
   }
   return std::nullopt;
 }
 
-std::optional<std::string> refuse_origin(std::string_view origin, std::string_view host) {
-  constexpr std::string_view scheme = "http://";
+std::optional<std::string> refuse_origin(std::string_view origin, Scheme scheme, std::string_view host) {
   const std::string given = lower(origin);
-  if (given.compare(0, scheme.size(), scheme) == 0) {
-    const auto page = split_host(std::string_view(given).substr(scheme.size()));
-    const auto server = split_host(host);
+  if (const std::string start = prefix(scheme); given.compare(0, start.size(), start) == 0) {
+    const auto page = split_host(std::string_view(given).substr(start.size()), scheme);
+    const auto server = split_host(host, scheme);
     if (page && server && page->host == server->host && page->port == server->port) return std::nullopt;
   }
   return "the Origin header is not this server's page";

@@ -24,18 +24,21 @@ std::optional<RequestTarget> parse_target(std::string_view target);
 /// Unescaped value of the first `name` in a query, empty when it is not there.
 std::string query_value(std::string_view query, std::string_view name);
 
+enum class Scheme : std::uint8_t { http, https };
+
 /// Where a request came in.
 struct Endpoint {
   std::string bound_host;     ///< as given to the server
   std::string local_address;  ///< address literal of this connection on our side
   std::uint16_t port = 0;
+  Scheme scheme = Scheme::http;
 };
 
 /// Why a Host header is refused, or nothing. Allowed: localhost, 127.0.0.1, [::1], the bound host, and the very address
 /// that was connected to, each with our port. (An address literal is no danger: rebinding needs a name.)
 std::optional<std::string> refuse_host(std::string_view host, const Endpoint& endpoint);
 
-/// Why an Origin header is refused, or nothing: it has to be our own page's, "http://" and the Host.
-std::optional<std::string> refuse_origin(std::string_view origin, std::string_view host);
+/// Why an Origin header is refused, or nothing: it has to be our own page's, "http://" or "https://" and the Host.
+std::optional<std::string> refuse_origin(std::string_view origin, Scheme scheme, std::string_view host);
 
 }  // namespace iota::net

@@ -2,10 +2,12 @@
 #include "net/connection.h"
 
 #include "net/static_files.h"
+#include "net/stream.h"
 #include "net/token.h"
 
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
+#include <boost/beast/core/detect_ssl.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 
@@ -46,12 +48,13 @@ constexpr std::uint8_t body_kind = entity_kind<protocol::BodyEntity>();
 
 /// The page loads only its own files and runs no inline code; three.js makes textures and workers from blobs. It talks to the
 /// WebSocket of this server only, which 'self' does not cover in every browser.
-std::string content_security_policy(std::string_view host) {
+std::string content_security_policy(Scheme scheme, std::string_view host) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::strchr(".-:[]", c);
   };
   std::string socket;  // none for a request whose Host is refused
-  if (!host.empty() && std::ranges::all_of(host, is_plain)) socket = std::string(" ws://").append(host);
+  if (!host.empty() && std::ranges::all_of(host, is_plain))
+    socket = std::string(scheme == Scheme::https ? " wss://" : " ws://").append(host);
   return "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; connect-src 'self'" +
          socket +
          " blob: data:; img-src 'self' blob: data:; media-src 'self' blob: data:; object-src 'none'; base-uri 'none'; "
@@ -66,9 +69,9 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
                                public ClientLink,
                                public OpenConnection {
  public:
-  WebSocketSession(tcp::socket socket, ConnectionContext& context)
+  WebSocketSession(Stream stream, ConnectionContext& context)
       : context_(context),
-        socket_(std::move(socket)),
+        socket_(std::move(stream)),
         timer_(socket_.get_executor()),
         queue_(context.options.max_queue_bytes) {
     context_.opened(*this);
@@ -120,7 +123,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
   /// A slow client should skip poses, not get them late from a long buffer in the kernel.
   void keep_send_buffer_short() {
     error_code ignored;
-    auto& socket = beast::get_lowest_layer(socket_).socket();
+    auto& socket = socket_.next_layer().socket();
     socket.set_option(asio::socket_base::send_buffer_size(256 * 1024), ignored);
 #if defined(__linux__) && defined(TCP_NOTSENT_LOWAT)
     const int bytes = 16 * 1024;
@@ -245,12 +248,12 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     timer_.cancel();
     queue_.clear();
     if (const std::uint32_t client = std::exchange(client_, 0); client != 0) hub_->leave(client);
-    beast::get_lowest_layer(socket_).close();
+    socket_.next_layer().close();
   }
 
   ConnectionContext& context_;
   std::shared_ptr<Hub> hub_;  ///< none until welcomed
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<Stream> socket_;
   asio::steady_timer timer_;
   beast::flat_buffer buffer_;
   OutQueue queue_;
@@ -277,14 +280,15 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   HttpSession(const HttpSession&) = delete;
   HttpSession& operator=(const HttpSession&) = delete;
 
+  /// With a certificate, the first byte tells whether this is https.
   void start() {
-    is_served_ = false;
+    if (context_.tls == nullptr) return read();
     stream_.expires_after(header_time);
-    parser_.emplace();
-    parser_->header_limit(16 * 1024);
-    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
-      if (error) return self->refuse_unreadable(error);
-      self->answer();
+    beast::async_detect_ssl(stream_, buffer_, [self = shared_from_this()](error_code error, bool is_tls) {
+      if (error) return self->finish();
+      if (is_tls) return self->encrypt();
+      self->must_redirect_ = !self->is_from_here();
+      self->read();
     });
   }
 
@@ -295,6 +299,33 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
  private:
   using Request = http::request<http::empty_body>;
   using Response = http::response<http::string_body>;
+
+  void encrypt() {
+    stream_.encrypt(*context_.tls);
+    stream_.async_handshake(buffer_.data(), [self = shared_from_this()](error_code error, std::size_t used = 0) {
+      if (error) return self->finish();
+      self->buffer_.consume(used);
+      self->read();
+    });
+  }
+
+  bool is_from_here() const {
+    error_code error;
+    const auto other = stream_.socket().remote_endpoint(error);
+    return !error &&
+           (other.address().is_loopback() || other.address() == stream_.socket().local_endpoint(error).address());
+  }
+
+  void read() {
+    is_served_ = false;
+    stream_.expires_after(header_time);
+    parser_.emplace();
+    parser_->header_limit(16 * 1024);
+    http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error) return self->refuse_unreadable(error);
+      self->answer();
+    });
+  }
 
   /// Bytes that are not HTTP (such as https:// typed by mistake) or too long a header: told before closing.
   void refuse_unreadable(error_code error) {
@@ -314,6 +345,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     is_head_ = request.method() == http::verb::head;
     const auto target = parse_target(to_view(request.target()));
     if (const auto reason = refuse_by_host(request)) return refuse(*reason);
+    if (must_redirect_) return send_to_https();
     if (!target) return send_text(http::status::bad_request, "malformed target");
     if ((parser_->content_length() && *parser_->content_length() > 0) || parser_->chunked()) {
       must_close_ = true;  // the body stays unread
@@ -331,7 +363,8 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   std::optional<std::string> refuse_by_host(const Request& request) const {
     error_code error;
     const auto local = stream_.socket().local_endpoint(error);
-    const Endpoint endpoint{context_.options.host, error ? std::string() : local.address().to_string(), context_.port};
+    const Endpoint endpoint{context_.options.host, error ? std::string() : local.address().to_string(), context_.port,
+                            stream_.scheme()};
     if (request.count(http::field::host) != 1) return "exactly one Host header is needed";
     return refuse_host(to_view(request[http::field::host]), endpoint);
   }
@@ -343,14 +376,24 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     }
     if (request.count(http::field::origin) > 1) return refuse("more than one Origin header");
     if (request.count(http::field::origin) == 1) {
-      const auto reason = refuse_origin(to_view(request[http::field::origin]), to_view(request[http::field::host]));
+      const auto reason =
+          refuse_origin(to_view(request[http::field::origin]), stream_.scheme(), to_view(request[http::field::host]));
       if (reason) return refuse(*reason);
     }
     if (!equal_in_constant_time(query_value(target.query, "token"), context_.options.token)) {
       return refuse("the token is wrong: open the URL that the server printed");
     }
     stream_.expires_never();
-    std::make_shared<WebSocketSession>(stream_.release_socket(), context_)->start(request);
+    std::make_shared<WebSocketSession>(std::move(stream_), context_)->start(request);
+  }
+
+  /// The token stands in the address, so a plain answer holds nothing but the way to https.
+  void send_to_https() {
+    const Request& request = parser_->get();
+    Response response = make_response(http::status::temporary_redirect);
+    response.set(http::field::location,
+                 std::string("https://").append(to_view(request[http::field::host])).append(to_view(request.target())));
+    send(std::move(response));
   }
 
   void refuse(const std::string& reason) {
@@ -399,7 +442,8 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     const Request& request = parser_->get();
     Response response{status, request.version() == 10 ? 10U : 11U};
     response.set(http::field::server, "iota");
-    response.set("Content-Security-Policy", content_security_policy(to_view(request[http::field::host])));
+    response.set("Content-Security-Policy",
+                 content_security_policy(stream_.scheme(), to_view(request[http::field::host])));
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");  // the page's URL holds the token
     response.set("Cross-Origin-Opener-Policy", "same-origin");
@@ -422,11 +466,9 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     const bool is_last = !response_->keep_alive();
     http::async_write(stream_, *response_, [self = shared_from_this(), is_last](error_code error, std::size_t) {
       if (error || self->context_.is_finishing) return self->finish();
-      if (!is_last) return self->start();
-      error_code ignored;
-      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+      if (!is_last) return self->read();
       self->stream_.expires_after(close_time);
-      self->discard();
+      self->stream_.async_shutdown_send([self](error_code) { self->discard(); });
     });
   }
 
@@ -439,12 +481,13 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   }
 
   ConnectionContext& context_;
-  beast::tcp_stream stream_;
+  Stream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::optional<Response> response_;
   bool is_head_ = false;
   bool must_close_ = false;
+  bool must_redirect_ = false;
   bool is_served_ = false;
 };
 
@@ -468,6 +511,17 @@ bool make_room(ConnectionContext& context) {
 }
 
 }  // namespace
+
+std::unique_ptr<asio::ssl::context> make_tls(const Certificate& certificate) {
+  if (certificate.chain.empty()) return nullptr;
+  auto tls = std::make_unique<asio::ssl::context>(asio::ssl::context::tls_server);
+  error_code error;
+  SSL_CTX_set_min_proto_version(tls->native_handle(), TLS1_2_VERSION);
+  tls->use_certificate_chain(asio::buffer(certificate.chain), error);
+  if (!error) tls->use_private_key(asio::buffer(certificate.key), asio::ssl::context::pem, error);
+  if (error) throw std::invalid_argument("the certificate or its key cannot be used: " + error.message());
+  return tls;
+}
 
 void start_connection(tcp::socket socket, ConnectionContext& context) {
   if (context.is_finishing || !make_room(context)) return;  // closes it

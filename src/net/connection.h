@@ -8,6 +8,7 @@
 #include "net/server.h"
 
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -44,6 +45,7 @@ class OpenConnection {
 struct ConnectionContext {
   const ServerOptions& options;
   Counters& counters;
+  boost::asio::ssl::context* tls;  ///< null: plain http for all
   /// The hub that a hello asks for, or none and the reason.
   std::function<std::pair<std::shared_ptr<Hub>, std::string>(const std::string& world)> find_world;
   std::uint16_t port = 0;
@@ -58,6 +60,9 @@ struct ConnectionContext {
     if (is_finishing && open.empty() && on_all_closed) on_all_closed();
   }
 };
+
+/// What encrypts connections with a certificate; null for an empty one. Throws std::invalid_argument for one that is damaged.
+std::unique_ptr<boost::asio::ssl::context> make_tls(const Certificate& certificate);
 
 /// Takes over an accepted socket; the connection keeps itself alive as long as something is under way on it.
 void start_connection(boost::asio::ip::tcp::socket socket, ConnectionContext& context);

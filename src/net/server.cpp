@@ -64,6 +64,13 @@ std::string percent_encoded(const std::string& text) {
   return out;
 }
 
+std::string address(const std::string& scheme, const std::string& host, std::uint16_t port, const std::string& token) {
+  const bool is_v6 = host.find(':') != std::string::npos;
+  return scheme + "://" + (is_v6 ? "[" + host + "]" : host) + ":" + std::to_string(port) + "/?token=" + token;
+}
+
+std::string in_query(const std::string& world) { return "&world=" + percent_encoded(world); }
+
 error_code try_listen(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {
   error_code error;
   acceptor.open(endpoint.protocol(), error);
@@ -157,8 +164,8 @@ struct Server::Implementation {
   explicit Implementation(ServerOptions given)
       : options(checked(std::move(given))),
         link(std::make_shared<Room::Link>(io)),
-        context{options, counters, [this](const std::string& world) { return link->worlds.ask(world); }, 0, {},
-                false,   {}},
+        tls(make_tls(options.certificate)),
+        context{options, counters, tls.get(), [this](const std::string& world) { return link->worlds.ask(world); }},
         acceptor(listen(io, options)),
         timer(io),
         frame_timer(io) {
@@ -230,6 +237,7 @@ struct Server::Implementation {
   const ServerOptions options;
   Counters counters;
   std::shared_ptr<Room::Link> link;
+  const std::unique_ptr<asio::ssl::context> tls;
   ConnectionContext context;
   asio::io_context io{1};  // destroyed first: handlers own connections, which refer to the members above
   tcp::acceptor acceptor;
@@ -244,13 +252,17 @@ Server::~Server() = default;
 std::uint16_t Server::port() const { return implementation_->context.port; }
 
 std::string Server::url() const {
-  std::string host = implementation_->options.host;
-  if (host == "0.0.0.0" || host == "::" || host.empty()) host = "127.0.0.1";
-  if (host.find(':') != std::string::npos) host = "[" + host + "]";
-  return "http://" + host + ":" + std::to_string(port()) + "/?token=" + implementation_->options.token;
+  const std::string& host = implementation_->options.host;
+  const bool is_any = host == "0.0.0.0" || host == "::" || host.empty();
+  return address("http", is_any ? "127.0.0.1" : host, port(), implementation_->options.token);
 }
 
-std::string Server::url(const std::string& world) const { return url() + "&world=" + percent_encoded(world); }
+std::string Server::url(const std::string& world) const { return url() + in_query(world); }
+
+std::string Server::url_at(const std::string& host, const std::string& world) const {
+  const char* scheme = implementation_->options.certificate.chain.empty() ? "http" : "https";
+  return address(scheme, host, port(), implementation_->options.token) + (world.empty() ? "" : in_query(world));
+}
 
 std::unique_ptr<Room> Server::open(const std::string& world) {
   check_world(world);

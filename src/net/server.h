@@ -4,6 +4,7 @@
 // Sees snapshots and input events only, never the live system. Lengths in m, times in s, forces in N.
 #pragma once
 
+#include "net/certificate.h"
 #include "net/entity_store.h"
 
 #include <iota/pose_snapshot.h>
@@ -24,7 +25,9 @@ namespace iota::net {
 using Vec3f = std::array<float, 3>;
 
 struct ServerOptions {
-  std::string host = "127.0.0.1";         ///< name or address to listen on
+  std::string host = "127.0.0.1";  ///< name or address to listen on
+  /// With one, other machines talk https to the same port; plain http is for this machine only.
+  Certificate certificate = {};
   std::uint16_t port = 8080;              ///< 0: any free one
   std::filesystem::path page_folder;      ///< the built page: index.html and what it loads
   std::string token;                      ///< asked of every WebSocket; must not be empty
@@ -139,6 +142,8 @@ class Server {
   std::uint16_t port() const;
   std::string url() const;                          ///< http://127.0.0.1:8080/?token=...
   std::string url(const std::string& world) const;  ///< the same with &world=...
+  /// Address for other machines, to which this one is `host`: https://192.168.0.2:8080/?token=... An empty world: the first.
+  std::string url_at(const std::string& host, const std::string& world = {}) const;
   ServerStatistics statistics() const;
 
  private:

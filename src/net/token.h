@@ -2,14 +2,13 @@
 // The secret in the page's URL: 128 random bits as 32 hexadecimal digits, the same after a restart.
 #pragma once
 
+#include "net/secret_file.h"
+
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace iota::net {
-
-/// $XDG_STATE_HOME/iota, or ~/.local/state/iota. Throws std::runtime_error when neither variable names a folder.
-std::filesystem::path state_folder();
 
 /// 32 new hexadecimal digits from the system's random source.
 std::string make_token();

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import ssl
 import struct
 import threading
 import time
@@ -93,12 +94,13 @@ class PageClient:
 
     entities: by kind and slot. told, pose_frames: how many records and frames came so far. places: of bodies, by slot."""
 
-    def __init__(self, url: str, name: str = "test", role: int = 0) -> None:
+    def __init__(self, url: str, name: str = "test", role: int = 0, trust: ssl.SSLContext | None = None) -> None:
+        """trust: for https, whose certificates count."""
         parts = urlsplit(url)
-        address = f"ws://{parts.netloc}/ws?{parts.query}"
-        origin = f"http://{parts.netloc}"
+        address = f"{parts.scheme.replace('http', 'ws')}://{parts.netloc}/ws?{parts.query}"
+        origin = f"{parts.scheme}://{parts.netloc}"
         self._open = ExitStack()
-        self.socket = self._open.enter_context(connect(address, origin=origin, max_size=None, proxy=None))
+        self.socket = self._open.enter_context(connect(address, origin=origin, max_size=None, proxy=None, ssl=trust))
         self.entities: dict[str, dict[int, dict[str, Any]]] = {kind: {} for kind in ENTITIES}
         self.told = self.pose_frames = 0
         self.places: dict[int, tuple[float, ...]] = {}

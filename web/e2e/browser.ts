@@ -25,6 +25,8 @@ export interface BrowserOptions {
   readonly dark?: boolean;
   /** Drawn pixels for a css pixel; a half unless told. */
   readonly density?: number;
+  /** Takes certificates that nobody signed. */
+  readonly trustsAll?: boolean;
 }
 
 /** Small windows, coarsely drawn: software rendering pays for each pixel, and what is tested does not depend on it. */
@@ -45,6 +47,7 @@ export class Browser {
       executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
       args: flags,
       env: { ...process.env, LIBGL_ALWAYS_SOFTWARE: "1" },
+      ignoreHTTPSErrors: options.trustsAll === true,
       deviceScaleFactor: options.density ?? 0.5,
       viewport: { width: options.width, height: options.height },
       colorScheme: options.dark === true ? "dark" : "light",

@@ -72,6 +72,11 @@ def make_parser() -> Parser:
         "--headless", action="store_true", help="serve nothing; run so many simulated seconds (default: 10)"
     )
     running.add_argument("--json", action="store_true", help="print the run's figures as one JSON object at its end")
+    running.add_argument(
+        "--lan", action="store_true", help="let phones, headsets and other computers in, by https; shows a QR code"
+    )
+    running.add_argument("--cert", type=Path, metavar="FILE.pem", help="a certificate for --lan, instead of an own one")
+    running.add_argument("--key", type=Path, metavar="FILE.pem", help="the key of --cert")
     running.add_argument("--watch", action="store_true", help="run the file anew whenever it is saved")
     running.set_defaults(function=lambda a: (watch.watch if a.watch else run.run)(a))
 

@@ -23,6 +23,7 @@ from iota.cli.failure import Failure
 from iota.errors import PageMissingError
 from iota.world import World
 from iota.world.callbacks import print_error
+from iota.world.lan import Lan
 from iota.world.options import RunOptions, use
 
 NOT_MAIN = "__iota__"  # run name of a script whose build() is called for it
@@ -43,6 +44,7 @@ def run(arguments: argparse.Namespace) -> None:
         seconds=arguments.seconds,
         open=not arguments.no_open and not arguments.headless and can_show_a_page(),
         headless=arguments.headless,
+        lan=lan(arguments),
     )
     start = find(arguments.what)
     with use(options), plain_failures(arguments.port):
@@ -53,6 +55,13 @@ def run(arguments: argparse.Namespace) -> None:
             )
     if arguments.json and options.summary is not None:
         print(json.dumps(options.summary.as_dict()))
+
+
+def lan(arguments: argparse.Namespace) -> Lan | None:
+    try:
+        return Lan(arguments.cert, arguments.key) if arguments.lan or arguments.cert or arguments.key else None
+    except ValueError as error:
+        raise Failure(str(error)) from None
 
 
 def token(arguments: argparse.Namespace) -> None:

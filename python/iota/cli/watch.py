@@ -51,9 +51,10 @@ def watch(arguments: argparse.Namespace) -> None:
 
 def start(arguments: argparse.Namespace, is_first: bool) -> subprocess.Popen[bytes]:
     words = [sys.executable, "-m", "iota", "run", arguments.what]
-    for name in ("links", "port", "seconds"):
+    for name in ("links", "port", "seconds", "cert", "key"):
         value = getattr(arguments, name)
         words += [] if value is None else [f"--{name}", str(value)]
+    words += ["--lan"] if arguments.lan else []
     words += ["--no-open"] if arguments.no_open or not is_first else []
     return subprocess.Popen(words)
 

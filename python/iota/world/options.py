@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from iota.world.lan import Lan
     from iota.world.summary import RunSummary
     from iota.world.world import World
 
@@ -22,6 +23,7 @@ class RunOptions:
     seconds: float | None = None
     open: bool | None = None
     headless: bool = False
+    lan: Lan | None = None
     drive: Callable[[World], None] | None = None
     ran: bool = False
     summary: RunSummary | None = None

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from iota._core import InputEvent, Room, Vec3
+from iota.world.lan import Lan, announcement
 from iota.world.server import Server
 from iota.world.source import source_of
 from iota.world.state import State
@@ -20,21 +21,28 @@ class Publisher:
         self._source = source_of(state.system)
         self.room = room
         self.url = server.url if is_alone else server.url_of(room.world)
+        self.lan_url = server.lan_url("" if is_alone else room.world)
         state.notices.show, state.notices.forget = room.notice, room.forget_notice
         state.scene.tell_anew()
         state.things.tell_anew()
         state.is_changed = True
 
     @classmethod
-    def open(cls, state: State, host: str, port: int) -> Publisher:
+    def open(cls, state: State, host: str, port: int, lan: bool | Lan) -> Publisher:
         """Listens. Raises OSError where the port is taken, PageMissingError where the page is not built."""
-        server = Server(host, port)
+        server = Server(host, port, lan=lan)
         return cls(state, server, server.open("default"), is_alone=True)
 
     @classmethod
     def join(cls, state: State, server: Server, id: str) -> Publisher:
         """Opens a world on a server that may have others. Raises ValueError for an id in use."""
         return cls(state, server, server.open(id), is_alone=False)
+
+    def announce_lan(self, shows_code: bool) -> list[str]:
+        """Lines that tell other machines how to come in; none where they cannot."""
+        if self.lan_url is None or self._server.fingerprint is None:
+            return []
+        return announcement(self.lan_url, self._server.fingerprint, self._server.port, shows_code)
 
     def close(self) -> None:
         self._state.notices.show = self._state.notices.forget = None

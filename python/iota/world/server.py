@@ -7,13 +7,15 @@ from pathlib import Path
 
 from iota import _core
 from iota.world import page
+from iota.world.lan import Lan, address
 
 
 class Server(_core.Server):
     """Serves the page for several worlds on one port; each is given it by `World.serve` or `World.start`.
 
     A page asks for a world by `world=ID` in its address, see `World.url`; without it, it is shown the first. hello_time: s,
-    from the upgrade of a connection to its first frame. folder: of the page, None: the built one. Raises OSError where the port is taken.
+    from the upgrade of a connection to its first frame. folder: of the page, None: the built one. lan: for other machines too,
+    by https, see `lan_url`; True, or a `Lan` with a certificate of your own. Raises OSError where the port is taken.
 
         server = iota.Server(port=8080)
         for name, world in worlds.items():
@@ -21,7 +23,30 @@ class Server(_core.Server):
     """
 
     def __init__(
-        self, host: str = "127.0.0.1", port: int = 8080, hello_time: float = 10.0, folder: str | Path | None = None
+        self,
+        host: str = "127.0.0.1",
+        port: int = 8080,
+        hello_time: float = 10.0,
+        folder: str | Path | None = None,
+        lan: bool | Lan = False,
     ) -> None:
         folder = page.page_folder() if folder is None else folder
-        super().__init__(host=host, port=port, page_folder=str(folder), token=page.token(), hello_time=hello_time)
+        certificate, key = "", ""
+        if lan:
+            certificate, key = (lan if isinstance(lan, Lan) else Lan()).certificate()
+            host = "0.0.0.0" if host == "127.0.0.1" else host
+        super().__init__(
+            host=host,
+            port=port,
+            page_folder=str(folder),
+            token=page.token(),
+            hello_time=hello_time,
+            certificate=certificate,
+            key=key,
+        )
+        self.fingerprint = _core.fingerprint(certificate) if lan else None
+        """SHA-256 of the certificate, as browsers show it; None without lan."""
+
+    def lan_url(self, world: str = "") -> str | None:
+        """Address of a world's page for other machines; None without lan. Without a world: the first one's."""
+        return None if self.fingerprint is None else self.url_at(address(), world)

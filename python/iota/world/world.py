@@ -26,6 +26,7 @@ from iota.world.frames import turn_from_x
 from iota.world.hands import Client
 from iota.world.inputs import Inputs
 from iota.world.interacting import Interacting
+from iota.world.lan import Lan
 from iota.world.publisher import Publisher
 from iota.world.scene import Camera
 from iota.world.server import Server
@@ -243,6 +244,11 @@ class World(Drawing, Interacting):
         """The page's address, with its token, while it is served."""
         return None if self._publisher is None else self._publisher.url
 
+    @property
+    def lan_url(self) -> str | None:
+        """Address of the page for other machines; None while it is not served with lan."""
+        return None if self._publisher is None else self._publisher.lan_url
+
     def reset(self) -> None:
         """Back to where the run began, with timed events as they were asked for before it."""
         self._stepper.reset()
@@ -263,10 +269,13 @@ class World(Drawing, Interacting):
 
     # --- running --------------------------------------------------------------------------------------------------
 
-    def run(self, seconds: float | None = None, port: int = 8080, open: bool = False) -> RunSummary:
+    def run(
+        self, seconds: float | None = None, port: int = 8080, open: bool = False, lan: bool | Lan = False
+    ) -> RunSummary:
         """Runs until Ctrl-C, `stop()`, or for `seconds` of real time; prints the page's address and the keys.
 
-        port: 0 for any free one. open: shows the page in the system's browser. Under `iota run --headless` nothing is
+        port: 0 for any free one. open: shows the page in the system's browser. lan: for phones, headsets and other
+        computers too, by https; prints their address and a QR code of it. Under `iota run --headless` nothing is
         served and `seconds` are simulated ones, as fast as they go. Raises OSError for a port that is taken.
         """
         options = run_options.current()
@@ -280,7 +289,7 @@ class World(Drawing, Interacting):
                 options.drive(self)
                 summary = self._stepper.summary()
             else:
-                self.serve(port if options.port is None else options.port)
+                self.serve(port, lan=lan)
                 self._announce(open if options.open is None else options.open)
                 summary = self._run_served(math.inf if seconds is None else seconds)
         finally:
@@ -342,16 +351,23 @@ class World(Drawing, Interacting):
             self.system.adopt()
 
     def serve(
-        self, port: int = 8080, host: str = "127.0.0.1", server: Server | None = None, id: str = "default"
+        self,
+        port: int = 8080,
+        host: str = "127.0.0.1",
+        server: Server | None = None,
+        id: str = "default",
+        lan: bool | Lan = False,
     ) -> str:
         """Serves the page, for scripts with a loop of their own around `step()`; returns its address.
 
         server: one that several worlds share, each with an id of its own; without it the world makes one for itself.
+        lan: for phones, headsets and other computers too, by https, see `lan_url`.
         """
         if self._publisher is None:
             if server is None:
                 options = run_options.current()
-                self._publisher = Publisher.open(self._state, host, port if options.port is None else options.port)
+                port = port if options.port is None else options.port
+                self._publisher = Publisher.open(self._state, host, port, options.lan or lan)
             else:
                 self._publisher = Publisher.join(self._state, server, id)
             atexit.register(self.close)  # for loops of scripts that end without it
@@ -502,7 +518,9 @@ class World(Drawing, Interacting):
         return register
 
     def _announce(self, show: bool) -> None:
+        assert self._publisher is not None
         lines = [f"{self.title}: {self.url}"]
+        lines += self._publisher.announce_lan(shows_code=sys.stdout.isatty())
         lines += [action.line for action in self._state.actions if action.key]
         print("\n".join(lines), flush=True)
         if show and self.url and not webbrowser.open(self.url):

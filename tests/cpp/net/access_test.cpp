@@ -27,13 +27,13 @@ TEST(Access, other_hosts_and_ports_are_refused) {
 }
 
 TEST(Access, only_our_own_page_is_an_origin) {
-  EXPECT_FALSE(refuse_origin("http://localhost:8080", "localhost:8080"));
-  EXPECT_FALSE(refuse_origin("HTTP://LocalHost:8080", "localhost:8080"));
-  EXPECT_FALSE(refuse_origin("http://localhost", "localhost:80"));
+  EXPECT_FALSE(refuse_origin("http://localhost:8080", Scheme::http, "localhost:8080"));
+  EXPECT_FALSE(refuse_origin("HTTP://LocalHost:8080", Scheme::http, "localhost:8080"));
+  EXPECT_FALSE(refuse_origin("http://localhost", Scheme::http, "localhost:80"));
   for (const char* origin :
        {"null", "", "https://localhost:8080", "http://localhost:8081", "http://127.0.0.1:8080", "http://evil.example",
         "http://localhost:8080.evil.example", "http://localhost:8080/", "localhost:8080"}) {
-    EXPECT_TRUE(refuse_origin(origin, "localhost:8080")) << origin;
+    EXPECT_TRUE(refuse_origin(origin, Scheme::http, "localhost:8080")) << origin;
   }
 }
 
@@ -52,6 +52,15 @@ TEST(Access, malformed_targets_are_refused) {
   for (const char* target : {"", "*", "a", "http://localhost/", "/%", "/%2", "/%zz", "/%-1"}) {
     EXPECT_FALSE(parse_target(target)) << target;
   }
+}
+
+TEST(Access, over_https_the_page_and_its_port_are_those_of_https) {
+  EXPECT_FALSE(refuse_origin("https://192.168.0.2:8080", Scheme::https, "192.168.0.2:8080"));
+  EXPECT_FALSE(refuse_origin("https://192.168.0.2", Scheme::https, "192.168.0.2:443"));
+  EXPECT_TRUE(refuse_origin("http://192.168.0.2:8080", Scheme::https, "192.168.0.2:8080"));
+  EXPECT_TRUE(refuse_origin("https://192.168.0.2:8080", Scheme::http, "192.168.0.2:8080"));
+  EXPECT_FALSE(refuse_host("192.168.0.2", {"0.0.0.0", "192.168.0.2", 443, Scheme::https}));
+  EXPECT_TRUE(refuse_host("192.168.0.2", {"0.0.0.0", "192.168.0.2", 443}));
 }
 
 }  // namespace
