@@ -1,40 +1,43 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Newton's cradle: as many balls leave as arrive. Drag any of them; l lifts one more on the left, k on the right."""
+"""Newton's cradle: as many balls leave as arrive. Drag a ball, turn the frame; l and k lift one more ball on the left, on the right."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
 
 import iota
 from iota import looks
 from iota.world.frames import turn_from_x
 
 BALLS = 5
-RADIUS, STRING, SPREAD = 0.06, 0.7, 0.22  # of a ball; height and half the width of its two strings, m
-HEIGHT = 1.5  # of the bars, m
+RADIUS, STRING, SPREAD = 0.012, 0.13, 0.045  # of a ball; height and half the width of its two strings, m
+HEIGHT = 0.18  # of the bars above the table, m
 LIFT = 0.7  # rad
 STEEL = 7800.0  # kg/m^3
+REACH = 0.002  # m: a hand that is nearer to its ball pushes to neither side
+PLACE, UP = iota.Vec3(0, 0, 0), iota.Vec3(0, 1, 0)
 
 
-def build(left: int = 1, right: int = 0) -> iota.World:
-    """The world of the study. left, right: how many balls are lifted at first."""
-    system = iota.System()
-    world = iota.World(system, title="cradle")
-    balls = [hang(system, place(number)) for number in range(BALLS)]
-    present(world, balls)
-    world.on_step(lambda: collide(balls, [ball == world.held() for ball in balls]))
+def build(left: int = 1, right: int = 0, balls: int = BALLS) -> iota.World:
+    """The world of the study. left, right: how many of the balls are lifted at first."""
+    world = iota.World(iota.System(), title="cradle: the balls are 24 mm thick", dt=1 / 240, ground=0.0)
+    cradle = Cradle(world, balls=balls)
+    add_actions(world, cradle, left, right)
+    world.camera = iota.Camera(position=(0.18, 0.24, 0.42), target=(0, 0.09, 0))
+    return world
+
+
+def add_actions(world: iota.World, cradle: Cradle, left: int = 1, right: int = 0) -> None:
+    """Lifts balls at first and at each reset, and by keys and buttons."""
     counts = [left, right]
 
-    def lift() -> None:
-        for number, ball in enumerate(balls):
-            outer = number < counts[0], BALLS - 1 - number < counts[1]
-            turn(ball, LIFT * (outer[1] - outer[0]), 0.0)
-
     def lift_more(side: int) -> None:
-        counts[side] = (counts[side] + 1) % BALLS
-        counts[1 - side] = min(counts[1 - side], BALLS - counts[side])
-        lift()
+        counts[side] = (counts[side] + 1) % len(cradle.balls)
+        counts[1 - side] = min(counts[1 - side], len(cradle.balls) - counts[side])
+        cradle.lift(*counts)
 
     @world.action("lift left", key="l", button="a", help="lifts one more ball on the left", on="world")
     def lift_left() -> None:
@@ -44,72 +47,196 @@ def build(left: int = 1, right: int = 0) -> iota.World:
     def lift_right() -> None:
         lift_more(1)
 
-    lift()
-    return world
+    @world.on_reset
+    def begin_anew() -> None:
+        counts[:] = left, right
+        cradle.turn_to(0.0)
+        cradle.lift(left, right)
+
+    cradle.lift(left, right)
 
 
-def place(number: int) -> float:
-    """Where a ball hangs at rest, m along x: they touch."""
-    return 2 * RADIUS * (number - (BALLS - 1) / 2)
+@dataclass
+class Group:
+    """Neighbors that swing as one pendulum. numbers: of its balls; leader: the one that is simulated, with the mass of all.
+    angle: from the plumb line, rad; speed: rad/s."""
+
+    numbers: range
+    leader: int
+    angle: float
+    speed: float
 
 
-def hang(system: iota.System, x: float) -> iota.Body:
-    """A ball on two strings, nailed to both bars: it can only swing along x."""
-    ball = system.body(shape=iota.Sphere(RADIUS), density=STEEL, position=(x, HEIGHT - STRING, 0))
-    for side in (-1, 1):
-        ball.attachment((x, HEIGHT, side * SPREAD)).nail()
-    return ball
+class Cradle:
+    """Thesis 5.1.4: the simulator swings one pendulum for each group; what happens between groups is known and done here."""
 
+    def __init__(self, world: iota.World, at: iota.Vec3 = PLACE, balls: int = BALLS) -> None:
+        self.at, self.turn, self.toward = at, 0.0, 0.0  # toward: where the hand on the frame is, rad
+        self.hands: dict[int, tuple[int, iota.Vec3]] = {}  # what each holds, and where it is
+        self.balls = [self._hang(world.system, number, balls) for number in range(balls)]
+        self.mass = self.balls[0].mass
+        self.groups = [Group(range(balls), 0, 0.0, 0.0)]
+        self.frame = world.system.body("static", shape=iota.Box((0.01, 0.01, 0.01)), position=at)
+        self._present(world)
+        self.put()
+        world.on_step(self.step)
+        world.on_frame(self.step)  # no picture shows balls that have met and not parted yet
+        world.on_drag(self.balls)(self.drag)
+        world.on_drag(self.frame, grab=False)(self.spin)
 
-def angle(ball: iota.Body, x: float) -> float:
-    """From the plumb line, towards +x, rad."""
-    at = ball.center_of_mass
-    return math.atan2(at.x - x, HEIGHT - at.y)
+    # --- what users do --------------------------------------------------------------------------------------------
 
+    def lift(self, left: int, right: int) -> None:
+        """Balls on both sides are held up and let go."""
+        bounds = [0, left, len(self.balls) - right, len(self.balls)]
+        angles = (-LIFT, 0.0, LIFT)
+        self.groups = [
+            Group(range(p, q), p, angle, 0.0) for (p, q), angle in zip(pairwise(bounds), angles, strict=True) if q > p
+        ]
+        self.put()
 
-def turn(ball: iota.Body, to: float, speed: float) -> None:
-    """Puts a ball at an angle (rad), with a speed (rad/s)."""
-    x = ball.attachments[0].position.x
-    at = (x + STRING * math.sin(to), HEIGHT - STRING * math.cos(to), 0)
-    ball.set_pose(at, (0, 0, math.sin(to / 2), math.cos(to / 2)))
-    ball.velocity = (STRING * speed * math.cos(to), STRING * speed * math.sin(to), 0)
-    ball.angular_velocity = (0, 0, speed)
+    def turn_to(self, turn: float) -> None:
+        """The whole cradle about the vertical, rad."""
+        self.turn = turn
+        self.frame.set_pose(self.at, (0, math.sin(turn / 2), 0, math.cos(turn / 2)))
+        self.put(moved=True)
+        for group in self.groups:  # what is static takes its nails along
+            for nail, side in zip(self.balls[group.leader].attachments, (-SPREAD, SPREAD), strict=True):
+                nail.nail(self.pivot(group.leader) + self.axis * side)
 
+    def spin(self, event: iota.Event) -> None:
+        """A hand on the frame turns it."""
+        arm = event.point - self.at if event.point else iota.Vec3()
+        toward = math.atan2(-arm.z, arm.x)
+        if event.phase == "update":
+            self.turn_to(self.turn + math.remainder(toward - self.toward, 2 * math.pi))
+        self.toward = toward
 
-def collide(balls: Sequence[iota.Body], held: Sequence[bool]) -> None:
-    """Thesis 5.1.4: groups that meet swap. Equal pendulums that collide elastically exchange their motion, so that it is as if
-    they had passed through each other: what has come out of order is sorted, all cascades at once. A ball in a hand gives way to
-    none; it takes along what it meets."""
-    now = [(angle(ball, ball.attachments[0].position.x), ball.angular_velocity.z) for ball in balls]
-    after = list(now)
-    firm = [number for number, is_held in enumerate(held) if is_held]
-    for first, last in zip([-1, *firm], [*firm, len(balls)], strict=True):
-        after[first + 1 : last] = sorted(after[first + 1 : last])
-    for hand in firm:
-        for number in range(hand + 1, len(balls)):
-            after[number] = max(after[number], after[hand])
-        for number in range(hand):
-            after[number] = min(after[number], after[hand])
-    for ball, before, motion in zip(balls, now, after, strict=True):
-        if motion != before:
-            turn(ball, *motion)
+    def drag(self, event: iota.Event) -> None:
+        """A hand on a ball."""
+        if event.phase == "end" or event.point is None:
+            self.hands.pop(event.hold, None)
+        else:
+            self.hands[event.hold] = (self.balls.index(event.body), event.point)
 
+    # --- a step ---------------------------------------------------------------------------------------------------
 
-def present(world: iota.World, balls: Sequence[iota.Body]) -> None:
-    """Balls with their strings, two bars, four posts."""
-    length = math.hypot(STRING, SPREAD)
-    strings = [
-        looks.cylinder(
-            0.003, "rope", length, offset=(0, STRING / 2, side * SPREAD / 2),
-            rotation=turn_from_x(iota.Vec3(0, STRING, side * SPREAD).unit()),
-        )
-        for side in (-1, 1)
-    ]  # fmt: skip
-    world.draw(list(balls), [looks.sphere(RADIUS, "steel"), *strings])
-    reach = BALLS * RADIUS + 0.45
-    for side in (-SPREAD, SPREAD):
-        world.add_strut((-reach, HEIGHT, side), (reach, HEIGHT, side), looks.cylinder(0.016, "wood"))
-        for x in (-reach, reach):
-            world.add_strut((x, 0.05, side), (x, HEIGHT, side), looks.cylinder(0.016, "wood"))
-    world.add_static(looks.box((2 * reach + 0.15, 0.05, 2 * SPREAD + 0.15), "wood"), (0, 0.025, 0))
-    world.camera = iota.Camera(position=(0.7, 1.4, 2.3), target=(0, 0.85, 0))
+    def step(self) -> None:
+        """Brings all balls up to where the simulated ones are."""
+        for group in self.groups:
+            group.angle, group.speed = self.motion(group.leader)
+        for number, hand in self.hands.values():
+            self.part(number, (hand - self.balls[number].center_of_mass).dot(self.along))
+        held = {number for number, _ in self.hands.values()}
+        while self.collide(held):
+            pass  # a group may meet the next one at once
+        self.put()
+
+    def part(self, number: int, push: float) -> None:
+        """Thesis 5.4.2: a ball that is pushed takes along what is before it, and leaves behind what is behind it. push: to which
+        side, m."""
+        index = next(i for i, group in enumerate(self.groups) if number in group.numbers)
+        group = self.groups[index]
+        cut = number + 1 if push < -REACH else number if push > REACH else group.numbers.start
+        pieces = [range(group.numbers.start, cut), range(cut, group.numbers.stop)]
+        self.groups[index : index + 1] = [
+            Group(piece, number if number in piece else piece.start, group.angle, group.speed)
+            for piece in pieces
+            if piece
+        ]
+        for each in self.groups:
+            if number in each.numbers:
+                each.leader = number
+
+    def collide(self, held: set[int]) -> bool:
+        """The first two groups that have met swap (Eq. 5.1): what the left one did goes on as many balls farther right as the
+        right one has, and the other way round. With a ball in a hand they become one group instead. False: none have met."""
+        for index, (a, b) in enumerate(pairwise(self.groups)):
+            if a.angle <= b.angle:
+                continue
+            p, q, middle = a.numbers.start, b.numbers.stop, a.numbers.start + len(b.numbers)
+            firm = next((group for group in (a, b) if not held.isdisjoint(group.numbers)), None)
+            if firm:
+                speed = (len(a.numbers) * a.speed + len(b.numbers) * b.speed) / (q - p)
+                self.groups[index : index + 2] = [Group(range(p, q), firm.leader, firm.angle, speed)]
+            else:
+                self.groups[index : index + 2] = [
+                    Group(range(p, middle), p, b.angle, b.speed),
+                    Group(range(middle, q), middle, a.angle, a.speed),
+                ]
+            return True
+        return False
+
+    def put(self, moved: bool = False) -> None:
+        """Shows all balls where their groups are; what swings as it did is left alone unless the cradle was moved."""
+        for group in self.groups:
+            for number in group.numbers:
+                ball, leads = self.balls[number], number == group.leader
+                kind: Literal["dynamic", "static"] = "dynamic" if leads else "static"
+                if (
+                    not moved
+                    and ball.kind == kind
+                    and self.motion(number) == (group.angle, group.speed if leads else 0.0)
+                ):
+                    continue
+                ball.kind = kind
+                self._place(number, group.angle)
+                if leads:
+                    along = self.along * math.cos(group.angle) + UP * math.sin(group.angle)
+                    ball.velocity, ball.angular_velocity = along * (STRING * group.speed), self.axis * group.speed
+            self.balls[group.leader].mass = len(group.numbers) * self.mass
+
+    # --- places ---------------------------------------------------------------------------------------------------
+
+    @property
+    def along(self) -> iota.Vec3:
+        """From the left to the right ball."""
+        return iota.Vec3(math.cos(self.turn), 0, -math.sin(self.turn))
+
+    @property
+    def axis(self) -> iota.Vec3:
+        """Of swinging towards the right."""
+        return self.along.cross(UP)
+
+    def pivot(self, number: int) -> iota.Vec3:
+        """Above a ball, between its strings' upper ends."""
+        return self.at + UP * HEIGHT + self.along * (2 * RADIUS * (number - (len(self.balls) - 1) / 2))
+
+    def motion(self, number: int) -> tuple[float, float]:
+        """Angle and speed of a ball."""
+        arm = self.balls[number].center_of_mass - self.pivot(number)
+        return math.atan2(arm.dot(self.along), -arm.y), self.balls[number].angular_velocity.dot(self.axis)
+
+    def _place(self, number: int, angle: float) -> None:
+        arm = self.along * math.sin(angle) - UP * math.cos(angle)
+        (sy, cy), (sz, cz) = ((math.sin(half), math.cos(half)) for half in (self.turn / 2, angle / 2))
+        self.balls[number].set_pose(self.pivot(number) + arm * STRING, (sy * sz, sy * cz, cy * sz, cy * cz))
+
+    def _hang(self, system: iota.System, number: int, balls: int) -> iota.Body:
+        """A ball on two strings, nailed to both bars: it can only swing along x."""
+        x = self.at.x + 2 * RADIUS * (number - (balls - 1) / 2)
+        place = iota.Vec3(x, self.at.y + HEIGHT - STRING, self.at.z)
+        ball = system.body(shape=iota.Sphere(RADIUS), density=STEEL, position=place)
+        for side in (-SPREAD, SPREAD):
+            ball.attachment(place + (0, STRING, side)).nail()
+        return ball
+
+    def _present(self, world: iota.World) -> None:
+        """Balls with their strings; two bars on posts on a plate."""
+        strings = [
+            looks.cylinder(
+                0.0006, "rope", math.hypot(STRING, SPREAD), offset=(0, STRING / 2, side / 2),
+                rotation=turn_from_x(iota.Vec3(0, STRING, side).unit()),
+            )
+            for side in (-SPREAD, SPREAD)
+        ]  # fmt: skip
+        world.draw(self.balls, [looks.sphere(RADIUS, "steel"), *strings])
+        reach = len(self.balls) * RADIUS + 0.05
+        upright = (0, 0, 0.5**0.5, 0.5**0.5)
+        parts = [looks.box((2 * reach + 0.03, 0.016, 2 * SPREAD + 0.03), "wood", 0.003, offset=(0, 0.008, 0))]
+        for side in (-SPREAD, SPREAD):
+            parts.append(looks.capsule(0.003, "brass", 2 * reach, offset=(0, HEIGHT, side)))
+            for x in (-reach, reach):
+                post = looks.capsule(0.003, "brass", HEIGHT, offset=(x, HEIGHT / 2, side), rotation=upright)
+                parts.append(post)
+        world.draw(self.frame, parts)
