@@ -8,8 +8,8 @@ import math
 import iota
 from iota import looks
 
-NAIL = (0.0, 2.8, 0.0)
-LENGTH = 2.4
+NAIL = (0.0, 2.1, 0.0)
+LENGTH = 1.8
 
 
 def build(links: int = 24, demonstrate: bool = False) -> iota.World:
@@ -29,17 +29,17 @@ def build(links: int = 24, demonstrate: bool = False) -> iota.World:
 def present(world: iota.World, chain: list[iota.Body]) -> None:
     """Two looks for the links, and the tripod with the eye that they hang from."""
     link = LENGTH / len(chain)
-    radius = min(0.014, 0.3 * link)
+    radius = min(0.02, 0.3 * link)
     world.draw(chain, {"rope": looks.capsule(radius, "rope"), "chain": looks.chain_link(link)})
     x, y, z = NAIL
-    for foot in ((-1.25, 0, 0.5), (1.25, 0, 0.5), (0, 0, -1.35)):
+    for foot in ((-0.85, 0, 0.35), (0.85, 0, 0.35), (0, 0, -0.9)):
         side = math.hypot(foot[0], foot[2])
         top = (x + 0.035 * foot[0] / side, y + 0.16, z + 0.035 * foot[2] / side)
         world.add_strut(foot, top, looks.cylinder(0.028, "wood"))
     world.add_strut((x, y + 0.10, z), (x, y + 0.22, z), looks.cylinder(0.06, "brass"))
     world.add_static(looks.torus(0.03, 0.007, "steel"), (x, y + 0.03, z))
     world.add_strut((x, y + 0.06, z), (x, y + 0.10, z), looks.cylinder(0.012, "steel"))
-    world.camera = iota.Camera(position=(0.35, 1.7, 5.2), target=(0, 1.32, 0))
+    world.camera = iota.Camera(position=(0.45, 1.3, 3.75), target=(0, 1.06, 0))
 
 
 def script_break(world: iota.World, chain: list[iota.Body], demonstrate: bool) -> None:

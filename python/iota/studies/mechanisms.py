@@ -8,7 +8,7 @@ import math
 import iota
 from iota import looks
 
-BENCH = 0.9  # height of the bench's top, m
+BENCH = 0.55  # height of the bench's top, m
 BENCH_SIZE = (2.5, 0.05, 0.6)  # of its top, m
 BENCH_PLACE = (0.15, BENCH - 0.025, 0.0)
 STEEL = 7800.0  # kg/m^3
@@ -33,9 +33,17 @@ def present(world: iota.World) -> None:
     for x in (-1.0, 1.3):
         for z in (-0.22, 0.22):
             world.add_static(looks.box((0.07, BENCH - 0.05, 0.07), "wood"), (x, (BENCH - 0.05) / 2, z))
+    for x, name in (
+        (-0.6, "engine"),
+        (-0.2, "torsion pendulum"),
+        (0.2, "two crosses"),
+        (0.7, "scales"),
+        (1.1, "crane"),
+    ):
+        world.label(name, at=(x, BENCH - 0.025, BENCH_SIZE[2] / 2 + 0.03), height=0.02)
     world.draw_ties("spring", looks.spring(0.016, 0.0022))
     world.draw_ties("rope", looks.cylinder(0.005, "rope"))
-    world.camera = iota.Camera(position=(0.25, 1.5, 2.2), target=(0.17, 1.13, 0))
+    world.camera = iota.Camera(position=(0.25, 1.2, 2.3), target=(0.15, 0.62, 0))
 
 
 def stand(world: iota.World, at: iota.Vec3, depth: float = 0.1) -> None:
@@ -66,7 +74,7 @@ def engine(world: iota.World, axle: iota.Vec3) -> None:
     piston = system.body(shape=iota.Box((0.1, 0.07, 0.07)), density=2700, position=wrist)
     world.draw(wheel, spoked_wheel(0.12, 0.02))
     world.draw([connecting_rod, piston], looks.solid("steel"))
-    speed, torque = 2 * math.pi, 20.0
+    speed, torque = 4.0, 20.0
     axis = system.revolute(wheel, at=axle, axis=(0, 0, 1), motor=(speed, torque)).angle
     system.revolute(connecting_rod, wheel, at=pin, axis=(0, 0, 1))
     system.revolute(connecting_rod, piston, at=wrist, axis=(0, 0, 1))

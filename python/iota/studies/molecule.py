@@ -10,7 +10,7 @@ from iota import looks, shapelib
 
 FILE = Path(__file__).with_name("cyclooctane.xyz")
 SCALE = 0.13  # m for an angstrom
-NAIL = iota.Vec3(0, 1.9, 0)
+NAIL = iota.Vec3(0, 1.15, 0)
 BREAKS = ((0, 7), (3, 4))  # bonds between carbon atoms
 TIMES = (6.0, 9.0)  # s, when they break
 
@@ -58,4 +58,4 @@ def present(world: iota.World, nail: iota.Vec3 = NAIL) -> None:
     world.add_strut((x, y, z - 0.5), (x, y, z), looks.cylinder(0.012, "steel"))
     world.add_strut((x, 0, z - 0.5), (x, y + 0.06, z - 0.5), looks.cylinder(0.025, "wood"))
     world.add_static(looks.box((0.7, 0.03, 0.5), "wood"), (x, 0.015, z - 0.5))
-    world.camera = iota.Camera(position=(1.0, 1.6, 2.4), target=(x, y - 0.5, z))
+    world.camera = iota.Camera(position=(0.75, 1.0, 1.75), target=(x, y - 0.42, z - 0.1))
