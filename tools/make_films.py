@@ -23,7 +23,7 @@ SHEETS = ROOT / "docs" / "pictures" / "studies"
 # How long a film is, s, and when its thumbnail is taken, where the usual times miss the point.
 SECONDS = {"molecule": 12.0, "undersea": 28.0}
 USUAL = 10.0
-MOMENT = {"chain": 0.6, "fireworks": 2.2, "physics-class": 3.5, "undersea": 6.4}
+MOMENT = {"chain": 0.6, "fireworks": 2.2, "physics-class": 3.5, "playground": 0.6, "undersea": 6.4}
 USUAL_MOMENT = 2.0
 
 

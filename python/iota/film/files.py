@@ -3,10 +3,7 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -42,25 +39,6 @@ def check_name(path: Path, endings: Sequence[str]) -> None:
         raise Failed(
             f"{path} cannot be written: " + ("it is a folder" if path.is_dir() else f"no folder {path.parent}")
         )
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A new file beside `path`, which takes its place at the end; what fails leaves `path` as it was."""
-    try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
-    except OSError as error:
-        raise Failed(f"{path} cannot be written: {error.strerror}") from None
-    os.close(handle)
-    fresh = Path(name)
-    try:
-        yield fresh
-        fresh.chmod(0o644)
-        fresh.replace(path)
-    except OSError as error:
-        raise Failed(f"{path} cannot be written: {error.strerror or error}") from None
-    finally:
-        fresh.unlink(missing_ok=True)
 
 
 class FilmFile:

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from iota.film.browser import FilmPage, film_page
-from iota.film.files import Failed, FilmFile, check_name, replacing, video_library, write_sheet
+from iota.film.files import Failed, FilmFile, check_name, video_library, write_sheet
+from iota.saving import replacing
 from iota.world import World
 
 WARM_UP = 6  # frames before the first: light and camera settle
@@ -56,7 +57,7 @@ class Film:
 def record(world: World, film: Film, progress: Callable[[int, int], None] = lambda done, all: None) -> None:
     """Runs a world and makes its film. progress: called after each frame. Raises Failed; no file is half written."""
     film.check()
-    with ExitStack() as stack:
+    with plain_errors(), ExitStack() as stack:
         sheet = stack.enter_context(replacing(film.sheet)) if film.sheet is not None else None
         movie: FilmFile | None = None
         if film.film is not None:
@@ -73,6 +74,15 @@ def record(world: World, film: Film, progress: Callable[[int, int], None] = lamb
             progress(number + 1, film.frames)
         if sheet is not None:
             write_sheet(sheet, shown, min(film.columns, len(shown)), film.width)
+
+
+@contextmanager
+def plain_errors() -> Iterator[None]:
+    """A disk that is full, or a folder that may not be written."""
+    try:
+        yield
+    except OSError as error:
+        raise Failed(str(error)) from None
 
 
 def next_frame(world: World, page: FilmPage, film: Film, number: int) -> bytes:

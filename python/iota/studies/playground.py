@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Build by hand: choose what to place and click; nail, tie with springs, combine, break, copy, undo; save, load, get the script."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import iota
+from iota import looks
+from iota.saving import replacing
+from iota.studies._scene import ROD, Scene
+
+COLORS = ((0.85, 0.3, 0.2), (0.2, 0.5, 0.6), (0.9, 0.65, 0.15), (0.35, 0.55, 0.3))
+BALL, BOX = iota.Sphere(0.1), iota.Box((0.24, 0.16, 0.2), 0.015)
+WOOD = 600.0  # kg/m^3
+MOST = 400  # bodies
+NAME = re.compile(r"[\w-]+")  # of a file, without its ending
+
+
+def build(folder: Path | None = None) -> iota.World:
+    """The world of the study. folder: where files go, None: the current one."""
+    system = iota.System(damping=0.1)
+    world = iota.World(system, title="playground", camera=iota.Camera((0.6, 1.5, 4.0), (0, 1.1, 0)))
+    start(world)
+    world.offer()
+    placing(world)
+    connecting(world)
+    files(world, folder or Path())
+    return world
+
+
+# --- things to place --------------------------------------------------------------------------------------------------
+
+
+def particle(world: iota.World, at: iota.Vec3) -> iota.Body:
+    point = world.system.body().particle(at, mass=0.3)
+    point.radius, point.color = 0.05, COLORS[point.slot % len(COLORS)]
+    return point.body
+
+
+def rod(world: iota.World, at: iota.Vec3) -> iota.Body:
+    body = world.system.body()
+    for side in (-0.25, 0.25):
+        body.particle(at + (side, 0, 0), mass=0.2)
+    world.draw(body, looks.capsule(ROD, "brass"))
+    return body
+
+
+def chain(world: iota.World, at: iota.Vec3, links: int = 8, length: float = 0.8) -> iota.Body:
+    made = iota.builder.chain(links, min(length, 0.95 * at.y), top=at, mass=0.6).realize(world.system).bodies
+    world.draw(made, looks.capsule(ROD, "brass"))
+    return made[0]
+
+
+def solid(world: iota.World, at: iota.Vec3, shape: iota.Shape) -> iota.Body:
+    body = world.system.body(shape=shape, density=WOOD, position=at)
+    world.draw(body, looks.solid("wood"))
+    return body
+
+
+PLACE: dict[str, Callable[[iota.World, iota.Vec3], iota.Body]] = {
+    "particle": particle, "rod": rod, "chain": chain,
+    "box": lambda world, at: solid(world, at, BOX), "ball": lambda world, at: solid(world, at, BALL),
+}  # fmt: skip
+
+
+def start(world: iota.World) -> None:
+    """Something to begin with: below a frame a chain with a box on its end, and a ball on a spring."""
+    for x in (-1.3, 1.2):
+        world.add_strut((x, 0, 0), (x, 2.05, 0), looks.cylinder(0.025, "wood"))
+    world.add_strut((-1.4, 2.05, 0), (1.3, 2.05, 0), looks.cylinder(0.025, "wood"))
+    with world.system.edit():
+        top = chain(world, iota.Vec3(-0.7, 2.0, 0), links=7)
+        box = PLACE["box"](world, iota.Vec3(-0.7, 2.0 - 0.8 - 0.08, 0))
+        end = min((p for body in top.articulate for p in body.particles), key=lambda p: p.position.y)
+        end.combine(box.attachment(end.position))
+        hook = particle(world, iota.Vec3(0.6, 2.0, 0)).particles[0]
+        hook.nail()
+        ball = PLACE["ball"](world, iota.Vec3(0.75, 1.3, 0))
+        world.system.bond(hook, ball.attachment((0.75, 1.4, 0)), "spring", stiffness=60, damping=0.3)
+        box.velocity = (0.8, 0, 0.3)
+    world.draw_ties("spring", looks.spring(0.03, 0.004, "steel"))
+
+
+def placing(world: iota.World) -> None:
+    """A click on nothing places what is chosen: on the ground, or in the upright plane through the middle, what is nearer."""
+    what = world.choice("place", ["nothing", *PLACE], help="a click beside all things places one")
+
+    def place(event: iota.Event) -> None:
+        if what.value == "nothing" or event.origin is None or event.direction is None:
+            return
+        if len(world.system.bodies) >= MOST:
+            event.notice("That is enough", f"There are {MOST} bodies. Delete some with x.")
+            return
+        at = aim(event.origin, event.direction)
+        if at is None:
+            event.notice("Nothing is there", "Click nearer to the middle.")
+            return
+        with world.system.edit():
+            PLACE[what.value](world, at)
+
+    world.on_click("nothing")(place)
+
+
+def aim(origin: iota.Vec3, direction: iota.Vec3) -> iota.Vec3 | None:
+    """Where a ray meets the ground or the plane z = 0 first, within some meters."""
+    ways = [
+        (0.15 - origin.y) / direction.y if direction.y else math.inf,
+        -origin.z / direction.z if direction.z else math.inf,
+    ]
+    ahead = min((way for way in ways if way > 0), default=math.inf)
+    at = origin + direction * ahead if ahead < 1e3 else None
+    return None if at is None or max(abs(at.x), abs(at.z), at.y) > 8 else at
+
+
+# --- what to do with them ---------------------------------------------------------------------------------------------
+
+
+def connecting(world: iota.World) -> None:
+    """Nail, spring, combine, delete: for what is held or selected, at the place that was pressed last."""
+    system = world.system
+    pressed: dict[iota.Body, iota.Vec3] = {}  # in the frame of the body's center, unturned: where it was taken hold of
+    first: list[iota.Body] = []
+
+    def press(event: iota.Event) -> None:
+        if event.target is not None and event.point is not None:
+            pressed[event.body] = event.point - event.body.center_of_mass
+
+    world.on_press()(press)
+
+    def point_of(body: iota.Body) -> iota.Particle:
+        """Its particle nearest to where it was pressed; on a solid a new one there, if none is near."""
+        place = body.center_of_mass + pressed.get(body, iota.Vec3(0, 0, 0))
+        near = min(
+            body.attachments if body.solids else body.particles, key=lambda p: abs(p.position - place), default=None
+        )
+        if near is None or (body.solids and abs(near.position - place) > 0.05):
+            return body.attachment(place)
+        return near
+
+    def two(event: iota.Event, what: str) -> iota.Body | None:
+        """The body that was named before this one; None: this is the first."""
+        if first and first[0].alive and first[0] != event.body:
+            return first.pop()
+        first[:] = [event.body]
+        event.notice(f"{what}: with what?", "Select another one and press the key again.")
+        return None
+
+    @world.action("nail", key="k", help="nails what you hold or have selected to where it is, or draws its nails")
+    def nail(event: iota.Event) -> None:
+        nailed = [p for p in event.body.particles if p.is_nailed]
+        with system.edit():
+            for particle in nailed:
+                particle.release()
+            if not nailed:
+                point_of(event.body).nail()
+
+    @world.action("spring", key="t", help="a spring between two bodies: press it on one, then on the other")
+    def spring(event: iota.Event) -> None:
+        other = two(event, "Spring")
+        if other is not None:
+            with system.edit():
+                system.bond(point_of(other), point_of(event.body), "spring", stiffness=80, damping=0.5)
+
+    @world.action("combine", key="u", help="makes two bodies one: press it on one, then on the other")
+    def combine(event: iota.Event) -> None:
+        other = two(event, "Combine")
+        if other is not None:
+            with system.edit():
+                other.combine(event.body)
+
+    @world.action("delete", key="x", help="takes what you hold or have selected away")
+    def delete(event: iota.Event) -> None:
+        with system.edit():
+            event.body.destroy()
+
+    @world.on_reset
+    def forget() -> None:
+        pressed.clear()
+        first.clear()
+
+
+# --- files ------------------------------------------------------------------------------------------------------------
+
+
+def files(world: iota.World, folder: Path) -> None:
+    """Save, load, export: files in one folder, by names without a path."""
+    name = world.text("file", "playground", help="letters, digits, - and _")
+
+    def path(ending: str) -> Path:
+        if not NAME.fullmatch(name.value):
+            raise ValueError(f"a file name is letters, digits, - and _, not {name.value!r}")
+        return folder / (name.value + ending)
+
+    def write(ending: str, text: str) -> None:
+        with replacing(path(ending)) as fresh:
+            fresh.write_text(text, encoding="utf-8")
+        world.notice("Saved", str(path(ending).resolve()))
+
+    def told(work: Callable[[], None]) -> Callable[[], None]:
+        """What cannot be done is told in a card, and leaves the world as it is."""
+
+        def run() -> None:
+            try:
+                work()
+            except (OSError, ValueError) as error:
+                world.notice("That cannot be done", str(error), level="warning")
+
+        return run
+
+    @world.button("save", help="as FILE.json")
+    @told
+    def save() -> None:
+        write(".json", json.dumps(Scene.of(world.system).to_json(), indent=1))
+
+    @world.button("export script", help="as FILE.py, which makes this world")
+    @told
+    def export() -> None:
+        write(".py", Scene.of(world.system).script(world.system))
+
+    @world.button("load", help="FILE.json in place of what is here; z takes it back")
+    @told
+    def load() -> None:
+        text = path(".json").read_text(encoding="utf-8")
+        if len(text) > 10_000_000:
+            raise ValueError(f"{path('.json')} is too large")
+        try:
+            scene = Scene.from_json(json.loads(text))
+            with world.system.edit():
+                for body in list(world.system.bodies):
+                    if body.alive:
+                        body.destroy()
+                scene.realize(world)
+        except ValueError as error:
+            raise ValueError(f"{path('.json')}: {error}") from None
