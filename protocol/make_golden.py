@@ -501,6 +501,7 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
             "color": NO_COLOR,
         },
     ),
+    ("viewpoint", text("driver") + anchor(A) + anchor(B), {"name": "driver", "eye": A, "target": B}),
     ("frame", anchor(A) + quat([0.5, 0.5, 0.5, 0.5]), {"at": A, "rotation": [0.5, 0.5, 0.5, 0.5]}),
 ]
 

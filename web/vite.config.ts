@@ -26,11 +26,28 @@ function compressed() {
   };
 }
 
+/**
+ * Shader text of three.js that is compiled only for what no part of the page uses: it weighs a twentieth of the page. A material that needs
+ * one of these looks wrong in the first browser test; take its line out then.
+ */
+const unusedShaders = new RegExp(`^(var|const) (${[
+  "alphahash_\\w+", "batching_\\w+", "bumpmap_\\w+", "clearcoat_\\w+", "displacementmap_\\w+", "gradientmap_\\w+", "iridescence_\\w+",
+  "lights_toon_\\w+", "lights_phong_\\w+", "lightprobes_\\w+", "logdepthbuf_\\w+", "morph\\w+", "skin\\w+", "transmission_\\w+",
+].join("|")}) = "(?:[^"\\\\]|\\\\.)*";`, "gm");
+
+function withoutUnusedShaders() {
+  return {
+    name: "without-unused-shaders",
+    apply: "build" as const,
+    transform: (code: string, id: string) => (id.includes("three.module") ? code.replaceAll(unusedShaders, '$1 $2 = "";') : undefined),
+  };
+}
+
 // base "./": the page is served from any folder of the Python package.
 // No inlined assets: the server sends a content security policy without data: or inline sources.
 export default defineConfig({
   base: "./",
-  plugins: [compressed()],
+  plugins: [withoutUnusedShaders(), compressed()],
   build: {
     outDir: "dist",
     emptyOutDir: true,

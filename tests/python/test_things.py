@@ -367,8 +367,11 @@ def test_surfaces_lose_the_triangles_whose_thread_is_gone(run_world: Runner) -> 
         page.wait_for(lambda: page.entities["surface"][0]["triangles"] == [0, 1, 2])
         world.call(threads[4].destroy)
         page.wait_for(lambda: page.entities["surface"][0]["triangles"] == [])
-        with pytest.raises(ValueError, match="triangles: name point 4, but there are 4"):
-            world.call(lambda: (setattr(surface, "triangles", [(0, 1, 4)]), surface._record()))
+        world.call(lambda: setattr(surface, "triangles", [(0, 1, 4)]))
+        notice = page.wait_for(lambda: page.last.get("notice"))
+        assert "Surface: triangles: name point 4, but there are 4" in notice["title"] + notice["text"]
+        world.call(lambda: setattr(surface, "triangles", [(0, 2, 3)]))
+        page.wait_for(lambda: page.entities["surface"][0]["triangles"] == [0, 2, 3])
 
 
 def test_bodies_are_painted_by_one_array_and_the_survivor_keeps_its_own(run_world: Runner) -> None:
@@ -422,6 +425,7 @@ def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, 
     strut = world.strut(rod.particles[0], (0, 4, 0), looks.cylinder(0.02), color=(1, 0, 0))
     world.strut(rod, (0, 4, 0), looks.box((0.5, 0.1, 0.1)))
     world.tube(rod.particles[0], (0, 0, 0), radius=0.05)
+    world.viewpoint("along", rod.particles[0], (0, 4, 0))
     places = np.random.default_rng(1).uniform(-1, 1, (5000, 3))
     shapes = world.shapes(looks.cone(0.1, 0.2), places, sizes=np.linspace(1, 2, 5000), at=rod)
     with PageClient(run_world(world)) as page:
@@ -432,6 +436,8 @@ def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, 
         assert seen["part"]["color"] == 0xFF0000 and seen["a"]["body"] == slot
         assert entity(page, "strut", 1)["length"] == pytest.approx(0.5), "it is stretched"
         assert entity(page, "tube")["material"] == "rope"
+        view = entity(page, "viewpoint")
+        assert view["name"] == "along" and view["eye"]["body"] == slot and view["target"]["body"] == NO_BODY
         seen = entity(page, "shape_set")
         np.testing.assert_allclose(np.reshape(seen["places"], (5000, 3)), places, atol=1e-6)
         assert seen["part"]["shape"]["kind"] == "cone" and len(seen["scales"]) == 5000 and seen["rotations"] == []

@@ -132,8 +132,8 @@ describe("the page of a chain", () => {
     await tab.page.click("#strip .action:has-text('join')");
     await tab.until("there is one part", () => new Set(iota.articulates().values()).size === 1);
     await tab.page.keyboard.press("?");
-    const help = (await tab.page.textContent("#help")) ?? "";
-    expect(help).toContain("separates the held or selected link");
+    const help = (await tab.page.locator("#help[open]").textContent()) ?? "";
+    expect(help).toContain("separates the held or selected body");
     expect(help).toContain("orbits");
     await tab.page.keyboard.press("Escape");
     await tab.page.keyboard.press("Escape");

@@ -50,6 +50,7 @@ describe("pictures", () => {
     await tab.page.mouse.up();
     await tab.page.emulateMedia({ colorScheme: "light" });
     await tab.page.keyboard.press("?");
+    await tab.page.locator("#help[open]").waitFor();
     await picture("help");
     await tab.page.keyboard.press("Escape");
     await tab.page.setViewportSize({ width: 390, height: 844 });

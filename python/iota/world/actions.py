@@ -11,7 +11,7 @@ from iota.world.callbacks import Hook
 # What the page does by a key as long as no action has it: web/src/page/page_commands.ts and web/src/ui.
 PAGE_KEYS = {
     " ": "pause", ".": "one step", "r": "reset", "[": "slower", "]": "faster", "l": "next look", "f": "fly", "g": "grid",
-    "m": "sound", "p": "picture", "0": "first view", "Home": "first view", "?": "help", "Escape": "select nothing",
+    "j": "follow", **dict.fromkeys("123456789", "viewpoint"), "m": "sound", "p": "picture", "0": "first view", "Home": "first view", "?": "help", "Escape": "select nothing",
     "ArrowRight": "select next", "ArrowDown": "select next", "ArrowLeft": "select previous", "ArrowUp": "select previous",
     **dict.fromkeys("wasdqe", "walk"),
 }  # fmt: skip

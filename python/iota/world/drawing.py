@@ -9,7 +9,21 @@ from typing import Any
 
 from iota.looks import Look, material_of
 from iota.simulator import SimulatedBody
-from iota.world.shown import Arrow, Axes, Label, Line, Marker, Paint, Points, Shapes, Strut, Surface, Trace, Tube
+from iota.world.shown import (
+    Arrow,
+    Axes,
+    Label,
+    Line,
+    Marker,
+    Paint,
+    Points,
+    Shapes,
+    Strut,
+    Surface,
+    Trace,
+    Tube,
+    Viewpoint,
+)
 from iota.world.state import State
 from iota.world.things import Attachable, Frame, Place, Thing
 from iota.world.widgets import Button, Callback, Checkbox, Choice, Plot, Slider, TextField
@@ -197,6 +211,15 @@ class Drawing:
         hand.at = (0, 2, 0)
         """
         return Frame(self._state.things, at=at, rotation=rotation)
+
+    def viewpoint(self, name: str, position: Place, target: Place) -> Viewpoint:
+        """A place to look from that users go to by a key, 1 for the first, or the page's bar. On a particle, body or frame the
+        camera goes along.
+
+        world.viewpoint("from above", (0, 8, 0.1), (0, 0, 0))
+        world.viewpoint("driver", car.attachment((0, 1.2, 0)), car.attachment((3, 1, 0)))
+        """
+        return Viewpoint(self._state.things, name=name, position=position, target=target)
 
     # --- to be changed by users -----------------------------------------------------------------------------------
 

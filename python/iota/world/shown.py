@@ -357,3 +357,15 @@ class Paint(Thing):
 
     def _is_attached(self) -> bool:
         return True
+
+
+class Viewpoint(Thing):
+    """A place to look from, with a name, that users go to by a key from 1 to 9 or the page's bar. position, target: places; on a
+    body or frame the camera goes along."""
+
+    kind = "viewpoint"
+    name, position, target = Field(text), Field(place), Field(place)
+
+    def _record(self) -> dict[str, Any] | None:
+        eye, target = anchor(self.position), anchor(self.target)
+        return None if eye is None or target is None else {"name": self.name, "eye": eye, "target": target}

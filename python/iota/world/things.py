@@ -193,8 +193,9 @@ class Things:
         self._gone.clear()
         self._dirty = dict.fromkeys(self._ids)
 
-    def tell(self, room: Room, structure: int) -> None:
-        """What the room has not been told. structure: rises when bodies change, and with them what is on which."""
+    def tell(self, room: Room, structure: int, warn: Callable[[str], None]) -> None:
+        """What the room has not been told. structure: rises when bodies change, and with them what is on which. warn: takes
+        the text for one that does not fit together; it is shown as it was."""
         if structure != self._structure:
             self._structure = structure
             self.mark_attached()
@@ -203,7 +204,10 @@ class Things:
         self._gone.clear()
         dirty, self._dirty = self._dirty, {}
         for thing in dirty:
-            self._tell(room, thing)
+            try:
+                self._tell(room, thing)
+            except ValueError as error:
+                warn(f"{type(thing).__name__}: {error}")
 
     def _tell(self, room: Room, thing: Thing) -> None:
         record = thing._record() if thing.visible else None

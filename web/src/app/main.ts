@@ -44,6 +44,20 @@ function panelWhenNeeded({ world, session, viewer }: Page): FramePart {
   };
 }
 
+/** Fetched when there is one. */
+function gamepadWhenThere({ navigation, commands, viewer }: Page): void {
+  window.addEventListener("gamepadconnected", () => {
+    void import("../interact/gamepad.ts").then(({ GamepadInput }) => {
+      const gamepad = new GamepadInput(navigation, commands);
+      viewer.add({
+        aim: (seconds) => {
+          if (!viewer.presenting && gamepad.aim(seconds)) viewer.invalidate();
+        },
+      });
+    });
+  }, { once: true });
+}
+
 function main(): void {
   const canvas = byId("view", HTMLCanvasElement);
   canvas.classList.add("waiting");
@@ -56,6 +70,7 @@ function main(): void {
     active: () => overlay.showBar(),
   });
   events.add(overlay);
+  gamepadWhenThere(page);
   viewer.add(panelWhenNeeded(page));
   viewer.add(overlay, new Resolution(viewer), {
     aim: () => {

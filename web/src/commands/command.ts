@@ -31,7 +31,8 @@ interface Described {
 export interface Command extends Described {
   /** A key that is held down runs it again and again. */
   readonly repeats?: boolean;
-  run(): void;
+  /** `key`: that was pressed; none where a button was. */
+  run(key?: string): void;
 }
 
 /** One of several values: a list in the bar, a reading on the wrist panel. */

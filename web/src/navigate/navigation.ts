@@ -35,6 +35,8 @@ export class Navigation {
   ground: number | null = null;
   /** Whether the user has moved the camera since it was last at its first view. */
   touched = false;
+  /** Rises whenever the user moves the camera by hand. */
+  moves = 0;
   /** Right, up, forward in -1..1, from keys. */
   readonly walk = new Vector3();
   /** Walking three times as fast. */
@@ -95,6 +97,19 @@ export class Navigation {
     this.seconds_ = travelSeconds;
   }
 
+  /** Is at a view at once, which stays the user's. */
+  jumpTo(view: FittedView): void {
+    this.goTo(view);
+    copyView(this.goal_, this.now_);
+  }
+
+  /** Moves along with something, m. */
+  shift(way: Vector3): void {
+    this.touched = true;
+    this.goal_.pivot.add(way);
+    this.now_.pivot.add(way);
+  }
+
   /** Goes after a first view that moves. */
   follow(): void {
     copyView(this.home_, this.goal_);
@@ -110,6 +125,7 @@ export class Navigation {
 
   reset(): void {
     this.touched = false;
+    this.moves++;
     copyView(this.home_, this.goal_);
     // The short way round.
     this.goal_.yaw += 2 * Math.PI * Math.round((this.now_.yaw - this.goal_.yaw) / (2 * Math.PI));
@@ -188,6 +204,7 @@ export class Navigation {
 
   private touch_(): void {
     this.touched = true;
+    this.moves++;
     this.seconds_ = easeSeconds;
   }
 

@@ -19,6 +19,7 @@ import { Reports } from "./reports.ts";
 import { Selection } from "./selection.ts";
 import { Session } from "./session.ts";
 import { Sound } from "./sound.ts";
+import { Viewpoints } from "./viewpoints.ts";
 import { Viewer, type FramePart } from "./viewer.ts";
 
 export interface Page extends PageParts {
@@ -46,7 +47,10 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
   const selection = new Selection(world, session, viewer, events);
   const framing = new Framing(world, viewer, navigation);
   const highlights = new Highlights(world, session, selection, viewer);
-  const parts: PageParts = { world, session, selection, gestures: selection.gestures, viewer, navigation, sound, events, framing };
+  const viewpoints = new Viewpoints(world, navigation, viewer);
+  const parts: PageParts = {
+    world, session, selection, gestures: selection.gestures, viewer, navigation, sound, events, framing, viewpoints,
+  };
   const commands = new Commands();
   commands.add(...pageCommands(parts));
   const actions: PageListener = {
@@ -58,7 +62,7 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
   viewer.lookDistance = () => navigation.distance;
   viewer.add({ draw: () => void viewer.camera.getWorldPosition(world.eye) });
   // Bodies are where they are drawn before the camera is placed.
-  viewer.add(new Reports(parts), selection, ...Object.values<EntityView<never>>(world.entities), framing, flatCamera(parts), highlights, flashes);
+  viewer.add(new Reports(parts), selection, ...Object.values<EntityView<never>>(world.entities), framing, viewpoints, flatCamera(parts), highlights, flashes);
   return {
     ...parts,
     commands,

@@ -19,7 +19,7 @@ const signs = {
   plus: "M6 12h12M12 6v12",
 };
 
-export function pageCommands({ world, session, selection, viewer, navigation, framing, sound, events }: PageParts): Entry[] {
+export function pageCommands({ world, session, selection, viewer, navigation, framing, viewpoints, sound, events }: PageParts): Entry[] {
   const say = (key: string, title: string) => events.notice({ level: NoticeLevel.info, title, text: "", hint: "", key });
   /** The next faster (1) or slower (-1) of the speeds on offer. */
   const changeSpeed = (direction: 1 | -1) => {
@@ -130,6 +130,28 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       keys: ["Home", "0"],
       title: () => "First view",
       run: () => framing.home(),
+    },
+    {
+      name: "view",
+      help: "viewpoints of the world",
+      keys: ["1", "2", "3", "4", "5", "6", "7", "8", "9"],
+      places: ["bar", "panel"],
+      title: () => "Next viewpoint (1 to 9)",
+      label: () => viewpoints.name || "view",
+      offered: () => viewpoints.count > 0,
+      run: (key) => (key === undefined ? viewpoints.next() : viewpoints.go(Number(key) - 1)),
+    },
+    {
+      name: "follow",
+      help: "follows the selected body, or stays",
+      keys: ["j"],
+      title: () => "Follow",
+      active: () => viewpoints.followed >= 0,
+      run: () => {
+        const body = viewpoints.followed >= 0 ? -1 : selection.actionBody;
+        viewpoints.follow(body);
+        say("follow", body >= 0 ? "The view goes along" : "The view stays");
+      },
     },
     {
       name: "grid",

@@ -7,6 +7,7 @@ import type { Framing } from "./framing.ts";
 import type { Selection } from "./selection.ts";
 import type { Session } from "./session.ts";
 import type { Sound } from "./sound.ts";
+import type { Viewpoints } from "./viewpoints.ts";
 import type { Viewer } from "./viewer.ts";
 
 /** What the page is made of, but for its commands. */
@@ -18,6 +19,7 @@ export interface PageParts {
   readonly viewer: Viewer;
   readonly navigation: Navigation;
   readonly framing: Framing;
+  readonly viewpoints: Viewpoints;
   readonly sound: Sound;
   readonly events: Events;
 }

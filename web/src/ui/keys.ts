@@ -46,7 +46,7 @@ export class Keys {
     const command = commands.ofKey(event.key);
     if (command === undefined) return;
     event.preventDefault();
-    if (!event.repeat || command.repeats === true) command.run();
+    if (!event.repeat || command.repeats === true) command.run(event.key);
   }
 
   private walk_(): void {
