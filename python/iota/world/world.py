@@ -518,9 +518,9 @@ class World(Drawing, Interacting):
         return register
 
     def _announce(self, show: bool) -> None:
-        assert self._publisher is not None
         lines = [f"{self.title}: {self.url}"]
-        lines += self._publisher.announce_lan(shows_code=sys.stdout.isatty())
+        if self._publisher is not None:
+            lines += self._publisher.announce_lan(shows_code=sys.stdout.isatty())
         lines += [action.line for action in self._state.actions if action.key]
         print("\n".join(lines), flush=True)
         if show and self.url and not webbrowser.open(self.url):
