@@ -343,3 +343,33 @@ def test_import_says_in_one_line_what_is_wrong(tmp_path: Path) -> None:
     done = run("import", "cube", "--save", tmp_path / "nowhere" / "x.json")
     assert done.returncode == 1 and "cannot be written" in done.stderr
     assert list(tmp_path.iterdir()) == [broken]
+
+
+def test_profile_tells_where_the_time_goes(tmp_path: Path) -> None:
+    path = tmp_path / "slow.py"
+    path.write_text(
+        textwrap.dedent("""
+        import time
+        import iota
+        def build():
+            system = iota.System()
+            iota.builder.chain(links=4).realize(system)
+            world = iota.World(system)
+            world.on_step(lambda: time.sleep(0.004))
+            return world
+        """)
+    )
+    rows = {row["part"]: row for row in json.loads(run("profile", path, "--seconds", "1", "--json").stdout)}
+    dawdling = rows["script: on_step (build.<locals>.<lambda>)"]
+    assert 4.0 <= dawdling["ms"] < 20 and dawdling["share"] == max(row["share"] for row in rows.values())
+    assert rows["simulator"]["ms"] > 0 and rows["pages"]["ms"] > 0
+    assert sum(row["share"] for row in rows.values()) == pytest.approx(1, abs=0.01)
+    table = run("profile", path, "--seconds", "0.1").stdout
+    assert "ms a step" in table and "all of a step" in table
+
+
+def test_profile_draws_a_pie(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    pie = tmp_path / "pie.png"
+    assert run("profile", "cradle", "--seconds", "0.2", "--plot", pie).returncode == 0
+    assert pie.read_bytes().startswith(b"\x89PNG")

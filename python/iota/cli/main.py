@@ -13,7 +13,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, bench_forces, gallery, imports, record, run, verify, watch
+from iota.cli import bench, bench_forces, gallery, imports, profile, record, run, verify, watch
 from iota.cli.failure import Failure
 
 MOST_LINKS = 1_000_000  # some GB
@@ -98,6 +98,13 @@ def make_parser() -> Parser:
     recording.add_argument("--pictures", type=count, default=12, help="on the sheet (default: 12)")
     recording.add_argument("--columns", type=count, default=4, help="of the sheet (default: 4)")
     recording.set_defaults(function=record.record_film)
+
+    profiling = commands.add_parser("profile", help="runs a study or a script and prints where its time goes")
+    profiling.add_argument("what", metavar="NAME|FILE.py")
+    profiling.add_argument("--seconds", type=positive, default=10.0, help="simulated (default: 10)")
+    profiling.add_argument("--json", action="store_true", help="print the rows as a JSON list")
+    profiling.add_argument("--plot", type=Path, metavar="FILE.png", help="draw them as a pie")
+    profiling.set_defaults(function=profile.profile)
 
     token = commands.add_parser("token", help="prints the secret in the page's address, or makes a new one")
     token.add_argument("--renew", action="store_true", help="a new one: addresses from before are refused from then on")

@@ -15,6 +15,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from iota.world.costs import Costs
+
 SLOW = 0.5  # s
 GO_ON = "The world goes on. Correct the script and run it again."
 _PACKAGE = str(Path(__file__).parent.parent)  # as frames name it, symbolic links and all
@@ -99,8 +101,8 @@ class Guard:
     A watching thread tells of a slow function while it still runs: the page, served by another thread, goes on drawing.
     """
 
-    def __init__(self, tell_error: Tell, tell_slow: Tell, over: Callable[[str], None]) -> None:
-        self._tell_error, self._tell_slow, self._over = tell_error, tell_slow, over
+    def __init__(self, tell_error: Tell, tell_slow: Tell, over: Callable[[str], None], costs: Costs) -> None:
+        self._tell_error, self._tell_slow, self._over, self._costs = tell_error, tell_slow, over, costs
         self._running: tuple[str, float] | None = None
         self._told: tuple[str, float] | None = None
         self._stop = threading.Event()
@@ -110,7 +112,8 @@ class Guard:
         """Calls it; False when it raised, which is told. KeyboardInterrupt and SystemExit pass."""
         before, self._running = self._running, (what, time.monotonic())
         try:
-            function(*arguments)
+            with self._costs.of(f"script: {what}"):
+                function(*arguments)
         except Exception as error:
             self.failed(what, error, hint)
             return False

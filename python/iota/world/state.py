@@ -12,6 +12,7 @@ from iota._core import Body, System
 from iota.looks import Looks
 from iota.world.actions import Actions
 from iota.world.clock import Clock
+from iota.world.costs import Costs
 from iota.world.hands import Hands
 from iota.world.listeners import Listeners
 from iota.world.notices import Notices
@@ -38,6 +39,7 @@ class State:
     listeners: Listeners = field(default_factory=Listeners)
     pictures: Pictures = field(default_factory=Pictures)
     notices: Notices = field(default_factory=Notices)
+    costs: Costs = field(default_factory=Costs)
     step_ms: float = 0.0  # what a step takes, smoothed
     is_changed: bool = True  # what pages were told of it, poses apart, does not hold any more
 

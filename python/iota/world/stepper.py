@@ -61,9 +61,11 @@ class Stepper:
                 self._off.add(hook)
         dt, began = state.clock.dt, time.perf_counter()
         if self._floor is not None:
-            self._floor.push(dt)
+            with state.costs.of("floor"):
+                self._floor.push(dt)
         try:
-            report = state.system.step(dt)
+            with state.costs.of("simulator"):
+                report = state.system.step(dt)
         except ForceError as error:
             report = error.report
             self._guard.failed("A force", error, "It is switched off. " + GO_ON)

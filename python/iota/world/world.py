@@ -72,7 +72,9 @@ class World(Drawing, Interacting):
         # Scripts see the built-in system; nothing here asks for more than a Simulator.
         self._state = State(cast(System, system), Clock(dt), title, style, None if ground == "auto" else ground, camera)
         self._finds_ground = ground == "auto"
-        self._guard = Guard(self._state.notices.error, self._state.notices.warning, self._state.notices.over)
+        self._guard = Guard(
+            self._state.notices.error, self._state.notices.warning, self._state.notices.over, self._state.costs
+        )
         self._stepper = Stepper(self._state, self._guard)
         self._inputs = Inputs(self._state, self._guard, self._stepper.step, self._stepper.reset)
         self._state.hands.take_picture = self._take_picture
@@ -238,6 +240,12 @@ class World(Drawing, Interacting):
     def reached_speed(self) -> float:
         """Share of that speed that this machine reaches; below 1 the world runs in slow motion."""
         return self._state.clock.reached
+
+    @property
+    def costs(self) -> dict[str, float]:
+        """Seconds that each part of the world has taken since it was made: "simulator", "floor", "pages", "script: ..." for each
+        of the script's functions. `iota profile` prints them as a table."""
+        return dict(self._state.costs.seconds)
 
     @property
     def url(self) -> str | None:
@@ -503,7 +511,8 @@ class World(Drawing, Interacting):
         for thing in self.things:
             if isinstance(thing, Plot):
                 thing.sample(self.system.time, self._guard)
-        self._publisher.frame()
+        with self._state.costs.of("pages"):
+            self._publisher.frame()
         if self.reached_speed < 0.8:
             text = "This world is too much for real time on this machine: it runs in slow motion."
             self._state.notices.warn_once(text)

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the time of a world goes: simulator, functions of the script, floor, pages."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+class Costs:
+    """Seconds that each part has taken since the last `clear`, without those of the parts that it called. A part of the script
+    is named "script: ..."."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._inner: list[float] = []
+
+    def clear(self) -> None:
+        self.seconds.clear()
+
+    @contextmanager
+    def of(self, part: str) -> Iterator[None]:
+        """What the with block takes is the part's."""
+        self._inner.append(0.0)
+        began = time.perf_counter()
+        try:
+            yield
+        finally:
+            took = time.perf_counter() - began
+            self.seconds[part] = self.seconds.get(part, 0.0) + took - self._inner.pop()
+            if self._inner:
+                self._inner[-1] += took
