@@ -2,6 +2,7 @@
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";
+import { build } from "vite";
 import { defineConfig } from "vitest/config";
 
 /** Puts compressed copies beside the files, which the server sends to browsers that take them. */
@@ -15,7 +16,7 @@ function compressed() {
     },
     closeBundle: () => {
       for (const file of readdirSync(folder, { recursive: true, encoding: "utf8" })) {
-        if (!/\.(js|css|html|svg|txt)$/.test(file)) continue;
+        if (!/\.(js|css|html|svg|txt)$/.test(file) || file.startsWith("player")) continue;
         const bytes = readFileSync(path.join(folder, file));
         const quality = { params: { [constants.BROTLI_PARAM_QUALITY]: 11, [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length } };
         for (const [ending, copy] of [[".br", brotliCompressSync(bytes, quality)], [".gz", gzipSync(bytes, { level: 9 })]] as const) {
@@ -43,11 +44,37 @@ function withoutUnusedShaders() {
   };
 }
 
+/** The player of recordings as one script and one style sheet, which `iota record` puts into a file that needs no server. */
+function player() {
+  let folder = "";
+  return {
+    name: "player",
+    apply: "build" as const,
+    configResolved: ({ root, build }: { root: string; build: { outDir: string } }) => {
+      folder = path.resolve(root, build.outDir, "player");
+    },
+    closeBundle: async () => {
+      await build({
+        configFile: false,
+        logLevel: "warn",
+        plugins: [withoutUnusedShaders()],
+        build: {
+          outDir: folder,
+          target: "es2022",
+          copyPublicDir: false,
+          chunkSizeWarningLimit: 1200,
+          lib: { entry: "src/player/player.ts", formats: ["iife"], name: "iotaPlayer", fileName: () => "player.js", cssFileName: "player" },
+        },
+      });
+    },
+  };
+}
+
 // base "./": the page is served from any folder of the Python package.
 // No inlined assets: the server sends a content security policy without data: or inline sources.
 export default defineConfig({
   base: "./",
-  plugins: [withoutUnusedShaders(), compressed()],
+  plugins: [withoutUnusedShaders(), player(), compressed()],
   build: {
     outDir: "dist",
     emptyOutDir: true,

@@ -13,7 +13,7 @@ from types import FrameType
 from typing import NoReturn
 
 import iota
-from iota.cli import bench, bench_forces, gallery, imports, profile, record, run, verify, watch
+from iota.cli import bench, bench_forces, gallery, imports, play, profile, record, run, verify, watch
 from iota.cli.failure import Failure
 
 MOST_LINKS = 1_000_000  # some GB
@@ -88,7 +88,13 @@ def make_parser() -> Parser:
 
     recording = commands.add_parser("record", help="makes a film, or a contact sheet, of a study or a script")
     recording.add_argument("what", metavar="NAME|FILE.py")
-    recording.add_argument("-o", "--output", type=Path, metavar="FILM.mp4", help="the film")
+    recording.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILM.mp4",
+        help="the film; or FILE.html, a page that plays it by itself; or FILE.iota, for iota play",
+    )
     recording.add_argument("--sheet", type=Path, metavar="FILE.png|jpg", help="pictures of it side by side")
     recording.add_argument("--seconds", type=positive, default=10.0, help="simulated, from the start (default: 10)")
     recording.add_argument("--rate", type=count, default=30, help="frames a second (default: 30)")
@@ -105,6 +111,12 @@ def make_parser() -> Parser:
     profiling.add_argument("--json", action="store_true", help="print the rows as a JSON list")
     profiling.add_argument("--plot", type=Path, metavar="FILE.png", help="draw them as a pie")
     profiling.set_defaults(function=profile.profile)
+
+    playing = commands.add_parser("play", help="shows a recording, in a page that needs no server")
+    playing.add_argument("file", type=Path, metavar="FILE.iota", help="made by iota record -o FILE.iota")
+    playing.add_argument("-o", "--output", type=Path, metavar="FILE.html", help="where the page goes")
+    playing.add_argument("--no-open", action="store_true", help="do not open it in a browser")
+    playing.set_defaults(function=play.play)
 
     token = commands.add_parser("token", help="prints the secret in the page's address, or makes a new one")
     token.add_argument("--renew", action="store_true", help="a new one: addresses from before are refused from then on")

@@ -3,5 +3,6 @@
 
 from iota.film.files import Failed
 from iota.film.record import Film, record
+from iota.film.stream import player, unpack
 
-__all__ = ["Failed", "Film", "record"]
+__all__ = ["Failed", "Film", "player", "record", "unpack"]

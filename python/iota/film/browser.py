@@ -31,6 +31,17 @@ class FilmPage:
 
     def __init__(self, page: Any) -> None:
         self._page = page
+        self._told: list[bytes] = []
+        page.on("websocket", lambda socket: socket.on("framereceived", lambda data: self._told.append(bytes(data))))
+
+    def take_frames(self) -> list[bytes]:
+        """What the server has told it since the last call."""
+        told, self._told[:] = list(self._told), []
+        return told
+
+    def pass_time(self, seconds: float) -> None:
+        """The page draws nothing meanwhile."""
+        self._page.clock.fast_forward(round(seconds * 1000))
 
     def wait_for(self, step: int, meanwhile: Callable[[], None] = lambda: None) -> None:
         """Until it has been told of a step. Raises Failed when that takes too long."""
@@ -43,7 +54,7 @@ class FilmPage:
 
     def picture(self, seconds: float) -> bytes:
         """Lets so much time pass on the page, and draws it: a JPEG file."""
-        self._page.clock.fast_forward(round(seconds * 1000))
+        self.pass_time(seconds)
         address: str = self._page.evaluate("iota.filmFrame()")
         return base64.b64decode(address.split(",", 1)[1])
 
@@ -68,8 +79,9 @@ def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
             page = browser.new_page(viewport={"width": width, "height": height})
             page.clock.install(time=0)
             page.clock.pause_at(1)
+            film = FilmPage(page)
             page.goto(url)
-            yield FilmPage(page)
+            yield film
         except Error as error:
             raise Failed(f"the browser failed: {error.message.splitlines()[0]}") from None
         finally:

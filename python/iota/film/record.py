@@ -10,6 +10,7 @@ from pathlib import Path
 
 from iota.film.browser import FilmPage, film_page
 from iota.film.files import Failed, FilmFile, check_name, video_library, write_sheet
+from iota.film.stream import write_stream
 from iota.saving import replacing
 from iota.world import World
 
@@ -19,7 +20,7 @@ MOST_PIXELS = 4096
 
 @dataclass
 class Film:
-    """What is to be made. film: an .mp4 file. sheet: a .png or .jpg file with `pictures` of its frames, evenly spaced in time,
+    """What is to be made. film: an .mp4 file, an .iota file of what the server says, or an .html page that plays that. sheet: a .png or .jpg file with `pictures` of its frames, evenly spaced in time,
     `columns` in a row. seconds: simulated. rate: frames a second."""
 
     film: Path | None = None
@@ -40,13 +41,19 @@ class Film:
         if self.film is None and self.sheet is None:
             raise Failed("nothing to make: name a film by -o FILE.mp4, a contact sheet by --sheet FILE.png, or both")
         if self.film is not None:
-            check_name(self.film, [".mp4"])
+            check_name(self.film, [".mp4", ".html", ".iota"])
         if self.sheet is not None:
             check_name(self.sheet, [".png", ".jpg"])
         for side in (self.width, self.height):
             if not 16 <= side <= MOST_PIXELS or side % 2:
                 raise Failed(f"width and height must be even, from 16 to {MOST_PIXELS}, not {self.width}x{self.height}")
-        video_library()
+        if self.is_drawn or self.sheet is not None:
+            video_library()
+
+    @property
+    def is_drawn(self) -> bool:
+        """All frames are needed as pictures."""
+        return self.film is not None and self.film.suffix == ".mp4"
 
     def on_sheet(self) -> set[int]:
         """The frames that the sheet shows: the middle of each of its equal parts of the time."""
@@ -59,21 +66,28 @@ def record(world: World, film: Film, progress: Callable[[int, int], None] = lamb
     film.check()
     with plain_errors(), ExitStack() as stack:
         sheet = stack.enter_context(replacing(film.sheet)) if film.sheet is not None else None
+        file = stack.enter_context(replacing(film.film)) if film.film is not None else None
         movie: FilmFile | None = None
-        if film.film is not None:
-            movie = FilmFile(stack.enter_context(replacing(film.film)), film.width, film.height, film.rate)
+        if file is not None and film.is_drawn:
+            movie = FilmFile(file, film.width, film.height, film.rate)
             stack.callback(movie.close)
         page = stack.enter_context(film_page(world.serve(port=0), film.width, film.height))
         shown, wanted = [], film.on_sheet()
+        told: list[tuple[float, bytes]] = []
         for number in range(film.frames):
-            picture = next_frame(world, page, film, number)
+            picture = next_frame(world, page, film, number, is_drawn=film.is_drawn or number in wanted)
+            frames = page.take_frames()
             if movie is not None:
                 movie.add(picture)
+            elif file is not None:
+                told += [(number / film.rate, data) for data in frames]
             if number in wanted:
                 shown.append(picture)
             progress(number + 1, film.frames)
         if sheet is not None:
             write_sheet(sheet, shown, min(film.columns, len(shown)), film.width)
+        if file is not None and movie is None:
+            write_stream(file, told, world.title)
 
 
 @contextmanager
@@ -85,8 +99,8 @@ def plain_errors() -> Iterator[None]:
         raise Failed(str(error)) from None
 
 
-def next_frame(world: World, page: FilmPage, film: Film, number: int) -> bytes:
-    """The picture of a frame; that of the first one shows the beginning."""
+def next_frame(world: World, page: FilmPage, film: Film, number: int, is_drawn: bool) -> bytes:
+    """The picture of a frame, empty if it is not drawn; that of the first one shows the beginning."""
     if number == 0:
         page.wait_for(world.system.step_count, meanwhile=lambda: world.advance(0))
         for _ in range(WARM_UP):
@@ -95,4 +109,7 @@ def next_frame(world: World, page: FilmPage, film: Film, number: int) -> bytes:
         steps = 1 / film.rate / world.dt
         world.advance(round(number * steps) - round((number - 1) * steps))
         page.wait_for(world.system.step_count)
-    return page.picture(1 / film.rate)
+    if is_drawn:
+        return page.picture(1 / film.rate)
+    page.pass_time(1 / film.rate)
+    return b""

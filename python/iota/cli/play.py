@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`iota play`: shows what `iota record -o FILE.iota` has recorded, in a page that needs no server."""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+import webbrowser
+from pathlib import Path
+
+from iota.cli.failure import Failure
+from iota.errors import PageMissingError
+from iota.film import Failed, player, unpack
+from iota.saving import replacing
+
+
+def play(arguments: argparse.Namespace) -> None:
+    """Makes the page beside the system's temporary files, or where -o says, and opens it."""
+    source: Path = arguments.file
+    target = arguments.output or Path(tempfile.gettempdir()) / f"iota-{source.stem}.html"
+    if target.suffix != ".html":
+        raise Failure(f"{target} must end in .html")
+    try:
+        packed = source.read_bytes()
+        unpack(packed)  # it is whole
+        with replacing(target) as fresh:
+            fresh.write_text(player(packed, source.stem), encoding="utf-8")
+    except Failed as failed:
+        raise Failure(f"{source} cannot be played: {failed}") from None
+    except PageMissingError as error:
+        raise Failure(str(error)) from None
+    except OSError as error:
+        raise Failure(str(error) if error.filename is None else f"{source}: {error.strerror}") from None
+    print(target)
+    if not arguments.no_open:
+        webbrowser.open(target.resolve().as_uri())

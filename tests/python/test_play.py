@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings of what the server says, and the page that plays them without one."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from iota.film import browser
+from iota.film.files import Failed
+from iota.film.stream import pack, unpack
+
+SPEED, BREAK = 1.5, 0.5  # m/s; s, when the ball loses its tail
+
+
+def test_a_stream_is_read_as_it_was_written_and_refused_otherwise() -> None:
+    frames = [(0.0, b"one"), (0.5, b""), (0.5, bytes(range(256))), (2.25, b"last")]
+    packed = pack(frames)
+    assert unpack(packed) == frames and pack(frames) == packed
+    for bad in (b"", b"something else", packed[: len(packed) // 2], b"\x1f\x8b" + bytes(20)):
+        with pytest.raises(Failed):
+            unpack(bad)
+
+
+def iota(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "iota", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=170, stdin=subprocess.DEVNULL)
+
+
+def test_what_cannot_be_played_is_told_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / "bad.iota").write_bytes(b"bad")
+    for arguments, words in (
+        (["none.iota"], "No such file"),
+        ([tmp_path / "bad.iota", "-o", tmp_path / "page.html"], "no recording"),
+        ([tmp_path / "bad.iota", "-o", tmp_path / "page.txt"], "must end in .html"),
+        ([tmp_path, "-o", tmp_path / "page.html"], "Is a directory"),
+    ):
+        done = iota("play", "--no-open", *arguments)
+        assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1, done.stderr
+    assert not (tmp_path / "page.html").exists()
+
+
+@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+def test_the_page_shows_what_was_there_at_any_time_without_a_server(tmp_path: Path) -> None:
+    sync = pytest.importorskip("playwright.sync_api")
+    script = tmp_path / "ball.py"
+    script.write_text(
+        textwrap.dedent(f"""
+        import iota
+        def build():
+            system = iota.System(gravity=(0, 0, 0))
+            system.body().particle((-1, 1, 0), velocity=({SPEED}, 0, 0))
+            tail = system.body().particle((0, 2, 0))
+            world = iota.World(system, title="a <b>ball</b>")
+            world.at({BREAK})(lambda: tail.body.destroy())
+            return world
+        """)
+    )
+    stream, page_file, direct = tmp_path / "ball.iota", tmp_path / "played.html", tmp_path / "ball.html"
+    for arguments in (
+        ("record", script, "-o", stream, "--seconds", "1", "--size", "64x48"),
+        ("record", script, "-o", direct, "--seconds", "1", "--size", "64x48"),
+        ("play", stream, "-o", page_file, "--no-open"),
+    ):
+        done = iota(*arguments)
+        assert done.returncode == 0 and done.stderr == "", done.stderr
+    assert {file.suffix for file in tmp_path.iterdir() if file.is_file()} == {".py", ".iota", ".html"}
+    with sync.sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=browser.find_browser(), args=list(browser.FLAGS))
+        for file in (page_file, direct):
+            look(chromium, file)
+        chromium.close()
+
+
+def look(chromium: Any, file: Path) -> None:
+    """Sets the slider to some times, there and back, and compares."""
+    context = chromium.new_context(offline=True, viewport={"width": 320, "height": 240})
+    page = context.new_page()
+    complaints: list[str] = []
+    page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    page.on("request", lambda request: complaints.append(request.url) if request.url.startswith("http") else None)
+    page.goto(file.as_uri())
+    page.wait_for_function("() => globalThis.iota?.connected && iota.bodies().length > 0", timeout=60_000)
+    page.get_by_role("button", name="Pause").click()
+    for time in (0.9, 0.2, 0.6, 0.0):
+        page.locator("input").evaluate(
+            "(slider, time) => { slider.value = time; slider.dispatchEvent(new Event('input')); }", time
+        )
+        page.wait_for_function(f"() => iota.bodies().length === {1 if time > BREAK else 2}", timeout=20_000)
+        expected = -1 + SPEED * (int(time * 30 + 1e-6) / 30)
+        page.wait_for_function(f"() => Math.abs(iota.bodyPosition(0)[0] - {expected}) < 0.01", timeout=20_000)
+        assert page.evaluate("iota.time") == pytest.approx(int(time * 30 + 1e-6) / 30, abs=0.01)
+    page.wait_for_timeout(2500)  # longer than between two signs of life
+    assert page.evaluate("iota.connected") and complaints == []
+    assert file.stem == "played" or page.title() == "a <b>ball</b>"
+    context.close()

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording played in a page of its own, without a server: `iota record NAME -o FILE.html`. One can look around, stop and go
+// to any time; nothing can be taken hold of.
+
+import "./player.css";
+import { makeDebug } from "../app/debug.ts";
+import { ScreenInput } from "../interact/screen_input.ts";
+import { makePage } from "../page/page.ts";
+import { Resolution } from "../page/resolution.ts";
+import { Role } from "../protocol/generated.ts";
+import { byId, make } from "../ui/dom.ts";
+import { Playback, readFrames } from "./recording.ts";
+
+/** In place of a connection: hears nothing, and is told what the playback says. */
+class RecordedSocket {
+  static readonly OPEN = 1;
+  static current: RecordedSocket | null = null;
+  static begin: () => void = () => {};
+  static ping: () => void = () => {};
+
+  binaryType = "arraybuffer";
+  readyState = 1;
+  onopen: (() => void) | null = null;
+  onmessage: ((event: { data: ArrayBuffer }) => void) | null = null;
+  onclose: (() => void) | null = null;
+  private greeted_ = false;
+
+  constructor() {
+    RecordedSocket.current = this;
+    queueMicrotask(() => this.onopen?.());
+  }
+
+  /** The page says hello first; what it says later needs no answer but a sign of life. */
+  send(): void {
+    queueMicrotask(this.greeted_ ? RecordedSocket.ping : RecordedSocket.begin);
+    this.greeted_ = true;
+  }
+
+  close(): void {
+    this.readyState = 3;
+  }
+}
+
+async function unpack(text: string): Promise<Uint8Array> {
+  const packed = Uint8Array.from(atob(text.trim()), (letter) => letter.codePointAt(0)!);
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+function addControls(playback: Playback): () => void {
+  const bar = byId("player", HTMLElement);
+  const button = make("button");
+  const slider = make("input");
+  slider.type = "range";
+  slider.max = String(playback.duration);
+  slider.step = "any";
+  slider.setAttribute("aria-label", "Time");
+  const time = make("span");
+  bar.append(button, slider, time);
+  const toggle = () => { playback.playing = !playback.playing; };
+  button.addEventListener("click", toggle);
+  window.addEventListener("keydown", (event) => {
+    if (event.key !== " ") return;
+    event.preventDefault();
+    toggle();
+  });
+  slider.addEventListener("input", () => playback.seek(Number(slider.value)));
+  return () => {
+    button.textContent = playback.playing ? "Pause" : "Play";
+    slider.value = String(playback.position);
+    time.textContent = `${playback.position.toFixed(1)} / ${playback.duration.toFixed(1)} s`;
+  };
+}
+
+async function main(): Promise<void> {
+  const frames = readFrames(await unpack(byId("recording", HTMLElement).textContent ?? ""));
+  const playback = new Playback(frames, (data) => RecordedSocket.current?.onmessage?.({ data }));
+  RecordedSocket.begin = () => playback.seek(0);
+  RecordedSocket.ping = () => playback.repeat();
+  window.WebSocket = RecordedSocket as unknown as typeof WebSocket;
+
+  const canvas = byId("view", HTMLCanvasElement);
+  const page = makePage(canvas, "ws://recording/", { world: "", role: Role.viewer, name: "" });
+  const input = new ScreenInput(canvas, page.viewer.camera, page.gestures, page.navigation, { clickNothing: () => {}, menu: () => {}, active: () => {} });
+  const theme = matchMedia("(prefers-color-scheme: dark)");
+  page.setTheme(theme.matches ? "dark" : "light");
+  theme.addEventListener("change", () => page.setTheme(theme.matches ? "dark" : "light"));
+  const show = addControls(playback);
+  page.viewer.add(new Resolution(page.viewer), {
+    update: (seconds) => {
+      playback.pass(seconds);
+      show();
+    },
+    aim: () => input.aim(),
+  });
+  window.iota = makeDebug(page, canvas);
+  page.start();
+}
+
+main().catch((error: unknown) => {
+  const card = make("p", "failure", `This recording cannot be played: ${error instanceof Error ? error.message : String(error)}`);
+  document.body.append(card);
+});
