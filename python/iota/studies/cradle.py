@@ -73,10 +73,10 @@ class Cradle:
     def __init__(self, world: iota.World, at: iota.Vec3 = PLACE, balls: int = BALLS) -> None:
         self.at, self.turn, self.toward = at, 0.0, 0.0  # toward: where the hand on the frame is, rad
         self.hands: dict[int, tuple[int, iota.Vec3]] = {}  # what each holds, and where it is
+        self.frame = world.system.body("static", shape=iota.Box((0.01, 0.01, 0.01)), position=at)
         self.balls = [self._hang(world.system, number, balls) for number in range(balls)]
         self.mass = self.balls[0].mass
         self.groups = [Group(range(balls), 0, 0.0, 0.0)]
-        self.frame = world.system.body("static", shape=iota.Box((0.01, 0.01, 0.01)), position=at)
         self._present(world)
         self.put()
         world.on_step(self.step)
@@ -100,9 +100,6 @@ class Cradle:
         self.turn = turn
         self.frame.set_pose(self.at, (0, math.sin(turn / 2), 0, math.cos(turn / 2)))
         self.put(moved=True)
-        for group in self.groups:  # what is static takes its nails along
-            for nail, side in zip(self.balls[group.leader].attachments, (-SPREAD, SPREAD), strict=True):
-                nail.nail(self.pivot(group.leader) + self.axis * side)
 
     def spin(self, event: iota.Event) -> None:
         """A hand on the frame turns it."""
@@ -173,11 +170,9 @@ class Cradle:
             for number in group.numbers:
                 ball, leads = self.balls[number], number == group.leader
                 kind: Literal["dynamic", "static"] = "dynamic" if leads else "static"
-                if (
-                    not moved
-                    and ball.kind == kind
-                    and self.motion(number) == (group.angle, group.speed if leads else 0.0)
-                ):
+                angle, speed = self.motion(number)
+                is_there = abs(angle - group.angle) < 1e-12 and (not leads or speed == group.speed)
+                if is_there and ball.kind == kind and not moved:
                     continue
                 ball.kind = kind
                 self._place(number, group.angle)
@@ -213,12 +208,10 @@ class Cradle:
         self.balls[number].set_pose(self.pivot(number) + arm * STRING, (sy * sz, sy * cz, cy * sz, cy * cz))
 
     def _hang(self, system: iota.System, number: int, balls: int) -> iota.Body:
-        """A ball on two strings, nailed to both bars: it can only swing along x."""
-        x = self.at.x + 2 * RADIUS * (number - (balls - 1) / 2)
-        place = iota.Vec3(x, self.at.y + HEIGHT - STRING, self.at.z)
-        ball = system.body(shape=iota.Sphere(RADIUS), density=STEEL, position=place)
-        for side in (-SPREAD, SPREAD):
-            ball.attachment(place + (0, STRING, side)).nail()
+        """A ball on two strings: it swings about the line between their upper ends."""
+        top = self.at + UP * HEIGHT + (2 * RADIUS * (number - (balls - 1) / 2), 0, 0)
+        ball = system.body(shape=iota.Sphere(RADIUS), density=STEEL, position=top - UP * STRING)
+        system.revolute(ball, self.frame, at=top, axis=(0, 0, 1))
         return ball
 
     def _present(self, world: iota.World) -> None:

@@ -29,8 +29,13 @@ BLOCK = looks.solid("wood", "#e6c48f")
 def build(blocks: int = 7) -> iota.World:
     """The world of the study. blocks: how many; five to nine is usual."""
     world = iota.World(iota.System(damping=0.25), title="ladder: a block is 9 cm long", dt=1 / 240)
-    ladder = Ladder(world, blocks)
+    add_actions(world, Ladder(world, blocks))
     present(world)
+    return world
+
+
+def add_actions(world: iota.World, ladder: Ladder) -> None:
+    """A key that tips it; it tips once at first, and by itself while nobody touches anything."""
     touched, is_telling = 0.0, False
 
     @world.on_press
@@ -55,7 +60,6 @@ def build(blocks: int = 7) -> iota.World:
 
     world.at(0.6)(ladder.tip)
     world.on_reset(touch)
-    return world
 
 
 class Block:

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The furniture of the study lab: everything in it is made here, of boxes and surfaces of revolution, merged by material."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+import iota
+from iota import looks
+
+Array = Any
+Key = tuple[str, str]  # material, color
+FLOOR, WALL, WHITE = ("wood", "#f3dfc4"), ("paint", "#dfe3e2"), ("paint", "#f4f4f0")
+OAK, DARK, METAL = ("wood", "#fff1dc"), ("paint", "#23272b"), ("steel", "#aeb4ba")
+GREEN, CLAY, GLASS = ("paint", "#3f7a45"), ("paint", "#a5603f"), ("glass", "#bcd7e4")
+BOOKS = [("paint", color) for color in ("#7a2f2f", "#2f4f7a", "#356b4a", "#b08b3c", "#5c4a72", "#d9d2c0")]
+KEYS = (15, 14, 14, 13, 12, 8)  # of a keyboard, row by row
+TOP = 0.74  # of a desk, m
+
+
+class Furniture:
+    """Triangles by material and color."""
+
+    def __init__(self) -> None:
+        self._pieces: dict[Key, list[tuple[Array, Array]]] = {}
+        self.triangles = 0
+
+    def add(self, key: Key, vertices: Array, triangles: Array) -> None:
+        """A closed surface, m."""
+        self._pieces.setdefault(key, []).append((np.asarray(vertices, float), np.asarray(triangles, int)))
+        self.triangles += len(triangles)
+
+    def box(self, key: Key, center: Sequence[float], size: Sequence[float], turn: float = 0.0) -> None:
+        """turn: about the vertical, rad."""
+        corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
+        c, s = math.cos(turn), math.sin(turn)
+        quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        triangles = [t for a, b, d, e in quads for t in ((a, b, d), (a, d, e))]
+        self.add(key, corners @ [[c, 0, -s], [0, 1, 0], [s, 0, c]] + np.asarray(center), triangles)
+
+    def turned(self, key: Key, foot: Sequence[float], profile: Sequence[tuple[float, float]], around: int = 40) -> None:
+        """A surface of revolution about the vertical. profile: radius and height above `foot`, m, from below; both ends are closed."""
+        angles = 2 * math.pi * np.arange(around) / around
+        rings = [(r * np.cos(angles), np.full(around, h), -r * np.sin(angles)) for r, h in profile]
+        ends = [(0.0, profile[0][1], 0.0), (0.0, profile[-1][1], 0.0)]
+        vertices = np.vstack([*(np.stack(ring, axis=1) for ring in rings), ends]) + np.asarray(foot)
+        triangles, bottom, top = [], len(vertices) - 2, len(vertices) - 1
+        for i in range(around):
+            j = (i + 1) % around
+            triangles.append((bottom, j, i))
+            for row in range(0, (len(profile) - 1) * around, around):
+                triangles += [(row + i, row + j, row + around + j), (row + i, row + around + j, row + around + i)]
+            triangles.append((top, (len(profile) - 1) * around + i, (len(profile) - 1) * around + j))
+        self.add(key, vertices, triangles)
+
+    def ball(self, key: Key, center: Sequence[float], radii: Sequence[float], rows: int = 10, around: int = 16) -> None:
+        """An ellipsoid with axes along x, y, z."""
+        turns = np.linspace(-math.pi / 2, math.pi / 2, rows + 2)[1:-1]
+        foot = np.asarray(center, float)
+        before = len(self._pieces.get(key, []))
+        self.turned(key, (0, 0, 0), [(math.cos(turn), math.sin(turn)) for turn in turns], around)
+        vertices, triangles = self._pieces[key][before]
+        self._pieces[key][before] = (vertices * radii + foot, triangles)
+
+    def show(self, world: iota.World) -> None:
+        """In pieces that a page takes."""
+        for (material, color), pieces in self._pieces.items():
+            batch: list[tuple[Array, Array]] = []
+            for piece in [*pieces, None]:
+                if piece is None or sum(len(t) for _, t in batch) + len(piece[1]) > looks.MOST_TRIANGLES:
+                    starts = np.cumsum([0, *(len(v) for v, _ in batch)])
+                    triangles = np.vstack([t + start for (_, t), start in zip(batch, starts, strict=False)])
+                    world.add_static(
+                        looks.mesh(np.vstack([v for v, _ in batch]), triangles, material, color=color), (0, 0, 0)
+                    )
+                    batch = []
+                if piece is not None:
+                    batch.append(piece)
+
+
+def furnish(world: iota.World) -> Furniture:
+    """A laboratory of 9 x 7 m, open to the viewer's side."""
+    room, random = Furniture(), np.random.default_rng(3)
+    shell(room)
+    desk(room, -0.2, 0.0)
+    for x in (-3.0, -1.0, 1.0):
+        desk(room, x, -2.6)
+        screen(room, (x - 0.1, TOP, -2.8), 0.56, 0.34)
+        keyboard(room, x - 0.1, -2.45)
+        chair(room, x, -1.85, random.uniform(-0.6, 0.6))
+        tower(room, x + 0.65, -2.7)
+    keyboard(room, -0.72, 0.27)
+    for z in (-2.2, -0.7, 0.8):
+        shelf(room, -4.25, z, random)
+    for place in ((3.7, 0, -2.9), (3.8, 0, 0.6)):
+        plant(room, place, random)
+    board(room)
+    lamp(room, (-0.95, TOP, -0.3))
+    mug(room, (0.62, TOP, 0.2))
+    room.show(world)
+    return room
+
+
+def shell(room: Furniture) -> None:
+    """Parquet, two walls with a skirting, three windows, foam that damps the sound, ceiling lamps on wires."""
+    for row in range(70):
+        for column in range(19):
+            x, z = -4.5 + 0.5 * column + (0.25 if row % 2 else 0), -3.5 + 0.1 * row
+            key = FLOOR if (row * 7 + column * 5) % 3 else ("wood", "#e2c7a3")
+            room.box(key, (min(x, 4.2) + 0.12, -0.012, z + 0.05), (0.497, 0.04, 0.098))
+    room.box(WALL, (0, 1.4, -3.55), (9.1, 2.8, 0.1))
+    room.box(WHITE, (0, 0.04, -3.49), (9.0, 0.08, 0.02))
+    for z, length in ((-3.3, 0.4), (-1.5, 0.5), (0.5, 0.5), (2.6, 1.8)):
+        room.box(WALL, (4.55, 1.4, z), (0.1, 2.8, length))
+    for low, high in ((0, 0.9), (2.3, 2.8)):
+        room.box(WALL, (4.55, (low + high) / 2, 0), (0.1, high - low, 7.0))
+    for z in (-2.4, -0.5, 1.3):
+        room.box(GLASS, (4.55, 1.6, z), (0.01, 1.4, 1.5))
+        for y in (0.92, 1.6, 2.28):
+            room.box(WHITE, (4.53, y, z), (0.06, 0.04, 1.5))
+    for x in np.arange(-4.2, -2.2, 0.05):
+        for y in np.arange(1.5, 2.6, 0.05):
+            pyramid(room, ("rubber", "#4a4f57"), (x, y, -3.5), 0.048, 0.04)
+    for x in (-2.5, 0.0, 2.5):
+        room.turned(WHITE, (x, 2.45, -0.6), [(0.02, 0.22), (0.05, 0.2), (0.2, 0.0), (0.19, 0.0), (0.045, 0.19)], 64)
+        room.box(DARK, (x, 2.9, -0.6), (0.008, 0.5, 0.008))
+
+
+def pyramid(room: Furniture, key: Key, foot: Sequence[float], side: float, height: float) -> None:
+    """That points out of the back wall."""
+    x, y, z = foot
+    h = side / 2
+    vertices = [(x - h, y - h, z), (x + h, y - h, z), (x + h, y + h, z), (x - h, y + h, z), (x, y, z + height)]
+    room.add(key, vertices, [(0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+
+
+def desk(room: Furniture, x: float, z: float) -> None:
+    """1.8 x 0.8 m, with a drawer unit."""
+    room.box(OAK, (x, TOP - 0.015, z), (1.8, 0.03, 0.8))
+    for side in (-0.84, 0.84):
+        for depth in (-0.34, 0.34):
+            room.turned(
+                METAL, (x + side, 0, z + depth), [(0.03, 0), (0.03, 0.03), (0.02, 0.05), (0.02, TOP - 0.03)], 24
+            )
+    room.box(WHITE, (x + 0.55, 0.4, z), (0.4, 0.56, 0.6))
+    for drawer in range(3):
+        room.box(OAK, (x + 0.55, 0.22 + 0.18 * drawer, z + 0.305), (0.37, 0.165, 0.012))
+        room.box(METAL, (x + 0.55, 0.26 + 0.18 * drawer, z + 0.32), (0.12, 0.012, 0.018))
+
+
+def screen(room: Furniture, foot: Sequence[float], width: float, height: float, lift: float = 0.12) -> None:
+    """A monitor on its stand; its front is 2 cm before `foot`."""
+    x, y, z = foot
+    room.turned(METAL, foot, [(0.13, 0), (0.13, 0.008), (0.12, 0.012)], 48)
+    room.box(METAL, (x, y + (lift + 0.1) / 2, z - 0.02), (0.05, lift + 0.1, 0.02))
+    room.box(DARK, (x, y + lift + height / 2, z), (width, height, 0.03))
+    room.box(("glass", "#0f2230"), (x, y + lift + height / 2, z + 0.0165), (width - 0.03, height - 0.03, 0.005))
+
+
+def keyboard(room: Furniture, x: float, z: float) -> None:
+    """Each key is a frustum."""
+    room.box(DARK, (x, TOP + 0.006, z), (0.44, 0.012, 0.15))
+    for row, count in enumerate(KEYS[::-1]):
+        for key in range(count):
+            width = 0.42 / count
+            at = (x - 0.21 + width * (key + 0.5), TOP + 0.012, z + 0.06 - 0.024 * row)
+            room.turned(WHITE, at, [(0.011, 0), (0.0105, 0.004), (0.009, 0.008)], 12)
+
+
+def chair(room: Furniture, x: float, z: float, turn: float) -> None:
+    """On five castors."""
+    for spoke in range(5):
+        angle = turn + 2 * math.pi * spoke / 5
+        cx, cz = math.cos(angle), -math.sin(angle)
+        room.box(DARK, (x + 0.15 * cx, 0.09, z + 0.15 * cz), (0.3, 0.03, 0.04), angle)
+        room.ball(DARK, (x + 0.29 * cx, 0.03, z + 0.29 * cz), (0.03, 0.03, 0.03))
+    room.turned(METAL, (x, 0.08, z), [(0.03, 0), (0.03, 0.2), (0.018, 0.2), (0.018, 0.36)], 32)
+    room.ball(("rubber", "#38506b"), (x, 0.47, z), (0.25, 0.045, 0.24), 16, 32)
+    room.ball(
+        ("rubber", "#38506b"), (x - 0.24 * math.sin(turn), 0.82, z + 0.24 * math.cos(turn)), (0.22, 0.25, 0.05), 16, 32
+    )
+    room.box(DARK, (x - 0.25 * math.sin(turn), 0.58, z + 0.25 * math.cos(turn)), (0.05, 0.3, 0.02), turn)
+
+
+def tower(room: Furniture, x: float, z: float) -> None:
+    """A computer with a grille, beside a desk."""
+    room.box(DARK, (x + 0.35, 0.24, z), (0.19, 0.46, 0.45))
+    for slot in range(24):
+        room.box(METAL, (x + 0.35, 0.08 + 0.008 * slot, z + 0.2275), (0.14, 0.004, 0.005))
+
+
+def shelf(room: Furniture, x: float, z: float, random: np.random.Generator) -> None:
+    """Five boards of books."""
+    for side in (-0.68, 0.68):
+        room.box(OAK, (x, 1.0, z + side), (0.3, 2.0, 0.025))
+    for level in range(6):
+        room.box(OAK, (x, 0.08 + 0.38 * level, z), (0.3, 0.025, 1.35))
+    for level in range(5):
+        place = z - 0.65
+        while place < z + 0.5:
+            thick, height = random.uniform(0.015, 0.05), random.uniform(0.2, 0.32)
+            key = BOOKS[random.integers(len(BOOKS))]
+            room.box(
+                key, (x + 0.03, 0.093 + 0.38 * level + height / 2, place + thick / 2), (0.2, height, thick - 0.001)
+            )
+            room.box(
+                WHITE,
+                (x + 0.028, 0.093 + 0.38 * level + height / 2, place + thick / 2),
+                (0.198, height + 0.001, thick - 0.007),
+            )
+            place += thick
+
+
+def plant(room: Furniture, foot: Sequence[float], random: np.random.Generator) -> None:
+    """Leaves around a pot."""
+    x, y, z = foot
+    room.turned(CLAY, foot, [(0.14, 0), (0.19, 0.3), (0.21, 0.3), (0.21, 0.34), (0.18, 0.34), (0.17, 0.28)], 48)
+    for leaf in range(60):
+        angle, rise = 2.4 * leaf, random.uniform(0.1, 0.9)
+        reach = 0.08 + 0.35 * math.sin(math.pi * min(rise + 0.15, 1))
+        at = (x + reach * math.cos(angle), y + 0.4 + rise, z - reach * math.sin(angle))
+        room.ball(GREEN, at, (0.05 + 0.07 * abs(math.cos(angle)), 0.02, 0.05 + 0.07 * abs(math.sin(angle))), 8, 14)
+    room.turned(GREEN, (x, y + 0.28, z), [(0.02, 0), (0.012, 0.9)], 16)
+
+
+def board(room: Furniture) -> None:
+    """A white one, with a tray of pens."""
+    room.box(WHITE, (1.2, 1.6, -3.47), (2.4, 1.1, 0.02))
+    for y in (1.04, 2.16):
+        room.box(METAL, (1.2, y, -3.46), (2.44, 0.03, 0.04))
+    for x in (-0.01, 2.41):
+        room.box(METAL, (x, 1.6, -3.46), (0.03, 1.15, 0.04))
+    for pen, key in enumerate(BOOKS[:4]):
+        room.box(key, (0.9 + 0.18 * pen, 1.065, -3.43), (0.13, 0.014, 0.014))
+
+
+def lamp(room: Furniture, foot: Sequence[float]) -> None:
+    """For a desk."""
+    x, y, z = foot
+    room.turned(METAL, foot, [(0.09, 0), (0.09, 0.012), (0.03, 0.02), (0.008, 0.03), (0.008, 0.42)], 48)
+    room.turned(GREEN, (x, y + 0.36, z), [(0.11, 0), (0.1, 0.03), (0.05, 0.11), (0.02, 0.13)], 64)
+
+
+def mug(room: Furniture, foot: Sequence[float]) -> None:
+    """Of coffee."""
+    room.turned(WHITE, foot, [(0.036, 0), (0.04, 0.005), (0.04, 0.095), (0.036, 0.095), (0.036, 0.085)], 64)

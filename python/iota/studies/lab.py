@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A laboratory to walk through: a ladder before a monitor and a cradle on a desk, both to play with. v goes to the next view."""
+
+from __future__ import annotations
+
+import iota
+from iota import looks
+from iota.studies import _laboratory, cradle, ladder
+from iota.studies._laboratory import TOP
+
+LADDER = iota.Vec3(-0.45, 1.72, 0.02)  # the axle of its top block, m
+CRADLE = iota.Vec3(0.25, TOP, 0.12)
+VIEWS = (
+    iota.Camera(position=(0.45, 1.6, 2.2), target=(-0.12, 1.12, -0.4)),
+    iota.Camera(position=(0.05, 1.5, 1.35), target=(LADDER.x, 1.38, 0)),
+    iota.Camera(position=(0.45, 1.2, 1.0), target=(CRADLE.x, TOP + 0.1, CRADLE.z)),
+)
+
+
+def build() -> iota.World:
+    """The world of the study."""
+    world = iota.World(iota.System(damping=0.06), title="lab: 9 x 7 m", dt=1 / 240, ground=None)
+    room = _laboratory.Furniture()
+    _laboratory.screen(room, (LADDER.x, TOP, LADDER.z - 0.07), 0.6, 0.95, lift=0.12)
+    room.show(world)
+    _laboratory.furnish(world)
+    world.add_strut(tuple(LADDER - (0, 0, 0.06)), tuple(LADDER + (0, 0, 0.035)), looks.cylinder(0.003, "steel"))
+    ladder.add_actions(world, ladder.Ladder(world, 7, LADDER))
+    cradle.add_actions(world, cradle.Cradle(world, CRADLE))
+    world.camera, view = VIEWS[0], 0
+
+    @world.action("view", key="v", help="looks at the ladder, at the cradle, at the whole room", on="world")
+    def next_view() -> None:
+        nonlocal view
+        view = (view + 1) % len(VIEWS)
+        world.camera = VIEWS[view]
+
+    return world

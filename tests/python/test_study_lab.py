@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+import pytest
+
+import iota
+from iota.studies import _laboratory, cradle, lab, ladder
+
+
+def test_the_room_is_made_of_more_than_100_000_triangles_in_few_pieces() -> None:
+    world = iota.World(iota.System())
+    room = _laboratory.furnish(world)
+    assert room.triangles > 100_000
+    assert len(world._state.statics) < 40
+    drawn = sum(len(static["shape"]["triangles"]) // 3 for static in world._state.statics)
+    assert drawn == room.triangles
+
+
+def test_surfaces_are_closed_and_turned_outwards() -> None:
+    """By the volume that they enclose: `Mesh` refuses open ones."""
+    room = _laboratory.Furniture()
+    room.box(("paint", "#000000"), (1, 2, 3), (0.5, 0.2, 0.1), 0.3)
+    room.turned(("wood", "#000000"), (1, 0, 0), [(0.2, 0), (0.2, 1)], 400)
+    room.ball(("steel", "#000000"), (0, 1, 0), (0.3, 0.2, 0.1), 100, 200)
+    volumes = [
+        iota.Mesh(vertices, triangles).mass_properties.volume
+        for pieces in room._pieces.values()
+        for vertices, triangles in pieces
+    ]
+    assert volumes == pytest.approx([0.01, math.pi * 0.04, 4 / 3 * math.pi * 0.006], rel=2e-3)
+
+
+def test_both_toys_are_where_they_should_be_and_alive() -> None:
+    world = lab.build()
+    balls = [body for body in world.system.bodies if isinstance(getattr(body.solids[0], "shape", None), iota.Sphere)]
+    start = [ball.center_of_mass for ball in balls]
+    assert (
+        min(ball.center_of_mass.y for ball in balls) > _laboratory.TOP + 0.016 + cradle.RADIUS
+    )  # over the plate on the desk
+    (axle,) = [joint for joint in world.system.constraints if joint.kind == "revolute" and joint.b is None]
+    low = high = 0.0
+    swings: list[float] = []
+    while world.system.time < 4:
+        report = world.step()
+        assert report is not None and report.unconverged == 0
+        blocks = [p for body in world.system.bodies if body not in balls for p in body.particles if p.mass > 0]
+        low = min(low, *(p.position.y - lab.LADDER.y for p in blocks if abs(p.position.z - lab.LADDER.z) < 0.05))
+        swings.append(balls[-1].center_of_mass.x - start[-1].x)
+    assert axle.angle.value == pytest.approx(math.pi, abs=0.02)  # it has tipped by itself
+    assert low > -7.2 * ladder.LENGTH and high == 0
+    assert lab.LADDER.y - 7 * ladder.LENGTH > _laboratory.TOP  # it hangs clear of the desk
+    assert max(swings) > 0.05  # the ball on the other side has left
+
+
+def test_together_they_cost_little_more_than_alone() -> None:
+    def seconds(build: object) -> float:
+        world = build()  # type: ignore[operator]
+        began = time.process_time()
+        while world.system.time < 3:
+            world.step()
+        return time.process_time() - began
+
+    costs = np.array([[seconds(build) for build in (lab.build, ladder.build, cradle.build)] for _ in range(3)])
+    together, first, second = costs.min(axis=0)
+    assert together < 1.8 * (first + second)
