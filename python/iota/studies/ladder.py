@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import iota
 from iota import looks
+from iota.studies._story import Story
 from iota.world.frames import relative_turn
 from iota.world.shown import Marker
 
@@ -36,30 +37,16 @@ def build(blocks: int = 7) -> iota.World:
 
 def add_actions(world: iota.World, ladder: Ladder) -> None:
     """A key that tips it; it tips once at first, and by itself while nobody touches anything."""
-    touched, is_telling = 0.0, False
-
-    @world.on_press
-    def touch() -> None:
-        nonlocal touched, is_telling
-        touched, is_telling = world.system.time, False
+    story = Story(world, wait=PATIENCE)
+    for number in range(10):
+        story.at(4.0 * number)(ladder.tip)
 
     @world.action("tip", key="t", button="a", help="turns the top block over; twice, and two ripples run", on="world")
     def tip() -> None:
-        touch()
-        ladder.tip()
-
-    @world.every(4.0)
-    def tip_alone() -> None:
-        nonlocal is_telling
-        if world.system.time - touched < PATIENCE:
-            return
-        if not is_telling:
-            world.notice("The ladder tips by itself", "It waits for you when you take hold of a block or press t.")
-        is_telling = True
+        story.touch()
         ladder.tip()
 
     world.at(0.6)(ladder.tip)
-    world.on_reset(touch)
 
 
 class Block:
