@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import base64
+import logging
 import os
 import shutil
 import time
@@ -82,6 +83,11 @@ def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
             film = FilmPage(page)
             page.goto(url)
             yield film
+        except KeyboardInterrupt:
+            logging.getLogger(
+                "asyncio"
+            ).disabled = True  # Ctrl-C ends Playwright's own process too, which it would complain of
+            raise
         except Error as error:
             raise Failed(f"the browser failed: {error.message.splitlines()[0]}") from None
         finally:

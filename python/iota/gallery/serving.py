@@ -18,6 +18,7 @@ from iota.world.callbacks import one_line, print_error
 from iota.world.page import page_folder
 
 LEAVE = 15.0  # s without a visitor, after which a study ends
+FIRST = ("chain", "ladder", "cradle", "undersea", "cloth", "playground", "physics-class", "fireworks")  # on the page
 LOOK = 0.1  # s, between two looks at who has come
 
 
@@ -114,6 +115,7 @@ def make_folder() -> tempfile.TemporaryDirectory[str]:
                 break
         shutil.copyfile(file, place)
     shutil.copytree(studies.PICTURES, target / "studies")
-    described = [{"name": name, "text": studies.description(name)} for name in studies.names()]
+    names = sorted(studies.names(), key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
+    described = [{"name": name, "text": studies.description(name)} for name in names]
     (target / "studies.json").write_text(json.dumps(described))
     return folder

@@ -25,7 +25,7 @@ class Rocket:
         self._random = np.random.default_rng(seed)
         self.particle = system.body().particle(self._home, mass=0.3)
         self.particle.radius, self.particle.color = 0.05, color
-        self.particle.nail()
+        self.particle.body.kind = "scripted"  # it waits
         self._tail = system.emitter(
             rate=260, source=iota.Sphere(0.02), position=self._home, velocity=(0, -1.5, 0), velocity_spread=0.5, mass=0.0005,
             lifetime=0.5, lifetime_spread=0.2, curve=[(0, 0.03, (1, 0.9, 0.6)), (1, 0.008, (0.6, 0.2, 0.1))],
@@ -35,12 +35,12 @@ class Rocket:
 
     @property
     def is_ready(self) -> bool:
-        return self.particle.is_nailed
+        return self.particle.body.kind == "scripted"
 
     def fire(self) -> None:
         """Off it goes, a little aslant."""
         aslant = self._random.uniform(-1, 1, 2)
-        self.particle.release()
+        self.particle.body.kind = "dynamic"
         self.particle.velocity = (aslant[0], CLIMB + self._random.uniform(-1, 1), 0.7 * aslant[1])
         self._tail.active = True
 
@@ -53,7 +53,8 @@ class Rocket:
             self._star.move(self.particle.position)
             self._tail.active, self._star.active = False, True
             self._world.after(0.1)(lambda: setattr(self._star, "active", False))
-            self.particle.nail(self._home)
+            self.particle.body.kind = "scripted"
+            self.particle.position, self.particle.velocity = self._home, (0, 0, 0)
 
 
 def build() -> iota.World:
