@@ -501,6 +501,11 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
             "color": NO_COLOR,
         },
     ),
+    (
+        "stage",
+        pack("<3If", 0x0B1020, 0x203040, NO_COLOR, 0.5),
+        {"sky": 0x0B1020, "horizon": 0x203040, "ground": NO_COLOR, "light": 0.5},
+    ),
     ("viewpoint", text("driver") + anchor(A) + anchor(B), {"name": "driver", "eye": A, "target": B}),
     ("frame", anchor(A) + quat([0.5, 0.5, 0.5, 0.5]), {"at": A, "rotation": [0.5, 0.5, 0.5, 0.5]}),
 ]

@@ -426,6 +426,7 @@ def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, 
     world.strut(rod, (0, 4, 0), looks.box((0.5, 0.1, 0.1)))
     world.tube(rod.particles[0], (0, 0, 0), radius=0.05)
     world.viewpoint("along", rod.particles[0], (0, 4, 0))
+    world.stage(sky="#05070d", light=0.5)
     places = np.random.default_rng(1).uniform(-1, 1, (5000, 3))
     shapes = world.shapes(looks.cone(0.1, 0.2), places, sizes=np.linspace(1, 2, 5000), at=rod)
     with PageClient(run_world(world)) as page:
@@ -436,6 +437,8 @@ def test_struts_tubes_and_sets_have_the_records_of_the_protocol(rod: iota.Body, 
         assert seen["part"]["color"] == 0xFF0000 and seen["a"]["body"] == slot
         assert entity(page, "strut", 1)["length"] == pytest.approx(0.5), "it is stretched"
         assert entity(page, "tube")["material"] == "rope"
+        stage = entity(page, "stage")
+        assert (stage["sky"], stage["ground"], stage["light"]) == (0x05070D, NO_COLOR, 0.5)
         view = entity(page, "viewpoint")
         assert view["name"] == "along" and view["eye"]["body"] == slot and view["target"]["body"] == NO_BODY
         seen = entity(page, "shape_set")

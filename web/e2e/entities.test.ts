@@ -145,6 +145,27 @@ describe("the script hears", () => {
     await told('{"key": "k"}');
   });
 
+  it("gives the world its surroundings, and takes them back", async () => {
+    const light = async () => tab.page.evaluate(() => {
+      const { viewer: { renderer, scene, camera } } = iota.page;
+      const gl = renderer.getContext();
+      const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+      const pixels = new Uint8Array(4 * width * height);
+      renderer.render(scene, camera);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      return pixels.reduce((sum, value, index) => (index % 4 === 3 ? sum : sum + value), 0) / (3 * width * height);
+    });
+    const day = await light();
+    expect(day).toBeGreaterThan(150);
+    await tab.page.keyboard.press("n");
+    await tab.until("it is night", () => iota.page.world.entities.stage.size === 1);
+    await tab.picture("page_night");
+    await expect.poll(light).toBeLessThan(70);
+    await tab.page.keyboard.press("n");
+    await tab.until("it is day", () => iota.page.world.entities.stage.size === 0);
+    await expect.poll(async () => Math.abs((await light()) - day)).toBeLessThan(3);
+  });
+
   it("of a picture that it asks for, and a user takes one by a key", async () => {
     await tab.page.keyboard.press("i");
     // Whatever resolution the page draws at to keep up.

@@ -31,6 +31,13 @@ def build() -> iota.World:
     follow(world)
     ask(world)
     listen(world, ball)
+    night = world.stage(sky="#05070d", horizon="#101a2e", ground="#20242c", light=0.4)
+    night.visible = False
+
+    @world.on_key("n")
+    def dusk() -> None:
+        night.visible = not night.visible
+
     return world
 
 

@@ -18,6 +18,7 @@ from iota.world.shown import (
     Paint,
     Points,
     Shapes,
+    Stage,
     Strut,
     Surface,
     Trace,
@@ -220,6 +221,14 @@ class Drawing:
         world.viewpoint("driver", car.attachment((0, 1.2, 0)), car.attachment((3, 1, 0)))
         """
         return Viewpoint(self._state.things, name=name, position=position, target=target)
+
+    def stage(self, sky: Color = None, horizon: Color = None, ground: Color = None, light: float = 1.0) -> Stage:
+        """Surroundings in place of the page's own: the sky overhead, what ground and sky fade to, the floor, and how strong all
+        lamps are, times the usual.
+
+        world.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.5)  # a night
+        """
+        return Stage(self._state.things, sky=sky, horizon=horizon, ground=ground, light=light)
 
     # --- to be changed by users -----------------------------------------------------------------------------------
 

@@ -369,3 +369,15 @@ class Viewpoint(Thing):
     def _record(self) -> dict[str, Any] | None:
         eye, target = anchor(self.position), anchor(self.target)
         return None if eye is None or target is None else {"name": self.name, "eye": eye, "target": target}
+
+
+class Stage(Thing):
+    """Surroundings in place of the page's own, which follow light and dark of the user's system. sky: overhead. horizon: what
+    ground and sky fade to. ground: of the floor. light: of all lamps, times the usual."""
+
+    kind = "stage"
+    sky, horizon, ground = Field(color), Field(color), Field(color)
+    light = Field(number(0, 10))
+
+    def _record(self) -> dict[str, Any] | None:
+        return self._values

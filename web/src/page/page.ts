@@ -2,6 +2,7 @@
 // The page's parts, put together. All of it works without the overlay, so that a headset can use the same parts: see
 // README.md, "For XR". Overlay and headset name the parts that they need: `Pick<Page, "viewer" | "commands">`.
 
+import { Color, SRGBColorSpace } from "three";
 import { Commands } from "../commands/commands.ts";
 import type { JoinRequest } from "../net/connection.ts";
 import { Hit, pickPoint, toBody, toWorld } from "../interact/picking.ts";
@@ -9,6 +10,7 @@ import { Navigation } from "../navigate/navigation.ts";
 import { NoticeLevel } from "../protocol/generated.ts";
 import type { EntityView } from "../scene/entities/entity.ts";
 import { Flashes } from "../scene/flashes.ts";
+import { textOf } from "../scene/parts.ts";
 import { World } from "../world/world.ts";
 import { Events, type PageListener } from "./events.ts";
 import { Framing } from "./framing.ts";
@@ -60,23 +62,57 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
   };
   events.add(actions, selection, flashesOf(flashes, parts), sound, applySettings(parts), framing);
   viewer.lookDistance = () => navigation.distance;
-  viewer.add({ draw: () => void viewer.camera.getWorldPosition(world.eye) });
+  const themes = new Themes(parts, highlights);
+  viewer.add(themes, { draw: () => void viewer.camera.getWorldPosition(world.eye) });
   // Bodies are where they are drawn before the camera is placed.
   viewer.add(new Reports(parts), selection, ...Object.values<EntityView<never>>(world.entities), framing, viewpoints, flatCamera(parts), highlights, flashes);
   return {
     ...parts,
     commands,
-    setTheme: (theme) => {
-      viewer.invalidate();
-      viewer.stage.setTheme(theme);
-      highlights.setTheme(theme);
-      world.entities.particleSet.setTheme(theme);
-    },
+    setTheme: (theme) => themes.set(theme),
     start: () => {
       session.connection.open();
       viewer.start(() => world.entities.body.pickableCount > 0, () => events.ready());
     },
   };
+}
+
+/** Light and dark: by the system's setting, but for the surroundings that a script gives the world. */
+class Themes implements FramePart {
+  private readonly parts_: PageParts;
+  private readonly highlights_: Highlights;
+  private system_: "light" | "dark" = "light";
+  private seen_ = 0;
+
+  constructor(parts: PageParts, highlights: Highlights) {
+    this.parts_ = parts;
+    this.highlights_ = highlights;
+  }
+
+  set(theme: "light" | "dark"): void {
+    this.system_ = theme;
+    this.apply_();
+  }
+
+  update(): void {
+    const { version } = this.parts_.world.entities.stage;
+    if (version === this.seen_) return;
+    this.seen_ = version;
+    this.apply_();
+  }
+
+  private apply_(): void {
+    const { viewer, world: { entities: { stage, particleSet } } } = this.parts_;
+    const told = stage.all().at(-1);
+    const [sky, horizon, ground] = [told?.sky, told?.horizon, told?.ground].map((color) => (color === undefined ? null : textOf(color)));
+    viewer.invalidate();
+    viewer.stage.setTheme(this.system_);
+    viewer.stage.setSurroundings({ sky, horizon, ground, light: told?.light ?? 1 });
+    const behind = horizon ?? sky;
+    const theme = behind === null ? this.system_ : new Color(behind).getHSL({ h: 0, s: 0, l: 0 }, SRGBColorSpace).l < 0.4 ? "dark" : "light";
+    this.highlights_.setTheme(theme);
+    particleSet.setTheme(theme);
+  }
 }
 
 /** The ground, as the script wants it. */

@@ -21,6 +21,15 @@ interface Theme {
   readonly environment: number;
 }
 
+/** What a script says of them; null: what the theme has. */
+export interface Surroundings {
+  readonly sky: string | null;
+  readonly horizon: string | null;
+  readonly ground: string | null;
+  /** Times the theme's. */
+  readonly light: number;
+}
+
 const themes: Record<"light" | "dark", Theme> = {
   light: { far: "#d6d5d1", horizon: "#eceded", zenith: "#9fb0bd", ground: "#c9c0b2", key: 3.2, fill: 0.3, environment: 0.8 },
   dark: { far: "#24272b", horizon: "#3a4148", zenith: "#0d1013", ground: "#5a5651", key: 2.4, fill: 0.22, environment: 0.6 },
@@ -117,16 +126,17 @@ diffuseColor.rgb *= 1.0 - contactStrength * (1.0 - exp(-5.0 * contact));`);
 }
 
 /** The studio stands in a pool of light, which gives depth; its ground is flat and has one normal, so what comes from all sides is one number. */
-function addPool(material: MeshLambertMaterial): void {
+function addPool(material: MeshLambertMaterial, ambient: { value: number }): void {
   const before = material.onBeforeCompile;
   material.onBeforeCompile = (shader, renderer) => {
     before.call(material, shader, renderer);
+    shader.uniforms["groundAmbient"] = ambient;
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nvarying vec2 vSizes;")
       .replace("#include <project_vertex>", "#include <project_vertex>\nvSizes = position.xy;");
     shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", "#include <common>\nvarying vec2 vSizes;")
-      .replace("#include <lights_fragment_maps>", `iblIrradiance += vec3(${groundAmbient.toFixed(2)});`)
+      .replace("#include <common>", "#include <common>\nuniform float groundAmbient;\nvarying vec2 vSizes;")
+      .replace("#include <lights_fragment_maps>", "iblIrradiance += vec3(groundAmbient);")
       .replace("#include <color_fragment>", "#include <color_fragment>\ndiffuseColor.rgb *= 1.0 - 0.3 * smoothstep(0.8, 8.0, length(vSizes));");
   };
 }
@@ -179,11 +189,14 @@ export class Stage {
   private readonly fill_ = new HemisphereLight("#dce8f5", "#8a8073");
   private readonly fog_ = new Fog("#ffffff", fogNear, fogFar);
   private readonly cell_ = { value: 0.1 };
+  private readonly ambient_ = { value: groundAmbient };
   private readonly contact_: ContactShadow;
   private readonly middle_ = new Vector3(0, 1, 0);
   private readonly lit_ = new Vector3();
   private size_ = 1;
   private reach_ = 0;
+  private theme_: Theme = themes.light;
+  private surroundings_: Surroundings = { sky: null, horizon: null, ground: null, light: 1 };
 
   constructor(scene: Scene, renderer: WebGLRenderer) {
     this.scene_ = scene;
@@ -195,7 +208,7 @@ export class Stage {
     addGrid(material, this.cell_);
     this.contact_ = new ContactShadow(renderer);
     addContactShadow(material, this.contact_);
-    addPool(material);
+    addPool(material, this.ambient_);
     this.ground = new Mesh(new CircleGeometry(groundRadius, 64), material);
     this.ground.rotation.x = -Math.PI / 2;
     this.ground.receiveShadow = true;
@@ -212,7 +225,23 @@ export class Stage {
   }
 
   setTheme(name: "light" | "dark"): void {
-    const theme = themes[name];
+    this.theme_ = themes[name];
+    this.paint_();
+  }
+
+  /** Colors (null: the theme's) and light (times the theme's) that a script gives the world. */
+  setSurroundings(surroundings: Surroundings): void {
+    this.surroundings_ = surroundings;
+    this.paint_();
+  }
+
+  private paint_(): void {
+    const { sky, horizon: edge, ground, light } = this.surroundings_;
+    const usual = this.theme_;
+    const theme = {
+      far: edge ?? usual.far, horizon: edge ?? usual.horizon, zenith: sky ?? usual.zenith, ground: ground ?? usual.ground,
+      key: light * usual.key, fill: light * usual.fill, environment: light * usual.environment,
+    };
     const { far, horizon, zenith } = this.sky_.material.uniforms;
     (far.value as Color).set(theme.far);
     (horizon.value as Color).set(theme.horizon);
@@ -222,6 +251,7 @@ export class Stage {
     this.ground.material.color.set(theme.ground);
     this.key_.intensity = theme.key;
     this.fill_.intensity = theme.fill;
+    this.ambient_.value = groundAmbient * light;
   }
 
   /** Height of the ground, m; null: none. */

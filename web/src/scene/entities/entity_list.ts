@@ -3,7 +3,7 @@
 
 import type { Vector3 } from "three";
 import type { EntityKind, EntityRecords } from "../../protocol/generated.ts";
-import type { PlotEntity, ViewpointEntity, WidgetEntity } from "../../protocol/generated.ts";
+import type { PlotEntity, StageEntity, ViewpointEntity, WidgetEntity } from "../../protocol/generated.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { ArrowView } from "./arrow.ts";
 import { AxesView } from "./axes.ts";
@@ -74,6 +74,7 @@ export function makeEntityViews({ poses, eye, time, bodyGone, warn }: EntityHost
     strut: new StrutView(poses, warn),
     tube: new TubeView(poses),
     viewpoint: new WatchedRecords<ViewpointEntity>(),
+    stage: new WatchedRecords<StageEntity>(),
   } satisfies EntityViews;
 }
 
