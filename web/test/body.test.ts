@@ -63,6 +63,24 @@ describe("bodies", () => {
     expect(drawn.map((x) => Math.round(x))).toEqual([0, 4, 8]);
   });
 
+  it("grow where nothing is, and not where they come off another one", () => {
+    const test = told(1);
+    const size = (instance: number): number => {
+      const matrix = new Matrix4();
+      test.meshes()[0].getMatrixAt(instance, matrix);
+      return new Vector3().setFromMatrixColumn(matrix, 1).length();
+    };
+    const begun = size(0);
+    for (let frame = 0; frame < 12; frame++) test.poses([body(0, 0)]);
+    expect(begun).toBeLessThan(0.2 * size(0));
+    // The first of these hangs on the second one only.
+    test.set("body", bodyEntity(1), bodyEntity(2), bodyEntity(3));
+    test.poses([body(0, 0), body(1, 0.1), body(2, 0.05), body(3, 4)]);
+    expect(size(1)).toBeCloseTo(size(0), 6);
+    expect(size(2)).toBeCloseTo(size(0), 6);
+    expect(size(3)).toBeLessThan(0.2 * size(0));
+  });
+
   it("may have any slot", () => {
     const test = told(1);
     const slot = 70_000;

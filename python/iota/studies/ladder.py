@@ -18,7 +18,7 @@ LENGTH, THICKNESS, WIDTH = (
     0.055,
 )  # of a block, m; thicker ones come to rest half tipped under the weight below
 WOOD = 650.0  # kg/m^3
-TOP = iota.Vec3(0, 0.78, 0)  # the axle through the top block
+TOP = iota.Vec3(0, 0.7, 0)  # the axle through the top block
 TORQUE, SPEED = 0.25, 6.0  # N m, rad/s: with which the top block is turned
 STICK = 1e-6  # N m: a smaller moment does not part two faces
 PATIENCE = 8.0  # s without a touch until the story begins
@@ -243,8 +243,8 @@ def present(world: iota.World) -> None:
     world.add_strut((x, y, back), (x, y, z + 0.7 * WIDTH), looks.cylinder(0.003, "steel"))
     world.add_static(looks.cylinder(0.012, "brass", 0.012, rotation=about_x), (x, y, z + 0.7 * WIDTH))
     world.add_strut((x, 0.015, back), (x, y + 0.03, back), looks.cylinder(0.008, "wood"))
-    world.add_static(looks.box((0.28, 0.02, 0.2), "wood", 0.004), (x - 0.02, 0.01, back + 0.04))
-    world.add_static(looks.box((0.03, 0.7, 0.003), "paint", color="#d8a53a"), (x - 0.12, 0.37, back))
-    for mark in range(1, 7):
+    world.add_static(looks.box((0.28, 0.02, 0.18), "wood", 0.004), (x - 0.02, 0.01, back + 0.04))
+    world.add_static(looks.box((0.03, 0.6, 0.003), "paint", color="#d8a53a"), (x - 0.12, 0.32, back))
+    for mark in range(1, 6):
         world.add_static(looks.box((0.03, 0.0015, 0.0036), "rubber"), (x - 0.12, 0.02 + 0.1 * mark, back))
-    world.camera = iota.Camera(position=(0.9, 0.7, 0.95), target=(0, 0.41, 0))
+    world.camera = iota.Camera(position=(0.78, 0.62, 0.82), target=(0, 0.365, 0))

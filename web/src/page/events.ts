@@ -6,6 +6,10 @@ import type { LinkState } from "../net/connection.ts";
 import type { NoticeLevel, Vec3 } from "../protocol/generated.ts";
 import type { Change } from "../world/world.ts";
 
+/** More breaks and joins than these in so much time are no events. */
+const mostEffects = 6;
+const calmMs = 2000;
+
 /** A card for a person. */
 export interface PageNotice {
   readonly level: NoticeLevel;
@@ -38,6 +42,8 @@ export interface PageListener {
 /** Tells all listeners, in the order in which they were added. */
 export class Events implements Required<PageListener> {
   private readonly listeners_: PageListener[] = [];
+  /** When the last ones came, ms. */
+  private readonly effects_: number[] = [];
 
   add(...listeners: readonly PageListener[]): void {
     this.listeners_.push(...listeners);
@@ -63,7 +69,11 @@ export class Events implements Required<PageListener> {
     for (const listener of this.listeners_) listener.notice?.(notice);
   }
 
+  /** What breaks and joins all the time is the way a thing works, and no event: then nothing flashes or clicks. */
   effect(kind: string, position: Readonly<Vec3>): void {
+    const now = performance.now();
+    while (this.effects_.length > 0 && now - this.effects_[0] > calmMs) this.effects_.shift();
+    if (this.effects_.push(now) > mostEffects) return;
     for (const listener of this.listeners_) listener.effect?.(kind, position);
   }
 

@@ -27,6 +27,8 @@ const thinness = 6;
 const lookEvery = 6;
 const mostLookedAt = 64;
 const growSeconds = 0.15;
+/** Among more new bodies than these nobody sees which came off which. */
+const mostPieces = 64;
 /** A new look starts from this size. */
 const regrownSize = 0.6;
 const tintSeconds = 0.07;
@@ -144,6 +146,8 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   private dynamicCount_ = 0;
   private listed_ = true;
   private grown_ = new Float32Array(0);
+  /** Bodies that are new in this frame. */
+  private readonly pieces_: number[] = [];
   private tintGoal_ = new Float32Array(0);
   private tintNow_ = new Float32Array(0);
 
@@ -213,6 +217,20 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     const grow = seconds / growSeconds;
     const ease = 1 - Math.exp(-seconds / tintSeconds);
     const { known } = this.poses;
+    this.pieces_.length = 0;
+    for (let index = 0; index < this.drawnCount_; index++) {
+      const body = this.drawn_[index];
+      if (known[body] === 1 && this.grown_[body] === 0 && this.pieces_.length <= mostPieces) this.pieces_.push(body);
+    }
+    // What comes off another body has been there before: it does not grow.
+    for (let found = this.pieces_.length <= mostPieces; found;) {
+      found = false;  // one piece may hang on another one
+      for (const body of this.pieces_) {
+        if (this.grown_[body] === 1 || !this.touchesGrown_(body)) continue;
+        this.grown_[body] = 1;
+        found = true;
+      }
+    }
     for (let index = 0; index < this.drawnCount_; index++) {
       const body = this.drawn_[index];
       if (known[body] === 1) this.grown_[body] = Math.min(1, this.grown_[body] + grow);
@@ -416,6 +434,21 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
       for (let channel = 0; channel < 4; channel++) tints[4 * index + channel] = this.tintNow_[4 * body + channel];
     }
     pool.upload();
+  }
+
+  /** Whether a body that is drawn in full reaches as far as this one. */
+  private touchesGrown_(body: number): boolean {
+    const { position, known } = this.poses;
+    for (let index = 0; index < this.drawnCount_; index++) {
+      const other = this.drawn_[index];
+      if (other === body || known[other] !== 1 || this.grown_[other] !== 1) continue;
+      const apart = Math.hypot(
+        position[3 * body] - position[3 * other], position[3 * body + 1] - position[3 * other + 1],
+        position[3 * body + 2] - position[3 * other + 2],
+      );
+      if (apart < this.reach[body] + this.reach[other]) return true;
+    }
+    return false;
   }
 
   private easeTint_(body: number, ease: number): void {
