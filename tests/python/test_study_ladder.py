@@ -9,6 +9,7 @@ import pytest
 
 import iota
 from iota.studies import ladder
+from iota.world.frames import turned
 
 MINUTES = float(os.environ.get("IOTA_LADDER_MINUTES", "1"))  # tools/soak.py asks for ten
 
@@ -204,3 +205,16 @@ def test_it_tips_by_itself_only_while_nobody_touches_it() -> None:
         while world.system.time < until:
             world.step()
         assert axle.angle.value == pytest.approx(math.pi, abs=0.01)  # it waits from then on
+
+
+def test_ribbons_lie_on_their_blocks_whatever_is_locked() -> None:
+    """In the frame of the body that a block is a part of now, its ribbons run along the block."""
+    watched = Watched(5)
+    watched.ladder.tip()
+    for _ in range(60):
+        watched.run(0.05)
+        for block in watched.ladder.blocks:
+            way = block.way * (1 / ladder.LENGTH)
+            for strip in (strip for face in block.strips for kind in face.values() for strip in kind):
+                along = turned(block.ends[0].body.orientation, turned(strip.rotation, iota.Vec3(0, 1, 0)))
+                assert abs(along.dot(way)) > 1 - 1e-6

@@ -94,7 +94,7 @@ describe("the first picture", () => {
   }, 180_000);
 
   const scenes = [
-    "chain", "mechanisms", "weather",
+    "chain", "cradle", "lab", "ladder", "mechanisms", "weather",
     ...["appendix_e1", "appendix_e2", "appendix_e3", "bridge", "explicit_particles", "pendulum"].map((name) => `examples/python/${name}.py`),
   ];
   it.each(scenes)("of %s shows it", async (what) => {

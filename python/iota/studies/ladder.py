@@ -206,7 +206,9 @@ class Ladder:
                 pair.flip()
             elif pair.angle < 0:
                 pair.lock()
-                self.lay_ribbons()
+                for block in self.blocks:
+                    if block.ends[0].body == pair.upper.ends[0].body:
+                        block.lay_ribbons()
 
     def unlock(self, pair: Pair) -> None:
         """Thesis, Algorithm 7: every block of their body is its own again, and the other pairs of it are locked anew."""
@@ -227,12 +229,9 @@ class Ladder:
         for each in locked:
             if each.locked:
                 each.make_rigid()
-        self.lay_ribbons()
-
-    def lay_ribbons(self) -> None:
-        """On all blocks."""
-        for block in self.blocks:
-            block.lay_ribbons()
+        for each in locked:
+            each.upper.lay_ribbons()
+            each.lower.lay_ribbons()
 
 
 def present(world: iota.World) -> None:
