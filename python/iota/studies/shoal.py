@@ -19,7 +19,6 @@ KEEN = 2.0  # 1/s, how soon a fish has its speed again
 FOLLOW = 0.9  # m/s^2, towards the leader
 MIDDLE = np.array([0.0, 3.4, 0.0])  # of the leader's path, m
 WAY = np.array([4.0, 0.7, 2.2])  # how far it goes from there, m
-BED = 9.0  # m, how far the wall of water is behind the fish
 
 
 def build(fish: int = FISH) -> iota.World:
@@ -109,14 +108,9 @@ class School:
 
 
 def present(world: iota.World) -> None:
-    """A bed of sand with stones, and the blue of the water behind."""
+    """A bed of sand with stones, and the blue of the water around."""
     for x, z, size in ((-3, -2, 0.8), (2.5, 1.5, 0.6), (4.5, -3, 1.1), (-5, 1.5, 0.9), (0.5, -5, 1.3)):
         stone = looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c")
         world.add_static(stone, (x, 0.25 * size, z))
-    world.add_static(looks.box((200, 0.02, 60), "paint", color="#b5ab88"), (0, 0.01, 0))
-    deep, bright = np.array([0x27, 0x62, 0x7A]), np.array([0x7F, 0xC1, 0xCF])
-    for band in range(16):
-        red, green, blue = (deep + (bright - deep) * band / 15).astype(int).tolist()
-        color = f"#{red:02x}{green:02x}{blue:02x}"
-        world.add_static(looks.box((200, 1.5, 0.1), "paint", color=color), (0, 1.5 * band + 0.75, -BED))
+    world.stage(sky="#7fc1cf", horizon="#2f6f88", ground="#a39a76", light=0.9)
     world.camera = iota.Camera(position=(0, 3.4, 13.5), target=(0, 3.1, 0))
