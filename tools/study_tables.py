@@ -176,8 +176,8 @@ unknown forces) with one of three and one of four (four and six), solved one aft
 {ladders}
 
 Solved as one dense matrix, six blocks would cost far more than three and four. Here each block adds the same: the factorization follows the tree
-of articulates in O(n), so parting a ladder gains nothing, and seven blocks in two ladders cost more than six in one. What remains
-of a step is the script: looking at each pair, and about two restructurings for each flip.
+of articulates in O(n), so parting a ladder gains nothing: the simulator takes as long for seven blocks in two ladders as for six in one,
+or a little longer. What remains of a step is the script: looking at each pair, and about two restructurings for each flip.
 """
 
 

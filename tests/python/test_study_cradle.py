@@ -5,6 +5,8 @@ import math
 from itertools import pairwise
 
 import pytest
+from conftest import Runner
+from page_client import PageClient
 
 import iota
 from iota.studies import cradle
@@ -171,3 +173,24 @@ def test_keys_lift_one_more_ball_and_reset_begins_anew() -> None:
     assert angles(made) == pytest.approx([-cradle.LIFT, 0, 0, 0, 0], abs=1e-9)
     for _ in range(50):
         world.step()
+
+
+def test_a_hand_on_a_page_drags_balls_and_turns_the_frame(run_world: Runner) -> None:
+    world = iota.World(iota.System(), dt=1 / 240)
+    made = cradle.Cradle(world)
+    with PageClient(run_world(world)) as page:
+        number = 1
+        hand = made.pivot(number) - (0, cradle.STRING, 0)
+        page.send(
+            "grab_start", hold=1, body=page.body(made.balls[number].slot), local_point=(0, 0, 0), target=tuple(hand)
+        )
+        page.send("grab_move", hold=1, target=tuple(hand - (0.05, -0.01, 0)))
+        page.wait_for(lambda: world.call(lambda: sizes(made) == [2, 3] and angles(made)[0] < -0.2))
+        assert world.call(lambda: abs(angles(made)[4])) < 1e-6
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: world.call(lambda: sizes(made) == [3, 2]))  # two swing back, two leave
+        frame = page.body(made.frame.slot)
+        page.send("grab_start", hold=2, body=frame, local_point=(0, 0, 0), target=(0.1, 0, 0))
+        page.send("grab_move", hold=2, target=(0.1, 0, -0.1))
+        page.wait_for(lambda: world.call(lambda: abs(made.turn - math.pi / 4) < 1e-3))
+        page.send("grab_end", hold=2)
