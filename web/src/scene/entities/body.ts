@@ -19,6 +19,9 @@ import type { Styles, StyleUser } from "./style.ts";
 const fineUpTo = 160;
 /** Radius on the screen, px, from which bodies are drawn fine, and coarse; finer than before only when clearly larger. */
 const finePixels = 22;
+/** Where there are more, they have to be larger to be drawn fine, and coarse: triangles are to stay few. */
+const fineCount = 24;
+const coarseCount = 160;
 const coarsePixels = 5;
 const clearly = 1.25;
 /** Half the length of a rod in radii, from which on its thickness counts. */
@@ -71,8 +74,8 @@ class Batch {
     const radius = sizeOf(shape, "radius");
     const length = sizeOf(shape, "length");
     if (length > 0) pixels *= Math.min(1, (thinness * radius) / shapeReach(shape));
-    const fine = finePixels * (now === "fine" ? 1 : clearly);
-    const coarse = coarsePixels * (now === "tiny" ? clearly : 1);
+    const fine = finePixels * Math.sqrt(Math.max(this.pool.count / fineCount, 1)) * (now === "fine" ? 1 : clearly);
+    const coarse = coarsePixels * Math.sqrt(Math.max(this.pool.count / coarseCount, 1)) * (now === "tiny" ? clearly : 1);
     const few = this.pool.count <= fineUpTo;
     const wanted: Detail = pixels >= fine && few ? "fine" : pixels >= coarse ? "coarse" : "tiny";
     if (wanted === now) return;

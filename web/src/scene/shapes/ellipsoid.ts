@@ -60,7 +60,7 @@ export const ellipsoid: Kind = {
   distance: ({ sizes }, x, y, z) => distance(sizes, x, y, z),
   reach: ({ sizes }) => Math.max(...sizes) / 2,
   draw({ sizes: [x, y, z] }, detail) {
-    const geometry = detail === "fine" ? new SphereGeometry(0.5, 40, 24) : new SphereGeometry(0.5, 16, 10);
-    return geometry.scale(x, y, z);
+    const [around, along] = { fine: [32, 20], coarse: [14, 8], tiny: [8, 5] }[detail];
+    return new SphereGeometry(0.5, around, along).scale(x, y, z);
   },
 };
