@@ -49,6 +49,8 @@ void read_spring(nb::handle spring, CoordinateOptions& options) {
   options.stiffness = finite_not_negative(numbers[0], "spring stiffness", "N/m or N m/rad");
   options.damping = finite_not_negative(numbers[1], "spring damping", "N s/m or N m s/rad");
   options.rest = finite(numbers[2], "spring rest");
+  if (options.stiffness == 0 && options.rest != 0)
+    throw nb::value_error("a spring without a stiffness does not go to its rest: give a stiffness, or a rest of 0");
 }
 
 void read_limits(const std::optional<Pair>& limits, CoordinateOptions& options) {
@@ -133,7 +135,7 @@ ConstraintHandle make_distance(SystemObject& self, ConstraintKind kind, const Pa
   if (p.system != &self) throw nb::value_error("the particles belong to another system");
   DistanceSpec spec;
   spec.kind = kind, spec.p = p.id, spec.q = q.id;
-  if (length) spec.length = *length;
+  if (length) spec.length = finite(*length, "length");
   spec.breaks = to_limits(break_force, infinity);
   return {p.system_object, p.system, self.use_between_steps("making a rod or rope").joints().create(spec)};
 }
@@ -141,9 +143,12 @@ ConstraintHandle make_distance(SystemObject& self, ConstraintKind kind, const Pa
 // --- curves and surfaces ----------------------------------------------------------------------------------------------
 
 /// Points of a path: a sequence of vectors, or samples of a function of one number.
-std::vector<Vec3> to_points(nb::handle path, Pair interval, int samples, bool closed) {
+std::vector<Vec3> to_points(nb::handle path, std::optional<Pair> given_interval, std::optional<int> given_samples,
+                            bool closed) {
   std::vector<Vec3> points;
   if (PyCallable_Check(path.ptr())) {
+    const Pair interval = given_interval.value_or(Pair{0, 1});
+    const int samples = given_samples.value_or(256);
     if (samples < 2 || samples > 100000) throw nb::value_error("samples must be from 2 to 100000");
     if (!(interval.first < interval.second)) throw nb::value_error("interval must be two numbers, the lower one first");
     const int last = closed ? samples : samples - 1;  // a closed path does not repeat its first point
@@ -154,6 +159,8 @@ std::vector<Vec3> to_points(nb::handle path, Pair interval, int samples, bool cl
     }
     return points;
   }
+  if (given_interval || given_samples)
+    throw nb::value_error("interval and samples are of a path that is a function; this one is a sequence of points");
   nb::object list;
   try {
     list = nb::steal(PySequence_List(path.ptr()));
@@ -167,9 +174,13 @@ std::vector<Vec3> to_points(nb::handle path, Pair interval, int samples, bool cl
   return points;
 }
 
-std::variant<Shape, SurfaceFunction> to_surface_shape(SystemObject& self, nb::handle value, double size) {
-  if (is_shape(value) || !PyCallable_Check(value.ptr())) return to_shape(value);
-  finite_positive(size, "size", "m");
+std::variant<Shape, SurfaceFunction> to_surface_shape(SystemObject& self, nb::handle value,
+                                                      std::optional<double> given_size) {
+  if (is_shape(value) || !PyCallable_Check(value.ptr())) {
+    if (given_size) throw nb::value_error("size is of a surface that is a function; a shape has its own");
+    return to_shape(value);
+  }
+  const double size = finite_positive(given_size.value_or(1), "size", "m");
   auto function = std::make_shared<ScriptFunction>(ScriptFunction{nb::borrow(value), "a surface", {}});
   self.keep(function);
   self.new_surfaces.push_back(function);
@@ -186,7 +197,7 @@ Quaternion to_quaternion(nb::handle value) {
 
 /// Frame of a surface: as given, else that of the body, else the world's.
 Surface to_surface(SystemObject& self, nb::handle shape, nb::handle at, nb::handle orientation, const BodyHandle* body,
-                   double size) {
+                   std::optional<double> size) {
   Surface surface{to_surface_shape(self, shape, size), {}, {}};
   if (!at.is_none())
     surface.position = to_vec3({at}, "at");
@@ -334,6 +345,36 @@ CoordinateView coordinate_of(const ConstraintHandle& self, JointCoordinate which
   return {self, which};
 }
 
+/// A coordinate as such, or the only one of a joint.
+CoupledCoordinate to_coupled(SystemObject& self, nb::handle value, double ratio) {
+  CoupledCoordinate term{.constraint = {}, .ratio = finite(ratio, "ratio")};
+  const ConstraintHandle* joint = nullptr;
+  if (nb::isinstance<CoordinateView>(value)) {
+    const CoordinateView* const coordinate = nb::inst_ptr<CoordinateView>(value);
+    joint = &coordinate->joint;
+    term.coordinate = coordinate->which;
+  } else if (nb::isinstance<ConstraintHandle>(value)) {
+    joint = nb::inst_ptr<ConstraintHandle>(value);
+    const ConstraintKind kind = joint->use().joints().state(joint->id).kind;
+    std::vector<JointCoordinate> found;
+    for (const JointCoordinate which : joint_coordinates)
+      if (has_coordinate(kind, which)) found.push_back(which);
+    if (found.size() != 1)
+      throw nb::type_error(
+          ("a " + to_word(constraint_words, kind) + " has " +
+           (found.empty() ? "no coordinate to couple" : "several coordinates: name one, as in joint.angle"))
+              .c_str());
+    term.coordinate = found.front();
+  } else {
+    throw nb::type_error(
+        ("what is coupled must be joint.angle, joint.slide or a joint, not " + describe(value)).c_str());
+  }
+  joint->use();
+  if (joint->system != &self) throw nb::value_error("a joint belongs to another system");
+  term.constraint = joint->id;
+  return term;
+}
+
 // --- the handle -------------------------------------------------------------------------------------------------------
 
 template <class Member>
@@ -398,9 +439,20 @@ void bind_handle(nb::module_& module) {
       .def_prop_rw(
           "length", read(&ConstraintState::length),
           [](const ConstraintHandle& self, double length) {
-            self.use().joints().set_length(self.id, finite_positive(length, "length", "m"));
+            self.use().joints().set_length(self.id, finite(length, "length"));
           },
-          "Of a rod or rope, m.")
+          "Of a rod or rope, m. Of a coupling: the sum of ratio times coordinate.")
+      .def_prop_ro(
+          "terms",
+          [](const ConstraintHandle& self) {
+            nb::list terms;
+            for (const CoupledCoordinate& term : self.use().joints().terms(self.id))
+              terms.append(nb::make_tuple(
+                  CoordinateView{{self.system_object, self.system, term.constraint}, term.coordinate}, term.ratio));
+            return terms;
+          },
+          nb::sig("def terms(self) -> list[tuple[JointCoordinate, float]]"),
+          "Of what couples: the coordinates of its sum, each with its ratio.")
       .def_prop_ro("angle", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::angle); })
       .def_prop_ro("slide", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::slide); })
       .def_prop_ro(
@@ -557,6 +609,26 @@ void bind_makers(nb::class_<SystemObject>& type) {
       "a slides against b (None: the world) along an axis, without turning. limits: (lower, upper) in m. motor:\n"
       "(speed in m/s, largest force in N). friction: N, dry. spring: (N/m, N s/m, rest in m).");
 
+  with_coordinate(
+      "planar", ConstraintKind::planar,
+      "a slides and turns against b (None: the world) in a plane through `at` (m) across the axis. limits, motor,\n"
+      "friction and spring act on the angle about it.");
+  type.def(
+      "screw",
+      [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
+         double lead, DriveArgument angle, DriveArgument slide, double break_force, double break_torque) {
+        JointSpec spec;
+        spec.kind = ConstraintKind::screw, spec.breaks = to_limits(break_force, break_torque);
+        spec.axis = to_vec3(axis, "axis");
+        spec.lead = finite(lead, "lead");
+        spec.angle = to_options(to_arguments(angle, "angle"));
+        spec.slide = to_options(to_arguments(slide, "slide"));
+        return make_joint(self, spec, a, b, at);
+      },
+      "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "axis"_a, "lead"_a, "angle"_a.none() = nb::none(),
+      "slide"_a.none() = nb::none(), "break_force"_a = infinity, "break_torque"_a = infinity,
+      "a turns about an axis of b (None: the world) and slides along it by `lead` (m; negative: left-handed) with each full\n"
+      "turn. angle, slide: dicts of limits, motor, friction, spring.");
   type.def(
       "cylindrical",
       [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
@@ -612,10 +684,77 @@ void bind_makers(nb::class_<SystemObject>& type) {
   between("rope", ConstraintKind::rope,
           "Two particles of different bodies come no further apart than length (m, None: as far as now).");
   type.def(
+      "rope",
+      [](SystemObject& self, const std::vector<ParticleHandle>& points, std::optional<double> length,
+         double break_force) {
+        TackleSpec spec;
+        for (const ParticleHandle& point : points) {
+          point.use();
+          if (point.system != &self) throw nb::value_error("the points belong to another system");
+          spec.points.push_back(point.id);
+        }
+        if (length) spec.length = finite_positive(*length, "length", "m");
+        spec.breaks = to_limits(break_force, infinity);
+        System& engine = self.use_between_steps("making a rope");
+        return ConstraintHandle{nb::find(self), &self, engine.joints().create(spec)};
+      },
+      "points"_a, "length"_a.none() = nb::none(), nb::kw_only(), "break_force"_a = infinity,
+      "A rope that runs without friction or mass from the first point over the others to the last: the distances from each\n"
+      "to the next add up to no more than length (m, None: as now). Name a point again to lead the rope back to it: a block\n"
+      "and tackle is [ceiling, block, ceiling, block].");
+  type.def(
+      "span",
+      [](SystemObject& self, const ParticleHandle& p, const ParticleHandle& q, std::optional<Pair> limits,
+         std::optional<Pair> motor, double friction, SpringArgument spring, double break_force) {
+        check_one_system(p, q, "a span");
+        p.use(), q.use();
+        if (p.system != &self) throw nb::value_error("the particles belong to another system");
+        SpanSpec spec{p.id, q.id, to_options({limits, motor, friction, spring}), to_limits(break_force, infinity)};
+        return ConstraintHandle{p.system_object, p.system,
+                                self.use_between_steps("making a span").joints().create(spec)};
+      },
+      "p"_a, "q"_a, nb::kw_only(), "limits"_a.none() = nb::none(), "motor"_a.none() = nb::none(), "friction"_a = 0.0,
+      "spring"_a.none() = nb::none(), "break_force"_a = infinity,
+      "The distance of two particles as a coordinate, `span.slide` (m): it holds nothing by itself. A ram or a muscle with a\n"
+      "motor or servo, a damper with a spring, or part of a coupling, such as a rope on a winch.");
+  type.def(
+      "couple",
+      [](SystemObject& self, TermsArgument terms, bool one_sided, double break_force, double break_torque) {
+        CouplingSpec spec;
+        spec.kind = one_sided ? ConstraintKind::tackle : ConstraintKind::coupling;
+        for (nb::handle term : nb::iter(terms.value)) {
+          double ratio = 0;
+          if (!nb::isinstance<nb::tuple>(term) || nb::len(term) != 2 || !nb::try_cast(nb::object(term[1]), ratio))
+            throw nb::type_error(("each term must be (coordinate, ratio), not " + describe(term)).c_str());
+          spec.terms.push_back(to_coupled(self, nb::object(term[0]), ratio));
+        }
+        spec.breaks = to_limits(break_force, break_torque);
+        System& engine = self.use_between_steps("coupling");
+        return ConstraintHandle{nb::find(self), &self, engine.joints().create(spec)};
+      },
+      "terms"_a, nb::kw_only(), "one_sided"_a = false, "break_force"_a = infinity, "break_torque"_a = infinity,
+      "The sum of ratio times coordinate stays what it is, or with one_sided gets no larger. terms: (joint.angle, ratio),\n"
+      "(joint.slide, ratio) ... A differential: [(left.angle, 1), (right.angle, 1), (carrier.angle, -2)].");
+  type.def(
+      "gear",
+      [](SystemObject& self, CoordinateArgument a, CoordinateArgument b, double ratio, double break_torque) {
+        CouplingSpec spec;
+        spec.terms = {to_coupled(self, a.value, ratio), to_coupled(self, b.value, -1)};
+        if (ratio == 0) throw nb::value_error("ratio must not be zero");
+        spec.breaks = to_limits(infinity, break_torque);
+        System& engine = self.use_between_steps("making a gear");
+        return ConstraintHandle{nb::find(self), &self, engine.joints().create(spec)};
+      },
+      "a"_a, "b"_a, "ratio"_a, nb::kw_only(), "break_torque"_a = infinity,
+      "Two coordinates (joint.angle, joint.slide) move together: b by ratio when a moves by 1. Wheels with outer teeth:\n"
+      "minus the teeth of a over those of b; a belt or inner teeth: plus. Rack and pinion: the slide by the radius (m) when\n"
+      "the angle moves by 1 rad; a screw: by its lead / 2 pi.");
+  type.def(
       "on_path",
       [](SystemObject& self, const ParticleHandle& p, PathArgument path, const BodyHandle* body, bool closed,
-         bool smooth, std::optional<double> rounding, Pair interval, int samples, std::optional<Pair> limits,
-         std::optional<Pair> motor, double friction, SpringArgument spring, double break_force) {
+         std::optional<bool> smooth, std::optional<double> rounding, std::optional<Pair> interval,
+         std::optional<int> samples, std::optional<Pair> limits, std::optional<Pair> motor, double friction,
+         SpringArgument spring, double break_force) {
         p.use();
         if (p.system != &self || (body && body->system != &self))
           throw nb::value_error("the particle or body belongs to another system");
@@ -623,25 +762,28 @@ void bind_makers(nb::class_<SystemObject>& type) {
         spec.particle = p.id;
         if (body) body->use(), spec.body = body->id;
         spec.points = to_points(path, interval, samples, closed);
-        spec.curve = smooth ? CurveKind::spline : CurveKind::polyline;
+        if (rounding && smooth.value_or(false))
+          throw nb::value_error("rounding is of the corners of straight pieces; a smooth path has none");
+        spec.curve = smooth.value_or(!rounding) ? CurveKind::spline : CurveKind::polyline;
         spec.closed = closed;
         if (rounding) spec.rounding = finite_not_negative(*rounding, "rounding", "m");
         spec.slide = to_options({limits, motor, friction, spring});
         spec.breaks = to_limits(break_force, infinity);
         return ConstraintHandle{p.system_object, p.system, self.use_between_steps("on_path").joints().create(spec)};
       },
-      "p"_a, "path"_a, "body"_a.none() = nb::none(), nb::kw_only(), "closed"_a = false, "smooth"_a = true,
-      "rounding"_a.none() = nb::none(), "interval"_a = Pair{0, 1}, "samples"_a = 256, "limits"_a.none() = nb::none(),
-      "motor"_a.none() = nb::none(), "friction"_a = 0.0, "spring"_a.none() = nb::none(), "break_force"_a = infinity,
+      "p"_a, "path"_a, "body"_a.none() = nb::none(), nb::kw_only(), "closed"_a = false, "smooth"_a.none() = nb::none(),
+      "rounding"_a.none() = nb::none(), "interval"_a.none() = nb::none(), "samples"_a.none() = nb::none(),
+      "limits"_a.none() = nb::none(), "motor"_a.none() = nb::none(), "friction"_a = 0.0, "spring"_a.none() = nb::none(),
+      "break_force"_a = infinity,
       "A particle stays on a curve of body (None: the world). path: points (world, m), or a function of a number of\n"
-      "`interval` that gives them. smooth: a cubic spline through them, else straight pieces with corners of radius\n"
-      "`rounding` (m; None: a tenth of the shorter piece). Its slide is the length along the path (m); an open path ends at\n"
+      "`interval` (None: 0 to 1) that gives `samples` (None: 256) of them. smooth: a cubic spline through them (None: unless\n"
+      "there is a rounding), else straight pieces with corners of radius `rounding` (m; None: a tenth of the shorter piece). Its slide is the length along the path (m); an open path ends at\n"
       "its ends unless `limits` say otherwise.");
   const auto on_surface = [&](const char* name, ConstraintKind kind, const char* text) {
     type.def(
         name,
         [kind](SystemObject& self, const ParticleHandle& p, SurfaceArgument surface, const BodyHandle* body,
-               PlaceArgument at, QuaternionArgument orientation, double size, double break_force) {
+               PlaceArgument at, QuaternionArgument orientation, std::optional<double> size, double break_force) {
           p.use();
           if (p.system != &self || (body && body->system != &self))
             throw nb::value_error("the particle or body belongs to another system");
@@ -655,13 +797,13 @@ void bind_makers(nb::class_<SystemObject>& type) {
           return ConstraintHandle{p.system_object, p.system, self.create_surface_constraint(spec)};
         },
         "p"_a, "surface"_a, "body"_a.none() = nb::none(), nb::kw_only(), "at"_a.none() = nb::none(),
-        "orientation"_a.none() = nb::none(), "size"_a = 1.0, "break_force"_a = infinity, text);
+        "orientation"_a.none() = nb::none(), "size"_a.none() = nb::none(), "break_force"_a = infinity, text);
   };
   on_surface(
       "on_surface", ConstraintKind::surface,
       "A particle stays on a surface of body (None: the world). surface: a shape without sharp edges (a\n"
       "box or cylinder with a rounding, no cone or mesh), or a function of\n"
-      "x, y, z that is 0 on it, negative inside and about the distance (m) near it; `size`, m, is then that of what it describes. It must not use the system; where it raises or returns no\n"
+      "x, y, z that is 0 on it, negative inside and about the distance (m) near it; `size`, m (None: 1), is then that of what it describes. It must not use the system; where it raises or returns no\n"
       "finite number, the constraint is switched off and `step` raises ConstraintError. at, orientation: of the surface's\n"
       "frame, None: the body's.");
   on_surface("inside", ConstraintKind::inside,
@@ -682,8 +824,8 @@ void bind_makers(nb::class_<SystemObject>& type) {
         spec.kind = one_sided ? ConstraintKind::apart : ConstraintKind::touching;
         spec.a = a.id;
         if (b) spec.b = b->id;
-        spec.surface_a = to_surface(self, surface_a, at_a, orientation_a, &a, 1);
-        spec.surface_b = to_surface(self, surface_b, at_b, orientation_b, b, 1);
+        spec.surface_a = to_surface(self, surface_a, at_a, orientation_a, &a, std::nullopt);
+        spec.surface_b = to_surface(self, surface_b, at_b, orientation_b, b, std::nullopt);
         spec.breaks = to_limits(break_force, infinity);
         return ConstraintHandle{a.system_object, a.system, self.create_surface_constraint(spec)};
       },

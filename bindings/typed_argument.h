@@ -34,6 +34,8 @@ using PathArgument = TypedArgument<
     "collections.abc.Iterable[Vec3 | collections.abc.Sequence[float]] | "
     "collections.abc.Callable[[float], Vec3 | collections.abc.Sequence[float]]">;
 using SurfaceArgument = TypedArgument<"Shape | collections.abc.Callable[[float, float, float], float]">;
+using CoordinateArgument = TypedArgument<"JointCoordinate | Constraint">;
+using TermsArgument = TypedArgument<"collections.abc.Iterable[tuple[JointCoordinate | Constraint, float]]">;
 /// Limits, motor, friction and spring of a coordinate.
 using DriveArgument = TypedArgument<"collections.abc.Mapping[str, typing.Any]">;
 

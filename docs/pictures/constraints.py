@@ -386,6 +386,55 @@ def rope(picture: Picture) -> None:
 
 
 @scene
+def tackle(picture: Picture) -> None:
+    system = iota.System()
+    left, right = (system.body(kind="static").particle((x, 2, 0)) for x in (0, 0.8))
+    block = system.body().particle((0.4, 0.4, 0), mass=2)
+    weight = system.body().particle((1.2, 1.5, 0), mass=1.4)
+    points = [left, block, right, weight]
+    line = system.rope(points)
+
+    def draw(o: float) -> None:
+        picture.line([tuple(p.position)[:2] for p in points], SECOND, 1.6, o)
+        picture.dot(block.position, 7, INK, o)
+        picture.dot(weight.position, 5, INK, o)
+
+    strobe(system, 0.75, 7, draw, [block, weight], picture)
+    for pulley in (left, right):
+        picture.dot(pulley.position, 5, WORLD)
+    assert line.gap < 1e-6
+
+
+@scene
+def gear(picture: Picture) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    radii, teeth = (1.0, 0.5), (20, 10)
+    wheels = [
+        system.body(
+            shape=iota.Cylinder(radius, 0.1),
+            mass=1,
+            position=(x, 0, 0),
+            orientation=(0, math.sqrt(0.5), 0, math.sqrt(0.5)),
+        )
+        for radius, x in zip(radii, (0, 1.5), strict=True)
+    ]
+    joints = [system.revolute(w, at=tuple(w.position), axis=(0, 0, 1)) for w in wheels]
+    mesh = system.gear(*joints, -teeth[0] / teeth[1])
+    joints[0].angle.motor = (0.8, 100)
+
+    def draw(o: float) -> None:
+        for wheel, joint, radius in zip(wheels, joints, radii, strict=True):
+            x, angle = wheel.position.x, joint.angle.value
+            picture.line([(x, 0), (x + radius * math.cos(angle), radius * math.sin(angle))], INK, 2, o)
+
+    strobe(system, 1, 7, draw)
+    for wheel, radius in zip(wheels, radii, strict=True):
+        picture.ring(wheel.position, radius)
+        picture.dot(wheel.position, 5, WORLD)
+    assert mesh.gap < 1e-9
+
+
+@scene
 def path(picture: Picture) -> None:
     system = iota.System()
     points = [(0, 1), (0.35, 0.45), (0.8, 0.12), (1.3, 0.35), (1.7, 0.75), (2.15, 0.6), (2.6, 0.1), (3.1, 0.3)]

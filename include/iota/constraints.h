@@ -33,10 +33,15 @@ enum class ConstraintKind : std::uint8_t {
   outside,      ///< a particle stays on the outer side of a surface
   touching,     ///< two surfaces stay in touch
   apart,        ///< two surfaces do not overlap
+  span,         ///< holds nothing: the distance of two particles as a slide, for limits, motors, springs and couplings
+  coupling,     ///< a weighted sum of coordinates stays what it is: gears, racks, belts, differentials
+  tackle,       ///< a weighted sum of coordinates gets no larger: a rope over several points
+  screw,        ///< cylindrical, and slides by its lead with each turn
+  planar,       ///< a point of a stays in a plane of b through it, and does not turn out of the plane
 };
 
-/// The coordinates that joints have: the angle about the axis (revolute, cylindrical; of a universal joint about a's axis),
-/// the slide along it (prismatic, cylindrical) or along a path, and the second angle of a universal joint, about b's axis.
+/// The coordinates that joints have: the angle about the axis (revolute, cylindrical, screw, planar; of a universal joint about a's axis),
+/// the slide along it (prismatic, cylindrical, screw), along a path or of a span, and the second angle of a universal joint, about b's axis.
 /// All are of a against b, in the positive sense of the axis, and zero where the joint is made.
 enum class JointCoordinate : std::uint8_t { angle, slide, second_angle };
 inline constexpr std::array joint_coordinates{JointCoordinate::angle, JointCoordinate::slide,
@@ -74,6 +79,7 @@ struct JointSpec {
   Vec3 at;             ///< world frame, m
   Vec3 axis{0, 0, 1};  ///< world frame, any length; of a in a universal joint
   Vec3 second_axis;    ///< of b in a universal joint, at right angles to `axis`; zero: any
+  double lead = 0;     ///< of a screw: its slide with each full turn, m; negative: left-handed
   CoordinateOptions angle, slide, second_angle;
   BreakLimits breaks;
 };
@@ -89,6 +95,36 @@ struct DistanceSpec {
 enum class CurveKind : std::uint8_t {
   spline,    ///< cubic, through the points
   polyline,  ///< straight pieces with rounded corners
+};
+
+/// The distance of two particles, which may be of one body.
+struct SpanSpec {
+  ParticleId p, q;
+  CoordinateOptions slide;
+  BreakLimits breaks;
+};
+
+/// A coordinate of another constraint in the sum of a coupling, and what it counts there.
+struct CoupledCoordinate {
+  ConstraintId constraint;
+  JointCoordinate coordinate = JointCoordinate::angle;
+  double ratio = 1;
+};
+
+/// sum of ratio * coordinate = length. It is in force while all of its constraints are, and ends with the first of them.
+struct CouplingSpec {
+  ConstraintKind kind = ConstraintKind::coupling;  ///< or tackle
+  std::vector<CoupledCoordinate> terms;
+  double length = std::numeric_limits<double>::quiet_NaN();  ///< NaN: the sum now
+  BreakLimits breaks;
+};
+
+/// A rope that runs without friction from a particle over others to a last one: the sum of the distances from each to the
+/// next is no more than its length. A tackle of spans, which it makes and takes along.
+struct TackleSpec {
+  std::vector<ParticleId> points;
+  double length = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: the sum now
+  BreakLimits breaks;
 };
 
 /// A particle on a curve that is fixed in a body or, where that is null, in the world.
@@ -151,7 +187,7 @@ struct ConstraintState {
   Vec3 axis;            ///< unit vector, world frame; zero for kinds without one
   Vec3 force, torque;   ///< by the constraint on a in the last step, N and N m (about `position`); b has the opposite
   double gap = 0;       ///< largest violation after the last step, m
-  double length = 0;    ///< rod, rope: m
+  double length = 0;    ///< rod, rope, tackle, coupling: m, or rad
   /// Angle (rad, counted through full turns), slide (m), second angle (rad).
   std::array<double, joint_coordinates.size()> coordinate{};
   std::array<double, joint_coordinates.size()> speed{};              ///< rad/s, m/s, rad/s

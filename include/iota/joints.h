@@ -20,12 +20,16 @@ class Joints : public View {
   ConstraintId create(const PathSpec&);
   ConstraintId create(const SurfaceSpec&);
   ConstraintId create(const SurfacePairSpec&);
+  ConstraintId create(const SpanSpec&);
+  ConstraintId create(const CouplingSpec&);
+  ConstraintId create(const TackleSpec&);
   void destroy(ConstraintId);
   bool contains(ConstraintId) const;
   std::vector<ConstraintId> ids() const;  ///< in order of slots
 
   ConstraintState state(ConstraintId) const;
-  std::vector<ParticleId> particles(ConstraintId) const;  ///< that it refers to, markers included
+  std::vector<ParticleId> particles(ConstraintId) const;     ///< that it refers to, markers included
+  std::vector<CoupledCoordinate> terms(ConstraintId) const;  ///< of a coupling or tackle; else none
   /// True repairs a broken one; bodies keep the relative place they were joined in.
   void set_active(ConstraintId, bool);
   /// Puts a coordinate at a value (rad, m) and lets the rest of the mechanism follow. Where the joint is in no loop, what
@@ -35,7 +39,7 @@ class Joints : public View {
   void set_value(ConstraintId, JointCoordinate, double value);
   CoordinateOptions coordinate(ConstraintId, JointCoordinate) const;
   void set_coordinate(ConstraintId, JointCoordinate, const CoordinateOptions&);
-  void set_length(ConstraintId, double);  ///< of a rod or rope, m: reached during the next step
+  void set_length(ConstraintId, double);  ///< of a rod, rope, tackle or coupling: reached during the next step
   BreakLimits break_limits(ConstraintId) const;
   void set_break_limits(ConstraintId, const BreakLimits&);
 };

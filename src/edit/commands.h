@@ -123,7 +123,10 @@ using Command = std::variant<
     CombineMany,
     AssignParticles,
     AssignBodies,
-    AssignBonds>;
+    AssignBonds,
+    CreateSpan,
+    CreateCoupling,
+    CreateTackle>;
 // clang-format on
 
 /// Whether a command may be asked for during a step; it is then applied right after it. Such a command says how users

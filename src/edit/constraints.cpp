@@ -59,23 +59,37 @@ void require_function(const model::Model& model, const ingredient::PlacedSurface
     throw std::invalid_argument(text("the function of a surface ", function.failure(), ", at ", text_of(point)));
 }
 
+/// visit(constraint): those that a coupling couples, or the one itself.
+template <class Visit>
+void for_each_joint_of(const model::Model& model, std::uint32_t constraint, Visit visit) {
+  const ingredient::Constraint& c = model.constraints[constraint];
+  if (c.first_term == none) visit(c);
+  ingredient::joint::for_each_term(model, c,
+                                   [&](const ingredient::CoupledTerm& term) { visit(model.constraints[term.joint]); });
+}
+
 /// After making or changing a constraint: its island is made anew, its velocities are projected before the next step, and
 /// a gap closes there.
 void constraint_changed(Editor& e, std::uint32_t constraint) {
   model::Model& model = e.model;
-  const ingredient::Constraint& c = model.constraints[constraint];
-  for (const int place : {ingredient::a_origin, ingredient::b_origin})
-    if (c.particles[place] != none) model.touch_particle(c.particles[place]), e.mark_velocity_dirty(c.particles[place]);
+  for_each_joint_of(model, constraint, [&](const ingredient::Constraint& c) {
+    for (const int place : {ingredient::a_origin, ingredient::b_origin})
+      if (c.particles[place] != none)
+        model.touch_particle(c.particles[place]), e.mark_velocity_dirty(c.particles[place]);
+  });
   e.structure_changed();
 }
 
 /// Wakes bodies at rest that a changed motor or rope must move.
 void wake(Editor& e, std::uint32_t constraint) {
   model::Model& model = e.model;
-  for (const int side : {0, 1}) {
-    const std::uint32_t body = body_of_side(model, model.constraints[constraint], side);
-    if (body != none && model.bodies[body].kind == BodyKind::resting) return constraint_changed(e, constraint);
-  }
+  bool rests = false;
+  for_each_joint_of(model, constraint, [&](const ingredient::Constraint& c) {
+    for (const int side : {0, 1})
+      if (const std::uint32_t body = body_of_side(model, c, side); body != none)
+        rests = rests || model.bodies[body].kind == BodyKind::resting;
+  });
+  if (rests) constraint_changed(e, constraint);
 }
 
 ConstraintId made(Editor& e, std::uint32_t slot) {
@@ -109,6 +123,10 @@ ConstraintId apply(Editor& e, const CreateJoint& c) {
   require_finite("at", c.spec.at);
   for (const Vec3& axis : {c.spec.axis, c.spec.second_axis}) require_finite("axis", axis);
   if (!(norm(c.spec.axis) > 0)) throw std::invalid_argument("axis must have a direction, got zero length");
+  if (c.spec.kind == ConstraintKind::screw) {
+    require_number("lead", c.spec.lead);
+    if (c.spec.lead == 0) throw std::invalid_argument("a screw needs a lead that is not zero; use a revolute joint");
+  }
   const std::array options{&c.spec.angle, &c.spec.slide, &c.spec.second_angle};
   for (const JointCoordinate which : joint_coordinates) {
     const CoordinateOptions& o = *options[static_cast<std::size_t>(which)];
@@ -170,6 +188,53 @@ ConstraintId apply(Editor& e, const CreateSurfacePair& c) {
   return made(e, make_constraint(model, c.spec));
 }
 
+ConstraintId apply(Editor& e, const CreateSpan& c) {
+  (void)e.require(c.spec.p), (void)e.require(c.spec.q);
+  if (c.spec.p == c.spec.q)
+    throw std::invalid_argument(text("span: needs two particles, got particle ", c.spec.p.slot, " twice"));
+  require_options("slide", c.spec.slide);
+  require_limits(c.spec.breaks);
+  return made(e, make_constraint(e.model, c.spec));
+}
+
+ConstraintId apply(Editor& e, const CreateCoupling& c) {
+  model::Model& model = e.model;
+  if (ingredient::info(c.spec.kind).form != ingredient::ConstraintKindInfo::Form::coupling)
+    throw std::invalid_argument(text("a ", ingredient::info(c.spec.kind).name, " does not couple coordinates"));
+  const char* const name = ingredient::info(c.spec.kind).name;
+  if (c.spec.terms.empty()) throw std::invalid_argument(text(name, ": needs at least one coordinate"));
+  for (const CoupledCoordinate& term : c.spec.terms) {
+    const std::uint32_t joint = e.require(term.constraint);
+    const ConstraintKind kind = model.constraints[joint].kind;
+    if (model.constraints[joint].is_part)
+      throw std::invalid_argument(text(name, ": span ", joint, " is part of a rope; make a span of your own"));
+    if (!has_coordinate(kind, term.coordinate))
+      throw std::invalid_argument(text("a ", ingredient::info(kind).name, " has no ", name_of(term.coordinate)));
+    if (!ingredient::has_coordinate_row(model, joint, term.coordinate))
+      throw std::invalid_argument(text(name, ": the bodies of ", ingredient::info(kind).name, " ", joint,
+                                       " are too thin to have its ", name_of(term.coordinate),
+                                       "; give them a massive particle off their line"));
+    require_number("ratio", term.ratio);
+    if (term.ratio == 0) throw std::invalid_argument("a ratio of zero leaves its coordinate out; leave it out");
+  }
+  if (!std::isnan(c.spec.length)) require_number("length", c.spec.length);
+  require_limits(c.spec.breaks);
+  return made(e, make_constraint(model, c.spec));
+}
+
+ConstraintId apply(Editor& e, const CreateTackle& c) {
+  const std::vector<ParticleId>& points = c.spec.points;
+  if (points.size() < 2) throw std::invalid_argument("rope: needs at least two points");
+  for (const ParticleId p : points) (void)e.require(p);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i)
+    if (points[i] == points[i + 1])
+      throw std::invalid_argument(text("rope: point ", i, " and the next are the same particle, ", points[i].slot));
+  if (!std::isnan(c.spec.length) && !(c.spec.length > 1e-9 && c.spec.length <= 1e9))
+    throw std::invalid_argument(text("rope: length must be between 1e-9 and 1e9 m, got ", c.spec.length));
+  require_limits(c.spec.breaks);
+  return made(e, make_constraint(e.model, c.spec));
+}
+
 void apply(Editor& e, const SetConstraintActive& c) {
   model::Model& model = e.model;
   const std::uint32_t slot = e.require(c.constraint);
@@ -205,9 +270,13 @@ void apply(Editor& e, const SetCoordinate& c) {
 void apply(Editor& e, const SetLength& c) {
   model::Model& model = e.model;
   const std::uint32_t slot = e.require(c.constraint);
-  if (ingredient::info(model.constraints[slot].kind).form != ingredient::ConstraintKindInfo::Form::distance)
-    throw std::invalid_argument("only rods and ropes have a length");
-  if (!(c.value > 1e-9 && c.value <= 1e9))
+  const ConstraintKind kind = model.constraints[slot].kind;
+  if (kind == ConstraintKind::coupling)
+    require_number("length", c.value);
+  else if (kind != ConstraintKind::rod && kind != ConstraintKind::rope && kind != ConstraintKind::tackle)
+    throw std::invalid_argument(
+        text("a ", ingredient::info(kind).name, " has no length; rods, ropes and couplings have"));
+  else if (!(c.value > 1e-9 && c.value <= 1e9))
     throw std::invalid_argument(text("length must be between 1e-9 and 1e9 m, got ", c.value));
   model.constraints[slot].length = c.value;
   model.changed_constraints.note(slot);

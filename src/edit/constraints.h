@@ -20,6 +20,15 @@ struct CreateSurface {
 struct CreateSurfacePair {
   ingredient::SurfacePairData spec;
 };
+struct CreateSpan {
+  SpanSpec spec;
+};
+struct CreateCoupling {
+  CouplingSpec spec;
+};
+struct CreateTackle {
+  TackleSpec spec;
+};
 struct SetConstraintActive {
   static constexpr std::string_view queued_as = "set_active";
   ConstraintId constraint;
@@ -46,6 +55,9 @@ ConstraintId apply(Editor&, const CreateDistance&);
 ConstraintId apply(Editor&, const CreatePath&);
 ConstraintId apply(Editor&, const CreateSurface&);
 ConstraintId apply(Editor&, const CreateSurfacePair&);
+ConstraintId apply(Editor&, const CreateSpan&);
+ConstraintId apply(Editor&, const CreateCoupling&);
+ConstraintId apply(Editor&, const CreateTackle&);
 void apply(Editor&, const SetConstraintActive&);
 void apply(Editor&, const SetCoordinate&);
 void apply(Editor&, const SetLength&);

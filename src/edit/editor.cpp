@@ -9,7 +9,7 @@ namespace iota::edit {
 
 namespace {
 
-constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '5'}, "snapshot"};
+constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '6'}, "snapshot"};
 
 /// `survivor()`: what absorbed it, asked only where it is gone.
 template <class Table, class IdType, class Survivor>

@@ -24,7 +24,7 @@ struct LastEnumerator<IntegrationMode> : std::integral_constant<IntegrationMode,
 template <>
 struct LastEnumerator<BodyKind> : std::integral_constant<BodyKind, BodyKind::resting> {};
 template <>
-struct LastEnumerator<ConstraintKind> : std::integral_constant<ConstraintKind, ConstraintKind::apart> {};
+struct LastEnumerator<ConstraintKind> : std::integral_constant<ConstraintKind, ConstraintKind::planar> {};
 template <>
 struct LastEnumerator<JointCoordinate> : std::integral_constant<JointCoordinate, JointCoordinate::second_angle> {};
 template <>

@@ -59,6 +59,7 @@ class CoordinateSetter {
   /// What moves as one rigid thing when only this joint does: what hangs on a, or on b where a's cannot. None in a loop.
   std::optional<Side> free_side() {
     if (joint().kind == ConstraintKind::path) return std::nullopt;  // a curve turns as well
+    if (joint().coupled != none) return std::nullopt;               // what it is coupled with has to move, too
     const std::uint32_t a = body_of_side(model_, joint(), 0), b = body_of_side(model_, joint(), 1);
     joint().active = 0;  // so that the search does not pass it
     std::optional<Side> found;

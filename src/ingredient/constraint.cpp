@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/constraint.h"
 
+#include "ingredient/joint_readings.h"
+#include "ingredient/joint_rows.h"
 #include "ingredient/model.h"
 #include "math/mat3.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <stdexcept>
 
 namespace iota::ingredient {
+
+using joint::for_each_term;
 
 namespace {
 
@@ -198,9 +203,12 @@ std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
   const ConstraintKindInfo& kind = info(spec.kind);
   const Side a(model, spec.a.slot);
   const Side b = spec.b ? Side(model, spec.b.slot) : Side();
+  if (kind.screw && (a.dimensions < 2 || b.dimensions < 2))
+    cannot(kind.name, (a.dimensions < 2 ? a : b).what() +
+                          " and does not show how far it has turned; give it a massive particle off its line");
   const Frames frames = plan(kind, spec, a, b);
   const auto origin_of = [&](const Side& s) {
-    return kind.meet || kind.line || s.is_world() ? spec.at : model.center_of_mass(s.body);
+    return kind.meet || kind.line || kind.plane || s.is_world() ? spec.at : model.center_of_mass(s.body);
   };
   require_span(model, kind.name, a, origin_of(a));
   require_span(model, kind.name, b, origin_of(b));
@@ -222,6 +230,8 @@ std::uint32_t make_constraint(Model& model, const JointSpec& spec) {
     const Side& side = place < b_origin ? a : b;
     add_place(model, c, place, side.body, origin_of(side) + c.scale[place >= b_origin] * frames.direction[place]);
   }
+  constexpr double turn = 2 * std::numbers::pi;
+  if (kind.screw) c.length = spec.lead / turn;
   return Joints::add(model, c);
 }
 
@@ -350,19 +360,116 @@ std::uint32_t make_constraint(Model& model, const SurfacePairData& spec) {
   return Joints::add(model, c);
 }
 
+std::uint32_t make_constraint(Model& model, const SpanSpec& spec) {
+  Constraint c;
+  c.kind = ConstraintKind::span;
+  c.options[static_cast<std::size_t>(JointCoordinate::slide)] = spec.slide;
+  c.breaks = spec.breaks;
+  c.particles.fill(none);
+  c.particles[a_origin] = spec.p.slot, c.particles[b_origin] = spec.q.slot;
+  const double distance = norm(model.position(spec.q.slot) - model.position(spec.p.slot));
+  c.coordinate[static_cast<std::size_t>(JointCoordinate::slide)] = distance;
+  c.scale.fill(distance > 0 ? distance : 1);
+  return Joints::add(model, c);
+}
+
+namespace {
+
+/// Puts a term at the end of a coupling's list and at the head of its joint's.
+void add_term(Model& model, std::uint32_t coupling, CoupledTerm term) {
+  Constraint& joint = model.constraints[term.joint];
+  term.coupling = coupling, term.next = none, term.next_at_joint = joint.coupled;
+  const std::uint32_t slot = joint.coupled = model.coupled_terms.create(term).slot;
+  std::uint32_t* end = &model.constraints[coupling].first_term;
+  while (*end != none) end = &model.coupled_terms[*end].next;
+  *end = slot;
+}
+
+std::uint32_t make_coupling(Model& model, ConstraintKind kind, std::span<const CoupledTerm> terms, double length,
+                            const BreakLimits& breaks) {
+  Constraint c;
+  c.kind = kind;
+  c.breaks = breaks;
+  c.particles.fill(none);
+  double sum = 0;
+  for (const CoupledTerm& term : terms) sum += term.ratio * calc_coordinate(model, term.joint, term.coordinate).first;
+  c.length = std::isnan(length) ? sum : length;
+  const std::uint32_t slot = Joints::add(model, c);
+  for (const CoupledTerm& term : terms) add_term(model, slot, term);
+  const std::size_t points = coupled_points(model, model.constraints[slot]);
+  if (points <= most_coupled_points) return slot;
+  Joints::destroy(model, slot);
+  cannot(info(kind).name, "its bodies have " + std::to_string(points) +
+                              " points together (a particle 1, a rod 2, a solid 4), " + "and it may couple " +
+                              std::to_string(most_coupled_points) + "; make two of it");
+}
+
+}  // namespace
+
+std::uint32_t make_constraint(Model& model, const CouplingSpec& spec) {
+  std::vector<CoupledTerm> terms;
+  for (const CoupledCoordinate& given : spec.terms)
+    terms.push_back({.joint = given.constraint.slot, .ratio = given.ratio, .coordinate = given.coordinate});
+  return make_coupling(model, spec.kind, terms, spec.length, spec.breaks);
+}
+
+// Pieces between the same two particles are one span, which counts as often.
+std::uint32_t make_constraint(Model& model, const TackleSpec& spec) {
+  std::vector<CoupledTerm> terms;
+  for (std::size_t i = 0; i + 1 < spec.points.size(); ++i) {
+    const ParticleId p = spec.points[i], q = spec.points[i + 1];
+    const auto joins_them = [&](const CoupledTerm& term) {
+      const Constraint& c = model.constraints[term.joint];
+      return (c.particles[a_origin] == p.slot && c.particles[b_origin] == q.slot) ||
+             (c.particles[a_origin] == q.slot && c.particles[b_origin] == p.slot);
+    };
+    if (const auto same = std::find_if(terms.begin(), terms.end(), joins_them); same != terms.end()) {
+      same->ratio += 1;
+      continue;
+    }
+    const std::uint32_t span = make_constraint(model, SpanSpec{.p = p, .q = q});
+    model.constraints[span].is_part = 1;
+    terms.push_back({.joint = span, .ratio = 1, .coordinate = JointCoordinate::slide});
+  }
+  return make_coupling(model, ConstraintKind::tackle, terms, spec.length, spec.breaks);
+}
+
+std::size_t coupled_points(const Model& model, const Constraint& coupling) {
+  std::vector<std::uint32_t> bodies;
+  for_each_term(model, coupling, [&](const CoupledTerm& term) {
+    for (const int side : {0, 1})
+      if (const std::uint32_t body = body_of_side(model, model.constraints[term.joint], side); body != none)
+        bodies.push_back(body);
+  });
+  sort_unique(bodies);
+  std::size_t points = 0;
+  for (const std::uint32_t body : bodies) points += model.bodies[body].rank;
+  return points;
+}
+
 std::uint32_t body_of_side(const Model& model, const Constraint& c, int side) {
+  if (c.first_term != none) {
+    std::uint32_t term = c.first_term;
+    while (side == 1 && model.coupled_terms[term].next != none) term = model.coupled_terms[term].next;
+    return body_of_side(model, model.constraints[model.coupled_terms[term].joint], 0);
+  }
   const std::uint32_t origin = c.particles[side == 0 ? a_origin : b_origin];
   return origin == none ? none : model.particles[origin].body;
 }
 
 bool is_in_force(const Model& model, const Constraint& c) {
   bool complete = c.active, moves = false;
-  for (const int side : {0, 1}) {
-    const std::uint32_t body = body_of_side(model, c, side);
-    if (body == none) continue;
-    complete = complete && model.bodies[body].kind != BodyKind::inactive;
-    moves = moves || is_free(model.bodies[body].kind);
-  }
+  const auto look_at = [&](const Constraint& joint) {
+    complete = complete && joint.active;
+    for (const int side : {0, 1}) {
+      const std::uint32_t body = body_of_side(model, joint, side);
+      if (body == none) continue;
+      complete = complete && model.bodies[body].kind != BodyKind::inactive;
+      moves = moves || is_free(model.bodies[body].kind);
+    }
+  };
+  if (c.first_term == none) look_at(c);
+  for_each_term(model, c, [&](const CoupledTerm& term) { look_at(model.constraints[term.joint]); });
   return complete && moves;
 }
 

@@ -29,12 +29,15 @@ inline constexpr int place_count = 8;
 struct ConstraintKindInfo {
   const char* name;
   /// Between bodies, with frames; between two particles; a particle on a curve or surface; two surfaces.
-  enum class Form : std::uint8_t { joint, distance, path, surface, surface_pair } form = Form::joint;
+  /// Or other constraints' coordinates.
+  enum class Form : std::uint8_t { joint, distance, path, surface, surface_pair, coupling } form = Form::joint;
   bool meet = false;   ///< 3 rows: the origins coincide
   bool line = false;   ///< 2 rows: the origins lie on one line along the axis
   bool align = false;  ///< 2 rows: the axis is common
   bool lock = false;   ///< 3 rows: no relative turning
   bool cross = false;  ///< 1 row: a's axis at right angles to b's
+  bool plane = false;  ///< 1 row: the origins lie in one plane across the axis
+  bool screw = false;  ///< 1 row: the slide follows the angle
   bool angle = false;  ///< has the coordinate
   bool slide = false;
   bool second_angle = false;
@@ -42,7 +45,7 @@ struct ConstraintKindInfo {
   int sign = 0;
 };
 
-inline constexpr std::array<ConstraintKindInfo, 15> constraint_kinds{{
+inline constexpr std::array<ConstraintKindInfo, 20> constraint_kinds{{
     {.name = "ball", .meet = true},
     {.name = "universal", .meet = true, .cross = true, .angle = true, .second_angle = true},
     {.name = "revolute", .meet = true, .align = true, .angle = true},
@@ -58,6 +61,11 @@ inline constexpr std::array<ConstraintKindInfo, 15> constraint_kinds{{
     {.name = "outside", .form = ConstraintKindInfo::Form::surface, .sign = -1},
     {.name = "touching", .form = ConstraintKindInfo::Form::surface_pair},
     {.name = "apart", .form = ConstraintKindInfo::Form::surface_pair, .sign = -1},
+    {.name = "span", .form = ConstraintKindInfo::Form::distance, .slide = true},
+    {.name = "coupling", .form = ConstraintKindInfo::Form::coupling},
+    {.name = "tackle", .form = ConstraintKindInfo::Form::coupling, .sign = 1},
+    {.name = "screw", .line = true, .align = true, .screw = true, .angle = true, .slide = true},
+    {.name = "planar", .align = true, .plane = true, .angle = true},
 }};
 inline const ConstraintKindInfo& info(ConstraintKind kind) { return constraint_kinds[static_cast<std::size_t>(kind)]; }
 
@@ -76,8 +84,18 @@ struct CurveData {
   double rounding = -1;
 };
 
-/// Refers to particles only, so that restructuring carries it along. Joints make massless particles (markers) of their
-/// own; the world's places are fixed ones.
+/// A coordinate in the sum of a coupling; it is in two lists.
+struct CoupledTerm {
+  std::uint32_t coupling = 0, joint = 0;  ///< slots of constraints
+  std::uint32_t next = 0;                 ///< of the coupling, in the order in which it was given
+  std::uint32_t next_at_joint = 0;
+  double ratio = 1;
+  JointCoordinate coordinate = JointCoordinate::angle;
+  std::array<std::uint8_t, 7> padding{};
+};
+
+/// Refers to particles only, so that restructuring carries it along; a coupling to its terms. Joints make massless particles
+/// (markers) of their own; the world's places are fixed ones.
 struct Constraint {
   ConstraintKind kind = ConstraintKind::ball;
   std::uint8_t active = 1, broken = 0;
@@ -95,16 +113,18 @@ struct Constraint {
     void set(int bit, bool on) { bits = static_cast<std::uint8_t>((bits & ~(1 << bit)) | on << bit); }
     bool operator[](int bit) const { return bits >> bit & 1; }
   };
-  Bits carries, told;  ///< now; and when that was last reported
-  std::uint8_t padding = 0;
+  Bits carries, told;                                  ///< now; and when that was last reported
+  std::uint8_t is_part = 0;                            ///< 1: a span that a tackle made and takes along
   std::array<std::uint32_t, place_count> particles{};  ///< `none` where a place is not needed, or in the world
   /// Each particle lists the places that it is at, as links place_count * slot + place.
   std::array<std::uint32_t, place_count> next{}, previous{};
   std::array<Vec3, 4> fixed{};            ///< the world's places as b's, m
   std::array<double, 2> scale{1, 1};      ///< length of the directions of a and b, m
   std::array<double, 2> cosines{};        ///< of the axis and the other's side and third direction
-  double length = 0;                      ///< of a rod, rope or path, m
+  double length = 0;                      ///< of a rod, rope or path, m; of a coupling: the sum; of a screw: m/rad
   CurveData curve;                        ///< of b
+  std::uint32_t first_term = 0xffffffff;  ///< of a coupling
+  std::uint32_t coupled = 0xffffffff;     ///< the first of the terms that refer to this constraint's coordinates
   std::array<SurfaceData, 2> surfaces{};  ///< of a and b
   Vec3 contact;                           ///< of two surfaces, in a's frame, m
   std::array<CoordinateOptions, joint_coordinates.size()> options{};
@@ -152,9 +172,15 @@ std::uint32_t make_constraint(Model&, const DistanceSpec&);
 std::uint32_t make_constraint(Model&, const PathSpec&);
 std::uint32_t make_constraint(Model&, const SurfaceConstraintData&);
 std::uint32_t make_constraint(Model&, const SurfacePairData&);
+std::uint32_t make_constraint(Model&, const SpanSpec&);
+std::uint32_t make_constraint(Model&, const CouplingSpec&);
+std::uint32_t make_constraint(Model&, const TackleSpec&);
+/// How many points of the bodies that it couples a coupling touches, and may touch.
+std::size_t coupled_points(const Model&, const Constraint&);
+inline constexpr std::size_t most_coupled_points = 32;
 /// The geometry of a constraint from its data; throws std::invalid_argument for sizes and points that make none.
 ConstraintGeometry make_geometry(const Model&, const Constraint&);
-/// The body of a side (0: a, 1: b), `none` for the world.
+/// The body of a side (0: a, 1: b), `none` for the world. Of a coupling, a of its first and of its last constraint.
 std::uint32_t body_of_side(const Model&, const Constraint&, int side);
 /// Whether it does anything: it is active, neither of its bodies is inactive, and one of them can move.
 bool is_in_force(const Model&, const Constraint&);

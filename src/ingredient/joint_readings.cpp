@@ -44,15 +44,49 @@ std::array<Vec3, place_count> forces_at(const LastStep& step, std::uint32_t slot
   return forces;
 }
 
+/// The forces of couplings on all places of a joint in the last step: of those for which `counts(coupling)`.
+template <class Counts>
+std::array<Vec3, place_count> coupled_forces_at(const LastStep& step, std::uint32_t slot, const JointPlaces& places,
+                                                Counts counts) {
+  const Model& model = step.model;
+  const Constraint& c = model.constraints[slot];
+  const std::array<Vec3, place_count> start = places.calc_start(step, c);
+  std::array<Vec3, place_count> forces{};
+  auto ignore = [](const auto&, RowUse) {};
+  const JointRowBuilder<decltype(ignore)> rows(c, model.geometry(slot), places.arms, ignore);
+  for (std::uint32_t t = c.coupled; t != none; t = model.coupled_terms[t].next_at_joint) {
+    const CoupledTerm& term = model.coupled_terms[t];
+    const Constraint& coupling = model.constraints[term.coupling];
+    if (!counts(term.coupling) || !is_in_force(model, coupling)) continue;
+    const double multiplier = term.ratio * coupling.multipliers[0];
+    rows.with_coordinate(term.coordinate, [&](auto row) {
+      set_target(row, c.coordinate[static_cast<std::size_t>(term.coordinate)], 0);
+      for_each_row_force(row, &multiplier, step.stage.midpoint, start.data(), places.position.data(),
+                         [&](std::uint32_t place, const Vec3& force) { forces[place] += force; });
+    });
+  }
+  return forces;
+}
+
 }  // namespace
 
 Vec3 calc_force_at(const LastStep& step, std::uint32_t slot, int place) {
-  return forces_at(step, slot, JointPlaces(step.model, step.model.constraints[slot]))[static_cast<std::size_t>(place)];
+  const JointPlaces places(step.model, step.model.constraints[slot]);
+  Vec3 force = forces_at(step, slot, places)[static_cast<std::size_t>(place)];
+  if (step.model.constraints[slot].coupled != none)
+    force += coupled_forces_at(step, slot, places, [](std::uint32_t) { return true; })[static_cast<std::size_t>(place)];
+  return force;
 }
 
 Reaction calc_reaction(const Model& model, std::uint32_t slot) {
-  const JointPlaces places(model, model.constraints[slot]);
-  const std::array<Vec3, place_count> forces = forces_at(LastStep(model), slot, places);
+  const Constraint& c = model.constraints[slot];
+  const LastStep step(model);
+  const bool is_coupling = c.first_term != none;
+  const std::uint32_t joint = is_coupling ? model.coupled_terms[c.first_term].joint : slot;
+  const JointPlaces places(model, model.constraints[joint]);
+  const std::array<Vec3, place_count> forces =
+      is_coupling ? coupled_forces_at(step, joint, places, [&](std::uint32_t coupling) { return coupling == slot; })
+                  : forces_at(step, slot, places);
   Reaction reaction;
   reaction.position = places.position[a_origin];
   for (int place = a_origin; place < b_origin; ++place) {
@@ -65,8 +99,20 @@ Reaction calc_reaction(const Model& model, std::uint32_t slot) {
 Violation calc_violation(const Model& model, std::uint32_t slot) {
   const Constraint& c = model.constraints[slot];
   const ConstraintKindInfo& kind = info(c.kind);
-  const JointPlaces places(model, c);
   Violation worst;
+  if (kind.form == ConstraintKindInfo::Form::coupling) {
+    double off = -c.length, size = 0;
+    for_each_term(model, c, [&](const CoupledTerm& term) {
+      off += term.ratio * calc_coordinate(model, term.joint, term.coordinate).first;
+      const bool is_slide = term.coordinate == JointCoordinate::slide;
+      const auto& scale = model.constraints[term.joint].scale;
+      size = std::max(size, std::abs(term.ratio) * (is_slide ? std::max(scale[0], scale[1]) : 1));
+    });
+    worst.absolute = kind.sign == 0 ? std::abs(off) : std::max(0.0, kind.sign * off);
+    worst.relative = worst.absolute / size;
+    return worst;
+  }
+  const JointPlaces places(model, c);
   auto sink = [&]<class Row>(const Row& row, RowUse use) {
     if (use.role != Role::hold) return;
     Row loaded = row;
@@ -101,13 +147,20 @@ std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot
     }
     return std::pair{value, speed};
   };
-  if (which == JointCoordinate::slide)
-    return info(c.kind).form == ConstraintKindInfo::Form::path ? read(rows.station_row()) : read(rows.slide_row());
-  const bool second = which == JointCoordinate::second_angle;
-  if (second ? !rows.has_second_angle(c) : !rows.has_angle(c)) return {0, 0};
-  solver::AngleConstraint row = second ? rows.second_angle_row() : rows.angle_row();
-  set_target(row, c.coordinate[static_cast<std::size_t>(which)], 0);
-  return read(row);
+  std::pair<double, double> found{0, 0};
+  rows.with_coordinate(which, [&](auto row) {
+    if constexpr (std::is_same_v<decltype(row), solver::AngleConstraint>)
+      set_target(row, c.coordinate[static_cast<std::size_t>(which)], 0);
+    found = read(row);
+  });
+  return found;
+}
+
+bool has_coordinate_row(const Model& model, std::uint32_t slot, JointCoordinate which) {
+  const JointPlaces places(model, model.constraints[slot]);
+  auto ignore = [](const auto&, RowUse) {};
+  const JointRowBuilder<decltype(ignore)> rows(model.constraints[slot], model.geometry(slot), places.arms, ignore);
+  return rows.with_coordinate(which, [](const auto&) {});
 }
 
 void start_contact(Model& model, std::uint32_t slot) {

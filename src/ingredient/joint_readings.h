@@ -15,13 +15,13 @@ void refresh_coordinates(model::Model&, std::uint32_t joint);
 /// Finds where two surfaces are nearest, for those that a joint brings together.
 void start_contact(model::Model&, std::uint32_t joint);
 
-/// Force and torque of a joint on its side a in the last step, about `position`.
+/// Force and torque of a joint (a coupling: of its first joint) on its side a in the last step, about `position`.
 struct Reaction {
   Vec3 position, force, torque;
 };
 Reaction calc_reaction(const model::Model&, std::uint32_t joint);
 
-/// Force of a joint on one of its places in the last step, N.
+/// Force of a joint, and of what couples its coordinates, on one of its places in the last step, N.
 Vec3 calc_force_at(const LastStep&, std::uint32_t joint, int place);
 
 /// The largest violation of what a joint holds, limits apart, at the present places: absolute (m; rad where it is about
@@ -30,6 +30,9 @@ struct Violation {
   double absolute = 0, relative = 0;
 };
 Violation calc_violation(const model::Model&, std::uint32_t joint);
+
+/// False where its bodies are too thin to have a coordinate that its kind has.
+bool has_coordinate_row(const model::Model&, std::uint32_t joint, JointCoordinate);
 
 /// Value and speed of a coordinate at the present places; the angle is unwrapped near the last one.
 std::pair<double, double> calc_coordinate(const model::Model&, std::uint32_t joint, JointCoordinate);

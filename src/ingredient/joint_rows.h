@@ -53,10 +53,11 @@ class JointRowBuilder {
     const ConstraintKindInfo& kind = info(c_.kind);
     switch (kind.form) {
       case Form::joint: return joint(kind);
-      case Form::distance: return distance();
+      case Form::distance: return c_.kind == ConstraintKind::span ? coordinate(slide, span_row()) : distance();
       case Form::path: hold(curve_row()); return coordinate(slide, station_row());
       case Form::surface: return hold(surface_row());
       case Form::surface_pair: return hold(contact_row());
+      case Form::coupling: return;  // its row is of other joints' places
     }
   }
 
@@ -67,9 +68,27 @@ class JointRowBuilder {
     if (c_.lock == Constraint::Lock::side_of_a) product(a_side, b_third, 0);
     if (c_.lock == Constraint::Lock::third_of_a) product(a_third, b_side, 0);
     if (kind.cross) product(a_axis, b_axis, 0);
+    if (kind.plane) hold(slide_row());
+    if (kind.screw) hold(screw_row());
     if (kind.angle && has_angle(c_)) coordinate(angle, angle_row());
     if (kind.slide) coordinate(slide, slide_row());
     if (has_second_angle(c_)) coordinate(second_angle, second_angle_row());
+  }
+
+  /// visit(row): the row of one coordinate, with a target of zero. False where the bodies are too thin to have it.
+  template <class Visit>
+  bool with_coordinate(JointCoordinate which, Visit visit) const {
+    if (which == JointCoordinate::slide) {
+      const auto form = info(c_.kind).form;
+      form == ConstraintKindInfo::Form::path       ? visit(station_row())
+      : form == ConstraintKindInfo::Form::distance ? visit(span_row())
+                                                   : visit(slide_row());
+      return true;
+    }
+    const bool second = which == JointCoordinate::second_angle;
+    if (second ? !has_second_angle(c_) : !has_angle(c_)) return false;
+    visit(second ? second_angle_row() : angle_row());
+    return true;
   }
 
   static bool has_angle(const Constraint& c) {
@@ -109,12 +128,35 @@ class JointRowBuilder {
     return row;
   }
 
+  /// The slide is `length` times the angle.
+  solver::CouplingConstraint screw_row() const {
+    solver::CouplingConstraint row;
+    const auto turned = angle_row();
+    const auto slid = slide_row();
+    const auto list = [&](const auto& part, std::uint32_t from, std::uint32_t to) {
+      for (std::uint32_t i = from; i < to; ++i) (void)row.list_node(part.nodes[i]);
+    };
+    list(turned, 0, turned.first_side), list(slid, 0, slid.first_side);
+    row.first_side = row.count;
+    list(turned, 0, turned.count), list(slid, 0, slid.count);
+    row.add(c_.length, turned), row.add(-1, slid);
+    return row;
+  }
+
   solver::StationConstraint station_row() const {
     solver::StationConstraint row;
     place_in_frame(row);
     row.curve = geometry_.curve.get();
     row.parameter = c_.coordinate[slide];
     row.reference = 0.1 * c_.length;
+    return row;
+  }
+
+  solver::SpanConstraint span_row() const {
+    solver::SpanConstraint row;
+    sides(row, {a_origin}, {b_origin});
+    add(row, 0, a_origin, 1), add(row, 0, b_origin, -1);
+    row.reference = c_.scale[0];
     return row;
   }
 
@@ -320,6 +362,18 @@ struct JointPlaces {
   }
 };
 
+/// visit(term): of a coupling, in the order in which they were given.
+template <class Visit>
+void for_each_term(const Model& model, const Constraint& coupling, Visit visit) {
+  for (std::uint32_t t = coupling.first_term; t != none; t = model.coupled_terms[t].next) visit(model.coupled_terms[t]);
+}
+/// visit(slot of a coupling): of those that couple a constraint's coordinates; once for each of its terms in them.
+template <class Visit>
+void for_each_coupling_of(const Model& model, const Constraint& c, Visit visit) {
+  for (std::uint32_t t = c.coupled; t != none; t = model.coupled_terms[t].next_at_joint)
+    visit(model.coupled_terms[t].coupling);
+}
+
 /// `now` is the coordinate as it was last seen.
 inline void set_target(solver::AngleConstraint& row, double now, double target) {
   row.target_start = row.target = target;
@@ -333,6 +387,7 @@ inline void set_target(solver::StationConstraint& row, double now, double target
   row.target_start = row.target = target;
   row.parameter = now;
 }
+inline void set_target(solver::SpanConstraint& row, double, double target) { row.target = target; }
 
 /// What a joint keeps of the rows that hold it: multipliers, and where it is on a curve or between surfaces. Those on
 /// a curve are kept as a force, whatever normals the row has.
@@ -340,6 +395,8 @@ template <class Row>
 void load_held(Row& row, const Constraint& c, RowUse use, double* multipliers) {
   std::copy_n(c.multipliers.begin() + use.first, Row::rows, multipliers);
   if constexpr (std::is_same_v<Row, solver::SurfacePairConstraint>) row.contact = c.contact;
+  if constexpr (std::is_same_v<Row, solver::CouplingConstraint>)
+    if (info(c.kind).screw) std::get<solver::AngleConstraint>(row.terms[0].coordinate).near = c.coordinate[angle];
   if constexpr (std::is_same_v<Row, solver::CurveConstraint>)
     row.start(c.coordinate[slide], {c.multipliers[0], c.multipliers[1], c.multipliers[2]}, multipliers);
 }
@@ -355,6 +412,7 @@ void save_held(const Row& row, Constraint& c, RowUse use, const double* multipli
 
 inline void set_length(solver::DistanceConstraint& row, double length) { row.length = length; }
 inline void set_length(solver::BilinearConstraint& row, double length) { row.product = length * length; }
+inline void set_length(solver::CouplingConstraint& row, double length) { row.target_start = row.target = length; }
 template <class Row>
 void set_length(Row&, double) {}
 

@@ -10,13 +10,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <variant>
 
 namespace iota::ingredient {
 
 using namespace joint;
 
 namespace {
+
+using Form = ConstraintKindInfo::Form;
 
 /// The nearer of the two limits, as a one-sided row.
 template <class Row>
@@ -41,7 +45,11 @@ std::vector<std::uint32_t> active_joints_of(const IslandMap& map) {
   for (const std::uint32_t body : map.bodies)
     map.model.for_each_particle_of(body, [&](std::uint32_t p) {
       map.model.for_each_constraint_of(p, [&](std::uint32_t c, int place) {
-        if ((place == a_origin || place == b_origin) && map.model.constraints[c].active) joints.push_back(c);
+        if ((place != a_origin && place != b_origin) || !map.model.constraints[c].active) return;
+        joints.push_back(c);
+        for_each_coupling_of(map.model, map.model.constraints[c], [&](std::uint32_t coupling) {
+          if (map.model.constraints[coupling].active) joints.push_back(coupling);
+        });
       });
     });
   sort_unique(joints);
@@ -51,6 +59,48 @@ std::vector<std::uint32_t> active_joints_of(const IslandMap& map) {
 solver::ItemKey key_of(std::uint8_t owner, std::uint32_t joint, RowUse use) {
   return {owner, {static_cast<std::uint8_t>(use.role), use.coordinate, use.first}, joint};
 }
+
+/// The places of a joint by the nodes of an island; none where one of its sides is inactive.
+std::optional<PlaceArms> arms_of(const IslandMap& map, const Constraint& c) {
+  const Model& model = map.model;
+  PlaceArms places{};
+  for (int place = 0; place < place_count; ++place) {
+    if (!c.has(place)) continue;
+    if (c.particles[place] == none) {
+      places[place].constant = c.fixed[place - b_origin];
+      continue;
+    }
+    // Through the basis, also where the particle is an unknown of its own: a row then couples two bodies and no more.
+    const model::Body& body = model.bodies[model.particles[c.particles[place]].body];
+    const std::array<double, 4> weights = model.weights(c.particles[place]);
+    int used = 0;
+    for (int i = 0; i < body.rank; ++i) {
+      if (weights[i] == 0) continue;
+      const std::uint32_t node = map.node_of(body.basis[i]);
+      if (node == none) return std::nullopt;
+      places[place].nodes[used++] = {node, weights[i]};
+    }
+  }
+  return places;
+}
+
+/// visit(ratio, row) for the terms of a coupling, as rows of an island's nodes. False where it is not in force.
+template <class Visit>
+bool for_each_coupled_row(const IslandMap& map, const Constraint& coupling, Visit visit) {
+  const Model& model = map.model;
+  bool complete = true;
+  auto ignore = [](const auto&, RowUse) {};
+  for_each_term(model, coupling, [&](const CoupledTerm& term) {
+    const Constraint& c = model.constraints[term.joint];
+    const auto places = c.active ? arms_of(map, c) : std::nullopt;
+    complete = complete && places;
+    if (!complete) return;
+    const JointRowBuilder<decltype(ignore)> rows(c, model.geometry(term.joint), *places, ignore);
+    complete = rows.with_coordinate(term.coordinate, [&](const auto& row) { visit(term.ratio, row); });
+  });
+  return complete;
+}
+
 RowUse use_of(solver::ItemKey key) { return {static_cast<Role>(key.part[0]), key.part[1], key.part[2]}; }
 
 }  // namespace
@@ -71,39 +121,62 @@ void Joints::leave(const IslandMap& map) {
 }
 
 void Joints::add(const IslandMap& map, std::uint32_t slot, Problem& problem) {
-  const Model& model = map.model;
-  const Constraint& c = model.constraints[slot];
-  PlaceArms places{};
-  for (int place = 0; place < place_count; ++place) {
-    if (!c.has(place)) continue;
-    if (c.particles[place] == none) {
-      places[place].constant = c.fixed[place - b_origin];
-      continue;
-    }
-    // Through the basis, also where the particle is an unknown of its own: a row then couples two bodies and no more.
-    const model::Body& body = model.bodies[model.particles[c.particles[place]].body];
-    const std::array<double, 4> weights = model.weights(c.particles[place]);
-    int used = 0;
-    for (int i = 0; i < body.rank; ++i) {
-      if (weights[i] == 0) continue;
-      const std::uint32_t node = map.node_of(body.basis[i]);
-      if (node == none) return;  // that side is inactive
-      places[place].nodes[used++] = {node, weights[i]};
-    }
-  }
+  const Constraint& c = map.model.constraints[slot];
+  if (info(c.kind).form == ConstraintKindInfo::Form::coupling) return add_coupling(map, slot, problem);
+  const auto places = arms_of(map, c);
+  if (!places) return;
   joints_.push_back(slot);
-  auto sink = [&]<class Row>(const Row& row, RowUse use) {
-    const auto end = row.nodes.begin() + row.node_count();
-    // A step can do nothing about rows whose nodes are all pinned, but to see whether they are met.
-    if (std::all_of(row.nodes.begin(), end, [&](std::uint32_t node) { return map.is_pinned(node); })) {
-      if (use.role == Role::hold && (pinned_.empty() || pinned_.back() != slot)) pinned_.push_back(slot);
-      return;
-    }
-    problem.add(row, key_of(owner, slot, use));
-    if (use.role != Role::hold || info(c.kind).sign != 0) (void)problem.pool_of<Row>().law(0);
-  };
-  JointRowBuilder<decltype(sink)>(c, model.geometry(slot), places, sink).run();
+  auto sink = [&](const auto& row, RowUse use) { add_row(map, slot, row, use, problem); };
+  JointRowBuilder<decltype(sink)>(c, map.model.geometry(slot), *places, sink).run();
 }
+
+// The nodes of moving sides a first, the turning wheels and not what carries them, and all of a rope: the gradients by
+// these do not vanish together.
+void Joints::add_coupling(const IslandMap& map, std::uint32_t slot, Problem& problem) {
+  const Constraint& c = map.model.constraints[slot];
+  solver::CouplingConstraint coupling;
+  bool fits = true;
+  const bool complete = for_each_coupled_row(map, c, [&]<class Row>(double, const Row& row) {
+    const bool all = std::is_same_v<Row, solver::SpanConstraint> || row.first_side == 0;
+    for (std::uint32_t i = 0; i < (all ? row.count : row.first_side); ++i)
+      if (!map.is_pinned(row.nodes[i])) fits = fits && coupling.list_node(row.nodes[i]);
+  });
+  if (!complete) return;
+  coupling.first_side = coupling.count;
+  for_each_coupled_row(map, c, [&](double, const auto& row) {
+    for (std::uint32_t i = 0; i < row.count; ++i) fits = fits && coupling.list_node(row.nodes[i]);
+  });
+  if (!fits) return;  // no edit leaves so many points: see `settle`
+  if (coupling.first_side == coupling.count) coupling.first_side = 0;
+  for_each_coupled_row(map, c, [&](double ratio, const auto& row) { coupling.add(ratio, row); });
+  joints_.push_back(slot);
+  add_row(map, slot, coupling, {}, problem);
+}
+
+template <class Row>
+void Joints::add_row(const IslandMap& map, std::uint32_t slot, const Row& row, RowUse use, Problem& problem) {
+  const auto end = row.nodes.begin() + row.node_count();
+  // A step can do nothing about rows whose nodes are all pinned, but to see whether they are met.
+  if (std::all_of(row.nodes.begin(), end, [&](std::uint32_t node) { return map.is_pinned(node); })) {
+    if (use.role == Role::hold && (pinned_.empty() || pinned_.back() != slot)) pinned_.push_back(slot);
+    return;
+  }
+  problem.add(row, key_of(owner, slot, use));
+  if (use.role != Role::hold || info(map.model.constraints[slot].kind).sign != 0) (void)problem.pool_of<Row>().law(0);
+}
+
+namespace {
+
+/// Angles are counted on from where their joints have them.
+void follow_coordinates(const Model& model, const Constraint& c, solver::CouplingConstraint& coupling) {
+  auto term = coupling.terms.begin();
+  for_each_term(model, c, [&](const CoupledTerm& t) {
+    const double now = model.constraints[t.joint].coordinate[static_cast<std::size_t>(t.coordinate)];
+    std::visit([&](auto& row) { set_target(row, now, 0); }, (term++)->coordinate);
+  });
+}
+
+}  // namespace
 
 void Joints::load(const Model& model, const IslandNodes&, double h, Problem& problem) {
   if (joints_.empty()) return;
@@ -115,7 +188,9 @@ void Joints::load(const Model& model, const IslandNodes&, double h, Problem& pro
       if (use.role == Role::hold) {
         load_held(row, c, use, pool.multiplier(item));
         const ConstraintKindInfo& kind = info(c.kind);
-        if (kind.form == ConstraintKindInfo::Form::distance) set_length(row, c.length);
+        if (kind.form == Form::distance || kind.form == Form::coupling) set_length(row, c.length);
+        if constexpr (std::is_same_v<C, solver::CouplingConstraint>)
+          if (kind.form == Form::coupling) follow_coordinates(model, c, row);
         if (kind.sign > 0) *pool.law(item) = {.lower = 0};
         if (kind.sign < 0) *pool.law(item) = {.upper = 0};
         return;
@@ -189,7 +264,7 @@ std::string Joints::name_of_row(const Model& model, solver::ItemKey key) const {
 }
 
 void Joints::validate(const Model& model, model::Audit& audit) {
-  std::uint32_t places = 0, listed = 0;
+  std::uint32_t places = 0, listed = 0, listed_terms = 0;
   model.constraints.for_each([&](std::uint32_t slot, const Constraint& c) {
     for (int place = 0; place < place_count; ++place) {
       const std::uint32_t p = c.particles[place];
@@ -199,9 +274,20 @@ void Joints::validate(const Model& model, model::Audit& audit) {
       audit.require(own, info(c.kind).name, " ", slot, " holds a stranger at place ", place);
       ++places;
     }
-    audit.require(body_of_side(model, c, 0) != body_of_side(model, c, 1), info(c.kind).name, " ", slot,
+    const bool may_be_within = info(c.kind).form == Form::coupling || c.kind == ConstraintKind::span;
+    audit.require(may_be_within || body_of_side(model, c, 0) != body_of_side(model, c, 1), info(c.kind).name, " ", slot,
                   " joins a body to itself");
+    std::uint32_t most = model.coupled_terms.size();
+    for_each_term(model, c, [&](const CoupledTerm& term) {
+      audit.require(term.coupling == slot && model.constraints.is_alive(term.joint), "coupling ", slot,
+                    " has a term of another, or of a joint that is gone");
+      if (model.constraints.is_alive(term.joint))
+        for_each_coupling_of(model, model.constraints[term.joint],
+                             [&](std::uint32_t other) { listed_terms += other == slot; });
+      audit.require(most-- > 0, "the terms of coupling ", slot, " go in a circle");
+    });
   });
+  audit.require(listed_terms >= model.coupled_terms.size(), "a term is listed at its coupling or its joint alone");
   audit.require_owners("lists", model.places, model.particles);
   model.places.for_each([&](std::uint32_t slot, const model::ListHead& head) {
     for (std::uint32_t link = head.first; link != none;) {
@@ -281,6 +367,17 @@ void unlink_place(Model& model, std::uint32_t slot, std::uint32_t place) {
   model.touch_particle(c.particles[place]);
 }
 
+/// The terms of a coupling leave the lists of their joints.
+void remove_terms(Model& model, std::uint32_t coupling) {
+  for (std::uint32_t t = std::exchange(model.constraints[coupling].first_term, none), next; t != none; t = next) {
+    next = model.coupled_terms[t].next;
+    std::uint32_t* link = &model.constraints[model.coupled_terms[t].joint].coupled;
+    while (*link != t) link = &model.coupled_terms[*link].next_at_joint;
+    *link = model.coupled_terms[t].next_at_joint;
+    model.coupled_terms.destroy(t);
+  }
+}
+
 /// Takes it out of the tables; its markers stay.
 void remove(Model& model, std::uint32_t slot) {
   for (std::uint32_t place = 0; place < place_count; ++place)
@@ -299,6 +396,7 @@ void remove(Model& model, std::uint32_t slot) {
 
 /// Why an edit has left a joint without sense; null: it has not.
 const char* reason_to_end(const Model& model, const Constraint& c) {
+  if (c.kind == ConstraintKind::span) return nullptr;
   const std::uint32_t a = body_of_side(model, c, 0), b = body_of_side(model, c, 1);
   for (int place = 0; place < place_count; ++place)
     if (c.particles[place] != none && model.particles[c.particles[place]].body != (place < b_origin ? a : b))
@@ -321,8 +419,20 @@ std::uint32_t Joints::add(Model& model, const Constraint& constraint) {
 }
 
 void Joints::destroy(Model& model, std::uint32_t slot) {
+  while (model.constraints[slot].coupled != none) {
+    destroy(model, model.coupled_terms[model.constraints[slot].coupled].coupling);
+    if (!model.constraints.is_alive(slot)) return;  // a span that was part of it
+  }
   const Constraint c = model.constraints[slot];
+  std::vector<std::uint32_t> parts;
+  for_each_term(model, c, [&](const CoupledTerm& term) {
+    if (model.constraints[term.joint].is_part) parts.push_back(term.joint);
+    for (const int origin : {a_origin, b_origin})
+      if (const std::uint32_t p = model.constraints[term.joint].particles[origin]; p != none) model.touch_particle(p);
+  });
+  remove_terms(model, slot);
   remove(model, slot);
+  for (const std::uint32_t part : parts) remove(model, part);
   for (int place = 0; place < place_count; ++place) {
     if (!(c.owned >> place & 1)) continue;
     const model::Particle& p = model.particles[c.particles[place]];
@@ -349,6 +459,14 @@ void Joints::visit_tied(const Model& model, std::uint32_t particle, Visit visit)
     const Constraint& c = model.constraints[slot];
     if (!c.active || (place != a_origin && place != b_origin)) return;
     if (const std::uint32_t other = body_of_side(model, c, place == a_origin ? 1 : 0); other != none) visit(other);
+    for_each_coupling_of(model, c, [&](std::uint32_t coupling) {
+      if (!model.constraints[coupling].active) return;
+      for_each_term(model, model.constraints[coupling], [&](const CoupledTerm& term) {
+        for (const int side : {0, 1})
+          if (const std::uint32_t body = body_of_side(model, model.constraints[term.joint], side); body != none)
+            visit(body);
+      });
+    });
   });
 }
 
@@ -397,7 +515,7 @@ void Joints::drop(Model& model, std::uint32_t particle) {
 
 void Joints::settle(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
   if (model.constraints.size() == 0) return;
-  std::vector<std::uint32_t> candidates;
+  std::vector<std::uint32_t> candidates, too_large;
   for (const std::uint32_t body : bodies)
     model.for_each_particle_of(body, [&](std::uint32_t p) {  // a hinge also joins what was in its particles' rings
       model.for_each_in_ring(model.particles[p].ring, [&](std::uint32_t r) {
@@ -407,9 +525,22 @@ void Joints::settle(Model& model, std::span<const std::uint32_t> bodies, std::ve
   sort_unique(candidates);
   for (const std::uint32_t slot : candidates) {
     if (!model.constraints.is_alive(slot)) continue;
+    for_each_coupling_of(model, model.constraints[slot], [&](std::uint32_t coupling) {
+      if (coupled_points(model, model.constraints[coupling]) > most_coupled_points) too_large.push_back(coupling);
+    });
     const char* const reason = reason_to_end(model, model.constraints[slot]);
     if (!reason) continue;
     notes.push_back(text(info(model.constraints[slot].kind).name, " ", slot, " ended: ", reason));
+    for_each_coupling_of(model, model.constraints[slot], [&](std::uint32_t coupling) {
+      notes.push_back(text(info(model.constraints[coupling].kind).name, " ", coupling, " ended with it"));
+    });
+    destroy(model, slot);
+  }
+  sort_unique(too_large);
+  for (const std::uint32_t slot : too_large) {
+    if (!model.constraints.is_alive(slot)) continue;
+    notes.push_back(text(info(model.constraints[slot].kind).name, " ", slot, " ended: its bodies have more than ",
+                         most_coupled_points, " points together now"));
     destroy(model, slot);
   }
 }
@@ -424,17 +555,20 @@ void Joints::describe(const SceneView& view, SceneChanges& changes) {
   };
   for (const std::uint32_t slot : view.slots(model.constraints, model.changed_constraints, list)) {
     const bool is_there = model.constraints.is_alive(slot) && model.constraints[slot].active;
-    const bool is_tie = is_there && info(model.constraints[slot].kind).form == ConstraintKindInfo::Form::distance;
+    const Form form = is_there ? info(model.constraints[slot].kind).form : Form::joint;
+    const bool is_tie = is_there && form == Form::distance;
     const std::uint32_t tie = DrawnTie::slot_of_joint(slot);
     if (is_tie) {
       const Constraint& c = model.constraints[slot];
-      const auto kind = c.kind == ConstraintKind::rod ? DrawnTie::Kind::rod : DrawnTie::Kind::rope;
-      changes.ties.set.push_back(
-          {tie, kind, c.length, view.anchor(c.particles[a_origin]), view.anchor(c.particles[b_origin])});
+      // A piece of a rope over several points is drawn straight: whether it hangs through is a matter of the whole rope.
+      const bool is_rope = c.kind == ConstraintKind::rope || c.is_part;
+      const double length = c.kind == ConstraintKind::span ? 0 : c.length;
+      changes.ties.set.push_back({tie, is_rope ? DrawnTie::Kind::rope : DrawnTie::Kind::rod, length,
+                                  view.anchor(c.particles[a_origin]), view.anchor(c.particles[b_origin])});
     } else {
       changes.ties.gone.push_back(tie);
     }
-    if (is_there && !is_tie) {
+    if (is_there && !is_tie && form != Form::coupling) {
       const Constraint& c = model.constraints[slot];
       const std::uint32_t a = body_of_side(model, c, 0), b = body_of_side(model, c, 1);
       const Vec3 place = model.carried(c.particles[a_origin]).first;

@@ -9,6 +9,8 @@
 
 namespace iota::ingredient {
 
+struct RowUse;
+
 /// Joints, rods, ropes, paths and surfaces with their limits, motors, friction and springs.
 class Joints : public NoAnswers {
  public:
@@ -16,6 +18,7 @@ class Joints : public NoAnswers {
     SlotTable<Constraint, ConstraintId> constraints;
     SideTable<model::ListHead> places;  ///< of particles: the first of the places that they are at
     std::vector<Vec3> curve_points;     ///< of paths, m
+    SlotTable<CoupledTerm, Id<CoupledTerm>> coupled_terms;
     /// Of function surfaces, by key; not saved.
     std::map<std::uint64_t, SurfaceFunction> surface_functions;
     std::vector<ConstraintGeometry> geometries;  ///< by slot of the constraint; not saved
@@ -24,7 +27,7 @@ class Joints : public NoAnswers {
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {
       constraints.archive(ar), places.archive(ar, structure.particles.slot_count());
-      ar.vector(curve_points);
+      ar.vector(curve_points), coupled_terms.archive(ar);
     }
     const ConstraintGeometry& geometry(std::uint32_t constraint) const { return geometries[constraint]; }
     /// visit(slot of the constraint, place): once for each place that the particle is at.
@@ -54,8 +57,9 @@ class Joints : public NoAnswers {
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);
 
-  static std::uint32_t add(Model&, const Constraint&);    ///< returns the slot
-  static void destroy(Model&, std::uint32_t constraint);  ///< with the markers that were made for it
+  static std::uint32_t add(Model&, const Constraint&);  ///< returns the slot
+  /// With the markers and spans that were made for it, and the couplings of its coordinates.
+  static void destroy(Model&, std::uint32_t constraint);
   static void renew_geometry(Model&, std::uint32_t constraint);
 
   void build(const IslandMap&, Problem&);
@@ -68,6 +72,9 @@ class Joints : public NoAnswers {
 
  private:
   void add(const IslandMap&, std::uint32_t joint, Problem&);
+  void add_coupling(const IslandMap&, std::uint32_t coupling, Problem&);
+  template <class Row>
+  void add_row(const IslandMap&, std::uint32_t joint, const Row&, RowUse, Problem&);
 
   std::vector<std::uint32_t> joints_;
   std::vector<std::uint32_t> pinned_;  // those with rows whose nodes are all pinned: these rows are left out

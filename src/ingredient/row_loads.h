@@ -11,18 +11,18 @@
 namespace iota::ingredient {
 
 /// visit(node, force): what a row of the solver did to its nodes in the last step, as `Assembly::add_rows` has it: minus its
-/// multipliers times its gradients, by the mid-point rule the means of those at the start and at the end. `start` and `end`
-/// have the places of the nodes.
+/// multipliers times its gradients, by the mid-point rule their means over the step. `start` and `end` have the places of
+/// the nodes.
 template <class C, class Visit>
 void for_each_row_force(const C& row, const double* multipliers, bool midpoint, const Vec3* start, const Vec3* end,
                         Visit visit) {
-  const solver::Gradients<C> at_start(row, start, 0), at_end(row, end, 1);
+  const solver::Gradients<C> at_end(row, end, 1);
+  const solver::MeanGradients<C> means(row, start, 0, end, 1);
   for (int i = 0; i < row.node_count(); ++i) {
-    Vec3 directions[C::rows], before[C::rows], force;
+    Vec3 directions[C::rows], mean[C::rows], force;
     at_end.of_node(i, directions);
-    if (midpoint) at_start.of_node(i, before);
-    for (int r = 0; r < C::rows; ++r)
-      force -= multipliers[r] * (midpoint ? 0.5 * (directions[r] + before[r]) : directions[r]);
+    if (midpoint) means.of_node(i, directions, mean);
+    for (int r = 0; r < C::rows; ++r) force -= multipliers[r] * (midpoint ? mean[r] : directions[r]);
     visit(row.nodes[i], force);
   }
 }

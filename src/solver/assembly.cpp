@@ -16,11 +16,11 @@ constexpr double largest_noise = 1e-8;  // of the scaled force residual
 constexpr double round_off = 4e-15;     // of the largest scaled force: below it a residual is noise
 
 struct NoGradients {
-  NoGradients(const auto&, const Vec3*, double) {}
+  NoGradients(const auto&, const Vec3*, double, const Vec3*, double) {}
 };
-/// Only the mid-point scheme takes gradients at the start.
+/// Only the mid-point scheme takes means.
 template <bool Midpoint, class C>
-using StartGradients = std::conditional_t<Midpoint, Gradients<C>, NoGradients>;
+using MeanGradientsOf = std::conditional_t<Midpoint, MeanGradients<C>, NoGradients>;
 
 }  // namespace
 
@@ -96,7 +96,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
     pool.value(k, x, stage.fraction, g);
     double compliance = 0, compliances[C::rows] = {};
     const Gradients<C> gradients(c, x, stage.fraction);
-    [[maybe_unused]] const StartGradients<Midpoint, C> start_gradients(c, x0, stage.fraction_start);
+    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, stage.fraction_start, x, stage.fraction);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows];
       gradients.of_node(i, rows);
@@ -104,10 +104,10 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
         for (int r = 0; r < C::rows; ++r) compliances[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
       else if (stage.compliance != 0)
         compliance += dot(rows[0], rows[0]) / problem.mass[c.nodes[i]];
-      Vec3 start_rows[C::rows];
-      if constexpr (Midpoint) start_gradients.of_node(i, start_rows);
+      Vec3 mean_rows[C::rows];
+      if constexpr (Midpoint) means.of_node(i, rows, mean_rows);
       for (int r = 0; r < C::rows; ++r) {
-        const Vec3 direction = Midpoint ? 0.5 * (rows[r] + start_rows[r]) : rows[r];
+        const Vec3 direction = Midpoint ? mean_rows[r] : rows[r];
         add_force(c.nodes[i], lambda[r] * direction);
         if (has_extreme_masses())
           resistance_[c.nodes[i]] += std::abs(lambda[r]) * norm(direction) * inverse_scale(stage);
@@ -236,7 +236,7 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
       }
     double compliance = 0, compliances[C::rows] = {};
     const Gradients<C> gradients(c, x, stage.fraction);
-    [[maybe_unused]] const StartGradients<Midpoint, C> start_gradients(c, x0, stage.fraction_start);
+    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, stage.fraction_start, x, stage.fraction);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows], directions[C::rows];
       gradients.of_node(i, rows);
@@ -244,10 +244,7 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
         for (int r = 0; r < C::rows; ++r) compliances[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
       else
         compliance += dot(rows[0], rows[0]) / problem.mass[c.nodes[i]];
-      if constexpr (Midpoint) {
-        start_gradients.of_node(i, directions);
-        for (int r = 0; r < C::rows; ++r) directions[r] = 0.5 * (directions[r] + rows[r]);
-      }
+      if constexpr (Midpoint) means.of_node(i, rows, directions);
       const auto& slot = slots.gradients[i];
       for (int r = 0; r < C::rows; ++r) {
         if constexpr (Laws)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 namespace iota::solver {
 
@@ -13,9 +14,8 @@ template <class C>
 void Assembly::set_slots(ConstraintPool<C>& pool, std::size_t item, std::uint32_t unknown) const {
   auto& slots = pool.slots[item];
   const C& c = pool.items[item];
-  const auto where = pattern_.constraint_slot({c.nodes.data(), static_cast<std::size_t>(c.node_count())}, unknown);
+  const auto where = pattern_.constraint_slot(pool.nodes_of(c), unknown, slots.gradients.data());
   slots.unknown = where.unknown, slots.diagonal = where.diagonal, slots.stride = where.stride;
-  std::copy_n(where.gradients.begin(), C::max_nodes, slots.gradients.begin());
   if constexpr (C::has_curvature)
     for (int a = 0, pair = 0; a < pool.items[item].node_count(); ++a)
       for (int b = a + 1; b < pool.items[item].node_count(); ++b, ++pair)
@@ -41,6 +41,7 @@ CouplingGraph graph_of(const Problem& problem) {
   std::size_t constraints = 0;
   problem.for_each_constraint_pool([&](const auto& pool) { constraints += pool.items.size(); });
   graph.constraints.reserve(constraints);
+  graph.nodes.reserve(2 * constraints);
   for (const auto& c : problem.mass_couplings) graph.couplings.push_back({c.a, c.b});
   problem.for_each_force_pool([&](const auto& pool) {
     for (const auto& f : pool.items)
@@ -50,14 +51,12 @@ CouplingGraph graph_of(const Problem& problem) {
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
-      auto& added = graph.constraints.emplace_back();
-      added.rows = C::rows;
+      auto& added = graph.add(C::rows, pool.nodes_of(c));
       if (k < pool.slots.size()) added.unknown = pool.slots[k].unknown;
-      added.node_count = static_cast<std::uint8_t>(c.node_count());
-      for (int i = 0; i < c.node_count(); ++i) added.nodes[i] = c.nodes[i];
       if constexpr (GeneralConstraint<C>) {
         added.apart = true;
         added.first_side = static_cast<std::uint8_t>(c.first_side);
+        added.always_behind_first_side = std::is_same_v<C, CouplingConstraint>;
       }
     }
   });

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/joint_readings.h"
+#include "ingredient/joint_rows.h"
 #include "system/core.h"
 
+#include <algorithm>
 #include <tuple>
 
 namespace iota {
@@ -54,6 +56,12 @@ ConstraintId Joints::create(const SurfacePairSpec& spec) {
         {spec.kind, spec.a, spec.b, {place(core_, spec.surface_a), place(core_, spec.surface_b)}, spec.breaks}};
   });
 }
+
+ConstraintId Joints::create(const SpanSpec& spec) { return core_.execute(edit::CreateSpan{spec}); }
+
+ConstraintId Joints::create(const CouplingSpec& spec) { return core_.execute(edit::CreateCoupling{spec}); }
+
+ConstraintId Joints::create(const TackleSpec& spec) { return core_.execute(edit::CreateTackle{spec}); }
 
 void Joints::destroy(ConstraintId id) { core_.execute(edit::Destroy<ConstraintId>{id}); }
 
@@ -108,9 +116,24 @@ BreakLimits Joints::break_limits(ConstraintId id) const { return core_.model.con
 std::vector<ParticleId> Joints::particles(ConstraintId id) const {
   const model::Model& m = core_.model;
   std::vector<ParticleId> ids;
-  for (const std::uint32_t p : m.constraints[core_.slot(id)].particles)
-    if (p != model::none) ids.push_back(m.particles.id(p));
+  const auto list = [&](const ingredient::Constraint& c) {
+    for (const std::uint32_t p : c.particles)
+      if (p != model::none && std::find(ids.begin(), ids.end(), m.particles.id(p)) == ids.end())
+        ids.push_back(m.particles.id(p));
+  };
+  const ingredient::Constraint& c = m.constraints[core_.slot(id)];
+  list(c);
+  ingredient::joint::for_each_term(m, c, [&](const ingredient::CoupledTerm& term) { list(m.constraints[term.joint]); });
   return ids;
+}
+
+std::vector<CoupledCoordinate> Joints::terms(ConstraintId id) const {
+  const model::Model& m = core_.model;
+  std::vector<CoupledCoordinate> terms;
+  ingredient::joint::for_each_term(m, m.constraints[core_.slot(id)], [&](const ingredient::CoupledTerm& term) {
+    terms.push_back({m.constraints.id(term.joint), term.coordinate, term.ratio});
+  });
+  return terms;
 }
 
 std::vector<ConstraintId> Joints::ids() const { return core_.model.constraints.ids(); }

@@ -268,8 +268,10 @@ def test_a_joint_that_moves_wakes_what_rests() -> None:
 def test_the_page_of_constraints_runs_and_shows_every_picture() -> None:
     docs = Path(__file__).parents[2] / "docs"
     page = (docs / "constraints.md").read_text(encoding="utf-8")
-    (block,) = re.findall(r"^```python\n(.*?)^```", page, re.M | re.S)
-    exec(compile(block, "docs/constraints.md", "exec"), {})
+    blocks = re.findall(r"^```python\n(.*?)^```", page, re.M | re.S)
+    assert blocks
+    for block in blocks:
+        exec(compile(block, "docs/constraints.md", "exec"), {})
     shown = re.findall(r"\]\((pictures/constraints/\w+\.svg)\)", page)
     assert sorted(shown) == sorted(str(p.relative_to(docs)) for p in (docs / "pictures" / "constraints").glob("*.svg"))
 
@@ -317,6 +319,30 @@ REFUSED = {
     "rod of no length": (
         lambda s, a, b: s.rod(a.particles[0], b.particles[0], 0),
         "length must be between 1e-9 and 1e9 m",
+    ),
+    "rope without a number": (
+        lambda s, a, b: s.rope(a.particles[0], b.particles[0], math.nan),
+        "length must be finite",
+    ),
+    "rest of no spring": (
+        lambda s, a, b: s.revolute(a, at=(0, 0, 0), axis=(1, 0, 0), spring=(0, 1, 0.5)),
+        "a spring without a stiffness does not go to its rest",
+    ),
+    "interval of points": (
+        lambda s, a, b: s.on_path(b.particles[0], [(0, 2, 0), (1, 2, 0)], interval=(0, 2)),
+        "interval and samples are of a path that is a function",
+    ),
+    "rounding of a spline": (
+        lambda s, a, b: s.on_path(b.particles[0], [(0, 2, 0), (1, 2, 0)], smooth=True, rounding=0.1),
+        "a smooth path has none",
+    ),
+    "size of a shape": (
+        lambda s, a, b: s.on_surface(b.particles[0], iota.Sphere(1), at=(0, 1, 0), size=3),
+        "a shape has its own",
+    ),
+    "screw without a lead": (
+        lambda s, a, b: s.screw(a, at=(0, 0, 0), axis=(1, 0, 0), lead=0),
+        "needs a lead that is not zero",
     ),
     "break force": (lambda s, a, b: s.ball(a, at=(0, 0, 0), break_force=0), "break_force must be above zero, got 0"),
     "another system": (lambda s, a, b: s.ball(iota.System().body(), at=(0, 0, 0)), "another system"),

@@ -24,11 +24,12 @@ def test_a_stop_calls_when_it_is_reached_and_left() -> None:
     hinge, other = pendulum(world), pendulum(world, 5)
     told: list[tuple[str, str | None]] = []
 
-    @world.on_contact(hinge)
     def stopped(event: iota.Event) -> None:
         assert event.name == "contact" and event.contact is not None and event.target == hinge.a
         assert event.contact.constraint == hinge and event.point is not None
         told.append((event.phase, event.contact.stop))
+
+    world.on_contact(hinge)(stopped)
 
     run(world, 1)
     assert told == [("start", "angle")]
@@ -65,11 +66,12 @@ def test_what_breaks_calls_and_may_be_edited_there() -> None:
     hinge.combine(load)
     told: list[object] = []
 
-    @world.on_break(load.body)
     def broke(event: iota.Event) -> None:
         assert event.broken is not None and event.broken.force > 1
         told.append(event.broken.constraint or event.broken.bond)
         load.velocity = (0, 0, 0)  # between two steps: any edit may be made
+
+    world.on_break(load.body)(broke)
 
     run(world, 1)
     assert told == [rope, spring]

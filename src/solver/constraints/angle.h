@@ -3,6 +3,7 @@
 
 #include "solver/constraints/arms.h"
 
+#include <algorithm>
 #include <numbers>
 
 namespace iota::solver {
@@ -36,6 +37,23 @@ struct AngleConstraint : ArmConstraint<AngleConstraint, 1, 3> {
   void calc_gradient(const Vec3* e, Vec3 (*out)[3]) const {
     const First f(e);
     for (int a = 0; a < 3; ++a) out[0][a] = (1 / f.size2()) * (f.c * f.ds[a] - f.s * f.dc[a]);
+  }
+  /// The mean of the gradients at both ends of a step, times a factor that makes it give the change of the angle: for an
+  /// axis at rest the mean gives its sine. Where an angle changes by less than `least` while its axis turns fast, part of
+  /// the factor is left out, since it is a ratio of small differences there.
+  void mean_gradients(const Vec3* x0, double start, const Vec3* x1, double end, Vec3* out) const {
+    constexpr double least = 1e-3;  // rad
+    Vec3 at_start[max_nodes];
+    gradients(x0, start, at_start), gradients(x1, end, out);
+    double given = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      out[i] = 0.5 * (at_start[i] + out[i]);
+      given += dot(out[i], x1[nodes[i]] - x0[nodes[i]]);
+    }
+    const double change = angle(x1, end) - angle(x0, start);
+    const double squared = given * given, floor = least * least * least * least;
+    const double factor = (change * given * squared + floor) / (squared * squared + floor);
+    for (std::uint32_t i = 0; i < count; ++i) out[i] = std::clamp(factor, 0.5, 2.0) * out[i];
   }
   void calc_hessian(const Vec3* e, const double* lambda, bool clamp, Mat3 (*h)[3]) const {
     if (clamp) {

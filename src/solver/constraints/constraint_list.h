@@ -4,13 +4,16 @@
 #include "solver/constraints/affine.h"
 #include "solver/constraints/angle.h"
 #include "solver/constraints/bilinear.h"
+#include "solver/constraints/coupling.h"
 #include "solver/constraints/curve.h"
 #include "solver/constraints/distance.h"
+#include "solver/constraints/span.h"
 #include "solver/constraints/surface.h"
 #include "solver/constraints/surface_pair.h"
 
 #include <concepts>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 namespace iota::solver {
@@ -66,11 +69,43 @@ class Gradients {
   std::array<Vec3, GeneralConstraint<C> ? C::max_nodes * C::rows : 0> rows_;
 };
 
+/// Has a discrete gradient of its own for the mid-point scheme, where the mean of the gradients at both ends of a step does
+/// not give its change exactly.
+template <class C>
+concept DiscreteGradientConstraint =
+    GeneralConstraint<C> && requires(const C& c, const Vec3* x, Vec3* rows) { c.mean_gradients(x, 0.0, x, 1.0, rows); };
+
+/// What the mid-point scheme takes for gradients: their mean over a step from x0 to x1.
+template <class C>
+class MeanGradients {
+ public:
+  MeanGradients(const C& c, const Vec3* x0, double start, const Vec3* x1, double end) : at_start_(c, x0, start) {
+    if constexpr (DiscreteGradientConstraint<C>) c.mean_gradients(x0, start, x1, end, rows_.data());
+  }
+  /// at_end: the gradients of the node at the end of the step.
+  void of_node(int i, const Vec3* at_end, Vec3* out) const {
+    if constexpr (DiscreteGradientConstraint<C>) {
+      for (int r = 0; r < C::rows; ++r) out[r] = rows_[i * C::rows + r];
+    } else {
+      at_start_.of_node(i, out);
+      for (int r = 0; r < C::rows; ++r) out[r] = 0.5 * (out[r] + at_end[r]);
+    }
+  }
+
+ private:
+  struct Unused {
+    Unused(const C&, const Vec3*, double) {}
+  };
+  std::conditional_t<DiscreteGradientConstraint<C>, Unused, Gradients<C>> at_start_;
+  std::array<Vec3, DiscreteGradientConstraint<C> ? C::max_nodes * C::rows : 0> rows_;
+};
+
 /// The one list of constraint types; pools, sparsity, assembly and reports are folds over it.
 template <template <class> class Pool>
 using ConstraintPools =
     std::tuple<Pool<DistanceConstraint>, Pool<AffineConstraint>, Pool<BilinearConstraint>, Pool<AngleConstraint>,
-               Pool<CurveConstraint>, Pool<StationConstraint>, Pool<SurfaceConstraint>, Pool<SurfacePairConstraint>>;
+               Pool<CurveConstraint>, Pool<StationConstraint>, Pool<SurfaceConstraint>, Pool<SurfacePairConstraint>,
+               Pool<SpanConstraint>, Pool<CouplingConstraint>>;
 
 template <class C>
 struct CheckConstraint {

@@ -100,8 +100,8 @@ std::uint32_t BlockPattern::find_home(std::span<const std::uint32_t> nodes, std:
   throw std::logic_error("rows without a home");  // ours: nothing that a user can do
 }
 
-BlockPattern::ConstraintSlot BlockPattern::constraint_slot(std::span<const std::uint32_t> nodes,
-                                                           std::uint32_t unknown) const {
+BlockPattern::ConstraintSlot BlockPattern::constraint_slot(std::span<const std::uint32_t> nodes, std::uint32_t unknown,
+                                                           GradientSlot* gradients) const {
   const std::uint32_t home = find_home(nodes, unknown);
   const Vertex& vertex = vertices_[home];
   const std::uint8_t pivot = vertex.pivot;
@@ -112,7 +112,7 @@ BlockPattern::ConstraintSlot BlockPattern::constraint_slot(std::span<const std::
   slot.stride = pivot;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const std::uint32_t node = node_vertex_[nodes[i]];
-    GradientSlot& g = slot.gradients[i];
+    GradientSlot& g = gradients[i];
     if (node == home) {
       g = {vertex.diagonal + row * pivot, pivot, 1, static_cast<std::int8_t>(row - row * pivot), true, true};
     } else if (node > home) {

@@ -71,7 +71,6 @@ class BlockPattern {
     std::uint32_t unknown = 0;   ///< of its first multiplier
     std::uint32_t diagonal = 0;  ///< of its first multiplier's diagonal entry
     std::uint8_t stride = 1;     ///< pivot size of its vertex: the next row's diagonal entry is stride + 1 further
-    std::array<GradientSlot, CouplingGraph::max_constraint_nodes> gradients{};
   };
 
   /// Orders the nodes and lays out the storage; gives each constraint its unknown.
@@ -107,8 +106,9 @@ class BlockPattern {
   std::uint32_t node_diagonal(std::uint32_t node) const { return vertices_[node_vertex_[node]].diagonal; }
   std::uint8_t node_stride(std::uint32_t node) const { return vertices_[node_vertex_[node]].pivot; }
   PairSlot pair_slot(std::uint32_t a, std::uint32_t b) const;
-  /// Of a constraint, from its nodes and the unknown that the graph got for it.
-  ConstraintSlot constraint_slot(std::span<const std::uint32_t> nodes, std::uint32_t unknown) const;
+  /// Of a constraint, from its nodes and the unknown that the graph got for it; `gradients` has room for one of each node.
+  ConstraintSlot constraint_slot(std::span<const std::uint32_t> nodes, std::uint32_t unknown,
+                                 GradientSlot* gradients) const;
 
  private:
   friend class PatternBuilder;

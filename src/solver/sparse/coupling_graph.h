@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace iota::solver {
@@ -12,16 +13,16 @@ namespace iota::solver {
 /// What couples with what, before any order is known. A node has three unknowns (its position); a constraint has 1 to 3
 /// rows and touches a few nodes; couplings are pairs of nodes with a 3 x 3 block between them.
 struct CouplingGraph {
-  static constexpr int max_constraint_nodes = 8;
   static constexpr std::uint32_t no_unknown = 0xffffffff;
   struct Constraint {
     std::uint8_t rows = 1;
     std::uint8_t node_count = 0;
-    std::array<std::uint32_t, max_constraint_nodes> nodes{};
     /// The gradient of a single node may vanish, so the rows need a pivot of their own, behind the nodes [0, first_side)
     /// or behind the others, whichever are eliminated first (0: behind all).
     bool apart = false;
     std::uint8_t first_side = 0;
+    bool always_behind_first_side = false;  ///< the gradient of the other side may vanish as a whole
+    std::uint32_t first_node = 0;           ///< in `nodes`
     /// Of its first multiplier: an answer of the pattern. `BlockPattern::follow` is given the latest answer, and
     /// `no_unknown` for a constraint that is new or has other nodes.
     std::uint32_t unknown = no_unknown;
@@ -29,7 +30,21 @@ struct CouplingGraph {
   std::uint32_t node_count = 0;
   std::vector<std::array<std::uint32_t, 2>> couplings;
   std::vector<Constraint> constraints;
-  std::vector<Vec3> places;  ///< of the nodes, which a dissection cuts apart; or empty
+  std::vector<std::uint32_t> nodes;  ///< of the constraints, one after the other
+  std::vector<Vec3> places;          ///< of the nodes, which a dissection cuts apart; or empty
+
+  std::span<const std::uint32_t> nodes_of(const Constraint& c) const {
+    return {nodes.data() + c.first_node, c.node_count};
+  }
+  std::span<std::uint32_t> nodes_of(const Constraint& c) { return {nodes.data() + c.first_node, c.node_count}; }
+  Constraint& add(std::uint8_t rows, std::span<const std::uint32_t> of_constraint) {
+    Constraint& added = constraints.emplace_back();
+    added.rows = rows;
+    added.node_count = static_cast<std::uint8_t>(of_constraint.size());
+    added.first_node = static_cast<std::uint32_t>(nodes.size());
+    nodes.insert(nodes.end(), of_constraint.begin(), of_constraint.end());
+    return added;
+  }
 };
 
 /// How a coupling graph has changed since its pattern was made.

@@ -41,8 +41,8 @@ void PatternBuilder::follow(const GraphChange& change) {
 void PatternBuilder::order_all_nodes() {
   std::vector<std::array<std::uint32_t, 2>> edges(graph_.couplings);
   for (const auto& c : graph_.constraints)
-    for (int i = 0; i < c.node_count; ++i)
-      for (int j = i + 1; j < c.node_count; ++j) edges.push_back({c.nodes[i], c.nodes[j]});
+    for (auto nodes = graph_.nodes_of(c); !nodes.empty(); nodes = nodes.subspan(1))
+      for (const std::uint32_t other : nodes.subspan(1)) edges.push_back({nodes[0], other});
   node_order_ = elimination_order(graph_.node_count, edges, graph_.places);
   rank_.resize(graph_.node_count);
   for (std::uint32_t i = 0; i < graph_.node_count; ++i) rank_[node_order_[i]] = i;
@@ -91,7 +91,8 @@ void PatternBuilder::take_rows_off_touched_nodes(const GraphChange& change) {
 
   for (std::uint32_t i = 0; i < graph_.constraints.size(); ++i) {
     const auto& c = graph_.constraints[i];
-    const auto begin = c.nodes.begin(), end = begin + c.node_count;
+    const auto nodes = graph_.nodes_of(c);
+    const auto begin = nodes.begin(), end = nodes.end();
     if (std::none_of(begin, end, [&](std::uint32_t node) { return is_touched_[node]; })) continue;
     if (c.unknown != CouplingGraph::no_unknown) {
       const auto home = std::find_if(begin, end, [&](std::uint32_t node) {
@@ -110,13 +111,15 @@ void PatternBuilder::take_rows_off_touched_nodes(const GraphChange& change) {
 // Each constraint lives with the first-eliminated of its nodes that has room, the widest constraints first.
 void PatternBuilder::find_homes() {
   homes_.assign(homeless_.size(), {none, 0});
+  std::vector<std::uint32_t> nodes;
   const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; };
   for (const std::uint8_t rows : {std::uint8_t{3}, std::uint8_t{2}, std::uint8_t{1}})
     for (std::size_t i = 0; i < homeless_.size(); ++i) {
       const auto& constraint = graph_.constraints[homeless_[i]];
       if (constraint.rows != rows || constraint.apart) continue;
-      auto nodes = constraint.nodes;
-      const auto begin = nodes.begin(), end = begin + constraint.node_count;
+      const auto given = graph_.nodes_of(constraint);
+      nodes.assign(given.begin(), given.end());
+      const auto begin = nodes.begin(), end = nodes.end();
       std::sort(begin, end, by_rank);
       const auto home = std::find_if(begin, end, [&](std::uint32_t node) {
         return is_touched_[node] && rows_at_[node] + rows <= max_rows_a_node;
@@ -137,14 +140,16 @@ void PatternBuilder::find_homes() {
 // The last node of the side that is eliminated first. A side that its own rows hold fast (nails) would leave no pivot.
 std::uint32_t PatternBuilder::find_node_for_rows_apart(const CouplingGraph::Constraint& c) const {
   const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; };
-  const auto begin = c.nodes.begin(), middle = begin + c.first_side, end = begin + c.node_count;
+  const auto nodes = graph_.nodes_of(c);
+  const auto begin = nodes.begin(), middle = begin + c.first_side, end = nodes.end();
   std::uint32_t found = *std::max_element(begin, end, by_rank);
   if (middle == begin) return found;
   const auto try_side = [&](auto from, auto to) {
     if (std::all_of(from, to, [&](std::uint32_t node) { return rows_at_[node] == max_rows_a_node; })) return;
     found = std::min(found, *std::max_element(from, to, by_rank), by_rank);
   };
-  try_side(begin, middle), try_side(middle, end);
+  try_side(begin, middle);
+  if (!c.always_behind_first_side) try_side(middle, end);
   return found;
 }
 
@@ -274,7 +279,8 @@ void PatternBuilder::list_couplings() {
   for (const auto [a, b] : graph_.couplings)
     if (is_listed_[a] || is_listed_[b]) couple(vertex_of(a), vertex_of(b), 3);
   for (const auto& c : graph_.constraints) {
-    const auto begin = c.nodes.begin(), end = begin + c.node_count;
+    const auto nodes = graph_.nodes_of(c);
+    const auto begin = nodes.begin(), end = nodes.end();
     if (std::none_of(begin, end, [&](std::uint32_t node) { return is_listed_[node]; })) continue;
     const std::uint32_t home = home_of(c);
     const auto width = static_cast<std::uint8_t>(c.unknown - pattern_.vertices_[home].unknown + c.rows);
@@ -295,8 +301,8 @@ void PatternBuilder::list_couplings() {
 }
 
 std::uint32_t PatternBuilder::home_of(const CouplingGraph::Constraint& c) const {
-  for (int i = 0; i < c.node_count; ++i)
-    if (const std::uint32_t v = pattern_.node_vertex_[c.nodes[i]]; pattern_.vertices_[v].holds(c.unknown)) return v;
+  for (const std::uint32_t node : graph_.nodes_of(c))
+    if (const std::uint32_t v = pattern_.node_vertex_[node]; pattern_.vertices_[v].holds(c.unknown)) return v;
   return rows_by_themselves_at(c.unknown);
 }
 

@@ -178,6 +178,33 @@ Example<SurfacePairConstraint> example(Random& random, SurfacePairConstraint c) 
   return {c, x};
 }
 
+Example<SpanConstraint> example(Random& random, SpanConstraint c) {
+  add_point(c, 0, 0, random.vec()), add_point(c, 0, 1, random.vec(), -1);
+  c.target = random.number();
+  return {c, two_bodies(random)};
+}
+
+/// Coordinates of all kinds between bodies, some of which are in several of them.
+Example<CouplingConstraint> example(Random& random, CouplingConstraint c) {
+  std::vector<Vec3> x;
+  const auto add = [&](auto row, double ratio, std::uint32_t body) {  // of the bodies `body` and `body + 1`
+    auto made = example(random, row);
+    if (x.empty()) x = made.x;
+    while (x.size() < 4 * (body + 2)) x.insert(x.end(), made.x.end() - 4, made.x.end());
+    for (std::uint32_t i = 0; i < made.constraint.count; ++i) made.constraint.nodes[i] += 4 * body;
+    if constexpr (requires { made.constraint.product; }) made.constraint.product = 0;
+    for (std::uint32_t i = 0; i < made.constraint.count; ++i) EXPECT_TRUE(c.list_node(made.constraint.nodes[i]));
+    c.add(ratio, made.constraint);
+  };
+  add(SpanConstraint{}, random.number(), 0);
+  add(AngleConstraint{}, random.number(), 1);
+  add(BilinearConstraint{}, random.number(), 3);
+  add(AngleConstraint{}, random.number(), 1);
+  c.target_start = random.number(), c.target = random.number();
+  c.track(x.data(), 0.3);
+  return {c, x};
+}
+
 /// Difference quotient of a vector-valued function of one coordinate.
 template <class Function>
 auto central(double& coordinate, double step, Function f) {
@@ -313,10 +340,63 @@ TEST(Constraints, clamped_have_no_negative_curvature) {
         ConstraintPools<Type>{});
 }
 
-TEST(Angle, counts_turns) {
+/// The change of a row's value from x0 to x1 that its mean gradient gives.
+template <class C>
+double change_by_mean_gradient(const C& c, const std::vector<Vec3>& x0, const std::vector<Vec3>& x1) {
+  static_assert(DiscreteGradientConstraint<C>);
+  const MeanGradients<C> means(c, x0.data(), 0, x1.data(), 1);
+  double change = 0;
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 mean;
+    means.of_node(i, nullptr, &mean);
+    change += dot(mean, x1[c.nodes[i]] - x0[c.nodes[i]]);
+  }
+  return change;
+}
+
+TEST(Span, changes_exactly_by_its_mean_gradient) {
+  Random random;
+  for (int round = 0; round < 100; ++round) {
+    const auto [c, x0] = example(random, SpanConstraint{});
+    const auto x1 = two_bodies(random);
+    double before, after;
+    c.value(x0.data(), 0, &before), c.value(x1.data(), 1, &after);
+    EXPECT_NEAR(change_by_mean_gradient(c, x0, x1), after - before, 1e-12);
+  }
+}
+
+/// The angle of a point about z.
+AngleConstraint angle_of(std::uint32_t node) {
   AngleConstraint c;
   c.set_constant(0, {0, 0, 1}), c.set_constant(1, {1, 0, 0});
-  c.add(2, 0, 1);
+  c.add(2, node, 1);
+  return c;
+}
+
+TEST(Angle, changes_by_its_mean_gradient_and_not_by_a_sine) {
+  for (const double turn : {1e-6, 0.01, 0.5, 1.5, -1.0}) {
+    const std::vector<Vec3> x0{{2, 0, 0.5}}, x1{{2 * std::cos(turn), 2 * std::sin(turn), 0.5}};
+    EXPECT_NEAR(change_by_mean_gradient(angle_of(0), x0, x1), turn, 1e-8 * std::abs(turn));
+  }
+}
+
+TEST(Coupling, of_unlike_turns_and_a_length_passes_all_work_on) {
+  const std::vector<Vec3> x0{{2, 0, 0}, {1, 0, 0}, {0, 3, 0}};
+  const std::vector<Vec3> x1{{2 * std::cos(0.1), 2 * std::sin(0.1), 0}, {std::cos(-0.9), std::sin(-0.9), 0}, {1, 4, 1}};
+  CouplingConstraint c;
+  for (const std::uint32_t node : {2u, 0u, 1u}) EXPECT_TRUE(c.list_node(node));
+  SpanConstraint span;
+  span.add(0, 2, 1);
+  c.add(9, angle_of(0)), c.add(1, angle_of(1)), c.add(-0.5, span);
+  const double change = 9 * 0.1 - 0.9 - 0.5 * (std::sqrt(18.0) - 3);
+  double before, after;
+  c.value(x0.data(), 0, &before), c.value(x1.data(), 1, &after);
+  EXPECT_NEAR(after - before, change, 1e-12);
+  EXPECT_NEAR(change_by_mean_gradient(c, x0, x1), change, 1e-7);
+}
+
+TEST(Angle, counts_turns) {
+  AngleConstraint c = angle_of(0);
   for (int i = 0; i <= 100; ++i) {
     const double angle = 0.2 * i;
     const Vec3 x{2 * std::cos(angle), 2 * std::sin(angle), 0.5};

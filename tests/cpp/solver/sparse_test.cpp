@@ -55,21 +55,23 @@ struct Twin {
       }
     for (auto [a, b] : graph.couplings) add_block(a, b);
     for (const auto& constraint : graph.constraints) {
-      const auto slot = pattern.constraint_slot({constraint.nodes.data(), constraint.node_count}, constraint.unknown);
+      const auto nodes = graph.nodes_of(constraint);
+      std::vector<BlockPattern::GradientSlot> gradients(nodes.size());
+      const auto slot = pattern.constraint_slot(nodes, constraint.unknown, gradients.data());
       for (int r = 0; r < constraint.rows; ++r) {
         factor.diagonals()[slot.diagonal + r * (slot.stride + 1)] = -0.01;
         dense[slot.unknown + r][slot.unknown + r] = -0.01;
         for (int i = 0; i < constraint.node_count; ++i)
           for (int c = 0; c < 3; ++c) {
             const double in_row = number(random), in_column = symmetric ? in_row : number(random);
-            const auto& g = slot.gradients[i];
+            const auto& g = gradients[i];
             const std::uint32_t at = g.offset + r * g.row_stride + c * g.column_stride;
             (g.in_diagonal ? factor.diagonals() : factor.lower())[at] = g.lower_is_row ? in_row : in_column;
             if (!symmetric)
               (g.in_diagonal ? factor.diagonals()[g.offset + g.mirror + r + c * g.row_stride] : factor.upper()[at]) =
                   g.lower_is_row ? in_column : in_row;
-            dense[slot.unknown + r][pattern.node_unknown(constraint.nodes[i]) + c] = in_row;
-            dense[pattern.node_unknown(constraint.nodes[i]) + c][slot.unknown + r] = in_column;
+            dense[slot.unknown + r][pattern.node_unknown(nodes[i]) + c] = in_row;
+            dense[pattern.node_unknown(nodes[i]) + c][slot.unknown + r] = in_column;
           }
       }
     }
@@ -183,10 +185,10 @@ CouplingGraph random_graph(std::mt19937& random) {
   // Up to one row a node and nails: enough for overflowing homes, few enough to be independent.
   for (std::uint32_t i = 0; i + 1 < graph.node_count; ++i) {
     const Edge e = pair();
-    graph.constraints.push_back({1, 2, {e[0], e[1]}});
+    graph.add(1, std::array{e[0], e[1]});
   }
-  graph.constraints.push_back({3, 1, {node(random)}});
-  if (graph.node_count > 5) graph.constraints.push_back({3, 3, {0, 2, 4}});
+  graph.add(3, std::array{node(random)});
+  if (graph.node_count > 5) graph.add(3, std::array{0u, 2u, 4u});
   return graph;
 }
 
@@ -213,7 +215,7 @@ TEST(Ordering, of_a_chain_makes_no_fill) {
   const std::uint32_t n = 1000;
   CouplingGraph graph;
   graph.node_count = n;
-  for (std::uint32_t i = 0; i + 1 < n; ++i) graph.constraints.push_back({1, 2, {i, i + 1}});
+  for (std::uint32_t i = 0; i + 1 < n; ++i) graph.add(1, std::array{i, i + 1});
   BlockPattern pattern;
   pattern.analyze(graph);
   EXPECT_EQ(pattern.entries().size(), n - 1);
@@ -243,7 +245,7 @@ CouplingGraph net(std::uint32_t side, bool diagonals, bool rows) {
   graph.node_count = side * side;
   const auto tie = [&](std::uint32_t a, std::uint32_t b) {
     if (rows)
-      graph.constraints.push_back({1, 2, {a, b}});
+      graph.add(1, std::array{a, b});
     else
       graph.couplings.push_back({a, b});
   };
@@ -354,30 +356,29 @@ struct ChangingGraph {
     for (std::uint32_t n = 1; n < nodes; ++n) {
       const std::uint32_t to = n - 1 - static_cast<std::uint32_t>(random() % std::min<std::uint32_t>(n, 3));
       graph.couplings.push_back({to, n});
-      graph.constraints.push_back({1, 2, {to, n}});
+      graph.add(1, std::array{to, n});
     }
     pattern.analyze(graph);
   }
 
   void touch(std::uint32_t node) { change.touched.push_back(node); }
   void touch(const CouplingGraph::Constraint& c) {
-    for (int i = 0; i < c.node_count; ++i) touch(c.nodes[i]);
+    for (const std::uint32_t node : graph.nodes_of(c)) touch(node);
   }
   std::uint32_t any_node(std::mt19937& random) const { return static_cast<std::uint32_t>(random() % graph.node_count); }
 
   /// Up to two rows, on nodes that are near each other in number.
   void add_constraint(std::mt19937& random) {
-    CouplingGraph::Constraint c;
-    c.rows = static_cast<std::uint8_t>(1 + random() % 2);
+    const auto rows = static_cast<std::uint8_t>(1 + random() % 2);
+    std::vector<std::uint32_t> nodes;
     const std::uint32_t first = any_node(random), wanted = 2 + static_cast<std::uint32_t>(random() % 4);
     for (std::uint32_t i = 0; i < wanted; ++i) {
       const auto node = static_cast<std::uint32_t>((first + i * (1 + random() % 3)) % graph.node_count);
-      if (std::find(c.nodes.begin(), c.nodes.begin() + c.node_count, node) == c.nodes.begin() + c.node_count)
-        c.nodes[c.node_count++] = node;
+      if (std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
     }
+    CouplingGraph::Constraint& c = graph.add(rows, nodes);
     c.apart = random() % 3 == 0;
     c.first_side = c.apart ? static_cast<std::uint8_t>(random() % c.node_count) : std::uint8_t{0};
-    graph.constraints.push_back(c);
     touch(c);
   }
   void remove_constraint(std::size_t k) {
@@ -390,7 +391,7 @@ struct ChangingGraph {
     for (auto& c : graph.couplings)
       for (std::uint32_t& node : c)
         if (node == from) node = to;
-    for (auto& c : graph.constraints) std::replace(c.nodes.begin(), c.nodes.begin() + c.node_count, from, to);
+    std::replace(graph.nodes.begin(), graph.nodes.end(), from, to);
   }
   /// Half of what ends at a node ends at a new one instead.
   void split(std::uint32_t node, std::mt19937& random) {
@@ -400,7 +401,8 @@ struct ChangingGraph {
     for (auto& c : graph.couplings)
       if ((c[0] == node || c[1] == node) && random() % 2) touch(c[0]), touch(c[1]), c[c[1] == node] = fresh;
     for (auto& c : graph.constraints) {
-      const auto end = c.nodes.begin() + c.node_count, at = std::find(c.nodes.begin(), end, node);
+      const auto nodes = graph.nodes_of(c);
+      const auto end = nodes.end(), at = std::find(nodes.begin(), end, node);
       if (at == end || random() % 2) continue;
       touch(c);
       *at = fresh;
@@ -415,14 +417,15 @@ struct ChangingGraph {
     for (const auto& c : graph.couplings)
       if (has(c.begin(), c.end(), gone) && has(c.begin(), c.end(), into)) return;
     for (const auto& c : graph.constraints) {
-      const auto end = c.nodes.begin() + c.node_count;
-      if (has(c.nodes.begin(), end, gone) && has(c.nodes.begin(), end, into)) return;
+      const auto nodes = graph.nodes_of(c);
+      if (has(nodes.begin(), nodes.end(), gone) && has(nodes.begin(), nodes.end(), into)) return;
     }
     touch(into);
     for (auto& c : graph.couplings)
       if (has(c.begin(), c.end(), gone)) touch(c[0]), touch(c[1]);
     for (auto& c : graph.constraints) {
-      if (!has(c.nodes.begin(), c.nodes.begin() + c.node_count, gone)) continue;
+      const auto nodes = graph.nodes_of(c);
+      if (!has(nodes.begin(), nodes.end(), gone)) continue;
       touch(c);
       change.removed_rows.push_back(std::exchange(c.unknown, CouplingGraph::no_unknown));
     }
@@ -498,12 +501,12 @@ TEST(BlockPattern, follows_a_chain_closed_to_a_ring_and_opened_again) {
   graph.node_count = 60;
   for (std::uint32_t n = 1; n < graph.node_count; ++n) {
     graph.couplings.push_back({n - 1, n});
-    graph.constraints.push_back({1, 2, {n - 1, n}});
+    graph.add(1, std::array{n - 1, n});
   }
   BlockPattern pattern;
   pattern.analyze(graph);
   const std::uint32_t fill = pattern.fill();
-  graph.constraints.push_back({1, 2, {0, 59}});
+  graph.add(1, std::array{0u, 59u});
   (void)pattern.follow(graph, {.touched = {0, 59}});
   Twin(pattern, graph, true, random).expect_equal_solutions();
   CouplingGraph anew = graph;

@@ -59,7 +59,7 @@ struct JointedWorld {
   }
 
   void make_constraint() {
-    const auto kind = static_cast<ConstraintKind>(index(15));
+    const auto kind = static_cast<ConstraintKind>(index(20));
     const BodyId world_or_body = index(3) == 0 ? BodyId{} : any_body();
     BreakLimits breaks;
     if (index(4) == 0) breaks = {uniform(1, 1000), uniform(1, 1000)};
@@ -67,6 +67,23 @@ struct JointedWorld {
       case ConstraintKind::rod:
       case ConstraintKind::rope:
         system.joints().create(DistanceSpec{.kind = kind, .p = any_particle(), .q = any_particle(), .breaks = breaks});
+        break;
+      case ConstraintKind::span:
+        system.joints().create(SpanSpec{any_particle(), any_particle(), any_options(), breaks});
+        break;
+      case ConstraintKind::coupling: {
+        const auto joints = system.joints().ids();
+        std::vector<CoupledCoordinate> terms;
+        for (const ConstraintId joint : joints)
+          for (const JointCoordinate which : joint_coordinates)
+            if (index(joints.size()) < 2 && has_coordinate(system.joints().state(joint).kind, which))
+              terms.push_back({joint, which, uniform(-2, 2)});
+        system.joints().create(CouplingSpec{.terms = terms, .breaks = breaks});
+        break;
+      }
+      case ConstraintKind::tackle:
+        system.joints().create(
+            TackleSpec{.points = {any_particle(), any_particle(), any_particle()}, .breaks = breaks});
         break;
       case ConstraintKind::path:
         system.joints().create(PathSpec{.particle = any_particle(),
@@ -90,6 +107,7 @@ struct JointedWorld {
         const BodyId a = any_body();
         JointSpec spec{.kind = kind, .a = a, .b = world_or_body, .axis = point(), .breaks = breaks};
         spec.at = index(2) ? system.particles().position(system.bodies().particles(a)[0]) : point();
+        spec.lead = uniform(-1, 1);
         if (has_coordinate(kind, JointCoordinate::angle)) spec.angle = any_options();
         if (has_coordinate(kind, JointCoordinate::slide)) spec.slide = any_options();
         system.joints().create(spec);
