@@ -5,12 +5,12 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* doc = "A user's hand on a body; made by `System.grip`.";
+constexpr const char* doc = "A user's grip on a body; made by `System.grip`.";
 
 constexpr const char* make_doc =
     "Takes hold of a body: a critically damped, capped spring from a point of the body to a target.\n\n"
     "local_point: in the body's drawn frame, m; it is put on the nearest place that the body's particles span. target:\n"
-    "world, m, None: the center of mass. client, hold: whose hand; carried to the viewers. frequency: Hz. max_acceleration: m/s^2, caps the force at\n"
+    "world, m, None: the center of mass. client, hold: whose grip; carried to the viewers. frequency: Hz. max_acceleration: m/s^2, caps the force at\n"
     "this times the mass it can feel. Forces of several grips add up.";
 
 }  // namespace

@@ -96,7 +96,7 @@ void bind_input(nb::module_& module) {
           "kind", [](const InputEvent& e) { return kind_name_of(e.kind); },
           "join, leave, select, grab_start, grab_move, grab_end, action, control, change, pointer, key or picture")
       .def_ro("client", &InputEvent::client, "From 1, never used twice in a world.")
-      .def_ro("hold", &InputEvent::hold, "The client's own number for this hand.")
+      .def_ro("hold", &InputEvent::hold, "The client's own number for this grip.")
       .def_prop_ro(
           "names_body",
           [](const InputEvent& e) { return static_cast<bool>(e.body) && e.kind != InputEvent::Kind::change; },

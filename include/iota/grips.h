@@ -10,12 +10,12 @@
 namespace iota {
 
 struct GripOptions {
-  std::uint32_t client = 0, hold = 0;  ///< whose hand; carried to the viewers
+  std::uint32_t client = 0, hold = 0;  ///< whose grip; carried to the viewers
   double frequency = 2.5;              ///< Hz of the critically damped spring
   double max_acceleration = 60;        ///< m/s^2: caps the force at this times the mass it can feel
 };
 
-/// Hands: springs from a point of a body to a target that a user moves.
+/// Grips: springs from a point of a body to a target that a user moves.
 class Grips : public View {
  public:
   explicit Grips(Core& core) : View(core) {}

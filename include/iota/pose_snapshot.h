@@ -22,7 +22,7 @@ struct SparkPose {
   std::uint32_t set;    ///< slot of its emitter
 };
 
-/// A user's hand on a body: the spring from `point` to `target`.
+/// A user's grip on a body: the spring from `point` to `target`.
 struct HoldPose {
   std::uint32_t client, hold, body;
   float point[3], target[3];  ///< world frame, m

@@ -135,13 +135,13 @@ void put_to_rest(Editor& e, std::uint32_t body) {
   e.islands.update(model, e.parallel);
   const std::vector<std::uint32_t> affected = model.tied_bodies(std::array{body});
   const std::uint32_t articulate = model.bodies[body].articulate;
-  if (const step::Island* const island = e.islands.of_articulate(articulate))
+  if (const island::Island* const island = e.islands.of_articulate(articulate))
     island->put_to_rest(model);
   else
-    step::FreeParticles::put_to_rest(model, articulate);
+    island::FreeParticles::put_to_rest(model, articulate);
   for (const std::uint32_t b : affected) {
     model::Articulate& a = model.articulates[model.bodies[b].articulate];
-    a.disturbed = a.jolted = 0;
+    a.to_wake = a.velocity_dirty = 0;
   }
 }
 
@@ -163,7 +163,7 @@ void apply(Editor& e, const SetKind& c) {
   if (before == BodyKind::resting) {
     for (const std::uint32_t b : model.tied_bodies(std::array{slot})) {
       if (model.bodies[b].kind == BodyKind::resting) model.bodies[b].kind = BodyKind::dynamic;
-      model.articulates[model.bodies[b].articulate].disturbed = 1;
+      model.articulates[model.bodies[b].articulate].to_wake = 1;
     }
     if (c.kind == BodyKind::dynamic) return;
   }
@@ -180,7 +180,7 @@ void apply(Editor& e, const SetKind& c) {
         ring.velocity = ring.acceleration = {};
     });
     model.touch_body(slot);
-    model.articulates[body.articulate].jolted = 1;
+    model.articulates[body.articulate].velocity_dirty = 1;
   };
   if (before == BodyKind::inactive) {  // what it is hinged to may have gone elsewhere meanwhile
     RestructureReport report;

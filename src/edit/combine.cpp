@@ -40,7 +40,7 @@ RestructureReport apply(Editor& e, const CombineParticles& c) {
     (void)ingredient::Closings::add(model, {{p, q}, distance, c.over, 0, 0});
     model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
     report.changed = true;
-    change.finish({.jolted = true});
+    change.finish({.velocity_dirty = true});
     return report;
   }
   const model::Ring& ring_p = model.rings[model.particles[p].ring];
@@ -75,7 +75,7 @@ RestructureReport call_off(Editor& e, std::uint32_t closing) {
                        report);
   ingredient::Closings::end(model, closing);
   report.changed = true;
-  change.finish({.jolted = true});
+  change.finish({.velocity_dirty = true});
   return report;
 }
 

@@ -48,7 +48,7 @@ std::uint32_t require(const model::Model& m, EmitterId id) { return slot_of(m.em
 
 void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model::Articulate& a = model.articulates[model.bodies[model.particles[particle].body].articulate];
-  a.jolted = a.disturbed = 1;
+  a.velocity_dirty = a.to_wake = 1;
 }
 
 Snapshot Editor::snapshot() {

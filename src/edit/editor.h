@@ -52,12 +52,12 @@ std::uint32_t require(const model::Model&, EmitterId);
 
 /// What commands work on.
 struct Editor {
-  Editor(model::Model& model, step::Islands& islands, held::HeldForces& held, read::Orientations& orientations,
+  Editor(model::Model& model, island::Islands& islands, held::HeldForces& held, read::Orientations& orientations,
          const Parallel& parallel)
       : model(model), islands(islands), held(held), orientations(orientations), parallel(parallel) {}
 
   model::Model& model;
-  step::Islands& islands;
+  island::Islands& islands;
   held::HeldForces& held;
   read::Orientations& orientations;
   const Parallel& parallel;

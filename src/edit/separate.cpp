@@ -18,7 +18,7 @@ RestructureReport apply(Editor& e, const Separate& c) {
   Restructuring change(e, std::array{body_p, body_q},
                        gentle ? Restructuring::Kind::gentle : Restructuring::Kind::moving, report);
   model::Edit owed = separate_particles(model, p, q, report);
-  owed.jolted = !gentle;
+  owed.velocity_dirty = !gentle;
   change.finish(owed, {ViewEvent::Kind::break_, place});
   return report;
 }

@@ -26,9 +26,9 @@ Conserved conserved(const model::Model& model, std::span<const std::uint32_t> bo
 /// Projects positions and velocities of the islands that the bodies are in.
 void settle(Editor& e, std::span<const std::uint32_t> bodies, bool positions, RestructureReport& report) {
   e.islands.update(e.model, e.parallel);
-  std::vector<step::Island*> settled;
+  std::vector<island::Island*> settled;
   for (const std::uint32_t body : bodies) {
-    step::Island* const island = e.islands.of_articulate(e.model.bodies[body].articulate);
+    island::Island* const island = e.islands.of_articulate(e.model.bodies[body].articulate);
     if (!island) continue;  // a free particle has nothing to settle
     if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
     settled.push_back(island);
@@ -139,7 +139,7 @@ void Restructuring::settle_and_measure(const model::Edit& owed) {
   model::Model& model = editor_.model;
   const std::vector<std::uint32_t> affected = with_created(affected_);
   bool pinned = false;
-  if (owed.moved || owed.jolted) {
+  if (owed.moved || owed.velocity_dirty) {
     const std::vector<std::uint32_t> touched = with_created(edited());
     settle(editor_, touched, owed.moved, report_);
     pinned = !give_back_momenta(model, touched, affected, before_);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace iota::step {
+namespace iota::island {
 
 using model::Model;
 
@@ -92,4 +92,4 @@ Diagnosis Island::diagnose(const Model& model) const {
   return out;
 }
 
-}  // namespace iota::step
+}  // namespace iota::island

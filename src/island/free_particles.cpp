@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace iota::step {
+namespace iota::island {
 
 using model::Model;
 
@@ -129,4 +129,4 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
   return report;
 }
 
-}  // namespace iota::step
+}  // namespace iota::island

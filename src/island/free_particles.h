@@ -7,9 +7,9 @@
 
 #include <vector>
 
-namespace iota::step {
+namespace iota::island {
 
-/// Particles that nothing holds: no hinge, nail, hand, constraint or implicit bond. There is nothing to solve for them; their
+/// Particles that nothing holds: no hinge, nail, grip, constraint or implicit bond. There is nothing to solve for them; their
 /// steps are written down. The same results as an island's, up to round-off.
 class FreeParticles {
  public:
@@ -47,4 +47,4 @@ class FreeParticles {
   bool is_old_ = false;
 };
 
-}  // namespace iota::step
+}  // namespace iota::island

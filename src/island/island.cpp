@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace iota::step {
+namespace iota::island {
 
 using model::is_free;
 using model::Model;
@@ -66,7 +66,7 @@ void Island::carry_along(Model& model) {
 
 // Zero near the world's origin. Far from it, the place of the first point: differences of neighbors are then exact, and what
 // a step computes has the digits of the island's size instead of the place's. At 1e7 m a chain of 2 cm links hung in the air.
-// Not where something holds on to a place of the world other than a nail or a hand: a path, a surface, a joint's axis.
+// Not where something holds on to a place of the world other than a nail or a grip: a path, a surface, a joint's axis.
 Vec3 Island::choose_origin(const Model& model) const {
   constexpr double far = 1e4;  // mean lengths of links: closer by, 1e-12 of one is resolved
   if (nodes_.size() == 0) return {};
@@ -253,4 +253,4 @@ bool Island::project(Model& model, bool positions) {
   return met;
 }
 
-}  // namespace iota::step
+}  // namespace iota::island

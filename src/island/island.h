@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace iota::step {
+namespace iota::island {
 
 /// Articulates that bonds and constraints tie together, as one problem for the solver: nodes, ingredients, an integrator.
 /// What acts on the nodes is the ingredients' business; the stages here are folds over them.
@@ -46,7 +46,7 @@ class Island {
   Diagnosis diagnose(const model::Model&) const;
 
   /// Wakes it in the next step.
-  void disturb() { disturbed_ = true; }
+  void wake() { to_wake_ = true; }
   bool is_asleep(const model::Model&) const;
   void put_to_rest(model::Model&) const;
   std::size_t body_count() const { return nodes_.bodies.size(); }
@@ -86,7 +86,7 @@ class Island {
   void store_carried(model::Model&) const;
   bool meets_pinned(const model::Model&) const;
 
-  /// Whether it sleeps and nothing has disturbed it; one that was disturbed is awake afterwards.
+  /// Whether it sleeps on; one that `wake` was called for is awake afterwards.
   bool skip_if_asleep(model::Model&);
   /// Falls asleep once it has been slow for long enough, if the model asks for that.
   void update_sleep_timer(model::Model&, double h, solver::AdvanceReport&) const;
@@ -101,7 +101,7 @@ class Island {
   std::array<char, 32> solver_name_{};
   std::unique_ptr<Solver> solver_;  // who is asked instead of the integrator's own
   bool idle_ = false;               // no body of it can move by itself: there is nothing to solve
-  bool disturbed_ = false;
+  bool to_wake_ = false;
 };
 
-}  // namespace iota::step
+}  // namespace iota::island

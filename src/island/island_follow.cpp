@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace iota::step {
+namespace iota::island {
 
 using model::Model;
 using model::none;
@@ -98,4 +98,4 @@ void Island::remove_nodes(std::vector<std::uint32_t> nodes) {
   for (const std::uint32_t node : nodes) problem_.mark_for_removal(node), nodes_.remove(node);
 }
 
-}  // namespace iota::step
+}  // namespace iota::island

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace iota::step {
+namespace iota::island {
 
 using model::Model;
 using model::none;
@@ -224,4 +224,4 @@ std::size_t Islands::grain(const Parallel& parallel) {
   return std::max<std::size_t>(1, in_order_.size() * 64 / total_size_);
 }
 
-}  // namespace iota::step
+}  // namespace iota::island

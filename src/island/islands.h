@@ -5,7 +5,7 @@
 #include "island/free_particles.h"
 #include "island/island.h"
 
-namespace iota::step {
+namespace iota::island {
 
 /// All islands of a model, re-made only where articulates or what ties them changed: an edit costs what it touches.
 class Islands {
@@ -63,4 +63,4 @@ class Islands {
   bool knows_all_ = false, order_is_old_ = true;
 };
 
-}  // namespace iota::step
+}  // namespace iota::island

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace iota::step {
+namespace iota::island {
 
 using model::is_free;
 using model::Model;
@@ -17,8 +17,8 @@ bool Island::is_asleep(const Model& model) const {
 }
 
 bool Island::skip_if_asleep(Model& model) {
-  const bool disturbed = std::exchange(disturbed_, false);
-  if (!disturbed) {
+  const bool woken = std::exchange(to_wake_, false);
+  if (!woken) {
     if (!is_asleep(model)) return false;
     if (!any_ingredient([&](const auto& i) { return i.wakes(model, nodes_); })) return true;
   }
@@ -49,4 +49,4 @@ void Island::put_to_rest(Model& model) const {
                        [&](std::uint32_t ring) { model.rings[ring].velocity = model.rings[ring].acceleration = {}; });
 }
 
-}  // namespace iota::step
+}  // namespace iota::island

@@ -8,7 +8,7 @@ namespace iota::model {
 void Structure::touch(std::uint32_t articulate, Touch what) {
   Articulate& a = articulates[articulate];
   ++a.version;
-  a.disturbed = 1;
+  a.to_wake = 1;
   a.standing_gap = 0;  // a conflict may be solvable now
   if (touch_of_.size() <= articulate) touch_of_.resize(articulates.slot_count(), untouched);
   Touch& touched = touch_of_[articulate];
@@ -68,7 +68,7 @@ void Structure::join_articulates(std::uint32_t a, std::uint32_t b) {
   bodies[into.last].next_in_articulate = from.first;
   into.last = from.last;
   into.count += from.count;
-  into.jolted |= from.jolted;
+  into.velocity_dirty |= from.velocity_dirty;
   articulates.destroy(b);
 }
 
@@ -134,7 +134,7 @@ bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
 
   const std::uint32_t own = articulates.create({}).slot;
   const std::uint32_t whole = bodies[body_a].articulate;
-  articulates[own].jolted = articulates[whole].jolted;
+  articulates[own].velocity_dirty = articulates[whole].velocity_dirty;
   touch(whole, locally), touch(own, locally);
   touch_of_[own] = std::max(touch_of_[own], touch_of_[whole]);
   move_bodies(*this, {flood[which], end[which]}, whole, own);

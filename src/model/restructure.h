@@ -7,8 +7,8 @@ namespace iota::model {
 
 /// What the caller of a structural edit must do next: project positions, velocities.
 struct Edit {
-  bool moved = false;   ///< points that were apart now share a ring: positions must be projected
-  bool jolted = false;  ///< velocities may violate constraints, or mass has moved: they must be projected
+  bool moved = false;           ///< points that were apart now share a ring: positions must be projected
+  bool velocity_dirty = false;  ///< velocities may violate constraints, or mass has moved: they must be projected
 };
 
 /// The topology of Tables 4.2 and 4.3: who belongs to which body, ring and articulate, masses, positions and velocities of

@@ -128,10 +128,11 @@ struct Twin {
 /// The bodies that hang together through hinges: one independent problem.
 struct Articulate {
   std::uint32_t first = none, last = none, count = 0;
-  std::uint32_t version = 0;    ///< of its structure
-  std::uint32_t jolted = 0;     ///< velocities were assigned and may violate constraints: project before the next step
-  std::uint32_t disturbed = 0;  ///< since the last step: wakes it
-  double slow_time = 0;         ///< s; of an island, at the articulate of its first body
+  std::uint32_t version = 0;  ///< of its structure
+  std::uint32_t velocity_dirty =
+      0;                      ///< velocities were assigned and may violate constraints: project before the next step
+  std::uint32_t to_wake = 0;  ///< something has happened to it since the last step
+  double slow_time = 0;       ///< s; of an island, at the articulate of its first body
   std::uint64_t standing_steps = 0;  ///< since a conflict was last tried to be closed
   double standing_gap = 0;           ///< that was left then, relative; 0: no conflict
 };

@@ -258,7 +258,7 @@ void Hub::push_input(InputEvent event) {
   {
     const std::lock_guard lock(in_mutex_);
     if (event.kind == InputEvent::Kind::grab_move) {
-      // Only the newest place of a hand counts; moves of different hands may change places.
+      // Only the newest place of a grip counts; moves of different grips may change places.
       for (auto i = input_.rbegin(); i != input_.rend() && i->kind == InputEvent::Kind::grab_move; ++i) {
         if (i->client != client || i->hold != event.hold) continue;
         i->target = event.target;
@@ -303,7 +303,7 @@ void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
   if (!may_act(client)) return;
   Client& self = clients_.at(client);
   if (self.holds.contains(message.hold)) return refuse_frame(client, "grab_start.hold is in use already");
-  if (self.holds.size() == max_holds) return refuse_frame(client, "grab_start: this client has too many hands");
+  if (self.holds.size() == max_holds) return refuse_frame(client, "grab_start: this client holds too much already");
   if (!is_near(message.local_point) || !is_near(message.target))
     return refuse_frame(client, "grab_start: a place is beyond 1e9 m");
   self.holds.insert(message.hold);

@@ -54,7 +54,7 @@ struct InputEvent {
   };
   Kind kind = Kind::join;
   std::uint32_t client = 0;        ///< from 1, never used twice in a world
-  std::uint32_t hold = 0;          ///< grab_...: the client's own number for this hand
+  std::uint32_t hold = 0;          ///< grab_...: the client's own number for this grip
   protocol::Id body;               ///< of an entity, not checked: it may be gone; null: none. change: of the widget
   Vec3f local_point{};             ///< grab_start: body frame
   Vec3f target{};                  ///< grab_start, grab_move: world frame; pointer: where it hit the body
@@ -111,7 +111,7 @@ class Room {
   /// for a place that is not finite, std::length_error for a kind above 32 bytes.
   void effect(std::string_view kind, const Vec3f& position);
 
-  /// What happened since the last call, in order of arrival. Moves of one hand that follow each other come as one.
+  /// What happened since the last call, in order of arrival. Moves of one grip that follow each other come as one.
   /// A `leave` ends the client's holds and selection: no grab_end precedes it.
   std::vector<InputEvent> take_input();
 

@@ -258,7 +258,7 @@ struct Problem {
   double kinetic_energy() const {
     return kinetic_energy([&](std::size_t i) -> const Vec3& { return velocity[i]; });
   }
-  /// Gravity and implicit forces; external ones (hands) are no part of the world's energy, only of Newton's merit.
+  /// Gravity and implicit forces; external ones (grips) are no part of the world's energy, only of Newton's merit.
   double potential_energy(const Vec3* x, bool with_external = false) const;
   /// Stored in spring rows, with targets as at `fraction` of the step.
   double row_energy(const Vec3* x, double fraction) const;

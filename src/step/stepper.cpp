@@ -33,19 +33,19 @@ void Stepper::take_held_forces(StepReport& report) { editor_.held.begin_step(rep
 // 2. Islands whose structure changed are analyzed anew; velocities that were assigned are made consistent.
 void Stepper::update_islands() {
   model::Model& model = editor_.model;
-  Islands& islands = editor_.islands;
-  dirty_.clear(), disturbed_.clear();
+  island::Islands& islands = editor_.islands;
+  dirty_.clear(), woken_.clear();
   model.articulates.for_each([&](std::uint32_t slot, model::Articulate& a) {
-    if (a.jolted) dirty_.push_back(slot);
-    if (a.disturbed) disturbed_.push_back(slot);
-    a.jolted = a.disturbed = 0;
+    if (a.velocity_dirty) dirty_.push_back(slot);
+    if (a.to_wake) woken_.push_back(slot);
+    a.velocity_dirty = a.to_wake = 0;
   });
   if (islands.update(model, editor_.parallel) || !dirty_.empty()) model.has_edits = 1;
-  for (const std::uint32_t articulate : disturbed_) {
-    if (Island* const island = islands.of_articulate(articulate))
-      island->disturb();
+  for (const std::uint32_t articulate : woken_) {
+    if (island::Island* const island = islands.of_articulate(articulate))
+      island->wake();
     else
-      FreeParticles::wake(model, articulate);
+      island::FreeParticles::wake(model, articulate);
   }
   islands.replace_by_leaders(dirty_);
   for (const std::uint32_t leader : dirty_) (void)islands.of_articulate(leader)->project(model, false);
@@ -55,7 +55,7 @@ void Stepper::update_islands() {
 // 3. Every island by itself, on as many threads as pay; reports are added up in a fixed order.
 void Stepper::advance_islands(StepReport& report) {
   model::Model& model = editor_.model;
-  Islands& islands = editor_.islands;
+  island::Islands& islands = editor_.islands;
   const auto all = islands.all();
   advanced_.resize(all.size());
   editor_.parallel.for_each(all.size(), islands.grain(editor_.parallel),

@@ -24,8 +24,8 @@ class Stepper {
   edit::Editor& editor_;
   edit::Door& door_;
   // Of the step at hand, kept for their room.
-  std::vector<solver::AdvanceReport> advanced_;   // of each island
-  std::vector<std::uint32_t> dirty_, disturbed_;  // articulates: velocities to project, sleepers to wake
+  std::vector<solver::AdvanceReport> advanced_;  // of each island
+  std::vector<std::uint32_t> dirty_, woken_;     // articulates: velocities to project, sleepers to wake
 };
 
 }  // namespace iota::step

@@ -12,7 +12,7 @@ namespace iota {
 struct Core {
   model::Model model;
   Parallel parallel;
-  step::Islands islands;
+  island::Islands islands;
   held::HeldForces held{model, parallel};
   read::Orientations orientations;
   edit::Editor editor{model, islands, held, orientations, parallel};

@@ -17,7 +17,7 @@ Diagnosis System::diagnose(BodyId id) const {
   std::sort(articulates.begin(), articulates.end());
   articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
   // An island of its own: the one that steps is left alone, and with it the state.
-  step::Island island;
+  island::Island island;
   std::vector<std::uint32_t> node_of_ring(model.rings.slot_count(), model::none);
   island.assemble(model, articulates, node_of_ring);
   island.load(model, 0);

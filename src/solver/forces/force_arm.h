@@ -18,7 +18,7 @@ struct ForceArm {
   std::uint32_t count = 0;
   Vec3 origin;
 
-  /// Whether it is a difference of points: neither an end of it nor a hand is fixed in the world.
+  /// Whether it is a difference of points: neither an end of it nor a grip is fixed in the world.
   bool is_internal() const {
     double sum = 0;
     for (std::uint32_t i = 0; i < count; ++i) sum += weights[i];

@@ -64,7 +64,7 @@ struct DragForce {
   Mat3 stiffness_matrix(const Vec3&, const Vec3&, const ForceStage& s) const { return Mat3::diagonal(damping / s.h); }
 };
 
-/// A hand: F = -k e - c (e1 - e0)/h towards the arm's origin.
+/// A grip: F = -k e - c (e1 - e0)/h towards the arm's origin.
 struct GripForce {
   static constexpr bool is_external = true;
   ForceArm arm;

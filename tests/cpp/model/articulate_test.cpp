@@ -18,11 +18,11 @@ TEST(Articulates, that_join_keep_the_slot_of_the_larger_one) {
   SmallModel m;
   const auto small = m.chain(2), large = m.chain(5, {0, 5, 0});
   const std::uint32_t kept = m.model.bodies[large[0]].articulate;
-  m.model.articulates[m.model.bodies[small[0]].articulate].jolted = 1;
+  m.model.articulates[m.model.bodies[small[0]].articulate].velocity_dirty = 1;
   m.hinge(m.particle(small[1], 1), m.particle(large[0], 0));
   for (const std::uint32_t body : small) EXPECT_EQ(m.model.bodies[body].articulate, kept);
   EXPECT_EQ(m.model.articulates[kept].count, 7u);
-  EXPECT_TRUE(m.model.articulates[kept].jolted) << "what was to be projected still is";
+  EXPECT_TRUE(m.model.articulates[kept].velocity_dirty) << "what was to be projected still is";
   EXPECT_EQ(ingredient::validate(m.model), whole);
 }
 

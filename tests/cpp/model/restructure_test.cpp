@@ -30,7 +30,7 @@ TEST_F(RestructureCombine, meets_at_the_mean_by_mass_and_with_the_momentum_of_bo
   const std::uint32_t p = m.particle(m.body({{0, 0, 0}}, 1), 0), q = m.particle(m.body({{4, 0, 0}}, 3), 0);
   velocity(p) = {0, 8, 0}, velocity(q) = {0, 0, 4};
   const Edit edit = combine_particles(model, p, q, report);
-  EXPECT_TRUE(edit.moved && edit.jolted && report.changed);
+  EXPECT_TRUE(edit.moved && edit.velocity_dirty && report.changed);
   EXPECT_EQ(report.closed_distance, 4);
   EXPECT_EQ(model.position(p), (Vec3{3, 0, 0}));
   EXPECT_EQ(velocity(q), (Vec3{0, 2, 3}));
