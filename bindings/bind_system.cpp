@@ -197,7 +197,7 @@ void bind_time(nb::class_<SystemObject>& type) {
             const Snapshot snapshot = self.use_between_steps("snapshot").snapshot();
             return nb::bytes(snapshot.bytes.data(), snapshot.bytes.size());
           },
-          "The whole system in bytes: everything but the functions of scripted bonds.")
+          "The whole system in bytes: everything but the functions of the script (of bonds, laws, fields, surfaces) and meshes.")
       .def(
           "restore",
           [](SystemObject& self, const nb::bytes& data) {
@@ -205,8 +205,9 @@ void bind_time(nb::class_<SystemObject>& type) {
             self.use_between_steps("restore").restore(Snapshot{{bytes, bytes + data.size()}});
           },
           "snapshot"_a,
-          "Goes back to a snapshot; handles from then are good again. Functions of scripted bonds stay those of this\n"
-          "system. Raises ValueError for bytes that are no snapshot; the system is then unchanged.")
+          "Goes back to a snapshot; handles from then are good again. Functions of the script and meshes stay those of this\n"
+          "system. Raises ValueError for bytes that are not a snapshot, or whose tables do not fit together; the system is\n"
+          "then unchanged.")
       .def(
           "state_hash", [](SystemObject& self) { return self.use().state_hash(); },
           "64 bits of the whole state: equal for equal runs.")

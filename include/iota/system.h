@@ -142,8 +142,8 @@ class System {
   double worst_gap() const;       ///< m
   std::uint32_t structure_version() const;
   Snapshot snapshot() const;
-  /// Functions stay those of this system. Throws std::invalid_argument on bytes that are not a snapshot; the system is
-  /// then unchanged.
+  /// Functions and meshes stay those of this system. Throws std::invalid_argument on bytes that are not a snapshot, or whose
+  /// tables do not fit together, whatever their checksum; the system is then unchanged.
   void restore(const Snapshot&);
   std::uint64_t state_hash() const;
   /// Looks at the constraints of a body and of all that is solved together with it. Takes seconds for hundreds of rows.

@@ -73,10 +73,23 @@ class SlotTable {
     ar.vector(generations_);
     ar.vector(free_);
     ar.value(alive_count_);
-    if (items_.size() != generations_.size() || alive_count_ + free_.size() != items_.size()) ar.fail();
+    if (!is_consistent()) ar.fail();
   }
 
  private:
+  /// Whether each slot either lives or is free, once: bytes may say anything.
+  bool is_consistent() const {
+    if (items_.size() != generations_.size() || alive_count_ + free_.size() != items_.size()) return false;
+    std::vector<bool> is_free(items_.size(), false);
+    for (const std::uint32_t slot : free_) {
+      if (slot >= items_.size() || is_alive(slot) || is_free[slot]) return false;
+      is_free[slot] = true;
+    }
+    std::uint32_t alive = 0;
+    for (const std::uint32_t generation : generations_) alive += generation & 1u;
+    return alive == alive_count_;
+  }
+
   std::vector<T> items_;
   std::vector<std::uint32_t> generations_;
   std::vector<std::uint32_t> free_;

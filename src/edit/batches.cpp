@@ -30,7 +30,7 @@ void apply(Editor& e, const CancelEdit&) {
   if (!e.batch) throw std::logic_error("cancel_edit: no edit has been begun");
   const Snapshot before = std::move(e.batch->before);
   e.batch.reset();
-  e.restore(before);
+  e.restore(before, Editor::Origin::own);
 }
 
 namespace {
@@ -40,7 +40,7 @@ bool go_to(Editor& e, History& from, History& to) {
   const std::optional<Snapshot> state = from.pop();
   if (!state) return false;
   to.push(e.snapshot());
-  e.restore(*state);
+  e.restore(*state, Editor::Origin::own);
   return true;
 }
 

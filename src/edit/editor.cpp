@@ -61,12 +61,16 @@ Snapshot Editor::snapshot() {
   return {seal(snapshot_seal, content)};
 }
 
-void Editor::restore(const Snapshot& snapshot) {
+void Editor::restore(const Snapshot& snapshot, Origin origin) {
   Reader reader(unseal(snapshot_seal, snapshot.bytes));
   model::Model restored;
   restored.archive(reader);
   if (!reader.ok() || !reader.at_end())
-    throw std::invalid_argument("restore: the snapshot is of another build of Iota");
+    throw std::invalid_argument("restore: the tables of this snapshot are damaged, or of another build of Iota");
+  if (origin == Origin::anywhere)
+    if (const std::vector<std::string> complaints = ingredient::validate(restored); !complaints.empty())
+      throw std::invalid_argument(text("restore: the tables of this snapshot do not fit together: ", complaints.front(),
+                                       complaints.size() > 1 ? text(", and ", complaints.size() - 1, " more") : ""));
   restored.take_over(model);
   model = std::move(restored);
   islands.forget();

@@ -86,7 +86,9 @@ struct Editor {
 
   Snapshot snapshot();
   /// Throws std::invalid_argument for bytes that are not a snapshot; nothing has changed then.
-  void restore(const Snapshot&);
+  /// Whose bytes a snapshot has: those of anywhere may hold anything and are checked, in O(n).
+  enum class Origin : std::uint8_t { anywhere, own };
+  void restore(const Snapshot&, Origin = Origin::anywhere);
   void forget_history() { batch.reset(), undo.clear(), redo.clear(); }
 
  private:

@@ -72,15 +72,20 @@ void Bonds::load(const Model& model, const IslandNodes&, double h, Problem& prob
   load_all.operator()<solver::RadialForce>();
 }
 
+void Bonds::check_links(const Model& model, model::Audit& audit) {
+  audit.check_ends("bond", model.bonds);
+  model.bonds.for_each([&](std::uint32_t slot, const Bond& b) {
+    audit.require(model.laws.is_alive(b.law), "bond ", slot, " has no living law");
+  });
+}
+
 void Bonds::validate(const Model& model, model::Audit& audit) {
   model.bonds.for_each([&](std::uint32_t slot, const Bond& b) {
     audit.require_ends("bond", slot, b);
     audit.use_particle(b.p), audit.use_particle(b.q);
-    audit.require(model.laws.is_alive(b.law), "bond ", slot, " has no living law");
     audit.use("law", b.law);
-    if (model.laws.is_alive(b.law))
-      audit.require(!b.implicit || model.laws[b.law].has_derivative(), "bond ", slot,
-                    " is implicit without a derivative");
+    audit.require(!b.implicit || model.laws[b.law].has_derivative(), "bond ", slot,
+                  " is implicit without a derivative");
     for (const double v : b.parameters)
       audit.require(std::isfinite(v), "bond ", slot, " has a parameter that is not finite");
   });

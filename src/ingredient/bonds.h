@@ -42,6 +42,7 @@ class Bonds : public NoAnswers {
     }
   };
   static void validate(const Model&, model::Audit&);
+  static void check_links(const Model&, model::Audit&);
   static void add_energy(const Scope&, Energies&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
   static bool holds(const Model&, std::uint32_t particle);

@@ -66,6 +66,8 @@ std::string Closings::name_of_row(const Model& model, solver::ItemKey key) const
   return text("the closing of particles ", c.p, " and ", c.q);
 }
 
+void Closings::check_links(const Model& model, model::Audit& audit) { audit.check_ends("closing", model.closings); }
+
 void Closings::validate(const Model& model, model::Audit& audit) {
   model.closings.for_each([&](std::uint32_t, const Closing& c) {
     const model::Particle &p = model.particles[c.p], &q = model.particles[c.q];

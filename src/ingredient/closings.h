@@ -24,6 +24,7 @@ class Closings : public NoAnswers {
     }
   };
   static void validate(const Model&, model::Audit&);
+  static void check_links(const Model&, model::Audit&);
   static bool holds(const Model&, std::uint32_t particle);
   static bool uses(const Model& model, std::uint32_t particle) { return holds(model, particle); }
   static void visit_joined(const Model&, std::uint32_t particle, Visit);

@@ -48,6 +48,10 @@ void CosmeticBonds::drop(Model& model, std::uint32_t particle) {
   model.cosmetic_bonds.for_each_of(particle, [&](std::uint32_t bond) { remove(model, bond); });
 }
 
+void CosmeticBonds::check_links(const Model& model, model::Audit& audit) {
+  audit.check_ends("cosmetic bond", model.cosmetic_bonds);
+}
+
 void CosmeticBonds::validate(const Model& model, model::Audit& audit) {
   model.cosmetic_bonds.for_each(
       [&](std::uint32_t slot, const CosmeticBond& bond) { audit.require_ends("cosmetic bond", slot, bond); });

@@ -22,6 +22,7 @@ class CosmeticBonds : public NoAnswers {
     }
   };
   static void validate(const Model&, model::Audit&);
+  static void check_links(const Model&, model::Audit&);
   static void visit_companions(const Model&, std::uint32_t particle, Visit);
   static void absorb(Model&, std::uint32_t q, std::uint32_t p);
   static void drop(Model&, std::uint32_t particle);

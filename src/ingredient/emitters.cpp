@@ -4,12 +4,24 @@
 #include "ingredient/model.h"
 namespace iota::ingredient {
 
+void Emitters::check_links(const Model& model, model::Audit& audit) {
+  model.attributes.for_each([&](std::uint32_t slot, const model::Attributes& a) {
+    audit.require(a.emitter == none || model.emitters.is_alive(a.emitter), "attributes ", slot, " are of no emitter");
+  });
+  model.emitters.for_each([&](std::uint32_t slot, const Emitter& e) {
+    audit.require(e.key_count <= e.keys.size(), "emitter ", slot, " has ", e.key_count, " keys");
+    audit.require(e.rate >= 0 && e.rate <= 1e9 && e.due >= 0 && e.due <= 1, "emitter ", slot, " owes ", e.due,
+                  " births, and ", e.rate, " a second");
+    audit.require(e.mass > 0 && std::isfinite(e.mass), "emitter ", slot, " gives a mass of ", e.mass);
+    audit.require_shape("emitter", slot, e.source);
+  });
+}
+
 void Emitters::validate(const Model& model, model::Audit& audit) {
   std::vector<std::uint32_t> emitted(model.emitters.slot_count(), 0);
   model.attributes.for_each([&](std::uint32_t slot, const model::Attributes& a) {
     if (a.emitter == none) return;
-    audit.require(model.emitters.is_alive(a.emitter), "attributes ", slot, " are of no emitter");
-    if (model.emitters.is_alive(a.emitter)) ++emitted[a.emitter];
+    ++emitted[a.emitter];
   });
   model.emitters.for_each([&](std::uint32_t slot, const Emitter& e) {
     audit.require(e.alive == emitted[slot], "emitter ", slot, " counts ", e.alive, " particles, has ", emitted[slot]);

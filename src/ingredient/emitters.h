@@ -42,6 +42,7 @@ class Emitters : public NoAnswers {
   static model::ChangedSlots* scene_log(Model&);
   static void describe(const SceneView&, SceneChanges&);
   static void validate(const Model&, model::Audit&);
+  static void check_links(const Model&, model::Audit&);
 };
 
 }  // namespace iota::ingredient

@@ -4,6 +4,23 @@
 #include "ingredient/model.h"
 namespace iota::ingredient {
 
+namespace {
+
+template <std::size_t n>
+bool has_end(const std::array<char, n>& text) {
+  return std::find(text.begin(), text.end(), '\0') != text.end();
+}
+
+/// Bytes may hold anything.
+bool is_field(const Field& field) {
+  return field.kind <= FieldKind::function &&
+         (field.kind != FieldKind::listed || field.number < laws::field_law_count) &&
+         field.parameter_count <= field.parameters.size() && has_end(field.name) && has_end(field.text) &&
+         std::all_of(field.names.begin(), field.names.end(), [](const auto& name) { return has_end(name); });
+}
+
+}  // namespace
+
 void Fields::validate(const Model& model, model::Audit& audit) {
   model.fields.for_each([&](std::uint32_t slot, const Field& f) { audit.require_group("field", slot, f.group); });
 }
@@ -32,9 +49,19 @@ void Fields::Tables::compile(std::uint32_t slot) {
   }
 }
 
-void Fields::Tables::compile() {
+bool Fields::Tables::compile() {
   compiled_.clear();
-  fields.for_each([&](std::uint32_t slot, const Field&) { compile(slot); });
+  bool good = true;
+  fields.for_each([&](std::uint32_t slot, const Field& field) {
+    good = good && is_field(field);
+    if (!good) return;
+    try {
+      compile(slot);
+    } catch (const expression::ExpressionError&) {
+      good = false;
+    }
+  });
+  return good;
 }
 
 bool Fields::replaces_gravity(const Model& model) {

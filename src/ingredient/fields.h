@@ -38,14 +38,14 @@ class Fields : public NoAnswers {
     void archive(Archive& ar, const Structure&) {
       fields.archive(ar);
       if constexpr (std::is_same_v<Archive, Reader>)
-        if (ar.ok()) compile();
+        if (!ar.ok() || !compile()) ar.fail();
     }
 
     std::uint32_t make_field(const Field&);  ///< throws expression::ExpressionError for a text that is no field
     const laws::FieldLaw& compiled_field(std::uint32_t field) const { return *compiled_[field]; }
 
    private:
-    void compile();  // anew, after a restore
+    bool compile();  // anew, after a restore; false where a record is none of a field
     void compile(std::uint32_t field);
     std::vector<std::shared_ptr<const laws::FieldLaw>> compiled_;  // by slot; not saved, made from the table
   };

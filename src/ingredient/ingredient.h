@@ -42,6 +42,8 @@ struct NoAnswers {
   /// Moves what bytes do not hold from the model that a restored one replaces, and makes anew what is made of tables.
   static void take_over(Model& /*restored*/, Model& /*before*/) {}
   static void validate(const Model&, model::Audit&) {}
+  /// What must be true of its tables before anything follows their slots: see `Audit::check_links`.
+  static void check_links(const Model&, model::Audit&) {}
   /// Its share of kinetic and potential energy, and of momentum.
   static void add_energy(const Scope&, Energies&) {}
   static void add_momentum(const Scope&, Momenta&) {}
@@ -172,6 +174,7 @@ concept ModelIngredient = requires(
   typename I::Tables;
   I::take_over(model, model);
   I::validate(seen, audit);
+  I::check_links(seen, audit);
   I::add_energy(scope, energies);
   I::add_momentum(scope, momenta);
   { I::worst_gap(seen) } -> std::same_as<double>;

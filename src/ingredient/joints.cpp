@@ -263,6 +263,39 @@ std::string Joints::name_of_row(const Model& model, solver::ItemKey key) const {
   return text("the ", info(model.constraints[key.slot].kind).name, " constraint ", key.slot);
 }
 
+void Joints::check_links(const Model& model, model::Audit& audit) {
+  using Alignment = Constraint::Alignment;
+  using Lock = Constraint::Lock;
+  model.constraints.for_each([&](std::uint32_t slot, const Constraint& c) {
+    const bool known = static_cast<std::size_t>(c.kind) < constraint_kinds.size() && c.alignment <= Alignment::axes &&
+                       c.lock <= Lock::third_of_a && c.aligned <= 2 && c.line_side <= 1;
+    audit.require(known, "constraint ", slot, " is of no kind");
+    for (int place = 0; place < place_count; ++place) {
+      const std::uint32_t p = c.particles[place];
+      audit.require(p == none ? (c.owned >> place & 1) == 0 : model.particles.is_alive(p), "constraint ", slot,
+                    " holds a stranger at place ", place);
+    }
+    audit.require(c.particles[a_origin] != none && c.has(b_origin) && (c.in_world & 0x0f) == 0, "constraint ", slot,
+                  " joins nothing");
+    const bool has_curve = c.kind == ConstraintKind::path;
+    audit.require(has_curve || c.curve.count == 0, "constraint ", slot, " has a curve");
+    audit.require(std::uint64_t{c.curve.first} + c.curve.count <= model.curve_points.size(), "constraint ", slot,
+                  " has ", c.curve.count, " points of a curve from ", c.curve.first, "; there are ",
+                  model.curve_points.size());
+    audit.require(c.curve.kind <= CurveKind::polyline, "constraint ", slot, " has a curve of no kind");
+  });
+  std::vector<std::uint32_t> firsts;
+  model.places.for_each([&](std::uint32_t, const model::ListHead& head) { firsts.push_back(head.first); });
+  audit.check_lists(
+      "places of constraints", firsts, place_count * model.constraints.slot_count(),
+      [&](std::uint32_t link) {
+        return model.constraints.is_alive(link / place_count) &&
+               model.constraints[link / place_count].particles[link % place_count] != none;
+      },
+      [&](std::uint32_t link) { return model.constraints[link / place_count].next[link % place_count]; },
+      [&](std::uint32_t link) { return model.constraints[link / place_count].previous[link % place_count]; });
+}
+
 void Joints::validate(const Model& model, model::Audit& audit) {
   std::uint32_t places = 0, listed = 0, listed_terms = 0;
   model.constraints.for_each([&](std::uint32_t slot, const Constraint& c) {
@@ -447,9 +480,14 @@ void Joints::renew_geometry(Model& model, std::uint32_t constraint) {
 }
 
 void Joints::take_over(Model& restored, Model& before) {
-  restored.surface_functions = std::move(before.surface_functions);
+  restored.surface_functions.swap(before.surface_functions);
   restored.geometries.assign(restored.constraints.slot_count(), {});
-  restored.constraints.for_each([&](std::uint32_t slot, const Constraint&) { renew_geometry(restored, slot); });
+  try {
+    restored.constraints.for_each([&](std::uint32_t slot, const Constraint&) { renew_geometry(restored, slot); });
+  } catch (...) {  // bytes may hold a curve or surface that cannot be
+    restored.surface_functions.swap(before.surface_functions);
+    throw;
+  }
 }
 
 bool Joints::ties_any(const Model& model) { return model.constraints.size() > 0; }

@@ -41,6 +41,7 @@ class Joints : public NoAnswers {
   };
   static void take_over(Model& restored, Model& before);
   static void validate(const Model&, model::Audit&);
+  static void check_links(const Model&, model::Audit&);
   static void add_energy(const Scope&, Energies&);
   static double worst_gap(const Model&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/laws.h"
 
-#include <cstring>
 #include "ingredient/model.h"
+
+#include <algorithm>
+#include <cstring>
 
 namespace iota::ingredient {
 
@@ -11,6 +13,18 @@ namespace {
 template <std::size_t n>
 void put(std::array<char, n>& out, const char* text) {
   std::strncpy(out.data(), text, n - 1);
+}
+
+template <std::size_t n>
+bool has_end(const std::array<char, n>& text) {
+  return std::find(text.begin(), text.end(), '\0') != text.end();
+}
+
+/// Bytes may hold anything.
+bool is_law(const Law& law) {
+  return law.kind <= LawKind::batch && (law.kind != LawKind::listed || law.number < laws::pair_law_count) &&
+         law.parameter_count <= law.parameters.size() && has_end(law.name) && has_end(law.text) &&
+         std::all_of(law.parameters.begin(), law.parameters.end(), [](const auto& name) { return has_end(name); });
 }
 
 }  // namespace
@@ -57,9 +71,19 @@ void Laws::Tables::compile(std::uint32_t slot) {
   }
 }
 
-void Laws::Tables::compile() {
+bool Laws::Tables::compile() {
   compiled_.clear();
-  laws.for_each([&](std::uint32_t slot, const Law&) { compile(slot); });
+  bool good = true;
+  laws.for_each([&](std::uint32_t slot, const Law& law) {
+    good = good && is_law(law);
+    if (!good) return;
+    try {
+      compile(slot);
+    } catch (const expression::ExpressionError&) {
+      good = false;
+    }
+  });
+  return good;
 }
 
 void Laws::validate(const Model& model, model::Audit& audit) {

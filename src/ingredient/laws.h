@@ -49,7 +49,7 @@ class Laws : public NoAnswers {
     void archive(Archive& ar, const Structure&) {
       laws.archive(ar);
       if constexpr (std::is_same_v<Archive, Reader>)
-        if (ar.ok()) compile();
+        if (!ar.ok() || !compile()) ar.fail();
     }
 
     std::uint32_t make_law(const Law&);  ///< throws expression::ExpressionError for a text that is no law
@@ -57,7 +57,7 @@ class Laws : public NoAnswers {
     const laws::PairLaw& compiled(std::uint32_t law) const { return *compiled_[law]; }
 
    private:
-    void compile();  // anew, after a restore
+    bool compile();  // anew, after a restore; false where a record is none of a law
     void compile(std::uint32_t law);
     std::vector<std::shared_ptr<const laws::PairLaw>> compiled_;  // by slot; not saved, made from the table
   };

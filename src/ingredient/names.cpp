@@ -5,6 +5,10 @@
 
 namespace iota::ingredient {
 
+void Names::check_links(const Model& model, model::Audit& audit) {
+  model.names.for_each([&](std::uint32_t body, const Name& name) { audit.require_text("body", body, name); });
+}
+
 void Names::validate(const Model& model, model::Audit& audit) {
   audit.require_owners("a name", model.names, model.bodies);
 }

@@ -20,6 +20,7 @@ class Names : public NoAnswers {
     }
   };
   static void validate(const Model&, model::Audit&);
+  static void check_links(const Model&, model::Audit&);
   static void forget_body(Model&, std::uint32_t body);
 };
 

@@ -29,6 +29,7 @@ class Pairs : public NoAnswers {
     }
   };
   static void validate(const Model&, model::Audit&);
+  static void check_links(const Model&, model::Audit&);
 };
 
 }  // namespace iota::ingredient

@@ -2,10 +2,16 @@
 #include "ingredient/tables.h"
 
 #include "ingredient/model.h"
+
 namespace iota::ingredient {
 
 std::vector<std::string> validate(const model::Model& model) {
   model::Audit audit(model);
+  audit.require(model.mode <= IntegrationMode::accurate, "the integration mode is number ", int(model.mode));
+  audit.require_text("solver", 0, model.solver);
+  audit.check_links();
+  for_each_type<Ingredients>([&]<class I>() { I::check_links(model, audit); });
+  if (!audit.is_good()) return std::move(audit).complaints();
   audit.check_structure();
   for_each_type<Ingredients>([&]<class I>() { I::validate(model, audit); });
   audit.check_counts();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace iota::model {
 
@@ -30,6 +31,86 @@ void Audit::require_group(const char* what, std::uint32_t slot, std::uint32_t gr
   require(group == none || model_.groups.is_alive(group), what, " ", slot, " acts on no living group");
 }
 
+void Audit::require_shape(const char* what, std::uint32_t slot, const shape::Data& data) {
+  try {
+    shape::check(shape::from_data(data));
+  } catch (const std::invalid_argument& error) {
+    require(false, what, " ", slot, " has no shape: ", error.what());
+  }
+}
+
+void Audit::check_links() {
+  const auto is_point = [&](std::uint32_t p) { return model_.particles.is_alive(p); };
+  require(model_.groups.slot_count() <= 32, "there are ", model_.groups.slot_count(), " groups, more than 32");
+  model_.groups.for_each([&](std::uint32_t slot, const Group& g) { require_text("group", slot, g.name); });
+  model_.particles.for_each([&](std::uint32_t slot, const Particle& p) {
+    require(model_.bodies.is_alive(p.body) && model_.rings.is_alive(p.ring), "particle ", slot,
+            " is in no living body or ring");
+    require(p.attributes == none || model_.attributes.is_alive(p.attributes), "particle ", slot,
+            " has attributes that are gone");
+    require(p.basis_index >= -1 && p.basis_index < 4, "particle ", slot, " is basis point ", int(p.basis_index));
+  });
+  model_.bodies.for_each([&](std::uint32_t slot, const Body& b) {
+    require(b.kind <= BodyKind::resting && b.kind_before <= BodyKind::resting, "body ", slot, " is of no kind");
+    require(model_.articulates.is_alive(b.articulate), "body ", slot, " is in no living articulate");
+    require(b.rank <= 4 && b.row_count <= 6, "body ", slot, " has ", int(b.row_count), " rows at rank ", int(b.rank));
+    require((b.row_count > 1) == model_.more_rows.has(slot), "body ", slot, " with ", int(b.row_count),
+            " rows has a wrong table of them");
+    for (int i = 0; i < std::min<int>(b.rank, 4); ++i)
+      require(is_point(b.basis[i]), "body ", slot, " has a wrong basis point ", i);
+    require(std::isfinite(b.damping) && b.damping >= 0, "body ", slot, " has damping ", b.damping);
+  });
+  model_.attributes.for_each([&](std::uint32_t slot, const Attributes& a) {
+    require(is_point(a.particle), "attributes ", slot, " are of no living particle");
+  });
+  model_.inertia_pairs.for_each([&](std::uint32_t slot, const InertiaPair& pair) {
+    require(model_.bodies.is_alive(pair.body) && is_point(pair.p) && is_point(pair.q), "inertia pair ", slot,
+            " is of nothing that lives");
+  });
+  model_.solids.for_each([&](std::uint32_t slot, const Solid& s) {
+    require(model_.bodies.is_alive(s.body), "solid ", slot, " is not of body ", s.body);
+    for (const std::uint32_t p : s.points) require(is_point(p), "solid ", slot, " stands on stranger ", p);
+    require_shape("solid", slot, s.shape);
+  });
+  check_structure_lists();
+}
+
+void Audit::check_structure_lists() {
+  const auto firsts_of = [](const auto& heads) {
+    std::vector<std::uint32_t> firsts;
+    heads.for_each([&](std::uint32_t, const auto& head) { firsts.push_back(head.first); });
+    return firsts;
+  };
+  const auto& particles = model_.particles;
+  const auto& bodies = model_.bodies;
+  const auto is_particle = [&](std::uint32_t p) { return particles.is_alive(p); };
+  check_lists(
+      "particles", firsts_of(bodies), particles.slot_count(), is_particle,
+      [&](std::uint32_t p) { return particles[p].next_in_body; },
+      [&](std::uint32_t p) { return particles[p].previous_in_body; });
+  check_lists(
+      "particles", firsts_of(model_.rings), particles.slot_count(), is_particle,
+      [&](std::uint32_t p) { return particles[p].next_in_ring; },
+      [&](std::uint32_t p) { return particles[p].previous_in_ring; });
+  check_lists(
+      "bodies", firsts_of(model_.articulates), bodies.slot_count(), [&](std::uint32_t b) { return bodies.is_alive(b); },
+      [&](std::uint32_t b) { return bodies[b].next_in_articulate; },
+      [&](std::uint32_t b) { return bodies[b].previous_in_articulate; });
+  check_chains("inertia pair", model_.inertia_pairs, &Body::first_inertia);
+  check_chains("solid", model_.solids, &Body::first_solid);
+}
+
+template <class Table>
+void Audit::check_chains(const char* what, const Table& items, std::uint32_t Body::* first) {
+  std::vector<std::uint32_t> before(items.slot_count(), 0);  // how many links lead to each
+  const auto lead_to = [&](std::uint32_t item) {
+    if (item == none) return;
+    require(items.is_alive(item) && ++before[item] == 1, what, " ", item, " is gone, or in two lists");
+  };
+  model_.bodies.for_each([&](std::uint32_t, const Body& b) { lead_to(b.*first); });
+  items.for_each([&](std::uint32_t, const auto& item) { lead_to(item.next); });
+}
+
 void Audit::check_structure() {
   check_particles();
   check_rings();
@@ -44,26 +125,29 @@ void Audit::check_particles() {
   std::uint32_t living_groups = 0;
   model_.groups.for_each([&](std::uint32_t slot, const Group&) { living_groups |= 1u << slot; });
   model_.particles.for_each([&](std::uint32_t slot, const Particle& p) {
-    const bool linked = model_.bodies.is_alive(p.body) && model_.rings.is_alive(p.ring);
-    require(linked, "particle ", slot, " is in no living body or ring");
     require(p.mass >= 0 && std::isfinite(p.mass), "particle ", slot, " has mass ", p.mass);
-    if (!linked) return;
     require(!p.is_marker() || (p.basis_index < 0 && model_.bodies[p.body].rank > 0), "marker ", slot,
             " is in its body's basis, or alone in it");
     ++in_body_[p.body], ++in_ring_[p.ring];
+    const Body& body = model_.bodies[p.body];
+    require(p.basis_index < 0 || (p.basis_index < body.rank && body.basis[p.basis_index] == slot), "particle ", slot,
+            " is no basis point ", int(p.basis_index), " of its body");
+    require(p.attributes == none || model_.attributes[p.attributes].particle == slot, "particle ", slot,
+            " has the attributes of another");
     require((p.groups & ~living_groups) == 0, "particle ", slot, " is in a group that is gone");
   });
 }
 
 void Audit::check_rings() {
   model_.rings.for_each([&](std::uint32_t slot, const Ring& r) {
-    std::uint32_t walked = 0;
+    std::uint32_t walked = 0, last = none;
     std::vector<std::uint32_t> owners;
     model_.for_each_in_ring(slot, [&](std::uint32_t p) {
-      ++walked;
+      ++walked, last = p;
       require(model_.particles.is_alive(p) && model_.particles[p].ring == slot, "ring ", slot, " lists stranger ", p);
       owners.push_back(model_.particles[p].body);
     });
+    require(last == r.last, "ring ", slot, " ends with ", r.last, ", its list with ", last);
     require(walked == r.count && walked == in_ring_[slot] && walked > 0, "ring ", slot, " counts ", r.count,
             " particles, lists ", walked, ", has ", in_ring_[slot]);
     std::sort(owners.begin(), owners.end());
@@ -76,15 +160,15 @@ void Audit::check_rings() {
 void Audit::check_bodies() {
   std::uint32_t listed_solids = 0;
   model_.bodies.for_each([&](std::uint32_t slot, const Body& b) {
-    std::uint32_t walked = 0;
+    std::uint32_t walked = 0, last = none;
     model_.for_each_particle_of(slot, [&](std::uint32_t p) {
-      ++walked;
+      ++walked, last = p;
       require(model_.particles.is_alive(p) && model_.particles[p].body == slot, "body ", slot, " lists stranger ", p);
     });
+    require(last == b.last, "body ", slot, " ends with ", b.last, ", its list with ", last);
     require(walked == b.count && walked == in_body_[slot], "body ", slot, " counts ", b.count, " particles, lists ",
             walked, ", has ", in_body_[slot]);
-    require(model_.articulates.is_alive(b.articulate), "body ", slot, " is in no living articulate");
-    if (model_.articulates.is_alive(b.articulate)) ++in_articulate_[b.articulate];
+    ++in_articulate_[b.articulate];
     for (int i = 0; i < b.rank; ++i)
       require(model_.particles.is_alive(b.basis[i]) && model_.particles[b.basis[i]].body == slot &&
                   model_.particles[b.basis[i]].basis_index == i,
@@ -127,12 +211,13 @@ void Audit::check_articulates() {
             " hang together but are in articulates ", articulate_of_root[r], " and ", b.articulate);
   });
   model_.articulates.for_each([&](std::uint32_t slot, const Articulate& a) {
-    std::uint32_t walked = 0;
+    std::uint32_t walked = 0, last = none;
     model_.for_each_body_of(slot, [&](std::uint32_t b) {
-      ++walked;
+      ++walked, last = b;
       require(model_.bodies.is_alive(b) && model_.bodies[b].articulate == slot, "articulate ", slot, " lists stranger ",
               b);
     });
+    require(last == a.last, "articulate ", slot, " ends with ", a.last, ", its list with ", last);
     require(walked == a.count && walked == in_articulate_[slot] && walked > 0, "articulate ", slot, " counts ", a.count,
             " bodies, lists ", walked, ", has ", in_articulate_[slot]);
     require(roots_of[slot] == 1, "articulate ", slot, " holds ", roots_of[slot], " separate pieces");

@@ -4,6 +4,8 @@
 #include "base/text.h"
 #include "model/structure.h"
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 #include <string>
@@ -12,10 +14,31 @@
 namespace iota::model {
 
 /// Looks for what is wrong with a model. Everything that records count about each other is counted here again, independent
-/// of how edits keep it.
+/// of how edits keep it. First come the links: tables that came as bytes may hold any number, and all other checks follow
+/// slots and lists.
 class Audit {
  public:
   explicit Audit(const Structure&);
+  bool is_good() const { return complaints_.empty(); }
+
+  /// @name Links: that slots live, lists end, and numbers that choose are in their range
+  ///@{
+  void check_links();  ///< of the structure
+  /// Lists with a way back, by numbers of links below link_count: where each begins, and what is before and after a link,
+  /// or `none`. As each link is after one other at most, and the first after none, lists end.
+  template <class IsAlive, class Next, class Previous>
+  void check_lists(const char* what, const std::vector<std::uint32_t>& firsts, std::uint32_t link_count,
+                   IsAlive is_alive, Next next, Previous previous);
+  template <class T, class IdType>
+  void check_ends(const char* what, const EndTable<T, IdType>& items);
+  /// The text of an array of characters ends in it.
+  template <std::size_t n>
+  void require_text(const char* what, std::uint32_t slot, const std::array<char, n>& characters) {
+    require(std::find(characters.begin(), characters.end(), '\0') != characters.end(), what, " ", slot,
+            " has a text without an end");
+  }
+  void require_shape(const char* what, std::uint32_t slot, const shape::Data&);
+  ///@}
 
   template <class... Parts>
   void require(bool condition, const Parts&... parts) {
@@ -49,6 +72,10 @@ class Audit {
 
  private:
   void check_particles();
+  void check_structure_lists();
+  /// Lists without a way back, each item in one at most.
+  template <class Table>
+  void check_chains(const char* what, const Table& items, std::uint32_t Body::* first);
   void check_rings();
   void check_bodies();
   void check_articulates();
@@ -64,6 +91,37 @@ class Audit {
   std::vector<std::uint32_t> in_body_, in_ring_, in_articulate_;
   std::vector<std::uint32_t> parent_;  // of each body, in the forest of bodies that hang together
 };
+
+template <class IsAlive, class Next, class Previous>
+void Audit::check_lists(const char* what, const std::vector<std::uint32_t>& firsts, std::uint32_t link_count,
+                        IsAlive is_alive, Next next, Previous previous) {
+  const auto there = [&](std::uint32_t link) { return link < link_count && is_alive(link); };
+  for (const std::uint32_t first : firsts)
+    require(first == none || (there(first) && previous(first) == none), "a list of ", what, " begins at ", first,
+            ", which is not its first");
+  for (std::uint32_t link = 0; link < link_count; ++link) {
+    if (!is_alive(link)) continue;
+    const std::uint32_t after = next(link), before = previous(link);
+    require((after == none || (there(after) && previous(after) == link)) &&
+                (before == none || (there(before) && next(before) == link)),
+            "a list of ", what, " has ", link, " between ", before, " and ", after);
+  }
+}
+
+template <class T, class IdType>
+void Audit::check_ends(const char* what, const EndTable<T, IdType>& items) {
+  items.for_each([&](std::uint32_t slot, const T& item) {
+    require(model_.particles.is_alive(item.p) && model_.particles.is_alive(item.q), what, " ", slot, " joins ", item.p,
+            " and ", item.q);
+  });
+  std::vector<std::uint32_t> firsts;
+  items.heads.for_each([&](std::uint32_t, const ListHead& head) { firsts.push_back(head.first); });
+  check_lists(
+      text(what, "s").c_str(), firsts, 2 * items.slot_count(),
+      [&](std::uint32_t link) { return items.is_alive(link / 2); },
+      [&](std::uint32_t link) { return items[link / 2].next[link % 2]; },
+      [&](std::uint32_t link) { return items[link / 2].previous[link % 2]; });
+}
 
 template <class T, class IdType>
 void Audit::require_listed(const char* what, const EndTable<T, IdType>& items) {

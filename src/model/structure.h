@@ -397,7 +397,10 @@ void Structure::Survivors<IdType>::archive(Archive& ar) {
   for (const IdType id : in_order) pairs.push_back({id, became.at(id)});
   ar.vector(pairs);
   became.clear(), in_order.clear();
-  for (const auto& [retired, survivor] : pairs) record(retired, survivor);
+  for (const auto& [retired, survivor] : pairs) {
+    if (became.contains(retired)) return ar.fail();
+    record(retired, survivor);
+  }
 }
 
 template <class Archive>

@@ -22,7 +22,7 @@ inline Model model_of(System& system) {
   return model;
 }
 
-/// One of everything that a system can hold, and the slots of what the tests damage.
+/// One of everything that a system can hold, and the slots of what the tests damage; `fill` puts it into an empty system.
 struct Everything {
   std::uint32_t loner, hinged, hinge_partner, inner, corner, rod, corners_body, box;
   std::uint32_t bond, scripted, cosmetic, joint, grip, field, pairs;
@@ -30,6 +30,11 @@ struct Everything {
 
   Everything() {
     System system;
+    fill(system);
+    model = model_of(system);
+  }
+
+  void fill(System& system) {
     const auto slot = [](auto id) { return id.slot; };
     const ParticleId alone = system.particles().create(system.bodies().create(), {9, 9, 9});
     loner = slot(alone);
@@ -85,7 +90,6 @@ struct Everything {
     system.emitters().create({.rate = 240});
     (void)system.step(1.0 / 60);
     system.particles().apply_force(alone, {1, 0, 0});
-    model = model_of(system);
   }
 };
 

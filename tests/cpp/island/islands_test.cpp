@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which articulates are solved together.
+#include "island/islands.h"
+
+#include "ingredient/bonds.h"
+#include "ingredient/constraint.h"
+#include "tests/cpp/model/small_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+#include <vector>
+
+namespace iota::island {
+namespace {
+
+using model::SmallModel;
+
+struct Room {
+  SmallModel m;
+  Islands islands;
+  Parallel parallel{1};
+
+  void update() { (void)islands.update(m.model, parallel); }
+  Island* of(std::uint32_t body) const { return islands.of_articulate(m.model.bodies[body].articulate); }
+  std::uint32_t bond(std::uint32_t a, std::uint32_t b) {
+    ingredient::Bond spring;
+    spring.p = m.particle(a, 1), spring.q = m.particle(b, 0);
+    return ingredient::Bonds::add(m.model, spring);
+  }
+  std::vector<std::uint32_t> rods(int count) {
+    std::vector<std::uint32_t> bodies;
+    for (int i = 0; i < count; ++i) bodies.push_back(m.body({{0, 2.0 * i, 0}, {1, 2.0 * i, 0}}));
+    return bodies;
+  }
+};
+
+TEST(Islands, have_a_chain_each_and_nothing_for_a_free_particle) {
+  Room room;
+  const auto first = room.m.chain(3), second = room.m.chain(4, {0, 5, 0});
+  const std::uint32_t free = room.m.body({{9, 9, 9}});
+  room.update();
+  EXPECT_EQ(room.islands.all().size(), 2u);
+  for (const std::uint32_t body : first) EXPECT_EQ(room.of(body), room.of(first[0]));
+  EXPECT_NE(room.of(first[0]), room.of(second[0]));
+  EXPECT_EQ(room.of(second[0])->body_count(), 4u);
+  EXPECT_EQ(room.of(free), nullptr);
+  EXPECT_EQ(room.islands.free_particles().size(room.m.model), 1u);
+}
+
+TEST(Islands, become_one_by_a_bond_and_two_again_without_it) {
+  Room room;
+  const auto rods = room.rods(2);
+  room.update();
+  EXPECT_NE(room.of(rods[0]), room.of(rods[1]));
+  const std::uint32_t bond = room.bond(rods[0], rods[1]);
+  room.update();
+  EXPECT_EQ(room.of(rods[0]), room.of(rods[1]));
+  ingredient::Bonds::remove(room.m.model, bond);
+  room.update();
+  EXPECT_NE(room.of(rods[0]), room.of(rods[1]));
+}
+
+TEST(Islands, that_nothing_happened_to_are_kept) {
+  Room room;
+  const auto rods = room.rods(3);
+  room.update();
+  const Island* const untouched = room.of(rods[0]);
+  (void)room.bond(rods[1], rods[2]);
+  room.update();
+  EXPECT_EQ(room.of(rods[0]), untouched);
+  EXPECT_EQ(room.islands.all().size(), 2u);
+}
+
+TEST(Islands, put_articulates_down_to_the_leader_of_their_island) {
+  Room room;
+  const auto rods = room.rods(4);
+  (void)room.bond(rods[3], rods[1]);
+  room.update();
+  std::vector<std::uint32_t> articulates;
+  for (const std::uint32_t rod : {rods[3], rods[1], rods[0], rods[3]})
+    articulates.push_back(room.m.model.bodies[rod].articulate);
+  room.islands.replace_by_leaders(articulates);
+  EXPECT_EQ(articulates,
+            (std::vector{room.m.model.bodies[rods[0]].articulate, room.m.model.bodies[rods[1]].articulate}));
+}
+
+// Against a search through all bonds, over random bonds that come and go.
+TEST(Islands, are_the_connected_sets_of_bodies_whatever_comes_and_goes) {
+  Room room;
+  const auto rods = room.rods(20);
+  std::mt19937 random(5);
+  std::vector<std::uint32_t> bonds;
+  for (int round = 0; round < 200; ++round) {
+    if (bonds.size() < 15 && random() % 2) {
+      const std::uint32_t a = rods[random() % rods.size()], b = rods[random() % rods.size()];
+      if (a != b) bonds.push_back(room.bond(a, b));
+    } else if (!bonds.empty()) {
+      std::swap(bonds[random() % bonds.size()], bonds.back());
+      ingredient::Bonds::remove(room.m.model, bonds.back());
+      bonds.pop_back();
+    }
+    room.update();
+    std::vector<std::uint32_t> group(rods.size());
+    for (std::uint32_t i = 0; i < group.size(); ++i) group[i] = i;
+    const auto index_of = [&](std::uint32_t particle) {
+      return static_cast<std::size_t>(std::find(rods.begin(), rods.end(), room.m.model.particles[particle].body) -
+                                      rods.begin());
+    };
+    for (std::size_t pass = 0; pass < rods.size(); ++pass)
+      for (const std::uint32_t bond : bonds) {
+        std::uint32_t &p = group[index_of(room.m.model.bonds[bond].p)],
+                      &q = group[index_of(room.m.model.bonds[bond].q)];
+        p = q = std::min(p, q);
+      }
+    ASSERT_EQ(room.islands.all().size(), std::set<std::uint32_t>(group.begin(), group.end()).size()) << round;
+    for (std::size_t i = 0; i < rods.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        ASSERT_EQ(room.of(rods[i]) == room.of(rods[j]), group[i] == group[j]) << round << ' ' << i << ' ' << j;
+  }
+}
+
+}  // namespace
+}  // namespace iota::island
