@@ -36,11 +36,11 @@ RestructureReport apply(Editor& e, const CombineParticles& c) {
     require_can_meet(model, p, q);
     if (ingredient::Closings::between(model, p, q) != model::none)
       throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));
-    Restructuring change(e, std::array{body_p, body_q}, Restructuring::Kind::moving, report);
+    Restructuring change(e, std::array{body_p, body_q}, Restructuring::Kind::transient, report);
     (void)ingredient::Closings::add(model, {{p, q}, distance, c.over, 0, 0});
     model.join_articulates(model.bodies[body_p].articulate, model.bodies[body_q].articulate);
     report.changed = true;
-    change.finish({.velocity_dirty = true});
+    change.finish({});
     return report;
   }
   const model::Ring& ring_p = model.rings[model.particles[p].ring];
@@ -71,11 +71,11 @@ RestructureReport call_off(Editor& e, std::uint32_t closing) {
   model::Model& model = e.model;
   const ingredient::Closing& c = model.closings[closing];
   RestructureReport report;
-  Restructuring change(e, std::array{model.particles[c.p].body, model.particles[c.q].body}, Restructuring::Kind::moving,
-                       report);
+  Restructuring change(e, std::array{model.particles[c.p].body, model.particles[c.q].body},
+                       Restructuring::Kind::transient, report);
   ingredient::Closings::end(model, closing);
   report.changed = true;
-  change.finish({.velocity_dirty = true});
+  change.finish({});
   return report;
 }
 

@@ -134,6 +134,13 @@ using Command = std::variant<
 template <class C>
 inline constexpr bool is_queueable = requires { C::queued_as; };
 
+/// Whether a command leaves the energy of the system as it is, so that nothing has to be summed up for the book: what hands
+/// do becomes work in steps only.
+template <class C>
+inline constexpr bool keeps_energy = requires { C::keeps_energy; };
+template <>
+inline constexpr bool keeps_energy<Destroy<GripId>> = true;
+
 /// What users call the queueable commands, each once: "combine, separate, ...".
 std::string queued_edits();
 

@@ -51,7 +51,7 @@ void Door::apply_queue(StepReport& report) {
       report.warnings.push_back(std::string("an edit asked for during the step could not be made: ") + error.what());
     }
   }
-  report.edits->changed = editor_.model.structure_version != version;
+  report.edits->changed = report.edits->changed || editor_.model.structure_version != version;
   report.edits->articulates_after = editor_.model.articulates.size();
   report.edits->structure_version = editor_.model.structure_version;
   editor_.held.note_change();

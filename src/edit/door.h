@@ -70,8 +70,10 @@ auto Door::execute(const C& command) {
       refuse_in_step();
     }
   }
-  editor_.held.note_change();
-  editor_.model.has_edits = 1;
+  if constexpr (!keeps_energy<C>) {
+    editor_.held.note_change();
+    editor_.model.has_edits = 1;
+  }
   if constexpr (std::is_void_v<Result>) {
     apply(editor_, command);
     record(command);

@@ -6,11 +6,13 @@
 namespace iota::edit {
 
 struct CreateGrip {
+  static constexpr bool keeps_energy = true;
   BodyId body;
   Vec3 local_point, target;
   GripOptions options;
 };
 struct MoveGrip {
+  static constexpr bool keeps_energy = true;
   GripId grip;
   Vec3 target;
 };

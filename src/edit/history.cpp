@@ -60,7 +60,7 @@ void Batch::add(const RestructureReport& report) {
 }
 
 RestructureReport Batch::finish(const model::Model& model) {
-  report_.changed = model.structure_version != version_;
+  report_.changed = report_.changed || model.structure_version != version_;
   note_changes(bodies_, model.bodies.ids(), report_.created_bodies, report_.destroyed_bodies);
   note_changes(particles_, model.particles.ids(), report_.created_particles, report_.destroyed_particles);
   forget_absorbed(report_.destroyed_bodies, report_.absorbed_bodies);

@@ -2,6 +2,7 @@
 #include "edit/separate.h"
 
 #include "edit/checks.h"
+#include "edit/combine.h"
 #include "edit/settle.h"
 
 namespace iota::edit {
@@ -10,6 +11,8 @@ RestructureReport apply(Editor& e, const Separate& c) {
   model::Model& model = e.model;
   const std::uint32_t p = e.require(c.p), q = e.require(c.q);
   const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
+  if (const std::uint32_t closing = ingredient::Closings::between(model, p, q); closing != model::none)
+    return call_off(e, closing);
   bool gentle = p == q ? model.bodies[body_p].first_inertia == model::none  // half the mass at one end changes the rod
                        : body_p != body_q && model.particles[p].ring == model.particles[q].ring;
   model.for_each_in_ring(model.particles[q].ring, [&](std::uint32_t r) { gentle = gentle && model.follows_basis(r); });

@@ -95,7 +95,7 @@ Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodi
     : editor_(editor), report_(report), body_count_(bodies.size()), kind_(kind), followers_(editor.model, bodies) {
   std::copy(bodies.begin(), bodies.end(), bodies_.begin());
   report.articulates_before = editor.model.articulates.size();
-  if (kind == Kind::gentle) return;
+  if (kind != Kind::moving) return;
   affected_ = editor.model.tied_bodies(bodies);
   before_ = conserved(editor.model, affected_);
 }
@@ -105,7 +105,7 @@ void Restructuring::finish(const model::Edit& owed) {
   if (report_.changed) {
     ingredient::settle(model, with_created(edited()), report_.notes);
     followers_.follow(model);
-    editor_.structure_changed();
+    if (kind_ != Kind::transient) editor_.structure_changed();
   }
   report_.articulates_after = model.articulates.size();
   report_.structure_version = model.structure_version;

@@ -32,8 +32,9 @@ void settle_batch(Editor&, RestructureReport&);
 ///     return report;
 class Restructuring {
  public:
-  /// A gentle change moves nothing and no mass: there is nothing to measure or to settle, and it costs what it touches.
-  enum class Kind : bool { gentle, moving };
+  /// A gentle change moves nothing and no mass: there is nothing to measure or to settle, and it costs what it touches. A
+  /// transient one, besides, neither raises `structure_version` nor is shown to viewers: closings.
+  enum class Kind : std::uint8_t { transient, gentle, moving };
   /// One body or two. The change says in the report what it made, and whether it did anything.
   Restructuring(Editor&, std::span<const std::uint32_t> bodies, Kind, RestructureReport&);
 

@@ -50,6 +50,7 @@ void Closings::load(const Model& model, const IslandNodes&, double h, Problem& p
     const Closing& c = model.closings[key.slot];
     distances.multipliers[i] = c.multiplier;
     distances.items[i].length = c.distance * closing_factor(c.elapsed + h, c.duration);
+    problem.has_new_rows = problem.has_new_rows || (h > 0 && c.elapsed == 0);
   });
 }
 
@@ -99,7 +100,7 @@ bool Closings::holds(const Model& model, std::uint32_t particle) { return model.
 std::uint32_t Closings::add(Model& model, const Closing& closing) {
   for (const std::uint32_t particle : {closing.p, closing.q}) {
     ++model.particles[particle].uses;
-    model.touch_locally(model.particles[particle].body);
+    model.touch_rows(model.particles[particle].body);
   }
   return model.closings.create(closing);
 }
@@ -107,7 +108,7 @@ std::uint32_t Closings::add(Model& model, const Closing& closing) {
 void Closings::remove(Model& model, std::uint32_t closing) {
   for (const std::uint32_t particle : {model.closings[closing].p, model.closings[closing].q}) {
     --model.particles[particle].uses;
-    model.touch_locally(model.particles[particle].body);
+    model.touch_rows(model.particles[particle].body);
   }
   model.closings.destroy(closing);
 }

@@ -40,15 +40,27 @@ void Grips::build(const IslandMap& map, Problem& problem) {
     }
     force.arm.count = g.count;
     problem.add(force, {owner, {}, slot});
+    if (find_felt_mass(slot, g.body)) return;
     // A grip feels the body that it holds and, through the hinges, part of what hangs on that: enough to lift it all.
     const double own = model.body_mass(g.body);
-    felt_masses_.push_back({slot, own + 0.5 * (calc_tied_mass(model, g.body) - own)});
+    felt_masses_.push_back({slot, g.body, own + 0.5 * (calc_tied_mass(model, g.body) - own)});
   });
 }
 
-double Grips::felt_mass(std::uint32_t grip) const {
-  return std::find_if(felt_masses_.begin(), felt_masses_.end(), [&](const auto& felt) { return felt.first == grip; })
-      ->second;
+// All forces of their pool are grips.
+void Grips::renew_pulls(const IslandMap& map, Problem& problem) {
+  auto& pool = problem.pool_of<solver::GripForce>();
+  pool.items.clear(), pool.keys.clear(), pool.slots.clear();
+  std::erase_if(felt_masses_, [&](const FeltMass& felt) {
+    return !map.model.grips.is_alive(felt.grip) || map.model.grips[felt.grip].body != felt.body;
+  });
+  build(map, problem);
+}
+
+const double* Grips::find_felt_mass(std::uint32_t grip, std::uint32_t body) const {
+  const auto found = std::find_if(felt_masses_.begin(), felt_masses_.end(),
+                                  [&](const FeltMass& felt) { return felt.grip == grip && felt.body == body; });
+  return found == felt_masses_.end() ? nullptr : &found->mass;
 }
 
 void Grips::load(const Model& model, const IslandNodes&, double, Problem& problem) {
@@ -56,7 +68,7 @@ void Grips::load(const Model& model, const IslandNodes&, double, Problem& proble
   arms_.resize(forces.size());
   for_each_item_of<solver::GripForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
     const Grip& g = model.grips[key.slot];
-    const double omega = 2 * std::numbers::pi * g.frequency, mass = felt_mass(key.slot);
+    const double omega = 2 * std::numbers::pi * g.frequency, mass = *find_felt_mass(key.slot, g.body);
     forces[i].arm.origin = g.target - problem.origin;
     arms_[i] = forces[i].arm.value(problem.position.data());
     // The stiffness gives the largest force at this distance where the body is far away.
@@ -102,6 +114,11 @@ void Grips::add_loads(const LastStep& step, std::uint32_t body, LoadReader& read
     for (std::uint32_t i = 0; i < g.count; ++i)
       reader.take({.particle = g.points[i], .force = g.weights[i] * g.force, .part = part});
   });
+}
+
+void Grips::touch(Model& model, std::uint32_t body) {
+  const bool may_be_free = model.bodies[body].count == 1 && model.articulates[model.bodies[body].articulate].count == 1;
+  may_be_free ? model.touch_locally(body) : model.touch_pull(body);
 }
 
 bool Grips::holds(const Model& model, std::uint32_t particle) {

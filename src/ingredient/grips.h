@@ -44,22 +44,29 @@ class Grips : public NoAnswers {
   static void follow(Model&, const Memory&);
   static void follow_bases(Model&);
 
+  /// A grip at a body has come or is going. A particle by itself enters an island with it, or leaves it.
+  static void touch(Model&, std::uint32_t body);
   static Vec3 point(const Model&, const Grip&);  ///< where it holds, world frame
   /// Hangs a grip on the point of its body nearest to `point` (world frame): the span of the body's basis, for a rod
   /// between its ends.
   static void anchor(const Model&, Grip&, const Vec3& point);
 
   void build(const IslandMap&, Problem&);
+  void renew_pulls(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
   void store(Model&, const IslandNodes&, double h, const Problem&) const;
   bool keeps_awake(const Problem& problem) const { return !problem.pool_of<solver::GripForce>().items.empty(); }
   void leave(const IslandMap&) { felt_masses_.clear(); }
 
  private:
-  double felt_mass(std::uint32_t grip) const;
+  struct FeltMass {
+    std::uint32_t grip, body;
+    double mass;  // kg
+  };
+  const double* find_felt_mass(std::uint32_t grip, std::uint32_t body) const;
 
-  std::vector<std::pair<std::uint32_t, double>> felt_masses_;  // of each grip, kg
-  std::vector<Vec3> arms_;                                     // of each force, at the start of the step, m
+  std::vector<FeltMass> felt_masses_;  // of the island's grips
+  std::vector<Vec3> arms_;             // of each force, at the start of the step, m
 };
 
 }  // namespace iota::ingredient

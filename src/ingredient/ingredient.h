@@ -126,6 +126,8 @@ struct NoAnswers {
   void build(const IslandMap&, Problem&) {}
   /// Forgets what `build` is about to list again, beyond the items of the problem.
   void leave(const IslandMap&) {}
+  /// Replaces the island's forces that come and go and couple no points but those that are coupled anyway.
+  void renew_pulls(const IslandMap&, Problem&) {}
   /// Parameters and warm multipliers go into the problem, for a step of h seconds (0: a projection). The problem has its
   /// positions and velocities already.
   void load(const Model&, const IslandNodes&, double /*h*/, Problem&) {}
@@ -216,6 +218,7 @@ concept IslandIngredient =
              Problem& problem, const Problem& solved, solver::ItemKey key, double h, bool moved) {
       own.build(map, problem);
       own.leave(map);
+      own.renew_pulls(map, problem);
       own.load(seen, nodes, h, problem);
       { own.after_step(model, h, problem) } -> std::same_as<double>;
       fixed.store(model, nodes, h, solved);

@@ -28,6 +28,8 @@ class Island {
   /// much changed that it must be assembled.
   bool follow(model::Model&, std::span<const std::uint32_t> articulates, const model::Model::LocalChange&,
               std::vector<std::uint32_t>& node_of_ring);
+  /// Takes over pulls that have come and gone: see Structure::touch_pull. False if it must be assembled.
+  bool renew_pulls(const model::Model&, std::vector<std::uint32_t>& node_of_ring);
   std::span<const std::uint32_t> bodies() const { return nodes_.bodies; }
 
   /// Points to solve for: a measure of the work.

@@ -51,11 +51,20 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
     for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
     remove_nodes(around.empty_nodes);
     integrator_.follow(problem_);
+    if (!change.pulled.empty() && !renew_pulls(model, node_of_ring)) return false;
     carry_along(model);
   } else {
     for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
   }
   return are_few;
+}
+
+bool Island::renew_pulls(const Model& model, std::vector<std::uint32_t>& node_of_ring) {
+  for (std::uint32_t node = 0; node < nodes_.size(); ++node) node_of_ring[nodes_.rings[node]] = node;
+  const ingredient::IslandMap map(model, nodes_, {}, node_of_ring);
+  for_each_ingredient([&](auto& i) { i.renew_pulls(map, problem_); });
+  for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
+  return integrator_.place_forces(problem_);
 }
 
 // Those of the rings that changed and of all particles of the bodies that changed. A particle whose ring has none gets one,

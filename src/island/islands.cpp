@@ -74,7 +74,7 @@ bool Islands::follow(Model& model, std::uint32_t old_leader) {
   for (const std::uint32_t body : touched_.local.bodies)
     if (model.bodies.is_alive(body) && is_member(model.bodies[body].articulate)) change_.bodies.push_back(body);
   ingredient::sort_unique(change_.bodies);
-  change_.rings = touched_.local.rings;
+  change_.rings = touched_.local.rings, change_.pulled = touched_.local.pulled;
   for (const std::uint32_t body : change_.bodies) make_ready(model, body);
   ingredient::follow_bases(model);
   if (!island.follow(model, members_, change_, node_of_ring_)) return false;
@@ -111,7 +111,7 @@ bool Islands::update(Model& model, const Parallel& parallel) {
   }
   const bool any_is_due =
       std::any_of(followed_.begin(), followed_.end(), [&](const Followed& f) { return is_due(f, model); });
-  if (touched_.articulates.empty() && !any_is_due) return false;
+  if (touched_.articulates.empty() && touched_.local.pulled.empty() && !any_is_due) return false;
   order_is_old_ = true;
   const std::size_t slots = model.articulates.slot_count();
   island_of_leader_.resize(slots), leader_of_.resize(slots, none), next_member_.resize(slots, none);
@@ -119,6 +119,7 @@ bool Islands::update(Model& model, const Parallel& parallel) {
   node_of_ring_.resize(model.rings.slot_count(), none);
 
   follow_or_drop_touched(model);
+  renew_pulls(model);
   gather_waiting(model);
   build_fresh(model, parallel);
   return !fresh_.empty();
@@ -145,6 +146,15 @@ void Islands::follow_or_drop_touched(Model& model) {
   }
   for (const std::uint32_t a : touched_.articulates)  // made by a cut that no island followed
     if (leader_of_[a] == none) put_on_waiting_list(a);
+}
+
+void Islands::renew_pulls(const Model& model) {
+  for (const std::uint32_t body : touched_.local.pulled) {
+    if (!model.bodies.is_alive(body)) continue;
+    const std::uint32_t a = model.bodies[body].articulate;
+    Island* const island = of_articulate(a);  // null: it is about to be built, with its pulls
+    if (island && !island->renew_pulls(model, node_of_ring_)) put_on_waiting_list(a);
+  }
 }
 
 // 2. Articulates that implicit bonds and constraints tie together are solved together: a search from each that waits.

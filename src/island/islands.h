@@ -43,6 +43,7 @@ class Islands {
   static void make_ready(model::Model&, std::uint32_t body);
   bool is_due(const Followed&, const model::Model&) const;
   void follow_or_drop_touched(model::Model&);
+  void renew_pulls(const model::Model&);
   void gather_waiting(const model::Model&);
   void build_fresh(model::Model&, const Parallel&);
 

@@ -21,10 +21,21 @@ constexpr std::size_t most_local_changes = 1024;  // after more of them islands 
 }
 
 void Structure::touch_locally(std::uint32_t body) {
+  scene.bodies.note(body);
+  touch_rows(body);
+}
+
+void Structure::touch_rows(std::uint32_t body) {
   const bool few = local_change_.bodies.size() < most_local_changes;
   if (few) local_change_.bodies.push_back(body);
-  scene.bodies.note(body);
   touch(bodies[body].articulate, few ? locally : anything);
+}
+
+void Structure::touch_pull(std::uint32_t body) {
+  Articulate& a = articulates[bodies[body].articulate];
+  a.disturbed = 1;
+  a.standing_gap = 0;  // a conflict may be solvable now
+  local_change_.pulled.push_back(body);
 }
 
 void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
@@ -46,7 +57,8 @@ void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
 void Structure::take_touched(Touched& taken) {
   taken.articulates.swap(touched_);
   std::swap(taken.local, local_change_);
-  touched_.clear(), local_change_.bodies.clear(), local_change_.rings.clear(), taken.only_locally.clear();
+  touched_.clear(), taken.only_locally.clear();
+  local_change_.bodies.clear(), local_change_.rings.clear(), local_change_.pulled.clear();
   for (const std::uint32_t slot : taken.articulates) {
     taken.only_locally.push_back(touch_of_[slot] == locally);
     touch_of_[slot] = untouched;

@@ -191,6 +191,11 @@ class Structure {
   void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
   /// Notes a change that concerns one body and the bodies at its rings only: a problem that holds them can follow.
   void touch_locally(std::uint32_t body);
+  /// The same for rows that come and go without viewers seeing anything of them.
+  void touch_rows(std::uint32_t body);
+  /// Notes that something began or ceased to pull at a body, and couples only points that are coupled anyway: a problem that
+  /// holds the body keeps its structure.
+  void touch_pull(std::uint32_t body);
   /// The same for the bodies at a ring, which are about to be hinged otherwise or have been. `split_from`: the ring where a
   /// new ring's particles were before.
   void touch_ring(std::uint32_t ring, std::uint32_t split_from = none);
@@ -202,6 +207,7 @@ class Structure {
     };
     std::vector<std::uint32_t> bodies;
     std::vector<ChangedRing> rings;
+    std::vector<std::uint32_t> pulled;  ///< bodies: see touch_pull
   };
   /// What has changed since the last call.
   struct Touched {

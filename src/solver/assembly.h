@@ -32,6 +32,8 @@ class Assembly {
   /// ... or, if they were added and removed by the problem's own functions, keep up with that: removes the nodes that are
   /// to go and finds new places for what is near the changes, for a fraction of the time.
   void follow(Problem&);
+  /// Gives slots to the forces that have none. False if one couples points that were not coupled: then neither.
+  bool place_forces(Problem&) const;
 
   /// At positions x = x0 + h v0 + u and the pools' multipliers; by unknown in `residuals()`.
   template <bool Midpoint>

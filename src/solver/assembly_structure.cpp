@@ -127,6 +127,22 @@ void Assembly::follow(Problem& problem) {
   problem.note_compiled();
 }
 
+bool Assembly::place_forces(Problem& problem) const {
+  bool are_coupled = true;
+  problem.for_each_force_pool([&](auto& pool) {
+    const std::size_t placed = pool.slots.size();
+    resize_with_slack(pool.slots, pool.items.size());
+    for (std::size_t i = placed; i < pool.items.size(); ++i) {
+      const ForceArm& arm = pool.items[i].arm;
+      for (std::uint32_t a = 0; a < arm.count; ++a)
+        for (std::uint32_t b = a + 1; b < arm.count; ++b)
+          are_coupled = are_coupled && pattern_.are_coupled(arm.nodes[a], arm.nodes[b]);
+      if (are_coupled) set_slots(pool, i);
+    }
+  });
+  return are_coupled;
+}
+
 // Gives slots to the items of which `is_due` says so: (nodes, how many, unknown of a constraint).
 template <class IsDue>
 void Assembly::place_items(Problem& problem, const CouplingGraph& graph, IsDue is_due) {

@@ -56,6 +56,7 @@ class Integrator {
   void compile(Problem& problem);
   /// After a change of structure by the problem's own functions: see Problem::open.
   void follow(Problem& problem);
+  bool place_forces(Problem& problem) const { return newton_.place_forces(problem); }  ///< see Assembly
 
   /// Positions, velocities and multipliers of `problem` become those after h seconds.
   /// mid_point halves the step (to a 64th) when a link turns too far in it, its error is too large or Newton fails, and

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace iota::solver {
 
@@ -25,12 +26,13 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   if (holds_offsets_) problem.clear_offsets();
   holds_offsets_ = false;
   const double gap = problem.worst_gap(problem.position.data(), 0, true);
+  const bool has_new_rows = std::exchange(problem.has_new_rows, false);
   if (!(gap > standing_gap)) {
     problem.standing_gap = 0;
-    return;
+    if (!has_new_rows) return;
   }
   // Retry an unchanged, unsolvable constraint set with exponential back-off: trying costs tens of iterations.
-  const bool stands = conservative_ && gap <= 1.001 * problem.standing_gap;
+  const bool is_open = gap > standing_gap, stands = is_open && conservative_ && gap <= 1.001 * problem.standing_gap;
   problem.standing_steps = stands ? problem.standing_steps + 1 : 0;
   if (stands && !is_due(problem.standing_steps)) {
     hold_offsets(problem, report);
@@ -39,7 +41,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   measure_energy(problem, 0);
   const double before = energy_;
   problem.standing_gap = 0;
-  if (!project_positions(problem)) {
+  if (is_open && !project_positions(problem)) {
     hold_offsets(problem, report);
     problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
   }

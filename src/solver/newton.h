@@ -33,6 +33,7 @@ class Newton {
   /// Makes room and analyzes the structure of the problem, or follows it: see Assembly.
   void compile(Problem& problem);
   void follow(Problem& problem);
+  bool place_forces(Problem& problem) const { return assembly_.place_forces(problem); }  ///< see Assembly
 
   /// Solves for positions and multipliers, from `displacement()` and the pools' multipliers. On success `solution()` and
   /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.

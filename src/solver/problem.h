@@ -136,6 +136,8 @@ struct Problem {
   Vec3 gravity;
   /// What positions and targets are relative to, m. Far from the world's origin they keep their digits that way.
   Vec3 origin;
+  /// Velocities may violate a row that is new: they are projected at the start of the next step.
+  bool has_new_rows = false;
   double standing_gap = 0;           ///< of a conflict that the last attempt could not close, relative; 0: none
   std::uint64_t standing_steps = 0;  ///< since then
 

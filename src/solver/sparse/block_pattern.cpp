@@ -88,6 +88,12 @@ BlockPattern::PairSlot BlockPattern::pair_slot(std::uint32_t a, std::uint32_t b)
   return {entries_[find_entry(first, later)].offset, vertices_[first].pivot, a_first};
 }
 
+bool BlockPattern::are_coupled(std::uint32_t a, std::uint32_t b) const {
+  const auto [first, later] = std::minmax(node_vertex_[a], node_vertex_[b]);
+  const std::uint32_t entry = find_entry(first, later);
+  return entry < vertices_[first].first_entry + vertices_[first].entry_count && entries_[entry].vertex == later;
+}
+
 // Rows that stand by themselves come right after one of the constraint's nodes, so they are in that node's front.
 std::uint32_t BlockPattern::find_home(std::span<const std::uint32_t> nodes, std::uint32_t unknown) const {
   for (const std::uint32_t node : nodes)

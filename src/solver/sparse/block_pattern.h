@@ -106,6 +106,8 @@ class BlockPattern {
   std::uint32_t node_diagonal(std::uint32_t node) const { return vertices_[node_vertex_[node]].diagonal; }
   std::uint8_t node_stride(std::uint32_t node) const { return vertices_[node_vertex_[node]].pivot; }
   PairSlot pair_slot(std::uint32_t a, std::uint32_t b) const;
+  /// Whether two nodes have a block, so that they have a slot.
+  bool are_coupled(std::uint32_t a, std::uint32_t b) const;
   /// Of a constraint, from its nodes and the unknown that the graph got for it; `gradients` has room for one of each node.
   ConstraintSlot constraint_slot(std::span<const std::uint32_t> nodes, std::uint32_t unknown,
                                  GradientSlot* gradients) const;

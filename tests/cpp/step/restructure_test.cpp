@@ -267,6 +267,31 @@ TEST(Combine, over_a_time_closes_smoothly_and_then_makes_one_ring) {
   EXPECT_WHOLE(system);
 }
 
+TEST(Combine, over_a_time_is_no_change_of_structure_until_the_particles_meet) {
+  System system;
+  const BodyId body = system.bodies().create();
+  const ParticleId p = system.particles().create(body, {0, 0, 0}),
+                   q = system.particles().create(system.bodies().create(), {1, 0, 0});
+  system.particles().create(body, {0, 1, 0});
+  (void)system.viewer().take_scene_changes();
+  const std::uint32_t version = system.structure_version();
+  const RestructureReport begun = system.edits().combine(p, q, 0.05);
+  EXPECT_TRUE(begun.changed);
+  EXPECT_EQ(begun.structure_version, version);
+  (void)system.step(0.01);
+  const GripId grip = system.grips().create(body, {}, {0, 0, 0});
+  (void)system.step(0.01);
+  system.grips().destroy(grip);
+  (void)system.step(0.01);
+  EXPECT_TRUE(system.edits().separate(p, q).changed) << "called off";
+  (void)system.edits().combine(p, q, 0.05);
+  EXPECT_EQ(system.structure_version(), version);
+  const SceneChanges seen = system.viewer().take_scene_changes();
+  EXPECT_TRUE(seen.bodies.set.empty() && seen.events.empty());
+  for (int i = 0; i < 6; ++i) (void)system.step(0.01);
+  EXPECT_GT(system.structure_version(), version) << "they have met";
+}
+
 TEST(Combine, that_is_called_off_leaves_two_articulates) {
   System system;
   const ParticleId p = system.particles().create(system.bodies().create(), {0, 0, 0}),

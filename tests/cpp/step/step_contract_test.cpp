@@ -357,7 +357,12 @@ const std::vector<Scene>& all_scenes() {
   static const std::vector<Scene> scenes{
       {"calm", 10, build_calm, always},
       {"falls_back", 4, build_whirl, [](const StepReport& r) { return r.fallbacks > 0; }},
-      {"closing", 40, build_closing, [](const StepReport& r) { return r.articulates == 1; }, structure_is_analyzed},
+      {"closing",
+       40,
+       build_closing,
+       [](const StepReport& r) { return r.articulates == 1; },
+       structure_is_analyzed,
+       {10}},
       {"emitter", 60, build_emitter, [](const StepReport& r) { return !r.born.empty() && !r.died.empty(); },
        report_lists_it},
       {"sleep", 400, build_sleepers, [](const StepReport& r) { return r.resting > 0; }},
