@@ -29,10 +29,10 @@ RestructureReport apply(Editor& e, const CombineParticles& c) {
   const std::uint32_t p = e.require(c.p), q = e.require(c.q);
   require_not_negative("over", c.over);
   const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
-  const double distance = norm(model.position(q) - model.position(p));
   RestructureReport report;
   const bool unrelated = body_p != body_q && model.particles[p].ring != model.particles[q].ring;
-  if (c.over > 0 && unrelated && distance > 1e-9) {
+  const double distance = c.over > 0 && unrelated ? norm(model.position(q) - model.position(p)) : 0;
+  if (distance > 1e-9) {
     require_can_meet(model, p, q);
     if (ingredient::Closings::between(model, p, q) != model::none)
       throw std::invalid_argument(text("particles ", p, " and ", q, " are already on their way to each other"));

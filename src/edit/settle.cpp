@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace iota::edit {
 
@@ -23,35 +25,80 @@ Conserved conserved(const model::Model& model, std::span<const std::uint32_t> bo
   return {ingredient::calc_energies(model, bodies), ingredient::calc_momenta(model, bodies)};
 }
 
-/// Projects positions and velocities of the islands that the bodies are in.
-void settle(Editor& e, std::span<const std::uint32_t> bodies, bool positions, RestructureReport& report) {
-  e.islands.update(e.model, e.parallel);
+/// Adds the bodies that bonds and constraints tie to some: where one of these moves, energies of the others change.
+void add_tied(const model::Model& model, std::vector<std::uint32_t>& bodies) {
+  sort_unique(bodies);
+  for (std::size_t i = 0, count = bodies.size(); i < count; ++i)
+    model.for_each_particle_of(bodies[i], [&](std::uint32_t p) {
+      model.visit_tied(p, model::Model::Ties::all, [&](std::uint32_t tied) { bodies.push_back(tied); });
+    });
+  sort_unique(bodies);
+}
+
+/// Some bodies, those at their points, and those that are tied to these.
+std::vector<std::uint32_t> bodies_around(const model::Model& model, std::span<const std::uint32_t> bodies) {
+  std::vector<std::uint32_t> found;
+  for (const std::uint32_t body : bodies)
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      model.for_each_in_ring(model.particles[p].ring,
+                             [&](std::uint32_t q) { found.push_back(model.particles[q].body); });
+    });
+  add_tied(model, found);
+  return found;
+}
+
+/// What moving some rings has changed.
+Conserved calc_change(model::Model& model, island::MovedRings& moved) {
+  std::vector<std::uint32_t> bodies;
+  for (const auto& state : moved.before)
+    model.for_each_in_ring(state.ring, [&](std::uint32_t p) { bodies.push_back(model.particles[p].body); });
+  add_tied(model, bodies);
+  Conserved change = conserved(model, bodies);
+  moved.exchange(model);
+  change.add(conserved(model, bodies), -1);
+  moved.exchange(model);
+  return change;
+}
+
+/// Projects positions and velocities of the islands that the bodies are in. Returns what that changes.
+Conserved settle(Editor& e, std::span<const std::uint32_t> bodies, bool positions, RestructureReport& report) {
+  island::MovedRings moved;
+  e.islands.update(e.model, e.parallel, moved);
   std::vector<island::Island*> settled;
   for (const std::uint32_t body : bodies) {
     island::Island* const island = e.islands.of_articulate(e.model.bodies[body].articulate);
     if (!island) continue;  // a free particle has nothing to settle
     if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
     settled.push_back(island);
-    if (island->project(e.model, positions)) continue;
+    if (island->settle(e.model, bodies, positions, moved)) continue;
     report.remaining_gap = ingredient::worst_gap(e.model);
     report.notes.push_back(text("no position of the bodies lets the combined particles meet exactly; ",
                                 report.remaining_gap, " m remain, shared by the constraints"));
   }
+  return calc_change(e.model, moved);
 }
 
 /// Displacements and moved masses change momenta; a rigid motion of all that hangs together with the bodies gives them
-/// back without disturbing any constraint. `before` is of `affected`. False where something is pinned: the rest of the
-/// world has taken them.
-bool give_back_momenta(model::Model& model, std::span<const std::uint32_t> bodies,
-                       std::span<const std::uint32_t> affected, const Conserved& before) {
+/// back without disturbing any constraint, and is added to `change`. Returns what all had before; nothing where something is
+/// pinned: the rest of the world has taken them.
+std::optional<Conserved> give_back_momenta(Editor& e, std::span<const std::uint32_t> bodies, Conserved& change) {
+  model::Model& model = e.model;
+  for (const std::uint32_t body : bodies) {  // told at once for most of what is large
+    const std::uint32_t articulate = model.bodies[body].articulate;
+    const island::Island* const island = e.islands.of_articulate(articulate);
+    if (island && island->is_pinned(model, articulate)) return std::nullopt;
+  }
   std::vector<std::uint32_t> members = model.tied_bodies(bodies, model::Model::Ties::constraints), rings;
   std::erase_if(members, [&](std::uint32_t b) { return model.bodies[b].kind == BodyKind::inactive; });
   for (const std::uint32_t b : members) {
     bool pinned = model.is_tied_to_world(b);
     model.for_each_particle_of(b,
                                [&](std::uint32_t p) { pinned = pinned || model.is_pinned(model.particles[p].ring); });
-    if (pinned) return false;
+    if (pinned) return std::nullopt;
   }
+  const std::vector<std::uint32_t> affected = model.tied_bodies(bodies);
+  const Conserved settled = conserved(model, affected);
+  const Conserved before = Conserved(settled).add(change, -1);
   double mass = 0;
   Vec3 first_moment;
   for (const std::uint32_t b : members)
@@ -60,7 +107,7 @@ bool give_back_momenta(model::Model& model, std::span<const std::uint32_t> bodie
       mass += model.particles[p].mass;
       first_moment += model.particles[p].mass * model.position(p);
     });
-  if (!(mass > 0)) return false;
+  if (!(mass > 0)) return std::nullopt;
   sort_unique(rings);
 
   const Vec3 center = (1 / mass) * first_moment;
@@ -85,10 +132,17 @@ bool give_back_momenta(model::Model& model, std::span<const std::uint32_t> bodie
     for (const std::uint32_t ring : rings)
       model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - center);
   }
-  return true;
+  change.add(conserved(model, affected)).add(settled, -1);
+  return before;
 }
 
 }  // namespace
+
+Conserved& Conserved::add(const Conserved& other, double sign) {
+  energies.kinetic += sign * other.energies.kinetic, energies.potential += sign * other.energies.potential;
+  momenta.linear += sign * other.momenta.linear, momenta.angular += sign * other.momenta.angular;
+  return *this;
+}
 
 Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodies, Kind kind,
                              RestructureReport& report)
@@ -96,14 +150,20 @@ Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodi
   std::copy(bodies.begin(), bodies.end(), bodies_.begin());
   report.articulates_before = editor.model.articulates.size();
   if (kind != Kind::moving) return;
-  affected_ = editor.model.tied_bodies(bodies);
-  before_ = conserved(editor.model, affected_);
+  around_ = bodies_around(editor.model, bodies);
+  before_ = conserved(editor.model, around_);
 }
 
 void Restructuring::finish(const model::Edit& owed) {
   model::Model& model = editor_.model;
   if (report_.changed) {
-    ingredient::settle(model, with_created(edited()), report_.notes);
+    std::array<std::uint32_t, 2> left{};  // most edits cost less than a vector for them would
+    const auto end = std::copy_if(bodies_.begin(), bodies_.begin() + static_cast<std::ptrdiff_t>(body_count_),
+                                  left.begin(), [&](std::uint32_t body) { return model.bodies.is_alive(body); });
+    if (report_.created_bodies.empty())
+      ingredient::settle(model, {left.begin(), end}, report_.notes);
+    else
+      ingredient::settle(model, with_created(edited()), report_.notes);
     followers_.follow(model);
     if (kind_ != Kind::transient) editor_.structure_changed();
   }
@@ -119,13 +179,10 @@ void settle_batch(Editor& e, RestructureReport& report) {
     if (const auto body = model.survivor_of(absorbed.survivor)) bodies.push_back(body->slot);
   sort_unique(bodies);
   if (bodies.empty()) return;
-  const std::vector<std::uint32_t> affected = model.tied_bodies(bodies);
-  const Conserved before = conserved(model, affected);
-  settle(e, bodies, false, report);
-  const Conserved after = conserved(model, affected);
-  report.energy_change += after.energies.total() - before.energies.total();
-  report.momentum_change += after.momenta.linear - before.momenta.linear;
-  report.angular_momentum_change += after.momenta.angular - before.momenta.angular;
+  const Conserved change = settle(e, bodies, false, report);
+  report.energy_change += change.energies.total();
+  report.momentum_change += change.momenta.linear;
+  report.angular_momentum_change += change.momenta.angular;
 }
 
 std::vector<std::uint32_t> Restructuring::with_created(std::span<const std::uint32_t> known) const {
@@ -136,21 +193,19 @@ std::vector<std::uint32_t> Restructuring::with_created(std::span<const std::uint
 }
 
 void Restructuring::settle_and_measure(const model::Edit& owed) {
-  model::Model& model = editor_.model;
-  const std::vector<std::uint32_t> affected = with_created(affected_);
-  bool pinned = false;
+  Conserved change = conserved(editor_.model, with_created(around_));
+  change.add(before_, -1);
+  std::optional<Conserved> before = before_;  // of all that may have changed; nothing: something pinned has
   if (owed.moved || owed.velocity_dirty) {
     const std::vector<std::uint32_t> touched = with_created(edited());
-    settle(editor_, touched, owed.moved, report_);
-    pinned = !give_back_momenta(model, touched, affected, before_);
+    change.add(settle(editor_, touched, owed.moved, report_));
+    before = give_back_momenta(editor_, touched, change);
   }
-  const Conserved after = conserved(model, affected);
-  report_.energy_change =
-      after.energies.kinetic + after.energies.potential - before_.energies.kinetic - before_.energies.potential;
-  report_.momentum_change = after.momenta.linear - before_.momenta.linear;
-  report_.angular_momentum_change = after.momenta.angular - before_.momenta.angular;
+  report_.energy_change = change.energies.total();
+  report_.momentum_change = change.momenta.linear;
+  report_.angular_momentum_change = change.momenta.angular;
   const double spin_change = norm(report_.angular_momentum_change);
-  if (!pinned && spin_change > 1e-9 * (norm(before_.momenta.angular) + 1e-3 * spin_change))
+  if (before && spin_change > 1e-9 * (norm(before->momenta.angular) + 1e-3 * spin_change))
     report_.notes.push_back(
         "the bodies that are left (a point, a rod, or bodies almost in one place) cannot carry all of the angular "
         "momentum; angular_momentum_change tells the rest");

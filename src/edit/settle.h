@@ -15,10 +15,12 @@
 /// cost are given back.
 namespace iota::edit {
 
-/// Energy and momentum of some bodies.
+/// Energy and momentum of some bodies, or by how much they have changed.
 struct Conserved {
   ingredient::Energies energies;
   ingredient::Momenta momenta;
+
+  Conserved& add(const Conserved& other, double sign = 1);
 };
 
 /// Makes velocities fit what a batch has made rigid, once for all of it, and adds to its report what that changes.
@@ -58,8 +60,8 @@ class Restructuring {
   std::size_t body_count_;
   Kind kind_;
   ingredient::Followers followers_;
-  // Nothing beyond the bodies that bonds and constraints tie to the edited ones can move or change its velocity.
-  std::vector<std::uint32_t> affected_;
+  // The bodies whose energy and momentum the edit itself may change; what settling changes further away is added to that.
+  std::vector<std::uint32_t> around_;
   Conserved before_;
 };
 

@@ -115,6 +115,7 @@ void Closings::remove(Model& model, std::uint32_t closing) {
 
 std::uint32_t Closings::between(const Model& model, std::uint32_t p, std::uint32_t q) {
   std::uint32_t found = none;
+  if (model.closings.size() == 0) return found;
   model.closings.for_each_of(p, [&](std::uint32_t slot) {
     if (model.closings[slot].p == q || model.closings[slot].q == q) found = slot;
   });

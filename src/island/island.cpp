@@ -26,6 +26,22 @@ solver::Care care_of(IntegrationMode mode) {
 
 }  // namespace
 
+void MovedRings::put(Model& model, std::uint32_t ring, const Vec3& position, const Vec3& velocity) {
+  Ring& r = model.rings[ring];
+  if (r.position == position && r.velocity == velocity) return;
+  if (is_asked_for) before.push_back({ring, r.position, r.velocity});
+  r.position = position, r.velocity = velocity;
+}
+
+// What has been listed later is taken back earlier.
+void MovedRings::exchange(Model& model) {
+  std::reverse(before.begin(), before.end());
+  for (State& state : before) {
+    Ring& r = model.rings[state.ring];
+    std::swap(state.position, r.position), std::swap(state.velocity, r.velocity);
+  }
+}
+
 void Island::assemble(const Model& model, std::span<const std::uint32_t> articulates,
                       std::vector<std::uint32_t>& node_of_ring) {
   *this = Island{};
@@ -42,7 +58,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
 }
 
-void Island::carry_along(Model& model) {
+void Island::carry_along(Model& model, MovedRings& moved) {
   for_each_ingredient([&](const auto& i) { i.accept_assigned(model, nodes_); });
   bool differs = false;
   std::vector<Vec3> impulses;
@@ -58,9 +74,9 @@ void Island::carry_along(Model& model) {
   if (differs && !idle_) {
     load(model, 0);
     integrator_.project_velocities(problem_, 0, impulses);
-    return store_projection(model, false);
+    return store_projection(model, false, moved);
   }
-  store_carried(model);
+  store_carried(model, moved);
   for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, false); });  // a new basis has its places elsewhere
 }
 
@@ -91,10 +107,10 @@ void Island::load(const Model& model, double h) {
   for_each_ingredient([&](auto& i) { i.load(model, nodes_, h, problem_); });
 }
 
-void Island::store_carried(Model& model) const {
+void Island::store_carried(Model& model, MovedRings& moved) const {
   for (const std::uint32_t p : nodes_.carried) {
-    Ring& r = model.rings[model.particles[p].ring];
-    std::tie(r.position, r.velocity) = model.carried(p);
+    const auto [position, velocity] = model.carried(p);
+    moved.put(model, model.particles[p].ring, position, velocity);
   }
 }
 
@@ -113,13 +129,18 @@ void Island::store_step(Model& model, double h) const {
   for_each_ingredient([&](const auto& i) { i.store(model, nodes_, h, problem_); });
 }
 
-void Island::store_projection(Model& model, bool moved) const {
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    Ring& r = model.rings[nodes_.rings[i]];
-    r.position = problem_.origin + problem_.position[i], r.velocity = problem_.velocity[i];
-  }
-  store_carried(model);
-  for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, moved); });
+// Of all nodes, or of some.
+void Island::store_projection(Model& model, bool positions, MovedRings& moved,
+                              std::span<const std::uint32_t> only) const {
+  const auto put = [&](std::uint32_t node) {
+    moved.put(model, nodes_.rings[node], problem_.origin + problem_.position[node], problem_.velocity[node]);
+  };
+  if (only.empty())
+    for (std::uint32_t node = 0; node < nodes_.size(); ++node) put(node);
+  else
+    for (const std::uint32_t node : only) put(node);
+  store_carried(model, moved);
+  for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, positions); });
 }
 
 void Island::use_solver(const std::array<char, 32>& name) {
@@ -237,20 +258,59 @@ bool Island::has_finite_motion() const {
 bool Island::project(Model& model, bool positions) {
   if (!nodes_.bodies.empty()) articulate(model).standing_gap = 0;  // try again
   load(model, 0);
-  bool met = true;
+  const bool met = project_all(model, positions);
+  MovedRings moved{.is_asked_for = false};
+  store_projection(model, positions && !idle_, moved);
+  return met;
+}
+
+// Of what has been loaded.
+bool Island::project_all(Model& model, bool positions) {
   if (idle_) {
     std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
-  } else {
-    met = !positions || integrator_.project_positions(problem_);
-    integrator_.project_velocities(problem_);
-    if (!has_finite_motion()) {  // as in a step: nothing has gone to the model yet
-      load(model, 0);
-      std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
-      positions = met = false;
-    }
+    return true;
   }
-  store_projection(model, positions && !idle_);
+  const bool met = !positions || integrator_.project_positions(problem_);
+  integrator_.project_velocities(problem_);
+  if (has_finite_motion()) return met;
+  load(model, 0);  // as in a step: nothing has gone to the model yet
+  std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
+  return false;
+}
+
+bool Island::settle(Model& model, std::span<const std::uint32_t> bodies, bool positions, MovedRings& moved) {
+  if (nodes_.bodies.empty()) return true;  // inactive
+  articulate(model).standing_gap = 0;
+  load(model, 0);
+  const std::vector<std::uint32_t> edited = nodes_of(model, bodies);
+  const bool is_local = !idle_ && !edited.empty() && integrator_.project_locally(problem_, positions, edited);
+  const bool met = is_local || project_all(model, positions);
+  store_projection(model, positions && !idle_, moved,
+                   is_local ? integrator_.moved_locally() : std::span<const std::uint32_t>{});
   return met;
+}
+
+// None where there are many: looking for each would take longer than the whole projection.
+std::vector<std::uint32_t> Island::nodes_of(const Model& model, std::span<const std::uint32_t> bodies) const {
+  constexpr std::size_t most = 32;
+  std::size_t count = 0;
+  for (const std::uint32_t body : bodies) count += model.bodies[body].count;
+  std::vector<std::uint32_t> found;
+  if (count > most) return found;
+  for (const std::uint32_t body : bodies)
+    model.for_each_particle_of(body, [&](std::uint32_t p) {
+      const auto node = std::find(nodes_.rings.begin(), nodes_.rings.end(), model.particles[p].ring);
+      if (node != nodes_.rings.end()) found.push_back(static_cast<std::uint32_t>(node - nodes_.rings.begin()));
+    });
+  return found;
+}
+
+bool Island::is_pinned(const Model& model, std::uint32_t articulate) const {
+  bool any = false;
+  nodes_.for_each_pinned([&](std::uint32_t ring) {
+    any = any || model.bodies[model.particles[model.rings[ring].first].body].articulate == articulate;
+  });
+  return any;
 }
 
 }  // namespace iota::island

@@ -14,6 +14,20 @@
 
 namespace iota::island {
 
+/// Rings that something has moved, as they were before. A ring may be listed more than once.
+struct MovedRings {
+  struct State {
+    std::uint32_t ring;
+    Vec3 position, velocity;
+  };
+  std::vector<State> before = {};
+  bool is_asked_for = true;  ///< else nothing is listed
+
+  void put(model::Model&, std::uint32_t ring, const Vec3& position, const Vec3& velocity);
+  /// The rings are as they were; called again, as they are.
+  void exchange(model::Model&);
+};
+
 /// Articulates that bonds and constraints tie together, as one problem for the solver: nodes, ingredients, an integrator.
 /// What acts on the nodes is the ingredients' business; the stages here are folds over them.
 class Island {
@@ -27,7 +41,7 @@ class Island {
   /// For a fraction of the time it is then as if it had been assembled anew, but for the order of elimination. False if so
   /// much changed that it must be assembled.
   bool follow(model::Model&, std::span<const std::uint32_t> articulates, const model::Model::LocalChange&,
-              std::vector<std::uint32_t>& node_of_ring);
+              std::vector<std::uint32_t>& node_of_ring, MovedRings&);
   /// Takes over pulls that have come and gone: see Structure::touch_pull. False if it must be assembled.
   bool renew_pulls(const model::Model&, std::vector<std::uint32_t>& node_of_ring);
   std::span<const std::uint32_t> bodies() const { return nodes_.bodies; }
@@ -37,7 +51,7 @@ class Island {
 
   /// Puts carried particles where their basis has them, and as fast. Where they were not (assigned velocities, conflicts),
   /// their momentum goes over to what carries them.
-  void carry_along(model::Model&);
+  void carry_along(model::Model&, MovedRings&);
 
   /// State of the model into the problem, for a step of h seconds (h = 0: for projections).
   void load(const model::Model&, double h);
@@ -56,6 +70,11 @@ class Island {
   /// Projects velocities, and before that positions where asked to, on the constraints. False where no position meets all
   /// of them.
   bool project(model::Model&, bool positions);
+
+  /// The same after an edit of some bodies (all alive), around them only where no more is needed.
+  bool settle(model::Model&, std::span<const std::uint32_t> bodies, bool positions, MovedRings& moved);
+  /// Whether a point of an articulate is pinned.
+  bool is_pinned(const model::Model&, std::uint32_t articulate) const;
 
  private:
   /// visit(ingredient) for each, in the order of the list.
@@ -84,8 +103,10 @@ class Island {
   void impose_velocities(double h);
   double virtual_energy(const model::Model&) const;
   void store_step(model::Model&, double h) const;
-  void store_projection(model::Model&, bool moved) const;
-  void store_carried(model::Model&) const;
+  bool project_all(model::Model&, bool positions);
+  std::vector<std::uint32_t> nodes_of(const model::Model&, std::span<const std::uint32_t> bodies) const;
+  void store_projection(model::Model&, bool moved, MovedRings&, std::span<const std::uint32_t> only = {}) const;
+  void store_carried(model::Model&, MovedRings&) const;
   bool meets_pinned(const model::Model&) const;
 
   /// Whether it sleeps on; one that `wake` was called for is awake afterwards.

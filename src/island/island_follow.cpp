@@ -36,7 +36,7 @@ struct Around {
 }  // namespace
 
 bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, const Model::LocalChange& change,
-                    std::vector<std::uint32_t>& node_of_ring) {
+                    std::vector<std::uint32_t>& node_of_ring, MovedRings& moved) {
   constexpr std::size_t part = 8;      // of the nodes: if more of them change, assembling it anew is as good
   if (idle_ || solver_) return false;  // another solver asks for unknowns without gaps
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) node_of_ring[nodes_.rings[node]] = node;
@@ -52,7 +52,7 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
     remove_nodes(around.empty_nodes);
     integrator_.follow(problem_);
     if (!change.pulled.empty() && !renew_pulls(model, node_of_ring)) return false;
-    carry_along(model);
+    carry_along(model, moved);
   } else {
     for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
   }

@@ -63,7 +63,7 @@ bool Islands::find_members(const Island& island, const Model& model) {
 }
 
 // An island of which nothing changed but a few bodies may follow. It then also holds what has been cut off.
-bool Islands::follow(Model& model, std::uint32_t old_leader) {
+bool Islands::follow(Model& model, std::uint32_t old_leader, MovedRings& moved) {
   constexpr std::size_t smallest = 256;  // points: smaller ones are built anew in less than 0.1 ms
   Island& island = *island_of_leader_[old_leader];
   if (island.size() < smallest || !find_members(island, model)) return false;
@@ -77,7 +77,7 @@ bool Islands::follow(Model& model, std::uint32_t old_leader) {
   change_.rings = touched_.local.rings, change_.pulled = touched_.local.pulled;
   for (const std::uint32_t body : change_.bodies) make_ready(model, body);
   ingredient::follow_bases(model);
-  if (!island.follow(model, members_, change_, node_of_ring_)) return false;
+  if (!island.follow(model, members_, change_, node_of_ring_, moved)) return false;
 
   auto holder = std::move(island_of_leader_[old_leader]);
   for (std::uint32_t a = old_leader; a != none; a = next_member_[a]) leader_of_[a] = none;
@@ -101,7 +101,7 @@ void Islands::make_ready(Model& model, std::uint32_t body) {
   ingredient::prepare(model, body);
 }
 
-bool Islands::update(Model& model, const Parallel& parallel) {
+bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) {
   model.take_touched(touched_);
   if (!knows_all_) {
     touched_.articulates.clear();
@@ -118,15 +118,15 @@ bool Islands::update(Model& model, const Parallel& parallel) {
   is_waiting_.resize(slots, 0);
   node_of_ring_.resize(model.rings.slot_count(), none);
 
-  follow_or_drop_touched(model);
+  follow_or_drop_touched(model, moved);
   renew_pulls(model);
   gather_waiting(model);
-  build_fresh(model, parallel);
+  build_fresh(model, parallel, moved);
   return !fresh_.empty();
 }
 
 // 1. What was touched, and all that shared an island with it, is without one, unless the island can follow.
-void Islands::follow_or_drop_touched(Model& model) {
+void Islands::follow_or_drop_touched(Model& model, MovedRings& moved) {
   waiting_.clear();
   for (const Followed& f : std::vector<Followed>(followed_))
     if (is_due(f, model)) put_on_waiting_list(f.leader);
@@ -139,7 +139,7 @@ void Islands::follow_or_drop_touched(Model& model) {
     if (!touched_.only_locally[i] || leader_of_[a] == none) continue;
     Island* const island = island_of_leader_[leader_of_[a]].get();
     if (std::find(done.begin(), done.end(), island) != done.end()) continue;
-    if (follow(model, leader_of_[a]))
+    if (follow(model, leader_of_[a], moved))
       done.push_back(island);
     else
       put_on_waiting_list(a);
@@ -187,20 +187,23 @@ void Islands::gather_waiting(const Model& model) {
 }
 
 // 3. Each is built by itself, so at once where there are many.
-void Islands::build_fresh(Model& model, const Parallel& parallel) {
+void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& moved) {
   for (const std::uint32_t leader : fresh_) {
     island_of_leader_[leader] = std::make_unique<Island>();
     for (std::uint32_t a = leader; a != none; a = next_member_[a])
       model.for_each_body_of(a, [&](std::uint32_t body) { make_ready(model, body); });
   }
   ingredient::follow_bases(model);
+  std::vector<MovedRings> moved_by(fresh_.size(), MovedRings{.is_asked_for = moved.is_asked_for});
   parallel.for_each(fresh_.size(), 8, [&](std::size_t i) {
     std::vector<std::uint32_t> members;
     for (std::uint32_t a = fresh_[i]; a != none; a = next_member_[a]) members.push_back(a);
     Island& island = *island_of_leader_[fresh_[i]];
     island.assemble(model, members, node_of_ring_);
-    island.carry_along(model);
+    island.carry_along(model, moved_by[i]);
   });
+  for (const MovedRings& part : moved_by)
+    moved.before.insert(moved.before.end(), part.before.begin(), part.before.end());
 }
 
 void Islands::replace_by_leaders(std::vector<std::uint32_t>& articulates) const {

@@ -11,7 +11,11 @@ namespace iota::island {
 class Islands {
  public:
   /// True where any was made, which may put carried particles a little otherwise.
-  bool update(model::Model&, const Parallel&);
+  bool update(model::Model& model, const Parallel& parallel) {
+    MovedRings moved{.is_asked_for = false};
+    return update(model, parallel, moved);
+  }
+  bool update(model::Model&, const Parallel&, MovedRings&);
   void forget();
   /// From the next update on every island is as if it had just been built from the model.
   void renew() { renew_ = true; }
@@ -39,13 +43,13 @@ class Islands {
   void put_on_waiting_list(std::uint32_t articulate);
   void set_members(std::uint32_t leader);
   bool find_members(const Island&, const model::Model&);
-  bool follow(model::Model&, std::uint32_t leader);
+  bool follow(model::Model&, std::uint32_t leader, MovedRings&);
   static void make_ready(model::Model&, std::uint32_t body);
   bool is_due(const Followed&, const model::Model&) const;
-  void follow_or_drop_touched(model::Model&);
+  void follow_or_drop_touched(model::Model&, MovedRings&);
   void renew_pulls(const model::Model&);
   void gather_waiting(const model::Model&);
-  void build_fresh(model::Model&, const Parallel&);
+  void build_fresh(model::Model&, const Parallel&, MovedRings&);
 
   // All by articulate slot. The leader of an island is the lowest of its articulates.
   std::vector<std::unique_ptr<Island>> island_of_leader_;

@@ -33,7 +33,7 @@ void Structure::touch_rows(std::uint32_t body) {
 
 void Structure::touch_pull(std::uint32_t body) {
   Articulate& a = articulates[bodies[body].articulate];
-  a.disturbed = 1;
+  a.to_wake = 1;
   a.standing_gap = 0;  // a conflict may be solvable now
   local_change_.pulled.push_back(body);
 }

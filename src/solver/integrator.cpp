@@ -28,6 +28,7 @@ void Integrator::follow(Problem& problem) {
 }
 
 void Integrator::make_room(const Problem& problem) {
+  if (local_) local_->forget();
   for (auto* list : {&start_position_, &start_velocity_}) reserve_for_rare_use(*list, problem.size());
   lumped_mass_.clear();
   multipliers_saved_.resize(problem.multiplier_count());

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "solver/local_projection.h"
 #include "solver/newton.h"
+
+#include <memory>
 
 namespace iota::solver {
 
@@ -69,6 +72,12 @@ class Integrator {
   /// Returns false where no solution was found: the violation is then shared, and smaller after each call.
   bool project_positions(Problem& problem);
 
+  /// Does both around some points, and around rows that are open, for less time and for no other row than those. False
+  /// where it has to be done in the whole problem: see LocalProjection. Positions only where asked to.
+  bool project_locally(Problem& problem, bool positions, std::span<const std::uint32_t> nodes = {});
+  /// The points that `project_locally` may have moved.
+  std::span<const std::uint32_t> moved_locally() const { return local_->nodes(); }
+
   double reference_length() const { return newton_.reference_length(); }  ///< of what is compiled, m
 
   /// Who solves the equations of steps; null: the built-in Newton.
@@ -110,6 +119,8 @@ class Integrator {
   void close_gaps(Problem&, AdvanceReport&);
 
   Newton newton_;
+  std::unique_ptr<LocalProjection> local_;  // where it was needed
+  std::vector<std::uint32_t> center_;       // of the latest
   Care care_;
   std::vector<Vec3> start_position_, start_velocity_;
   std::vector<Vec3> candidate_;  // only where errors are estimated, or nothing else helps

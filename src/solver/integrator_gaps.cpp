@@ -41,11 +41,13 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   measure_energy(problem, 0);
   const double before = energy_;
   problem.standing_gap = 0;
-  if (is_open && !project_positions(problem)) {
-    hold_offsets(problem, report);
-    problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
+  if (!project_locally(problem, is_open)) {
+    if (is_open && !project_positions(problem)) {
+      hold_offsets(problem, report);
+      problem.standing_gap = problem.worst_gap(problem.position.data(), 0, true);
+    }
+    project_velocities(problem);
   }
-  project_velocities(problem);
   measure_energy(problem, 0);
   const double added = energy_ - before;
   report.closing_energy += added;
@@ -129,6 +131,26 @@ bool Integrator::share_gaps(Problem& problem, double fraction, AdvanceReport& re
     if (!solved || size * size * compliance < 1) break;
   }
   return helped;
+}
+
+bool Integrator::project_locally(Problem& problem, bool positions, std::span<const std::uint32_t> nodes) {
+  constexpr double open = 0.1 * standing_gap;
+  constexpr std::size_t most = 64;
+  if (!LocalProjection::is_worthwhile(problem)) return false;
+  center_.assign(nodes.begin(), nodes.end());
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t i = 0; i < pool.items.size() && center_.size() <= most; ++i) {
+      double g[C::rows];
+      pool.items[i].value(problem.position.data(), 0, g);
+      const double limit = open * pool.items[i].reference_length();
+      const auto nodes_of_item = pool.nodes_of(pool.items[i]);
+      for (int r = 0; r < C::rows; ++r)
+        if (!((pool.has_laws() ? pool.law(i)[r].violation(g[r]) : std::abs(g[r])) <= limit))
+          center_.insert(center_.end(), nodes_of_item.begin(), nodes_of_item.end());
+    }
+  });
+  if (!local_) local_ = std::make_unique<LocalProjection>();
+  return local_->project(problem, center_, positions);
 }
 
 bool Integrator::project_positions(Problem& problem) {

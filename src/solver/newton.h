@@ -56,6 +56,10 @@ class Newton {
   /// `impulses`: of each node, if any, that act at the same time, N s.
   void project_velocities(Problem& problem, double h, bool as_solved = false, std::span<const Vec3> impulses = {});
 
+  /// The least change of velocities, in the mass norm, that takes the given rates (of the rows, in the order of the pools)
+  /// off the rows.
+  void find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change);
+
   double reference_length() const { return assembly_.reference_length(); }  ///< mean of the constraints', m
 
  private:

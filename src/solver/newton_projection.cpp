@@ -24,6 +24,37 @@ void Newton::project_velocities(Problem& problem, double h, bool as_solved, std:
   if (found && problem.is_isolated()) give_back_momentum(problem, impulses);
 }
 
+void Newton::find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change) {
+  constexpr int passes = 3;  // the later ones take away what compliance and round-off leave
+  std::copy(problem.position.begin(), problem.position.end(), x_.begin());
+  std::fill(change.begin(), change.end(), Vec3{});
+  Stage stage = Stage::projection();
+  stage.fraction = 0;
+  for (int pass = 0; pass < passes; ++pass) {
+    const std::span<double> residuals = assembly_.residuals();
+    std::fill(residuals.begin(), residuals.end(), 0.0);
+    auto rate = rates.begin();
+    problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+      for (std::size_t k = 0; k < pool.items.size(); ++k) {
+        const C& c = pool.items[k];
+        double* const row = residuals.data() + pool.slots[k].unknown;
+        for (int r = 0; r < C::rows; ++r) row[r] = *rate++;
+        const Gradients<C> gradients(c, x_.data(), 0);
+        for (int i = 0; i < c.node_count(); ++i) {
+          Vec3 rows[C::rows];
+          gradients.of_node(i, rows);
+          for (int r = 0; r < C::rows; ++r) row[r] += dot(rows[r], change[c.nodes[i]]);
+        }
+      }
+    });
+    if (pass == 0)
+      (void)assembly_.factor_and_solve<false>(problem, stage, x_.data(), Hessian::none);
+    else
+      assembly_.solve();
+    for (std::size_t i = 0; i < change.size(); ++i) change[i] -= assembly_.step_of(static_cast<std::uint32_t>(i));
+  }
+}
+
 // Nearly redundant rows have huge multipliers that cancel only to round-off. Where nothing outside holds on, momentum is
 // given back by a translation, which no internal constraint notices.
 void Newton::give_back_momentum(Problem& problem, std::span<const Vec3> impulses) const {

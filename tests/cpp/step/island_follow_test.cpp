@@ -147,6 +147,43 @@ TEST(FollowingIsland, gives_the_same_with_grips_closings_nails_joints_and_dampin
   }
 }
 
+TEST(FollowingIsland, settles_a_rejoined_hinge_around_it_and_tells_what_that_changes) {
+  for (const bool nailed : {false, true}) {
+    System system{SystemOptions{.gravity = {}, .mode = IntegrationMode::robust}};
+    std::vector<ParticleId> upper, lower;
+    const auto joint = [](int i) { return Vec3{0.07 * i, 0.07 * (i % 2), 0.03 * (i % 3)}; };
+    for (int i = 0; i < 2000; ++i) {
+      const BodyId link = system.bodies().create();
+      upper.push_back(system.particles().create(link, joint(i), 0.05));
+      lower.push_back(system.particles().create(link, joint(i + 1), 0.05));
+      system.bodies().set_rod(link, 0.1, 0.005);
+      if (i > 0) (void)system.edits().combine(lower[static_cast<std::size_t>(i) - 1], upper.back());
+    }
+    if (nailed) system.particles().nail(upper.front());
+    system.particles().set_velocity(lower[700], {0, 1, 2});
+    (void)system.step(1.0 / 240);
+    (void)system.edits().separate(lower[699], upper[700]);
+    for (int i = 0; i < 3; ++i) (void)system.step(1.0 / 240);
+    ASSERT_GT(norm(system.particles().position(lower[699]) - system.particles().position(upper[700])), 1e-6);
+
+    const Energy energy = system.energy();
+    const Vec3 momentum = system.momentum(), spin = system.angular_momentum();
+    const Vec3 far = system.particles().position(lower[1900]);
+    const RestructureReport report = system.edits().combine(lower[699], upper[700]);
+    EXPECT_LT(system.worst_gap(), 1e-9);
+    const Energy after = system.energy();
+    EXPECT_NEAR(report.energy_change, after.kinetic + after.potential - energy.kinetic - energy.potential,
+                1e-12 * energy.kinetic);
+    EXPECT_LT(norm(report.momentum_change - (system.momentum() - momentum)), 1e-13);
+    EXPECT_LT(norm(report.angular_momentum_change - (system.angular_momentum() - spin)), 1e-10);
+    EXPECT_LT(norm(report.momentum_change), 1e-13);
+    if (!nailed) {
+      EXPECT_LT(norm(report.angular_momentum_change), 1e-10);
+    }
+    EXPECT_EQ(system.particles().position(lower[1900]), far);
+  }
+}
+
 TEST(FollowingIsland, keeps_a_rope_beside_a_cut) {
   const auto make = [](System& system, ConstraintId& rope) {
     auto chain = scenes::make_chain(system, {.links = 300});
