@@ -24,31 +24,40 @@ auto wrap_pairs(const RestructureResult& self, const Pairs& pairs) {
 void bind_energy(nb::module_& module) {
   nb::class_<Energy> type(
       module, "Energy",
-      "Energy book-keeping in J: kinetic + potential + dissipated - external_work - edits is constant "
+      "Energy book-keeping in J. What left the motion and what came in is counted where it happens; `balance` is constant "
       "up to round-off.");
-  def_pickled(type, &Energy::kinetic, &Energy::potential, &Energy::dissipated, &Energy::external_work, &Energy::edits);
+  def_pickled(type, &Energy::kinetic, &Energy::potential, &Energy::dissipated, &Energy::lost, &Energy::made,
+              &Energy::external_work, &Energy::edits);
   type.def(
           "__init__",
-          [](Energy* self, double kinetic, double potential, double dissipated, double external_work, double edits) {
-            new (self) Energy{kinetic, potential, dissipated, external_work, edits};
+          [](Energy* self, double kinetic, double potential, double dissipated, double lost, double made,
+             double external_work, double edits) {
+            new (self) Energy{kinetic, potential, dissipated, lost, made, external_work, edits};
           },
-          nb::kw_only(), "kinetic"_a = 0.0, "potential"_a = 0.0, "dissipated"_a = 0.0, "external_work"_a = 0.0,
+          nb::kw_only(), "kinetic"_a = 0.0, "potential"_a = 0.0, "dissipated"_a = 0.0, "lost"_a = 0.0,
+          "made"_a = 0.0, "external_work"_a = 0.0,
           "edits"_a = 0.0)
       .def_ro("kinetic", &Energy::kinetic)
       .def_ro("potential", &Energy::potential,
               "Of gravity, springs, and all bonds, fields and pairs whose law has an energy.")
       .def_ro("dissipated", &Energy::dissipated,
-              "Since the start, by damping, dashpots and the integrator; negative would be made-up energy.")
+              "Since the start, by damping, dashpots, friction, laws and impacts: their own work.")
+      .def_ro("lost", &Energy::lost,
+              "Since the start, by the integration scheme; may fall by what its tolerance leaves.")
+      .def_ro("made", &Energy::made, "Since the start, by the integration scheme: a defect, with a warning in the report.")
       .def_ro(
           "external_work", &Energy::external_work,
           "Since the start, by grips, scripted bonds, moved nails and applied forces; also what holding a force that has\n"
           "an energy costs, see docs/forces.md.")
       .def_ro("edits", &Energy::edits, "Since the start, gained (+) or lost (-) by edits.")
       .def_prop_ro("total", &Energy::total, "kinetic + potential.")
+      .def_prop_ro("balance", &Energy::balance,
+                   "kinetic + potential + dissipated + lost - made - external_work - edits: stays as it is.")
       .def("__repr__", [](const Energy& e) {
         return text_of(
-            "<Energy: kinetic %.6g J, potential %.6g J, dissipated %.6g J, external work %.6g J, edits %.6g J>",
-            e.kinetic, e.potential, e.dissipated, e.external_work, e.edits);
+            "<Energy: kinetic %.6g J, potential %.6g J, dissipated %.6g J, lost %.6g J, made %.6g J, external work %.6g J, "
+            "edits %.6g J>",
+            e.kinetic, e.potential, e.dissipated, e.lost, e.made, e.external_work, e.edits);
       });
 }
 

@@ -203,15 +203,14 @@ std::optional<std::string> WatchedSystem::step(double dt) {
     // 1e-6 of a body, which may be 3 m long.
     if (report.worst_gap > 3e-6) return say("a gap of ", report.worst_gap, " m, and the step says that it converged");
   }
-  const double book = after.total() + after.dissipated - after.external_work - after.edits -
-                      (before.total() + before.dissipated - before.external_work - before.edits);
+  const double book = after.balance() - before.balance();
   const double size = before.kinetic + after.kinetic + std::abs(before.potential) + std::abs(after.potential) +
-                      std::abs(after.edits) + std::abs(after.external_work) + std::abs(after.dissipated);
+                      std::abs(after.edits) + std::abs(after.external_work) + std::abs(after.dissipated) + after.lost + after.made;
   // Joints that are pulled together at once from far away may turn by more than half a turn: one scene in ten thousand.
   const double exact = jointed_ ? 1e-2 : 1e-9;
   if (std::abs(book) > exact * size) return say("the energy book does not add up: ", book, " J of ", size);
   // Gaps of 1e-9 of a link times the forces of a thousand kilograms: energy may wander a little, not jump.
-  const double made_up = before.dissipated - after.dissipated;
+  const double made_up = after.made - before.made;
   const double motion = before.kinetic + after.kinetic + std::abs(after.potential - before.potential) +
                         std::abs(after.edits - before.edits) + 1e-6 * std::abs(after.potential) + 1e-6;
   if (!disturbed_) {

@@ -12,16 +12,19 @@
 
 namespace iota {
 
-/// Energy book-keeping, J. `kinetic + potential + dissipated - external_work - edits` is constant up to round-off.
+/// Energy book-keeping, J. What left the motion and what came in is counted where it happens; `balance()` is constant up
+/// to round-off.
 struct Energy {
   double kinetic = 0;
   double potential = 0;  ///< gravity, springs, and all bonds, fields and pairs whose law has an energy
-  double dissipated =
-      0;  ///< since the start, by damping, dashpots and the integrator; negative would be made-up energy
+  double dissipated = 0;  ///< since the start, by damping, dashpots, friction, laws and impacts: their own work
+  double lost = 0;        ///< since the start, by the integration scheme; may fall by what its tolerance leaves
+  double made = 0;        ///< since the start, by the integration scheme: a defect, see StepReport::warnings
   double external_work =
       0;  ///< since the start, by grips, scripted bonds, moved nails and applied forces, and what holding forces costs
   double edits = 0;  ///< since the start, gained (+) or lost (-) by edits
   double total() const { return kinetic + potential; }
+  double balance() const { return kinetic + potential + dissipated + lost - made - external_work - edits; }
 };
 
 /// A constraint, bond, hinge or nail that a load beyond its limit broke at the end of a step.

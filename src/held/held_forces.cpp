@@ -72,8 +72,13 @@ void HeldForces::book_edits() {
 Energy HeldForces::book() {
   const double held = energy();
   const ingredient::Energies now = ingredient::calc_energies(model_);
-  return {now.kinetic, now.potential + held, model_.dissipated, model_.external_work,
-          ingredient::energy_of_edits(model_) + held - model_.held_energy};
+  return {.kinetic = now.kinetic,
+          .potential = now.potential + held,
+          .dissipated = model_.dissipated,
+          .lost = model_.lost,
+          .made = model_.made,
+          .external_work = model_.external_work,
+          .edits = ingredient::energy_of_edits(model_) + held - model_.held_energy};
 }
 
 double HeldForces::energy_of_pairs(std::uint32_t slot) const {

@@ -40,7 +40,7 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   double rest_after = 0, rest_speed = 0;  ///< s, m/s; see RestOptions
   double time = 0, last_dt = 0;
   std::uint64_t step = 0;
-  double dissipated = 0, external_work = 0, edit_energy = 0;
+  double dissipated = 0, lost = 0, made = 0, external_work = 0, edit_energy = 0;  ///< see Energy
   double booked_energy = 0;     ///< kinetic and potential energy when edits were last booked, J
   std::uint64_t has_edits = 0;  ///< since then
   double held_energy = 0;       ///< of forces that are held, which `energy` leaves out, when it was last booked, J
@@ -87,7 +87,7 @@ void Model::archive(Archive& ar) {
   Structure::archive(ar);
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step);
-  ar.value(dissipated), ar.value(external_work), ar.value(edit_energy), ar.value(booked_energy), ar.value(has_edits);
+  ar.value(dissipated), ar.value(lost), ar.value(made), ar.value(external_work), ar.value(edit_energy), ar.value(booked_energy), ar.value(has_edits);
   ar.value(held_energy);
   ingredient::for_each_type<ingredient::Ingredients>(
       [&]<class I>() { static_cast<ingredient::OwnTables<I>&>(*this).archive(ar, *this); });

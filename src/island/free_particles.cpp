@@ -92,13 +92,13 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
       constexpr double absurd = 1e12;  // m/s: squares of more are no energies any more
       if (!(dot(after, after) < absurd * absurd) || !is_finite(moved))
           [[unlikely]] {  // an absurd force: the particle stays where it is, and that is told
-        share.lost = true;
+        share.is_stuck = true;
         continue;
       }
       ring.velocity = after;
       ring.position += moved;
       share.work += dot(force, moved);
-      if (robust) share.dissipated += 0.5 * mass * dot(gained, gained);
+      if (robust) share.lost += 0.5 * mass * dot(gained, gained);
       const bool pushed = force != Vec3{};
       if (damping > 0) {
         const double left = std::exp(-damping * h);
@@ -111,7 +111,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
         double& slow_time = model.articulates[place.articulate].slow_time;
         slow_time = !pushed && speed2 < model.rest_speed * model.rest_speed ? slow_time + h : 0;
         if (slow_time >= model.rest_after) {
-          share.dissipated += 0.5 * mass * speed2;
+          share.lost += 0.5 * mass * speed2;
           put_to_rest(model, place.articulate);
           ++share.resting;
         }
@@ -123,8 +123,8 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
   resting_ = 0;
   for (const Share& share : shares_) {
     resting_ += share.resting;
-    report.dissipated += share.dissipated, report.external_work += share.work;
-    report.converged = report.converged && !share.lost;
+    report.dissipated += share.dissipated, report.lost += share.lost, report.external_work += share.work;
+    report.converged = report.converged && !share.is_stuck;
   }
   return report;
 }

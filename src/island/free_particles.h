@@ -38,9 +38,9 @@ class FreeParticles {
   std::vector<std::uint8_t> articulates_;  // 1 where free, by slot
   std::vector<Place> in_order_;
   struct Share {
-    double dissipated = 0, work = 0;
+    double dissipated = 0, lost = 0, work = 0;
     std::uint32_t resting = 0;
-    bool lost = false;
+    bool is_stuck = false;
   };
   std::vector<Share> shares_;
   std::uint32_t resting_ = 0;

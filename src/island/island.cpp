@@ -226,14 +226,14 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     given += problem_.kinetic_energy();
   }
   report.external_work += given;
-  if (!std::isfinite(report.dissipated + report.external_work) || !has_finite_motion()) {
+  if (!std::isfinite(report.dissipated + report.lost + report.made + report.external_work) || !has_finite_motion()) {
     // Forces beyond all reason (1e300 N) drive numbers beyond what a double holds. Nothing has gone to the model yet: the
     // points stay where they are, at rest, and the report says that the step was given up.
     memory.standing_gap = 0;
     load(model, h);
     report = {};
     report.converged = false;
-    report.dissipated = problem_.kinetic_energy() + virtual_energy(model);
+    report.lost = problem_.kinetic_energy() + virtual_energy(model);
     std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
     store_step(model, h);
     return report;
@@ -242,7 +242,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
   for_each_ingredient([&](auto& i) { dissipated += i.after_step(model, h, problem_); });
   report.dissipated += dissipated;
   store_step(model, h);
-  report.dissipated += virtual_energy(model) - virtual_before;
+  report.lost += virtual_energy(model) - virtual_before;
   report.converged = report.converged && meets_pinned(model);
   update_sleep_timer(model, h, report);
   return report;

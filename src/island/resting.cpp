@@ -37,7 +37,7 @@ void Island::update_sleep_timer(Model& model, double h, solver::AdvanceReport& r
   double& slow_time = articulate(model).slow_time;
   slow_time = slow ? slow_time + h : 0;
   if (slow_time < model.rest_after) return;
-  report.dissipated += problem_.kinetic_energy();
+  report.lost += problem_.kinetic_energy();
   put_to_rest(model);
 }
 

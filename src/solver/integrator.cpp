@@ -2,10 +2,12 @@
 #include "solver/integrator.h"
 
 #include "base/slack.h"
+#include "solver/rigid_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace iota::solver {
@@ -13,7 +15,15 @@ namespace iota::solver {
 namespace {
 
 constexpr double round_off = 1e-14;         // of energies
+constexpr double finest = 1e-12;            // of a length: motion below it is round-off
+constexpr double of_motion = 1e-9;          // of the kinetic energy: what the tolerance of a solve may add
 constexpr double largest_violation = 1e-2;  // relative: a step that opens wider gaps is no answer
+
+/// No quadratic functions of the points: the mean of two gradients is not an exact discrete gradient of theirs.
+template <class C>
+constexpr bool is_curved = std::is_same_v<C, AngleConstraint> || std::is_same_v<C, CurveConstraint> ||
+                           std::is_same_v<C, StationConstraint> || std::is_same_v<C, SurfaceConstraint> ||
+                           std::is_same_v<C, SurfacePairConstraint>;
 
 }  // namespace
 
@@ -139,7 +149,7 @@ bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& repo
 void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& report) {
   const Vec3* const x0 = problem.position.data();
   const Vec3* const x1 = newton_.solution().data();
-  const double before = energy_;
+  const Dissipation taken = calc_dissipation(problem, stage);
   double work = 0;
   const ForceStage force_stage{stage.h, stage.midpoint, false};
   for (const auto& f : std::get<ForcePool<GripForce>>(problem.forces).items) {
@@ -158,9 +168,12 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
     work -= dot(Vec3{l[0], l[1], l[2]}, moved);
   }
   work += work_of_drives(problem, stage);
+  for (std::size_t i = 0; i < problem.force.size(); ++i) work += dot(problem.force[i], x1[i] - problem.position[i]);
+  report.external_work += work;
+  book_solution(problem, stage, work - taken.steady);
+  const double impact = std::clamp(missing_, 0.0, std::max(0.0, taken.impact));  // at most what is missing
+  report.dissipated += taken.steady + impact, missing_ -= impact;
   for (std::size_t i = 0; i < problem.size(); ++i) {
-    const Vec3 moved = x1[i] - problem.position[i];
-    if (!problem.force.empty()) work += dot(problem.force[i], moved);
     problem.velocity[i] += ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[i];
     problem.position[i] = x1[i];
   }
@@ -168,10 +181,99 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
     if constexpr (TrackingConstraint<C>)
       for (C& c : pool.items) c.track(problem.position.data(), stage.fraction);
   });
-  measure_energy(problem, stage.fraction);
-  report.external_work += work;
-  report.dissipated += before + work - energy_;
   ++report.substeps;
+}
+
+// The energy of the solved step, and what is missing of it: `gain` is what came in but for what was dissipated.
+void Integrator::book_solution(const Problem& problem, const Stage& stage, double gain) {
+  const Vec3* const x1 = newton_.solution().data();
+  const double energy_before = energy_, kinetic_before = kinetic_;
+  kinetic_ = problem.kinetic_energy([&](std::size_t i) { return velocity_after(problem, stage, i); });
+  energy_ = kinetic_ + problem.potential_energy(x1) + problem.row_energy(x1, stage.fraction);
+  const double missing = energy_before + gain - energy_;
+  missing_ += missing;
+  const double little = of_motion * std::max(kinetic_before, kinetic_) +
+                        round_off * (std::abs(energy_before) + std::abs(energy_) + std::abs(gain));
+  slack_ += little;
+  if (missing < -little) slack_ += work_of_gaps(problem, stage) + work_of_imbalance(problem, stage);
+}
+
+// What a (sub-)step and its corrections have left unexplained. Too much within the tolerance of the solve goes off what is
+// lost: it comes and goes from step to step.
+void Integrator::book_rest(const Problem& problem, double h, AdvanceReport& report) {
+  if (missing_ < -slack_) {
+    double mass = 0;
+    for (const double m : problem.mass) mass += m;
+    const double jitter = finest * newton_.reference_length() / h;
+    slack_ += mass * jitter * jitter;
+  }
+  (missing_ < -slack_ ? report.made : report.lost) += missing_ < -slack_ ? -missing_ : missing_;
+  missing_ = slack_ = 0;
+}
+
+// What forces and rows take from the motion in the solved step: to be called before it is committed.
+Integrator::Dissipation Integrator::calc_dissipation(const Problem& problem, const Stage& stage) const {
+  const ForceStage force_stage{stage.h, stage.midpoint, false};
+  Dissipation taken;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    if (pool.has_laws() && pool.held.empty()) add_dissipation_of_rows(problem, stage, pool, taken);
+  });
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items)
+      taken.steady +=
+          f.dissipation(f.arm.value(problem.position.data()), f.arm.value(newton_.solution().data()), force_stage);
+  });
+  return taken;
+}
+
+namespace {
+
+/// Mean over the step of the velocity across a row, by its gradient at the end, m/s.
+template <class C>
+double mean_speed_across(const Problem& problem, const C& c, int row, std::span<const Vec3> solution,
+                         std::span<const Vec3> displacement, const Stage& stage) {
+  const Gradients<C> gradients(c, solution.data(), stage.fraction);
+  double speed = 0;
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 rows[C::rows];
+    gradients.of_node(i, rows);
+    const std::uint32_t node = c.nodes[i];
+    speed += dot(rows[row], problem.velocity[node] + (0.5 / stage.h) * displacement[node]);
+  }
+  return speed;
+}
+
+}  // namespace
+
+// A row takes lambda dg. Of that a spring stores its part and a drive has given its rate. What is left are dashpots,
+// friction and slipping clutches. The impact of a row that has just met: in the mid-point rule lambda dg is its first half, a
+// projection takes the other; the end-point rule takes all at once, the impulse times the mean speed across the row.
+template <class C>
+void Integrator::add_dissipation_of_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool,
+                                         Dissipation& taken) const {
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    const C& c = pool.items[k];
+    double before[C::rows], after[C::rows];
+    c.value(problem.position.data(), stage.fraction_start, before);
+    c.value(newton_.solution().data(), stage.fraction, after);
+    for (int r = 0; r < C::rows; ++r) {
+      const RowLaw& law = pool.law(k)[r];
+      const RowState& state = pool.states[k * C::rows + r];
+      const double lambda = pool.multiplier(k)[r], moved = after[r] - before[r];
+      const bool is_free = state.side == 0;
+      if (law == RowLaw{} || law.is_off()) continue;
+      if (law.hold)
+        taken.steady += lambda * (moved - law.rate * stage.h);
+      else if (law.is_compliant())
+        taken.steady += is_free ? law.damping / stage.h * moved * moved
+                                : std::max(0.0, lambda * moved - law.energy(after[r]) + law.energy(before[r]));
+      else if (is_free && state.side_before != 0)
+        taken.impact +=
+            lambda * (stage.midpoint ? moved
+                                     : stage.h * mean_speed_across(problem, c, r, newton_.solution(),
+                                                                   newton_.displacement(), stage));
+    }
+  }
 }
 
 // The work of moving targets, lambda dg/dt, J. A motor that does not reach its speed counts as a drive behind a slipping
@@ -239,10 +341,7 @@ bool Integrator::turns_too_far(const Problem& problem) const {
 double Integrator::calc_energy_gain(const Problem& problem, const Stage& stage) {
   if (!conservative_) return -1;
   const auto x1 = newton_.solution();
-  const auto velocity = [&](std::size_t i) {
-    return problem.velocity[i] + ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[i];
-  };
-  return problem.kinetic_energy(velocity) + problem.potential_energy(x1.data()) +
+  return problem.kinetic_energy([&](std::size_t i) { return velocity_after(problem, stage, i); }) + problem.potential_energy(x1.data()) +
          problem.row_energy(x1.data(), stage.fraction) - energy_;
 }
 
@@ -251,10 +350,15 @@ double Integrator::calc_energy_gain(const Problem& problem, const Stage& stage) 
 bool Integrator::gains_energy_on_curves(const Problem& problem, const Stage& stage) {
   // Largest gain that is accepted; the second share is for motions that reverse, whose kinetic energy vanishes.
   constexpr double of_kinetic = 0.05, of_total = 1e-3;
-  const bool curved = !std::get<ConstraintPool<CurveConstraint>>(problem.constraints).items.empty() ||
-                      !std::get<ConstraintPool<SurfaceConstraint>>(problem.constraints).items.empty() ||
-                      !std::get<ConstraintPool<SurfacePairConstraint>>(problem.constraints).items.empty();
-  return curved && calc_energy_gain(problem, stage) > of_kinetic * kinetic_ + of_total * std::abs(energy_);
+  return has_curved_rows_ && calc_energy_gain(problem, stage) > of_kinetic * kinetic_ + of_total * std::abs(energy_);
+}
+
+// The work of what the tolerance leaves of the balance of forces, J.
+double Integrator::work_of_imbalance(const Problem& problem, const Stage& stage) const {
+  double work = 0;
+  for (std::size_t i = 0; i < problem.size(); ++i)
+    work += problem.mass[i] * norm(newton_.solution()[i] - problem.position[i]);
+  return work * stage.inertia * stage.tolerance * newton_.reference_length();
 }
 
 // The work of constraint forces on gaps that open or close within the tolerance, J.
@@ -292,8 +396,9 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
       const bool met = met_ > 0;
       commit(problem, stage, report);
       smooth_multipliers(problem);
-      if (met || care_.max_error > 0) project_velocities_after_impact(problem, to, report);
-      return;
+      if (met || care_.max_error > 0) project_velocities_after_impact(problem, to, met, report);
+      if (!met && has_curved_rows_ && !drives_rows_) correct_energy(problem, to);
+      return book_rest(problem, h, report);
     }
     problem.set_multipliers(multipliers_saved_);
     return halve();
@@ -338,11 +443,11 @@ bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport
 // the velocities are projected. The sub-step itself has only taken energy. If errors are estimated, this is done always:
 // the estimate would take the slight oscillation across the constraints for an error (measured: 16 sub-steps instead of
 // 132, for 5e-8 of the energy).
-void Integrator::project_velocities_after_impact(Problem& problem, double to, AdvanceReport& report) {
+void Integrator::project_velocities_after_impact(Problem& problem, double to, bool met, AdvanceReport& report) {
   const double before = energy_;
   newton_.project_velocities(problem, conservative_ ? 0 : step_length_, true);
   measure_energy(problem, to);
-  report.dissipated += before - energy_;
+  (met ? report.dissipated : missing_) += before - energy_;
 }
 
 void Integrator::advance_end_point(Problem& problem, double h, double from, double to, int depth,
@@ -363,8 +468,8 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
     if (!(depth < care_.max_depth && gained > slack && gained > slack + work_of_gaps(problem, stage))) {
       const double before = energy_;
       commit(problem, stage, report);
-      if (conservative_ && energy_ > before) remove_excess_energy(problem, energy_ - before, to, report);
-      return;
+      if (conservative_ && energy_ > before) change_kinetic_energy(problem, energy_ - before, to);
+      return book_rest(problem, h, report);
     }
   }
   problem.set_multipliers(multipliers_saved_);
@@ -383,23 +488,39 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
   }
 }
 
-// Reduces the kinetic energy by `excess`: scales all velocities alike, relative to the center of mass if nothing outside
-// holds the problem. Velocities that meet the constraints still do afterwards.
-void Integrator::remove_excess_energy(Problem& problem, double excess, double fraction, AdvanceReport& report) {
-  Vec3 drift;
+// Takes `excess` from the kinetic energy, or gives it where negative: scales velocities alike, relative to the rigid motion
+// that a problem has which nothing outside holds, so that momentum and angular momentum stay. Velocities that meet the
+// constraints still do afterwards. Where that motion alone has too much energy, all of the velocities are scaled.
+void Integrator::change_kinetic_energy(Problem& problem, double excess, double fraction) {
+  RigidMotion rigid;
+  double rest = problem.kinetic_energy();
   if (problem.is_isolated()) {
-    const std::span<const double> lumped = lumped_masses(problem);
-    double mass = 0;
-    for (std::size_t i = 0; i < problem.size(); ++i) mass += lumped[i], drift += lumped[i] * problem.velocity[i];
-    drift *= 1 / mass;
-    for (Vec3& v : problem.velocity) v -= drift;
+    rigid = rigid_motion_of(problem);
+    rest -= rigid.kinetic_energy();
+    if (!(rest > excess)) {
+      rest = problem.kinetic_energy() - 0.5 * rigid.mass * dot(rigid.velocity, rigid.velocity);
+      rigid.turning = {};
+    }
   }
-  const double kinetic = problem.kinetic_energy();
-  const double factor = std::sqrt(std::max(0.0, 1 - excess / (kinetic + 1e-300)));
-  for (Vec3& v : problem.velocity) v = factor * v + drift;
+  constexpr double most_given = 0.1;  // of the motion that takes it
+  if (rest > 0 && -excess <= most_given * rest) {
+    const double factor = std::sqrt(std::max(0.0, 1 - excess / rest));
+    for (std::size_t i = 0; i < problem.size(); ++i) {
+      const Vec3 shared = rigid.velocity_at(problem.position[i]);
+      problem.velocity[i] = shared + factor * (problem.velocity[i] - shared);
+    }
+  }
   const double before = energy_;
   measure_energy(problem, fraction);
-  report.dissipated += before - energy_;
+  missing_ += before - energy_;
+}
+
+// Curves, surfaces and angles have no exact discrete gradient: what the mean of two gradients has made or taken goes back. Not
+// much of it where the motion reverses and has hardly any kinetic energy.
+void Integrator::correct_energy(Problem& problem, double fraction) {
+  constexpr double most = 0.1;  // of the kinetic energy
+  const double excess = std::clamp(-missing_, -most * kinetic_, most * kinetic_);
+  if (std::abs(missing_) > slack_) change_kinetic_energy(problem, excess, fraction);
 }
 
 // If no scheme has found a solution: moves the points by their velocities, in small pieces, and projects positions and
@@ -429,7 +550,7 @@ void Integrator::last_resort_step(Problem& problem, double h, AdvanceReport& rep
     std::fill(problem.velocity.begin(), problem.velocity.end(), Vec3{});
     measure_energy(problem, 1);
   }
-  report.dissipated += before - energy_;
+  missing_ += before - energy_;
   ++report.substeps;
 }
 
@@ -464,6 +585,12 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
     for (const RowLaw& law : pool.laws) conservative_ = conservative_ && (law.rate == 0 || law.is_off());
   });
   step_length_ = h;
+  has_curved_rows_ = drives_rows_ = false;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    if constexpr (is_curved<C>) has_curved_rows_ = has_curved_rows_ || !pool.items.empty();
+    for (const auto& c : pool.items) drives_rows_ = drives_rows_ || c.is_moving();
+    for (const RowLaw& law : pool.laws) drives_rows_ = drives_rows_ || (law.rate != 0 && !law.is_off());
+  });
   constexpr int unlimited = std::numeric_limits<int>::max();
   iterations_left_ = care.max_iterations > 0 ? care.max_iterations : unlimited;
   close_gaps(problem, report);
@@ -471,7 +598,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
   if (!conservative_ || !report.converged) keep_start(problem);
   measure_energy(problem, 0);
   const double start_kinetic = kinetic_, start_energy = energy_;
-  const double start_work = report.external_work, start_dissipated = report.dissipated;
+  const AdvanceReport start = report;
   // If moving nails have left a conflict, the mid-point rule would double the speed at which bodies catch up.
   if (care.scheme == Scheme::mid_point && (conservative_ || !holds_offsets_))
     advance_mid_point(problem, h, 0, 1, 0, report);
@@ -481,15 +608,19 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
   const bool found = report.converged && report.fallbacks == 0;
   // If motors, grips or moving nails do work, the increase is what their work does not explain. There even a solution may
   // be the wrong one: a body that has jumped by half a turn meets the equations for directions, too.
-  const double made_up = conservative_ ? energy_ - start_energy : start_dissipated - report.dissipated;
-  const double work = conservative_ ? 0 : std::abs(report.external_work - start_work);
+  const double made_up =
+      conservative_ ? energy_ - start_energy
+                    : report.made - start.made - (report.lost - start.lost) - (report.dissipated - start.dissipated) - missing_;
+  const double work = conservative_ ? 0 : std::abs(report.external_work - start.external_work);
   const bool too_much = made_up > 0.1 * start_kinetic + work + 1e-9 * std::abs(start_energy);
   const bool absurd =
       !conservative_ && made_up > start_kinetic + work + 0.5 * kinetic_ + 1e-6 * (1 + std::abs(start_energy));
   if ((!found && too_much) || absurd) {
     std::copy(start_position_.begin(), start_position_.end(), problem.position.begin());
     std::copy(start_velocity_.begin(), start_velocity_.end(), problem.velocity.begin());
-    report.dissipated = start_dissipated, report.external_work = start_work;  // taken out of the book again
+    // Taken out of the book again.
+    report.external_work = start.external_work, report.dissipated = start.dissipated;
+    report.lost = start.lost, report.made = start.made, missing_ = slack_ = 0;
     report.converged = false;
     measure_energy(problem, 0);
     last_resort_step(problem, h, report);
@@ -501,11 +632,15 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
       for (std::size_t i = 0; i < problem.size(); ++i) problem.velocity[i] = 0.5 * start_velocity_[i];
       const double before = energy_;
       measure_energy(problem, 1);
-      report.dissipated += before - energy_;
+      missing_ += before - energy_;
     } else {
-      remove_excess_energy(problem, energy_ - start_energy, 1, report);
+      change_kinetic_energy(problem, energy_ - start_energy, 1);
     }
+    // That took back what sub-steps had made.
+    const double back = std::clamp(missing_, 0.0, report.made);
+    report.made -= back, missing_ -= back;
   }
+  book_rest(problem, h, report);
   restore_bounds(problem);
   if (std::exchange(cut_short_, false)) {
     report.cut_short = true;

@@ -48,7 +48,8 @@ struct [[nodiscard]] AdvanceReport {
   bool cut_short = false;     ///< by the settings' most iterations
   double gap = 0;             ///< worst at the end of a step that was cut short, m
   double external_work = 0;   ///< of explicit forces, grips and moving targets, J
-  double dissipated = 0;      ///< J
+  double dissipated = 0;      ///< by dampers, friction, dashpots and impacts: their own work, J
+  double lost = 0, made = 0;  ///< by the scheme, J: what a (sub-)step leaves unexplained
   double closing_energy = 0;  ///< by moving violated constraints together before the step, J
 };
 
@@ -96,9 +97,23 @@ class Integrator {
   bool solve(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);
   void measure_energy(const Problem&, double fraction);
-  void project_velocities_after_impact(Problem&, double to, AdvanceReport&);
+  void project_velocities_after_impact(Problem&, double to, bool met, AdvanceReport&);
   double work_of_drives(const Problem&, const Stage&) const;
+  /// What laws take from the motion in a solved step, J.
+  struct Dissipation {
+    double steady = 0;  ///< by dampers, dashpots and friction: their own work
+    double impact = 0;  ///< by rows that have just met; at most
+  };
+  Dissipation calc_dissipation(const Problem&, const Stage&) const;
+  template <class C>
+  void add_dissipation_of_rows(const Problem&, const Stage&, const ConstraintPool<C>&, Dissipation&) const;
+  void book_solution(const Problem&, const Stage&, double gain);
+  void book_rest(const Problem&, double h, AdvanceReport&);
   double work_of_gaps(const Problem&, const Stage&) const;
+  double work_of_imbalance(const Problem&, const Stage&) const;
+  Vec3 velocity_after(const Problem& problem, const Stage& stage, std::size_t node) const {
+    return problem.velocity[node] + ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[node];
+  }
   void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   void advance_end_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   bool will_turn_too_far(const Problem&, double h) const;
@@ -106,7 +121,8 @@ class Integrator {
   void smooth_multipliers(Problem&) const;
   bool gains_energy_on_curves(const Problem&, const Stage&);
   double calc_energy_gain(const Problem&, const Stage&);
-  void remove_excess_energy(Problem&, double excess, double fraction, AdvanceReport&);
+  void change_kinetic_energy(Problem&, double excess, double fraction);
+  void correct_energy(Problem&, double fraction);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   void hold_offsets(Problem&, AdvanceReport&);
   void restore_bounds(Problem&);
@@ -128,6 +144,9 @@ class Integrator {
   std::vector<double> multipliers_saved_, candidate_multipliers_;
   double step_length_ = 0;           ///< of the whole step, s
   double kinetic_ = 0, energy_ = 0;  ///< of the problem's state as it is now, J
+  double missing_ = 0, slack_ = 0;   ///< energy that the (sub-)step leaves unexplained; too much within its tolerance, J
+  bool has_curved_rows_ = false;     ///< which the mid-point rule does not keep the energy of
+  bool drives_rows_ = false;         ///< a target moves during this step, or a row has a rate
   bool conservative_ = true;         ///< nothing outside does work during this step
   bool holds_offsets_ = false;
   int iterations_left_ = std::numeric_limits<int>::max();

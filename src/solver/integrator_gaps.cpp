@@ -52,9 +52,8 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   const double added = energy_ - before;
   report.closing_energy += added;
   if (holds_offsets_ && conservative_ && added > 0) {  // repeated attempts must not add energy without end
-    const double dissipated = report.dissipated;
-    remove_excess_energy(problem, added, 0, report);
-    report.closing_energy -= report.dissipated - dissipated, report.dissipated = dissipated;
+    change_kinetic_energy(problem, added, 0);
+    report.closing_energy -= std::exchange(missing_, 0);
   }
 }
 

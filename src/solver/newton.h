@@ -44,6 +44,7 @@ class Newton {
   /// From free flight: x - x0 - h v0, m. The unknown itself, to its own relative precision: velocities taken from it keep
   /// momentum to round-off, whereas differences of positions lose 1e-16 |x| / h a step.
   std::span<Vec3> displacement() { return u_; }
+  std::span<const Vec3> displacement() const { return u_; }
 
   /// Hands the equations of steps, not of projections, to another solver; null: solves them itself. What the other one
   /// finds no root of is solved here after all.

@@ -72,6 +72,8 @@ void Stepper::advance_islands(StepReport& report) {
     report.fallbacks += r.fallbacks;
     report.unconverged += !r.converged;
     model.dissipated += r.dissipated;
+    model.lost += r.lost;
+    model.made += r.made;
     model.external_work += r.external_work;
     model.edit_energy += r.closing_energy;
   }
@@ -114,16 +116,26 @@ void Stepper::apply_edits(StepReport& report) {
 // 5. The report.
 void Stepper::fill(StepReport& report) {
   model::Model& model = editor_.model;
+  constexpr double worth_telling = 1e-4;  // of the kinetic energy
+  const ingredient::Energies energies = ingredient::calc_energies(model);
+  double made = 0;
+  for (const solver::AdvanceReport& r : advanced_) made += r.made;
+  if (made > worth_telling * energies.kinetic)
+    report.warnings.emplace_back("the integration made energy that no force explains (energy.made); try shorter steps");
   report.warnings.insert(report.warnings.end(), model.notes.begin(), model.notes.end());
   model.notes.clear();
   report.step = model.step;
   report.time = model.time;
   report.worst_gap = ingredient::worst_gap(model);
-  const ingredient::Energies energies = ingredient::calc_energies(model);
   ingredient::book_edits(model, energies.total());
   tell_contacts(model, report);
-  report.energy = {energies.kinetic, energies.potential + editor_.held.energy(), model.dissipated, model.external_work,
-                   model.edit_energy};
+  report.energy = {.kinetic = energies.kinetic,
+                   .potential = energies.potential + editor_.held.energy(),
+                   .dissipated = model.dissipated,
+                   .lost = model.lost,
+                   .made = model.made,
+                   .external_work = model.external_work,
+                   .edits = model.edit_energy};
   report.articulates = model.articulates.size();
   report.structure_version = model.structure_version;
 }

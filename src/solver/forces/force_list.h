@@ -31,6 +31,10 @@ struct SpringForce {
     const Vec3 n = direction(e0);
     return (-stiffness * factor(r)) * e - (damping / s.h * dot(n, e1 - e0)) * n;
   }
+  double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    const double along = dot(direction(e0), e1 - e0);
+    return damping / s.h * along * along;
+  }
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const Vec3 n0 = direction(e0), n1 = direction(e1);
     Mat3 k = (damping / s.h) * Mat3::outer(n0, n0);
@@ -61,6 +65,9 @@ struct DragForce {
 
   double energy(const Vec3&) const { return 0; }
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const { return (-damping / s.h) * (e1 - e0); }
+  double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    return damping / s.h * dot(e1 - e0, e1 - e0);
+  }
   Mat3 stiffness_matrix(const Vec3&, const Vec3&, const ForceStage& s) const { return Mat3::diagonal(damping / s.h); }
 };
 
@@ -74,6 +81,7 @@ struct GripForce {
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     return -stiffness * (s.midpoint ? 0.5 * (e0 + e1) : e1) - (damping / s.h) * (e1 - e0);
   }
+  double dissipation(const Vec3&, const Vec3&, const ForceStage&) const { return 0; }  // all of its work is external
   Mat3 stiffness_matrix(const Vec3&, const Vec3&, const ForceStage& s) const {
     return Mat3::diagonal((s.midpoint ? 0.5 : 1) * stiffness + damping / s.h);
   }
@@ -85,6 +93,7 @@ concept ImplicitForce = requires(const F& f, const Vec3& e, const ForceStage& st
   { f.arm } -> std::convertible_to<ForceArm>;
   { f.energy(e) } -> std::convertible_to<double>;
   { f.force(e, e, stage) } -> std::convertible_to<Vec3>;
+  { f.dissipation(e, e, stage) } -> std::convertible_to<double>;  // what it takes from the motion between e0 and e1, J
   { f.stiffness_matrix(e, e, stage) } -> std::convertible_to<Mat3>;
 };
 

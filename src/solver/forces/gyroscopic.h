@@ -22,6 +22,7 @@ struct GyroscopicForce {
     const Vec3 em = 0.5 * (e0 + e1);
     return (spin / (s.h * (dot(em, em) + 1e-300))) * cross(e0, e1);  // em x (e1 - e0) = e0 x e1
   }
+  double dissipation(const Vec3&, const Vec3&, const ForceStage&) const { return 0; }
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     if (!s.midpoint) return {};
     const Vec3 em = 0.5 * (e0 + e1);

@@ -38,6 +38,15 @@ struct RadialForce {
     return f;
   }
 
+  double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    if (!law->has_damping() && !law->has_drag()) return 0;
+    const double r0 = norm(e0), along = dot((1 / (r0 + tiny)) * e0, e1 - e0);
+    double taken = 0;
+    if (law->has_damping()) taken -= law->damping(at(r0, along / s.h), parameters.data()).value * along;
+    if (law->has_drag()) taken += law->drag(at(r0), parameters.data()) / s.h * dot(e1 - e0, e1 - e0);
+    return taken;
+  }
+
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r0 = norm(e0), r1 = norm(e1);
     const Vec3 n1 = (1 / (r1 + tiny)) * e1;

@@ -31,8 +31,7 @@ Swing swing(IntegrationMode mode, const ChainOptions& options, double dt, double
     run.kinetic = std::max(run.kinetic, report.energy.kinetic);
     run.fallbacks += report.fallbacks, run.unconverged += report.unconverged;
     run.iterations = std::max(run.iterations, report.iterations_max);
-    run.book_error = std::max(run.book_error, std::abs(report.energy.total() + report.energy.dissipated -
-                                                       report.energy.external_work - report.energy.edits - run.start));
+    run.book_error = std::max(run.book_error, std::abs(report.energy.balance() - run.start));
   }
   run.end = system.energy().total();
   EXPECT_EQ(system.validate(), std::vector<std::string>{});

@@ -28,7 +28,7 @@ BodyId make_block(System& system, const Vec3& center, const Vec3& size, double m
 /// Runs for `seconds` and checks at each step that the structure stays whole and the energy book adds up.
 template <class EachStep>
 void run(System& system, double seconds, double dt, EachStep each) {
-  const auto book = [](const Energy& e) { return e.total() + e.dissipated - e.external_work - e.edits; };
+  const auto book = [](const Energy& e) { return e.balance(); };
   double start = 0, largest = 1e-3;
   const long steps = std::lround(seconds / dt);
   for (long i = 0; i < steps; ++i) {

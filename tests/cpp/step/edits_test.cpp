@@ -15,7 +15,7 @@ namespace {
 
 double book(const System& system) {
   const Energy e = system.energy();
-  return e.total() + e.dissipated - e.external_work - e.edits;
+  return e.balance();
 }
 
 struct Plate {

@@ -26,7 +26,7 @@ std::vector<double> positions(const System& system) {
   return all;
 }
 
-double book(const Energy& e) { return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits; }
+double book(const Energy& e) { return e.balance(); }
 
 TEST(FreeParticles, move_as_the_solver_moves_them) {
   for (const IntegrationMode mode : {IntegrationMode::energy_keeping, IntegrationMode::robust}) {

@@ -10,7 +10,7 @@
 namespace iota {
 namespace {
 
-double book(const Energy& e) { return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits; }
+double book(const Energy& e) { return e.balance(); }
 
 void expect_same(const Energy& a, const Energy& b) {
   EXPECT_EQ(a.kinetic, b.kinetic);

@@ -13,7 +13,7 @@ namespace {
 
 double book(const System& system) {
   const Energy e = system.energy();
-  return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits;
+  return e.balance();
 }
 
 /// A damped chain that hangs still soon.

@@ -18,7 +18,7 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
 
 double book(const System& system) {
   const Energy e = system.energy();
-  return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits;
+  return e.balance();
 }
 
 const EmitterOptions fountain{.rate = 200,

@@ -135,7 +135,7 @@ class Playground {
 
 double book(const System& system) {
   const Energy e = system.energy();
-  return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits;
+  return e.balance();
 }
 
 TEST(SolidProperty, random_edits_keep_the_structure_whole_and_momenta_where_they_say_so) {

@@ -21,7 +21,7 @@ struct Floor {
   }};
 };
 
-double book(const Energy& e) { return e.kinetic + e.potential + e.dissipated - e.external_work - e.edits; }
+double book(const Energy& e) { return e.balance(); }
 
 class FailingSurface : public testing::TestWithParam<std::tuple<IntegrationMode, int>> {};
 

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where energy goes: dissipated by laws, lost or made by the scheme, each counted by itself.
+#include "scenes/chain.h"
+
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota {
+namespace {
+
+constexpr IntegrationMode all_modes[] = {IntegrationMode::plausible, IntegrationMode::robust,
+                                         IntegrationMode::energy_keeping, IntegrationMode::accurate};
+
+/// Two particles on a damped spring in empty space. The stretch is s(t) = s0 e^(-ct) (cos wt + c/w sin wt) with c = d / (2 mu);
+/// the dashpot has taken what the oscillator has no more.
+TEST(EnergyBook, counts_the_work_of_a_dashpot_as_dissipated_and_the_scheme_s_own_as_lost) {
+  for (const IntegrationMode mode : all_modes) {
+    System system{SystemOptions{.gravity = {}, .mode = mode}};
+    const ParticleId p = system.particles().create(system.bodies().create(), {0, 0, 0});
+    const ParticleId q = system.particles().create(system.bodies().create(), {1.2, 0, 0});
+    system.bonds().create(p, q, SpringLaw{.stiffness = 100, .damping = 0.5, .length = 1});
+    const double start = system.energy().total(), seconds = 1, h = 1.0 / 960;
+    Energy last;
+    for (int i = 0; i < std::lround(seconds / h); ++i) last = system.step(h).energy;
+    const double mu = 0.5, c = 0.5 / (2 * mu), w = std::sqrt(100 / mu - c * c), e = std::exp(-c * seconds);
+    const double stretch = 0.2 * e * (std::cos(w * seconds) + c / w * std::sin(w * seconds));
+    const double rate = -0.2 * e * (w + c * c / w) * std::sin(w * seconds);
+    const double taken = start - 50 * stretch * stretch - 0.5 * mu * rate * rate;
+    const bool loses = mode == IntegrationMode::plausible || mode == IntegrationMode::robust;
+    EXPECT_EQ(last.made, 0);
+    EXPECT_NEAR(last.dissipated + last.lost, start - last.total(), 1e-12);
+    if (loses) {
+      EXPECT_GT(last.lost, 0.05 * start) << "backward Euler damps an oscillation of 14 rad/s by itself";
+      EXPECT_GT(last.dissipated, 0.5 * taken);
+      EXPECT_LT(last.dissipated, 0.95 * taken) << "of an oscillation that the scheme damps, too";
+    } else {
+      EXPECT_NEAR(last.lost, 0, 1e-9 * start);
+      EXPECT_NEAR(last.dissipated, taken, 1e-4 * start);
+    }
+  }
+}
+
+TEST(EnergyBook, of_a_whipping_chain_has_nothing_made_and_shows_what_the_scheme_lost) {
+  for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::energy_keeping}) {
+    System system{SystemOptions{.mode = mode}};
+    (void)scenes::make_chain(system, {.links = 32});
+    const double start = system.energy().balance();
+    double kinetic = 0;
+    Energy last;
+    for (int i = 0; i < 480; ++i) {
+      const StepReport report = system.step(1.0 / 120);
+      last = report.energy, kinetic = std::max(kinetic, last.kinetic);
+      ASSERT_EQ(last.made, 0);
+      ASSERT_TRUE(report.warnings.empty());
+      ASSERT_NEAR(last.balance(), start, 1e-10 * (kinetic + 1));
+    }
+    EXPECT_EQ(last.dissipated, 0) << "nothing dissipates";
+    if (mode == IntegrationMode::robust) EXPECT_GT(last.lost, 0.1 * kinetic);
+  }
+}
+
+}  // namespace
+}  // namespace iota
