@@ -263,6 +263,38 @@ std::string Joints::name_of_row(const Model& model, solver::ItemKey key) const {
   return text("the ", info(model.constraints[key.slot].kind).name, " constraint ", key.slot);
 }
 
+namespace {
+
+/// That each term of a coupling is once in a list of its coupling's terms, and once in one of its joint's.
+void check_terms(const Model& model, model::Audit& audit) {
+  std::vector<std::uint8_t> seen(model.coupled_terms.slot_count());
+  const auto check_list = [&](std::uint32_t slot, std::uint32_t first, std::uint8_t list, auto owner, auto next) {
+    for (std::uint32_t t = first; t != none;) {
+      const bool is_good =
+          model.coupled_terms.is_alive(t) && owner(model.coupled_terms[t]) == slot && (seen[t] & list) == 0;
+      audit.require(is_good, "constraint ", slot, " has a term of another, or a list of terms without an end");
+      if (!is_good) return;
+      seen[t] |= list;
+      t = next(model.coupled_terms[t]);
+    }
+  };
+  model.constraints.for_each([&](std::uint32_t slot, const Constraint& c) {
+    check_list(slot, c.first_term, 1, [](auto& t) { return t.coupling; }, [](auto& t) { return t.next; });
+    check_list(slot, c.coupled, 2, [](auto& t) { return t.joint; }, [](auto& t) { return t.next_at_joint; });
+  });
+  model.coupled_terms.for_each([&](std::uint32_t t, const CoupledTerm& term) {
+    audit.require(seen[t] == 3, "term ", t, " of a coupling is not listed");
+    const ConstraintKind kind =
+        model.constraints.is_alive(term.joint) ? model.constraints[term.joint].kind : ConstraintKind::ball;
+    const bool is_known = static_cast<std::size_t>(kind) < constraint_kinds.size() &&
+                          static_cast<std::size_t>(term.coordinate) < joint_coordinates.size();
+    audit.require(is_known && has_coordinate(kind, term.coordinate) && std::isfinite(term.ratio), "term ", t,
+                  " of a coupling refers to no coordinate of a joint");
+  });
+}
+
+}  // namespace
+
 void Joints::check_links(const Model& model, model::Audit& audit) {
   using Alignment = Constraint::Alignment;
   using Lock = Constraint::Lock;
@@ -275,8 +307,10 @@ void Joints::check_links(const Model& model, model::Audit& audit) {
       audit.require(p == none ? (c.owned >> place & 1) == 0 : model.particles.is_alive(p), "constraint ", slot,
                     " holds a stranger at place ", place);
     }
-    audit.require(c.particles[a_origin] != none && c.has(b_origin) && (c.in_world & 0x0f) == 0, "constraint ", slot,
-                  " joins nothing");
+    const bool couples = known && info(c.kind).form == Form::coupling;
+    audit.require(couples || (c.particles[a_origin] != none && c.has(b_origin) && (c.in_world & 0x0f) == 0),
+                  "constraint ", slot, " joins nothing");
+    audit.require(couples == (c.first_term != none), "constraint ", slot, " couples nothing, or is no coupling");
     const bool has_curve = c.kind == ConstraintKind::path;
     audit.require(has_curve || c.curve.count == 0, "constraint ", slot, " has a curve");
     audit.require(std::uint64_t{c.curve.first} + c.curve.count <= model.curve_points.size(), "constraint ", slot,
@@ -294,10 +328,11 @@ void Joints::check_links(const Model& model, model::Audit& audit) {
       },
       [&](std::uint32_t link) { return model.constraints[link / place_count].next[link % place_count]; },
       [&](std::uint32_t link) { return model.constraints[link / place_count].previous[link % place_count]; });
+  check_terms(model, audit);
 }
 
 void Joints::validate(const Model& model, model::Audit& audit) {
-  std::uint32_t places = 0, listed = 0, listed_terms = 0;
+  std::uint32_t places = 0, listed = 0;
   model.constraints.for_each([&](std::uint32_t slot, const Constraint& c) {
     for (int place = 0; place < place_count; ++place) {
       const std::uint32_t p = c.particles[place];
@@ -310,17 +345,7 @@ void Joints::validate(const Model& model, model::Audit& audit) {
     const bool may_be_within = info(c.kind).form == Form::coupling || c.kind == ConstraintKind::span;
     audit.require(may_be_within || body_of_side(model, c, 0) != body_of_side(model, c, 1), info(c.kind).name, " ", slot,
                   " joins a body to itself");
-    std::uint32_t most = model.coupled_terms.size();
-    for_each_term(model, c, [&](const CoupledTerm& term) {
-      audit.require(term.coupling == slot && model.constraints.is_alive(term.joint), "coupling ", slot,
-                    " has a term of another, or of a joint that is gone");
-      if (model.constraints.is_alive(term.joint))
-        for_each_coupling_of(model, model.constraints[term.joint],
-                             [&](std::uint32_t other) { listed_terms += other == slot; });
-      audit.require(most-- > 0, "the terms of coupling ", slot, " go in a circle");
-    });
   });
-  audit.require(listed_terms >= model.coupled_terms.size(), "a term is listed at its coupling or its joint alone");
   audit.require_owners("lists", model.places, model.particles);
   model.places.for_each([&](std::uint32_t slot, const model::ListHead& head) {
     for (std::uint32_t link = head.first; link != none;) {

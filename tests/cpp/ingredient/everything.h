@@ -70,8 +70,15 @@ struct Everything {
     // A solid on a joint, in a hand.
     const BodyId solid = system.bodies().create(Box{{0.2, 0.3, 0.4}}, {.position = {0, 5, 3}});
     (void)system.bodies().create_attachment(solid, {0, 5.2, 3});
-    joint = slot(
-        system.joints().create(JointSpec{.kind = ConstraintKind::revolute, .a = solid, .b = four, .at = {0, 5, 1}}));
+    const ConstraintId hinge =
+        system.joints().create(JointSpec{.kind = ConstraintKind::revolute, .a = solid, .b = four, .at = {0, 5, 1}});
+    joint = slot(hinge);
+    // A wheel in the world, geared to that joint.
+    const BodyId wheel = system.bodies().create(Box{{0.1, 0.1, 0.1}}, {.position = {3, 5, 3}});
+    const ConstraintId axle =
+        system.joints().create(JointSpec{.kind = ConstraintKind::revolute, .a = wheel, .at = {3, 5, 3}});
+    (void)system.joints().create(
+        CouplingSpec{.terms = {{hinge, JointCoordinate::angle, 1}, {axle, JointCoordinate::angle, 2}}});
     grip = slot(system.grips().create(solid, {}, {1, 1, 1}));
     box = slot(solid);
 

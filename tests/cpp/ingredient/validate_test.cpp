@@ -76,7 +76,7 @@ const std::vector<Damage> damages{
     {"stands on stranger", [](Everything& e) { e.model.solids[first_alive(e.model.solids)].points[0] = e.loner; }},
     {"inertia pair",
      [](Everything& e) { e.model.inertia_pairs[e.model.bodies[e.rod].first_inertia].body = e.corners_body; }},
-    {"bodies list 0 solids of 1", [](Everything& e) { e.model.bodies[e.box].first_solid = none; }},
+    {"bodies list 1 solids of 2", [](Everything& e) { e.model.bodies[e.box].first_solid = none; }},
     // articulates
     {"hang together but are in articulates",
      [](Everything& e) { body_of(e, e.hinged).articulate = body_of(e, e.loner).articulate; }},
@@ -111,6 +111,10 @@ const std::vector<Damage> damages{
     {"has a parameter that is not finite",
      [](Everything& e) { e.model.bonds[e.bond].parameters[0] = std::numeric_limits<double>::infinity(); }},
     // constraints
+    {"a list of terms without an end", [](Everything& e) { e.model.coupled_terms[0].next = 0; }},
+    {"couples nothing", [](Everything& e) { e.model.constraints[e.joint].first_term = 0; }},
+    {"is not listed", [](Everything& e) { e.model.constraints[e.joint].coupled = model::none; }},
+    {"refers to no coordinate", [](Everything& e) { e.model.coupled_terms[0].coordinate = JointCoordinate::slide; }},
     {"holds a stranger at place", [](Everything& e) { e.model.constraints[e.joint].particles[a_axis] = e.loner; }},
     {"joins a body to itself",
      [](Everything& e) {

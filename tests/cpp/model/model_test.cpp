@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Membership: who is in which body, ring and articulate.
 #include "ingredient/tables.h"
+#include "shape/shape.h"
 #include "tests/cpp/model/small_model.h"
 
 #include <gtest/gtest.h>
@@ -55,6 +56,7 @@ TEST(Model, removes_a_particle_with_its_inertia_solid_twin_fuse_and_attributes) 
   model.bodies[body].first_inertia = model.inertia_pairs.create(pair).slot;
   Solid solid;
   solid.body = body;
+  solid.shape = shape::to_data(Sphere{0.1});
   for (int i = 0; i < 4; ++i) solid.points[static_cast<std::size_t>(i)] = m.particle(body, i);
   model.bodies[body].first_solid = model.solids.create(solid).slot;
   Twin twin;
