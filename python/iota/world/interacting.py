@@ -4,24 +4,37 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from iota._core import Body, Particle, Vec3
+from iota._core import Body, Particle, System, Vec3
 from iota.looks import sphere
+from iota.world.drawing import Drawing
 from iota.world.event import Event
 from iota.world.joining import hinge_above, nearest_ends
 from iota.world.listening import Listening
 from iota.world.shown import Arrow, Label, Line, Marker
 
-if TYPE_CHECKING:
-    from iota.world.world import World
-
 JOIN_SPEED = 1.2  # m/s, of ends that are drawn together
 FREE, READY = "#2f9d92", "#f2a324"  # of a socket
 
 
-class Interacting(Listening):
+class Interacting(Drawing, Listening):
     """What users do in many worlds, by one call each."""
+
+    # Of World, whose module imports this one.
+
+    @property
+    def system(self) -> System:
+        raise NotImplementedError
+
+    def undo(self) -> bool:
+        raise NotImplementedError
+
+    def redo(self) -> bool:
+        raise NotImplementedError
+
+    def on_reset(self, function: Callable[[], Any]) -> Callable[[], Any]:
+        raise NotImplementedError
 
     def offer(self, *parts: str) -> None:
         """Lets users break ("break", key b), join ("join", c) and copy ("copy", n) what they hold or have selected, measure
@@ -33,7 +46,7 @@ class Interacting(Listening):
         for name in parts or PARTS:
             if name not in PARTS:
                 raise ValueError(f"there are {', '.join(map(repr, PARTS))}, not {name!r}")
-            PARTS[name](self)  # type: ignore[arg-type]
+            PARTS[name](self)
 
     def socket(
         self,
@@ -47,7 +60,7 @@ class Interacting(Listening):
 
         world.socket(wall.particles[0], [cable.particles[-1]], within=0.2)
         """
-        return Socket(self, place, plugs, within, on_snap)  # type: ignore[arg-type]
+        return Socket(self, place, plugs, within, on_snap)
 
     def show_forces(self, bodies: Iterable[Body] | None = None, scale: float | None = None) -> Forces:
         """Arrows for what nails, hinges and hands do to bodies (None: all), red the nails, blue the hinges, as long as the
@@ -55,13 +68,13 @@ class Interacting(Listening):
 
         forces = world.show_forces()
         """
-        return Forces(self, bodies, scale)  # type: ignore[arg-type]
+        return Forces(self, bodies, scale)
 
 
 # --- parts --------------------------------------------------------------------------------------------------------------
 
 
-def _break(world: World) -> None:
+def _break(world: Interacting) -> None:
     @world.action("break", key="b", button="b", help="separates the held or selected body from the one above")
     def break_it(event: Event) -> None:
         hinge = hinge_above(event.body)
@@ -73,7 +86,7 @@ def _break(world: World) -> None:
             above.separate(own)
 
 
-def _join(world: World) -> None:
+def _join(world: Interacting) -> None:
     @world.action("join", key="c", button="a", help="joins the held or selected part to the nearest loose end")
     def join(event: Event) -> None:
         pair = nearest_ends(event.body)
@@ -85,7 +98,7 @@ def _join(world: World) -> None:
             end.combine(own, over=max(0.3, abs(end.position - own.position) / JOIN_SPEED))
 
 
-def _copy(world: World) -> None:
+def _copy(world: Interacting) -> None:
     @world.action("copy", key="n", help="another one of the held or selected body, beside it")
     def copy_it(event: Event) -> None:
         with world.system.edit():
@@ -94,21 +107,21 @@ def _copy(world: World) -> None:
         world._state.is_changed = True
 
 
-def _undo(world: World) -> None:
+def _undo(world: Interacting) -> None:
     @world.action("undo", key="z", help="takes the last edit back", on="world")
     def undo(event: Event) -> None:
         if not world.undo():
             event.notice("Nothing to undo")
 
 
-def _redo(world: World) -> None:
+def _redo(world: Interacting) -> None:
     @world.action("redo", key="y", help="repeats what was taken back", on="world")
     def redo(event: Event) -> None:
         if not world.redo():
             event.notice("Nothing to redo")
 
 
-def _measure(world: World) -> None:
+def _measure(world: Interacting) -> None:
     first: list[Body] = []
     shown: list[tuple[Body, Body, Line, Label]] = []
 
@@ -142,7 +155,7 @@ def _measure(world: World) -> None:
     world.on_reset(clear)
 
 
-PARTS: dict[str, Callable[[World], None]] = {
+PARTS: dict[str, Callable[[Interacting], None]] = {
     "break": _break, "join": _join, "copy": _copy, "undo": _undo, "redo": _redo, "measure": _measure,
 }  # fmt: skip
 
@@ -180,7 +193,7 @@ class Socket:
 
     def __init__(
         self,
-        world: World,
+        world: Interacting,
         place: Particle,
         plugs: Iterable[Particle],
         within: float,
@@ -223,7 +236,7 @@ class Socket:
 class Forces:
     """Arrows that follow the forces on bodies. scale: m/N."""
 
-    def __init__(self, world: World, bodies: Iterable[Body] | None, scale: float | None) -> None:
+    def __init__(self, world: Interacting, bodies: Iterable[Body] | None, scale: float | None) -> None:
         self.scale = scale
         self._world, self._bodies = world, None if bodies is None else list(bodies)
         self._arrows: dict[tuple[Particle, str], Arrow] = {}
@@ -259,7 +272,7 @@ class Forces:
             arrow.vector = force * scale
 
 
-def _size(world: World) -> float:
+def _size(world: Interacting) -> float:
     """Of all that is there, m."""
     places: Any = world.system.positions
     return float(abs(places.max(axis=0) - places.min(axis=0)).max()) if len(places) else 1.0

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from iota.world.actions import Action
 from iota.world.callbacks import Hook
 from iota.world.listeners import Listener, bodies_of, things_of
 from iota.world.state import State
@@ -21,6 +22,28 @@ class Listening:
     """
 
     _state: State
+
+    def action(
+        self,
+        name: str,
+        key: str | None = None,
+        help: str = "",
+        button: str | None = None,
+        on: str = "body",
+        label: str | None = None,
+    ) -> Callable[[Callback], Callback]:
+        """Decorator: lets users call a function by a key, a controller's face button ("a" or "b") or the page's panel.
+
+        on: "body" (the event has the held or selected body; without one the user is told so) or "world".
+        """
+        self._state.actions.check(name, key, button, on)
+
+        def register(function: Callback) -> Callback:
+            self._state.actions.add(Action(name, Hook.of(function), key, button, help, label or name, on))
+            self._state.is_changed = True
+            return function
+
+        return register
 
     def on_click(self, on: Any = "anything") -> Any:
         """Decorator: pressed and let go at once, by mouse, finger, controller or hand.

@@ -6,12 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from iota.world.lan import Lan
     from iota.world.summary import RunSummary
-    from iota.world.world import World
 
 
 @dataclass
@@ -24,7 +23,7 @@ class RunOptions:
     open: bool | None = None
     headless: bool = False
     lan: Lan | None = None
-    drive: Callable[[World], None] | None = None
+    drive: Callable[[Any], None] | None = None
     ran: bool = False
     summary: RunSummary | None = None
 

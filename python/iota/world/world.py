@@ -17,10 +17,8 @@ from iota._core import Body, StepReport, System, Vec3
 from iota.looks import Drawn, Look, by_style
 from iota.simulator import Simulator
 from iota.world import options as run_options
-from iota.world.actions import Action
 from iota.world.callbacks import Guard, Hook
 from iota.world.clock import Clock
-from iota.world.drawing import Drawing
 from iota.world.floor import level_below
 from iota.world.frames import turn_from_x
 from iota.world.hands import Client
@@ -41,7 +39,7 @@ Result = TypeVar("Result")
 HEADLESS_SECONDS = 10.0  # where nobody says how long
 
 
-class World(Drawing, Interacting):
+class World(Interacting):
     """Runs a system in real time and serves a page that shows it.
 
     system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. style: the style of
@@ -117,28 +115,6 @@ class World(Drawing, Interacting):
         self._state.is_changed = True
 
     # --- what the script asks for ---------------------------------------------------------------------------------
-
-    def action(
-        self,
-        name: str,
-        key: str | None = None,
-        help: str = "",
-        button: str | None = None,
-        on: str = "body",
-        label: str | None = None,
-    ) -> Callable[[Callback], Callback]:
-        """Decorator: lets users call a function by a key, a controller's face button ("a" or "b") or the page's panel.
-
-        on: "body" (the event has the held or selected body; without one the user is told so) or "world".
-        """
-        self._state.actions.check(name, key, button, on)
-
-        def register(function: Callback) -> Callback:
-            self._state.actions.add(Action(name, Hook.of(function), key, button, help, label or name, on))
-            self._state.is_changed = True
-            return function
-
-        return register
 
     def at(self, time: float) -> Callable[[Callback], Callback]:
         """Decorator: calls a function once at a simulated time (s). Asked for before `run`, it comes back after a reset."""
