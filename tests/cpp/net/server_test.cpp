@@ -729,7 +729,7 @@ TEST_F(ServerTest, holds_that_do_not_fit_are_refused) {
   say(*client, protocol::GrabStart{31, body_id(0), {}, {}});
   EXPECT_NE(hear<protocol::Notice>(*client)->text.find("in use"), std::string::npos);
   say(*client, protocol::GrabStart{32, body_id(0), {}, {}});
-  EXPECT_NE(hear<protocol::Notice>(*client)->text.find("too many"), std::string::npos);
+  EXPECT_NE(hear<protocol::Notice>(*client)->text.find("holds too much"), std::string::npos);
   EXPECT_EQ(take(33).size(), 33U);
 }
 
