@@ -31,12 +31,10 @@ void bind_energy(nb::module_& module) {
   type.def(
           "__init__",
           [](Energy* self, double kinetic, double potential, double dissipated, double lost, double made,
-             double external_work, double edits) {
-            new (self) Energy{kinetic, potential, dissipated, lost, made, external_work, edits};
-          },
-          nb::kw_only(), "kinetic"_a = 0.0, "potential"_a = 0.0, "dissipated"_a = 0.0, "lost"_a = 0.0,
-          "made"_a = 0.0, "external_work"_a = 0.0,
-          "edits"_a = 0.0)
+             double external_work,
+             double edits) { new (self) Energy{kinetic, potential, dissipated, lost, made, external_work, edits}; },
+          nb::kw_only(), "kinetic"_a = 0.0, "potential"_a = 0.0, "dissipated"_a = 0.0, "lost"_a = 0.0, "made"_a = 0.0,
+          "external_work"_a = 0.0, "edits"_a = 0.0)
       .def_ro("kinetic", &Energy::kinetic)
       .def_ro("potential", &Energy::potential,
               "Of gravity, springs, and all bonds, fields and pairs whose law has an energy.")
@@ -44,7 +42,8 @@ void bind_energy(nb::module_& module) {
               "Since the start, by damping, dashpots, friction, laws and impacts: their own work.")
       .def_ro("lost", &Energy::lost,
               "Since the start, by the integration scheme; may fall by what its tolerance leaves.")
-      .def_ro("made", &Energy::made, "Since the start, by the integration scheme: a defect, with a warning in the report.")
+      .def_ro("made", &Energy::made,
+              "Since the start, by the integration scheme: a defect, with a warning in the report.")
       .def_ro(
           "external_work", &Energy::external_work,
           "Since the start, by grips, scripted bonds, moved nails and applied forces; also what holding a force that has\n"

@@ -16,7 +16,7 @@ namespace iota {
 /// to round-off.
 struct Energy {
   double kinetic = 0;
-  double potential = 0;  ///< gravity, springs, and all bonds, fields and pairs whose law has an energy
+  double potential = 0;   ///< gravity, springs, and all bonds, fields and pairs whose law has an energy
   double dissipated = 0;  ///< since the start, by damping, dashpots, friction, laws and impacts: their own work
   double lost = 0;        ///< since the start, by the integration scheme; may fall by what its tolerance leaves
   double made = 0;        ///< since the start, by the integration scheme: a defect, see StepReport::warnings

@@ -87,7 +87,8 @@ void Model::archive(Archive& ar) {
   Structure::archive(ar);
   ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step);
-  ar.value(dissipated), ar.value(lost), ar.value(made), ar.value(external_work), ar.value(edit_energy), ar.value(booked_energy), ar.value(has_edits);
+  ar.value(dissipated), ar.value(lost), ar.value(made), ar.value(external_work), ar.value(edit_energy),
+      ar.value(booked_energy), ar.value(has_edits);
   ar.value(held_energy);
   ingredient::for_each_type<ingredient::Ingredients>(
       [&]<class I>() { static_cast<ingredient::OwnTables<I>&>(*this).archive(ar, *this); });

@@ -21,9 +21,9 @@ constexpr double largest_violation = 1e-2;  // relative: a step that opens wider
 
 /// No quadratic functions of the points: the mean of two gradients is not an exact discrete gradient of theirs.
 template <class C>
-constexpr bool is_curved = std::is_same_v<C, AngleConstraint> || std::is_same_v<C, CurveConstraint> ||
-                           std::is_same_v<C, StationConstraint> || std::is_same_v<C, SurfaceConstraint> ||
-                           std::is_same_v<C, SurfacePairConstraint>;
+constexpr bool is_curved =
+    std::is_same_v<C, AngleConstraint> || std::is_same_v<C, CurveConstraint> || std::is_same_v<C, StationConstraint> ||
+    std::is_same_v<C, SurfaceConstraint> || std::is_same_v<C, SurfacePairConstraint>;
 
 }  // namespace
 
@@ -268,10 +268,9 @@ void Integrator::add_dissipation_of_rows(const Problem& problem, const Stage& st
         taken.steady += is_free ? law.damping / stage.h * moved * moved
                                 : std::max(0.0, lambda * moved - law.energy(after[r]) + law.energy(before[r]));
       else if (is_free && state.side_before != 0)
-        taken.impact +=
-            lambda * (stage.midpoint ? moved
-                                     : stage.h * mean_speed_across(problem, c, r, newton_.solution(),
-                                                                   newton_.displacement(), stage));
+        taken.impact += lambda * (stage.midpoint ? moved
+                                                 : stage.h * mean_speed_across(problem, c, r, newton_.solution(),
+                                                                               newton_.displacement(), stage));
     }
   }
 }
@@ -341,8 +340,8 @@ bool Integrator::turns_too_far(const Problem& problem) const {
 double Integrator::calc_energy_gain(const Problem& problem, const Stage& stage) {
   if (!conservative_) return -1;
   const auto x1 = newton_.solution();
-  return problem.kinetic_energy([&](std::size_t i) { return velocity_after(problem, stage, i); }) + problem.potential_energy(x1.data()) +
-         problem.row_energy(x1.data(), stage.fraction) - energy_;
+  return problem.kinetic_energy([&](std::size_t i) { return velocity_after(problem, stage, i); }) +
+         problem.potential_energy(x1.data()) + problem.row_energy(x1.data(), stage.fraction) - energy_;
 }
 
 // The mid-point rule keeps energy with quadratic constraints only. On a curve or surface a step that is too long may gain
@@ -608,9 +607,9 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
   const bool found = report.converged && report.fallbacks == 0;
   // If motors, grips or moving nails do work, the increase is what their work does not explain. There even a solution may
   // be the wrong one: a body that has jumped by half a turn meets the equations for directions, too.
-  const double made_up =
-      conservative_ ? energy_ - start_energy
-                    : report.made - start.made - (report.lost - start.lost) - (report.dissipated - start.dissipated) - missing_;
+  const double made_up = conservative_ ? energy_ - start_energy
+                                       : report.made - start.made - (report.lost - start.lost) -
+                                             (report.dissipated - start.dissipated) - missing_;
   const double work = conservative_ ? 0 : std::abs(report.external_work - start.external_work);
   const bool too_much = made_up > 0.1 * start_kinetic + work + 1e-9 * std::abs(start_energy);
   const bool absurd =

@@ -144,10 +144,10 @@ class Integrator {
   std::vector<double> multipliers_saved_, candidate_multipliers_;
   double step_length_ = 0;           ///< of the whole step, s
   double kinetic_ = 0, energy_ = 0;  ///< of the problem's state as it is now, J
-  double missing_ = 0, slack_ = 0;   ///< energy that the (sub-)step leaves unexplained; too much within its tolerance, J
-  bool has_curved_rows_ = false;     ///< which the mid-point rule does not keep the energy of
-  bool drives_rows_ = false;         ///< a target moves during this step, or a row has a rate
-  bool conservative_ = true;         ///< nothing outside does work during this step
+  double missing_ = 0, slack_ = 0;  ///< energy that the (sub-)step leaves unexplained; too much within its tolerance, J
+  bool has_curved_rows_ = false;    ///< which the mid-point rule does not keep the energy of
+  bool drives_rows_ = false;        ///< a target moves during this step, or a row has a rate
+  bool conservative_ = true;        ///< nothing outside does work during this step
   bool holds_offsets_ = false;
   int iterations_left_ = std::numeric_limits<int>::max();
   bool cut_short_ = false;

@@ -17,9 +17,7 @@ struct RigidMotion {
   Vec3 turning;           ///< angular velocity, rad/s
 
   Vec3 velocity_at(const Vec3& place) const { return velocity + cross(turning, place - center); }
-  double kinetic_energy() const {
-    return 0.5 * (mass * dot(velocity, velocity) + dot(turning, inertia * turning));
-  }
+  double kinetic_energy() const { return 0.5 * (mass * dot(velocity, velocity) + dot(turning, inertia * turning)); }
 };
 
 /// Of the points' masses alone, without the spins of rods.

@@ -123,10 +123,10 @@ void print_joints(const char* name, IntegrationMode mode) {
     const Vec3 place{0.5 * i, 1 + 0.05 * (i % 3), 0.02 * i};
     const BodyId body =
         system.bodies().create(shapes[i % 5], {.density = 200,
-                                           .position = place,
-                                           .orientation = {0, 0.05 * i, 0, std::sqrt(1 - 0.0025 * i * i)},
-                                           .spin = {0.1, 0.2 * i, 0},
-                                           .attachments = {{0.1, 0, 0}}});
+                                               .position = place,
+                                               .orientation = {0, 0.05 * i, 0, std::sqrt(1 - 0.0025 * i * i)},
+                                               .spin = {0.1, 0.2 * i, 0},
+                                               .attachments = {{0.1, 0, 0}}});
     const ParticleId attached = system.bodies().attachments(body).front();
     if (i > 0 && i % 4 != 0) {
       JointSpec joint{
@@ -143,7 +143,8 @@ void print_joints(const char* name, IntegrationMode mode) {
     last = body, end = attached;
   }
   PathSpec path{.particle = end};
-  for (int i = 0; i < 8; ++i) path.points.push_back(system.particles().position(end) + Vec3{0.1 * i, -0.05 * i * i, 0.02 * i});
+  for (int i = 0; i < 8; ++i)
+    path.points.push_back(system.particles().position(end) + Vec3{0.1 * i, -0.05 * i * i, 0.02 * i});
   (void)system.joints().create(path);
   for (const ParticleId p : system.particles().ids())
     if (system.particles().mass(p) == 0)
@@ -156,7 +157,7 @@ void print_joints(const char* name, IntegrationMode mode) {
 void print_crowd(const char* name, int threads) {
   System system({.threads = threads});
   const LawId law = system.laws().create("energy = k * (r - l)^2 / 2 + c * exp(-r) * sin(3 * r)",
-                                      {.name = "bumpy", .parameters = {{"k", 30}, {"l", 0.3}, {"c", 2}}});
+                                         {.name = "bumpy", .parameters = {{"k", 30}, {"l", 0.3}, {"c", 2}}});
   const LawId pair = system.laws().find("lennard_jones");
   for (int c = 0; c < 60; ++c) {
     const auto chain = scenes::make_chain(
@@ -181,7 +182,8 @@ void print_restless(IntegrationMode mode, const char* name) {
   scenes::make_chain(system, {.links = 12});
   for (int i = 0; i < 8; ++i) {
     const BodyId body = system.bodies().create();
-    for (int k = 0; k <= i % 5; ++k) system.particles().create(body, Vec3{0.3 * i, 0.2 * k, 0.1 * (k * i % 3)}, 0.2 + k);
+    for (int k = 0; k <= i % 5; ++k)
+      system.particles().create(body, Vec3{0.3 * i, 0.2 * k, 0.1 * (k * i % 3)}, 0.2 + k);
   }
   print(name, system, 300, 1.0 / 60, [](System& s, Random& random, int step) {
     const auto particles = s.particles().ids();

@@ -423,9 +423,7 @@ TEST_P(Step, throws_nothing_leaves_the_system_whole_and_allocates_nothing_when_w
     const long allocated = allocations - before;
 
     ASSERT_TRUE(std::isfinite(report.energy.total()) && std::isfinite(report.energy.dissipated));
-    const auto book = [](const Energy& e) {
-      return e.balance();
-    };
+    const auto book = [](const Energy& e) { return e.balance(); };
     ASSERT_NEAR(book(report.energy), book(start), 1e-6 * (1 + report.energy.kinetic + std::abs(report.energy.edits)));
     if (step % scene().period == 0 || step + 1 == periods * scene().period) {
       ASSERT_EQ(system.validate(), std::vector<std::string>{});
