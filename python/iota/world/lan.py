@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
 
-import segno
-
 from iota._core import kept_certificate
 
 
@@ -43,6 +41,8 @@ def address() -> str:
 
 def qr_code(text: str) -> str:
     """For a terminal with light letters on dark or dark ones on light."""
+    import segno  # 30 ms, which most that import iota need not wait for
+
     out = StringIO()
     segno.make(text, error="l").terminal(out, compact=True)
     return out.getvalue().rstrip("\n")
