@@ -5,9 +5,9 @@
     python bench/compare.py ../before/build/iota_bench build/iota_bench
     python bench/compare.py BEFORE AFTER --filter 'chain/rod' --runs 7
 
-The two programs take turns (before, after, before, after ...) within each row, so a machine whose speed drifts slows both
-alike. A row is the median of its runs; the last column is after / before. Memory rows compare bytes a link. Exit code 1
-if a row is above --limit.
+The two programs take turns (before, after, before, after ...) within each row, so that a drift of the machine's speed
+affects both equally. A row is the median of its runs; the last column is after / before. Memory rows compare bytes a
+link. Exit code 1 if a row is above --limit.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-# A step that allocates or whose median differs from its mean is better told by its own counter.
+# For steps that allocate or whose median differs from the mean, their own counter is more precise.
 COUNTERS = ("us_per_link_step", "step_ms_p50", "bytes_per_link")
 
 
@@ -32,7 +32,7 @@ def rows_of(program: Path, pattern: str) -> list[str]:
 
 
 def measure(program: Path, row: str, seconds: float) -> float:
-    """One figure of one row: its counter if it has one of COUNTERS, else processor time, ns."""
+    """The value of a row: its counter if it has one of COUNTERS, else processor time, ns."""
     result = subprocess.run(
         [
             program,

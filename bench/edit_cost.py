@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a cut costs the script: a chain of 10 000 links on a served world, cut again and again where it hangs together.
+"""Measures the cost of a cut in the script: a chain of 10 000 links on a served world, cut repeatedly.
 
     .venv/bin/python bench/edit_cost.py [links]
 
-Prints the median processor time of the cut itself, of the frame that tells viewers of it, and of a frame without an edit.
+Prints the median processor time of the cut itself, of the frame that sends it to viewers, and of a frame without an
+edit.
 """
 
 from __future__ import annotations
@@ -43,8 +44,8 @@ def main() -> None:
     room.close(system)
     server.close()
     extra = [edited - still for edited, still in zip(frames, calm, strict=True)]
-    print(f"{count} links: all of them told in {whole:.1f} ms")
-    for name, times in (("cut", cuts), ("telling of it, beyond a frame", extra), ("frame without an edit", calm)):
+    print(f"{count} links: first publish of all {whole:.1f} ms")
+    for name, times in (("cut", cuts), ("additional time of the next frame", extra), ("frame without an edit", calm)):
         print(f"  {name}: median {statistics.median(times):.3f} ms, worst {max(times):.3f} ms")
 
 

@@ -7,7 +7,7 @@
     python bench/run_bench.py --no-peers --filter 'chain/rod/robust/120/512/'
 
 Everything runs on one core, one program after the other. The engine's chains run first and last, and each case keeps
-the faster of the two; how far the two differ is printed, since that is how far to trust a ratio. Results go to
+the faster of the two; their difference is printed, as it is the uncertainty of a ratio. Results go to
 build/bench/results.json and build/bench/results.md.
 """
 
@@ -31,7 +31,7 @@ ROOT = HERE.parent
 RESULTS = ROOT / "build" / "bench"
 LINKS = (8, 64, 512, 4096, 16384, 100000)
 AIM_US = {"robust": 0.3, "energy_keeping": 0.8}
-"""What a link and step of a chain may cost, microseconds."""
+"""Target for a link and step of a chain, microseconds."""
 
 AIMS = (
     ("chain of rods, robust, us/link/step", r"chain/rod/robust/120/", "us_per_link_step", 1, 0.3, "<="),
@@ -74,7 +74,7 @@ AIMS = (
     ("memory of a two-point link, robust, bytes", r"memory/robust/", "bytes_per_link", 1, 1024, "<="),
     ("memory of a two-point link, energy-keeping, bytes", r"memory/energy_keeping/", "bytes_per_link", 1, 1024, "<="),
 )
-"""What is aimed at: text, cases, counter, factor, aim (None: only told), which way."""
+"""Targets: text, cases, counter, factor, target (None: only printed), direction."""
 
 Row = dict[str, Any]
 
@@ -83,7 +83,7 @@ Row = dict[str, Any]
 
 
 def pin_to_one_core() -> int:
-    """Keeps this process and what it starts on the last core it may use; returns its number, or -1."""
+    """Restricts this process and its children to its last core; returns its number, or -1."""
     if not hasattr(os, "sched_setaffinity"):
         return -1
     core = max(os.sched_getaffinity(0))
@@ -95,7 +95,7 @@ ALL_CORES = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else set
 
 
 def use_all_cores() -> None:
-    """For what is about threads."""
+    """For cases with threads."""
     if ALL_CORES:
         os.sched_setaffinity(0, ALL_CORES)
 
@@ -110,13 +110,13 @@ def run_engine(binary: Path, pattern: str, all_cores: bool = False) -> list[Row]
             check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             preexec_fn=use_all_cores if all_cores else None,
         )  # fmt: skip
-        # Google Benchmark writes nan and inf as they are, which is no JSON.
+        # Google Benchmark writes nan and inf, which are not JSON.
         cases: list[Row] = json.loads(re.sub(r": -?(nan|inf)\b", ": null", out.read_text()))["benchmarks"]
     return cases
 
 
 def faster_of(first: list[Row], second: list[Row]) -> tuple[list[Row], float]:
-    """The first list with each case's faster twin, and the median of slower / faster."""
+    """The first list with the faster run of each case, and the median of slower / faster."""
     spread, best = [], []
     again = {case["name"]: case for case in second}
     for a in first:
@@ -172,7 +172,7 @@ def engine_row(case: Row) -> Row:
 
 
 def is_compared(name: str) -> bool:
-    """Whether the peers have this case of the engine's, or an engine's row of this kind stands beside theirs."""
+    """Whether the peers have this case, or the engine's row belongs in their table."""
     return bool(re.match(r"chain/|heavy_end/|net/\w+/120/32/|ragdolls/\w+/1000/1/", name))
 
 
@@ -182,7 +182,7 @@ def text_of(value: float | None, style: str) -> str:
 
 
 def table(title: str, head: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
-    """A Markdown table that is also straight to the eye; nothing without lines."""
+    """An aligned Markdown table; nothing without lines."""
     if not lines:
         return ""
     widths = [max(len(row[i]) for row in [head, *lines]) for i in range(len(head))]
@@ -200,7 +200,7 @@ TITLES = {
 
 
 def scene_tables(rows: Sequence[Row]) -> list[str]:
-    """One table for each scene, size and step: ratios to iota's robust mode with what the peers simulate."""
+    """One table for each scene, size and step: ratios to iota's robust mode with the peers' model."""
     head = [
         "engine",
         "setting",
@@ -233,7 +233,7 @@ def scene_tables(rows: Sequence[Row]) -> list[str]:
 
 
 def summary_table(rows: Sequence[Row]) -> str:
-    """What a link costs against the aim, and how flat that is in the length of the chain."""
+    """The cost of a link compared with the target, for each length of the chain."""
     head = ["mode", "link", "1/h", *map(str, sorted({r["size"] for r in rows})), "longest / 64", "Newton mean/max"]
     lines = []
     for key in dict.fromkeys((r["mode"], r["link"], r["hz"]) for r in rows):
@@ -278,7 +278,7 @@ def other_table(cases: Sequence[Row]) -> str:
 
 
 def aims_table(cases: Sequence[Row]) -> str:
-    """Every aim beside what was measured, with gap, energy and fall-backs: a fast row that explodes has not won."""
+    """Every target and the measured value, with gap, energy and fall-backs."""
     lines = []
     for text, pattern, key, factor, aim, way in AIMS:
         for case in (c for c in cases if re.match(pattern, c["name"]) and key in c):
@@ -295,7 +295,7 @@ def aims_table(cases: Sequence[Row]) -> str:
 
 
 def main() -> int:
-    """Runs what was asked for; 1 when the engine's benchmarks are not built."""
+    """Runs the requested cases; 1 if the engine's benchmarks are not built."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--binary", type=Path, default=ROOT / "build" / "iota_bench")
     parser.add_argument("--quick", action="store_true", help="8, 64 and 512 links, peers for at most 2 s a row")

@@ -12,7 +12,7 @@ namespace iota::bindings {
 namespace nb = nanobind;
 
 /// The numbers of an array or nested sequence of shape (count, 3), as float64 in C order; `array` keeps them alive.
-/// ValueError that tells `name`, what a row is and the shape it has instead.
+/// The ValueError contains `name`, the meaning of a row and the actual shape.
 inline std::span<const double> view_rows(nb::handle values, std::size_t count, const char* name, const char* row,
                                          nb::object& array) {
   array = nb::module_::import_("numpy").attr("ascontiguousarray")(values, "float64");

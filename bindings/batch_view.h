@@ -11,21 +11,21 @@
 
 namespace iota::bindings {
 
-/// A batch of the engine's while the script's function for it runs; afterwards it is gone.
+/// A batch of the engine; valid while the script's function for it runs.
 template <class Batch>
 struct BatchView {
   nb::object system_object;
   SystemObject* system = nullptr;
   const Batch* batch = nullptr;
 
-  /// `name`: what the script calls it.
+  /// `name`: its name in scripts.
   const Batch& use(const char* name) const {
-    if (!batch) raise_runtime(std::string("a ") + name + " is good only until the function that was given it returns");
+    if (!batch) raise_runtime(std::string("a ") + name + " is valid only until its function returns");
     return *batch;
   }
 };
 
-/// Copies, so that they may be kept: shape (n,), and (n, 3).
+/// Copies, which the script may keep: shape (n,), and (n, 3).
 inline nb::object make_array(std::vector<double> numbers) {
   auto* const kept = new std::vector<double>(std::move(numbers));
   nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
@@ -35,7 +35,7 @@ inline nb::object copy_rows(const double* rows, std::size_t count) {
   return nb::cast(make_vector3_array(std::vector<double>(rows, rows + 3 * count)));
 }
 
-/// Shows a view to a function and takes the forces that it returns. `row`: what has one. Where it raises there are none.
+/// Calls a function with a view and reads the returned forces. `row`: the meaning of a row. No forces if it raises.
 template <class View>
 void ask_for_forces(const std::shared_ptr<ScriptFunction>& function, View view, const char* row) {
   const auto& batch = *view.batch;
@@ -46,7 +46,7 @@ void ask_for_forces(const std::shared_ptr<ScriptFunction>& function, View view, 
     nb::object shown = nb::cast(std::move(view));
     struct Expire {
       nb::object shown;
-      ~Expire() {  // a view that is kept must not keep the system
+      ~Expire() {  // a kept view must not keep the system alive
         View& it = *nb::inst_ptr<View>(shown);
         it.batch = nullptr;
         it.system_object.reset();

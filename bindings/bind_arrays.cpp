@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many particles, bodies, bonds or joints at once: arrays with a row for each.
+// Arrays of particles, bodies, bonds or joints, with a row for each.
 #include "array_argument.h"
 #include "binders.h"
 #include "law_argument.h"
@@ -15,7 +15,7 @@ namespace iota::bindings {
 
 namespace {
 
-/// Things of one kind in a system, in an order.
+/// An ordered list of things of one kind in a system.
 template <class IdType>
 struct HandleArray {
   nb::object system_object;
@@ -31,8 +31,8 @@ using BondArray = HandleArray<BondId>;
 using JointArray = HandleArray<ConstraintId>;
 
 constexpr const char* copies =
-    "\n\nArrays that it gives are copies, float64, with a row for each in its order; assigning takes anything of that shape, and\n"
-    "is one edit. StaleIdError where one of them is gone.";
+    "\n\nReturned arrays are float64 copies with a row for each, in its order; any array of that shape can be assigned,\n"
+    "which is one edit. StaleIdError if one of them no longer exists.";
 
 using RowsArgument = TypedArgument<"numpy.typing.ArrayLike">;
 using ColumnArgument = TypedArgument<"float | numpy.typing.ArrayLike">;
@@ -47,7 +47,7 @@ std::span<const double> to_numbers(nb::handle values, std::size_t count, std::si
     throw nb::type_error((std::string(name) + " must be an array of numbers, not " + describe(values)).c_str());
   }
   const auto view = nb::cast<nb::ndarray<const double, nb::c_contig, nb::device::cpu>>(array);
-  // ascontiguousarray makes one dimension of none.
+  // ascontiguousarray turns zero dimensions into one.
   const std::size_t row_shape = columns == 1 ? 0 : 1;
   const bool is_rows =
       view.ndim() == 1 + row_shape && view.shape(0) == count && (!row_shape || view.shape(1) == columns);
@@ -173,7 +173,8 @@ nb::class_<Array> bind_array(nb::module_& module, const char* name, const std::s
 
 void bind_particle_array(nb::module_& module) {
   auto type = bind_array<ParticleArray>(module, "ParticleArray",
-                                        "Particles in an order; made by `System.particle_array` or `System.array`.");
+                                        "An ordered list of particles; made by `System.particle_array` or "
+                                        "`System.array`.");
   def_assigned(type, "positions", Quantity::position,
                "(n, 3), m. Assigning moves whole rings, as `Particle.position` does.");
   def_assigned(type, "velocities", Quantity::velocity, "(n, 3), m/s.");
@@ -186,23 +187,24 @@ void bind_particle_array(nb::module_& module) {
         if (self.system != others.system) throw nb::value_error("combine takes particles of one system");
         return RestructureResult{self.system_object, self.system, self.change("combine").combine(self.ids, others.ids)};
       },
-      "others"_a, "Hinges each with that of the same number in another array. One report, all or nothing.");
+      "others"_a, "Hinges each with the one of the same index in another array. One report, all or nothing.");
 }
 
 void bind_body_array(nb::module_& module) {
   auto type = bind_array<BodyArray>(
       module, "BodyArray",
-      "Bodies in an order; made by `System.rod_array` or `System.array`. What is assigned is put on each body by itself: where\n"
-      "hinged bodies are given what does not fit, the last one decides, and the next step closes the gap.");
+      "An ordered list of bodies; made by `System.rod_array` or `System.array`. Assigning moves each body\n"
+      "independently: if the values of hinged bodies do not fit, the last one is used, and the next step closes the\n"
+      "gap.");
   def_assigned(type, "positions", Quantity::position, "(n, 3): of the centers of mass, m.");
   def_assigned(type, "orientations", Quantity::orientation,
                "(n, 4): unit quaternions x y z w, see `Body.orientation`.");
   def_assigned(type, "velocities", Quantity::velocity, "(n, 3): of the centers of mass, m/s.");
   def_assigned(type, "angular_velocities", Quantity::angular_velocity, "(n, 3): rad/s, world axes.");
-  def_assigned(type, "poses", Quantity::pose, "(n, 7): positions and orientations. Use it for what hangs together.");
+  def_assigned(type, "poses", Quantity::pose, "(n, 7): positions and orientations. Use it for hinged bodies.");
   def_assigned(type, "motions", Quantity::motion,
-               "(n, 6): velocities and angular velocities. Use it for what hangs together.");
-  def_assigned(type, "masses", Quantity::mass, "(n,), kg; inertia goes along.");
+               "(n, 6): velocities and angular velocities. Use it for hinged bodies.");
+  def_assigned(type, "masses", Quantity::mass, "(n,), kg; assigning scales the inertia too.");
   def_read(type, "forces", Quantity::force, "(n, 3): sum of all forces from outside in the last step, N.");
   def_read(type, "torques", Quantity::torque, "(n, 3): their moments about the centers of mass, N m.");
   def_applied(type, "apply_forces", Quantity::force, "forces",
@@ -222,10 +224,11 @@ void bind_body_array(nb::module_& module) {
 }
 
 void bind_bond_array(nb::module_& module) {
-  auto type =
-      bind_array<BondArray>(module, "BondArray", "Bonds in an order; made by `System.bond_array` or `System.array`.");
+  auto type = bind_array<BondArray>(module, "BondArray",
+                                    "An ordered list of bonds; made by `System.bond_array` or "
+                                    "`System.array`.");
   def_read(type, "forces", Quantity::force, "(n, 3): on the first particle of each, N; see `Bond.force`.");
-  def_read(type, "distances", Quantity::length, "(n,): of the two ends, m.");
+  def_read(type, "distances", Quantity::length, "(n,): between the two ends, m.");
   type.def(
           "parameter",
           [](const BondArray& self, const std::string& name) {
@@ -252,7 +255,7 @@ void bind_bond_array(nb::module_& module) {
 }
 
 void bind_joint_array(nb::module_& module) {
-  auto type = bind_array<JointArray>(module, "JointArray", "Joints in an order; made by `System.array`.");
+  auto type = bind_array<JointArray>(module, "JointArray", "An ordered list of joints; made by `System.array`.");
   const auto def = [&](const char* name, Quantity quantity, JointCoordinate which, const char* text) {
     type.def_prop_ro(
         name,
@@ -263,10 +266,10 @@ void bind_joint_array(nb::module_& module) {
         },
         nb::sig(getter_signature(name).c_str()), text);
   };
-  def("angles", Quantity::value, JointCoordinate::angle, "(n,), rad; ValueError where one has none.");
+  def("angles", Quantity::value, JointCoordinate::angle, "(n,), rad; ValueError if one has none.");
   def("angle_speeds", Quantity::speed, JointCoordinate::angle, "(n,), rad/s.");
   def("angle_efforts", Quantity::effort, JointCoordinate::angle, "(n,), N m: see `JointCoordinate.effort`.");
-  def("slides", Quantity::value, JointCoordinate::slide, "(n,), m; ValueError where one has none.");
+  def("slides", Quantity::value, JointCoordinate::slide, "(n,), m; ValueError if one has none.");
   def("slide_speeds", Quantity::speed, JointCoordinate::slide, "(n,), m/s.");
   def("slide_efforts", Quantity::effort, JointCoordinate::slide, "(n,), N.");
 }
@@ -289,7 +292,7 @@ constexpr const char* make_rods_doc =
 
 constexpr const char* make_bonds_doc =
     "Many new bonds of one law, between p[i] and q[i].\n\n"
-    "law: as of `bond`, but no function of the script for one bond. Parameters of the law: one number, an array (n,), or None\n"
+    "law: as of `bond`, but not a function of the script. Parameters of the law: one number, an array (n,), or None\n"
     "for the distance now.\n\n"
     "    system.bond_array(knots[:-1], knots[1:], 'spring', stiffness=numpy.linspace(10, 20, 99), damping=0.1)";
 
@@ -300,7 +303,7 @@ void read_masses(Rows& rows, nb::handle masses, std::size_t count) {
   rows.masses.assign(numbers.begin(), numbers.end());
 }
 
-/// The array of particles that an argument is: one, or any sequence of handles.
+/// An argument as an array of particles: a ParticleArray, or any sequence of handles.
 std::vector<ParticleId> to_particles(const SystemObject& system, nb::handle value, const char* name) {
   const ParticleArray* array = nullptr;
   if (nb::try_cast<const ParticleArray*>(value, array) && array) {
@@ -369,7 +372,7 @@ bool try_array(nb::handle_t<SystemObject> self, const nb::list& items, nb::objec
     if (!nb::try_cast<const HandleType*>(item, handle) || !handle)
       throw nb::type_error(
           ("array takes handles of one kind, but got " + describe(items[0]) + " and " + describe(item)).c_str());
-    if (handle->system != all.system) throw nb::value_error("array takes what is of its own system");
+    if (handle->system != all.system) throw nb::value_error("array takes handles of its own system");
     all.ids.push_back(handle->id);
   }
   array = nb::cast(std::move(all));
@@ -379,7 +382,7 @@ bool try_array(nb::handle_t<SystemObject> self, const nb::list& items, nb::objec
 nb::object make_array_of(nb::handle_t<SystemObject> self, const nb::iterable& handles) {
   const nb::list items = nb::list(handles);
   nb::object array;
-  if (items.size() == 0) throw nb::value_error("array needs at least one handle: of nothing it has no kind");
+  if (items.size() == 0) throw nb::value_error("array needs at least one handle, which gives its kind");
   if (try_array<ParticleHandle, ParticleArray>(self, items, array) ||
       try_array<BodyHandle, BodyArray>(self, items, array) || try_array<BondHandle, BondArray>(self, items, array) ||
       try_array<ConstraintHandle, JointArray>(self, items, array))

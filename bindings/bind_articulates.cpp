@@ -6,12 +6,12 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* doc =
-    "The bodies that hang together with one of them by hinges, as they do now: an edit may make it larger or smaller. Two\n"
-    "are equal while their bodies hang together.\n\n"
+    "A group of bodies connected by hinges, at present: an edit may make it larger or smaller. Two are\n"
+    "equal while their bodies are connected.\n\n"
     "    if hook.body.articulate != eye.body.articulate:\n"
     "        hook.combine(eye)";
 
-/// Known by any of its bodies.
+/// Represented by any of its bodies.
 struct ArticulateView {
   BodyHandle body;
 
@@ -46,8 +46,7 @@ void bind_articulates(nb::module_& module) {
       .def(
           "__iter__", [](const ArticulateView& self) { return nb::iter(nb::cast(self.bodies())); },
           nb::sig("def __iter__(self) -> collections.abc.Iterator[Body]"))
-      .def_prop_ro("number", &ArticulateView::number,
-                   "Equal for bodies that hang together now; given anew after edits.")
+      .def_prop_ro("number", &ArticulateView::number, "Equal for bodies of one articulate; edits change it.")
       .def_prop_rw(
           "active", [](const ArticulateView& self) { return self.body.use().bodies().is_active(self.body.id); },
           [](const ArticulateView& self, bool active) {
@@ -73,10 +72,10 @@ void bind_articulates(nb::module_& module) {
   nb::borrow<nb::class_<BodyHandle>>(module.attr("Body"))
       .def_prop_ro(
           "articulate", [](const BodyHandle& self) { return self.use(), ArticulateView{self}; },
-          nb::sig("def articulate(self) -> Articulate"), "The bodies that hang together with it.");
+          nb::sig("def articulate(self) -> Articulate"), "The group of bodies connected to it by hinges.");
   nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
       .def_prop_ro("articulates", &all, nb::sig("def articulates(self) -> list[Articulate]"),
-                   "The groups of bodies that hang together.");
+                   "The groups of bodies connected by hinges.");
 }
 
 }  // namespace iota::bindings

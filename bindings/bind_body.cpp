@@ -14,8 +14,8 @@ constexpr const char* doc =
 
 constexpr const char* make_doc =
     "A new body. Make its particles with `Body.particle`, or give the body as a solid:\n\n"
-    "shape: any shape, of density (kg/m^3, 1000 if not said) or mass (kg), with its origin at position\n"
-    "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses then stand for it, with exactly\n"
+    "shape: any shape, of density (kg/m^3, default 1000) or mass (kg), with its origin at position\n"
+    "(m) and its frame turned by orientation (quaternion x y z w). Four equal point masses represent it, with exactly\n"
     "its mass, center and inertia. velocity: of the center of mass, m/s. spin: rad/s, world axes. attachments: places in the\n"
     "shape's frame (m) for particles to hinge, nail or bond, see `Body.attachment`.\n\n"
     "kind: 'dynamic', 'static' (never moves), 'scripted' (moved by the script, infinite mass), 'inactive' (kept, neither\n"
@@ -42,7 +42,7 @@ std::string repr(const BodyHandle& self) {
          std::to_string(engine.bodies().particles(self.id).size()) + " particles>";
 }
 
-/// Without a shape a body has no mass and is nowhere yet: its particles say where and how fast.
+/// Without a shape a body has no mass, place or velocity until it has particles.
 void refuse_without_shape(const std::optional<double>& density, const std::optional<double>& mass,
                           VectorArgument position, nb::handle orientation, VectorArgument velocity, VectorArgument spin,
                           nb::handle attachments) {
@@ -123,18 +123,18 @@ void bind_body(nb::module_& module) {
           nb::sig("def particles(self) -> list[Particle]"), "In the order in which they were made.")
       .def_prop_ro(
           "is_spark", [](const BodyHandle& self) { return self.use().viewer().is_spark(self.id); },
-          "A particle that an emitter bore and that nothing ties: viewers see a dot that they cannot hold.")
+          "A free particle of an emitter: viewers draw a dot that users cannot grab.")
       .def_prop_rw(
           "kind",
           [](const BodyHandle& self) { return KindWord{to_word(kind_words, self.use().bodies().kind(self.id))}; },
           [](const BodyHandle& self, const KindWord& kind) { self.use().bodies().set_kind(self.id, to_kind(kind)); },
-          "'dynamic', 'static', 'scripted', 'inactive' or 'resting'. A resting body sleeps with all that hangs together with\n"
-          "it, and wakes when something touches it.")
+          "'dynamic', 'static', 'scripted', 'inactive' or 'resting'. A resting body is asleep with all bodies tied to\n"
+          "it; see `System.rest_after`.")
       .def_prop_rw(
           "active", [](const BodyHandle& self) { return self.use().bodies().is_active(self.id); },
           [](const BodyHandle& self, bool active) { self.use().bodies().set_active(self.id, active); },
-          "False: kind 'inactive'; its bonds do not act. Active again, it is what it was before, at rest where it was left,\n"
-          "and its hinges close.")
+          "False: kind 'inactive'; its bonds do not act. Active again, it has its former kind, is at rest at its old\n"
+          "place, and its hinges close.")
       .def_prop_rw(
           "damping", [](const BodyHandle& self) { return self.use().bodies().damping(self.id); },
           [](const BodyHandle& self, double value) {
@@ -179,7 +179,7 @@ void bind_body(nb::module_& module) {
           "position"_a, "orientation"_a = nb::none(),
           nb::sig("def set_pose(self, position: Vec3 | collections.abc.Sequence[float], orientation: "
                   "collections.abc.Sequence[float] | None = None) -> None"),
-          "Moves it, and rigidly with it all that hangs on it, nails included. A scripted body arrives at the end of the\n"
+          "Moves it and rigidly everything hinged to it, nails included. A scripted body arrives at the end of the\n"
           "next step. position: of the center of mass, m. orientation: quaternion x y z w, None for the present one.")
       .def_prop_ro(
           "inertia", [](const BodyHandle& self) { return to_array(self.use().bodies().inertia(self.id)); },
@@ -198,8 +198,9 @@ void bind_body(nb::module_& module) {
                 .bodies()
                 .set_angular_velocity(self.id, to_vec3(v, "angular_velocity"));
           },
-          "rad/s, world axes. It has no part along what has no inertia, and assigning one raises ValueError: one point, or\n"
-          "points on a line without `set_rod`. Assigning keeps the velocity of the center; what joints do not allow of it is projected out by the next step.")
+          "rad/s, world axes. Assigning a component about an axis without inertia raises ValueError: of one point, or\n"
+          "of points on a line without `set_rod`. Assigning keeps the velocity of the center; the next step projects\n"
+          "it on the joints.")
       .def_prop_ro(
           "angular_momentum", [](const BodyHandle& self) { return self.use().bodies().angular_momentum(self.id); },
           "About its center of mass, kg m^2/s.")
@@ -208,7 +209,7 @@ void bind_body(nb::module_& module) {
           [](const BodyHandle& self, const std::string& name) {
             between_steps(self, "name = ...").bodies().set_name(self.id, name);
           },
-          "What the script calls it: at most 63 bytes, '' for none. Names need not be unique.")
+          "A name given by the script: at most 63 bytes, '' for none. Names need not be unique.")
       .def_prop_ro(
           "energy",
           [](const BodyHandle& self) {
@@ -233,11 +234,11 @@ void bind_body(nb::module_& module) {
             between_steps(self, "apply_torque").bodies().apply_torque(self.id, to_vec3(torque, "torque"));
           },
           "torque"_a,
-          "Adds a torque (N m, world axes) during the next step only. ValueError about what has no inertia: a point, or the\n"
-          "line that all particles are on.")
+          "Adds a torque (N m, world axes) during the next step only. ValueError about an axis without inertia: of a\n"
+          "point, or the line that all particles are on.")
       .def_prop_ro(
           "solids", [](const BodyHandle& self) { return self.use().bodies().solids(self.id); },
-          "What it was given as; several once bodies were combined, none for a body of particles alone.")
+          "Its solids: several after combining bodies, none for a body made only of particles.")
       .def_prop_ro(
           "attachments",
           [](const BodyHandle& self) {
@@ -252,8 +253,8 @@ void bind_body(nb::module_& module) {
             return sibling(self, engine.bodies().create_attachment(self.id, to_vec3(position, "position")));
           },
           "position"_a, nb::sig("def attachment(self, position: Vec3 | collections.abc.Sequence[float]) -> Particle"),
-          "A further particle of a body given by shape, anywhere (world, m). Mass, center, inertia and motion of the body\n"
-          "stay exactly what they are. Raises ValueError for bodies without a shape.")
+          "A further particle of a body given by shape, at any place (world, m). Mass, center, inertia and motion of\n"
+          "the body do not change. Raises ValueError for bodies without a shape.")
       .def(
           "set_rod",
           [](const BodyHandle& self, double mass, double radius) {
@@ -262,9 +263,9 @@ void bind_body(nb::module_& module) {
             between_steps(self, "set_rod").bodies().set_rod(self.id, mass, radius);
           },
           "mass"_a, "radius"_a,
-          "Gives a body of exactly two particles the mass (kg) and inertia of a solid cylinder (radius in m) between them.\n"
-          "What `angular_velocity` gives it about its axis it keeps: nothing on the axis can turn it. Raises ValueError for\n"
-          "any other number of particles.")
+          "Gives a body of exactly two particles the mass (kg) and inertia of a solid cylinder (radius in m) between\n"
+          "them. It keeps the spin about its axis set by `angular_velocity`, since no torque acts about the axis.\n"
+          "Raises ValueError for any other number of particles.")
       .def(
           "destroy", [](const BodyHandle& self) { self.use().bodies().destroy(self.id); },
           "Removes it with its particles and their bonds.")

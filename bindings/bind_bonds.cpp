@@ -16,22 +16,22 @@ constexpr const char* bond_doc = "A force between two particles, equal and oppos
 
 constexpr const char* make_bond_doc =
     "A new force between two particles, equal and opposite.\n\n"
-    "law: a name, an expression such as 'energy = 0.5*k*(r - r0)^2', a Law, or a function of the script, called once a\n"
-    "step with a BondState; it returns the force on p in N. A name is that of a predefined law ('spring', 'drag',\n"
-    "'dashpot', 'tether', 'soft_repulsion', 'gravity', 'coulomb', 'lennard_jones', 'morse', 'attract_repel'), of a law made\n"
-    "by `law(..., name=...)`, or of a function of the calling script. Parameters of the law are keywords;\n"
-    "None is the distance now. Laws with a derivative are solved implicitly, unless implicit=False: any stiffness is\n"
-    "stable. A function that raises, or a law without a finite force, switches the bond off, and `System.step` raises\n"
-    "BondError. docs/forces.md says what each costs.\n\n"
+    "law: a name, an expression such as 'energy = 0.5*k*(r - r0)^2', a Law, or a function of the script, called once\n"
+    "a step with a BondState; it returns the force on p in N. A name is that of a predefined law ('spring', 'drag',\n"
+    "'dashpot', 'tether', 'soft_repulsion', 'gravity', 'coulomb', 'lennard_jones', 'morse', 'attract_repel'), of a\n"
+    "law made by `law(..., name=...)`, or of a function of the calling script. Parameters of the law are keywords;\n"
+    "None is the present distance. Laws with a derivative are solved implicitly, unless implicit=False: any stiffness\n"
+    "is stable. A function that raises, or a law without a finite force, switches the bond off, and `System.step`\n"
+    "raises BondError. docs/forces.md lists the costs.\n\n"
     "    system.bond(p, q, 'spring', stiffness=200, damping=1)\n"
     "    system.bond(p, q, 'energy = k*(r - r0)^4; force = -c*v', k=50, r0=None, c=0.1)\n"
     "    system.bond(p, q, lambda bond: 50 * (bond.distance - 1) * bond.direction)";
 
 constexpr const char* state_doc =
-    "What the function of a bond is shown: its two ends. In the energy-keeping mode positions are those of the middle of the\n"
-    "step, half a step ahead as velocities go; see docs/forces.md.";
+    "The argument of a bond's function: its two ends. In the energy-keeping mode positions are those of the middle of\n"
+    "the step, extrapolated by half a step; see docs/forces.md.";
 
-/// Both ends alive, and of this system.
+/// Checks that both ends exist and are of this system.
 void check_ends(const SystemObject& self, const ParticleHandle& p, const ParticleHandle& q, const char* what) {
   check_one_system(p, q, what);
   p.use(), q.use();
@@ -39,7 +39,7 @@ void check_ends(const SystemObject& self, const ParticleHandle& p, const Particl
     throw nb::value_error((std::string(what) + ": the particles belong to another system").c_str());
 }
 
-/// What a word stands for where no law has that name: a function of the script that calls, local or global. Null if
+/// The local or global function of the calling script with that name, for words that are not names of laws. Null if
 /// there is none. Source: thesis, Fig. D.1.
 nb::object function_called(const System& engine, const std::string& word) {
   if (word.find('=') != std::string::npos) return {};
@@ -143,15 +143,15 @@ void bind_bond(nb::module_& module) {
           "False while it is switched off or broken; True repairs it.")
       .def_prop_ro(
           "force", [](const BondHandle& self) { return self.use().bonds().force(self.id); },
-          "On its first particle, N (the second gets the opposite): of an implicit bond here and now, of a held one in the "
-          "last step.")
+          "On its first particle, N (the second gets the opposite): of an implicit bond at present, of a held one in "
+          "the last step.")
       .def_prop_rw(
           "break_force", [](const BondHandle& self) { return self.use().bonds().break_force(self.id); },
           [](const BondHandle& self, double force) {
             self.use();
             self.system->use_between_steps("break_force = ...").bonds().set_break_force(self.id, force);
           },
-          "N; beyond it the bond is switched off at the end of a step: see `System.broken`. inf: never.")
+          "N; above it the bond is switched off at the end of a step: see `System.broken`. inf: never.")
       .def_prop_ro(
           "broken", [](const BondHandle& self) { return self.use().bonds().is_broken(self.id); },
           "By a load beyond break_force.")
@@ -159,12 +159,12 @@ void bind_bond(nb::module_& module) {
           "law", [](const BondHandle& self) { return sibling(self, self.use().bonds().law(self.id)); }, "Its Law.")
       .def_prop_ro(
           "implicit", [](const BondHandle& self) { return self.use().bonds().is_implicit(self.id); },
-          "Whether it is solved together with the joints; else it is taken once a step and held.")
+          "Whether it is solved together with the joints; otherwise it is evaluated once a step and held.")
       .def_prop_ro(
           "parameters", [](const BondHandle& self) { return to_dict(self.use().bonds().parameters(self.id)); },
           nb::sig("def parameters(self) -> dict[str, float]"), "A copy; change them with `set`.")
       .def("set", &set_parameters, "parameters"_a, nb::sig("def set(self, **parameters: float | None) -> None"),
-           "Changes parameters of its law; None is the distance now.\n\n    bond.set(stiffness=500, length=None)")
+           "Changes parameters of its law; None is the present distance.\n\n    bond.set(stiffness=500, length=None)")
       .def(
           "destroy", [](const BondHandle& self) { self.use().bonds().destroy(self.id); }, "Removes it.")
       .def("__repr__", &repr);
@@ -197,15 +197,15 @@ void bind_bond_state(nb::module_& module) {
             const double length = norm(line);
             return length > 0 ? line * (1 / length) : Vec3{};
           },
-          "Unit vector from p to q; zero where they are at one place.")
+          "Unit vector from p to q; zero if they coincide.")
       .def_prop_ro("time", [](const BondView& self) { return self.state.time; }, "s");
 }
 
 void bind_cosmetic_bond(nb::module_& module) {
   nb::class_<CosmeticBondHandle> type(
       module, "CosmeticBond",
-      "A line to be drawn between two particles of one body, without a force; made by `System.cosmetic_bond`. A body whose\n"
-      "lines are cut in two falls in two.",
+      "A line drawn between two particles of one body, without a force; made by `System.cosmetic_bond`. Destroying\n"
+      "lines can split the body, see `destroy`.",
       nb::type_slots(handle_slots<CosmeticBondHandle>), nb::is_weak_referenceable());
   nb::borrow<nb::class_<SystemObject>>(module.attr("System"))
       .def(
@@ -214,7 +214,7 @@ void bind_cosmetic_bond(nb::module_& module) {
             check_ends(self, p, q, "cosmetic_bond");
             return sibling(p, self.use_between_steps("cosmetic_bond(...)").cosmetic_bonds().create(p.id, q.id));
           },
-          "p"_a, "q"_a, "A new line to be drawn between two particles of one body.");
+          "p"_a, "q"_a, "A new line between two particles of one body.");
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const CosmeticBondHandle& self) { return self.is_alive(); },
@@ -231,9 +231,9 @@ void bind_cosmetic_bond(nb::module_& module) {
           [](const CosmeticBondHandle& self) {
             return RestructureResult{self.system_object, self.system, self.use().cosmetic_bonds().destroy(self.id)};
           },
-          "Removes it. Where that disconnects its body's cosmetic bonds the rigid body falls into two pieces: one with the\n"
-          "bond's first end, which stays this body, and one with the second. Particles that hang on neither end go with the\n"
-          "nearer piece; a solid and its attachments are one piece. Velocities stay.")
+          "Removes it. If that disconnects its body's cosmetic bonds, the rigid body is split into two: the piece\n"
+          "with the bond's first end stays this body, the other one is new. Particles connected to neither end go\n"
+          "with the nearer piece; a solid and its attachments are one piece. Velocities do not change.")
       .def("__repr__", [](const CosmeticBondHandle& self) {
         if (!self.is_alive()) return stale_repr("CosmeticBond", self);
         const auto [p, q] = self.use().cosmetic_bonds().ends(self.id);

@@ -16,19 +16,19 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr const char* doc =
-    "What holds two bodies, or a body and the world, together; made by System.revolute, ball, rope ...\n\n"
-    "It goes on holding through `combine` and `separate`, and ends when its two bodies become one rigid body or what it\n"
-    "holds is destroyed. Forces and coordinates are those of body a against b.";
+    "A constraint between two bodies, or a body and the world; made by System.revolute, ball, rope ...\n\n"
+    "It stays through `combine` and `separate`, and ends when its two bodies become one rigid body or one of them\n"
+    "is destroyed. Forces and coordinates are those of body a against b.";
 
 constexpr const char* coordinate_doc =
-    "The angle about a joint's axis (rad) or the slide along it (m) of a against b, 0 where the joint was made, and what\n"
-    "acts on it. Torques in N m for an angle, forces in N for a slide.";
+    "The angle about a joint's axis (rad) or the slide along it (m) of a relative to b, 0 when the joint is made, and\n"
+    "its limits, motor, friction and spring. Torques in N m for an angle, forces in N for a slide.";
 
 constexpr std::array coordinate_names{"angle", "slide", "second_angle"};  // as JointCoordinate counts them
 
 using Pair = std::pair<double, double>;
 
-/// What a joint's coordinate was given by keywords.
+/// The keyword arguments for a joint's coordinate.
 struct CoordinateArguments {
   std::optional<Pair> limits, motor;
   double friction = 0;
@@ -50,7 +50,7 @@ void read_spring(nb::handle spring, CoordinateOptions& options) {
   options.damping = finite_not_negative(numbers[1], "spring damping", "N s/m or N m s/rad");
   options.rest = finite(numbers[2], "spring rest");
   if (options.stiffness == 0 && options.rest != 0)
-    throw nb::value_error("a spring without a stiffness does not go to its rest: give a stiffness, or a rest of 0");
+    throw nb::value_error("a spring with a rest needs a stiffness: give one, or a rest of 0");
 }
 
 void read_limits(const std::optional<Pair>& limits, CoordinateOptions& options) {
@@ -62,19 +62,19 @@ void read_motor(const std::optional<Pair>& motor, CoordinateOptions& options) {
   std::tie(options.motor_speed, options.motor_max) = motor.value_or(Pair{0, 0});
 }
 
-/// (aim, largest effort, largest speed=inf).
+/// (target, largest effort, largest speed=inf).
 void read_servo(nb::handle servo, CoordinateOptions& options) {
   std::vector<double> numbers;
   if (!servo.is_none() && (!nb::try_cast(servo, numbers) || numbers.size() < 2 || numbers.size() > 3))
     throw nb::type_error(
-        ("servo must be (aim, largest torque or force) or (aim, largest torque or force, largest speed), not " +
+        ("servo must be (target, largest torque or force) or (target, largest torque or force, largest speed), not " +
          describe(servo))
             .c_str());
   if (servo.is_none()) {
     if (!std::isnan(options.servo)) read_motor(std::nullopt, options);
     return;
   }
-  options.servo = finite(numbers[0], "the aim of a servo");
+  options.servo = finite(numbers[0], "the target of a servo");
   options.motor_max = finite_not_negative(numbers[1], "the largest torque or force of a servo", "N m or N");
   options.motor_speed =
       numbers.size() == 3 ? finite_not_negative(numbers[2], "the largest speed of a servo", "rad/s or m/s") : infinity;
@@ -195,7 +195,7 @@ Quaternion to_quaternion(nb::handle value) {
   return {q[0], q[1], q[2], q[3]};
 }
 
-/// Frame of a surface: as given, else that of the body, else the world's.
+/// Frame of a surface: the given one, otherwise that of the body or of the world.
 Surface to_surface(SystemObject& self, nb::handle shape, nb::handle at, nb::handle orientation, const BodyHandle* body,
                    std::optional<double> size) {
   Surface surface{to_surface_shape(self, shape, size), {}, {}};
@@ -235,9 +235,9 @@ void bind_coordinate(nb::module_& module) {
             System& engine = self.joint.system->use_between_steps("value = ...");
             engine.joints().set_value(self.joint.id, self.which, finite(value, "value"));
           },
-          "rad, counted on through full turns, or m. Assigning moves the mechanism: what hangs on a as one rigid thing (or on\n"
-          "b, where a is held), and in a loop all bodies as little as they can. ValueError beyond the limits and where the\n"
-          "rest cannot follow; everything is then as it was.")
+          "rad, counted through full turns, or m. Assigning moves the mechanism: everything attached to a as one\n"
+          "rigid body (or to b, if a is fixed); in a loop all bodies make the least motion. ValueError beyond the\n"
+          "limits and if the mechanism cannot reach it; then nothing changes.")
       .def("__float__",
            [](const CoordinateView& self) {
              return self.joint.use().joints().state(self.joint.id).coordinate[self.index()];
@@ -251,7 +251,7 @@ void bind_coordinate(nb::module_& module) {
           [](const CoordinateView& self) {
             return self.joint.use().joints().state(self.joint.id).effort[self.index()].total();
           },
-          "By stops, motor, friction and spring along it on a in the last step, N m or N.")
+          "Sum of stops, motor, friction and spring along it on a in the last step, N m or N.")
       .def_prop_ro(
           "efforts",
           [](const CoordinateView& self) {
@@ -261,7 +261,7 @@ void bind_coordinate(nb::module_& module) {
             return all;
           },
           nb::sig("def efforts(self) -> dict[str, float]"),
-          "Its effort in parts, by name: stop, motor, friction, spring.")
+          "The parts of its effort by name: stop, motor, friction, spring.")
       .def_prop_rw(
           "limits",
           [](const CoordinateView& self) {
@@ -302,8 +302,9 @@ void bind_coordinate(nb::module_& module) {
             self.set(options);
           },
           nb::for_setter(nb::arg("servo").none()),
-          "(aim, largest torque or force, largest speed=inf): a motor that goes to the aim and holds there; None for none. It\n"
-          "slows down such that what is left falls as exp(-t / 0.05 s). A motor and a servo replace each other.")
+          "(target, largest torque or force, largest speed=inf): a motor that moves to the target and holds it; None\n"
+          "for none. It slows down such that the distance falls as exp(-t / 0.05 s). A motor and a servo replace each\n"
+          "other.")
       .def_prop_rw(
           "friction", [](const CoordinateView& self) { return self.options().friction; },
           [](const CoordinateView& self, double friction) {
@@ -345,7 +346,7 @@ CoordinateView coordinate_of(const ConstraintHandle& self, JointCoordinate which
   return {self, which};
 }
 
-/// A coordinate as such, or the only one of a joint.
+/// A coordinate, or the only one of a joint.
 CoupledCoordinate to_coupled(SystemObject& self, nb::handle value, double ratio) {
   CoupledCoordinate term{.constraint = {}, .ratio = finite(ratio, "ratio")};
   const ConstraintHandle* joint = nullptr;
@@ -366,8 +367,7 @@ CoupledCoordinate to_coupled(SystemObject& self, nb::handle value, double ratio)
               .c_str());
     term.coordinate = found.front();
   } else {
-    throw nb::type_error(
-        ("what is coupled must be joint.angle, joint.slide or a joint, not " + describe(value)).c_str());
+    throw nb::type_error(("a coupling takes joint.angle, joint.slide or a joint, not " + describe(value)).c_str());
   }
   joint->use();
   if (joint->system != &self) throw nb::value_error("a joint belongs to another system");
@@ -407,7 +407,7 @@ void bind_handle(nb::module_& module) {
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const ConstraintHandle& self) { return self.is_alive(); },
-          "False once it was destroyed or had nothing left to hold.")
+          "False once it or one of the things it connects was destroyed.")
       .def_prop_ro(
           "kind",
           [](const ConstraintHandle& self) {
@@ -425,15 +425,15 @@ void bind_handle(nb::module_& module) {
           [](const ConstraintHandle& self) {
             return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().joints().particles(self.id));
           },
-          nb::sig("def particles(self) -> list[Particle]"), "Those that it refers to, its own markers included.")
+          nb::sig("def particles(self) -> list[Particle]"), "All particles of it, its own markers included.")
       .def_prop_rw(
           "active", read(&ConstraintState::active),
           [](const ConstraintHandle& self, bool active) { self.use().joints().set_active(self.id, active); },
-          "False while it is switched off or broken; True repairs it, and bodies go back to how they were joined.")
+          "False while it is switched off or broken; True repairs it in the pose in which its bodies were joined.")
       .def_prop_ro("broken", read(&ConstraintState::broken), "By a load beyond break_force or break_torque.")
       .def_prop_ro("position", read(&ConstraintState::position), "Where it acts on a, m.")
       .def_prop_ro("axis", read(&ConstraintState::axis), "Unit vector, world frame; zero for kinds without one.")
-      .def_prop_ro("force", read(&ConstraintState::force), "On a in the last step, N; b has the opposite.")
+      .def_prop_ro("force", read(&ConstraintState::force), "On a in the last step, N; the opposite acts on b.")
       .def_prop_ro("torque", read(&ConstraintState::torque), "On a about `position` in the last step, N m.")
       .def_prop_ro("gap", read(&ConstraintState::gap), "Largest violation after the last step, m.")
       .def_prop_rw(
@@ -452,7 +452,7 @@ void bind_handle(nb::module_& module) {
             return terms;
           },
           nb::sig("def terms(self) -> list[tuple[JointCoordinate, float]]"),
-          "Of what couples: the coordinates of its sum, each with its ratio.")
+          "Of a coupling: the coordinates of its sum, each with its ratio.")
       .def_prop_ro("angle", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::angle); })
       .def_prop_ro("slide", [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::slide); })
       .def_prop_ro(
@@ -489,7 +489,7 @@ struct BrokenView {
 };
 
 void bind_broken(nb::module_& module) {
-  nb::class_<BrokenView>(module, "Broken", "A constraint, bond, hinge or nail that a load beyond its limit broke.",
+  nb::class_<BrokenView>(module, "Broken", "A constraint, bond, hinge or nail that broke because of its load.",
                          nb::type_slots(handle_slots<BrokenView>))
       .def_prop_ro(
           "constraint",
@@ -509,7 +509,7 @@ void bind_broken(nb::module_& module) {
             return self.broken.particle ? nb::cast(sibling(self, self.broken.particle)) : nb::none();
           },
           nb::sig("def particle(self) -> Particle | None"),
-          "That left its hinge or lost its nail; None where something else broke.")
+          "The one that left its hinge or lost its nail; None if something else broke.")
       .def_prop_ro(
           "position", [](const BrokenView& self) { return self.broken.position; }, "m")
       .def_prop_ro(
@@ -536,12 +536,12 @@ struct ContactView {
 void bind_contact(nb::module_& module) {
   nb::class_<ContactView>(
       module, "ContactEvent",
-      "Something one-sided began or ended to carry a load: surfaces met or parted, a rope went taut or slack, a coordinate\n"
-      "reached or left a stop.",
+      "A one-sided constraint began or ceased to carry a load: surfaces met or parted, a rope became taut or slack, a\n"
+      "coordinate reached or left a stop.",
       nb::type_slots(handle_slots<ContactView>))
       .def_prop_ro(
           "met", [](const ContactView& self) { return self.event.kind == ContactEvent::Kind::met; },
-          "True where it began, False where it ended.")
+          "True if it began, False if it ceased.")
       .def_prop_ro(
           "constraint", [](const ContactView& self) { return sibling(self, self.event.constraint); }, "What carries.")
       .def_prop_ro(
@@ -550,7 +550,7 @@ void bind_contact(nb::module_& module) {
             if (!self.event.stop) return std::nullopt;
             return coordinate_names[static_cast<std::size_t>(*self.event.stop)];
           },
-          "'angle', 'slide' or 'second_angle', whose stop it is; None where it is the constraint itself.")
+          "'angle', 'slide' or 'second_angle' for a stop; None for the constraint itself.")
       .def_prop_ro(
           "position", [](const ContactView& self) { return self.event.position; }, "Where it acts on a, m.")
       .def("__repr__", [](const ContactView& self) {
@@ -579,10 +579,9 @@ void bind_makers(nb::class_<SystemObject>& type) {
         "break_torque"_a = infinity, text);
   };
   simple("ball", ConstraintKind::ball, "A point of a stays at a point of b (None: of the world). at: where, m.");
-  simple(
-      "weld", ConstraintKind::weld,
-      "b (None: the world) holds a as it is now. at: where its force and torque are told, m. Unlike `combine` it keeps\n"
-      "two bodies, tells what it carries, and can break.");
+  simple("weld", ConstraintKind::weld,
+         "b (None: the world) holds a in its present pose. at: point of its force and torque, m. Unlike `combine` it\n"
+         "keeps two bodies, reports its load, and can break.");
 
   const auto with_coordinate = [&](const char* name, ConstraintKind kind, const char* text) {
     type.def(
@@ -602,17 +601,17 @@ void bind_makers(nb::class_<SystemObject>& type) {
   };
   with_coordinate(
       "revolute", ConstraintKind::revolute,
-      "a turns against b (None: the world) about an axis through `at` (m). limits: (lower, upper) in rad. motor:\n"
+      "a turns relative to b (None: the world) about an axis through `at` (m). limits: (lower, upper) in rad. motor:\n"
       "(speed in rad/s, largest torque in N m). friction: N m, dry. spring: (N m/rad, N m s/rad, rest in rad).");
   with_coordinate(
       "prismatic", ConstraintKind::prismatic,
-      "a slides against b (None: the world) along an axis, without turning. limits: (lower, upper) in m. motor:\n"
+      "a slides relative to b (None: the world) along an axis, without turning. limits: (lower, upper) in m. motor:\n"
       "(speed in m/s, largest force in N). friction: N, dry. spring: (N/m, N s/m, rest in m).");
 
   with_coordinate(
       "planar", ConstraintKind::planar,
-      "a slides and turns against b (None: the world) in a plane through `at` (m) across the axis. limits, motor,\n"
-      "friction and spring act on the angle about it.");
+      "a slides and turns relative to b (None: the world) in a plane through `at` (m) normal to the axis. limits,\n"
+      "motor, friction and spring act on the angle about it.");
   type.def(
       "screw",
       [](SystemObject& self, const BodyHandle& a, const BodyHandle* b, VectorArgument at, VectorArgument axis,
@@ -660,7 +659,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
       "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "at"_a, "axis"_a, "second_axis"_a.none() = nb::none(),
       "limits"_a.none() = nb::none(), "motor"_a.none() = nb::none(), "friction"_a = 0.0, "spring"_a.none() = nb::none(),
       "second_angle"_a.none() = nb::none(), "break_force"_a = infinity, "break_torque"_a = infinity,
-      "A ball joint where `axis` of a stays at right angles to `second_axis` of b (None: the world): a shaft's cross. The\n"
+      "A ball joint with `axis` of a at right angles to `second_axis` of b (None: the world): a shaft's cross. The\n"
       "angle is about a's axis, the second angle about b's: second_angle, a dict of limits, motor, friction, spring, acts\n"
       "on that.");
   type.def(
@@ -671,7 +670,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
         return make_joint(self, spec, a, b, {});
       },
       "a"_a, "b"_a.none() = nb::none(), nb::kw_only(), "break_torque"_a = infinity,
-      "a keeps its orientation against b (None: the world) but moves freely.");
+      "a keeps its orientation relative to b (None: the world) but moves freely.");
   const auto between = [&](const char* name, ConstraintKind kind, const char* text) {
     type.def(
         name,
@@ -680,9 +679,9 @@ void bind_makers(nb::class_<SystemObject>& type) {
         "p"_a, "q"_a, "length"_a.none() = nb::none(), nb::kw_only(), "break_force"_a = infinity, text);
   };
   between("rod", ConstraintKind::rod,
-          "Two particles of different bodies keep their distance: length in m, None for that of now.");
+          "Two particles of different bodies keep their distance: length in m, None for the present one.");
   between("rope", ConstraintKind::rope,
-          "Two particles of different bodies come no further apart than length (m, None: as far as now).");
+          "The distance of two particles of different bodies is at most length (m, None: the present one).");
   type.def(
       "rope",
       [](SystemObject& self, const std::vector<ParticleHandle>& points, std::optional<double> length,
@@ -699,9 +698,9 @@ void bind_makers(nb::class_<SystemObject>& type) {
         return ConstraintHandle{nb::find(self), &self, engine.joints().create(spec)};
       },
       "points"_a, "length"_a.none() = nb::none(), nb::kw_only(), "break_force"_a = infinity,
-      "A rope that runs without friction or mass from the first point over the others to the last: the distances from each\n"
-      "to the next add up to no more than length (m, None: as now). Name a point again to lead the rope back to it: a block\n"
-      "and tackle is [ceiling, block, ceiling, block].");
+      "A rope that runs without friction or mass from the first point over the others to the last: the sum of the\n"
+      "distances from each to the next is at most length (m, None: the present one). Repeat a point to lead the rope\n"
+      "back to it: a block and tackle is [ceiling, block, ceiling, block].");
   type.def(
       "span",
       [](SystemObject& self, const ParticleHandle& p, const ParticleHandle& q, std::optional<Pair> limits,
@@ -715,8 +714,8 @@ void bind_makers(nb::class_<SystemObject>& type) {
       },
       "p"_a, "q"_a, nb::kw_only(), "limits"_a.none() = nb::none(), "motor"_a.none() = nb::none(), "friction"_a = 0.0,
       "spring"_a.none() = nb::none(), "break_force"_a = infinity,
-      "The distance of two particles as a coordinate, `span.slide` (m): it holds nothing by itself. A ram or a muscle with a\n"
-      "motor or servo, a damper with a spring, or part of a coupling, such as a rope on a winch.");
+      "Makes the distance of two particles a coordinate, `span.slide` (m), without constraining it. A ram or a muscle\n"
+      "with a motor or servo, a damper with a spring, or part of a coupling, such as a rope on a winch.");
   type.def(
       "couple",
       [](SystemObject& self, TermsArgument terms, bool one_sided, double break_force, double break_torque) {
@@ -733,7 +732,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
         return ConstraintHandle{nb::find(self), &self, engine.joints().create(spec)};
       },
       "terms"_a, nb::kw_only(), "one_sided"_a = false, "break_force"_a = infinity, "break_torque"_a = infinity,
-      "The sum of ratio times coordinate stays what it is, or with one_sided gets no larger. terms: (joint.angle, ratio),\n"
+      "The sum of ratio times coordinate is constant, or with one_sided does not grow. terms: (joint.angle, ratio),\n"
       "(joint.slide, ratio) ... A differential: [(left.angle, 1), (right.angle, 1), (carrier.angle, -2)].");
   type.def(
       "gear",
@@ -775,10 +774,11 @@ void bind_makers(nb::class_<SystemObject>& type) {
       "rounding"_a.none() = nb::none(), "interval"_a.none() = nb::none(), "samples"_a.none() = nb::none(),
       "limits"_a.none() = nb::none(), "motor"_a.none() = nb::none(), "friction"_a = 0.0, "spring"_a.none() = nb::none(),
       "break_force"_a = infinity,
-      "A particle stays on a curve of body (None: the world). path: points (world, m), or a function of a number of\n"
-      "`interval` (None: 0 to 1) that gives `samples` (None: 256) of them. smooth: a cubic spline through them (None: unless\n"
-      "there is a rounding), else straight pieces with corners of radius `rounding` (m; None: a tenth of the shorter piece). Its slide is the length along the path (m); an open path ends at\n"
-      "its ends unless `limits` say otherwise.");
+      "A particle stays on a curve of body (None: the world). path: points (world, m), or a function of a number in\n"
+      "`interval` (None: 0 to 1), evaluated at `samples` (None: 256). smooth: a cubic spline through them (None:\n"
+      "unless there is a rounding), else straight pieces with corners of radius `rounding` (m; None: a tenth of the\n"
+      "shorter piece). Its slide is the length along the path (m); an open path ends at its ends unless `limits` are\n"
+      "given.");
   const auto on_surface = [&](const char* name, ConstraintKind kind, const char* text) {
     type.def(
         name,
@@ -801,11 +801,11 @@ void bind_makers(nb::class_<SystemObject>& type) {
   };
   on_surface(
       "on_surface", ConstraintKind::surface,
-      "A particle stays on a surface of body (None: the world). surface: a shape without sharp edges (a\n"
-      "box or cylinder with a rounding, no cone or mesh), or a function of\n"
-      "x, y, z that is 0 on it, negative inside and about the distance (m) near it; `size`, m (None: 1), is then that of what it describes. It must not use the system; where it raises or returns no\n"
-      "finite number, the constraint is switched off and `step` raises ConstraintError. at, orientation: of the surface's\n"
-      "frame, None: the body's.");
+      "A particle stays on a surface of body (None: the world). surface: a shape without sharp edges (a box or\n"
+      "cylinder with a rounding, no cone or mesh), or a function of x, y, z that is 0 on it, negative inside and\n"
+      "about the distance (m) near it; `size`, m (None: 1), is then the size of the surface. It must not use the\n"
+      "system; if it raises or returns no finite number, the constraint is switched off and `step` raises\n"
+      "ConstraintError. at, orientation: of the surface's frame, None: the body's.");
   on_surface("inside", ConstraintKind::inside,
              "A particle stays on the inner side of a surface: as `on_surface`, one-sided; edges may be sharp.");
   on_surface("outside", ConstraintKind::outside,
@@ -851,7 +851,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
         return out;
       },
       nb::sig("def contacts(self) -> list[ContactEvent]"),
-      "What met, parted, reached or left a stop in the last step.");
+      "The one-sided constraints that began or ceased to carry a load in the last step.");
   type.def_prop_ro(
       "broken",
       [](nb::handle_t<SystemObject> self) {
@@ -861,7 +861,7 @@ void bind_makers(nb::class_<SystemObject>& type) {
         for (const Broken& broken : object->broken) out.push_back({nb::borrow(self), object, broken});
         return out;
       },
-      nb::sig("def broken(self) -> list[Broken]"), "What the last step broke.");
+      nb::sig("def broken(self) -> list[Broken]"), "Constraints, bonds, hinges and nails that broke in the last step.");
 }
 
 }  // namespace

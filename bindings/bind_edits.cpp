@@ -6,7 +6,7 @@ namespace iota::bindings {
 
 namespace {
 
-/// The context manager that `System.edit` gives.
+/// The context manager of `System.edit`.
 struct EditScope {
   nb::object system_object;
   SystemObject* system = nullptr;
@@ -14,8 +14,8 @@ struct EditScope {
 };
 
 constexpr const char* scope_doc =
-    "A batch of edits: `with system.edit() as edit: ...`. One report for all of them, undone as one. Where the block raises,\n"
-    "the system is what it was before. A batch within a batch is part of it.";
+    "A batch of edits: `with system.edit() as edit: ...`. They have one report and are undone together. If the block\n"
+    "raises, the system is restored. A batch within a batch is part of it.";
 
 }  // namespace
 
@@ -43,10 +43,10 @@ void bind_edits(nb::module_& module) {
       .def_prop_ro(
           "report",
           [](const EditScope& self) {
-            if (!self.report) raise_runtime("the report of an edit is there once its block is over");
+            if (!self.report) raise_runtime("the report of an edit is available after its block");
             return RestructureResult{self.system_object, self.system, *self.report};
           },
-          "RestructureReport of all edits in the block, once it is over.");
+          "RestructureReport of all edits in the block, available after it.");
 
   auto system = nb::borrow<nb::class_<SystemObject>>(module.attr("System"));
   system
@@ -58,12 +58,12 @@ void bind_edits(nb::module_& module) {
           nb::sig("def edit(self) -> Edit"), scope_doc)
       .def(
           "undo", [](SystemObject& self) { return self.use_between_steps("undo").edits().undo(); },
-          "Goes back to just before the last batch of edits, time included; handles from then are good again. A batch is\n"
-          "kept as the whole state before it: at most 64, and 256 MiB, are. `restore` and `start_recording` forget them.\n"
-          "False when there is none.")
+          "Restores the state before the last batch of edits, time included; handles from then are valid again. A\n"
+          "batch saves the whole state before it: at most 64, and 256 MiB, are kept. `restore` and `start_recording`\n"
+          "drop them. False if there is none.")
       .def(
           "redo", [](SystemObject& self) { return self.use_between_steps("redo").edits().redo(); },
-          "Undoes the last `undo`. False when there is none, or something was edited since.")
+          "Undoes the last `undo`. False if there is none, or there were edits since.")
       .def_prop_ro(
           "step_edits",
           [](nb::handle_t<SystemObject> self) -> std::optional<RestructureResult> {
@@ -72,7 +72,7 @@ void bind_edits(nb::module_& module) {
             if (!object->step_edits) return std::nullopt;
             return RestructureResult{nb::borrow(self), object, *object->step_edits};
           },
-          "One report of all edits that were asked for during the last step and made right after it; None without any.")
+          "One report of all edits that were requested during the last step and made right after it; None without any.")
       .def_prop_ro("undo_count", [](SystemObject& self) { return self.use().edits().undo_count(); })
       .def_prop_ro("redo_count", [](SystemObject& self) { return self.use().edits().redo_count(); });
 }

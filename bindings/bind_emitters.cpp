@@ -11,12 +11,12 @@ namespace {
 constexpr const char* doc = "A source of particles; made by `System.emitter`.";
 
 constexpr const char* make_doc =
-    "A new source of particles; each is a body of its own with an age and a lifetime, and dies at its end.\n\n"
-    "rate: births a second. source: any shape but a Mesh or HalfSpace; they are born anywhere within, evenly. position (m),\n"
-    "orientation (quaternion x y z w): of the source. velocity: in its frame, m/s; each gets up to velocity_spread m/s more\n"
-    "in any direction. lifetime: s; each lives up to lifetime_spread longer or shorter. mass: kg. damping: 1/s. max_count:\n"
-    "alive at once. curve: at most 8 of (life, radius, color), life rising from 0 at birth to 1 at death, radius in m, color\n"
-    "3 or 4 numbers from 0 to 1. Equal seeds give equal particles.\n\n"
+    "A new source of particles; each is a body of its own, and is destroyed at the end of its lifetime.\n\n"
+    "rate: births a second. source: any shape but a Mesh or HalfSpace; places of birth are uniform within it.\n"
+    "position (m), orientation (quaternion x y z w): of the source. velocity: in its frame, m/s, plus a random\n"
+    "velocity of at most velocity_spread m/s. lifetime: s; lifetimes differ by at most lifetime_spread. mass: kg.\n"
+    "damping: 1/s. max_count: alive at once. curve: at most 8 of (life, radius, color), life rising from 0 at birth\n"
+    "to 1 at death, radius in m, color 3 or 4 numbers from 0 to 1. Equal seeds give equal particles.\n\n"
     "    fire = system.emitter(rate=300, velocity=(0, 2, 0), velocity_spread=0.4, lifetime=0.8,\n"
     "                          curve=[(0, 0.02, (1, 0.9, 0.3)), (1, 0.06, (0.3, 0, 0, 0))])";
 
@@ -115,7 +115,7 @@ void bind_emitter(nb::module_& module) {
           "count", [](const EmitterHandle& self) { return self.use().emitters().count(self.id); },
           "Its particles alive now.")
       .def_prop_ro(
-          "born", [](const EmitterHandle& self) { return self.use().emitters().born(self.id); }, "How many so far.")
+          "born", [](const EmitterHandle& self) { return self.use().emitters().born(self.id); }, "Births so far.")
       .def_prop_ro(
           "particles",
           [](const EmitterHandle& self) {
@@ -135,7 +135,7 @@ void bind_emitter(nb::module_& module) {
           "Moves its source: m, quaternion x y z w.")
       .def(
           "destroy", [](const EmitterHandle& self) { self.use().emitters().destroy(self.id); },
-          "Its particles live on, with the look they have.")
+          "Its particles remain, with their present look.")
       .def("__repr__", [](const EmitterHandle& self) {
         return self.is_alive() ? "<Emitter " + std::to_string(self.id.slot) + ": " +
                                      std::to_string(self.system->engine.emitters().count(self.id)) + " particles>"
@@ -152,10 +152,10 @@ System& between_steps(const ParticleHandle& self, const char* what) {
 void bind_attributes(nb::class_<ParticleHandle>& type) {
   type.def_prop_ro(
           "has_attributes", [](const ParticleHandle& self) { return self.use().particles().has_attributes(self.id); },
-          "Whether age, lifetime, radius, color or orientation were ever given to it.")
+          "Whether age, lifetime, radius, color or orientation was ever set.")
       .def_prop_ro(
           "age", [](const ParticleHandle& self) { return self.use().particles().attributes(self.id).age; },
-          "s, since its birth or since it was given a lifetime or look; 0 for all others.")
+          "s, since its birth or since its lifetime or look was set; 0 for all others.")
       .def_prop_rw(
           "lifetime", [](const ParticleHandle& self) { return self.use().particles().attributes(self.id).lifetime; },
           [](const ParticleHandle& self, double value) {
@@ -173,7 +173,7 @@ void bind_attributes(nb::class_<ParticleHandle>& type) {
             attributes.radius = finite_not_negative(value, "radius", "m");
             engine.particles().set_attributes(self.id, attributes);
           },
-          "m, for drawing and for forces that ask for it; 0 where nobody said. An emitted particle's is on its emitter's\n"
+          "m, for drawing and for forces that use it; 0: not set. An emitted particle's follows its emitter's\n"
           "curve.")
       .def_prop_rw(
           "color",
@@ -202,8 +202,8 @@ void bind_orientation(nb::class_<ParticleHandle>& type) {
           },
           nb::for_getter(nb::sig("def orientation(self) -> tuple[float, float, float, float]")),
           nb::for_setter(nb::sig("def orientation(self, value: collections.abc.Sequence[float], /) -> None")),
-          "Quaternion x y z w. Assigning makes it an oriented particle: it turns like a ball of its radius (0.05 m where it\n"
-          "has none), by itself, whatever body it is in.")
+          "Quaternion x y z w. Assigning makes it an oriented particle: it rotates like a free ball of its radius\n"
+          "(0.05 m if it has none), independently of its body.")
       .def_prop_ro(
           "normal", [](const ParticleHandle& self) { return self.use().particles().normal(self.id); },
           "Its preferred direction: its local z in the world frame.")
@@ -236,8 +236,8 @@ void bind_orientation(nb::class_<ParticleHandle>& type) {
                        finite_not_negative(damping, "damping", "N m s"));
           },
           "direction"_a, "stiffness"_a = 1.0, "damping"_a = 0.0,
-          "Draws its normal to a direction: torque stiffness (normal x direction) - damping spin, N m, stable for any\n"
-          "stiffness. stiffness=0 ends it.");
+          "Turns its normal to a direction: torque stiffness (normal x direction) - damping spin, N m, stable for any\n"
+          "stiffness. stiffness=0: no torque.");
 }
 
 /// One row of `width` numbers a particle.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Groups of particles, and the forces on all of a group: fields and pairwise forces.
+// Groups of particles, and forces on them: fields and pairwise forces.
 #include "batch_view.h"
 #include "law_argument.h"
 
@@ -10,18 +10,18 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* group_doc =
-    "A named set of particles, for fields and pair forces to act on; made by `System.group`.";
+    "A named set of particles, on which fields and pair forces act; made by `System.group`.";
 
 constexpr const char* make_group_doc =
-    "A new named set of particles, for fields and pair forces to act on. A system has at most 32 at a time.\n\n"
+    "A new named set of particles, on which fields and pair forces act. A system has at most 32 at a time.\n\n"
     "    fish = system.group('fish')\n"
     "    fish.add(p, q)";
 
-constexpr const char* field_doc = "A force on each particle of a group, or on all, by itself; made by `System.field`.";
+constexpr const char* field_doc = "A force on each particle of a group, or on all; made by `System.field`.";
 
 constexpr const char* make_field_doc =
     "A new force on each particle of a group, or on all, by itself; taken once a step and held. Particles that are hinged\n"
-    "together count as one, with all their mass.\n\n"
+    "together count as one, with their total mass.\n\n"
     "field is one of\n"
     "- a predefined one: 'uniform' (acceleration), 'wind' (velocity, drag), 'current' (turbulent: velocity, drag, speed, size,\n"
     "  octaves, evolution, seed), 'well' (center, strength, softening: a heavy point), 'attractor' (center, strength, range);\n"
@@ -35,18 +35,18 @@ constexpr const char* make_field_doc =
     "    system.field('fy = -m*g*(1 - y/h)', g=9.81, h=100, replaces_gravity=True)";
 
 constexpr const char* pair_force_doc =
-    "A force between all pairs of particles of a group that are near each other; made by `System.pair_force`.";
+    "A force between all near pairs of particles of a group; made by `System.pair_force`.";
 
 constexpr const char* make_pair_force_doc =
-    "A new force between all pairs of particles of a group, or of all, that are nearer than `cutoff` (m); taken once a step and\n"
-    "held. law is a predefined law, an expression or a Law with a derivative, as for `bond`. Points of one body do not feel\n"
-    "each other. other: only pairs of one of `group` and one of this group. shifted: a constant and a linear term are taken\n"
-    "off the energy, so that it and the force are zero at the cut-off, and pairs that cross it change no energy; for laws\n"
-    "that have an energy and do not depend on masses.\n\n"
+    "A new force between all pairs of particles of a group, or of all, that are nearer than `cutoff` (m); evaluated\n"
+    "once a step and held. law is a predefined law, an expression or a Law with a derivative, as for `bond`. Not\n"
+    "between points of one body. other: only pairs of one of `group` and one of this group. shifted: a constant and a\n"
+    "linear term are subtracted from the energy, so that it and the force are zero at the cut-off and do not jump\n"
+    "there; for laws that have an energy and do not depend on masses.\n\n"
     "    system.pair_force('lennard_jones', cutoff=2.5, shifted=True, depth=1, size=1)";
 
 constexpr const char* batch_doc =
-    "The particles of a field, as its function sees them: arrays with a row a particle, in the order of `particles`. Good\n"
+    "The argument of a field's function: arrays with a row for each particle, in the order of `particles`. Valid\n"
     "only until the function returns; the arrays are copies and may be kept.";
 
 struct ParticlesView : BatchView<ParticleBatch> {
@@ -59,7 +59,7 @@ void bind_batch(nb::module_& module) {
       .def_prop_ro(
           "position", [](const ParticlesView& self) { return copy_rows(self.use().position, self.use().count); },
           nb::sig("def position(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "(n, 3), m; half a step ahead in the energy-keeping mode.")
+          "(n, 3), m; extrapolated by half a step in the energy-keeping mode.")
       .def_prop_ro(
           "velocity", [](const ParticlesView& self) { return copy_rows(self.use().velocity, self.use().count); },
           nb::sig("def velocity(self) -> numpy.typing.NDArray[numpy.float64]"), "(n, 3), m/s.")
@@ -99,7 +99,7 @@ std::optional<GroupId> to_group(nb::handle group, const SystemObject* system) {
   return handle->id;
 }
 
-/// As `to_parameters`; a vector stands for three parameters with _x, _y, _z behind their names.
+/// As `to_parameters`; a vector is three parameters with _x, _y, _z at the ends of their names.
 std::vector<LawParameter> to_field_parameters(const nb::kwargs& keywords) {
   std::vector<LawParameter> list;
   for (const auto& [key, value] : keywords) {
@@ -171,7 +171,7 @@ PairsHandle make_pair_force(nb::handle_t<SystemObject> self, nb::object law, dou
                    engine.pairs().create(shared, {cutoff, to_group(group, system), to_group(other, system), shifted}));
 }
 
-/// All or none of several changes.
+/// Makes all of several changes or none.
 template <class HandleType>
 void set_all(const HandleType& self, const std::vector<LawParameter>& changes) {
   auto view = view_of(self.use(), self.id);
@@ -185,7 +185,7 @@ void set_all(const HandleType& self, const std::vector<LawParameter>& changes) {
   }
 }
 
-/// What fields and pair forces share.
+/// The common parts of fields and pair forces.
 template <class HandleType>
 void def_force(nb::class_<HandleType>& type) {
   def_identity(type);
@@ -245,7 +245,7 @@ void bind_group(nb::module_& module) {
                           [&](System& engine, ParticleId p) { engine.groups().add(self.id, p); });
           },
           "members"_a, nb::sig("def add(self, *members: Particle | Body) -> None"),
-          "Takes in particles, and all particles of bodies.")
+          "Adds particles, and all particles of bodies.")
       .def(
           "remove",
           [](const GroupHandle& self, const nb::args& members) {
@@ -253,7 +253,7 @@ void bind_group(nb::module_& module) {
                           [&](System& engine, ParticleId p) { engine.groups().remove(self.id, p); });
           },
           "members"_a, nb::sig("def remove(self, *members: Particle | Body) -> None"),
-          "Lets them go; those that are not in it are passed over.")
+          "Removes particles; those that are not in it are skipped.")
       .def("__contains__",
            [](const GroupHandle& self, const ParticleHandle& particle) {
              particle.use();
@@ -321,7 +321,7 @@ void bind_pair_force(nb::module_& module) {
           [](const PairsHandle& self) {
             return self.use(), self.system->use_between_steps("energy").pairs().energy(self.id);
           },
-          "Of all pairs within the cut-off, now, J; not part of `System.energy`, which counts these forces as external.")
+          "Of all pairs within the cut-off at present, J; part of `System.energy.potential`.")
       .def(
           "set", [](const PairsHandle& self, const nb::kwargs& keywords) { set_all(self, to_parameters(keywords)); },
           "parameters"_a, nb::sig("def set(self, **parameters: float) -> None"), "Changes parameters of its law.")
@@ -362,15 +362,15 @@ void def_fields(nb::class_<SystemObject>& system) {
       },
       "force"_a, "dt"_a = 1.0 / 120,
       nb::sig("def rehearse(self, force: Law | Field | PairForce, dt: float = ...) -> int"),
-      "Evaluates forces without applying them, to measure what they cost; see `profile`. Returns for how many bonds or\n"
+      "Evaluates forces without applying them, to measure their cost; see `profile`. Returns the number of bonds or\n"
       "particles.");
   system.def(
       "profile",
       [](nb::handle self, double dt) { return nb::module_::import_("iota.profiling").attr("profile")(self, dt); },
       "dt"_a = 1.0 / 120, nb::sig("def profile(self, dt: float = ...) -> typing.Any"),
-      "What each law, field and pair force costs, in ns for each bond or particle: an iota.types.ForceProfile. Forces are\n"
-      "evaluated where everything is now, again and again, without being applied; functions of the script are called.\n"
-      "Implicit bonds: force and stiffness once, as each iteration of the solver asks for them.\n\n"
+      "The cost of each law, field and pair force, in ns for each bond or particle: an iota.types.ForceProfile.\n"
+      "Forces are evaluated repeatedly at the present state, without being applied; functions of the script are\n"
+      "called. Implicit bonds: force and stiffness once, as in each iteration of the solver.\n\n"
       "    print(system.profile())");
 }
 

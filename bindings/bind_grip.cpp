@@ -8,10 +8,10 @@ namespace {
 constexpr const char* doc = "A user's grip on a body; made by `System.grip`.";
 
 constexpr const char* make_doc =
-    "Takes hold of a body: a critically damped, capped spring from a point of the body to a target.\n\n"
-    "local_point: in the body's drawn frame, m; it is put on the nearest place that the body's particles span. target:\n"
-    "world, m, None: the center of mass. client, hold: whose grip; carried to the viewers. frequency: Hz. max_acceleration: m/s^2, caps the force at\n"
-    "this times the mass it can feel. Forces of several grips add up.";
+    "Grips a body: a critically damped spring of limited force from a point of the body to a target.\n\n"
+    "local_point: in the body's drawn frame, m; it is moved to the nearest place that the body's particles span.\n"
+    "target: world, m, None: the center of mass. client, hold: whose grip; carried to the viewers. frequency: Hz.\n"
+    "max_acceleration: m/s^2, limits the force to this times the effective mass. Forces of several grips are added.";
 
 }  // namespace
 
@@ -39,7 +39,7 @@ void bind_grip(nb::module_& module) {
   def_identity(type);
   type.def_prop_ro(
           "alive", [](const GripHandle& self) { return self.is_alive(); },
-          "False once it was let go or its body is gone.")
+          "False once it was released or its body was destroyed.")
       .def(
           "move",
           [](const GripHandle& self, VectorArgument target) {

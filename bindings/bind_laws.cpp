@@ -10,15 +10,15 @@ namespace iota::bindings {
 
 namespace {
 
-constexpr const char* law_doc = "A law of force that any number of bonds share; made by `System.law`.";
+constexpr const char* law_doc = "A law of force for any number of bonds; made by `System.law`.";
 
 constexpr const char* make_doc =
-    "A new law of force that any number of bonds share. Parameters are keywords, with the values that bonds have unless they\n"
-    "say otherwise; None is the distance of the two ends when a bond is made.\n\n"
+    "A new law of force for any number of bonds. Parameters are keywords with their default\n"
+    "values; None is the distance of the two ends when a bond is made.\n\n"
     "law is one of\n"
     "- an expression of r (distance, m), v = dr/dt, t, m_p, m_q and the parameters, which defines `energy` (J), `force`\n"
     "  (N along the line, positive pushes apart) or `drag` (N s/m, times the velocity difference): implicit, any stiffness\n"
-    "  is stable;\n"
+    "  is stable; the energy of a pairwise force may depend on normals too (cos_p, cos_q, cos_pq, see docs/forces.md);\n"
     "- compiled code: a Numba cfunc, a ctypes function or an address, of signature 'radial',\n"
     "  double f(double r, double v, double t, const double* parameters), or 'batch', see docs/forces.md;\n"
     "- a function of NumPy arrays, called once a step with a BondBatch of all its bonds; it returns the forces on p,\n"
@@ -28,7 +28,7 @@ constexpr const char* make_doc =
     "    bond = system.bond(p, q, law, k=200)";
 
 constexpr const char* batch_doc =
-    "All bonds of one law, as its function sees them: arrays with a row a bond, in the order of `bonds`. Good only until\n"
+    "The argument of a law's function: arrays with a row for each bond, in the order of `bonds`. Valid only until\n"
     "the function returns; the arrays are copies and may be kept.";
 
 struct BondsView : BatchView<BondBatch> {
@@ -77,7 +77,7 @@ void bind_batch(nb::module_& module) {
             return nb::cast(make_vector3_array(std::move(numbers)));
           },
           nb::sig("def direction(self) -> numpy.typing.NDArray[numpy.float64]"),
-          "(n, 3), unit vectors from p to q; zero where they are at one place.")
+          "(n, 3), unit vectors from p to q; zero if they coincide.")
       .def_prop_ro(
           "parameters",
           [](const BondsView& self) {
@@ -164,7 +164,7 @@ std::string function_name(nb::handle function) {
 std::uintptr_t address_of(nb::handle code) {
   if (PyLong_Check(code.ptr()) && !PyBool_Check(code.ptr())) {
     std::uintptr_t address = 0;
-    // No code lies at small numbers: whoever passes one means something else.
+    // No code has a small address: a small number is a mistake.
     return nb::try_cast<std::uintptr_t>(code, address) && address >= 0x10000 ? address : 0;
   }
   if (nb::hasattr(code, "address")) return nb::cast<std::uintptr_t>(code.attr("address"));
@@ -201,7 +201,7 @@ LawId law_of_text(SystemObject& system, const std::string& text, const std::vect
   if (text.find('=') == std::string::npos) return system.engine.laws().find(text);
   std::string key = text;
   for (const LawParameter& p : parameters) key += '\n' + p.name;
-  // A restore may have taken the law away, or put another in its place.
+  // A restore may have removed the law, or put another in its slot.
   const auto known = system.written_laws.find(key);
   if (known != system.written_laws.end() && system.engine.laws().contains(known->second) &&
       system.engine.laws().expression(known->second) == text) {
@@ -230,17 +230,17 @@ void bind_laws(nb::module_& module) {
       .def_prop_ro(
           "kind", [](const LawHandle& self) { return self.use().laws().kind(self.id); },
           nb::sig("def kind(self) -> typing.Literal['predefined', 'expression', 'function', 'compiled', 'arrays']"),
-          "How it is written; 'function': of one bond each.")
+          "Its kind; 'function': a function for one bond.")
       .def_prop_ro(
           "text", [](const LawHandle& self) { return self.use().laws().expression(self.id); },
           "The expression; empty for code.")
       .def_prop_ro(
           "parameters", [](const LawHandle& self) { return to_dict(self.use().laws().parameters(self.id)); },
           nb::sig("def parameters(self) -> dict[str, float | None]"),
-          "The values that bonds have unless they say otherwise; None is the distance of the ends.")
+          "The default values; None is the distance of the ends.")
       .def(
           "destroy", [](const LawHandle& self) { self.use().laws().destroy(self.id); },
-          "Removes it. Raises ValueError while bonds have it, and for a predefined law.")
+          "Removes it. Raises ValueError if bonds use it, and for a predefined law.")
       .def("__repr__", [](const LawHandle& self) {
         if (!self.is_alive()) return stale_repr("Law", self);
         const std::string name = self.system->engine.laws().name(self.id),

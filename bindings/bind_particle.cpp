@@ -13,9 +13,9 @@ constexpr const char* doc =
 
 constexpr const char* make_doc =
     "A new particle of the body.\n\n"
-    "position: m. mass: kg, its own share. velocity: m/s. Vectors are any 2 or 3 numbers; z is then 0.\n"
-    "mass=0 makes a marker: a massless place that the massive particles of the body carry, so it must lie where these\n"
-    "reach. It can be hinged, nailed, bonded and constrained as any other particle.\n\n"
+    "position: m. mass: kg, its own share. velocity: m/s. Vectors are any 2 or 3 numbers; z is then 0. mass=0 makes a\n"
+    "marker: a massless particle fixed to the massive ones of the body, within the line, plane or space that they\n"
+    "span. It can be hinged, nailed, bonded and constrained as any other particle.\n\n"
     "    p = body.particle((0, 1, 0), mass=0.2)\n"
     "    p.velocity = (1, 0, 0)";
 
@@ -36,7 +36,7 @@ System& between_steps(const ParticleHandle& self, const char* what) {
 using Rows = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-/// Body after body with their particles, in one call: a call for each of them from Python takes five times as long.
+/// Makes bodies with their particles in one call: one call for each of them from Python takes five times as long.
 std::pair<std::vector<BodyHandle>, std::vector<ParticleHandle>> make_bodies(nb::handle_t<SystemObject> system,
                                                                             const std::vector<std::uint32_t>& counts,
                                                                             Rows position, Numbers mass,
@@ -71,23 +71,23 @@ void bind_nails(nb::class_<ParticleHandle>& type) {
               engine.particles().nail(self.id);
           },
           "position"_a = nb::none(),
-          "Holds it where it is, or at a place (m). Called again with another place, it moves the nail.")
+          "Nails it at its place, or at a given one (m). A further call with another place moves the nail.")
       .def(
-          "release", [](const ParticleHandle& self) { self.use().particles().release(self.id); }, "Takes its nail out.")
+          "release", [](const ParticleHandle& self) { self.use().particles().release(self.id); }, "Removes its nail.")
       .def_prop_ro("is_nailed", [](const ParticleHandle& self) { return self.use().particles().is_nailed(self.id); })
       .def_prop_ro(
           "nail_force", [](const ParticleHandle& self) { return self.use().particles().nail_force(self.id); },
           "By the nail on the particle in the last step, N.")
       .def_prop_ro(
           "hinge_force", [](const ParticleHandle& self) { return self.use().particles().hinge_force(self.id); },
-          "On its body by all that shares or nails its place in the last step, N: what the hinge carries. A force applied\n"
-          "to the shared particle itself counts as held by all its bodies alike.")
+          "On its body by everything that shares or nails its place in the last step, N: the load of the hinge. A\n"
+          "force applied to the shared particle itself is distributed equally over its bodies.")
       .def_prop_rw(
           "break_force", [](const ParticleHandle& self) { return self.use().particles().break_force(self.id); },
           [](const ParticleHandle& self, double force) {
             between_steps(self, "break_force = ...").particles().set_break_force(self.id, force);
           },
-          "Beyond this hinge_force (N; inf: never) it leaves its hinge or nail: see `System.broken`.");
+          "Above this hinge_force (N; inf: never) it leaves its hinge or nail: see `System.broken`.");
 }
 
 }  // namespace
@@ -115,36 +115,36 @@ void bind_particle(nb::module_& module) {
   bind_nails(type);
   type.def_prop_ro(
           "body", [](const ParticleHandle& self) { return sibling(self, self.use().particles().body(self.id)); },
-          "The body that it is a point of.")
+          "Its body.")
       .def_prop_ro(
           "ring",
           [](const ParticleHandle& self) {
             return wrap_all<ParticleHandle>(self.system_object, self.system, self.use().particles().ring(self.id));
           },
-          "Every particle hinged with it, itself included.")
+          "All particles hinged with it, and itself.")
       .def_prop_rw(
           "position", [](const ParticleHandle& self) { return self.use().particles().position(self.id); },
           [](const ParticleHandle& self, VectorArgument v) {
             between_steps(self, "position = ...").particles().set_position(self.id, to_vec3(v, "position"));
           },
-          "m. Assigning moves the whole ring; its bodies take the new distances as their rigid ones.")
+          "m. Assigning moves the whole ring and changes the rigid distances of its bodies.")
       .def_prop_rw(
           "velocity", [](const ParticleHandle& self) { return self.use().particles().velocity(self.id); },
           [](const ParticleHandle& self, VectorArgument v) {
             between_steps(self, "velocity = ...").particles().set_velocity(self.id, to_vec3(v, "velocity"));
           },
-          "m/s. What a rigid body cannot have of it is projected out by the next step.")
+          "m/s. The next step projects it on the motions of the rigid body.")
       .def_prop_rw(
           "mass", [](const ParticleHandle& self) { return self.use().particles().mass(self.id); },
           [](const ParticleHandle& self, double value) {
             between_steps(self, "mass = ...").particles().set_mass(self.id, finite_positive(value, "mass", "kg"));
           },
-          "Its own share, kg; 0 only for markers, made so. A ring weighs the sum of its particles.")
+          "Its own share, kg; 0 only for markers. The mass of a ring is the sum of its particles'.")
       .def_prop_rw(
           "active", [](const ParticleHandle& self) { return self.use().particles().is_active(self.id); },
           [](const ParticleHandle& self, bool active) { self.use().particles().set_active(self.id, active); },
-          "False: its bonds do not act, and of its mass only a millionth, so that its body keeps its shape; its hinges and\n"
-          "nails hold on.")
+          "False: its bonds do not act, and only a millionth of its mass counts, so that its body keeps its shape;\n"
+          "its hinges and nails still act.")
       .def(
           "apply_force",
           [](const ParticleHandle& self, VectorArgument force) {

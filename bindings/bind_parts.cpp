@@ -27,7 +27,7 @@ void bind_parts(nb::module_& module) {
   type.def_prop_ro(
           "origin", [](const PartView& self) { return sibling(self.body, self.part); },
           nb::sig("def origin(self) -> Body"),
-          "The body that it was: equal to its handle from then, which is stale unless it is the one that absorbed others.")
+          "Its former body: equal to the old handle, which is stale unless this body absorbed the others.")
       .def_prop_ro(
           "body", [](const PartView& self) { return self.body; }, nb::sig("def body(self) -> Body"),
           "The body that it is a part of.")
@@ -43,19 +43,19 @@ void bind_parts(nb::module_& module) {
           "kg")
       .def_prop_ro(
           "net_force", [](const PartView& self) { return self.use().bodies().net_force(self.body.id, self.part); },
-          "In the last step, what holds it to the rest of the body included, N.")
+          "Sum of all forces in the last step, those of the other parts included, N.")
       .def_prop_ro(
           "net_torque", [](const PartView& self) { return self.use().bodies().net_torque(self.body.id, self.part); },
           "About its own center of mass, N m.")
       .def_prop_ro(
           "outside_force",
           [](const PartView& self) { return self.use().bodies().outside_force(self.body.id, self.part); },
-          "What acted on it from outside of the whole body in the last step, N. net_force less this is what the other\n"
-          "parts do to it: the load on the lock.")
+          "Load from outside of the whole body in the last step, N. net_force minus this is the force of the other\n"
+          "parts: the load of the rigid connection.")
       .def_prop_ro(
           "outside_torque",
           [](const PartView& self) { return self.use().bodies().outside_torque(self.body.id, self.part); },
-          "Of those forces, about its own center of mass, N m.")
+          "Moment of those forces about its own center of mass, N m.")
       .def(
           "separate",
           [](const PartView& self) {
@@ -84,7 +84,7 @@ void bind_parts(nb::module_& module) {
             return parts;
           },
           nb::sig("def parts(self) -> list[Part]"),
-          "What it was combined from, itself and what it absorbed: each can be asked for its forces, or be separated again.")
+          "The bodies that it was combined from: each has its forces, and can be separated again.")
       .def_prop_ro(
           "net_force", [](const BodyHandle& self) { return self.use().bodies().net_force(self.id); },
           "Sum of all forces from outside in the last step, N: mass times acceleration.")
@@ -94,7 +94,7 @@ void bind_parts(nb::module_& module) {
   auto particle = nb::borrow<nb::class_<ParticleHandle>>(module.attr("Particle"));
   particle.def_prop_ro(
       "net_force", [](const ParticleHandle& self) { return self.use().particles().net_force(self.id); },
-      "All that acted on its share of mass in the last step, N.");
+      "Sum of all forces on its share of mass in the last step, N.");
 }
 
 }  // namespace iota::bindings

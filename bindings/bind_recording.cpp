@@ -23,7 +23,7 @@ std::filesystem::path to_path(nb::handle path) {
   return nb::cast<std::string>(text);
 }
 
-/// Written beside the target and moved there: a reader sees the old file or the new one, never a part.
+/// Writes a new file and renames it: a reader sees the old file or the new one, never a part.
 void save(const Recording& recording, nb::handle target) {
   const std::filesystem::path path = to_path(target);
   const std::filesystem::path part =
@@ -57,7 +57,7 @@ Recording load(nb::handle source) {
 nb::bytes as_bytes(const std::vector<std::byte>& bytes) { return nb::bytes(bytes.data(), bytes.size()); }
 
 constexpr const char* doc =
-    "A snapshot and all that happened since. `System.replay` repeats it and compares the state after every step.\n\n"
+    "A snapshot and all later commands. `System.replay` repeats it and compares the state after every step.\n\n"
     "    system.start_recording()\n"
     "    ...\n"
     "    recording = system.stop_recording()\n"
@@ -74,9 +74,10 @@ void bind_recording(nb::module_& module) {
           "steps", [](const Recording& r) { return r.hashes.size(); }, "Number of steps.")
       .def_ro("hashes", &Recording::hashes, "`System.state_hash()` after each step.")
       .def("save", &save, "path"_a, nb::sig("def save(self, path: str | os.PathLike[str]) -> None"),
-           "Writes it to a file, whole or not at all. Raises OSError.")
+           "Writes it to a file, completely or not at all. Raises OSError.")
       .def_static("load", &load, "path"_a, nb::sig("def load(path: str | os.PathLike[str]) -> Recording"),
-                  "Reads what `save` wrote. Raises OSError, or ValueError for a file that is no whole recording.")
+                  "Reads a file made by `save`. Raises OSError, or ValueError for a file that is not a complete "
+                  "recording.")
       .def(
           "to_bytes", [](const Recording& r) { return as_bytes(r.to_bytes()); }, "The contents of its file.")
       .def_static(

@@ -22,10 +22,9 @@ auto wrap_pairs(const RestructureResult& self, const Pairs& pairs) {
 }
 
 void bind_energy(nb::module_& module) {
-  nb::class_<Energy> type(
-      module, "Energy",
-      "Energy book-keeping in J. What left the motion and what came in is counted where it happens; `balance` is constant "
-      "up to round-off.");
+  nb::class_<Energy> type(module, "Energy",
+                          "Energy balance in J. Each gain and loss is counted where it occurs; `balance` is constant "
+                          "up to round-off.");
   def_pickled(type, &Energy::kinetic, &Energy::potential, &Energy::dissipated, &Energy::lost, &Energy::made,
               &Energy::external_work, &Energy::edits);
   type.def(
@@ -39,19 +38,17 @@ void bind_energy(nb::module_& module) {
       .def_ro("potential", &Energy::potential,
               "Of gravity, springs, and all bonds, fields and pairs whose law has an energy.")
       .def_ro("dissipated", &Energy::dissipated,
-              "Since the start, by damping, dashpots, friction, laws and impacts: their own work.")
-      .def_ro("lost", &Energy::lost,
-              "Since the start, by the integration scheme; may fall by what its tolerance leaves.")
+              "Since the start, work of damping, dashpots, friction, laws and impacts.")
+      .def_ro("lost", &Energy::lost, "Since the start, by the integration scheme; may decrease within its tolerance.")
       .def_ro("made", &Energy::made,
               "Since the start, by the integration scheme: a defect, with a warning in the report.")
-      .def_ro(
-          "external_work", &Energy::external_work,
-          "Since the start, by grips, scripted bonds, moved nails and applied forces; also what holding a force that has\n"
-          "an energy costs, see docs/forces.md.")
+      .def_ro("external_work", &Energy::external_work,
+              "Since the start, by grips, scripted bonds, moved nails and applied forces; also the error of holding a\n"
+              "force with an energy, see docs/forces.md.")
       .def_ro("edits", &Energy::edits, "Since the start, gained (+) or lost (-) by edits.")
       .def_prop_ro("total", &Energy::total, "kinetic + potential.")
       .def_prop_ro("balance", &Energy::balance,
-                   "kinetic + potential + dissipated + lost - made - external_work - edits: stays as it is.")
+                   "kinetic + potential + dissipated + lost - made - external_work - edits: constant.")
       .def("__repr__", [](const Energy& e) {
         return text_of(
             "<Energy: kinetic %.6g J, potential %.6g J, dissipated %.6g J, lost %.6g J, made %.6g J, external work %.6g J, "
@@ -61,9 +58,10 @@ void bind_energy(nb::module_& module) {
 }
 
 void bind_step_report(nb::module_& module) {
-  nb::class_<StepReport> type(
-      module, "StepReport", "What one `System.step` did. Not converged is a result, no exception. It can be pickled.");
-  // What a script sees of it: of what was born and died, how many.
+  nb::class_<StepReport> type(module, "StepReport",
+                              "Result of one `System.step`. Non-convergence is a result, not an exception. It can be "
+                              "pickled.");
+  // The part that scripts see; of births and deaths only the number.
   const std::tuple seen{&StepReport::step,
                         &StepReport::time,
                         &StepReport::dt,
@@ -107,15 +105,15 @@ void bind_step_report(nb::module_& module) {
       .def_ro("dt", &StepReport::dt, "Its length, s.")
       .def_ro("iterations_mean", &StepReport::iterations_mean, "Newton iterations per articulate and (sub-)step.")
       .def_ro("iterations_max", &StepReport::iterations_max)
-      .def_ro("substeps_max", &StepReport::substeps_max, "Sub-steps that the busiest articulate needed.")
+      .def_ro("substeps_max", &StepReport::substeps_max, "Largest number of sub-steps of an articulate.")
       .def_ro("fallbacks", &StepReport::fallbacks,
-              "(Sub-)steps handed from the energy-keeping scheme to the robust one.")
+              "(Sub-)steps that the robust scheme took in place of the energy-keeping one.")
       .def_ro("unconverged", &StepReport::unconverged, "Articulates left with a least violation instead of a solution.")
       .def_ro("worst_gap", &StepReport::worst_gap, "Largest hinge separation or rigidity error, m.")
       .def_ro("energy", &StepReport::energy)
       .def_ro("articulates", &StepReport::articulates)
       .def_prop_ro(
-          "births", [](const StepReport& r) { return r.born.size(); }, "Particles that emitters bore.")
+          "births", [](const StepReport& r) { return r.born.size(); }, "Particles made by emitters.")
       .def_prop_ro(
           "deaths", [](const StepReport& r) { return r.died.size(); }, "Particles whose lifetime ended.")
       .def_ro("resting", &StepReport::resting, "Bodies asleep.")
@@ -150,7 +148,7 @@ void read_id(Absorbed& pair, nb::handle state) {
   read_id(pair.retired, state[0]), read_id(pair.survivor, state[1]);
 }
 
-/// visit(list) for each list of ids of a report.
+/// Calls visit(list) for each list of ids of a report.
 template <class Report, class Visit>
 void for_each_list(Report& report, Visit visit) {
   visit(report.created_bodies), visit(report.created_particles), visit(report.destroyed_bodies);
@@ -202,15 +200,15 @@ void def_state(nb::class_<RestructureResult>& type) {
 void bind_restructure_report(nb::module_& module) {
   nb::class_<RestructureResult> type(
       module, "RestructureReport",
-      "What one structural edit did. True where it changed something. Pickled it keeps all but "
-      "the system: handles from it then tell their slots only.",
+      "Result of one structural edit. True if it changed something. Pickled it keeps everything except "
+      "the system: its handles then have only their slots.",
       nb::type_slots(handle_slots<RestructureResult>));
   def_state(type);
   type.def("__bool__", field(&RestructureReport::changed))
       .def_prop_ro("queued", field(&RestructureReport::queued),
-                   "True if it was asked for during a step: it is done right after it, and the rest is not known yet.")
+                   "True if it was requested during a step: it is made right after it, and the rest is not known yet.")
       .def_prop_ro("changed", field(&RestructureReport::changed),
-                   "False where there was nothing to do, e.g. in separating unrelated particles.")
+                   "False if there was nothing to do, e.g. separating unrelated particles.")
       .def_prop_ro("structure_version", field(&RestructureReport::structure_version))
       .def_prop_ro("created_bodies",
                    [](const RestructureResult& self) {
@@ -243,17 +241,17 @@ void bind_restructure_report(nb::module_& module) {
       .def_prop_ro("articulates_before", field(&RestructureReport::articulates_before), "Of the whole system.")
       .def_prop_ro("articulates_after", field(&RestructureReport::articulates_after), "Of the whole system.")
       .def_prop_ro("closed_distance", field(&RestructureReport::closed_distance),
-                   "How far apart the combined particles were, m.")
-      .def_prop_ro("remaining_gap", field(&RestructureReport::remaining_gap), "What no position could close, m.")
+                   "Former distance of the combined particles, m.")
+      .def_prop_ro("remaining_gap", field(&RestructureReport::remaining_gap), "Gap that could not be closed, m.")
       .def_prop_ro("energy_change", field(&RestructureReport::energy_change), "J")
       .def_prop_ro("momentum_change", field(&RestructureReport::momentum_change),
-                   "What could not be kept, kg m/s: a nail took it.")
+                   "kg m/s, not conserved because of nails.")
       .def_prop_ro("angular_momentum_change", field(&RestructureReport::angular_momentum_change),
-                   "What could not be kept, about the origin, kg m^2/s.")
+                   "About the origin, kg m^2/s, not conserved because of nails.")
       .def_prop_ro("notes", field(&RestructureReport::notes), "Plain sentences.")
       .def("__repr__", [](const RestructureResult& self) {
         const RestructureReport& r = self.report;
-        if (r.queued) return std::string("<RestructureReport: queued until the step is over>");
+        if (r.queued) return std::string("<RestructureReport: queued until the end of the step>");
         if (!r.changed) return std::string("<RestructureReport: nothing to do>");
         return text_of("<RestructureReport: %u articulates (before: %u), energy %+.3g J, structure version %u>",
                        r.articulates_after, r.articulates_before, r.energy_change, r.structure_version);
@@ -263,18 +261,18 @@ void bind_restructure_report(nb::module_& module) {
 void bind_diagnosis(nb::module_& module) {
   nb::class_<Diagnosis> type(
       module, "Diagnosis",
-      "Whether the constraints of bodies that are solved together contradict or repeat each other: a\n"
+      "Analysis of conflicting and redundant constraints of bodies that are solved together: a\n"
       "singular value decomposition of their Jacobian, scaled so that figures do not depend on units.");
   def_pickled(type, &Diagnosis::unknowns, &Diagnosis::rows, &Diagnosis::rank, &Diagnosis::redundancy,
               &Diagnosis::degrees_of_freedom, &Diagnosis::singular_values, &Diagnosis::condition,
               &Diagnosis::kkt_condition, &Diagnosis::findings);
   type.def_ro("unknowns", &Diagnosis::unknowns, "Coordinates of points.")
-      .def_ro("rows", &Diagnosis::rows, "Of constraints that hold now: open stops and slack ropes do not.")
+      .def_ro("rows", &Diagnosis::rows, "Of active constraints: without open stops and slack ropes.")
       .def_ro("rank", &Diagnosis::rank, "Singular values above 1e-8 of the largest.")
       .def_ro("redundancy", &Diagnosis::redundancy, "rows - rank")
       .def_ro("degrees_of_freedom", &Diagnosis::degrees_of_freedom, "unknowns - rank")
       .def_ro("singular_values", &Diagnosis::singular_values, "Falling.")
-      .def_ro("condition", &Diagnosis::condition, "Largest singular value over the smallest that counts.")
+      .def_ro("condition", &Diagnosis::condition, "Largest singular value over the smallest one in the rank.")
       .def_ro("kkt_condition", &Diagnosis::kkt_condition, "Of the matrix that a step solves, stiffness left out.")
       .def_ro("findings", &Diagnosis::findings, "Plain sentences that name bodies, particles and constraints.")
       .def("__repr__", [](const Diagnosis& d) {

@@ -9,25 +9,27 @@ namespace {
 
 constexpr const char* combine_particles_doc =
     "Joins it with particle q. Thesis, Tables 4.1 and 4.2.\n\n"
-    "Same particle: nothing. Same body: this one absorbs q. Hinged: the hinge becomes rigid, and its body absorbs q's.\n"
-    "Unrelated: a hinge; particles that are apart meet at once (over=0) or within `over` seconds. Momentum is kept, and\n"
-    "what cannot be kept is reported.\n\n"
-    "keep: 'both': both are moved to the place between them, by their masses. 'first': this one stays where it is, and q is\n"
-    "brought here with all that is hinged to it, as one rigid thing; so nothing of that may be nailed or static, hang on\n"
-    "this particle already, or take time.\n\n"
-    "Raises ValueError for particles of two systems, a bad `over` or `keep`, StaleIdError for handles whose object is gone.\n\n"
+    "Same particle: nothing. Same body: this one absorbs q. Hinged: the hinge becomes rigid, and its body absorbs\n"
+    "q's. Unrelated: a hinge; particles that are apart meet at once (over=0) or within `over` seconds. Momentum is\n"
+    "kept; exceptions are reported.\n\n"
+    "keep: 'both': both are moved to a place between them, weighted by mass. 'first': this one stays at its place,\n"
+    "and q is moved here with everything hinged to it, as one rigid body; so none of it may be nailed, static or\n"
+    "hinged to this particle already, and `over` must be 0.\n\n"
+    "Raises ValueError for particles of two systems, a bad `over` or `keep`, StaleIdError for handles of destroyed\n"
+    "objects.\n\n"
     "    p.combine(q)";
 
 constexpr const char* combine_bodies_doc =
-    "Makes one rigid body of the two, in place, which absorbs `other`. Raises ValueError for bodies of two systems.";
+    "Makes the two one rigid body without moving them; it absorbs `other`. Raises ValueError for bodies of two "
+    "systems.";
 
 constexpr const char* separate_doc =
-    "Cuts it apart from particle q. Thesis, Table 4.3.\n\n"
+    "Separates it from particle q. Thesis, Table 4.3.\n\n"
     "Same particle: a second one at the same place, half the mass each. Same body: q becomes a one-particle body hinged\n"
     "to this one. Hinged: q leaves the ring. Unrelated: nothing (the report is then false).\n\n"
     "    p.separate(q)";
 
-/// Moves all that is hinged to q, as one rigid thing, so that q comes to be where p is.
+/// Moves everything hinged to q, as one rigid body, so that q coincides with p.
 void bring(System& engine, ParticleId q, ParticleId p) {
   const BodyId body = engine.particles().body(q);
   const Vec3 way = engine.particles().position(p) - engine.particles().position(q);
@@ -36,7 +38,7 @@ void bring(System& engine, ParticleId q, ParticleId p) {
   const auto refuse = [&](const std::string& why) {
     throw nb::value_error(("combine: " + name_of(q) + " cannot be brought to " + name_of(p) + ": " + why).c_str());
   };
-  if (engine.bodies().articulate(engine.particles().body(p)) == articulate) refuse("they hang together already");
+  if (engine.bodies().articulate(engine.particles().body(p)) == articulate) refuse("they are connected already");
   for (const BodyId other : engine.bodies().ids()) {
     if (engine.bodies().articulate(other) != articulate) continue;
     if (const BodyKind kind = engine.bodies().kind(other); kind == BodyKind::static_ || kind == BodyKind::scripted)

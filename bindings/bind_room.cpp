@@ -54,7 +54,7 @@ void set_settings(RoomObject& self, const std::string& title, const std::vector<
                                          ground.has_value(), static_cast<float>(ground.value_or(0))});
 }
 
-/// Two digits: a page is not told of each flutter.
+/// Two digits, so that small fluctuations are not sent to pages.
 float two_digits(double value) {
   if (!(value > 0) || !std::isfinite(value)) return 0;
   const double step = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -81,7 +81,7 @@ void set_actions(RoomObject& self, const std::vector<ActionTuple>& actions) {
 }
 
 void publish_changes(RoomObject& self, const PoseSnapshot& snapshot, const SceneChanges& changes) {
-  // What the script attached to bodies comes after them.
+  // Entities that the script attached to bodies are sent after them.
   net::EntityChanges out = self.presenter.present(changes);
   out.append(std::exchange(self.own, {}));
   self.use().publish(snapshot, std::move(out));
@@ -129,7 +129,7 @@ SceneChanges scene_of(const std::vector<SimulatedBodyTuple>& bodies, double exte
   return changes;
 }
 
-/// Of one that has changed, where `bodies` are given.
+/// A changed body, if `bodies` are given.
 void publish_simulated(RoomObject& self, std::optional<std::vector<SimulatedBodyTuple>> bodies, nb::handle slots,
                        nb::handle places, const std::vector<HoldTuple>& holds, std::uint64_t step, double time,
                        std::uint32_t structure_version, const Energy& energy, double gap, double extent) {
@@ -139,7 +139,7 @@ void publish_simulated(RoomObject& self, std::optional<std::vector<SimulatedBody
   const auto numbers = nb::cast<nb::ndarray<const float, nb::c_contig, nb::device::cpu>>(as_array(places, "float32"));
   const std::size_t count = which.size();
   if (which.ndim() != 1 || numbers.ndim() != 2 || numbers.shape(0) != count || numbers.shape(1) != 7)
-    throw nb::value_error("poses() must give slots of shape (n,) and places of shape (n, 7)");
+    throw nb::value_error("poses() must return slots of shape (n,) and places of shape (n, 7)");
   PoseSnapshot snapshot;
   snapshot.step = step, snapshot.time = time, snapshot.structure_version = structure_version;
   snapshot.kinetic = static_cast<float>(energy.kinetic), snapshot.potential = static_cast<float>(energy.potential);
@@ -189,7 +189,7 @@ void set_entity(RoomObject& self, const std::string& kind, std::uint32_t slot, s
   self.own.set(number, {slot, generation}, record);
 }
 
-/// The body that an event is on, or None once it is gone.
+/// The body of an event, or None once it is destroyed.
 nb::object body_of(RoomObject& self, const net::InputEvent& event, nb::object system) {
   const std::optional<BodyId> body = self.presenter.body(event.body);
   if (!body) return nb::none();
@@ -198,7 +198,7 @@ nb::object body_of(RoomObject& self, const net::InputEvent& event, nb::object sy
   return nb::cast(BodyHandle{std::move(system), object, *body});
 }
 
-/// The slot of the simulator's body that an event is on, or None once it is gone.
+/// The slot of the simulator's body of an event, or None once it is destroyed.
 std::optional<std::uint32_t> slot_of(RoomObject& self, const net::InputEvent& event) {
   const std::optional<BodyId> body = self.presenter.body(event.body);
   return body ? std::optional(body->slot) : std::nullopt;
@@ -207,7 +207,7 @@ std::optional<std::uint32_t> slot_of(RoomObject& self, const net::InputEvent& ev
 }  // namespace
 
 void bind_room(nb::module_& module) {
-  nb::class_<protocol::Part>(module, "DrawnPart", "A shape at its place on a body, as pages are told of it.")
+  nb::class_<protocol::Part>(module, "DrawnPart", "A shape at its place on a body, as sent to pages.")
       .def(
           "__init__",
           [](protocol::Part* self, const std::string& kind, const std::vector<float>& sizes, const std::string& look,
@@ -221,7 +221,7 @@ void bind_room(nb::module_& module) {
           "offset"_a = nb::make_tuple(0, 0, 0), "rotation"_a = Quat4{0, 0, 0, 1}, "turn"_a = 0.0,
           "vertices"_a = std::vector<float>{}, "triangles"_a = std::vector<std::uint32_t>{});
 
-  nb::class_<RoomObject>(module, "Room", "A world on a server. `World` drives it; a script hardly needs to.")
+  nb::class_<RoomObject>(module, "Room", "A world on a server. `World` uses it; scripts rarely need to.")
       .def_prop_ro(
           "world", [](RoomObject& self) { return self.use().world(); }, "Its id.")
       .def(
@@ -231,7 +231,7 @@ void bind_room(nb::module_& module) {
             SystemObject* object = nullptr;
             if (nb::try_cast(system, object) && object) object->use().viewer().stop_watching_scene();
           },
-          "system"_a, "Tells its pages that the world has ended; changes of its system are noted no more.")
+          "system"_a, "Tells its pages that the world has ended, and stops logging changes of its system.")
       .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a, "camera"_a.none(),
            "ground"_a.none())
       .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a)
@@ -242,7 +242,7 @@ void bind_room(nb::module_& module) {
           [](RoomObject& self, const std::string& name, std::vector<protocol::Part> parts) {
             self.presenter.set_class(name, std::move(parts));
           },
-          "name"_a, "parts"_a, "How bodies, or ties, of a class are drawn, in all looks.")
+          "name"_a, "parts"_a, "Sets the looks of a class of bodies or ties.")
       .def(
           "assign",
           [](RoomObject& self, const BodyHandle& body, const std::string& name, bool odd) {
@@ -254,47 +254,46 @@ void bind_room(nb::module_& module) {
           [](RoomObject& self, std::uint32_t slot, std::uint32_t generation, const std::string& name, bool odd) {
             self.presenter.assign({slot, generation}, name, odd);
           },
-          "slot"_a, "generation"_a, "name"_a, "odd"_a, "The same for a simulator's body.")
+          "slot"_a, "generation"_a, "name"_a, "odd"_a, "The same for a body of a simulator.")
       .def(
           "set_statics",
           [](RoomObject& self, std::vector<protocol::Part> parts) { self.presenter.set_statics(std::move(parts)); },
-          "parts"_a, "What is only drawn.")
-      .def(
-          "set_entity", &set_entity, "kind"_a, "slot"_a, "generation"_a, "fields"_a,
-          "An entity of the script, as protocol/entities describes its kind; pages are told with the next poses. Raises\n"
-          "ValueError for bytes that are no such record.")
+          "parts"_a, "Shapes without physics.")
+      .def("set_entity", &set_entity, "kind"_a, "slot"_a, "generation"_a, "fields"_a,
+           "An entity of the script, as described for its kind in protocol/entities; sent with the next poses. Raises\n"
+           "ValueError for bytes that are not such a record.")
       .def(
           "destroy_entity",
           [](RoomObject& self, const std::string& kind, std::uint32_t slot, std::uint32_t generation) {
             self.own.destroy(kind_named(kind), {slot, generation});
           },
-          "kind"_a, "slot"_a, "generation"_a, "The entity is gone.")
+          "kind"_a, "slot"_a, "generation"_a, "Destroys an entity.")
       .def(
           "set_listens",
           [](RoomObject& self, bool clicks, bool hovers, std::vector<std::string> keys) {
             self.use().set(protocol::Listens{clicks, hovers, std::move(keys)});
           },
-          nb::kw_only(), "clicks"_a, "hovers"_a, "keys"_a, "What else pages tell of their users.")
+          nb::kw_only(), "clicks"_a, "hovers"_a, "keys"_a, "Enables further input events of pages.")
       .def(
           "ask_picture",
           [](RoomObject& self, std::uint32_t client, std::uint32_t number) { self.use().ask_picture(client, number); },
           "client"_a, "number"_a, "Asks one client for a picture; its parts come as input with this number.")
-      .def("publish", &publish, "system"_a, "The newest poses of a system, and what has changed in it.")
+      .def("publish", &publish, "system"_a, "Sends the newest poses of a system, and its changes.")
       .def("publish_simulated", &publish_simulated, "bodies"_a.none(), "slots"_a, "places"_a, "holds"_a, nb::kw_only(),
            "step"_a, "time"_a, "structure_version"_a, "energy"_a, "gap"_a, "extent"_a,
-           "The same of a simulator of the script, see iota.Simulator; bodies: None where none has changed. Raises\n"
+           "The same for a simulator of the script, see iota.Simulator; bodies: None if none has changed. Raises\n"
            "ValueError for shapes of slots and places other than (n,) and (n, 7).")
       .def_prop_ro(
           "needs_all",
           [](RoomObject& self) { return self.presenter.needs_all() || !self.presenter.assigned().empty(); },
-          "Whether a simulator's bodies have to be told next time though they have not changed.")
+          "Whether a simulator must send its bodies next time even without a change.")
       .def("body_of", &body_of, "event"_a, "system"_a,
            nb::sig("def body_of(self, event: InputEvent, system: System) -> Body | None"),
-           "The body that an event is on; None once it is gone.")
-      .def("slot_of", &slot_of, "event"_a, "Of the simulator's body that an event is on; None once it is gone.")
+           "The body of an event; None once it is destroyed.")
+      .def("slot_of", &slot_of, "event"_a, "The slot of the simulator's body of an event; None once it is destroyed.")
       .def(
           "take_warnings", [](RoomObject& self) { return self.presenter.take_warnings(); },
-          "What could not be drawn as it is, since the last call.")
+          "Notices since the last call about things that could not be drawn exactly.")
       .def(
           "notice",
           [](RoomObject& self, std::uint32_t client, std::uint8_t level, const std::string& title,
@@ -314,7 +313,7 @@ void bind_room(nb::module_& module) {
           "kind"_a, "position"_a, "Flash, sound and haptic pulse: 'break', 'join' or 'grab' at a place (m).")
       .def(
           "take_input", [](RoomObject& self) { return self.use().take_input(); },
-          "What happened since the last call, in order of arrival.");
+          "Events since the last call, in order of arrival.");
 }
 
 }  // namespace iota::bindings

@@ -23,10 +23,10 @@ using net::ServerStatistics;
 
 constexpr const char* server_doc =
     "Serves the page and its WebSocket on one port, on a thread of its own, for one world or several.\n\n"
-    "A World makes one for itself; worlds that are to share one are given it by `World.serve(server=...)`. page_folder: the\n"
-    "built page. token: asked of every page. hello_time: s, from the upgrade of a connection to its first frame.\n"
-    "certificate, key: in PEM; with them other machines talk https to the same port.\n"
-    "Raises OSError when the port is taken.";
+    "A World makes one for itself; use `World.serve(server=...)` for worlds that share one. page_folder: the\n"
+    "built page. token: required of every page. hello_time: s, from the upgrade of a connection to its first frame.\n"
+    "certificate, key: in PEM; with them other machines use https on the same port.\n"
+    "Raises OSError if the port is in use.";
 
 const char* kind_name_of(InputEvent::Kind kind) {
   switch (kind) {
@@ -91,7 +91,7 @@ std::unique_ptr<Server> make_server(const std::string& host, std::uint16_t port,
 }
 
 void bind_input(nb::module_& module) {
-  nb::class_<InputEvent>(module, "InputEvent", "What a user did, or that one came or went.")
+  nb::class_<InputEvent>(module, "InputEvent", "An input of a user, or a user joined or left.")
       .def_prop_ro(
           "kind", [](const InputEvent& e) { return kind_name_of(e.kind); },
           "join, leave, select, grab_start, grab_move, grab_end, action, control, change, pointer, key or picture")
@@ -100,7 +100,7 @@ void bind_input(nb::module_& module) {
       .def_prop_ro(
           "names_body",
           [](const InputEvent& e) { return static_cast<bool>(e.body) && e.kind != InputEvent::Kind::change; },
-          "Whether it is on a body: `Room.body_of` tells which, if it is still there.")
+          "Whether it is on a body: `Room.body_of` returns it, if it still exists.")
       .def_prop_ro(
           "local_point", [](const InputEvent& e) { return widen(e.local_point); }, "Body frame, m.")
       .def_prop_ro(
@@ -120,7 +120,7 @@ void bind_input(nb::module_& module) {
           [](const InputEvent& e) { return nb::bytes(reinterpret_cast<const char*>(e.data.data()), e.data.size()); },
           "A part of a picture.")
       .def_ro("number", &InputEvent::number, "Of the request for a picture.")
-      .def_ro("is_final", &InputEvent::is_final, "A key was let go; the last part of a picture.")
+      .def_ro("is_final", &InputEvent::is_final, "A key was released; the last part of a picture.")
       .def_ro("name", &InputEvent::name, "Of the client, action, pointer or key; the text of a text field.")
       .def_prop_ro(
           "command", [](const InputEvent& e) { return static_cast<int>(e.command); }, "A ControlCommand.")
@@ -135,10 +135,10 @@ void bind_statistics(nb::module_& module) {
       .def_ro("clients", &ServerStatistics::clients, "Connected now.")
       .def_ro("bytes_sent", &ServerStatistics::bytes_sent)
       .def_ro("frames_sent", &ServerStatistics::frames_sent)
-      .def_ro("frames_dropped", &ServerStatistics::frames_dropped, "Poses that a slow client never got.")
-      .def_ro("frames_refused", &ServerStatistics::frames_refused, "Frames that were not understood.")
+      .def_ro("frames_dropped", &ServerStatistics::frames_dropped, "Poses that were not sent to slow clients.")
+      .def_ro("frames_refused", &ServerStatistics::frames_refused, "Frames that could not be decoded.")
       .def_ro("upgrades_refused", &ServerStatistics::upgrades_refused, "Wrong Host, Origin or token.")
-      .def_ro("clients_dropped", &ServerStatistics::clients_dropped, "Over their queue, or silent.");
+      .def_ro("clients_dropped", &ServerStatistics::clients_dropped, "For a full queue, or silence.");
 }
 
 }  // namespace
@@ -149,17 +149,17 @@ void bind_server(nb::module_& module) {
   module.def("make_token", &net::make_token, "A new secret for a page's address: 32 hexadecimal digits.");
   module.def(
       "kept_token", [] { return token_of_state_folder(&net::load_or_make_token); },
-      "The secret kept in the state folder, made when there is none. Raises OSError where that cannot be done.");
+      "The secret kept in the state folder, made if there is none. Raises OSError if that fails.");
   module.def(
       "renew_token", [] { return token_of_state_folder(&net::renew_token); },
-      "A new secret in place of the kept one: pages that know the old one are refused by servers that start from now on.\n"
-      "Raises OSError where it cannot be kept.");
+      "Replaces the kept secret: servers that start from now on refuse pages with the old one.\n"
+      "Raises OSError if it cannot be written.");
   module.def(
       "kept_certificate", &kept_certificate, "hosts"_a,
       "The server's own certificate for host names and addresses, and its key, both in PEM. Kept in the state folder;\n"
-      "made anew when it is not for one of them or ends soon. Raises OSError where it cannot be written.");
+      "replaced if it is not for one of them or expires soon. Raises OSError if it cannot be written.");
   module.def("fingerprint", &net::fingerprint, "certificate"_a,
-             "SHA-256 of a certificate in PEM, as browsers show it. Raises ValueError for another text.");
+             "SHA-256 of a certificate in PEM, as browsers show it. Raises ValueError for other texts.");
   bind_room(module);
   nb::class_<ServerObject>(module, "Server", server_doc)
       .def(
@@ -173,9 +173,9 @@ void bind_server(nb::module_& module) {
       .def(
           "open", [](ServerObject& self, const std::string& world) { return new RoomObject(self.use().open(world)); },
           "world"_a,
-          "A world that pages can ask for by its id; a page that asks for none gets the first. Raises ValueError for an id\n"
+          "A world that pages choose by its id; a page without an id gets the first. Raises ValueError for an id\n"
           "that is empty, longer than 128 bytes, or in use.")
-      .def("close", &ServerObject::close, "Tells all pages that the server stops, and ends it.")
+      .def("close", &ServerObject::close, "Tells all pages that the server stops, and stops it.")
       .def_prop_ro("port", [](ServerObject& self) { return self.use().port(); })
       .def_prop_ro(
           "url", [](ServerObject& self) { return self.use().url(); }, "Address of the first world's page.")
@@ -188,7 +188,7 @@ void bind_server(nb::module_& module) {
             return self.use().url_at(host, world);
           },
           "host"_a, "world"_a = "",
-          "Address for other machines, to which this one is `host`. Without a world: the first one's.")
+          "Address for other machines, for which this one is `host`. Without a world: the first one's.")
       .def_prop_ro("statistics", [](ServerObject& self) { return self.use().statistics(); });
 }
 

@@ -11,11 +11,11 @@ namespace iota::bindings {
 namespace {
 
 constexpr const char* mesh_doc =
-    "What a closed surface of triangles encloses. vertices: (n, 3), m. triangles: (k, 3) numbers of vertices, from outside\n"
-    "counter-clockwise. Raises ValueError where the surface is open, inside out, flat, inconsistently wound or names\n"
-    "vertices that are not there; the text says which triangle or edge.\n\n"
-    "    iota.Mesh.load('part.stl')         # any format that trimesh reads, where it is installed\n"
-    "    iota.Mesh.convex_hull(points)      # the skin round loose points";
+    "The volume within a closed surface of triangles. vertices: (n, 3), m. triangles: (k, 3) indices, from outside\n"
+    "counter-clockwise. Raises ValueError if the surface is open, inside out, flat, inconsistently wound or has\n"
+    "invalid indices; the text names the triangle or edge.\n\n"
+    "    iota.Mesh.load('part.stl')         # any format that trimesh reads, if it is installed\n"
+    "    iota.Mesh.convex_hull(points) # the convex hull";
 
 nb::object array_of(nb::handle values, const char* dtype, const char* name) {
   nb::object array = nb::module_::import_("numpy").attr("ascontiguousarray")(values, dtype);
@@ -39,7 +39,7 @@ Mesh make_mesh(nb::handle vertices, nb::handle triangles) {
     auto& triangle = mesh.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int64_t vertex = t.data()[3 * i + k];
-      // What is out of range becomes a number that the engine refuses by name.
+      // A value out of range becomes a number that the engine refuses by name.
       triangle[k] = vertex < 0 || vertex > 0xffffffff ? 0xffffffffu : static_cast<std::uint32_t>(vertex);
     }
   }
@@ -65,7 +65,7 @@ std::string class_name(std::string_view name) {
   return out;
 }
 
-/// The class' docstring: what the shape is, and its sizes.
+/// The docstring of the class: the shape, and its sizes.
 template <class S>
 std::string doc_of() {
   std::string text(shape::Traits<S>::doc);
@@ -80,7 +80,7 @@ Vec3 from_argument(VectorArgument value, const char* name) { return to_vec3(valu
 nb::object to_argument(double value) { return nb::float_(value); }
 nb::object to_argument(const Vec3& v) { return nb::make_tuple(v.x, v.y, v.z); }
 
-/// The constructor, which checks, and one property for each size.
+/// The constructor, with checks, and one property for each size.
 template <class S, class... T, std::size_t... I>
 void def_sizes(nb::class_<S>& type, const std::tuple<shape::Size<S, T>...>& sizes, std::index_sequence<I...>) {
   const auto argument = [&]<std::size_t Index>(std::integral_constant<std::size_t, Index>) {
@@ -120,7 +120,7 @@ void def_sizes(nb::class_<S>& type, const std::tuple<shape::Size<S, T>...>& size
   });
 }
 
-/// What can be asked of every shape.
+/// The properties and functions of every shape.
 template <class S>
 void def_common(nb::class_<S>& type) {
   type.attr("kind") = shape::Traits<S>::name;
@@ -140,13 +140,13 @@ void def_common(nb::class_<S>& type) {
             for (std::size_t i = 0; i < shape::size_names(s).size(); ++i) numbers.append(data.sizes[i]);
             return nb::tuple(numbers);
           },
-          nb::sig("def numbers(self) -> tuple[float, ...]"), "Its sizes one after the other, as a page gets them.")
+          nb::sig("def numbers(self) -> tuple[float, ...]"), "All sizes in one list, as sent to pages.")
       .def_prop_ro(
           "mass_properties", [](const S& s) { return mass_properties(s); },
           "Volume, center and second moments. Raises ValueError for a shape without a volume.")
       .def(
           "distance", [](const S& s, VectorArgument p) { return shape::distance(s, to_vec3(p, "point")); }, "point"_a,
-          "Of a point from the surface, negative inside, m. The point is in the shape's frame.")
+          "From a point to the surface, negative inside, m. The point is in the shape's frame.")
       .def(
           "closest", [](const S& s, VectorArgument p) { return shape::closest(s, to_vec3(p, "point")); }, "point"_a,
           "The point of the surface that is nearest to a point, both in the shape's frame, m.")
@@ -161,7 +161,7 @@ void def_mesh(nb::class_<Mesh>& type) {
           "__init__",
           [](Mesh* self, nb::object vertices, nb::object triangles) {
             Mesh made = make_mesh(vertices, triangles);
-            (void)mass_properties(made);  // refuses a surface that is not closed
+            (void)mass_properties(made);  // throws unless the surface is closed
             new (self) Mesh(std::move(made));
           },
           "vertices"_a, "triangles"_a,
@@ -185,8 +185,8 @@ void def_mesh(nb::class_<Mesh>& type) {
             return convex_hull({reinterpret_cast<const Vec3*>(x.data()), x.shape(0)});
           },
           "points"_a, nb::sig("def convex_hull(points: numpy.typing.ArrayLike) -> Mesh"),
-          "The skin round loose points, (n, 3), m: points within it, on its faces and given twice do no harm. Raises\n"
-          "ValueError for fewer than four, for what is not finite, and where all are in one plane or on one line.")
+          "The convex hull of points, (n, 3), m; inner, coplanar and duplicate points are allowed. Raises\n"
+          "ValueError for fewer than four, for non-finite ones, and if all are in one plane or on one line.")
       .def_prop_ro(
           "vertices",
           [](const Mesh& m) {
@@ -211,7 +211,7 @@ void def_mesh(nb::class_<Mesh>& type) {
 }
 
 void bind_solid(nb::module_& module) {
-  nb::class_<SolidView>(module, "Solid", "One of the solids that a body was given as.")
+  nb::class_<SolidView>(module, "Solid", "A solid of a body.")
       .def_prop_ro(
           "shape", [](const SolidView& s) { return from_shape(s.shape); }, nb::sig("def shape(self) -> Shape"))
       .def_ro("position", &SolidView::position, "Of the shape's origin, world, m.")

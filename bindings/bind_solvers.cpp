@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Equations of the script for solvers of the engine, and solvers of the script for equations of the engine.
-// `iota.solvers` is the face of all this.
+// `iota.solvers` is the public interface.
 #include "binders.h"
 
 #include <iota/solver.h>
@@ -19,7 +19,7 @@ namespace {
 
 using Numbers = nb::ndarray<nb::numpy, double, nb::c_contig>;
 
-/// A copy that Python owns.
+/// A copy owned by Python.
 template <class... Sizes>
 nb::object make_array(std::span<const double> values, Sizes... sizes) {
   auto* const copy = new double[std::max<std::size_t>(values.size(), 1)];
@@ -28,13 +28,13 @@ nb::object make_array(std::span<const double> values, Sizes... sizes) {
   return nb::cast(Numbers(copy, {static_cast<std::size_t>(sizes)...}, owner));
 }
 
-/// Copies the script's numbers; ValueError where their shape is another. `what`: "evaluate(x)".
+/// Copies the script's numbers; ValueError if their shape is wrong. `what`: "evaluate(x)".
 template <class... Sizes>
 void read_array(nb::handle values, std::span<double> out, const char* what, Sizes... sizes) {
   const nb::tuple wanted = nb::make_tuple(static_cast<std::size_t>(sizes)...);
   const nb::object array = nb::module_::import_("numpy").attr("array")(values, "dtype"_a = "float64", "order"_a = "C");
   if (!nb::object(array.attr("shape")).equal(wanted)) {
-    const std::string text = std::string(what) + " must give numbers of shape " + nb::repr(wanted).c_str() + ", not " +
+    const std::string text = std::string(what) + " must be numbers of shape " + nb::repr(wanted).c_str() + ", not " +
                              nb::repr(nb::object(array.attr("shape"))).c_str();
     throw nb::value_error(text.c_str());
   }
@@ -64,17 +64,17 @@ class ScriptedProblem final : public NonlinearProblem {
   nb::object evaluate_, jacobian_;
 };
 
-/// Equations of the engine in the hands of a solver of the script, for as long as it is asked.
+/// Equations of the engine for a solver of the script; valid during its call.
 struct Equations {
   NonlinearProblem* problem = nullptr;
   NonlinearProblem& use() const {
-    if (!problem) raise_runtime("these equations are gone: they are good only while the solver is asked");
+    if (!problem) raise_runtime("these equations are valid only during the call of the solver");
     return *problem;
   }
 };
 
 nb::object& solver_failure() {
-  static nb::object* const failure = new nb::object;  // never destroyed: the interpreter may be gone by then
+  static nb::object* const failure = new nb::object;  // never destroyed: the interpreter may end before
   return *failure;
 }
 
@@ -84,7 +84,7 @@ class ScriptedSolver final : public Solver {
 
  protected:
   Ending search(NonlinearProblem& problem, std::span<double> x, const SolverOptions& options) override {
-    // Steps are solved without the lock; a thread that has it solves equations of the script.
+    // Steps are solved without the lock; a thread with the lock solves equations of the script.
     const MidStep mid_step(!PyGILState_Check());
     nb::gil_scoped_acquire lock;
     try {
@@ -127,9 +127,9 @@ Solution solve_equations(std::size_t size, nb::object evaluate, nb::object jacob
 nb::object take_solver_failure() { return std::exchange(solver_failure(), nb::object()); }
 
 void bind_solvers(nb::module_& module) {
-  nb::class_<Equations>(module, "Equations", "The equations that a solver of the script is asked to solve.")
+  nb::class_<Equations>(module, "Equations", "The argument of a solver of the script: equations to solve.")
       .def_prop_ro(
-          "size", [](const Equations& self) { return self.use().size(); }, "Equations, and unknowns.")
+          "size", [](const Equations& self) { return self.use().size(); }, "Number of equations, and of unknowns.")
       .def(
           "evaluate",
           [](const Equations& self, nb::handle x) {
@@ -142,7 +142,7 @@ void bind_solvers(nb::module_& module) {
           "x"_a,
           nb::sig(
               "def evaluate(self, x: collections.abc.Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]"),
-          "f(x), n numbers that are to be zero.")
+          "f(x), n numbers; zero at a root.")
       .def(
           "jacobian",
           [](const Equations& self, nb::handle x) {
@@ -156,7 +156,7 @@ void bind_solvers(nb::module_& module) {
           "x"_a,
           nb::sig(
               "def jacobian(self, x: collections.abc.Sequence[float] | numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]"),
-          "(n, n): df_i/dx_j; by differences where the equations know none.");
+          "(n, n): df_i/dx_j; finite differences if the equations have no Jacobian.");
   module.def(
       "solve_equations", &solve_equations, "size"_a, "evaluate"_a, "jacobian"_a.none(), "x0"_a, "method"_a,
       "tolerance"_a, "max_iterations"_a,

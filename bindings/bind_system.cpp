@@ -20,11 +20,11 @@ PyType_Slot system_slots[] = {
 
 constexpr const char* doc =
     "A world of particles, bodies and bonds that is advanced step by step. SI units, right-handed, y up.\n\n"
-    "gravity: m/s^2. mode: the dial from plausible to accurate. 'plausible' and 'robust' (backward Euler; never fails,\n"
-    "never gains energy, dissipates), 'energy_keeping' (mid-point discrete gradient; falls back to 'robust' where it must,\n"
-    "and says so), 'accurate' (in sub-steps with an error estimate). damping: 1/s, all velocities fall by\n"
-    "exp(-damping t).\n"
-    "threads: how many share a step, 0: one a core; the results are the same bits for any number.\n\n"
+    "gravity: m/s^2. mode: from plausible to accurate. 'plausible' and 'robust' (backward Euler; never fails, never\n"
+    "gains energy, dissipates), 'energy_keeping' (mid-point discrete gradient; falls back to 'robust' if a step\n"
+    "fails, and reports it), 'accurate' (in sub-steps with an error estimate). damping: 1/s, all velocities fall by\n"
+    "exp(-damping t). threads: number of threads for a step, 0: one per core; the results are the same bits for any\n"
+    "number.\n\n"
     "A system belongs to the thread that made it; while a World runs it, to the World's. Other threads get\n"
     "WrongThreadError.\n\n"
     "    system = iota.System()\n"
@@ -70,13 +70,13 @@ void bind_settings(nb::class_<SystemObject>& type) {
           [](SystemObject& self, const ModeWord& mode) {
             self.use_between_steps("mode = ...").set_mode(to_mode(mode));
           },
-          "the dial: 'plausible', 'robust', 'energy_keeping' or 'accurate'; may be turned at any time")
+          "'plausible', 'robust', 'energy_keeping' or 'accurate'; can be changed at any time")
       .def_prop_rw(
           "solver", [](SystemObject& self) { return self.use().solver(); },
           [](SystemObject& self, const std::string& name) { self.use_between_steps("solver = ...").set_solver(name); },
-          "Who solves the equations of each step: 'direct' (the built-in sparse Newton), 'newton', 'kinsol' or a solver\n"
-          "of the script, see iota.solver. Others than 'direct' get them dense: far slower. What they find no root of is\n"
-          "solved directly, with a warning in the report.")
+          "The solver of the equations of each step: 'direct' (the built-in sparse Newton), 'newton', 'kinsol' or a\n"
+          "solver of the script, see iota.solver. All but 'direct' get dense arrays and are far slower. If they find\n"
+          "no root, the step is solved directly, with a warning in the report.")
       .def_prop_rw(
           "damping", [](SystemObject& self) { return self.use().damping(); },
           [](SystemObject& self, double value) {
@@ -89,10 +89,10 @@ void bind_settings(nb::class_<SystemObject>& type) {
             System& engine = self.use_between_steps("rest_after = ...");
             engine.set_rest({finite_not_negative(value, "rest_after", "s"), engine.rest().speed});
           },
-          "s, 0 for never: bodies that hang together, by hinges or bonds, fall asleep as one when none of their particles\n"
-          "has been faster than `rest_speed` for that long. They are then 'resting', stand still, and cost nothing. An edit,\n"
-          "an assigned velocity, a grip, an applied force (that of a function too), a moving nail or another gravity wakes\n"
-          "them.")
+          "s, 0 for never: bodies tied by hinges or bonds fall asleep together when none of their particles has been\n"
+          "faster than `rest_speed` for that long. They are then 'resting', do not move, and cost nothing. An edit,\n"
+          "an assigned velocity, a grip, an applied force (that of a function too), a moving nail or another gravity\n"
+          "wakes them.")
       .def_prop_rw(
           "rest_speed", [](SystemObject& self) { return self.use().rest().speed; },
           [](SystemObject& self, double value) {
@@ -103,7 +103,7 @@ void bind_settings(nb::class_<SystemObject>& type) {
       .def_prop_rw(
           "threads", [](SystemObject& self) { return self.use().threads(); },
           [](SystemObject& self, int value) { self.use_between_steps("threads = ...").set_threads(value); },
-          "How many threads share a step; assign 0 for one a core. No part of the state: results are the same bits.");
+          "Number of threads for a step; assign 0 for one per core. Not part of the state: results are the same bits.");
 }
 
 void bind_readings(nb::class_<SystemObject>& type) {
@@ -112,7 +112,7 @@ void bind_readings(nb::class_<SystemObject>& type) {
       .def_prop_ro("step_count", [](SystemObject& self) { return self.use().step_count(); })
       .def_prop_ro(
           "scene_version", [](SystemObject& self) { return self.use().viewer().scene_version(); },
-          "As structure_version, but births and deaths of sparks do not count: what a page's list of bodies depends on.")
+          "As structure_version, without births and deaths of sparks: changes when a page's list of bodies does.")
       .def_prop_ro(
           "structure_version", [](SystemObject& self) { return self.use().structure_version(); },
           "Rises with each batch of structural edits.")
@@ -127,10 +127,10 @@ void bind_readings(nb::class_<SystemObject>& type) {
           "Largest hinge separation or rigidity error, m.")
       .def_prop_ro(
           "articulate_count", [](SystemObject& self) { return self.use().bodies().articulate_count(); },
-          "Number of groups of bodies that hang together.")
+          "Number of groups of bodies connected by hinges.")
       .def_prop_ro(
           "closing_count", [](SystemObject& self) { return self.use().edits().closing_count(); },
-          "Particles still on their way to each other after `combine(p, q, over)`.")
+          "Pairs of particles that are still closing after `combine(p, q, over)`.")
       .def_prop_rw(
           "positions", [](SystemObject& self) { return read_rows(self.use(), &Particles::read_positions); },
           [](SystemObject& self, nb::handle values) {
@@ -139,7 +139,7 @@ void bind_readings(nb::class_<SystemObject>& type) {
           nb::for_getter(nb::sig("def positions(self) -> numpy.typing.NDArray[numpy.float64]")),
           nb::for_setter(nb::sig("def positions(self, value: numpy.typing.ArrayLike, /) -> None")),
           "Places of all particles, m: float64, shape (n, 3), in the order of `particles`. A copy; assign to set\n"
-          "them. Particles of one ring move together, so the last of them decides.")
+          "them. Particles of one ring move together, so the last value is used.")
       .def_prop_rw(
           "velocities", [](SystemObject& self) { return read_rows(self.use(), &Particles::read_velocities); },
           [](SystemObject& self, nb::handle values) {
@@ -169,7 +169,7 @@ void bind_poses(nb::class_<SystemObject>& type) {
                               nb::ndarray<nb::numpy, float, nb::shape<-1, 7>>(places, {count, 7}, place_owner));
       },
       nb::sig("def poses(self) -> tuple[numpy.typing.NDArray[numpy.uint32], numpy.typing.NDArray[numpy.float32]]"),
-      "Where each body is drawn: slots, uint32 (n,), and float32 (n, 7): center of mass (m) and unit quaternion\n"
+      "Drawn pose of each body: slots, uint32 (n,), and float32 (n, 7): center of mass (m) and unit quaternion\n"
       "x y z w. A body whose particles lie on one line has its local +x from its first particle to its last.");
 }
 
@@ -177,10 +177,11 @@ void bind_time(nb::class_<SystemObject>& type) {
   type.def(
           "step", [](SystemObject& self, double dt, int count) { return self.step(dt, count); }, "dt"_a = 1.0 / 120,
           "count"_a = 1,
-          "Advances by dt seconds, 0 < dt <= 1, `count` times. Never raises for numerical reasons: see the report. That of\n"
-          "several steps has the energy of the last, sums of what is counted and the largest gap.\n\n"
-          "Raises BondError, after the step is done and without the steps after it, for a bond whose function raised or that had no finite force, ForceError\n"
-          "for a function that serves many; what failed is switched off. See `force_errors`.")
+          "Advances by dt seconds, 0 < dt <= 1, `count` times. Never raises for numerical reasons: see the report.\n"
+          "The report of several steps has the energy of the last, sums of counts and the largest gap.\n\n"
+          "Raises BondError, after the step is done and without the steps after it, for a bond whose function raised\n"
+          "or that had no finite force, ForceError for a function of many bonds or particles; failed forces are\n"
+          "switched off. See `force_errors`.")
       .def_prop_rw(
           "force_errors", [](SystemObject& self) { return self.use(), self.warn_of_forces ? "warn" : "raise"; },
           [](SystemObject& self, const std::string& value) {
@@ -190,14 +191,14 @@ void bind_time(nb::class_<SystemObject>& type) {
             }
             self.use(), self.warn_of_forces = value == "warn";
           },
-          "'raise' (standard): `step` raises for forces that fail. 'warn': it issues a ForceWarning.")
+          "'raise' (default): `step` raises for forces that fail. 'warn': it issues a ForceWarning.")
       .def(
           "snapshot",
           [](SystemObject& self) {
             const Snapshot snapshot = self.use_between_steps("snapshot").snapshot();
             return nb::bytes(snapshot.bytes.data(), snapshot.bytes.size());
           },
-          "The whole system in bytes: everything but the functions of the script (of bonds, laws, fields, surfaces) and meshes.")
+          "The whole system in bytes, except functions of the script (of bonds, laws, fields, surfaces) and meshes.")
       .def(
           "restore",
           [](SystemObject& self, const nb::bytes& data) {
@@ -205,15 +206,15 @@ void bind_time(nb::class_<SystemObject>& type) {
             self.use_between_steps("restore").restore(Snapshot{{bytes, bytes + data.size()}});
           },
           "snapshot"_a,
-          "Goes back to a snapshot; handles from then are good again. Functions of the script and meshes stay those of this\n"
-          "system. Raises ValueError for bytes that are not a snapshot, or whose tables do not fit together; the system is\n"
-          "then unchanged.")
+          "Restores a snapshot; handles from then are valid again. Functions of the script and meshes stay those of\n"
+          "this system. Raises ValueError for bytes that are not a snapshot, or whose tables are inconsistent; the\n"
+          "system is then unchanged.")
       .def(
           "state_hash", [](SystemObject& self) { return self.use().state_hash(); },
           "64 bits of the whole state: equal for equal runs.")
       .def(
           "start_recording", [](SystemObject& self) { self.use_between_steps("start_recording").record().start(); },
-          "Notes all edits and inputs from here on, and the hash after each step.")
+          "Records all edits and inputs from now on, and the hash after each step.")
       .def(
           "stop_recording", [](SystemObject& self) { return self.use_between_steps("stop_recording").record().stop(); },
           "The Recording since `start_recording`.")
@@ -223,8 +224,8 @@ void bind_time(nb::class_<SystemObject>& type) {
             return self.use_between_steps("replay").record().replay(recording);
           },
           "recording"_a,
-          "Restores the recording's start and repeats it. Returns the number of the first step whose hash differs, None\n"
-          "when all are equal.")
+          "Restores the recording's start and repeats its commands. Returns the number of the first step with another\n"
+          "hash, None if all are equal.")
       .def(
           "diagnose",
           [](SystemObject& self, const BodyHandle& body) {
@@ -233,13 +234,13 @@ void bind_time(nb::class_<SystemObject>& type) {
             return self.use_between_steps("diagnose").diagnose(body.id);
           },
           "body"_a,
-          "Singular values, rank, redundancy and degrees of freedom of the constraints of a body and of all that is\n"
-          "solved together with it, now. Changes nothing; takes seconds for hundreds of rows, ValueError above 600.")
+          "Singular values, rank, redundancy and degrees of freedom of the constraints of a body and of all bodies\n"
+          "solved together with it, at present. Changes nothing; takes seconds for hundreds of rows, ValueError above "
+          "600.")
       .def(
           "validate", [](SystemObject& self) { return self.use_between_steps("validate").validate(); },
-          "Walks the whole structure; one sentence per inconsistency, empty when whole.")
-      .def("adopt", &SystemObject::adopt,
-           "Makes the calling thread the owner. Raises RuntimeError while a step is under way.");
+          "Checks the whole structure; one sentence per inconsistency.")
+      .def("adopt", &SystemObject::adopt, "Makes the calling thread the owner. Raises RuntimeError during a step.");
 }
 
 }  // namespace

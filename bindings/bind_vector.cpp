@@ -9,7 +9,7 @@ namespace iota::bindings {
 
 namespace {
 
-/// Arithmetic with whatever is a vector; `NotImplemented` for the rest, so that arrays (n, 3) take over.
+/// Arithmetic with vectors; `NotImplemented` for other operands, so that arrays (n, 3) handle them.
 template <class Operation>
 auto with_vector(Operation operation) {
   return [operation](const Vec3& a, nb::handle other) -> nb::object {
@@ -29,8 +29,8 @@ std::string number(double value) { return nb::repr(nb::float_(value)).c_str(); }
 
 constexpr const char* doc =
     "Three numbers: a place (m), a velocity (m/s), a force (N) ... in the world frame, y up.\n\n"
-    "It cannot be changed; assign a new one: `particle.position += (0, 1, 0)`. Adds to and compares with tuples, lists\n"
-    "and arrays of 2 or 3 numbers, and turns into an array with `numpy.asarray(v)`, float64 of shape (3,).";
+    "It is immutable; assign a new one: `particle.position += (0, 1, 0)`. Adds to and compares with tuples, lists\n"
+    "and arrays of 2 or 3 numbers, and converts to an array with `numpy.asarray(v)`, float64 of shape (3,).";
 
 }  // namespace
 

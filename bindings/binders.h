@@ -34,7 +34,7 @@ void bind_particle(nb::module_&);
 void bind_bonds(nb::module_&);
 void bind_laws(nb::module_&);
 void bind_fields(nb::module_&);
-void def_fields(nb::class_<SystemObject>&);  ///< what System says of them
+void def_fields(nb::class_<SystemObject>&);  ///< the functions of System
 void bind_grip(nb::module_&);
 void bind_constraints(nb::module_&);
 void bind_parts(nb::module_&);
@@ -47,20 +47,20 @@ void bind_solvers(nb::module_&);
 
 // --- handles --------------------------------------------------------------------------------------------------------
 
-/// The handle of something in a system.
+/// A handle of an object in a system.
 template <class IdType>
 Handle<IdType> handle_of(nb::handle_t<SystemObject> system, IdType id) {
   return {nb::borrow(system), nb::inst_ptr<SystemObject>(system), id};
 }
 
-/// Where an object keeps its system: in itself, unless it says otherwise.
+/// The system of an object: by default a member.
 template <class HandleType>
 HandleType& holder_of(HandleType& handle) {
   return handle;
 }
 
 /// A scripted function may refer to handles and the system, and the system holds the function: the garbage collector
-/// has to see these references to free such a ring.
+/// has to see these references to free such a cycle.
 template <class HandleType>
 inline PyType_Slot handle_slots[] = {
     {Py_tp_traverse, reinterpret_cast<void*>(+[](PyObject* self, visitproc visit, void* arg) -> int {
@@ -97,7 +97,7 @@ void def_identity(nb::class_<HandleType>& type) {
           "The system that owns it.")
       .def_prop_ro(
           "slot", [](const HandleType& self) { return self.id.slot; },
-          "Its number, as error texts and the page show it. Used again once it is gone; handles are not.");
+          "Its number, as error texts and the page show it. Reused after it is destroyed; handles are not.");
 }
 
 /// `alive` and `survivor`, for kinds that can be absorbed.
@@ -112,8 +112,7 @@ void def_survival(nb::class_<HandleType>& type, const char* survivor_signature) 
             const auto id = view_of(self.system->use(), self.id).survivor_of(self.id);
             return id ? nb::cast(sibling(self, *id)) : nb::object(nb::none());
           },
-          nb::sig(survivor_signature),
-          "What it lives on in: itself if alive, what absorbed it, None if it was destroyed.");
+          nb::sig(survivor_signature), "Itself if alive, the object that absorbed it, or None if it was destroyed.");
 }
 
 template <class HandleType>

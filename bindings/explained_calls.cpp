@@ -16,7 +16,7 @@ namespace nb = nanobind;
 
 namespace {
 
-/// What scripts call a function: "Body.particle", "Body.mass = ..." for the setter of a property.
+/// The name of a function in scripts: "Body.particle", "Body.mass = ..." for the setter of a property.
 std::unordered_map<PyObject*, std::string>& names() {
   static std::unordered_map<PyObject*, std::string> map;
   return map;
@@ -26,9 +26,9 @@ nb::object sentence_writer(const char* function) { return nb::module_::import_("
 
 // --- calls --------------------------------------------------------------------------------------------------------------
 
-/// Replaces nanobind's text by a sentence; any other error stays.
+/// Replaces nanobind's text by a sentence; other errors do not change.
 void explain(PyObject* function, PyObject* const* arguments, std::size_t count, PyObject* keywords) {
-  nb::python_error error;  // takes it over
+  nb::python_error error;  // takes the error
   const std::string text = nb::str(error.value()).c_str();
   const auto found = names().find(function);
   if (text.find("incompatible function arguments") == std::string::npos || found == names().end()) {
@@ -36,7 +36,7 @@ void explain(PyObject* function, PyObject* const* arguments, std::size_t count, 
     return;
   }
   try {
-    // The instance that a constructor is called for is not made yet: nothing may look at it.
+    // The instance of a constructor call is not initialized yet and must not be read.
     const bool makes = found->second.find(".__init__") != std::string::npos;
     nb::list given;
     for (std::size_t i = 0; i < count; ++i) given.append(i == 0 && makes ? nb::none() : nb::borrow(arguments[i]));
@@ -52,7 +52,7 @@ void explain(PyObject* function, PyObject* const* arguments, std::size_t count, 
   }
 }
 
-/// What nanobind calls its functions by: one of a few, by how many arguments and of which kinds they take.
+/// The functions by which nanobind calls its functions: one of a few, by number and kinds of arguments.
 constexpr std::size_t most_callers = 16;
 std::array<vectorcallfunc, most_callers> callers{};
 
@@ -75,7 +75,7 @@ constexpr auto explained = explained_callers(std::make_index_sequence<most_calle
 void explain_function(nb::handle function, const std::string& name) {
   if (!function.is_valid() || !nb::hasattr(function, "__nb_signature__") || names().count(function.ptr())) return;
   names()[function.ptr()] = name;
-  // Where an instance keeps how it is called is told by its type (PEP 590).
+  // The type has the offset of an instance's vectorcall function (PEP 590).
   auto& caller = *reinterpret_cast<vectorcallfunc*>(reinterpret_cast<char*>(function.ptr()) +
                                                     Py_TYPE(function.ptr())->tp_vectorcall_offset);
   for (std::size_t i = 0; i < most_callers; ++i) {
@@ -84,7 +84,7 @@ void explain_function(nb::handle function, const std::string& name) {
     caller = explained[i];
     return;
   }
-  throw std::logic_error("nanobind has more ways to call a function than explain_calls knows");
+  throw std::logic_error("nanobind has a way to call functions that explain_calls does not know");
 }
 
 // --- types --------------------------------------------------------------------------------------------------------------

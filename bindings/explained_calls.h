@@ -5,9 +5,9 @@
 
 namespace iota::bindings {
 
-/// Makes every function, method, property and type of a module, as it is now, answer wrong arguments with a sentence that
-/// names the wrong word, instead of nanobind's list of C++ overloads. `iota.arguments` writes the sentences.
-/// Call it last: what is bound later keeps nanobind's texts.
+/// For every present function, method, property and type of a module, replaces nanobind's list of C++ overloads for
+/// wrong arguments by a sentence that names the wrong one. `iota.arguments` writes the sentences. Call it last:
+/// functions that are bound later keep nanobind's texts.
 void explain_calls(nanobind::module_& module);
 
 }  // namespace iota::bindings

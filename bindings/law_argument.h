@@ -5,7 +5,7 @@
 
 namespace iota::bindings {
 
-/// What a script calls a function.
+/// The name of a function in the script.
 std::string function_name(nb::handle function);
 
 /// The address of compiled code: a number, a Numba cfunc, a ctypes function; 0 for anything else.
@@ -19,7 +19,7 @@ nb::dict to_dict(const std::vector<LawParameter>& parameters);
 /// `parameters` are its defaults.
 LawId law_of_text(SystemObject& system, const std::string& text, const std::vector<LawParameter>& parameters);
 
-/// How stiff a bond is has no usual value: a predefined law does not choose one unasked. ValueError where it is not given.
+/// A stiffness has no useful default: ValueError if a predefined law gets none.
 void require_stiffness(const System& engine, LawId law, const std::vector<LawParameter>& given);
 
 }  // namespace iota::bindings

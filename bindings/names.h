@@ -59,7 +59,7 @@ std::string to_word(const Words<Value, count>& words, Value wanted) {
   return "unknown";
 }
 
-/// A word of `mode_words` or `kind_words`; unknown ones are refused by `from_word`, so that the error lists the known.
+/// A word of `mode_words` or `kind_words`; `from_word` refuses unknown ones with a list of the known words.
 struct ModeWord {
   std::string word;
 };

@@ -8,7 +8,7 @@
 
 namespace iota::bindings {
 
-/// The members of a value as a tuple, and back. ValueError for a tuple of another length: it is of another version.
+/// The members of a value as a tuple, and back. ValueError for the length of another version.
 template <class T, class... Members>
 nb::tuple get_state(const T& value, const std::tuple<Members T::*...>& members) {
   return std::apply([&](auto... member) { return nb::make_tuple(value.*member...); }, members);
@@ -22,7 +22,7 @@ void set_state(T& value, const std::tuple<Members T::*...>& members, nb::handle 
   }(std::index_sequence_for<Members...>{});
 }
 
-/// Makes a plain value picklable and copyable: by these members.
+/// Makes a plain value picklable and copyable by these members.
 template <class T, class... Members>
 void def_pickled(nb::class_<T>& type, Members T::*... members) {
   const std::tuple all{members...};

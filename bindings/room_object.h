@@ -13,7 +13,7 @@ namespace iota::bindings {
 
 namespace nb = nanobind;
 
-/// What a Python `Server` holds.
+/// The state of a Python `Server`.
 class ServerObject {
  public:
   explicit ServerObject(std::unique_ptr<net::Server> server) : server_(std::move(server)) {}
@@ -24,7 +24,7 @@ class ServerObject {
     return *server_;
   }
   void close() {
-    const nb::gil_scoped_release unlocked;  // it waits a moment for what is on its way
+    const nb::gil_scoped_release unlocked;  // it waits a moment for frames in flight
     server_.reset();
   }
 
@@ -32,7 +32,7 @@ class ServerObject {
   std::unique_ptr<net::Server> server_;
 };
 
-/// What a Python `Room` holds: a world on a server, and what its viewers have been told.
+/// The state of a Python `Room`: a world on a server, and the state last sent to its viewers.
 struct RoomObject {
   explicit RoomObject(std::unique_ptr<net::Room> opened) : room(std::move(opened)) {}
 
@@ -44,8 +44,8 @@ struct RoomObject {
 
   std::unique_ptr<net::Room> room;
   net::Presenter presenter;
-  net::EntityChanges own;      ///< entities that the script made, to be told with the next poses
-  protocol::WorldState state;  ///< that pages have been told of
+  net::EntityChanges own;      ///< entities of the script, sent with the next poses
+  protocol::WorldState state;  ///< last sent to pages
 };
 
 void bind_room(nb::module_& module);

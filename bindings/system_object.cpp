@@ -10,7 +10,7 @@ namespace iota::bindings {
 
 namespace {
 
-/// Looked up when needed: the module must import without its package, for the generator of the stub file.
+/// Imported when needed: the generator of the stub file imports this module without its package.
 nb::object error_class(const char* name) { return nb::module_::import_("iota.errors").attr(name); }
 
 [[noreturn]] void raise_object(const nb::object& error) {
@@ -22,14 +22,14 @@ nb::object error_class(const char* name) { return nb::module_::import_("iota.err
   raise_object(error_class("StaleIdError")(text, survivor));
 }
 
-/// Ctrl-C and the like: no fault of the function that they happen to arrive in.
+/// Ctrl-C and other signals, which are not errors of the function in which they arrive.
 bool is_signal(const nb::object& raised) { return !PyObject_IsInstance(raised.ptr(), PyExc_Exception); }
 
 std::string describe_exception(const nb::object& raised) {
   return std::string(nb::type_name(raised.type()).c_str()) + ": " + nb::str(raised).c_str();
 }
 
-/// What the engine says of a stale id; `touch` is any call that checks it.
+/// The engine's text for a stale id; `touch` is any call that checks it.
 template <class Touch>
 std::string engine_text(const Touch& touch, const std::string& otherwise) {
   try {
@@ -159,7 +159,7 @@ double SystemObject::call_surface(const std::shared_ptr<ScriptFunction>& functio
   const MidStep mid_step;
   double phi = 0;
   bool is_done = false;
-  for (int attempt = 0; attempt < 2 && !is_done; ++attempt)  // twice, where a signal arrived in it
+  for (int attempt = 0; attempt < 2 && !is_done; ++attempt)  // a second time if a signal arrived in it
     guard(function, BondId{}, [&] {
       const nb::object result = function->function(r.x, r.y, r.z);
       if (!nb::try_cast<double>(result, phi) || !std::isfinite(phi)) {
@@ -189,7 +189,7 @@ StepReport SystemObject::step(double dt, int count) {
   contacts = report.contacts;
   step_edits = report.edits;
   broken = report.broken;
-  // Functions that the engine has dropped: ours is the only reference left.
+  // Functions that the engine has dropped: ours is the only remaining reference.
   std::erase_if(functions, [](const auto& function) { return function.use_count() == 1; });
   if (nb::object raised = take_solver_failure(); raised.is_valid()) {
     if (is_signal(raised)) raise_object(raised);

@@ -21,21 +21,21 @@ namespace iota::bindings {
 namespace nb = nanobind;
 
 /// A function of the script that the engine calls. The engine's copy holds it by shared_ptr and may drop it while the
-/// interpreter lock is released; `SystemObject` holds it too, so that the function itself always dies with the lock.
+/// interpreter lock is released; `SystemObject` holds it too, so that the function is always destroyed with the lock.
 struct ScriptFunction {
   nb::object function;
   std::string what;         ///< "law wind", "field current"
-  ConstraintId constraint;  ///< that holds on to the surface which it gives; else null
+  ConstraintId constraint;  ///< of the surface that it defines; else null
 };
 
-/// That of one scripted bond.
+/// The function of one scripted bond.
 struct BondFunction : ScriptFunction {
   BondId bond;
   ParticleId p, q;
 };
 
-/// While one lives, its thread may not use any system: the engine is in the middle of something, in which other threads may
-/// have a part, and which of them calls a function is chance.
+/// While one exists, its thread may not use any system: the engine is in the middle of an operation of several threads,
+/// any of which may call a function.
 class MidStep {
  public:
   explicit MidStep(bool is_so = true) : is_so_(is_so) { depth_ += is_so_; }
@@ -51,11 +51,11 @@ class MidStep {
 /// A function that raised, or a signal that arrived in it.
 struct ForceFailure {
   std::shared_ptr<ScriptFunction> source;
-  BondId bond;  ///< null where it was no bond's own
+  BondId bond;  ///< null unless it is a function of one bond
   nb::object exception;
 };
 
-/// What a Python `System` holds: the engine's system, its owner thread and the functions of its scripted bonds.
+/// The state of a Python `System`: the engine's system, its owner thread and the functions of its scripted bonds.
 class SystemObject {
  public:
   explicit SystemObject(const SystemOptions& options) : engine(options), owner(std::this_thread::get_id()) {}
@@ -66,20 +66,20 @@ class SystemObject {
     if (owner != std::this_thread::get_id()) raise_foreign_thread();
     return engine;
   }
-  /// The same, for calls that a function which the engine calls during a step must not make.
+  /// The same, for calls that are not allowed in functions called during a step.
   System& use_between_steps(const char* what);
 
   void adopt();
   StepReport step(double dt, int count);
-  /// phi of a surface of the script, m; throws std::runtime_error for what is no finite number. Called on any thread.
+  /// phi of a surface of the script, m; throws std::runtime_error unless it is a finite number. Called on any thread.
   double call_surface(const std::shared_ptr<ScriptFunction>& function, const Vec3& r);
   BondLaw make_scripted_law(std::shared_ptr<BondFunction> function, std::string name);
   void keep(std::shared_ptr<ScriptFunction> function) { functions.push_back(std::move(function)); }
-  /// Makes a constraint, and tells its functions whose they are. What one of them raises goes on as it is.
+  /// Makes a constraint and sets its id in its functions. Exceptions raised by these propagate unchanged.
   template <class Spec>
   ConstraintId create_surface_constraint(const Spec& spec);
-  /// Runs `call` for the engine, with the lock held. Notes what it raises and throws std::runtime_error, which the engine
-  /// answers by switching off what the function is for; a signal that happens to arrive in it is noted only.
+  /// Runs `call` for the engine, with the lock held. Saves its exception and throws std::runtime_error, for which the
+  /// engine switches off the force, law or surface of the function; a signal that arrives in it is only saved.
   template <class Call>
   void guard(const std::shared_ptr<ScriptFunction>& source, BondId bond, Call call);
 
@@ -89,14 +89,14 @@ class SystemObject {
   System engine;
   std::thread::id owner;
   std::vector<std::shared_ptr<ScriptFunction>> functions;
-  std::vector<std::shared_ptr<ScriptFunction>> new_surfaces;  ///< of a constraint that is about to be made
-  std::vector<nb::object> code;                               ///< compiled functions that laws point at
-  std::vector<ForceFailure> failures;           ///< of the step under way; of surfaces, since the last one
-  bool warn_of_forces = false;                  ///< where forces fail: a warning instead of an exception
-  std::map<std::string, LawId> written_laws;    ///< of expressions given to bonds: by text and parameters
-  std::optional<RestructureReport> step_edits;  ///< asked for during the last step
-  std::vector<Broken> broken;                   ///< in the last step
-  std::vector<ContactEvent> contacts;           ///< in the last step
+  std::vector<std::shared_ptr<ScriptFunction>> new_surfaces;  ///< of the next constraint
+  std::vector<nb::object> code;                               ///< compiled functions of laws
+  std::vector<ForceFailure> failures;                         ///< of the present step; of surfaces, since the last one
+  bool warn_of_forces = false;                                ///< failed forces give a warning instead of an exception
+  std::map<std::string, LawId> written_laws;                  ///< expressions of bonds, by text and parameters
+  std::optional<RestructureReport> step_edits;                ///< requested during the last step
+  std::vector<Broken> broken;                                 ///< in the last step
+  std::vector<ContactEvent> contacts;                         ///< in the last step
 
  private:
   [[noreturn]] static void raise_foreign_thread();
@@ -147,10 +147,10 @@ std::string name_of(IdType id) {
   return std::string(kind_name(id)) + " " + std::to_string(id.slot);
 }
 
-/// Makes the engine's StaleIdError Python's, for ids that it finds stale itself.
+/// Translates the engine's StaleIdError into Python's.
 void register_errors();
 
-/// What a solver of the script has raised in steps since the last call; null if nothing.
+/// The exception of a solver of the script in steps since the last call; null if none.
 nb::object take_solver_failure();
 
 /// Throws Python's RuntimeError.
@@ -200,7 +200,7 @@ void SystemObject::guard(const std::shared_ptr<ScriptFunction>& source, BondId b
   } catch (nb::python_error& error) {
     const bool is_signal = !error.matches(PyExc_Exception);
     failures.push_back({source, bond, nb::borrow(error.value())});
-    // Ctrl-C happens to arrive here as anywhere: the function is not to blame.
+    // Ctrl-C may arrive here; it is not an error of the function.
     if (is_signal) return;
   } catch (nb::builtin_exception& error) {
     PyObject* type = error.type() == nb::exception_type::type_error ? PyExc_TypeError : PyExc_ValueError;

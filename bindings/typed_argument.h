@@ -17,8 +17,8 @@ struct TypeText {
   consteval TypeText(const char (&text)[size]) { std::copy_n(text, size, characters); }
 };
 
-/// Whatever a caller passed; the stub file says that it is of type `text`. Converted by hand and not by nanobind, so that
-/// the error names the argument and its value.
+/// Any object; the stub file declares its type as `text`. Converted by our code instead of nanobind, so that the error
+/// names the argument and its value.
 template <TypeText text>
 struct TypedArgument {
   nb::handle value;

@@ -38,7 +38,7 @@ bool try_vec3(nb::handle value, Vec3& out) {
     return true;
   }
   PyObject* object = value.ptr();
-  // Not a set: it has no order.
+  // A set is refused, as it has no order.
   if (PyUnicode_Check(object) || PyBytes_Check(object) || !PySequence_Check(object)) return false;
   nb::object items = nb::steal(PySequence_Fast(object, ""));
   if (!items.is_valid()) {

@@ -10,19 +10,19 @@ namespace iota::bindings {
 
 namespace nb = nanobind;
 
-/// Whatever a caller passed where a vector is asked for. Converted by `to_vec3`, not by nanobind, so that the error
-/// names the argument and its value.
+/// Any object passed as a vector. Converted by `to_vec3` instead of nanobind, so that the error names the argument and
+/// its value.
 struct VectorArgument {
   nb::handle value;
 };
 
-/// A `Vec3`, or any sequence or array of 2 or 3 numbers (z is then 0). False where `value` is something else.
+/// A `Vec3`, or any sequence or array of 2 or 3 numbers (default z: 0). False for anything else.
 bool try_vec3(nb::handle value, Vec3& out);
 
-/// As `try_vec3`; TypeError where it is no vector, ValueError where it is not finite. `name` goes into the text.
+/// As `try_vec3`; TypeError if it is not a vector, ValueError if it is not finite. The text contains `name`.
 Vec3 to_vec3(VectorArgument argument, const char* name);
 
-/// A unit quaternion from any 4 numbers x y z w; TypeError or ValueError where they are none, or zero.
+/// A unit quaternion from any 4 numbers x y z w; TypeError or ValueError for other values, or zero.
 Quaternion to_quaternion(nb::handle value, const char* name);
 
 /// `value` in short, for error texts.

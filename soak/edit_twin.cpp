@@ -20,7 +20,7 @@ namespace {
 using model::Model;
 using model::none;
 
-/// The thesis' Tables 4.2 and 4.3 in the plainest words there are. Particles are named by their slots in the model.
+/// The thesis' Tables 4.2 and 4.3 in their simplest form. Particles are identified by their slots in the model.
 struct Twin {
   struct Point {
     std::uint32_t slot;
@@ -38,7 +38,7 @@ struct Twin {
     std::erase_if(points, [&](const Point& p) { return p.slot == slot; });
     std::erase_if(bonds, [&](const auto& b) { return b.first == slot || b.second == slot; });
   }
-  /// q becomes p.
+  /// Replaces q by p.
   void absorb(std::uint32_t p, std::uint32_t q) {
     at(p).mass += at(q).mass;
     for (auto& [a, b] : bonds) {
@@ -73,7 +73,7 @@ struct Twin {
         std::count_if(points.begin(), points.end(), [&](const Point& p) { return p.ring == ring; }));
   }
 
-  /// False where it is refused.
+  /// False if it is refused.
   bool combine(std::uint32_t p, std::uint32_t q) {
     if (p == q) return true;
     const Point a = at(p), b = at(q);
@@ -90,7 +90,7 @@ struct Twin {
     }
     return true;
   }
-  /// `created`: the slot of a second particle, where the edit makes one.
+  /// `created`: the slot of a second particle, if the edit makes one.
   void separate(std::uint32_t p, std::uint32_t q, std::uint32_t created) {
     if (p == q) {
       at(p).mass /= 2;
@@ -102,7 +102,7 @@ struct Twin {
       at(q).ring = next_label++;
     }
   }
-  /// Labels of what hangs together, by flooding over rings and bodies until nothing changes.
+  /// Labels of connected components, by flooding over rings and bodies until nothing changes.
   std::vector<int> components() const {
     std::vector<int> label(points.size());
     std::iota(label.begin(), label.end(), 0);
@@ -119,7 +119,7 @@ struct Twin {
   }
 };
 
-/// Whether two labelings sort the same things into the same groups.
+/// Whether two labelings define the same groups.
 class SameGroups {
  public:
   bool add(std::uint32_t mine, int theirs) {
@@ -174,7 +174,7 @@ class Pair {
     model_.rebuild_basis(body);
   }
 
-  /// Does one edit to both; false where they disagree on whether it can be.
+  /// Makes one edit in both; false if only one of them refuses it.
   bool act() {
     if (twin_.points.size() < 6) make_body();
     const std::uint32_t p = any(), q = any(), lot = below(100);
@@ -193,7 +193,7 @@ class Pair {
       attempt([&] { (void)combine_particles(model_, p, q, report); });
       return twin_.combine(p, q) != refused;
     }
-    if (lot < 78) {  // more often of particles that have something in common
+    if (lot < 78) {  // more often for particles of one ring or body
       const std::uint32_t other = lot < 68 ? neighbor(p) : q;
       if (p == other && twin_.points.size() > 24) return true;
       say("separate", p, other);

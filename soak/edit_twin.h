@@ -13,9 +13,9 @@ struct EditCount {
 };
 
 /// Makes `count` random edits of the structure of a model (combine, separate, weld, destroy, create, bonds), without physics,
-/// and the same edits of a twin that knows nothing but labels: which body and which ring each particle is in, and its mass.
-/// After each edit both must agree on bodies, rings, articulates (the twin floods the whole graph), masses, bonds and on
-/// what is refused; every 64th time the model validates itself. Returns the first disagreement, with what led there.
+/// and the same edits of a twin that has only labels: the body and the ring of each particle, and its mass.
+/// After each edit both must agree on bodies, rings, articulates (the twin floods the whole graph), masses, bonds and
+/// refusals; every 64th time the model is validated. Returns the first difference, with the edits before it.
 std::optional<std::string> compare_edits(std::uint64_t seed, std::uint64_t count, EditCount& counted);
 
 }  // namespace iota::soak

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// iota_soak scenes [COUNT [FIRST_SEED]]: random scenes by the thousand. On a failure: the seed, and the shortest script found.
-// iota_soak edits [COUNT [SEED]]: random edits of the structure by the million, beside a brute-force twin.
+// iota_soak scenes [COUNT [FIRST_SEED]]: thousands of random scenes. On a failure: the seed, and the shortest script
+// found. iota_soak edits [COUNT [SEED]]: millions of random edits of the structure, compared with a brute-force twin.
 #include "scenes/random_scene.h"
 #include "soak/edit_twin.h"
 

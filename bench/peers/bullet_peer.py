@@ -10,14 +10,14 @@ from scene import GRAVITY, WORLD, Scene
 
 
 class BulletPeer:
-    """`substeps` sub-steps a frame; everything else as pybullet sets it."""
+    """`substeps` sub-steps a frame; otherwise pybullet's defaults."""
 
     def __init__(self, scene: Scene, hz: int, substeps: int) -> None:
         bullet.connect(bullet.DIRECT)
         bullet.setGravity(0, -GRAVITY, 0)
         # 0 and 1 mean the same to Bullet's own engine, but pybullet documents 0 as the default.
         bullet.setPhysicsEngineParameter(fixedTimeStep=1 / hz, numSubSteps=substeps if substeps > 1 else 0)
-        shape = bullet.createCollisionShape(bullet.GEOM_SPHERE, radius=0.001)  # rigid bodies need one; it meets nothing
+        shape = bullet.createCollisionShape(bullet.GEOM_SPHERE, radius=0.001)  # rigid bodies need one
         world = self.add(0, shape, [0, 0, 0], [0, 0, 0, 1])
         turns = quaternions_of(scene.rotation)
         self.bodies = [
@@ -34,7 +34,7 @@ class BulletPeer:
         body: int = bullet.createMultiBody(mass, shape, -1, list(center), list(turn), useMaximalCoordinates=1)
         bullet.setCollisionFilterGroupMask(body, -1, 0, 0)
         if inertia is not None:
-            # The mass again: without it the inertia is taken for that of a body of no mass.
+            # Set the mass again: otherwise the inertia is that of a body without mass.
             bullet.changeDynamics(
                 body, -1, mass=mass, localInertiaDiagonal=list(inertia),
                 linearDamping=0, angularDamping=0, activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,

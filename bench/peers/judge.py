@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is measured of an engine on a scene, and how."""
+"""Measurements of an engine on a scene."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ class State:
 
 
 class Peer(Protocol):
-    """One engine with one scene in it."""
+    """One engine with one scene."""
 
     def advance(self, steps: int) -> None:
         """Simulates `steps` frames."""
 
     def read(self) -> State:
-        """The state now."""
+        """The present state."""
 
     def trouble(self) -> str:
-        """What the engine itself complained about, or nothing."""
+        """The engine's own warning, or nothing."""
 
 
 @dataclass
@@ -49,10 +49,10 @@ class Row:
     worst_gap_m: float = math.nan
     energy_end: float = math.nan
     energy_gain: float = math.nan
-    kinetic_over_available: float = math.nan  # above 1: made-up energy
+    kinetic_over_available: float = math.nan  # above 1: a gain of energy
     simulated_s: float = 0
     steps: int = 0
-    blew_up: str = ""  # why and when; empty: whole until simulated_s
+    blew_up: str = ""  # reason and time; empty: whole until simulated_s
     note: str = ""
 
     def as_dict(self) -> dict[str, object]:
@@ -86,7 +86,7 @@ def energies_of(scene: Scene, state: State) -> tuple[float, float]:
 def measure(scene: Scene, peer: Peer, row: Row, seconds: float, cap: float) -> None:
     """Runs for `seconds` of simulation or `cap` seconds of wall clock and fills the row.
 
-    Energy and gap are looked at after each frame; less often where looking, pose by pose, takes longer than stepping.
+    Energy and gap are measured after each frame; less often if reading the poses takes longer than stepping.
     Time is processor time of this process inside the engine's step only, averaged over all steps.
     """
     total, row.links = round(seconds * row.hz), len(scene.mass)
@@ -139,7 +139,7 @@ def rotations_from(quaternions: Array) -> Array:
 
 
 def quaternions_of(rotations: Array) -> Array:
-    """The inverse of `rotations_from`: by the largest of the four, so that nothing small is divided by."""
+    """The inverse of `rotations_from`: by the largest of the four, to avoid division by small numbers."""
     result = np.empty((len(rotations), 4))
     for k, m in enumerate(rotations):
         squares = np.array([

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MuJoCo, both ways: trees of ball joints (its own way), and free bodies tied by `connect` equalities."""
+"""MuJoCo in two models: trees of ball joints (its native one), and free bodies tied by `connect` equalities."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scene import GRAVITY, WORLD, Scene
 
 
 def make_model(scene: Scene, hz: float, tied: bool) -> mujoco.MjModel:
-    """Compiles the scene at defaults but for the time step; nothing is ever reset behind our back."""
+    """Compiles the scene with defaults except for the time step; automatic resets are off."""
     spec = mujoco.MjSpec()
     spec.option.timestep = 1 / hz
     spec.option.gravity = [0, -GRAVITY, 0]
@@ -28,7 +28,7 @@ def make_model(scene: Scene, hz: float, tied: bool) -> mujoco.MjModel:
             tie.name1, tie.name2 = f"body{second}", "world" if first == WORLD else f"body{first}"
             tie.data[:3] = anchor
         return spec.compile()
-    # Frames along the world's axes at the start, each with its origin where the body is held.
+    # Frames along the world's axes at the start, each with its origin at the body's joint.
     made = {WORLD: (spec.worldbody, np.zeros(3))}
     for (first, second), at in zip(scene.joints, scene.joint_at, strict=True):
         parent, origin = made[first]
@@ -54,7 +54,7 @@ class MujocoPeer:
 
     def read(self) -> State:
         model, data, order = self.model, self.data, self.order
-        # After a step the derived quantities are those of its start: bring them up to date.
+        # After a step the derived quantities are those of its start: update them.
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_comVel(model, data)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rapier (rapier3d): impulse joints, one thread, single precision as its package is built."""
+"""Rapier (rapier3d): impulse joints, one thread, single precision, as in its package."""
 
 from __future__ import annotations
 

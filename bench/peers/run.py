@@ -7,7 +7,7 @@ package.json here name the packages).
     python bench/peers/run.py --engines rapier --cases chain/64/120 heavy_end/64/120 --substeps 1 2 4 8
     python bench/peers/run.py --search                          # double the sub-steps until the scene stays whole
 
-Each row is a process of its own, so that a crash or a build without end costs that row only.
+Each row is a separate process, so that a crash or an endless build affects only that row.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ CASES += ["heavy_end/64/120", "net/32/120", "ragdolls/1000/60"]
 """Scene / size / frames a second."""
 
 MOST_SUBSTEPS = 64
-"""Where the search gives up."""
+"""Limit of the search."""
 
 SURVIVES = {
     ("mujoco", "chain/8/60"): 8, ("mujoco", "chain/8/120"): 4,
@@ -56,19 +56,19 @@ SURVIVES = {
     ("rapier", "heavy_end/64/120"): 4, ("jolt", "heavy_end/64/120"): 4,
     ("mujoco-tied", "net/32/120"): 4, ("bullet", "net/32/120"): 4, ("jolt", "net/32/120"): 2,
 }  # fmt: skip
-"""Fewest sub-steps (of 1, 2, 4 ...) with every gap under a link and no made-up energy, as `--search` found it with 8 s
-a row; 1 where nothing is said. Bullet's at 512 links and Rapier's at 4096 were whole as far as the cap let them go; Rapier's at
-16 384 take over those of 4096, since no row got through there. MuJoCo found none at 64 links (tree) and 512 links
-(either) up to 64 sub-steps, nor for tied bodies with a heavy end; a stiffer solref did not change that."""
+"""Fewest sub-steps (of 1, 2, 4 ...) with every gap under a link and no gain of energy, as found by `--search` with 8 s
+a row; default 1. Bullet's at 512 links and Rapier's at 4096 stayed whole until the cap; Rapier's at 16 384 is that of
+4096, since no row was completed there. MuJoCo found none at 64 links (tree) and 512 links (either) up to 64 sub-steps,
+nor for tied bodies with a heavy end; a stiffer solref did not change that."""
 
 LARGEST = {"mujoco": 512, "mujoco-tied": 512, "bullet": 4096, "rapier": 16384, "jolt": 4096}
-"""Links of a chain beyond which an engine only wastes the cap: a tree's mass matrix is dense along a chain (160 us a link
-at 512); tied bodies run out of memory at 4096; Bullet does not get through its first steps at 16 384."""
+"""Largest chains for each engine: a tree's mass matrix is dense along a chain (160 us a link at 512); tied bodies run
+out of memory at 4096; Bullet does not complete its first steps at 16 384."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """One row to be made."""
+    """One row to run."""
 
     engine: str
     case: str
@@ -90,7 +90,7 @@ class Job:
 
 
 def run_here(job: Job) -> None:
-    """Prints the row of a job, made in this process; hands Jolt's on to Node.js."""
+    """Runs a job in this process and prints its row; for Jolt it runs Node.js."""
     from judge import Peer, Row, measure, quaternions_of
     from scene import GRAVITY, LENGTH, SCENES
 
@@ -124,7 +124,7 @@ def run_here(job: Job) -> None:
     row = Row(job.engine, str(job.new_row()["setting"]), name, size, hz)
     measure(scene, peer, row, job.seconds, job.cap)
     print(json.dumps(row.as_dict()), flush=True)
-    os._exit(0)  # some engines take seconds to put 16 384 bodies away
+    os._exit(0)  # some engines take seconds to destroy 16 384 bodies
 
 
 def run_apart(job: Job) -> dict[str, object]:
@@ -132,12 +132,12 @@ def run_apart(job: Job) -> dict[str, object]:
     command = [sys.executable, str(Path(__file__).resolve()), "--one", job.engine, job.case]
     command += map(str, (job.substeps, job.seconds, job.cap))
     try:
-        # Building takes a while too; a single step that outlasts all this is no use to anyone.
-        with tempfile.TemporaryDirectory() as scratch:  # MuJoCo leaves a log where it runs
+        # Includes the time to build; a single step that takes longer is useless.
+        with tempfile.TemporaryDirectory() as scratch:  # MuJoCo writes a log in its working folder
             result = subprocess.run(command, capture_output=True, text=True, timeout=job.cap + 30, cwd=scratch)
     except subprocess.TimeoutExpired:
         return job.new_row() | {"note": f"not done within {job.cap + 30:.0f} s"}
-    for line in result.stdout.splitlines():  # warnings that engines print are lines too
+    for line in result.stdout.splitlines():  # engines print warnings, too
         if line.startswith("{"):
             found: dict[str, object] = json.loads(line)
             return found
@@ -146,14 +146,14 @@ def run_apart(job: Job) -> dict[str, object]:
 
 
 def possible(engine: str, scene: str, size: int) -> bool:
-    """Whether the engine has a way to make the scene, and a chance to step it."""
+    """Whether the engine can build the scene and step it."""
     if scene == "chain":
         return size <= LARGEST[engine]
     return not (engine == "mujoco" and scene == "net")  # a tree has no loops
 
 
 def rows(options: argparse.Namespace, engines: Sequence[str]) -> Iterator[dict[str, object]]:
-    """Every row that was asked for, scene by scene in order of size, so that an engine that cannot go on is not asked again."""
+    """All requested rows, scene by scene in order of size; after a failure of an engine its larger rows are skipped."""
     for engine in engines:
         stuck: set[tuple[str, int]] = set()
         for case in options.cases:
@@ -176,7 +176,7 @@ def rows(options: argparse.Namespace, engines: Sequence[str]) -> Iterator[dict[s
 
 
 def missing(engines: Sequence[str]) -> list[str]:
-    """The packages that these engines need and that cannot be imported here."""
+    """The missing packages of these engines."""
     absent = []
     if "jolt" in engines and not (HERE / "node_modules" / "jolt-physics").is_dir():
         absent.append("jolt-physics")
@@ -189,7 +189,7 @@ def missing(engines: Sequence[str]) -> list[str]:
 
 
 def main() -> int:
-    """Reads the command line; 0 unless nothing could be run."""
+    """Runs the command line; 0 unless nothing could be run."""
     if sys.argv[1:2] == ["--one"]:
         engine, case, substeps, seconds, cap = sys.argv[2:7]
         run_here(Job(engine, case, int(substeps), float(seconds), float(cap)))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every engine is given: rigid bodies and the ball joints between them, the same as in scenes/*.h. y is up.
+"""The scenes of all engines: rigid bodies and ball joints, the same as in scenes/*.h. y is up.
 
-Nothing collides, nothing is damped, nothing sleeps; everything starts at rest.
+No collisions, damping or sleep; everything starts at rest.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 GRAVITY = 9.81  # m/s^2, down
 LENGTH, MASS, RADIUS = 0.1, 0.1, 0.005  # of a link: m, kg, m
 WORLD = -1
-"""The first body of a joint that holds a body to the world."""
+"""The first body of a joint with the world."""
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class Scene:
     joint_at: Array  # (number of joints, 3) m
 
     def anchors(self) -> tuple[Array, Array]:
-        """Where each joint sits in the frames of its two bodies, (number of joints, 3) m; in the world's for WORLD."""
+        """Places of each joint in the frames of its two bodies, (number of joints, 3) m; in the world's for WORLD."""
         first, second = np.array(self.joints, dtype=np.intp).T
         local = [
             np.einsum("nji,nj->ni", self.rotation[body], self.joint_at - self.center[body]) for body in (first, second)
@@ -43,7 +43,8 @@ class Scene:
         return local[0], local[1]
 
     def available(self) -> float:
-        """What gravity can release at most, J: each body hangs straight below where its shortest way of joints is held."""
+        """Largest energy that gravity can release, J: each body hangs straight below the support on its shortest path
+        of joints."""
         ways: dict[int, list[int]] = {}
         for k, pair in enumerate(self.joints):
             for body in pair:
@@ -93,7 +94,7 @@ class Builder:
         moments, axes = np.linalg.eigh(mass / len(places) * (np.sum(arm**2) * np.eye(3) - arm.T @ arm))
         if np.linalg.det(axes) < 0:
             axes = -axes
-        # MuJoCo refuses a plate without any thickness: by round-off its largest moment exceeds the sum of the others.
+        # MuJoCo refuses a plate without thickness: by round-off its largest moment exceeds the sum of the others.
         moments = moments + [1e-9 * moments[2], 0, 0]
         return self.body(mass, moments, places.mean(axis=0), axes)
 
@@ -111,7 +112,7 @@ class Builder:
 
 
 def chain(links: int, heavy_end: float = 1) -> Scene:
-    """Links along x, the first end held; the last one has `heavy_end` times their mass."""
+    """Links along x, fixed at the first end; the last one has `heavy_end` times their mass."""
     build = Builder()
     for i in range(links):
         at = np.array([i * LENGTH, 0, 0])
@@ -149,7 +150,7 @@ def ragdolls(count: int) -> Scene:
 
 
 def figure(build: Builder, at: Array) -> None:
-    """One of them; its joints are put in order from the shoulder outwards, as a tree wants them."""
+    """One of them; its joints are in order from the shoulder outwards, as needed for a tree."""
     found: list[tuple[int, int, Array]] = []
 
     def plate(corners: list[tuple[float, float, float]], mass: float) -> tuple[int, Array]:

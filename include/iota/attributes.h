@@ -9,7 +9,7 @@ namespace iota {
 /// Red, green, blue, opacity; 0 to 1.
 using Color = std::array<float, 4>;
 
-/// Attributes that a particle may have beside place, velocity and mass.
+/// Optional attributes of a particle, besides place, velocity and mass.
 struct ParticleAttributes {
   double age = 0;                                             ///< s
   double lifetime = std::numeric_limits<double>::infinity();  ///< s

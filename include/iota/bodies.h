@@ -48,7 +48,7 @@ struct BodyEnergy {
   double total() const { return kinetic + potential; }
 };
 
-/// One of the solids that a body was given as: combining bodies makes it one of several.
+/// A solid of a body. A body that is combined from several has the solids of all.
 struct SolidView {
   Shape shape;             ///< a Mesh made in another system, and restored here, comes back empty
   Vec3 position;           ///< of the shape's origin, world, m
@@ -67,12 +67,12 @@ class Bodies : public View {
   /// A body of four equal point masses that have exactly the mass, center and inertia of a solid, and one particle for
   /// each attachment. particles(): the four, then the attachments.
   BodyId create(const Shape& shape, const SolidOptions& options = {});
-  /// A further particle of a body made of solids, anywhere (world, m); the body's mass, center, inertia and motion stay
-  /// exactly what they are. Throws std::invalid_argument for bodies without a solid, and where something is hinged to
-  /// the solid's own four points, which have to give.
+  /// A further particle of a body made of solids, at any place (world, m); the body's mass, center, inertia and motion
+  /// do not change. Throws std::invalid_argument for bodies without a solid, and if something is hinged to the solid's
+  /// own four points, whose positions change.
   ParticleId create_attachment(BodyId, const Vec3& position);
-  /// Gives a body of exactly two particles the mass and inertia of a solid cylinder between them, exact for whatever acts
-  /// on its axis. It keeps the spin about its axis that set_angular_velocity gives it: nothing can act on that.
+  /// Gives a body of exactly two particles the mass and inertia of a solid cylinder between them, exact for all forces
+  /// on its axis. It keeps the spin about its axis that set_angular_velocity gives it: no torque acts about that axis.
   /// Source: mass [A B; B A], A+B = m/2, A-B = 2 It/L^2.
   void set_rod(BodyId, double mass, double radius);
   void destroy(BodyId);  ///< with its particles and their bonds
@@ -81,7 +81,7 @@ class Bodies : public View {
   std::optional<BodyId> survivor_of(BodyId) const;
   std::vector<BodyId> ids() const;  ///< in order of slots
   std::string name(BodyId) const;   ///< empty unless it was given one
-  /// At most 63 bytes; need not be unique. What absorbs a body keeps its own name.
+  /// At most 63 bytes; need not be unique. A survivor keeps its own name.
   void set_name(BodyId, std::string_view);
   ///@}
 
@@ -103,8 +103,8 @@ class Bodies : public View {
   ///@{
   BodyKind kind(BodyId) const;
   void set_kind(BodyId, BodyKind);
-  /// An inactive body is kept, but neither stepped nor drawn; its bonds do not act. Active again, it is what it was
-  /// before, at rest where it was left, and its hinges close.
+  /// An inactive body is kept, but neither stepped nor drawn; its bonds do not act. Active again, it has its former
+  /// kind, is at rest at its old place, and its hinges close.
   bool is_active(BodyId) const;
   void set_active(BodyId, bool);
   void set_articulate_active(BodyId, bool);  ///< all bodies of its articulate
@@ -120,13 +120,13 @@ class Bodies : public View {
   Vec3 center_of_mass(BodyId) const;
   Matrix3 inertia(BodyId) const;         ///< about the center of mass, world axes, kg m^2 (thesis, Eq. 2.28)
   Quaternion orientation(BodyId) const;  ///< of the drawn frame: that of its first solid, or of its basis
-  /// Moves the body, and its whole articulate rigidly with it, nails and velocities included. A scripted body arrives at
-  /// the end of the next step. position: of the center of mass.
+  /// Moves the body, and its whole articulate rigidly with it, nails and velocities included. A scripted body moves
+  /// during the next step. position: of the center of mass.
   void set_pose(BodyId, const Vec3& position, const Quaternion& orientation);
   Vec3 velocity(BodyId) const;  ///< of the center of mass, m/s
   void set_velocity(BodyId, const Vec3&);
-  /// rad/s, world axes. Zero along an axis about which the body has no inertia: a point, or the line through all points of
-  /// a body that is not a rod.
+  /// rad/s, world axes. Zero about an axis without inertia: any axis of a single point, or the line through all points
+  /// of a body that is not a rod.
   Vec3 angular_velocity(BodyId) const;
   /// Throws std::invalid_argument for a component along such an axis.
   void set_angular_velocity(BodyId, const Vec3&);
@@ -134,9 +134,9 @@ class Bodies : public View {
   BodyEnergy energy(BodyId) const;
   ///@}
 
-  /// @name Forces during the next step only. They are put on the body's particles such that their sum and their moment are
-  /// what is asked for, and that they deform nothing. Throws std::invalid_argument for a moment about what has no inertia:
-  /// a point, or the line through all points of a body.
+  /// @name Forces during the next step only. They are distributed over the body's particles with the given sum and
+  /// moment, in proportion to the rigid accelerations, so that they cause no load within the body. Throws
+  /// std::invalid_argument for a moment about an axis without inertia (a point, or the line through all points).
   ///@{
   void apply_force(BodyId, const Vec3& newtons);                  ///< at the center of mass
   void apply_force(BodyId, const Vec3& newtons, const Vec3& at);  ///< world, m; need not be on the body
@@ -145,14 +145,14 @@ class Bodies : public View {
 
   /// @name Loads in the last step
   ///@{
-  /// Sum of all forces from outside, and of their moments about the center of mass, N and N m: mass times acceleration. Of
-  /// a part of a combined body: with the forces that hold it to the rest.
+  /// Sum of all forces from outside, and of their moments about the center of mass, N and N m: mass times acceleration.
+  /// For a part of a combined body, this includes the forces of the other parts.
   Vec3 net_force(BodyId) const;
   Vec3 net_torque(BodyId) const;
   Vec3 net_force(BodyId, BodyId part) const;
   Vec3 net_torque(BodyId, BodyId part) const;
   /// On a part, from outside of the whole body, N, and their moments about the part's center of mass, N m. `net` minus
-  /// `outside` is the load that the other parts put on it: the load on the lock.
+  /// `outside` is the load by the other parts: that of the rigid connection.
   Vec3 outside_force(BodyId, BodyId part) const;
   Vec3 outside_torque(BodyId, BodyId part) const;
   ///@}

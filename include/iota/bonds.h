@@ -13,7 +13,7 @@
 
 namespace iota {
 
-/// Forces between two particles, by laws that bonds share.
+/// Forces between two particles. Several bonds may share a law.
 class Bonds : public View {
  public:
   explicit Bonds(Core& core) : View(core) {}
@@ -26,8 +26,8 @@ class Bonds : public View {
   std::pair<ParticleId, ParticleId> ends(BondId) const;
   bool is_active(BondId) const;
   void set_active(BondId, bool);  ///< true repairs a broken one
-  /// On the first particle, N (the second gets the opposite): of an implicit bond here and now, of a held one in the last
-  /// step.
+  /// On the first particle, N (the second gets the opposite): of an implicit bond at the present state, of a held one
+  /// in the last step.
   Vec3 force(BondId) const;
   void set_break_force(BondId, double newtons);  ///< beyond it the bond is switched off at the end of a step
   double break_force(BondId) const;              ///< N; infinite: never
@@ -38,16 +38,16 @@ class Bonds : public View {
   void set_parameter(BondId, std::string_view name, double value);
 };
 
-/// Lines that are drawn between two particles of one body; they have no force. A body whose lines are cut in two falls in
-/// two.
+/// Lines that are drawn between two particles of one body, without force. Destroying them can split the body, see
+/// destroy.
 class CosmeticBonds : public View {
  public:
   explicit CosmeticBonds(Core& core) : View(core) {}
 
   CosmeticBondId create(ParticleId p, ParticleId q);
-  /// Where that disconnects its body's cosmetic bonds the rigid body falls into two pieces (thesis, 5.1.1): one with the
-  /// bond's first end, which stays this body, and one with the second. Particles that hang on neither end go with the
-  /// nearer piece; a solid and its attachments are one piece. Velocities, and so momenta, stay.
+  /// If that disconnects the body's cosmetic bonds, it splits the body (thesis, 5.1.1): the piece with the bond's first
+  /// end stays this body, the other one is new. Particles connected to neither end go with the nearer piece; a solid
+  /// and its attachments are one piece. Velocities, and so momenta, do not change.
   RestructureReport destroy(CosmeticBondId);
   bool contains(CosmeticBondId) const;
   std::vector<CosmeticBondId> ids() const;  ///< in order of slots

@@ -26,23 +26,23 @@ enum class ConstraintKind : std::uint8_t {
   orientation,  ///< b does not turn against a, but moves freely
   weld,         ///< b neither turns nor moves against a
   rod,          ///< two particles keep their distance
-  rope,         ///< two particles come no further apart than a length
+  rope,         ///< the distance of two particles is at most a length
   path,         ///< a particle stays on a curve: one slide, the length along it
   surface,      ///< a particle stays on a surface
   inside,       ///< a particle stays on the inner side of a surface
   outside,      ///< a particle stays on the outer side of a surface
   touching,     ///< two surfaces stay in touch
   apart,        ///< two surfaces do not overlap
-  span,         ///< holds nothing: the distance of two particles as a slide, for limits, motors, springs and couplings
-  coupling,     ///< a weighted sum of coordinates stays what it is: gears, racks, belts, differentials
-  tackle,       ///< a weighted sum of coordinates gets no larger: a rope over several points
-  screw,        ///< cylindrical, and slides by its lead with each turn
-  planar,       ///< a point of a stays in a plane of b through it, and does not turn out of the plane
+  span,         ///< makes the distance of two particles a slide, for limits, motors, springs and couplings
+  coupling,     ///< a weighted sum of coordinates is constant: gears, racks, belts, differentials
+  tackle,       ///< a weighted sum of coordinates has an upper bound: a rope over several points
+  screw,        ///< cylindrical; each turn slides by the lead
+  planar,       ///< a moves in a plane of b and turns about the plane's normal
 };
 
 /// The coordinates that joints have: the angle about the axis (revolute, cylindrical, screw, planar; of a universal joint about a's axis),
 /// the slide along it (prismatic, cylindrical, screw), along a path or of a span, and the second angle of a universal joint, about b's axis.
-/// All are of a against b, in the positive sense of the axis, and zero where the joint is made.
+/// All are of a relative to b, in the positive sense of the axis, and zero when the joint is made.
 enum class JointCoordinate : std::uint8_t { angle, slide, second_angle };
 inline constexpr std::array joint_coordinates{JointCoordinate::angle, JointCoordinate::slide,
                                               JointCoordinate::second_angle};
@@ -55,8 +55,8 @@ struct CoordinateOptions {
   double upper = std::numeric_limits<double>::infinity();
   double motor_speed = 0;
   double motor_max = 0;  ///< largest torque or force of the motor; 0: none. With speed 0 it is a brake
-  /// Where the motor goes, rad or m; NaN: on and on. motor_speed is then the largest speed, and within servo_time (s) of
-  /// its aim it slows down such that what is left falls as exp(-t / servo_time).
+  /// Target of the motor, rad or m; NaN: none. With a target, motor_speed is the largest speed; near the target the
+  /// motor slows down such that the distance to it falls as exp(-t / servo_time), servo_time in s.
   double servo = std::numeric_limits<double>::quiet_NaN();
   double servo_time = 0.05;
   double friction = 0;   ///< dry: up to this torque or force against any motion
@@ -65,14 +65,14 @@ struct CoordinateOptions {
   double rest = 0;
 };
 
-/// Loads beyond which a constraint breaks: it is then inactive, and the step's report names it.
+/// Loads above which a constraint breaks: it becomes inactive, and the step's report names it.
 struct BreakLimits {
   double force = std::numeric_limits<double>::infinity();   ///< N
   double torque = std::numeric_limits<double>::infinity();  ///< N m, about the constraint's place
 };
 
 /// A joint between bodies a and b, or between a and the world where b is null. Relative position and orientation are
-/// taken from where the bodies are now.
+/// the present ones of the bodies.
 struct JointSpec {
   ConstraintKind kind = ConstraintKind::revolute;
   BodyId a, b;
@@ -104,14 +104,14 @@ struct SpanSpec {
   BreakLimits breaks;
 };
 
-/// A coordinate of another constraint in the sum of a coupling, and what it counts there.
+/// A coordinate of another constraint in the sum of a coupling, and its factor there.
 struct CoupledCoordinate {
   ConstraintId constraint;
   JointCoordinate coordinate = JointCoordinate::angle;
   double ratio = 1;
 };
 
-/// sum of ratio * coordinate = length. It is in force while all of its constraints are, and ends with the first of them.
+/// sum of ratio * coordinate = length. Acts while all its constraints are active; destroyed with the first of them.
 struct CouplingSpec {
   ConstraintKind kind = ConstraintKind::coupling;  ///< or tackle
   std::vector<CoupledCoordinate> terms;
@@ -119,15 +119,15 @@ struct CouplingSpec {
   BreakLimits breaks;
 };
 
-/// A rope that runs without friction from a particle over others to a last one: the sum of the distances from each to the
-/// next is no more than its length. A tackle of spans, which it makes and takes along.
+/// A rope that runs without friction from a particle over others to a last one: the sum of the distances from each to
+/// the next is at most its length. It is a tackle of spans, which it creates and destroys.
 struct TackleSpec {
   std::vector<ParticleId> points;
   double length = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: the sum now
   BreakLimits breaks;
 };
 
-/// A particle on a curve that is fixed in a body or, where that is null, in the world.
+/// A particle on a curve that is fixed in a body or, if that is null, in the world.
 struct PathSpec {
   ParticleId particle;
   BodyId body;
@@ -135,16 +135,16 @@ struct PathSpec {
   std::vector<Vec3> points;  ///< world frame, as the body is now, m; two at least, three where closed
   bool closed = false;
   double rounding = -1;  ///< of a polyline's corners, m; negative: a tenth of the shorter piece
-  /// Along the path from its first point, m. An open path ends at its ends unless limits say otherwise.
+  /// Along the path from its first point, m. The default limits of an open path are its ends.
   CoordinateOptions slide;
   BreakLimits breaks;
 };
 
-/// phi(r) = 0, with phi negative inside and, near the surface, about the distance in m. Called while the system steps,
-/// from any thread; it must not touch the system. Not part of snapshots.
+/// phi(r) = 0, with phi negative inside and, near the surface, about the distance in m. Called during a step, on any
+/// thread; it must not use the system. Not part of snapshots.
 struct SurfaceFunction {
   std::function<double(const Vec3&)> phi;
-  double size = 1;  ///< of what it describes, m
+  double size = 1;  ///< of the surface, m
 };
 
 /// The surface of a shape (but a Mesh), or of a function, with its frame; fixed in a body or in the world.
@@ -154,7 +154,7 @@ struct Surface {
   Quaternion orientation;  ///< turns vectors of the shape's frame into the world frame
 };
 
-/// A particle on (surface), inside or outside a surface of a body or, where that is null, of the world.
+/// A particle on (surface), inside or outside a surface of a body or, if that is null, of the world.
 struct SurfaceSpec {
   ConstraintKind kind = ConstraintKind::surface;
   ParticleId particle;
@@ -171,7 +171,7 @@ struct SurfacePairSpec {
   BreakLimits breaks;
 };
 
-/// What acts along a coordinate on a, N m or N.
+/// Efforts on a along a coordinate, N m or N.
 struct CoordinateEfforts {
   double stop = 0, motor = 0, friction = 0, spring = 0;
   double total() const { return stop + motor + friction + spring; }

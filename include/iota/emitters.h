@@ -12,38 +12,38 @@
 
 namespace iota {
 
-/// How an emitted particle looks at one point of its life.
+/// Look of an emitted particle at one point of its life.
 struct AttributeKey {
   double life = 0;    ///< 0 birth, 1 death
   double radius = 0;  ///< m
   Color color{1, 1, 1, 1};
 };
 
-/// A source of particles (Reeves 1983): each is a dynamic body of its own, with an age and a lifetime, and dies at its end.
+/// A source of particles (Reeves 1983): each is a dynamic body of its own, and is destroyed at the end of its lifetime.
 struct EmitterOptions {
   double rate = 10;  ///< births a second
-  /// Where they are born: anywhere within, evenly. No Torus or Mesh.
+  /// Places of birth: uniform within the shape. Not a Mesh or HalfSpace.
   Shape source = Sphere{0.01};
   Vec3 position;                    ///< of the source's origin, m
   Quaternion orientation;           ///< of the source's frame
   Vec3 velocity{0, 1, 0};           ///< in the source's frame, m/s
-  double velocity_spread = 0;       ///< each gets up to this much in any direction, m/s
+  double velocity_spread = 0;       ///< a random velocity of at most this is added, m/s
   double lifetime = 1;              ///< s
-  double lifetime_spread = 0;       ///< each lives up to this much longer or shorter, s; below `lifetime`
+  double lifetime_spread = 0;       ///< lifetimes differ by at most this, s; below `lifetime`
   double mass = 0.001;              ///< kg
   double damping = 0;               ///< of their bodies, 1/s
-  std::uint32_t max_count = 1000;   ///< alive at once; none is born while there are that many
+  std::uint32_t max_count = 1000;   ///< largest number alive at once
   std::vector<AttributeKey> curve;  ///< at most 8, by rising life; linear in between
   std::uint64_t seed = 1;           ///< equal seeds, equal particles
 };
 
-/// Sources of particles that live for a time.
+/// Sources of particles with a lifetime.
 class Emitters : public View {
  public:
   explicit Emitters(Core& core) : View(core) {}
 
   EmitterId create(const EmitterOptions& options);
-  void destroy(EmitterId);  ///< its particles live on
+  void destroy(EmitterId);  ///< its particles remain
   bool contains(EmitterId) const;
 
   bool is_active(EmitterId) const;

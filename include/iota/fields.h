@@ -29,7 +29,7 @@ class Groups : public View {
   std::vector<ParticleId> particles(GroupId) const;
 };
 
-/// Forces on each particle of a group, or on all, by itself; taken once a step and held.
+/// Forces on each single particle of a group, or on all; evaluated once a step and held.
 class Fields : public View {
  public:
   explicit Fields(Core& core) : View(core) {}
@@ -44,11 +44,11 @@ class Fields : public View {
   void set_active(FieldId, bool);
   std::vector<LawParameter> parameters(FieldId) const;
   void set_parameter(FieldId, std::string_view name, double value);
-  std::size_t rehearse(FieldId, double dt);  ///< see Laws::rehearse; returns for how many particles
+  std::size_t rehearse(FieldId, double dt);  ///< see Laws::rehearse; returns the number of particles
 };
 
-/// Forces between all pairs of particles of a group, or of all, that are nearer than a cut-off; taken once a step and
-/// held. Points of one body do not feel each other.
+/// Forces between all pairs of particles of a group, or of all, that are nearer than a cut-off; evaluated once a step
+/// and held. Not between points of one body.
 class Pairs : public View {
  public:
   explicit Pairs(Core& core) : View(core) {}
@@ -65,7 +65,7 @@ class Pairs : public View {
   void set_active(PairsId, bool);
   std::vector<LawParameter> parameters(PairsId) const;
   void set_parameter(PairsId, std::string_view name, double value);
-  std::size_t rehearse(PairsId, double dt);  ///< see Laws::rehearse; returns for how many particles
+  std::size_t rehearse(PairsId, double dt);  ///< see Laws::rehearse; returns the number of particles
 };
 
 }  // namespace iota

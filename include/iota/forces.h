@@ -13,21 +13,21 @@
 #include <variant>
 #include <vector>
 
-/// Laws of force and their uses. `docs/forces.md` says what each way of writing a law costs.
+/// Laws of force and their uses. `docs/forces.md` lists the cost of each way to write a law.
 namespace iota {
 
 using LawId = Id<struct LawTag>;
 
 inline constexpr int max_law_parameters = 8;
 
-/// A NaN value stands for the distance of the two ends when a bond is made.
+/// A NaN value means the distance of the two ends when the bond is made.
 struct LawParameter {
   std::string name;
   double value = 0;
 };
 
 /// Compiled code for one bond: the force along the line in N, positive pushes apart, of the distance r (m), its rate v (m/s), the
-/// time t (s) and the bond's parameters. Called with no lock held; must neither throw nor touch the system.
+/// time t (s) and the bond's parameters. Called with no lock held; must neither throw nor use the system.
 using RadialFunction = double (*)(double r, double v, double t, const double* parameters);
 
 /// All bonds of one law at once, arrays of `count` rows in C order.
@@ -40,16 +40,17 @@ struct BondBatch {
   const BondId* bonds;                    ///< (count)
   double* force;                          ///< out: (count, 3), on p in N; q gets the opposite
 };
-/// May throw: the bonds of the law are then switched off, and the step says so.
+/// May throw: then the bonds of the law are switched off, and the step reports it.
 using BatchFunction = std::function<void(const BondBatch&)>;
 
 /// How a law is written: an expression of r, v = dr/dt, t, m_p, m_q and the parameters that defines `energy` (J), `force` (N
-/// along the line, positive pushes apart) or `drag` (N s/m, times the velocity difference), or compiled code.
+/// along the line, positive pushes apart) or `drag` (N s/m, times the velocity difference), or compiled code. An energy of
+/// pairwise forces may depend on normals too, by the cosines cos_p, cos_q (with the line p-q) and cos_pq.
 using LawBody = std::variant<std::string, RadialFunction, BatchFunction>;
 
 struct LawOptions {
   std::string name;                      ///< for reports; at most 31 bytes
-  std::vector<LawParameter> parameters;  ///< with the values that bonds have unless they say otherwise
+  std::vector<LawParameter> parameters;  ///< with default values
 };
 
 /// f = -(stiffness (r - length) + damping r') along the line p-q. Solved implicitly: any stiffness is stable.
@@ -64,8 +65,8 @@ struct DragLaw {
   double damping = 1;  ///< N s/m
 };
 
-/// The arguments of a scripted bond's function. Forces that are held over the step are taken where they act: in the energy-keeping mode at
-/// the middle of the step (positions half a step ahead, as velocities go: the leapfrog scheme), in the robust mode at its start.
+/// The arguments of a scripted bond's function. Held forces are evaluated in the energy-keeping mode at the middle of
+/// the step (at positions extrapolated by half a step: the leapfrog scheme), in the robust mode at its start.
 struct BondState {
   BondId bond;
   Vec3 position_p, position_q;  ///< m
@@ -84,7 +85,7 @@ struct ScriptedLaw {
 struct SharedLaw {
   LawId law;
   std::vector<LawParameter> parameters;
-  /// Solved together with the joints, or taken once a step and held. Unset: implicit where the law has a derivative.
+  /// Solved together with the joints, or evaluated once a step and held. Unset: implicit if the law has a derivative.
   std::optional<bool> implicit;
 };
 
@@ -107,7 +108,7 @@ struct ParticleBatch {
   const ParticleId* particles;  ///< (count)
   double* force;                ///< out: (count, 3), N
 };
-/// May throw: the field is then switched off, and the step says so.
+/// May throw: then the field is switched off, and the step reports it.
 using FieldFunction = std::function<void(const ParticleBatch&)>;
 
 /// A predefined field (uniform, wind, current, well, attractor), an expression that defines energy (J), or fx, fy, fz (N), of x, y, z, vx, vy,
@@ -118,15 +119,15 @@ struct FieldOptions {
   std::string name;  ///< for reports; at most 31 bytes
   std::vector<LawParameter> parameters;
   std::optional<GroupId> group;   ///< unset: all particles
-  bool replaces_gravity = false;  ///< while it is active, System::gravity() acts on nothing
+  bool replaces_gravity = false;  ///< while it is active, System::gravity() does not act
 };
 
 struct PairsOptions {
-  double cutoff = 1;             ///< m: pairs farther apart do not feel each other
+  double cutoff = 1;             ///< m: no force between pairs farther apart
   std::optional<GroupId> group;  ///< unset: all particles
-  std::optional<GroupId> other;  ///< set: only pairs of one of `group` and one of these
-  /// Takes a constant and a linear term off the law's energy, such that force and energy are zero at the cut-off and pairs
-  /// that cross it change no energy. The law must have an energy.
+  std::optional<GroupId> other;  ///< set: only pairs of a particle of `group` and one of this group
+  /// Subtracts a constant and a linear term from the law's energy, such that force and energy are zero at the cut-off
+  /// and do not jump there. The law must have an energy.
   bool shifted = false;
 };
 

@@ -12,7 +12,7 @@ namespace iota {
 struct GripOptions {
   std::uint32_t client = 0, hold = 0;  ///< whose grip; carried to the viewers
   double frequency = 2.5;              ///< Hz of the critically damped spring
-  double max_acceleration = 60;        ///< m/s^2: caps the force at this times the mass it can feel
+  double max_acceleration = 60;        ///< m/s^2: the force is at most this times the effective mass
 };
 
 /// Grips: springs from a point of a body to a target that a user moves.
@@ -20,7 +20,7 @@ class Grips : public View {
  public:
   explicit Grips(Core& core) : View(core) {}
 
-  /// local_point: in the body's drawn frame, m; it is put on the nearest place that the body's particles span.
+  /// local_point: in the body's drawn frame, m; it is moved to the nearest place that the body's particles span.
   GripId create(BodyId body, const Vec3& local_point, const Vec3& target, const GripOptions& options = {});
   void move(GripId, const Vec3& target);
   void destroy(GripId);

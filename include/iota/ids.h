@@ -7,8 +7,8 @@
 
 namespace iota {
 
-/// A name for something that a `System` owns: slot + generation, one distinct type per kind.
-/// A default-constructed id is null. An id stays valid over snapshot and restore; once its object is gone it is
+/// Identifies an object of a `System`: slot + generation, one distinct type per kind.
+/// A default-constructed id is null. An id stays valid over snapshot and restore; once its object is destroyed it is
 /// *stale* for ever, since a reused slot gets a new generation.
 template <class Kind>
 struct Id {
@@ -19,7 +19,7 @@ struct Id {
   friend auto operator<=>(const Id&, const Id&) = default;
 };
 
-/// An id whose object is gone; the text says what became of it.
+/// The object of an id no longer exists; the text says what became of it.
 struct StaleIdError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };

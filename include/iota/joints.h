@@ -9,8 +9,8 @@
 
 namespace iota {
 
-/// Constraints of all kinds: joints between bodies, rods and ropes, paths and surfaces. Velocities and gaps are brought in
-/// line with a new one at the start of the next step.
+/// Constraints of all kinds: joints between bodies, rods and ropes, paths and surfaces. Velocities and gaps are
+/// projected on a new one at the start of the next step.
 class Joints : public View {
  public:
   explicit Joints(Core& core) : View(core) {}
@@ -28,14 +28,14 @@ class Joints : public View {
   std::vector<ConstraintId> ids() const;  ///< in order of slots
 
   ConstraintState state(ConstraintId) const;
-  std::vector<ParticleId> particles(ConstraintId) const;     ///< that it refers to, markers included
-  std::vector<CoupledCoordinate> terms(ConstraintId) const;  ///< of a coupling or tackle; else none
-  /// True repairs a broken one; bodies keep the relative place they were joined in.
+  std::vector<ParticleId> particles(ConstraintId) const;     ///< all particles of it, markers included
+  std::vector<CoupledCoordinate> terms(ConstraintId) const;  ///< of a coupling or tackle; otherwise empty
+  /// True repairs a broken one, with the relative pose in which its bodies were joined.
   void set_active(ConstraintId, bool);
-  /// Puts a coordinate at a value (rad, m) and lets the rest of the mechanism follow. Where the joint is in no loop, what
-  /// hangs on a turns or slides as one rigid thing, or, where a hangs on something fixed, what hangs on b; in a loop all
-  /// bodies move as little as they can. Velocities stay as far as the joints allow. Throws std::invalid_argument, with
-  /// everything as it was, beyond the coordinate's limits and where the rest cannot follow.
+  /// Moves a coordinate to a value (rad, m), with the rest of the mechanism. If the joint is in no loop, everything
+  /// attached to a turns or slides as one rigid body (if a is attached to something fixed, everything attached to b);
+  /// in a loop all bodies make the least motion. Velocities stay as far as the joints allow. Throws
+  /// std::invalid_argument and changes nothing if the value is beyond the limits or the mechanism cannot reach it.
   void set_value(ConstraintId, JointCoordinate, double value);
   CoordinateOptions coordinate(ConstraintId, JointCoordinate) const;
   void set_coordinate(ConstraintId, JointCoordinate, const CoordinateOptions&);

@@ -34,7 +34,7 @@ struct RodRows {
 /// Bonds of one law, from p[i] to q[i].
 struct BondRows {
   std::vector<ParticleId> p, q;
-  SharedLaw law;  ///< its parameters are those of all bonds, but for the columns
+  SharedLaw law;  ///< its parameters apply to all bonds, except those in `columns`
   struct Column {
     std::string name;
     std::vector<double> values;  ///< one for each bond; NaN: the distance now
@@ -42,7 +42,7 @@ struct BondRows {
   std::vector<Column> columns;
 };
 
-/// What bodies, particles, bonds and joints have a row of. docs/conventions.md lists which has which.
+/// A quantity of bodies, particles, bonds or joints. The functions of Many list those of each kind.
 enum class Quantity : std::uint8_t {
   position,          ///< 3: m
   orientation,       ///< 4: unit quaternion x y z w
@@ -60,9 +60,9 @@ enum class Quantity : std::uint8_t {
 };
 std::size_t width(Quantity);
 
-/// Many things made, read or changed in one call, by arrays of float64 in C order with a row for each thing. A change is one
-/// command: it is recorded as one, and nothing of it is done if a part of it is refused. Reading throws std::invalid_argument
-/// for a quantity that the things do not have.
+/// Makes, reads or changes many things in one call, by arrays of float64 in C order with a row for each thing. A change
+/// is one command: it is recorded as one, and if a part of it is refused, nothing is changed. Reading throws
+/// std::invalid_argument for a quantity that the things do not have.
 class Many : public View {
  public:
   explicit Many(Core& core) : View(core) {}
@@ -84,9 +84,9 @@ class Many : public View {
 
   /// position, velocity, mass, force.
   void assign(Quantity, std::span<const ParticleId>, std::span<const double>);
-  /// position, orientation, pose, velocity, angular_velocity, motion, mass, force (at the center of mass), torque. Each body
-  /// moves by itself: where hinged bodies are given places that do not fit, the last one decides, and the next step closes
-  /// the gap. Give what hangs together a pose or motion, not one half after the other.
+  /// position, orientation, pose, velocity, angular_velocity, motion, mass, force (at the center of mass), torque. Each
+  /// body moves independently: if the places of hinged bodies do not fit, the last one is used, and the next step
+  /// closes the gap. Assign pose or motion to hinged bodies, not position and orientation one after the other.
   void assign(Quantity, std::span<const BodyId>, std::span<const double>);
   void assign(std::string_view parameter, std::span<const BondId>, std::span<const double>);
 };

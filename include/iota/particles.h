@@ -20,9 +20,9 @@ class Particles : public View {
 
   /// @name Making and destroying
   ///@{
-  /// A new particle of `body`; mass in kg. A massless one (a marker) must lie where the massive ones carry it: anywhere on
-  /// a body with four of them off one plane, in the plane of a flat one, on the line of a thin one. Its velocity is then
-  /// the body's.
+  /// A new particle of `body`; mass in kg. A massless one (a marker) must be an affine combination of the massive ones:
+  /// at any place if four of them are not in a plane, in the plane of a flat body, on the line of a thin one. Its
+  /// velocity follows from the body's.
   ParticleId create(BodyId body, const Vec3& position, double mass = 1, const Vec3& velocity = {});
   void destroy(ParticleId);  ///< with its bonds; its body too if it was the last one
   bool contains(ParticleId) const;
@@ -30,19 +30,19 @@ class Particles : public View {
   std::optional<ParticleId> survivor_of(ParticleId) const;
   std::vector<ParticleId> ids() const;  ///< in order of slots
   BodyId body(ParticleId) const;
-  std::vector<ParticleId> ring(ParticleId) const;  ///< every particle hinged with it, itself included
+  std::vector<ParticleId> ring(ParticleId) const;  ///< all particles hinged with it, and itself
   ///@}
 
   /// @name Place and motion
   ///@{
   Vec3 position(ParticleId) const;
-  void set_position(ParticleId, const Vec3&);  ///< moves the whole ring; its bodies take their rigid distances anew
+  void set_position(ParticleId, const Vec3&);  ///< moves the whole ring; changes the rigid distances of its bodies
   Vec3 velocity(ParticleId) const;
   void set_velocity(ParticleId, const Vec3&);
   double mass(ParticleId) const;  ///< its own share
   void set_mass(ParticleId, double);
-  /// Bonds of an inactive particle do not act, and of its mass only a millionth (2^-20, so that its body keeps its shape);
-  /// its hinges and nails hold on.
+  /// Bonds of an inactive particle do not act, and only a millionth of its mass counts (2^-20, so that its body keeps
+  /// its shape); its hinges and nails still act.
   bool is_active(ParticleId) const;
   void set_active(ParticleId, bool);
   /// (n, 3) in the order of ids(); out.size() == 3 n.
@@ -53,7 +53,7 @@ class Particles : public View {
   /// @name Nails
   ///@{
   void nail(ParticleId);                        ///< where it is
-  void nail(ParticleId, const Vec3& position);  ///< there; calling it again moves the nail
+  void nail(ParticleId, const Vec3& position);  ///< at this position; calling it again moves the nail
   void release(ParticleId);
   bool is_nailed(ParticleId) const;
   Vec3 nail_force(ParticleId) const;  ///< by the nail on the particle in the last step, N
@@ -63,30 +63,30 @@ class Particles : public View {
   ///@{
   void apply_force(ParticleId, const Vec3&);  ///< added during the next step only, N
   Vec3 net_force(ParticleId) const;           ///< sum of all forces on its share of mass in the last step, N
-  /// On the particle's body by all that shares or nails its place, in the last step, N: the load on the hinge. A force
-  /// applied to the shared particle itself counts as held by all its bodies alike.
+  /// On the particle's body by everything that shares or nails its place, in the last step, N: the load on the hinge. A
+  /// force applied to the shared particle itself is distributed equally over its bodies.
   Vec3 hinge_force(ParticleId) const;
-  /// Beyond this `hinge_force` the particle leaves its ring, or its nail, at the end of a step (StepReport::broken).
+  /// Above this `hinge_force` the particle leaves its ring, or its nail, at the end of a step (StepReport::broken).
   void set_break_force(ParticleId, double newtons);
   double break_force(ParticleId) const;  ///< N; infinite: never
   ///@}
 
-  /// @name Attributes that few particles have
+  /// @name Optional attributes
   ///@{
   bool has_attributes(ParticleId) const;
   /// Age, lifetime, radius and color; radius and color of an emitted particle are those of its emitter's curve.
   ParticleAttributes attributes(ParticleId) const;
-  /// Any particle may get a lifetime: it is destroyed, with its bonds, in the step in which its age reaches it.
+  /// A particle with a lifetime is destroyed, with its bonds, in the step in which its age reaches it.
   void set_attributes(ParticleId, const ParticleAttributes&);
   ///@}
 
-  /// @name Oriented particles (surfels; Szeliski and Tonnesen 1992). They turn like balls, each by itself, whatever body
-  /// they are in; their local z is their preferred direction or normal. All but is_oriented and set_orientation throw
-  /// std::invalid_argument for particles without an orientation.
+  /// @name Oriented particles (surfels; Szeliski and Tonnesen 1992). They rotate like free balls, independently of
+  /// their body; their local z is their preferred direction or normal. All functions except is_oriented and
+  /// set_orientation throw std::invalid_argument for particles without an orientation.
   ///@{
   bool is_oriented(ParticleId) const;
   Quaternion orientation(ParticleId) const;
-  /// Makes it oriented, with the moment of inertia of a ball of its radius (0.05 m where it has none).
+  /// Makes it oriented, with the moment of inertia of a ball of its radius (0.05 m if it has none).
   void set_orientation(ParticleId, const Quaternion&);
   Vec3 normal(ParticleId) const;  ///< its local z in the world frame
   Vec3 spin(ParticleId) const;    ///< rad/s, world; constant in free flight, to the last bit
@@ -95,7 +95,7 @@ class Particles : public View {
   void set_moment(ParticleId, double);
   void set_spin_damping(ParticleId, double per_second);
   void apply_torque(ParticleId, const Vec3&);  ///< during the next step only, N m
-  /// Draws its normal to a direction: torque stiffness (normal x direction) - damping spin, N m; stiffness 0 ends it.
+  /// Turns its normal to a direction: torque stiffness (normal x direction) - damping spin, N m; stiffness 0: none.
   void align(ParticleId, const Vec3& direction, double stiffness, double damping);
   ///@}
 };

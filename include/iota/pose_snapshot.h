@@ -6,7 +6,7 @@
 
 namespace iota {
 
-/// Where a body is drawn. The local frame has its origin at the center of mass; for a body whose particles lie on one
+/// Drawn pose of a body. The local frame has its origin at the center of mass; for a body whose particles lie on one
 /// line, local +x runs from its first particle to its last.
 struct BodyPose {
   std::uint32_t body;    ///< slot of the BodyId
@@ -14,7 +14,7 @@ struct BodyPose {
   float orientation[4];  ///< unit quaternion x y z w
 };
 
-/// An emitter's particle that nothing ties: drawn as a dot.
+/// A free particle of an emitter: drawn as a dot.
 struct SparkPose {
   float position[3];    ///< world frame, m
   float radius;         ///< m
@@ -29,7 +29,7 @@ struct HoldPose {
   float force;                ///< N
 };
 
-/// All that a viewer needs of one instant: an immutable copy, safe to hand to another thread.
+/// State for viewers at one time: an immutable copy, safe to pass to another thread.
 struct PoseSnapshot {
   std::uint64_t step = 0;
   double time = 0;                      ///< s

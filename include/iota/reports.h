@@ -12,22 +12,22 @@
 
 namespace iota {
 
-/// Energy book-keeping, J. What left the motion and what came in is counted where it happens; `balance()` is constant up
-/// to round-off.
+/// Energy balance, J. Each gain and loss is counted where it occurs; `balance()` is constant up to
+/// round-off.
 struct Energy {
   double kinetic = 0;
   double potential = 0;   ///< gravity, springs, and all bonds, fields and pairs whose law has an energy
-  double dissipated = 0;  ///< since the start, by damping, dashpots, friction, laws and impacts: their own work
-  double lost = 0;        ///< since the start, by the integration scheme; may fall by what its tolerance leaves
+  double dissipated = 0;  ///< since the start, work of damping, dashpots, friction, laws and impacts
+  double lost = 0;        ///< since the start, by the integration scheme; may decrease within its tolerance
   double made = 0;        ///< since the start, by the integration scheme: a defect, see StepReport::warnings
   double external_work =
-      0;  ///< since the start, by grips, scripted bonds, moved nails and applied forces, and what holding forces costs
+      0;  ///< since the start, by grips, scripted bonds, moved nails, applied forces, and errors of held forces
   double edits = 0;  ///< since the start, gained (+) or lost (-) by edits
   double total() const { return kinetic + potential; }
   double balance() const { return kinetic + potential + dissipated + lost - made - external_work - edits; }
 };
 
-/// A constraint, bond, hinge or nail that a load beyond its limit broke at the end of a step.
+/// A constraint, bond, hinge or nail that broke at the end of a step because of its load.
 struct Broken {
   ConstraintId constraint;  ///< now inactive; else null
   BondId bond;              ///< now inactive; else null
@@ -37,8 +37,8 @@ struct Broken {
   double torque = 0;        ///< N m
 };
 
-/// Something one-sided began or ended to carry a load: surfaces met or parted, a rope went taut or slack, a coordinate
-/// reached or left a stop.
+/// A one-sided constraint began or ceased to carry a load: surfaces met or parted, a rope became taut or slack, a
+/// coordinate reached or left a stop.
 struct ContactEvent {
   enum class Kind : std::uint8_t { met, parted };
   Kind kind = Kind::met;
@@ -47,17 +47,17 @@ struct ContactEvent {
   Vec3 position;                        ///< where it acts on a, m
 };
 
-/// Something that happened and that a viewer shows for a moment, where it happened.
+/// An event that a viewer shows for a moment, and its place.
 struct ViewEvent {
   enum class Kind : std::uint8_t { join, break_ };
   Kind kind = Kind::join;
   Vec3 position;  ///< m
 };
 
-/// What one structural edit did.
+/// The result of one structural edit.
 struct RestructureReport {
-  bool queued = false;   ///< asked for during a step: applied right after it
-  bool changed = false;  ///< false where the edit had nothing to do (e.g. separating unrelated particles)
+  bool queued = false;   ///< requested during a step: applied right after it
+  bool changed = false;  ///< false if there was nothing to do (e.g. separating unrelated particles)
   std::uint32_t structure_version = 0;
   std::vector<BodyId> created_bodies;
   std::vector<ParticleId> created_particles;
@@ -72,23 +72,23 @@ struct RestructureReport {
   std::vector<AbsorbedParticle> absorbed_particles;
   std::vector<AbsorbedBody> absorbed_bodies;
   std::uint32_t articulates_before = 0, articulates_after = 0;  ///< of the whole system
-  double closed_distance = 0;                                   ///< how far apart the combined particles were, m
-  double remaining_gap = 0;                                     ///< what no position could close, m
+  double closed_distance = 0;                                   ///< former distance of the combined particles, m
+  double remaining_gap = 0;                                     ///< gap that could not be closed, m
   double energy_change = 0;                                     ///< J
-  Vec3 momentum_change;                                         ///< what could not be kept, kg m/s (a nail took it)
+  Vec3 momentum_change;                                         ///< kg m/s, not conserved because of nails
   Vec3 angular_momentum_change;                                 ///< about the origin, kg m^2/s
   std::vector<std::string> notes;                               ///< plain sentences
 };
 
-/// What one `step` did. Not converged is a result, never an exception.
+/// The result of one `step`. Non-convergence is a result, never an exception.
 struct [[nodiscard]] StepReport {
   std::uint64_t step = 0;      ///< number of the step just finished, from 1
   double time = 0;             ///< simulated time at its end, s
   double dt = 0;               ///< s
   double iterations_mean = 0;  ///< Newton iterations per articulate and (sub-)step
   int iterations_max = 0;
-  int substeps_max = 1;  ///< sub-steps that the busiest articulate needed
-  int fallbacks = 0;     ///< (sub-)steps handed from the energy-keeping scheme to the robust one
+  int substeps_max = 1;  ///< largest number of sub-steps of an articulate
+  int fallbacks = 0;     ///< (sub-)steps that the robust scheme took in place of the energy-keeping one
   int unconverged = 0;   ///< articulates left with a least violation instead of a solution
   double worst_gap = 0;  ///< largest hinge separation or rigidity error, m
   Energy energy;
@@ -100,25 +100,25 @@ struct [[nodiscard]] StepReport {
   std::vector<Broken> broken;
   std::vector<ContactEvent> contacts;
   std::vector<ParticleId> born, died;      ///< of emitters, and of those with a lifetime
-  std::optional<RestructureReport> edits;  ///< asked for during the step and made right after it, as one
+  std::optional<RestructureReport> edits;  ///< requested during the step and made right after it, as one
   std::vector<std::string> warnings;       ///< plain sentences: a quarantined bond, a conflict ...
 };
 
-/// One report of several steps in a row: numbers of the last one, sums of what is counted, the largest of what is largest,
-/// and all that happened.
+/// Combines the reports of consecutive steps: last values of time and energy, sums of counts, maxima of largest values,
+/// and all events.
 void add_step(StepReport& sum, const StepReport& next);
 
-/// Whether the constraints of bodies that are solved together contradict or repeat each other, by singular value
-/// decomposition of their Jacobian at the present positions (the thesis, C.3). Rows are scaled to length 1, unknowns by
-/// masses, so that figures do not depend on units. Bonds and the stiffness of stretched links are left out.
+/// Analysis of conflicting and redundant constraints of an island, by singular value decomposition of their Jacobian at
+/// the present positions (the thesis, C.3). Rows are scaled to length 1, unknowns by masses, so that figures do not
+/// depend on units. Bonds and the stiffness of stretched links are left out.
 struct Diagnosis {
   std::uint32_t unknowns = 0;            ///< coordinates of points
-  std::uint32_t rows = 0;                ///< of constraints that hold now: open stops and slack ropes do not
+  std::uint32_t rows = 0;                ///< of active constraints: without open stops and slack ropes
   std::uint32_t rank = 0;                ///< singular values above 1e-8 of the largest
   std::uint32_t redundancy = 0;          ///< rows - rank
   std::uint32_t degrees_of_freedom = 0;  ///< unknowns - rank
   std::vector<double> singular_values;   ///< falling
-  double condition = 1;                  ///< largest singular value over the smallest that counts
+  double condition = 1;                  ///< largest singular value over the smallest one in the rank
   double kkt_condition = 1;              ///< of the matrix that a step solves
   std::vector<std::string> findings;     ///< plain sentences that name bodies, particles and constraints
 };

@@ -11,27 +11,27 @@
 #include <optional>
 #include <vector>
 
-/// What a viewer needs to know of a system beside poses: plain copies, safe to hand to another thread. Lengths in m. The
+/// Description of a system for viewers, besides poses: plain copies, safe to pass to another thread. Lengths in m. The
 /// frame of a body is that of its pose.
 namespace iota {
 
 enum class BodyKind : std::uint8_t;  // of bodies.h
 
-/// A solid that a body was given as.
+/// A solid of a body.
 struct DrawnSolid {
-  Shape shape;  ///< a Mesh whose triangles are not known here is empty
+  Shape shape;  ///< a Mesh is empty if this system does not have its triangles
   Vec3 position;
   Quaternion orientation;
 };
 
-/// A stretch between two points of a body.
+/// A segment between two points of a body.
 struct DrawnLine {
   Vec3 center;
   Quaternion turn;  ///< turns the x axis into its direction
   double length = 0;
 };
 
-/// A particle of a body of several, with a radius.
+/// A particle with a radius, in a body of several particles.
 struct DrawnBall {
   Vec3 center;
   double radius = 0;
@@ -40,40 +40,40 @@ struct DrawnBall {
 
 struct DrawnBody {
   BodyId id;
-  bool is_new = true;  ///< created since the last call: no body that was known in its slot
+  bool is_new = true;  ///< created since the last call
   BodyKind kind{};
   std::vector<DrawnSolid> solids;
-  /// Its cosmetic bonds or, where it has none, from each of its particles to the next; empty for one particle.
+  /// Its cosmetic bonds; without these, from each of its particles to the next; empty for one particle.
   std::vector<DrawnLine> lines;
   std::uint32_t particles = 0;
-  std::optional<ParticleAttributes> attributes;  ///< of a single particle that has some
-  std::vector<DrawnBall> balls;                  ///< of particles that have a radius, if there are several
+  std::optional<ParticleAttributes> attributes;  ///< of a body of one particle that has some
+  std::vector<DrawnBall> balls;                  ///< particles with a radius, in a body of several
 };
 
-/// Which articulate a body belongs to.
+/// The articulate of a body.
 struct Membership {
   std::uint32_t body = 0, articulate = 0;  ///< slots
 };
 
-/// A point of a body, in its frame, or of the world where the body is null.
+/// A point of a body, in its frame; if the body is null, of the world.
 struct Anchor {
   BodyId body;
   Vec3 point;
 };
 
 struct DrawnTie {
-  /// Bonds and joints are tables of their own: a tie's slot tells which one it is of.
+  /// Bonds and joints are separate tables; a tie's slot identifies both the table and the row.
   static constexpr std::uint32_t slot_of_bond(std::uint32_t bond) { return 2 * bond; }
   static constexpr std::uint32_t slot_of_joint(std::uint32_t joint) { return 2 * joint + 1; }
 
   enum class Kind : std::uint8_t { spring, rope, rod };
-  std::uint32_t slot = 0;  ///< of all ties: no two have the same at a time
+  std::uint32_t slot = 0;  ///< unique among all ties at a time
   Kind kind = Kind::spring;
-  double length = 0;  ///< of a spring at rest, a rope pulled taut, a rod
+  double length = 0;  ///< of a relaxed spring, a taut rope, a rod
   Anchor a, b;
 };
 
-/// A constraint that is in force and is no tie.
+/// An active constraint that is not drawn as a tie.
 struct DrawnJoint {
   std::uint32_t slot = 0;
   const char* kind = "";  ///< name
@@ -92,19 +92,19 @@ struct DrawnParticleSet {
   std::uint32_t capacity = 0;
 };
 
-/// New and changed ones as they are now, and the slots of those that are gone (some of which were never drawn).
+/// New and changed items in their present state, and the slots of destroyed ones (some of which were never drawn).
 template <class Item>
 struct Changes {
   std::vector<Item> set;
   std::vector<std::uint32_t> gone;
 };
 
-/// What has changed since the last call. Where it is whole, it lists everything: what it leaves out is gone.
+/// Changes since the last call. If `whole`, it lists everything: an item that is not in it no longer exists.
 struct SceneChanges {
   bool is_whole = true;
-  double extent = 0;  ///< where whole: diagonal of the box around all particles
+  double extent = 0;  ///< if whole: diagonal of the box around all particles
   Changes<DrawnBody> bodies;
-  std::vector<Membership> memberships;  ///< of bodies whose articulate is another one now
+  std::vector<Membership> memberships;  ///< of bodies whose articulate has changed
   Changes<DrawnTie> ties;
   Changes<DrawnJoint> joints;
   Changes<DrawnNail> nails;

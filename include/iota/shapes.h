@@ -10,7 +10,7 @@
 #include <vector>
 
 /// Shapes: homogeneous solids, surfaces that constraints hold points on, sources of particles. One frame convention for
-/// all: the origin is at the center, what is long lies along x, sizes are full (but radii). Lengths in m. Drawings and
+/// all: the origin is at the center, the long axis is x, sizes are full (except radii). Lengths in m. Drawings and
 /// formulas are in the header of each, src/shape/<name>.h.
 namespace iota {
 
@@ -40,10 +40,10 @@ struct Torus {
   double radius = 0.5, tube = 0.1, stretch = 0;
   friend bool operator==(const Torus&, const Torus&) = default;
 };
-/// What a closed surface of triangles encloses; seen from outside each triangle runs counter-clockwise.
+/// The volume within a closed surface of triangles; seen from outside each triangle is counter-clockwise.
 struct Mesh {
   std::vector<Vec3> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< numbers of vertices
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices
   friend bool operator==(const Mesh&, const Mesh&) = default;
 };
 
@@ -76,15 +76,15 @@ struct MassProperties {
 };
 
 /// Closed forms; for meshes the divergence theorem (Eberly, Polyhedral Mass Properties, 2002), exact for any closed
-/// surface, convex or not. Throws std::invalid_argument for sizes that are not positive, for shapes without a volume, and
-/// for meshes that are open, inside out, flat, inconsistently wound or name vertices that are not there: the text says
-/// which triangle or edge.
+/// surface, convex or not. Throws std::invalid_argument for sizes that are not positive, for shapes without a volume,
+/// and for meshes that are open, inside out, flat, inconsistently wound or have invalid indices: the text names the
+/// triangle or edge.
 MassProperties mass_properties(const Shape& shape);
 
-/// The convex hull: a closed mesh whose vertices are some of the points, in their order. Points within, on faces and given
-/// twice do no harm; hulls that are flatter than 1e-9 of their extent are refused. O(n log n).
-/// Throws std::invalid_argument for fewer than four points, for points that are not finite, and where all are at one
-/// place, on one line or in one plane. Quickhull: Barber, Dobkin, Huhdanpaa 1996.
+/// The convex hull: a closed mesh whose vertices are some of the points, in their order. Inner, coplanar and duplicate
+/// points are allowed; hulls that are flatter than 1e-9 of their extent are refused. O(n log n). Throws
+/// std::invalid_argument for fewer than four points, for points that are not finite, and if all are at one place, on
+/// one line or in one plane. Quickhull: Barber, Dobkin, Huhdanpaa 1996.
 Mesh convex_hull(std::span<const Vec3> points);
 
 }  // namespace iota

@@ -31,17 +31,17 @@
 /// SI units; world frame right-handed, y up.
 namespace iota {
 
-/// The dial from plausible to accurate; may be turned at any time. docs/solver.md says what each costs and is worth.
+/// Modes from plausible to accurate; can be changed at any time. docs/solver.md lists cost and accuracy of each.
 enum class IntegrationMode : std::uint8_t {
-  plausible,       ///< `robust` with gaps up to 1e-7 of a link: for what is far away
+  plausible,       ///< `robust` with gaps up to 1e-7 of a link: for distant things
   robust,          ///< backward Euler: never fails, never gains energy, dissipates
-  energy_keeping,  ///< mid-point discrete gradient with bisection; falls back to `robust` where it must, and says so
+  energy_keeping,  ///< mid-point discrete gradient with bisection; falls back to `robust` if a step fails
   accurate,        ///< `energy_keeping` in sub-steps whose estimated errors add up to 1e-4 of a link a second
 };
 
-/// Articulates that bonds and constraints tie together fall asleep as one when none of their particles has been faster
-/// than `speed` for `after` seconds: they are then `resting`, stand still, and are not solved. An edit, an assigned
-/// velocity, a grip, an applied force (that of a scripted bond too), a moving nail or another gravity wakes them.
+/// Articulates tied by bonds and constraints fall asleep together when no particle of them has been faster than `speed`
+/// for `after` seconds: they are then `resting`, do not move, and are not solved. An edit, an assigned velocity, a
+/// grip, an applied force (that of a scripted bond too), a moving nail or another gravity wakes them.
 struct RestOptions {
   double after = 0;     ///< s; 0: never
   double speed = 0.01;  ///< m/s
@@ -51,16 +51,16 @@ struct SystemOptions {
   Vec3 gravity{0, -9.81, 0};  ///< m/s^2
   IntegrationMode mode = IntegrationMode::energy_keeping;
   double damping = 0;  ///< 1/s, all bodies: velocities fall by exp(-damping t)
-  int threads = 0;     ///< that share a step, 0: one a core. Results are the same bits for any number
+  int threads = 0;     ///< used by a step, 0: one per core. Results are the same bits for any number
   RestOptions rest;
 };
 
 /// A world, sorted by noun: `system.bodies().mass(id)`. Functions throw std::invalid_argument for bad numbers and
-/// StaleIdError for ids whose thing is gone, before anything has changed. A system is used from one thread at a time.
+/// StaleIdError for ids of destroyed objects, before any change. A system is used from one thread at a time.
 ///
-/// While it steps, functions of the script may read everything, and ask for the edits that `queued_edits` names: combine,
-/// destroy, nail, release, separate, set_active, set_coordinate, set_kind, set_length. These are done right after the
-/// step; any other throws std::logic_error.
+/// During a step, functions of the script may read everything, and request the edits that `queued_edits` lists:
+/// combine, destroy, nail, release, separate, set_active, set_coordinate, set_kind, set_length. These are made right
+/// after the step; all others throw std::logic_error.
 class System {
  public:
   explicit System(const SystemOptions& options = {});
@@ -85,7 +85,7 @@ class System {
   Edits edits() { return Edits(*core_); }
   Record record() { return Record(*core_); }
   Viewer viewer() { return Viewer(*core_); }
-  // Of a constant system only what reads can be called.
+  // For a constant system only the functions that read can be called.
   const Bodies bodies() const { return Bodies(*core_); }
   const Particles particles() const { return Particles(*core_); }
   const Bonds bonds() const { return Bonds(*core_); }
@@ -111,10 +111,10 @@ class System {
   double time() const;
   std::uint64_t step_count() const;
   int threads() const;
-  /// How many threads share a step; 0: one a core. No part of the state: it changes how soon, not what. Small steps are
-  /// taken by the calling thread alone.
+  /// Number of threads that share a step; 0: one per core. Not part of the state: results do not depend on it. Small
+  /// steps are taken by the calling thread alone.
   void set_threads(int);
-  /// "combine, destroy, ...": the edits that may be asked for during a step.
+  /// "combine, destroy, ...": the edits that may be requested during a step.
   static std::string queued_edits();
   ///@}
 
@@ -124,8 +124,8 @@ class System {
   void set_gravity(const Vec3&);
   IntegrationMode mode() const;
   void set_mode(IntegrationMode);
-  /// Who solves the equations of each step: "direct" (the built-in sparse Newton), or a solver by name (iota/solver.h),
-  /// which is given them dense and is far slower. Where it finds no root, the built-in one solves after all, with a warning.
+  /// Solver of the equations of each step: "direct" (the built-in sparse Newton), or a registered one (iota/solver.h),
+  /// which gets dense arrays and is far slower. If it fails, the built-in one takes over, with a warning.
   std::string solver() const;
   void set_solver(std::string_view name);
   double damping() const;
@@ -142,14 +142,14 @@ class System {
   double worst_gap() const;       ///< m
   std::uint32_t structure_version() const;
   Snapshot snapshot() const;
-  /// Functions and meshes stay those of this system. Throws std::invalid_argument on bytes that are not a snapshot, or whose
-  /// tables do not fit together, whatever their checksum; the system is then unchanged.
+  /// Keeps the functions and meshes of this system. Throws std::invalid_argument for bytes that are not a snapshot or
+  /// whose tables are inconsistent, even with a correct checksum; the system is then unchanged.
   void restore(const Snapshot&);
   std::uint64_t state_hash() const;
-  /// Looks at the constraints of a body and of all that is solved together with it. Takes seconds for hundreds of rows.
+  /// Analyzes the constraints of the island of a body. Takes seconds for hundreds of rows.
   /// Throws std::invalid_argument above 600 rows.
   Diagnosis diagnose(BodyId) const;
-  /// Walks the whole structure; one sentence per inconsistency, empty when whole.
+  /// Checks the whole structure; returns one sentence per inconsistency.
   std::vector<std::string> validate() const;
   ///@}
 

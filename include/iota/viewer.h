@@ -11,20 +11,20 @@
 
 namespace iota {
 
-/// What viewers draw.
+/// Data for viewers.
 class Viewer : public View {
  public:
   explicit Viewer(Core& core) : View(core) {}
 
   PoseSnapshot poses() const;
-  /// What a viewer has to be told: all that changed since the last call, at first and after a restore everything, and on
-  /// request (`whole`); `also` names bodies to be described though they have not changed. Costs what has changed. One caller
-  /// at a time.
+  /// All changes since the last call; everything at the first call, after a restore, and on request (`whole`).
+  /// `also` lists unchanged bodies to be described too. The cost is proportional to the changes. Only one caller at
+  /// a time.
   SceneChanges take_scene_changes(bool whole = false, std::span<const BodyId> also = {});
-  void stop_watching_scene();  ///< nothing is noted any more for the next call, which will be given everything
-  /// As System::structure_version, but births and deaths of sparks do not count: what a viewer's list of bodies depends on.
+  void stop_watching_scene();  ///< ends the log of changes; the next call returns everything
+  /// As System::structure_version, without births and deaths of sparks: changes when a viewer's list of bodies does.
   std::uint32_t scene_version() const;
-  /// A body of one particle that an emitter bore and that nothing ties: viewers see a dot that they cannot hold.
+  /// A body of one free particle of an emitter: viewers draw a dot that users cannot grab.
   bool is_spark(BodyId) const;
 };
 

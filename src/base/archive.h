@@ -11,7 +11,7 @@
 
 namespace iota {
 
-/// Appends plain values to a byte vector. Writer and Reader have the same members, so one function serves both ways.
+/// Appends plain values to a byte vector. Writer and Reader have the same members, so one function serves both.
 class Writer {
  public:
   explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}
@@ -33,13 +33,13 @@ class Writer {
   void append(const void* data, std::size_t size) {
     if (size == 0) return;
     const std::size_t end = bytes_.size();
-    bytes_.resize(end + size);  // insert() would do, but gcc 12 warns of an overflow that cannot be
+    bytes_.resize(end + size);  // not insert(), for which gcc 12 warns of an impossible overflow
     std::memcpy(bytes_.data() + end, data, size);
   }
   std::vector<std::byte>& bytes_;
 };
 
-/// Reads the bytes of a Writer. After the first value that does not fit, `ok()` is false and every value reads as zero.
+/// Reads the bytes of a Writer. After the first invalid value, `ok()` is false and every value is read as zero.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -54,8 +54,8 @@ class Reader {
     v.resize(count(sizeof(T)));
     take(v.data(), v.size() * sizeof(T));
   }
-  /// How many items of at least `item_size` bytes follow; a number that the bytes left cannot hold is refused before
-  /// anything is allocated for it.
+  /// The number of following items of at least `item_size` bytes; a number that is too large for the remaining bytes is
+  /// refused before anything is allocated.
   std::size_t count(std::size_t item_size) {
     std::uint64_t count = 0;
     value(count);

@@ -8,7 +8,7 @@ namespace iota {
 
 namespace detail {
 
-/// Converts to whatever a field is, so that the number of fields can be counted by trying initializers.
+/// Converts to any type, so that the number of fields can be counted by trying initializers.
 struct Anything {
   template <class T>
   operator T() const;
@@ -24,12 +24,12 @@ constexpr std::size_t count_fields() {
 
 }  // namespace detail
 
-/// How many fields an aggregate without base classes has.
+/// The number of fields of an aggregate without base classes.
 template <class T>
 inline constexpr std::size_t field_count = detail::count_fields<std::remove_const_t<T>>();
 
-/// Calls visit(field) for each field of an aggregate, in order: a struct need not list its fields a second time to be
-/// saved, and a new field cannot be forgotten.
+/// Calls visit(field) for each field of an aggregate, in order: so a struct can be saved without a list of its fields,
+/// and a new field cannot be forgotten.
 template <class T, class Visit>
 void for_each_field(T& v, Visit visit) {
   constexpr std::size_t n = field_count<T>;

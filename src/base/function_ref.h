@@ -10,7 +10,7 @@ namespace iota {
 template <class Signature>
 class FunctionRef;
 
-/// A function that is lent for the length of one call: what std::function would be if it copied nothing. The callable must
+/// A reference to a function for the duration of one call: like std::function, but without a copy. The callable must
 /// outlive it.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {

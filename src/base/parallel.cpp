@@ -20,7 +20,7 @@ int available_threads() { return oneapi::tbb::info::default_concurrency(); }
 
 struct Parallel::Arena {
   explicit Arena(int threads) : arena(threads) {
-    // More threads than cores only when asked for; without this oneTBB would take fewer and complain.
+    // Allows more threads than cores on request; otherwise oneTBB would use fewer and warn.
     if (threads > available_threads())
       static const oneapi::tbb::global_control allow(oneapi::tbb::global_control::max_allowed_parallelism, 1024);
   }

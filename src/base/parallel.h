@@ -11,10 +11,10 @@ namespace iota {
 int available_threads();
 
 /// Work shared among threads (oneTBB). Calls that run at the same time must touch different data; then results do not
-/// depend on the number of threads or on which thread did what. With one thread all calls run in order on the caller's.
+/// depend on the number of threads or their order. With one thread all calls run in order on the caller's.
 class Parallel {
  public:
-  /// threads: how many, the calling one included; 0: all cores.
+  /// threads: their number, including the calling one; 0: all cores.
   explicit Parallel(int threads = 0);
   ~Parallel();
   Parallel(Parallel&&) noexcept;
@@ -22,7 +22,7 @@ class Parallel {
 
   int threads() const { return threads_; }
 
-  /// Calls work(i) once for every i in [0, count), at most `grain` of them in one go. `work` must not throw.
+  /// Calls work(i) once for every i in [0, count), at most `grain` of them in one task. `work` must not throw.
   /// Runs serially with one thread or one grain. Allocates nothing when warm.
   template <class Work>
   void for_each(std::size_t count, std::size_t grain, Work&& work) const {

@@ -10,16 +10,16 @@
 
 namespace iota {
 
-/// How sealed bytes are told apart: eight letters, the last of which is the version of the format, and a word for errors.
+/// Kind of sealed bytes: eight letters, the last of which is the version of the format, and a word for errors.
 struct Seal {
   std::array<char, 8> mark;
   std::string_view name;
 };
 
-/// The mark, the length of the content, the content, and FNV-1a (64 bits) of all before it; in the machine's byte order.
+/// The mark, the length of the content, the content, and FNV-1a (64 bits) of these; in the machine's byte order.
 std::vector<std::byte> seal(const Seal&, std::span<const std::byte> content);
 
-/// The content. Throws std::invalid_argument for bytes that are not what `seal` made, or were cut short or damaged since.
+/// The content. Throws std::invalid_argument for bytes that are not from `seal`, are truncated or damaged.
 std::span<const std::byte> unseal(const Seal&, std::span<const std::byte> bytes);
 
 }  // namespace iota

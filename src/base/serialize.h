@@ -13,7 +13,7 @@
 
 namespace iota {
 
-/// The enumerator with the largest value; enumerators run from 0 without gaps. A specialization beside the enum makes
+/// The enumerator with the largest value; enumerators start at 0 without gaps. A specialization beside the enum makes
 /// it serializable: a number beyond it is refused when it is read.
 template <class Enum>
 struct LastEnumerator;
@@ -45,12 +45,12 @@ void emplace(std::variant<Ts...>& v, std::size_t index) {
 
 /// Writes or reads anything made of numbers, enums, strings, vectors, arrays, variants and plain structs of these, field
 /// by field: padding is never saved. A Reader fails at truth values other than 0 and 1, at enumerators and alternatives
-/// that do not exist and at counts that the bytes left cannot hold; it allocates no more than those bytes ask for.
+/// that do not exist and at counts above the remaining bytes; it allocates no more than these bytes need.
 template <class Archive, class T>
 void serialize(Archive& ar, T& v) {
   using Plain = std::remove_const_t<T>;
   constexpr bool reads = std::is_same_v<Archive, Reader>;
-  // A number that stands for one of `count` things.
+  // A number below `count`.
   const auto index = [&]<class Number>(Number number, std::size_t count) {
     ar.value(number);
     if (static_cast<std::size_t>(number) < count) return number;

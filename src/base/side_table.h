@@ -9,7 +9,7 @@
 
 namespace iota {
 
-/// Values that only some items of a slot table have, by the items' slots. Costs four bytes for each slot up to the highest
+/// Values of some items of a slot table, by the items' slots. Costs four bytes for each slot up to the highest
 /// one with a value. Many threads may read, and write to existing values, at the same time.
 template <class T>
 class SideTable {
@@ -64,7 +64,7 @@ class SideTable {
     for (std::uint32_t place = 0; place < size(); ++place) visit(owners_[place], values_[place]);
   }
 
-  /// `slots`: number of slots of the item table; values for higher slots are refused.
+  /// `slots`: number of slots of the item table; values of higher slots are refused.
   template <class Archive>
   void archive(Archive& ar, std::uint32_t slots) {
     ar.vector(values_), ar.vector(owners_);

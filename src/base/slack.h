@@ -6,14 +6,14 @@
 
 namespace iota {
 
-/// Reserves room for a few more items, so that a list which grows one by one is not copied each time. Unused room is never
-/// touched, so the operating system gives it no memory.
+/// Reserves room for a few more items, so that a list which grows one by one is not copied each time. The operating
+/// system allocates no memory for room that is never touched.
 template <class T>
 void reserve_with_slack(std::vector<T>& list, std::size_t size) {
   if (size > list.capacity()) list.reserve(size + size / 32 + 16);
 }
-/// Reserves lists that most steps do not need, so that the first step which needs one does not wait for the allocator. Not
-/// for lists of megabytes: first touch dominates their cost anyway.
+/// Reserves lists that most steps do not need, so that the first step which needs one does not wait for the allocator.
+/// Not for lists of megabytes, whose cost is dominated by the first touch.
 template <class T>
 void reserve_for_rare_use(std::vector<T>& list, std::size_t size) {
   if (size <= 4096) reserve_with_slack(list, size);

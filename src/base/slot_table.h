@@ -10,7 +10,7 @@
 namespace iota {
 
 /// Objects by value under ids of slot + generation. Generations are odd while the slot is alive, so a zero generation is
-/// never alive and a reused slot never answers to an old id. Slots are reused last-in first-out (deterministic).
+/// never alive and an old id never matches a reused slot. Slots are reused last-in first-out (deterministic).
 template <class T, class IdType>
 class SlotTable {
   static_assert(std::is_trivially_copyable_v<T>, "tables are saved as bytes");
@@ -77,7 +77,7 @@ class SlotTable {
   }
 
  private:
-  /// Whether each slot either lives or is free, once: bytes may say anything.
+  /// Whether each slot is alive or in the free list exactly once: bytes from outside may be inconsistent.
   bool is_consistent() const {
     if (items_.size() != generations_.size() || alive_count_ + free_.size() != items_.size()) return false;
     std::vector<bool> is_free(items_.size(), false);

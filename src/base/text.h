@@ -6,7 +6,7 @@
 
 namespace iota {
 
-/// Its arguments one after the other, as a stream would print them.
+/// Its arguments in order, as a stream prints them.
 template <class... Parts>
 std::string text(const Parts&... parts) {
   std::ostringstream out;

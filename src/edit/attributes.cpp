@@ -48,6 +48,7 @@ void apply(Editor& e, const SetOrientation& c) {
   model::Attributes& a = attributes_of(e, particle);
   if (!a.oriented) {
     a.oriented = 1;
+    ++e.model.members_revision;
     const double r = a.radius > 0 ? a.radius : 0.05;  // a ball's
     a.moment = 0.4 * e.model.particles[particle].mass * r * r;
     if (!(a.moment > 0)) a.moment = 1e-6;

@@ -3,7 +3,7 @@
 
 #include "edit/editor.h"
 
-/// Commands about attributes that few particles have: a life, a look, an orientation of their own.
+/// Commands for optional attributes of particles: lifetime, look, orientation.
 namespace iota::edit {
 
 struct SetAttributes {

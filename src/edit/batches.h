@@ -3,7 +3,7 @@
 
 #include "edit/editor.h"
 
-/// Commands that make one edit of several, and take edits back.
+/// Commands for batches of edits, undo and redo.
 namespace iota::edit {
 
 struct BeginEdit {};

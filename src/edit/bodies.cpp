@@ -25,7 +25,7 @@ Mat3 to_mat3(const Matrix3& rows) {
   return m;
 }
 
-/// Of a body whose shape has no volume: four points that stand for a cube of 1 m give it a frame.
+/// For a body whose shape has no volume: the four points of a cube of 1 m give it a frame.
 constexpr MassProperties frame_only{1, {}, {{{1.0 / 12, 0, 0}, {0, 1.0 / 12, 0}, {0, 0, 1.0 / 12}}}};
 
 }  // namespace
@@ -89,7 +89,7 @@ ParticleId apply(Editor& e, const CreateAttachment& c) {
              "body ",
              body, ", which therefore cannot give; use attachments for that"));
   const std::uint32_t particle = attach(model, solid, c.position);
-  // Velocities of the mid-point rule are rigid on the average only, so a new basis may carry the others differently.
+  // Velocities of the mid-point rule are rigid only on average: a new basis may give the others different ones.
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     if (model.is_unknown(model.particles[p])) return;
     model::Ring& ring = model.rings[model.particles[p].ring];
@@ -171,18 +171,19 @@ void apply(Editor& e, const SetKind& c) {
     model::Body& body = model.bodies[slot];
     if (c.kind == BodyKind::inactive) body.kind_before = body.kind;
     body.kind = c.kind;
+    if (c.kind != BodyKind::scripted) stop_carrying(e, slot);
     if (c.kind != BodyKind::dynamic) model.spins.erase(slot);
-    if (c.kind == BodyKind::dynamic && before != BodyKind::inactive) model.rebuild_basis(slot);  // rigid as it was put
+    if (c.kind == BodyKind::dynamic && before != BodyKind::inactive) model.rebuild_basis(slot);  // rigid here
     model.for_each_particle_of(slot, [&](std::uint32_t p) {
       model.acting_changed(p);
       model::Ring& ring = model.rings[model.particles[p].ring];
       if (c.kind != BodyKind::dynamic && (c.kind != BodyKind::inactive || ring.count == 1))
-        ring.velocity = ring.acceleration = {};
+        ring.velocity = ring.acceleration = ring.correction = {};
     });
     model.touch_body(slot);
     model.articulates[body.articulate].velocity_dirty = 1;
   };
-  if (before == BodyKind::inactive) {  // what it is hinged to may have gone elsewhere meanwhile
+  if (before == BodyKind::inactive) {  // the bodies hinged to it may have moved meanwhile
     RestructureReport report;
     Restructuring restored(e, {{slot}}, Restructuring::Kind::moving, report);
     change();
@@ -222,9 +223,9 @@ void add_motion(Editor& e, std::uint32_t body, Motion motion) {
 
 }  // namespace
 
-// Points on a line have no inertia about it: there is nothing that could keep such a spin. A rod has.
+// Points on a line have no inertia about it, so they cannot keep such a spin. A rod has inertia.
 void require_can_spin(const model::Model& model, std::uint32_t slot, const Vec3& spin) {
-  constexpr double along = 1e-6;  // of the spin: round-off
+  constexpr double along = 1e-6;  // relative to the spin: round-off
   const model::Body& body = model.bodies[slot];
   if (body.rank > 2 || spin == Vec3{} || model.axial_inertia(slot) > 0) return;
   const Vec3 axis = model.position(body.basis[body.rank - 1]) - model.position(body.basis[0]);
@@ -242,7 +243,7 @@ void set_axial_spin(model::Model& model, std::uint32_t body, const Vec3& spin) {
   ingredient::RodSpins::set(model, body, std::abs(axial) > round_off * norm(spin) ? axial : 0);
 }
 
-// The whole articulate moves as if it were rigid, so that no joint notices.
+// The whole articulate moves as a rigid body, so that joints are not violated.
 void apply(Editor& e, const SetPose& c) {
   model::Model& model = e.model;
   const std::uint32_t body = e.require(c.body);
@@ -256,8 +257,8 @@ void apply(Editor& e, const SetPose& c) {
   const auto moved = [&](const Vec3& x) { return c.position + rotate(turn, x - center); };
   const std::uint32_t articulate = model.bodies[body].articulate;
   if (model.bodies[body].kind == BodyKind::scripted) {
-    model.for_each_particle_of(
-        body, [&](std::uint32_t p) { apply(e, Nail{model.particles.id(p), false, moved(model.position(p))}); });
+    model.for_each_particle_of(body,
+                               [&](std::uint32_t p) { carry(e, model.particles.id(p), moved(model.position(p))); });
     return;
   }
   std::vector<std::uint32_t> rings;
@@ -271,12 +272,12 @@ void apply(Editor& e, const SetPose& c) {
   });
   std::sort(rings.begin(), rings.end());
   rings.erase(std::unique(rings.begin(), rings.end()), rings.end());
-  const Vec3 mean = (1 / mass) * momentum;  // velocities turn along, so that momentum and kinetic energy stay
+  const Vec3 mean = (1 / mass) * momentum;  // velocities are turned too, which keeps kinetic energy
   for (const std::uint32_t slot : rings) {
     model::Ring& ring = model.rings[slot];
     ring.position = moved(ring.position);
     ring.velocity = mean + rotate(turn, ring.velocity - mean);
-    // Of a static body's rings too, or what is tied to it would bring it back.
+    // Also for a static body's rings, or its ties would bring it back.
     if (ingredient::Nail* const nail = model.nails.find(slot))
       nail->position = nail->position_before = moved(nail->position);
   }
@@ -306,7 +307,7 @@ void apply(Editor& e, const SetAngularVelocity& c) {
   set_axial_spin(model, body, c.value);
 }
 
-// Mass, momentum and energy go with it.
+// Its mass, momentum and energy are removed too.
 void apply(Editor& e, const Destroy<BodyId>& c) {
   const std::uint32_t body = e.require(c.id);
   const ingredient::Followers followers(e.model, {{body}});

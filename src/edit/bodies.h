@@ -55,9 +55,9 @@ void apply(Editor&, const SetBodyVelocity&);
 void apply(Editor&, const SetAngularVelocity&);
 void apply(Editor&, const Destroy<BodyId>&);
 
-/// Throws where a body's points could not keep an angular velocity.
+/// Throws if a body's points could not keep an angular velocity.
 void require_can_spin(const model::Model&, std::uint32_t body, const Vec3& spin);
-/// Of an angular velocity, what a rod keeps apart from its points; nothing for other bodies.
+/// The spin of a rod in an angular velocity, which its points do not have; nothing for other bodies.
 void set_axial_spin(model::Model&, std::uint32_t body, const Vec3& spin);
 
 }  // namespace iota::edit

@@ -8,8 +8,8 @@
 
 namespace iota::edit {
 
-// Over the massive particles as m (a + alpha x r): what accelerates each of them as the body does, so that nothing is
-// loaded within it.
+// Distributed over the massive particles as m (a + alpha x r), in proportion to the body's accelerations, so that there
+// is no load within it.
 void spread(const model::Model& model, std::uint32_t body, const Vec3& force, const Vec3& torque,
             std::vector<std::pair<ParticleId, Vec3>>& forces) {
   double mass = 0;
@@ -22,7 +22,7 @@ void spread(const model::Model& model, std::uint32_t body, const Vec3& force, co
   each([&](std::uint32_t p, double m) { mass += m, center += m * model.position(p); });
   if (!(mass > 0)) throw std::invalid_argument(text("body ", body, " has no particles that a force could act on"));
   center *= 1 / mass;
-  Mat3 inertia;  // of the points alone: the force on each must add up to the torque, whatever else gives it inertia
+  Mat3 inertia;  // of the points only: the forces on these must add up to the torque
   each([&](std::uint32_t p, double m) { inertia += point_inertia(m, model.position(p) - center); });
   const Vec3 turn = solve_semidefinite(inertia, torque), reached = inertia * turn;
   constexpr double round_off = 1e-9;

@@ -35,8 +35,8 @@ void apply(Editor&, const SetBodyMass&);
 void apply(Editor&, const ApplyBodyForce&);
 void apply(Editor&, const ApplyBodyTorque&);
 
-/// Adds the forces on a body's particles that are a force at its center of mass and a torque. Throws
-/// std::invalid_argument where nothing has a lever for the torque.
+/// Adds forces on a body's particles that are equivalent to a force at its center of mass and a torque. Throws
+/// std::invalid_argument if the torque has no lever arm.
 void spread(const model::Model&, std::uint32_t body, const Vec3& force, const Vec3& torque,
             std::vector<std::pair<ParticleId, Vec3>>& forces);
 

@@ -22,6 +22,9 @@ void check(const Editor& e, const CreateBond& c) {
   const std::uint32_t p = e.require(c.p), q = e.require(c.q), slot = e.require(c.law);
   if (p == q) throw std::invalid_argument(text("a bond needs two particles, got particle ", p, " twice"));
   const ingredient::Law& law = model.laws[slot];
+  if (law.has_derivative() && model.compiled(slot).depends_on_normals())
+    throw std::invalid_argument(text("the law ", law.name.data(),
+                                     " depends on normals (cos_p, cos_q, cos_pq): only pairwise forces know them"));
   if (c.implicit && !law.has_derivative())
     throw std::invalid_argument(
         text("the law ", law.name.data(), " is code without a derivative: its bonds cannot be implicit"));

@@ -10,7 +10,7 @@ struct CreateBond {
   LawId law;
   bool implicit;
   std::uint64_t script;                               ///< key of its own function; 0: none
-  std::array<double, max_law_parameters> parameters;  ///< NaN: the distance of the ends now
+  std::array<double, max_law_parameters> parameters;  ///< NaN: the present distance of the ends
 };
 struct SetBondParameter {
   BondId bond;

@@ -23,7 +23,7 @@
 
 namespace iota::edit {
 
-/// A step is a command too, since recordings hold it; src/step applies it.
+/// A step is a command too, since recordings contain it; src/step applies it.
 struct Step {
   double dt;
 };
@@ -129,19 +129,19 @@ using Command = std::variant<
     CreateTackle>;
 // clang-format on
 
-/// Whether a command may be asked for during a step; it is then applied right after it. Such a command says how users
-/// call it (`queued_as`).
+/// Whether a command may be requested during a step; it is then applied right after it. Such a command has its name for
+/// users (`queued_as`).
 template <class C>
 inline constexpr bool is_queueable = requires { C::queued_as; };
 
-/// Whether a command leaves the energy of the system as it is, so that nothing has to be summed up for the book: what hands
-/// do becomes work in steps only.
+/// Whether a command does not change the energy of the system, so that no energy has to be summed up: hands do work
+/// only in steps.
 template <class C>
 inline constexpr bool keeps_energy = requires { C::keeps_energy; };
 template <>
 inline constexpr bool keeps_energy<Destroy<GripId>> = true;
 
-/// What users call the queueable commands, each once: "combine, separate, ...".
+/// The users' names of the queueable commands, each once: "combine, separate, ...".
 std::string queued_edits();
 
 }  // namespace iota::edit

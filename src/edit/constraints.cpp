@@ -48,7 +48,7 @@ void require_surface(const ingredient::PlacedSurface& surface) {
         text("orientation of the surface must be a unit quaternion x y z w, got length ", size));
 }
 
-/// Calls a surface's function once, for what would otherwise only show in the next step. point: world frame.
+/// Calls a surface's function once, to find errors before the next step. point: world frame.
 void require_function(const model::Model& model, const ingredient::PlacedSurface& surface, const Vec3& point) {
   const auto found = model.surface_functions.find(surface.data.function);
   if (found == model.surface_functions.end()) return;
@@ -59,7 +59,7 @@ void require_function(const model::Model& model, const ingredient::PlacedSurface
     throw std::invalid_argument(text("the function of a surface ", function.failure(), ", at ", text_of(point)));
 }
 
-/// visit(constraint): those that a coupling couples, or the one itself.
+/// visit(constraint): the terms of a coupling, or the constraint itself.
 template <class Visit>
 void for_each_joint_of(const model::Model& model, std::uint32_t constraint, Visit visit) {
   const ingredient::Constraint& c = model.constraints[constraint];
@@ -68,8 +68,8 @@ void for_each_joint_of(const model::Model& model, std::uint32_t constraint, Visi
                                    [&](const ingredient::CoupledTerm& term) { visit(model.constraints[term.joint]); });
 }
 
-/// After making or changing a constraint: its island is made anew, its velocities are projected before the next step, and
-/// a gap closes there.
+/// Call it after making or changing a constraint: its island is rebuilt, its velocities are projected before the next
+/// step, and a gap closes there.
 void constraint_changed(Editor& e, std::uint32_t constraint) {
   model::Model& model = e.model;
   for_each_joint_of(model, constraint, [&](const ingredient::Constraint& c) {
@@ -80,7 +80,7 @@ void constraint_changed(Editor& e, std::uint32_t constraint) {
   e.structure_changed();
 }
 
-/// Wakes bodies at rest that a changed motor or rope must move.
+/// Wakes resting bodies that a changed motor or rope must move.
 void wake(Editor& e, std::uint32_t constraint) {
   model::Model& model = e.model;
   bool rests = false;
@@ -242,7 +242,7 @@ void apply(Editor& e, const SetConstraintActive& c) {
   constraint.broken = 0;
   if (constraint.active == static_cast<std::uint8_t>(c.active)) return;
   constraint.active = c.active;
-  if (c.active) ingredient::Joints::renew_geometry(model, slot);  // a surface that has failed gets another chance
+  if (c.active) ingredient::Joints::renew_geometry(model, slot);  // a failed surface is tried again
   ingredient::refresh_coordinates(model, slot);
   constraint.multipliers.fill(0), constraint.efforts = {}, constraint.carries = {}, constraint.gap = 0;
   constraint_changed(e, slot);

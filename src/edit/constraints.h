@@ -64,7 +64,7 @@ void apply(Editor&, const SetLength&);
 void apply(Editor&, const SetBreakLimits&);
 void apply(Editor&, const Destroy<ConstraintId>&);
 
-/// Brings the coordinates of a body's joints up to date with places that were assigned.
+/// Updates the coordinates of a body's joints after places were assigned.
 void refresh_coordinates_of(model::Model&, std::uint32_t body);
 
 }  // namespace iota::edit

@@ -59,7 +59,7 @@ void Door::apply_queue(StepReport& report) {
 }
 
 void Door::start_recording() {
-  editor_.forget_history();  // a replay would not have it
+  editor_.forget_history();  // a replay would not have this history
   recording_ = Recording{editor_.snapshot(), {}, {}};
   editor_.keeps_functions = true;
 }
@@ -103,7 +103,7 @@ struct KeepFunctions {
 
 std::optional<std::uint64_t> Door::replay(const Recording& recording,
                                           const std::function<void(const Command&)>& execute) {
-  for_each_command(recording, [](std::size_t, const Command&) {});  // refused before anything changes
+  for_each_command(recording, [](std::size_t, const Command&) {});  // throws before anything changes
   editor_.restore(recording.start);
   editor_.forget_history();
   const KeepFunctions keep(editor_);

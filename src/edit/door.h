@@ -4,10 +4,14 @@
 #include "edit/commands.h"
 
 #include <functional>
+#include <utility>
 
 namespace iota::edit {
 
-/// The one way in: every command passes through `execute`, from a user's call, a queue or a recording.
+template <class C>
+using ResultOf = decltype(apply(std::declval<Editor&>(), std::declval<const C&>()));
+
+/// Every command passes through `execute`, from a user's call, a queue or a recording.
 class Door {
  public:
   explicit Door(Editor& editor) : editor_(editor) {}
@@ -15,7 +19,7 @@ class Door {
   /// Applies a command and records it. During a step a queueable one waits for the end of the step, and any other throws
   /// std::logic_error.
   template <class C>
-  auto execute(const C& command);
+  ResultOf<C> execute(const C& command);
 
   /// @name Steps
   ///@{
@@ -23,7 +27,7 @@ class Door {
   [[noreturn]] static void refuse_in_step();
   void begin_step() { is_stepping_ = true; }
   void end_step() { is_stepping_ = false; }
-  /// Applies what was asked for during the step, in order, as one edit.
+  /// Applies the commands requested during the step, in order, as one edit.
   void apply_queue(StepReport&);
   ///@}
 
@@ -32,54 +36,65 @@ class Door {
   bool is_recording() const { return recording_.has_value(); }
   void start_recording();
   Recording stop_recording();
-  /// A step that has just been made.
+  /// Records a completed step.
   void record_step(const Step&);
   /// Restores the start and calls execute(command) for each command that follows. Returns the number of the first step
-  /// whose hash differs, if any. Throws std::invalid_argument for a damaged recording: before anything has changed where
-  /// bytes are not a command, else after the last command that could be applied.
+  /// with another hash, if any. Throws std::invalid_argument for a damaged recording: before any change if bytes are
+  /// not a command, else after the last command that could be applied.
   std::optional<std::uint64_t> replay(const Recording&, const std::function<void(const Command&)>& execute);
   ///@}
 
  private:
   template <class C>
+  ResultOf<C> put_off(const C& command);
+  template <class C>
+  ResultOf<C> make(const C& command);
+  template <class C>
   void record(const C& command);
 
   Editor& editor_;
   bool is_stepping_ = false;
-  std::vector<Command> queue_;  // asked for during the step
+  std::vector<Command> queue_;  // requested during the step
   std::optional<Recording> recording_;
 };
 
 // --- definitions --------------------------------------------------------------------------------------------------------
 
+// Two functions, so that neither report is copied.
 template <class C>
-auto Door::execute(const C& command) {
-  using Result = decltype(apply(editor_, command));
-  if (is_stepping_) {
-    if constexpr (is_queueable<C>) {
-      queue_.push_back(command);
-      if constexpr (std::is_same_v<Result, RestructureReport>) {
-        RestructureReport report;
-        report.queued = true;
-        return report;
-      } else {
-        static_assert(std::is_void_v<Result>, "the caller of a queued command cannot get its result");
-        return;
-      }
+ResultOf<C> Door::execute(const C& command) {
+  if (is_stepping_) return put_off(command);
+  return make(command);
+}
+
+template <class C>
+ResultOf<C> Door::put_off(const C& command) {
+  if constexpr (is_queueable<C>) {
+    queue_.push_back(command);
+    if constexpr (std::is_same_v<ResultOf<C>, RestructureReport>) {
+      RestructureReport report;
+      report.queued = true;
+      return report;
     } else {
-      refuse_in_step();
+      static_assert(std::is_void_v<ResultOf<C>>, "the caller of a queued command cannot get its result");
     }
+  } else {
+    refuse_in_step();
   }
+}
+
+template <class C>
+ResultOf<C> Door::make(const C& command) {
   if constexpr (!keeps_energy<C>) {
     editor_.held.note_change();
     editor_.model.has_edits = 1;
   }
-  if constexpr (std::is_void_v<Result>) {
+  if constexpr (std::is_void_v<ResultOf<C>>) {
     apply(editor_, command);
     record(command);
   } else {
-    Result result = apply(editor_, command);
-    if constexpr (std::is_same_v<Result, RestructureReport>)
+    ResultOf<C> result = apply(editor_, command);
+    if constexpr (std::is_same_v<ResultOf<C>, RestructureReport>)
       if (editor_.batch) editor_.batch->add(result);
     record(command);
     return result;

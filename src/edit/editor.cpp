@@ -11,7 +11,7 @@ namespace {
 
 constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '6'}, "snapshot"};
 
-/// `survivor()`: what absorbed it, asked only where it is gone.
+/// `survivor()`: the object that absorbed it, called only for a stale id.
 template <class Table, class IdType, class Survivor>
 std::uint32_t slot_of(const Table& table, std::string_view kind, IdType id, Survivor survivor) {
   if (table.contains(id)) return id.slot;
@@ -55,7 +55,7 @@ Snapshot Editor::snapshot() {
   std::vector<std::byte> content;
   Writer writer(content);
   model.archive(writer);
-  // A restored system builds its islands from what is saved; so does this one, or replays would differ in the last bits.
+  // A restored system builds its islands from saved data; so must this one, or replays differ in the last bits.
   islands.renew();
   keys_saved_below_ = held.functions.next_key;
   return {seal(snapshot_seal, content)};

@@ -32,9 +32,9 @@ struct LastEnumerator<CurveKind> : std::integral_constant<CurveKind, CurveKind::
 
 }  // namespace iota
 
-/// Everything that changes a system is a command: a struct of serializable fields, and a function `apply` that checks what
-/// it is given, throws before anything has changed, and else changes the model. Commands are queued during a step,
-/// recorded and replayed (door.h). A new command is declared beside its kin, defined there, and added to commands.h.
+/// Everything that changes a system is a command: a struct of serializable fields, and a function `apply` that checks
+/// the fields, throws before any change, or changes the model. Commands are queued during a step, recorded and replayed
+/// (door.h). A new command is declared and defined in the files of its noun, and added to commands.h.
 namespace iota::edit {
 
 /// Slot of a living thing. Throws StaleIdError, which says what became of it.
@@ -50,7 +50,7 @@ std::uint32_t require(const model::Model&, ConstraintId);
 std::uint32_t require(const model::Model&, GripId);
 std::uint32_t require(const model::Model&, EmitterId);
 
-/// What commands work on.
+/// The state on which commands act.
 struct Editor {
   Editor(model::Model& model, island::Islands& islands, held::HeldForces& held, read::Orientations& orientations,
          const Parallel& parallel)
@@ -63,9 +63,9 @@ struct Editor {
   const Parallel& parallel;
 
   std::map<std::uint64_t, Mesh> meshes;  ///< for drawing, by content; not part of the saved state
-  std::optional<Batch> batch;            ///< that has been begun
+  std::optional<Batch> batch;            ///< the open batch
   History undo, redo;
-  /// Set while a replay may bring back what is destroyed: its functions are then kept.
+  /// Set while a replay may restore destroyed objects: their functions are then kept.
   bool keeps_functions = false;
 
   /// Slot of a living thing. Throws StaleIdError, which says what became of it.
@@ -74,25 +74,25 @@ struct Editor {
     return edit::require(model, id);
   }
   void structure_changed() { ++model.structure_version; }
-  /// Notes that velocities were assigned to a particle, or something else that constraints may not agree with: they are
-  /// projected before the next step. Wakes what rests.
+  /// Marks that velocities of a particle were assigned or may violate constraints: they are projected before the next
+  /// step. Wakes resting bodies.
   void mark_velocity_dirty(std::uint32_t particle);
 
-  /// Drops a function whose user was destroyed, unless a restore or a replay may bring the user back.
+  /// Drops a function whose user was destroyed, unless a restore or a replay may restore the user.
   template <class Function>
   void drop_function(std::map<std::uint64_t, Function>& functions, std::uint64_t key) {
     if (!keeps_functions && key >= keys_saved_below_) functions.erase(key);
   }
 
   Snapshot snapshot();
-  /// Throws std::invalid_argument for bytes that are not a snapshot; nothing has changed then.
-  /// Whose bytes a snapshot has: those of anywhere may hold anything and are checked, in O(n).
+  /// Throws std::invalid_argument for bytes that are not a snapshot, before any change. The origin of a snapshot's
+  /// bytes: those from outside are checked, in O(n).
   enum class Origin : std::uint8_t { anywhere, own };
   void restore(const Snapshot&, Origin = Origin::anywhere);
   void forget_history() { batch.reset(), undo.clear(), redo.clear(); }
 
  private:
-  std::uint64_t keys_saved_below_ = 0;  // of functions: what the latest snapshot may name
+  std::uint64_t keys_saved_below_ = 0;  // of functions in the latest snapshot
 };
 
 template <class IdType>

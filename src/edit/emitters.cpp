@@ -78,7 +78,7 @@ void apply(Editor& e, const Destroy<EmitterId>& c) {
   const std::uint32_t slot = e.require(c.id);
   model.attributes.for_each([&](std::uint32_t, model::Attributes& a) {
     if (a.emitter != slot) return;
-    const ParticleAttributes look = read::attributes(model, a);  // they keep the look of this moment
+    const ParticleAttributes look = read::attributes(model, a);  // they keep their present look
     a.radius = look.radius, a.color = look.color, a.emitter = model::none;
     model.scene.bodies.note(model.particles[a.particle].body);
   });

@@ -131,9 +131,10 @@ PairsId apply(Editor& e, const CreatePairs& c) {
   pairs.law = slot, pairs.cutoff = c.cutoff, pairs.group = c.group ? e.require(c.group) : model::none;
   pairs.other = c.other ? e.require(c.other) : model::none;
   if (c.other && !c.group) throw std::invalid_argument("pairs between two groups need both: give group and other");
-  if (c.shifted && (!model.compiled(slot).has_energy() || model.compiled(slot).depends_on_mass()))
+  const laws::PairLaw& compiled = model.compiled(slot);
+  if (c.shifted && (!compiled.has_energy() || compiled.depends_on_mass() || compiled.depends_on_normals()))
     throw std::invalid_argument(text("the law ", law.name.data(),
-                                     " cannot be shifted: that needs an energy, of the distance and not of masses"));
+                                     " cannot be shifted: that needs an energy that depends on the distance alone"));
   pairs.shifted = c.shifted;
   for (std::uint32_t i = 0; i < law.parameter_count; ++i) {
     if (std::isnan(c.parameters[i]))

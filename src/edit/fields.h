@@ -3,7 +3,7 @@
 
 #include "edit/editor.h"
 
-/// Commands about fields, pairwise forces, and the groups of particles that both act on.
+/// Commands for fields, pairwise forces, and the groups of particles on which they act.
 namespace iota::edit {
 
 struct CreateGroup {

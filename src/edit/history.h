@@ -9,16 +9,16 @@
 
 namespace iota::edit {
 
-/// Edits that are reported, and undone, as one.
+/// A batch of edits with one report, undone as one.
 class Batch {
  public:
   Batch(const model::Model&, Snapshot before);
 
   void add(const RestructureReport&);
-  /// One report of everything.
+  /// One report of all edits.
   RestructureReport finish(const model::Model&);
 
-  int depth = 1;  ///< of batches within it
+  int depth = 1;  ///< of nested batches
   Snapshot before;
 
  private:
@@ -29,10 +29,10 @@ class Batch {
   double edit_energy_;
 };
 
-/// One report out of several.
+/// Merges several reports.
 void add_report(RestructureReport& sum, const RestructureReport& report);
 
-/// States to go back or forward to, newest last: at most `most` of them, of `most_bytes` together.
+/// States for undo or redo, newest last: at most `most` of them, with `most_bytes` in total.
 class History {
  public:
   static constexpr std::size_t most = 64, most_bytes = std::size_t{256} << 20;

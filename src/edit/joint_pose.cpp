@@ -20,7 +20,7 @@ using model::none;
 
 namespace {
 
-/// Puts one coordinate of one joint at a value.
+/// Moves one coordinate of one joint to a value.
 class CoordinateSetter {
  public:
   CoordinateSetter(Editor& e, std::uint32_t joint, JointCoordinate which)
@@ -53,15 +53,15 @@ class CoordinateSetter {
 
   struct Side {
     std::vector<std::uint32_t> bodies;
-    double sign;  // how its motion counts
+    double sign;  // factor of its motion
   };
 
-  /// What moves as one rigid thing when only this joint does: what hangs on a, or on b where a's cannot. None in a loop.
+  /// The bodies that move rigidly with this joint: those attached to a, or to b if a's cannot move. None in a loop.
   std::optional<Side> free_side() {
-    if (joint().kind == ConstraintKind::path) return std::nullopt;  // a curve turns as well
-    if (joint().coupled != none) return std::nullopt;               // what it is coupled with has to move, too
+    if (joint().kind == ConstraintKind::path) return std::nullopt;  // a curve also turns
+    if (joint().coupled != none) return std::nullopt;               // coupled joints have to move, too
     const std::uint32_t a = body_of_side(model_, joint(), 0), b = body_of_side(model_, joint(), 1);
-    joint().active = 0;  // so that the search does not pass it
+    joint().active = 0;  // so that the search stops at it
     std::optional<Side> found;
     for (const auto& [from, to, sign] : {std::tuple{a, b, 1.0}, std::tuple{b, a, -1.0}}) {
       if (found || from == none) continue;
@@ -108,16 +108,16 @@ class CoordinateSetter {
     return finish(side.bodies, value);
   }
 
-  /// Positions have changed. False where the coordinate is not what it should be.
+  /// Call it after positions have changed. False if the coordinate is wrong.
   bool finish(std::span<const std::uint32_t> bodies, double value) {
-    joint().coordinate[index_] = value;  // an angle is then counted on from here
+    joint().coordinate[index_] = value;  // an angle is then counted from here
     for (const std::uint32_t body : bodies) refresh_coordinates_of(model_, body);
     e_.orientations.forget();
     e_.mark_velocity_dirty(joint().particles[ingredient::a_origin]);
     return std::abs(now() - value) <= 1e3 * met * scale();
   }
 
-  /// Pulls the coordinate along in small steps by a stop on both sides, as a conflict is closed: by the least motion.
+  /// Moves the coordinate in small steps by a stop on both sides, closed like a conflict: by the least motion.
   bool drive(double value) {
     const double start = now();
     const int steps = std::clamp(static_cast<int>(std::ceil(std::abs(value - start) / (0.1 * scale()))), 1, 10000);

@@ -3,7 +3,7 @@
 
 #include "edit/editor.h"
 
-/// The command that puts a joint at an angle or slide.
+/// The command that moves a joint to an angle or slide.
 namespace iota::edit {
 
 struct SetCoordinateValue {

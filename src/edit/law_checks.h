@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-/// Names and parameters of laws and fields, as users give them and as tables keep them.
+/// Names and parameters of laws and fields, of users and in tables.
 namespace iota::edit {
 
 template <std::size_t count>
@@ -36,7 +36,7 @@ inline bool is_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
 }
 
-/// Parameters that a user declares, for an expression of `variables` or for code.
+/// Parameters declared by a user, for an expression of `variables` or for code.
 template <std::size_t count>
 void put_parameters(Names<count>& names, std::array<double, count>& values, std::uint32_t& used,
                     const std::vector<LawParameter>& declared, std::span<const char* const> variables) {
@@ -56,7 +56,7 @@ void put_parameters(Names<count>& names, std::array<double, count>& values, std:
   }
 }
 
-/// Index of a parameter; throws with the names that there are.
+/// Index of a parameter; throws with a list of all names.
 template <std::size_t count>
 std::uint32_t require_parameter(std::string_view owner, const Names<count>& names, std::uint32_t used,
                                 std::string_view name) {
@@ -73,10 +73,15 @@ std::uint32_t require_parameter(std::string_view owner, const Names<count>& name
   throw std::invalid_argument(message);
 }
 
+/// Limit of parameters of a predefined law, SI units: squares of the motion by larger ones would overflow.
+inline constexpr double largest_parameter = 1e30;
+
 inline void require_in_range(const char* name, laws::Range range, double value) {
   if (range == laws::Range::positive) require_positive(name, value);
   if (range == laws::Range::not_negative) require_not_negative(name, value);
   if (!std::isfinite(value)) throw std::invalid_argument(text(name, " must be finite, got ", value));
+  if (range != laws::Range::any && value > largest_parameter)
+    throw std::invalid_argument(text(name, " must be at most ", largest_parameter, ", got ", value));
 }
 
 template <std::size_t count>
@@ -86,7 +91,7 @@ std::vector<LawParameter> list_parameters(const Names<count>& names, std::uint32
   return list;
 }
 
-/// The same for a law, and for what has values for its parameters.
+/// The same for a law, and for an item with values of its parameters.
 inline std::uint32_t require_parameter(const ingredient::Law& law, std::string_view name) {
   return require_parameter(law.name.data(), law.parameters, law.parameter_count, name);
 }

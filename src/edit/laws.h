@@ -16,7 +16,7 @@ struct CreateLaw {
   ingredient::LawKind kind;  ///< expression, radial or batch
   std::string name, text;
   std::vector<LawParameter> parameters;
-  std::uint64_t function;  ///< key of the code, where it is code
+  std::uint64_t function;  ///< key of the function, if it is code
 };
 
 LawId apply(Editor&, const CreateLaw&);

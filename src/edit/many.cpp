@@ -19,7 +19,7 @@ namespace iota::edit {
 
 namespace {
 
-/// The i-th of values that are given one for each, one for all, or not at all.
+/// The i-th of values: one for each, one for all, or none.
 template <class T>
 const T& value_of(const std::vector<T>& values, std::size_t i, const T& standard) {
   return values.empty() ? standard : values.size() == 1 ? values[0] : values[i];
@@ -33,7 +33,7 @@ void require_same(std::string_view name, std::size_t got, std::size_t count) {
   if (got != count) throw std::invalid_argument(text(name, " must have a row for each of ", count, ", got ", got));
 }
 
-/// Puts the number of the row in front of what is wrong with it.
+/// Adds the number of the row to an error.
 template <class Check>
 void check_rows(std::size_t count, Check check) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -55,7 +55,7 @@ void require_radius(double radius) {
 Vec3 vector_in(const double* row) { return {row[0], row[1], row[2]}; }
 Quaternion quaternion_in(const double* row) { return {row[0], row[1], row[2], row[3]}; }
 
-/// What an edit that may be refused in the middle goes back to.
+/// The state before an edit that may be refused in the middle.
 class Undone {
  public:
   explicit Undone(Editor& e) : editor_(e), before_(e.snapshot()) {}
@@ -193,7 +193,7 @@ void apply(Editor& e, const AssignParticles& c) {
         apply(e, ApplyForce{id, vector_in(row(i))});
     }
   };
-  if (has_markers && c.quantity == Quantity::position)  // they may be out of reach of the others
+  if (has_markers && c.quantity == Quantity::position)  // they may be outside of the span of the others
     Undone(e).attempt(assign);
   else
     assign();
@@ -201,7 +201,7 @@ void apply(Editor& e, const AssignParticles& c) {
 
 namespace {
 
-/// What some rows give a body; the rest is as it was.
+/// The values of a body in some rows; the others do not change.
 struct Wanted {
   std::uint32_t body = model::none;
   Vec3 position, velocity, spin;
@@ -220,7 +220,7 @@ Wanted wanted(const model::Model& model, BodyId id, Quantity quantity, const dou
   return w;
 }
 
-/// Puts each body, and nothing that hangs on it, at its place; velocities turn along.
+/// Moves each body, without those hinged to it, to its place; its velocities are turned too.
 void place_bodies(Editor& e, const std::vector<Wanted>& all) {
   model::Model& model = e.model;
   struct Placed {
@@ -251,7 +251,7 @@ void place_bodies(Editor& e, const std::vector<Wanted>& all) {
   e.orientations.forget();
 }
 
-/// Gives each body its motion as a whole; points that bodies share get that of the last one.
+/// Gives each body a rigid motion; points that bodies share get that of the last one.
 void move_bodies(Editor& e, const std::vector<Wanted>& all, bool turned) {
   model::Model& model = e.model;
   for (const Wanted& w : all) {

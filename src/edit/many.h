@@ -10,7 +10,7 @@ struct LastEnumerator<Quantity> : std::integral_constant<Quantity, Quantity::mot
 
 }  // namespace iota
 
-/// Commands that carry arrays: each does what one of the commands for a single thing does, for many.
+/// Commands with arrays: each does for many things what a command does for one.
 namespace iota::edit {
 
 struct CreatePoints {

@@ -19,4 +19,9 @@ struct Release {
 void apply(Editor&, const Nail&);
 void apply(Editor&, const Release&);
 
+/// Moves a particle of a scripted body, and what is hinged to it: it arrives at the end of the next step.
+void carry(Editor&, ParticleId, const Vec3& position);
+/// Ends what `carry` did to the particles of a body that is not scripted any more; nails stay.
+void stop_carrying(Editor&, std::uint32_t body);
+
 }  // namespace iota::edit

@@ -23,7 +23,7 @@ ParticleId make_marker(Editor& e, std::uint32_t body, const Vec3& position) {
   return model.particles.id(marker);
 }
 
-/// The solids that a point stands for are no longer that shape once it has moved.
+/// A solid loses its shape when one of its points is moved.
 void end_solids_of(model::Model& model, std::uint32_t body, std::uint32_t point) {
   const std::uint32_t before = model.solids.size();
   model.remove_solids_of(body, point);
@@ -53,8 +53,7 @@ void apply(Editor& e, const SetPosition& c) {
   model::Model& model = e.model;
   const std::uint32_t particle = e.require(c.particle);
   require_finite("position", c.value);
-  if (model.bodies[model.particles[particle].body].kind == BodyKind::scripted)
-    return apply(e, Nail{c.particle, false, c.value});  // carried there during the next step
+  if (model.bodies[model.particles[particle].body].kind == BodyKind::scripted) return carry(e, c.particle, c.value);
   const std::uint32_t ring = model.particles[particle].ring;
   model.for_each_in_ring(ring, [&](std::uint32_t p) {
     if (model.particles[p].is_marker() && !model.spans(model.particles[p].body, c.value))
@@ -66,7 +65,7 @@ void apply(Editor& e, const SetPosition& c) {
   if (r.nailed) model.nails.at(ring).position = model.nails.at(ring).position_before = c.value;
   model.for_each_in_ring(ring, [&](std::uint32_t moved) {
     const std::uint32_t body = model.particles[moved].body;
-    model.for_each_particle_of(body, [&](std::uint32_t p) {  // markers go where the basis takes them
+    model.for_each_particle_of(body, [&](std::uint32_t p) {  // markers follow the basis
       if (!model.particles[p].is_marker() || p == moved || model.is_unknown(model.particles[p])) return;
       model.rings[model.particles[p].ring].position = model.carried(p).first;
     });

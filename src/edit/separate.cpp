@@ -7,12 +7,11 @@
 
 namespace iota::edit {
 
-RestructureReport apply(Editor& e, const Separate& c) {
+namespace {
+
+RestructureReport separate_points(Editor& e, std::uint32_t p, std::uint32_t q) {
   model::Model& model = e.model;
-  const std::uint32_t p = e.require(c.p), q = e.require(c.q);
   const std::uint32_t body_p = model.particles[p].body, body_q = model.particles[q].body;
-  if (const std::uint32_t closing = ingredient::Closings::between(model, p, q); closing != model::none)
-    return call_off(e, closing);
   bool gentle = p == q ? model.bodies[body_p].first_inertia == model::none  // half the mass at one end changes the rod
                        : body_p != body_q && model.particles[p].ring == model.particles[q].ring;
   model.for_each_in_ring(model.particles[q].ring, [&](std::uint32_t r) { gentle = gentle && model.follows_basis(r); });
@@ -26,10 +25,19 @@ RestructureReport apply(Editor& e, const Separate& c) {
   return report;
 }
 
+}  // namespace
+
+RestructureReport apply(Editor& e, const Separate& c) {
+  const std::uint32_t p = e.require(c.p), q = e.require(c.q);
+  if (const std::uint32_t closing = ingredient::Closings::between(e.model, p, q); closing != model::none)
+    return call_off(e, closing);
+  return separate_points(e, p, q);
+}
+
 RestructureReport apply(Editor& e, const SeparatePart& c) {
   const std::uint32_t body = e.require(c.body);
   RestructureReport report;
-  // Points stay where they are and as fast. Only an inertia that is torn apart has to be made good.
+  // Positions and velocities do not change. Only a split inertia pair has to be compensated.
   const bool gentle = e.model.bodies[body].first_inertia == model::none;
   Restructuring change(e, {{body}}, gentle ? Restructuring::Kind::gentle : Restructuring::Kind::moving, report);
   change.finish(separate_part(e.model, body, c.part, report));

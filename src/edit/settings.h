@@ -3,7 +3,7 @@
 
 #include "edit/editor.h"
 
-/// Commands about the system as a whole.
+/// Commands for settings of the system.
 namespace iota::edit {
 
 struct SetGravity {

@@ -15,24 +15,31 @@ namespace iota::edit {
 
 namespace {
 
-void sort_unique(std::vector<std::uint32_t>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
+/// Each slot once, in order. `slots`: how many there are.
+void sort_unique(std::vector<std::uint32_t>& list, std::size_t slots) {
+  constexpr std::size_t many = 64;  // of the slots one in so many: marking all of them is then quicker than sorting
+  if (list.size() * many < slots) return ingredient::sort_unique(list);
+  std::vector<std::uint8_t> is_in(slots, 0);
+  for (const std::uint32_t slot : list) is_in[slot] = 1;
+  list.clear();
+  for (std::uint32_t slot = 0; slot < slots; ++slot)
+    if (is_in[slot]) list.push_back(slot);
 }
 
-/// Of these bodies and the springs between them; a body that is no longer alive has nothing.
+/// Of these bodies and the springs between them; destroyed bodies have none.
 Conserved conserved(const model::Model& model, std::span<const std::uint32_t> bodies) {
   return {ingredient::calc_energies(model, bodies), ingredient::calc_momenta(model, bodies)};
 }
 
-/// Adds the bodies that bonds and constraints tie to some: where one of these moves, energies of the others change.
+/// Adds the bodies tied by bonds and constraints: if one of these moves, the energies of the others change.
 void add_tied(const model::Model& model, std::vector<std::uint32_t>& bodies) {
-  sort_unique(bodies);
+  sort_unique(bodies, model.bodies.slot_count());
+  if (!model.has_ties()) return;
   for (std::size_t i = 0, count = bodies.size(); i < count; ++i)
     model.for_each_particle_of(bodies[i], [&](std::uint32_t p) {
       model.visit_tied(p, model::Model::Ties::all, [&](std::uint32_t tied) { bodies.push_back(tied); });
     });
-  sort_unique(bodies);
+  sort_unique(bodies, model.bodies.slot_count());
 }
 
 /// Some bodies, those at their points, and those that are tied to these.
@@ -47,7 +54,7 @@ std::vector<std::uint32_t> bodies_around(const model::Model& model, std::span<co
   return found;
 }
 
-/// What moving some rings has changed.
+/// The changes by moving some rings.
 Conserved calc_change(model::Model& model, island::MovedRings& moved) {
   std::vector<std::uint32_t> bodies;
   for (const auto& state : moved.before)
@@ -60,14 +67,14 @@ Conserved calc_change(model::Model& model, island::MovedRings& moved) {
   return change;
 }
 
-/// Projects positions and velocities of the islands that the bodies are in. Returns what that changes.
+/// Projects positions and velocities of the islands of the bodies. Returns the changes.
 Conserved settle(Editor& e, std::span<const std::uint32_t> bodies, bool positions, RestructureReport& report) {
   island::MovedRings moved;
   e.islands.update(e.model, e.parallel, moved);
   std::vector<island::Island*> settled;
   for (const std::uint32_t body : bodies) {
     island::Island* const island = e.islands.of_articulate(e.model.bodies[body].articulate);
-    if (!island) continue;  // a free particle has nothing to settle
+    if (!island) continue;  // a free particle needs no projection
     if (std::find(settled.begin(), settled.end(), island) != settled.end()) continue;
     settled.push_back(island);
     if (island->settle(e.model, bodies, positions, moved)) continue;
@@ -78,12 +85,12 @@ Conserved settle(Editor& e, std::span<const std::uint32_t> bodies, bool position
   return calc_change(e.model, moved);
 }
 
-/// Displacements and moved masses change momenta; a rigid motion of all that hangs together with the bodies gives them
-/// back without disturbing any constraint, and is added to `change`. Returns what all had before; nothing where something is
-/// pinned: the rest of the world has taken them.
+/// Displacements and moved masses change momenta; a rigid motion of all bodies connected to these compensates that
+/// without violating any constraint, and is added to `change`. Returns the former values; nothing if something is
+/// pinned, as the world takes momenta then.
 std::optional<Conserved> give_back_momenta(Editor& e, std::span<const std::uint32_t> bodies, Conserved& change) {
   model::Model& model = e.model;
-  for (const std::uint32_t body : bodies) {  // told at once for most of what is large
+  for (const std::uint32_t body : bodies) {  // usually known immediately for large articulates
     const std::uint32_t articulate = model.bodies[body].articulate;
     const island::Island* const island = e.islands.of_articulate(articulate);
     if (island && island->is_pinned(model, articulate)) return std::nullopt;
@@ -108,7 +115,7 @@ std::optional<Conserved> give_back_momenta(Editor& e, std::span<const std::uint3
       first_moment += model.particles[p].mass * model.position(p);
     });
   if (!(mass > 0)) return std::nullopt;
-  sort_unique(rings);
+  sort_unique(rings, model.rings.slot_count());
 
   const Vec3 center = (1 / mass) * first_moment;
   Mat3 inertia;
@@ -122,12 +129,12 @@ std::optional<Conserved> give_back_momenta(Editor& e, std::span<const std::uint3
   }
   const double trace = inertia.m[0][0] + inertia.m[1][1] + inertia.m[2][2];
   const bool is_a_point = !(trace > 1e-24 * mass * dot(center, center));  // only round-off
-  for (int pass = 0; pass < 2; ++pass) {  // the second takes away the round-off of the first
+  for (int pass = 0; pass < 2; ++pass) {  // the second removes the round-off of the first
     const Conserved now = conserved(model, affected);
     const Vec3 lost = before.momenta.linear - now.momenta.linear;
     const Vec3 lost_spin = before.momenta.angular - now.momenta.angular - cross(center, lost);
     Vec3 turn = solve_semidefinite(inertia, lost_spin);
-    // Bodies that were pulled together to almost a point would have to spin absurdly to keep their angular momentum.
+    // Bodies that were contracted nearly to a point would need an extreme spin to keep their angular momentum.
     if (is_a_point || 0.5 * dot(turn, lost_spin) > 3 * (before.energies.kinetic + 1e-12)) turn = {};
     for (const std::uint32_t ring : rings)
       model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - center);
@@ -157,7 +164,7 @@ Restructuring::Restructuring(Editor& editor, std::span<const std::uint32_t> bodi
 void Restructuring::finish(const model::Edit& owed) {
   model::Model& model = editor_.model;
   if (report_.changed) {
-    std::array<std::uint32_t, 2> left{};  // most edits cost less than a vector for them would
+    std::array<std::uint32_t, 2> left{};  // an array, since a vector would cost more than most edits
     const auto end = std::copy_if(bodies_.begin(), bodies_.begin() + static_cast<std::ptrdiff_t>(body_count_),
                                   left.begin(), [&](std::uint32_t body) { return model.bodies.is_alive(body); });
     if (report_.created_bodies.empty())
@@ -177,7 +184,7 @@ void settle_batch(Editor& e, RestructureReport& report) {
   std::vector<std::uint32_t> bodies;
   for (const auto& absorbed : report.absorbed_bodies)
     if (const auto body = model.survivor_of(absorbed.survivor)) bodies.push_back(body->slot);
-  sort_unique(bodies);
+  sort_unique(bodies, model.bodies.slot_count());
   if (bodies.empty()) return;
   const Conserved change = settle(e, bodies, false, report);
   report.energy_change += change.energies.total();
@@ -195,7 +202,7 @@ std::vector<std::uint32_t> Restructuring::with_created(std::span<const std::uint
 void Restructuring::settle_and_measure(const model::Edit& owed) {
   Conserved change = conserved(editor_.model, with_created(around_));
   change.add(before_, -1);
-  std::optional<Conserved> before = before_;  // of all that may have changed; nothing: something pinned has
+  std::optional<Conserved> before = before_;  // of everything that may have changed; nothing if something is pinned
   if (owed.moved || owed.velocity_dirty) {
     const std::vector<std::uint32_t> touched = with_created(edited());
     change.add(settle(editor_, touched, owed.moved, report_));

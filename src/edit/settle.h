@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
-/// The physics that a change of structure owes. The model changes first, at once; then positions are projected so that
-/// combined points meet, velocities so that they respect the joints, and momentum and angular momentum that moved mass has
-/// cost are given back.
+/// The motion after a change of structure. The model changes first; then positions are projected so that combined
+/// points meet, velocities so that they satisfy the joints, and the change of momentum and angular momentum by moved
+/// mass is compensated.
 namespace iota::edit {
 
-/// Energy and momentum of some bodies, or by how much they have changed.
+/// Energy and momentum of some bodies, or their changes.
 struct Conserved {
   ingredient::Energies energies;
   ingredient::Momenta momenta;
@@ -23,7 +23,7 @@ struct Conserved {
   Conserved& add(const Conserved& other, double sign = 1);
 };
 
-/// Makes velocities fit what a batch has made rigid, once for all of it, and adds to its report what that changes.
+/// Projects velocities once for all bodies that a batch has made rigid, and adds the changes to its report.
 void settle_batch(Editor&, RestructureReport&);
 
 /// One change of structure: measures before it, settles and measures after it, and makes the report.
@@ -34,15 +34,15 @@ void settle_batch(Editor&, RestructureReport&);
 ///     return report;
 class Restructuring {
  public:
-  /// A gentle change moves nothing and no mass: there is nothing to measure or to settle, and it costs what it touches. A
-  /// transient one, besides, neither raises `structure_version` nor is shown to viewers: closings.
+  /// A gentle change moves neither points nor mass: it needs no measurement or projection, and costs what it touches. A
+  /// transient one (closings) also does not raise `structure_version` and is not sent to viewers.
   enum class Kind : std::uint8_t { transient, gentle, moving };
-  /// One body or two. The change says in the report what it made, and whether it did anything.
+  /// One body or two. The change writes into the report what it made, and whether it changed anything.
   Restructuring(Editor&, std::span<const std::uint32_t> bodies, Kind, RestructureReport&);
 
-  /// After the change, which says what it owes.
+  /// Call it after the change, with the required projections.
   void finish(const model::Edit& owed);
-  /// Also shows viewers the event, if anything has changed.
+  /// Also sends viewers the event, if anything has changed.
   void finish(const model::Edit& owed, const ViewEvent& event) {
     finish(owed);
     if (report_.changed) editor_.model.scene.note(event.kind, event.position);
@@ -50,7 +50,7 @@ class Restructuring {
 
  private:
   void settle_and_measure(const model::Edit& owed);
-  /// Of some bodies and those that the change has created, the ones that are alive.
+  /// Those of some bodies and of the ones created by the change that are alive.
   std::vector<std::uint32_t> with_created(std::span<const std::uint32_t> bodies) const;
   std::span<const std::uint32_t> edited() const { return {bodies_.data(), body_count_}; }
 
@@ -60,7 +60,7 @@ class Restructuring {
   std::size_t body_count_;
   Kind kind_;
   ingredient::Followers followers_;
-  // The bodies whose energy and momentum the edit itself may change; what settling changes further away is added to that.
+  // The bodies whose energy and momentum the edit itself may change; changes by projections further away are added.
   std::vector<std::uint32_t> around_;
   Conserved before_;
 };

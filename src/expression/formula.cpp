@@ -17,7 +17,7 @@ int arity(Op op) {
   return op == Op::select ? 3 : 2;
 }
 
-/// The products that a program makes of it, in the same order.
+/// The same products as in a program, in the same order.
 double positive_power(double a, unsigned exponent) {
   if (exponent == 1) return a;
   if (exponent & 1) return positive_power(a, exponent - 1) * a;
@@ -193,7 +193,7 @@ Node Formula::derive(const Entry& e, std::span<const Node> derivatives) {
       return times(times(constant(n), whole_power(a, n - 1)), da);
     }
     case Op::power: {
-      // d a^b = b a^(b-1) da + a^b log(a) db; the second part only where the exponent varies.
+      // d a^b = b a^(b-1) da + a^b log(a) db; the second part only if the exponent varies.
       const Node first = times(times(b, make(Op::power, a, make(Op::subtract, b, constant(1)))), da);
       if (db == zero) return first;
       return make(Op::add, first, times(times(make(Op::power, a, b), again(Op::logarithm)), db));

@@ -11,8 +11,8 @@
 #include <tuple>
 #include <vector>
 
-/// Algebraic expressions as a user writes them: parsed with errors that point at the place, derived symbolically, and
-/// compiled to programs (program.h). Standard library only.
+/// Algebraic expressions of users: parsed with errors that show the place, differentiated symbolically, and compiled to
+/// programs (program.h). Standard library only.
 namespace iota::expression {
 
 /// The text is not a valid expression. `what()` says why and shows the line with a caret under the place.
@@ -64,7 +64,7 @@ class Formula {
 
   Node constant(double value);
   Node input(std::uint32_t number);
-  /// Simplifies where that is exact: constants are folded, neutral elements dropped.
+  /// Simplifies if that is exact: constants are folded, neutral elements dropped.
   Node make(Op op, Node a, Node b = 0, Node c = 0);
   Node whole_power(Node a, int exponent);
 
@@ -87,7 +87,7 @@ class Formula {
   std::map<std::tuple<Op, Node, Node, Node, std::uint64_t>, Node> known_;
 };
 
-/// One operation on numbers: the reference with which every other way of evaluating agrees bit by bit.
+/// One operation on numbers: the reference; all other evaluations agree with it bit by bit.
 double apply(Op op, double a, double b, double c);
 
 /// `name = expression` of a text, in order. A later expression may use the names of earlier ones.

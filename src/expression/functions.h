@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 
-// One build for every x86-64 processor, with the loops compiled for wider registers too and chosen at load time. Widths do
-// not change results: every lane does the same operations. (Sanitizers start too late for the choice at load time.)
+// One build for all x86-64 processors: loops are compiled for wider registers too and chosen at load time. Widths do
+// not change results, as every lane does the same operations. (Sanitizers start too late for the choice at load time.)
 #if defined(__x86_64__) && defined(__linux__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 #define IOTA_WIDER __attribute__((target_clones("avx2", "default")))
@@ -15,7 +15,7 @@
 #define IOTA_WIDER
 #endif
 
-/// Elementary functions made of +, -, *, / and bit operations only: the same bits from every compiler and at every
+/// Elementary functions of +, -, *, / and bit operations only: the same bits from every compiler and at every
 /// optimization level (the functions of libm differ), and without branches, so that loops over them are vectorized.
 /// Relative errors stay below 4e-16, unless said otherwise.
 namespace iota::expression {
@@ -29,7 +29,7 @@ namespace iota::expression {
 namespace detail {
 
 inline constexpr double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
-inline constexpr double to_integer = 0x1.8p52;  // added and taken away again it rounds to the nearest integer
+inline constexpr double to_integer = 0x1.8p52;  // adding and subtracting it rounds to the nearest integer
 
 /// 2^n for n = 0x1.8p52-shifted integer bits, |n| <= 1022.
 IOTA_ALWAYS_INLINE double power_of_two(std::int64_t n) {
@@ -64,7 +64,7 @@ IOTA_ALWAYS_INLINE Reduced reduce_exp(double x) {
 }
 
 struct Angle {
-  double sine, cosine;  ///< of the angle less a whole number of quarter turns
+  double sine, cosine;  ///< of the angle minus a whole number of quarter turns
   std::uint64_t quarter;
 };
 
@@ -98,7 +98,7 @@ IOTA_ALWAYS_INLINE Angle reduce_angle(double x) {
 }  // namespace detail
 
 IOTA_ALWAYS_INLINE double exp(double x) {
-  const double inside = x < -746 ? -746 : (x > 710 ? 710 : x);  // NaN passes
+  const double inside = x < -746 ? -746 : (x > 710 ? 710 : x);  // NaN is kept
   const auto [p, n] = detail::reduce_exp(inside);
   const std::int64_t half = static_cast<std::int64_t>(static_cast<std::uint64_t>(n + 2048) >> 1) - 1024;
   return ((1 + p) * detail::power_of_two(half)) * detail::power_of_two(n - half);
@@ -128,11 +128,11 @@ IOTA_ALWAYS_INLINE double log(double x) {
   // 2 s = f - s f, so that the leading part is exact.
   const double value = k * detail::ln2_high + (f - (s * (f - z * q) - k * detail::ln2_low));
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const double positive = x < infinity ? value : x;  // infinity and NaN pass
+  const double positive = x < infinity ? value : x;  // infinity and NaN are kept
   return x > 0 ? positive : (x == 0 ? -infinity : std::numeric_limits<double>::quiet_NaN());
 }
 
-/// Beyond 1e9 rad the result is NaN: it would be round-off only.
+/// Above 1e9 rad the result is NaN, as it would be only round-off.
 IOTA_ALWAYS_INLINE double sin(double x) {
   const auto [s, c, quarter] = detail::reduce_angle(x);
   const double v = (quarter & 1) ? c : s;

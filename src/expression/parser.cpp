@@ -22,7 +22,7 @@ struct Function {
   Op op;
 };
 
-/// The one list of functions. `call` expands pow, step and others that are made of several operations.
+/// The list of functions. `call` expands pow, step and others that consist of several operations.
 constexpr std::array functions{
     Function{"sqrt", 1, Op::square_root},
     Function{"exp", 1, Op::exponential},
@@ -48,7 +48,7 @@ std::string show(std::string_view text, std::size_t position) {
   const std::size_t before = text.substr(0, position).rfind('\n');
   const std::size_t start = before == std::string_view::npos ? 0 : before + 1;
   const std::size_t end = std::min(text.find('\n', position), text.size());
-  // A long line is shown around the place only.
+  // Of a long line only a part around the place is shown.
   const std::size_t from = position - start > 60 ? position - 60 : start, to = std::min(end, position + 40);
   std::string line(text.substr(from, to - from));
   for (char& c : line)
@@ -229,7 +229,7 @@ class Parser {
     if (error != std::errc{}) fail("this is no number", position_);
     const std::size_t start = position_;
     position_ = static_cast<std::size_t>(end - text_.data());
-    if (is_letter(peek()) || peek() == '.') fail("this is no number; a product needs a '*'", start);
+    if (is_letter(peek()) || peek() == '.') fail("this is not a number; a product needs a '*'", start);
     return guarded(formula_.constant(value));
   }
 

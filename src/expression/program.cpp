@@ -46,7 +46,7 @@ Program::Program(Formula& formula, std::span<const Node> wanted, const std::vect
   const std::vector<Node> results = expand_powers(formula, wanted);
   const Node last = *std::max_element(results.begin(), results.end());
 
-  // Which nodes are needed, for the last time where, and which vary from lane to lane.
+  // The needed nodes, their last uses, and whether they vary from lane to lane.
   std::vector<std::uint8_t> needed(last + 1, 0), varies(last + 1, 0);
   std::vector<Node> last_use(last + 1, 0);
   for (const Node r : results) needed[r] = 1, last_use[r] = last + 1;
@@ -113,7 +113,7 @@ Program::Program(Formula& formula, std::span<const Node> wanted, const std::vect
 
 namespace {
 
-/// A number for each lane, or one for all.
+/// One number for each lane, or one for all.
 struct Lanes {
   const double* values;
   bool one;

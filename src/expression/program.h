@@ -9,9 +9,9 @@
 
 namespace iota::expression {
 
-/// Outputs of a formula as a short list of operations over blocks of lanes: each operation is one loop that the compiler
-/// vectorizes, so that a block shares the cost of interpreting. Values that do not vary from lane to lane are computed
-/// once. Plain data after `compile`; may be run from several threads, each with a workspace of its own.
+/// Outputs of a formula as a short list of operations over blocks of lanes: each operation is one loop that the
+/// compiler vectorizes, so that a block shares the cost of interpreting. Values that are equal in all lanes are
+/// computed once. Plain data after `compile`; may run on several threads, each with its own workspace.
 class Program {
  public:
   static constexpr std::size_t block = 64;  ///< lanes: registers of a typical law stay in the first-level cache
@@ -46,7 +46,7 @@ class Program {
   void run_block(std::size_t count, const double* const* lanes, std::size_t first, const double* uniforms,
                  double* registers) const;
 
-  std::vector<double> uniform_start_;  // constants, and room for inputs and results
+  std::vector<double> uniform_start_;  // constants, and space for inputs and results
   std::vector<Operation> uniform_, lane_;
   std::vector<std::uint32_t> uniform_inputs_;  // number of the formula's input behind the first uniform slots
   std::vector<Operand> outputs_;

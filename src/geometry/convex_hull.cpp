@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quickhull (Barber, Dobkin, Huhdanpaa 1996) in three dimensions: a hull that grows by the point farthest outside one of
-// its facets. What that point sees is cut away along a closed horizon, and the horizon is joined to the point.
+// its facets. Facets visible from it are removed along a closed horizon, which is joined to the point.
 #include <iota/shapes.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace iota {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffff;
-/// Of the extent: points nearer than this to a facet count as on it. Well above round-off, far below what is seen.
+/// Of the extent: points nearer than this to a facet count as on it. Well above round-off, far below visibility.
 constexpr double thickness = 1e-11;
 
 struct Facet {
@@ -24,7 +24,7 @@ struct Facet {
   std::array<std::uint32_t, 3> neighbors{none, none, none};  ///< across the edge from vertex i to vertex i + 1
   Vec3 normal;
   double offset = 0;
-  std::vector<std::uint32_t> outside;  ///< points above it; each outer point is with one facet
+  std::vector<std::uint32_t> outside;  ///< points above it; each outer point is listed at one facet
   bool gone = false;
 };
 
@@ -37,7 +37,7 @@ class Hull {
   explicit Hull(std::span<const Vec3> points) : points_(points) {
     for (const Vec3& p : points_) extent_ = std::max(extent_, norm(p - points_[0]));
     make_simplex();
-    for (std::uint32_t f = 0; f < facets_.size(); ++f)  // new ones are appended and have their turn
+    for (std::uint32_t f = 0; f < facets_.size(); ++f)  // new ones are appended and processed too
       if (!facets_[f].gone && !facets_[f].outside.empty()) grow(f);
   }
 
@@ -61,8 +61,8 @@ class Hull {
   double height(const Facet& f, std::uint32_t point) const { return dot(f.normal, points_[point]) - f.offset; }
   bool sees(std::uint32_t point, const Facet& f) const { return height(f, point) > thickness * extent_; }
 
-  /// The point of the largest measure. Among equals the one farthest from the first point, which is no mere point of an
-  /// edge or face: a convex function is largest at a corner.
+  /// The point of the largest measure. Among equals the one farthest from the first point, which is a corner and not
+  /// inside an edge or face, since a convex function is largest at a corner.
   template <class Measure>
   std::uint32_t farthest(std::span<const std::uint32_t> among, Measure measure) const {
     double most = 0, reach = -1;
@@ -108,7 +108,7 @@ class Hull {
     std::uint32_t first = a, second = b;
     if (dot(normal, points_[d] - origin) > 0) std::swap(first, second);  // d below the first facet
     add_facet(first, second, c);
-    // The other three hang on its edges; each of them meets the one before and the one after at d.
+    // The other three are at its edges; each of them shares an edge at d with the previous and the next one.
     for (int i = 0; i < 3; ++i) {
       const auto [from, to] = std::pair{facets_[0].vertices[i], facets_[0].vertices[(i + 1) % 3]};
       const std::uint32_t side = add_facet(to, from, d);
@@ -119,7 +119,7 @@ class Hull {
     hand_out(all, 0);
   }
 
-  /// Gives each point to a facet from `first` on that it sees, if any; the others are inside.
+  /// Assigns each point to a facet from `first` on that is visible from it, if any; the others are inside.
   void hand_out(std::span<const std::uint32_t> points, std::size_t first) {
     for (const std::uint32_t p : points)
       for (std::size_t f = first; f < facets_.size(); ++f)
@@ -153,7 +153,7 @@ class Hull {
     hand_out(orphans, first);
   }
 
-  /// Removes all facets that the apex sees, found by going from one to the next.
+  /// Removes all facets visible from the apex, found by going from one to the next.
   void cut_away(std::uint32_t start, std::uint32_t apex, std::vector<HorizonEdge>& horizon,
                 std::vector<std::uint32_t>& orphans) {
     std::vector<std::uint32_t> seen{start};

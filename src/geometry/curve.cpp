@@ -10,7 +10,7 @@ namespace iota::geometry {
 
 namespace {
 
-/// The points without repetitions; throws where that leaves too few.
+/// The points without repetitions; throws if there are too few.
 std::vector<Vec3> distinct(std::span<const Vec3> points, bool closed) {
   std::vector<Vec3> kept;
   for (const Vec3& p : points) {
@@ -30,8 +30,8 @@ double wrapped(double s, double length) { return s - length * std::floor(s / len
 
 }  // namespace
 
-// The distance has the derivative -F, F = (p - c).c'. Newton on F, kept between a place where F is positive and one where
-// it is negative once both are known.
+// The distance has the derivative -F, F = (p - c).c'. Newton's method on F, bracketed between places of positive and
+// negative F once both are known.
 double Curve::nearest(const Vec3& p, double near) const {
   double s = near, low = 0, high = 0;
   bool has_low = false, has_high = false;
@@ -55,7 +55,7 @@ double Curve::nearest(const Vec3& p, double near) const {
 }
 
 double Curve::nearest(const Vec3& p) const {
-  // A coarse search, and refinement of whatever could still win.
+  // A coarse search, and refinement of all candidates for the minimum.
   const auto place = [&](std::size_t i) { return length_ * static_cast<double>(i) / static_cast<double>(samples_); };
   const auto distance = [&](double s) { return norm(p - at(s).position); };
   const double step = length_ / static_cast<double>(samples_);
@@ -83,7 +83,7 @@ Polyline::Polyline(std::span<const Vec3> given, bool closed, double rounding) {
     extent[i] = norm(d);
     direction[i] = (1 / extent[i]) * d;
   }
-  // The corner at point i + 1: how much of either neighbor its arc takes, and its radius.
+  // The corner at point i + 1: the length of either neighbor that its arc takes, and its radius.
   std::vector<double> cut(segments, 0), radius(segments, 0);
   for (std::size_t i = 0; i < segments; ++i) {
     if (!closed && i + 1 == segments) continue;
@@ -137,7 +137,7 @@ Spline::Spline(std::span<const Vec3> given, bool closed) {
     knots.push_back(knots.back() + norm(points[(i + 1) % points.size()] - points[i]));
   interpolate(points, knots);
 
-  // Once more through samples at equal arc length, so that the parameter is the arc length.
+  // A second spline through samples at equal arc lengths, so that the parameter is the arc length.
   constexpr std::size_t parts = 8, fine = 64;
   std::vector<Vec3> samples;
   std::vector<double> arc(1, 0.0);

@@ -16,8 +16,8 @@ struct CurvePoint {
   Vec3 position, d1, d2, d3;
 };
 
-/// A curve c(s), 0 <= s <= length: s is the arc length (m), to interpolation error for splines. Closed curves go round for
-/// any s; open ones go on straight beyond their ends. Immutable once made.
+/// A curve c(s), 0 <= s <= length: s is the arc length (m), to interpolation error for splines. Closed curves are
+/// periodic in s; open ones continue straight beyond their ends. Immutable.
 class Curve {
  public:
   virtual ~Curve() = default;
@@ -25,9 +25,9 @@ class Curve {
   double length() const { return length_; }
   bool closed() const { return closed_; }
   virtual CurvePoint at(double s) const = 0;
-  /// The parameter of the foot of p, (p - c).c' = 0, that is reached downhill from `near`: continuous in p.
+  /// The parameter of the foot of p, (p - c).c' = 0, reached downhill from `near`: continuous in p.
   double nearest(const Vec3& p, double near) const;
-  /// The parameter of the nearest point of all, in [0, length].
+  /// The parameter of the globally nearest point, in [0, length].
   double nearest(const Vec3& p) const;
 
  protected:

@@ -8,7 +8,7 @@ namespace iota::held {
 
 namespace {
 
-/// Laws whose force is finite wherever their bonds are: nothing has to watch them.
+/// Laws with a finite force at any distance, which need no check.
 bool is_finite_everywhere(const ingredient::Law& law) {
   return law.kind == ingredient::LawKind::listed &&
          (law.number == ingredient::spring_law || law.number == ingredient::drag_law ||

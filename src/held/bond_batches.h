@@ -8,7 +8,7 @@
 
 namespace iota::held {
 
-/// Bonds of one law in the order of their slots, and room for their numbers as arrays. Nothing here is saved.
+/// Bonds of one law in the order of their slots, and arrays for their numbers. Nothing here is saved.
 struct BondBatch {
   std::uint32_t law = 0;
   std::vector<std::uint32_t> bonds;
@@ -19,22 +19,22 @@ struct BondBatch {
   std::array<const double*, laws::max_parameters> columns{};                                       // where those begin
   std::vector<double> position_p, position_q, velocity_p, velocity_q, parameter_rows, force_rows;  // of functions
 
-  /// Numbers of all its bonds, with positions `ahead` seconds on.
+  /// Loads the numbers of all its bonds, with positions extrapolated by `ahead` seconds.
   void load(const model::Model&, double ahead);
   void load_rows(const model::Model&, double ahead);
-  /// The numbers that `load` took, at a time, without arrays for results.
+  /// The numbers from `load`, at a time, without arrays for results.
   laws::PairBatch loaded(double time);
-  /// Of all its bonds now, J; only for laws with a derivative. Uses the arrays.
+  /// Of all its bonds at present, J; only for laws with a derivative. Overwrites the arrays.
   double energy(const model::Model&);
 };
 
-/// Which bonds are taken once a step and held, and which implicit ones have to be watched; by law.
+/// The bonds that are evaluated once a step and held, and the implicit ones that must be checked; by law.
 struct BondBatches {
   void update(const model::Model&);
   void forget() { seen_revision = ~0ull; }
 
   std::vector<BondBatch> held, watched;
-  std::vector<std::uint32_t> breakable;  ///< bonds that act and break beyond some force
+  std::vector<std::uint32_t> breakable;  ///< active bonds with a breaking force
   std::uint64_t seen_revision = ~0ull;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bonds that are taken once a step and held: scripted ones, laws that are code, any law on request; and what laws cost.
+// Bonds that are evaluated once a step and held: scripted ones, laws in code, any law on request; the cost of laws.
 #include "ingredient/bonds.h"
 #include "base/text.h"
 #include "held/held_forces.h"
@@ -79,7 +79,7 @@ void HeldForces::take_law(BondBatch& batch, StepReport& report) {
   }
 }
 
-// A law that has no finite force where its bond is would only get Newton lost.
+// Newton's method would diverge with a law whose force is not finite.
 void HeldForces::watch_implicit_law(BondBatch& batch, StepReport& report) {
   const laws::PairLaw& law = model_.compiled(batch.law);
   batch.load(model_, 0);
@@ -88,7 +88,7 @@ void HeldForces::watch_implicit_law(BondBatch& batch, StepReport& report) {
     if (!laws::is_force(batch.force[i], 0, 0) || (law.has_drag() && !std::isfinite(batch.drag[i]))) {
       switch_off(batch.bonds[i], not_finite(batch, i), report);
     } else if (law.depends_on_time()) {
-      // The law changes under the bond: work from outside.
+      // The law of the bond changes: external work.
       const ingredient::Bond& bond = model_.bonds[batch.bonds[i]];
       laws::PairState state = ingredient::Bonds::state(model_, bond);
       const double before = law.elastic(state, bond.parameters.data()).energy;
@@ -177,7 +177,7 @@ void HeldForces::take_scripts(StepReport& report) {
   }
 }
 
-// --- what bonds carry ---------------------------------------------------------------------------------------------------
+// --- forces of bonds ----------------------------------------------------------------------------------------------------
 
 Vec3 HeldForces::force(std::uint32_t slot) const {
   const ingredient::Bond& bond = model_.bonds[slot];
@@ -185,11 +185,11 @@ Vec3 HeldForces::force(std::uint32_t slot) const {
   return bond.implicit ? -ingredient::Bonds::force(model_, slot) : bond.held_force;
 }
 
-// --- what forces cost -------------------------------------------------------------------------------------------------
+// --- cost of forces -------------------------------------------------------------------------------------------------
 
 namespace {
 
-/// Force and stiffness of an implicit bond as one iteration of Newton asks for them.
+/// Force and stiffness of an implicit bond, as in one iteration of Newton's method.
 template <class Force>
 void rehearse_implicit(Force force, const Vec3& e, double h) {
   const solver::ForceStage stage{h, true, false};
@@ -253,7 +253,7 @@ std::size_t HeldForces::rehearse_pairs(std::uint32_t pairs, double h) {
   StepReport report;
   report.dt = h;
   sets_.update(model_);
-  ParticleSet& set = loaded_set(model_.pairs[pairs].group, 0, model_.pairs[pairs].other);
+  ParticleSet& set = loaded_set(model_.pairs[pairs], 0, 0);
   take_pairs(pairs, set, report);
   return set.rings.size();
 }

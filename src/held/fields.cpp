@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields and pairwise forces, taken once a step and held.
+// Fields and pairwise forces, evaluated once a step and held.
 #include "base/text.h"
 #include "held/chunks.h"
 #include "held/held_forces.h"
@@ -12,20 +12,26 @@ namespace iota::held {
 void HeldForces::take_fields(StepReport& report) {
   if (model_.fields.size() == 0 && model_.pairs.size() == 0) return;
   sets_.update(model_);
-  const double ahead = look_ahead(report.dt);
+  const double ahead = look_ahead(report.dt);  // of positions; particles turn by the leapfrog scheme in every mode
   for (std::uint32_t slot = 0; slot < model_.fields.slot_count(); ++slot)
     if (model_.fields.is_alive(slot) && model_.fields[slot].active)
       take_field(slot, loaded_set(model_.fields[slot].group, ahead), report);
   for (std::uint32_t slot = 0; slot < model_.pairs.slot_count(); ++slot)
     if (model_.pairs.is_alive(slot) && model_.pairs[slot].active)
-      take_pairs(slot, loaded_set(model_.pairs[slot].group, ahead, model_.pairs[slot].other), report);
+      take_pairs(slot, loaded_set(model_.pairs[slot], ahead, report.dt / 2), report);
   for (const auto& set : sets_.sets)
     if (set->is_loaded) set->unload(model_, parallel_);
 }
 
-ParticleSet& HeldForces::loaded_set(std::uint32_t group, double ahead, std::uint32_t other) {
-  ParticleSet& set = sets_.of(model_, group, other);
-  if (!set.is_loaded) set.load(model_, ahead, parallel_);
+ParticleSet& HeldForces::loaded_set(std::uint32_t group, double ahead) {
+  ParticleSet& set = sets_.of(model_, group);
+  if (!set.is_loaded) set.load(model_, ahead, 0, parallel_);
+  return set;
+}
+
+ParticleSet& HeldForces::loaded_set(const ingredient::PairForce& pairs, double ahead, double normals_ahead) {
+  ParticleSet& set = sets_.of(model_, pairs.group, pairs.other, model_.compiled(pairs.law).depends_on_normals());
+  if (!set.is_loaded) set.load(model_, ahead, normals_ahead, parallel_);
   return set;
 }
 

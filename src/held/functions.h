@@ -8,8 +8,8 @@
 
 namespace iota::held {
 
-/// The code that bonds, laws and fields call. It is not part of the saved state: the tables of the model name it by keys,
-/// and what is restored or replayed finds it here again.
+/// The functions of bonds, laws and fields. They are not part of the saved state: the tables of the model refer to them
+/// by keys, which find them again after a restore or in a replay.
 struct Functions {
   struct Law {
     RadialFunction radial = nullptr;

@@ -22,8 +22,8 @@ void HeldForces::end_step() {
   model_.external_work += model_.held_energy - before;
 }
 
-// Held forces act best in the middle of the step. With the mid-point rule, positions half a step ahead make that the
-// leapfrog scheme, which neither gains nor loses energy in the long run; forces at the start of the step would pump energy in.
+// Held forces are evaluated in the middle of the step. With the mid-point rule and positions extrapolated by half a
+// step this is the leapfrog scheme, whose energy does not drift; forces at the start of the step would add energy.
 double HeldForces::look_ahead(double h) const { return model_.steps_to_end_point() ? 0 : h / 2; }
 
 const std::vector<std::uint32_t>& HeldForces::breakable_bonds() {
@@ -38,7 +38,7 @@ void HeldForces::forget() {
 
 double HeldForces::energy() {
   if (energy_is_known_ || in_step_) return energy_;
-  sets_.update(model_);  // and have all of them loaded anew
+  sets_.update(model_);  // and load all of them again
   return calc_energy();
 }
 
@@ -55,7 +55,7 @@ double HeldForces::calc_energy() {
   });
   model_.pairs.for_each([&](std::uint32_t slot, const ingredient::PairForce& p) {
     if (!p.active || !model_.compiled(p.law).has_energy()) return;
-    const ParticleSet& set = loaded_set(p.group, 0, p.other);
+    const ParticleSet& set = loaded_set(p, 0, 0);
     sum += sets_.sum(slot).energy(set.arrays, {set.family, set.sides}, model_.compiled(p.law), p.parameters.data(),
                                   {p.cutoff, p.shifted != 0}, model_.time, parallel_);
   });
@@ -83,10 +83,11 @@ Energy HeldForces::book() {
 
 double HeldForces::energy_of_pairs(std::uint32_t slot) const {
   const ingredient::PairForce& pairs = model_.pairs[slot];
-  ParticleSet set;  // of its own: this may be asked for while others are in use
+  ParticleSet set;  // a separate set, as this may be called while others are in use
   set.group = pairs.group, set.other = pairs.other;
+  set.has_normals = model_.compiled(pairs.law).depends_on_normals();
   set.find(model_);
-  set.load(model_, 0, parallel_);
+  set.load(model_, 0, 0, parallel_);
   return neighbors::PairSum().energy(set.arrays, {set.family, set.sides}, model_.compiled(pairs.law),
                                      pairs.parameters.data(), {pairs.cutoff, pairs.shifted != 0}, model_.time,
                                      parallel_);

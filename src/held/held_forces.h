@@ -10,39 +10,39 @@
 
 namespace iota::held {
 
-/// Forces that are taken once a step and held over it: scripted bonds, laws that are code, any law on request, fields and
-/// pairwise forces; and their energy. A function that raises, or a force that is not finite, is switched off and named in
-/// the report of the step.
+/// Forces that are evaluated once a step and held during it: scripted bonds, laws given as code, any law on request,
+/// fields and pairwise forces; and their energy. A function that throws, or a force that is not finite, is switched off
+/// and named in the report of the step.
 class HeldForces {
  public:
   HeldForces(model::Model& model, const Parallel& parallel) : model_(model), parallel_(parallel) {}
 
   Functions functions;
 
-  /// Adds all held forces to the pushes of the next step, whose length is report.dt. From here to `end_step` the energy is
+  /// Adds all held forces to the pushes of the next step, whose length is report.dt. Until `end_step` the energy is
   /// that of the start of the step.
   void begin_step(StepReport&);
   /// Books the work of the step.
   void end_step();
 
-  /// On a bond's first particle, N: of an implicit bond here and now, of a held one in the last step.
+  /// On a bond's first particle, N: of an implicit bond at present, of a held one in the last step.
   Vec3 force(std::uint32_t bond) const;
-  /// Bonds that act and break beyond some force.
+  /// Active bonds with a breaking force.
   const std::vector<std::uint32_t>& breakable_bonds();
 
-  /// @name Energy, J: of bonds, fields and pairs whose law has one. It is potential energy like that of a spring that is
-  /// solved for, but no solver knows it, so it is booked here:
-  /// - the change by edits since the last step is found at the start of the next one;
-  /// - the change in a step is taken off the work of the held forces, which their island books as external. What is left
-  ///   there is the error of holding, and is small where the step is short beside the swing.
+  /// @name Energy, J: of bonds, fields and pairs whose law has one. It is potential energy, like that of an implicit
+  /// spring, but no solver counts it, so it is booked here:
+  /// - the change by edits since the last step is measured at the start of the next one;
+  /// - the change in a step is subtracted from the work of the held forces, which their island books as external. The
+  ///   remainder there is the error of holding, and is small if the step is short compared with the oscillation.
   ///@{
   double energy();
   void book_edits();
-  Energy book();  ///< all of the system's energy book
+  Energy book();  ///< the system's whole energy balance
   double energy_of_pairs(std::uint32_t pairs) const;
   ///@}
 
-  /// Evaluates without applying; returns for how many. See Laws::rehearse.
+  /// Evaluates without applying; returns the number. See Laws::rehearse.
   std::size_t rehearse_law(std::uint32_t law, double h);
   std::size_t rehearse_field(std::uint32_t field, double h);
   std::size_t rehearse_pairs(std::uint32_t pairs, double h);
@@ -58,7 +58,7 @@ class HeldForces {
   void take_scripts(StepReport&);
   void watch_implicit_law(BondBatch&, StepReport&);
   bool has_function(const ingredient::Law&) const;
-  bool require_function(const BondBatch&, StepReport&);  ///< switches the bonds of a law off whose code is missing
+  bool require_function(const BondBatch&, StepReport&);  ///< switches off the bonds of a law without its function
   void evaluate(BondBatch&, double time) const;
   void call(BondBatch&) const;  ///< the function of a law for all its bonds; it may throw
   void add_force(std::uint32_t bond, const Vec3& on_p);
@@ -68,7 +68,8 @@ class HeldForces {
   void take_field(std::uint32_t field, ParticleSet&, StepReport&);
   bool call_field(std::uint32_t field, ParticleSet&, StepReport&);
   void take_pairs(std::uint32_t pairs, ParticleSet&, StepReport&);
-  ParticleSet& loaded_set(std::uint32_t group, double ahead, std::uint32_t other = model::none);
+  ParticleSet& loaded_set(std::uint32_t group, double ahead);
+  ParticleSet& loaded_set(const ingredient::PairForce&, double ahead, double normals_ahead);
 
   double calc_energy();
 

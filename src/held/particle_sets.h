@@ -10,32 +10,38 @@
 
 namespace iota::held {
 
-/// The particles that a field or a pairwise force acts on, as arrays; what is hinged together is one row, with all its mass.
+/// The particles of a field or a pairwise force, as arrays; hinged particles are one row, with their total mass.
 struct ParticleSet {
   std::uint32_t group = model::none;  ///< none: all
-  std::uint32_t other = model::none;  ///< with those of this group too; none: nothing more
+  std::uint32_t other = model::none;  ///< the second group; none: no second group
+  bool has_normals = false;           ///< only oriented particles, with their normals
   std::vector<std::uint8_t> sides;    ///< of pairs between two groups: bit 0 of `group`, bit 1 of `other`; else empty
   std::vector<std::uint32_t> rings, family;
-  std::vector<ParticleId> ids;          ///< the first of each ring
-  std::vector<std::uint8_t> is_pushed;  ///< not those of static and scripted bodies, which only act on others
+  std::vector<std::uint32_t> attributes;  ///< of oriented particles
+  std::vector<ParticleId> ids;            ///< the first of each ring
+  std::vector<std::uint8_t> is_pushed;    ///< 0 for static and scripted bodies, which only act on others
   laws::ParticleArrays arrays;
   std::vector<double> position_rows, velocity_rows, force_rows;  // for fields
   bool is_loaded = false;
 
   void find(const model::Model&);
-  /// The state with positions `ahead` seconds on, and no forces.
-  void load(const model::Model&, double ahead, const Parallel&);
-  /// Positions of now; the rest stays as it was loaded.
+  /// The state with positions `ahead` and normals `normals_ahead` seconds on, and no forces.
+  void load(const model::Model&, double ahead, double normals_ahead, const Parallel&);
+  /// Loads present positions; the rest does not change.
   void follow(const model::Model&);
-  /// Adds the forces to what acts on the rings during the next step.
+  /// Adds the forces to those on the rings during the next step.
   void unload(model::Model&, const Parallel&) const;
+
+ private:
+  void load_normals(const model::Model&, double ahead);
 };
 
 /// All sets in use, and the pairs found among them. Nothing here is saved.
 struct ParticleSets {
   void update(const model::Model&);
   void forget() { sets.clear(), sums.clear(), seen_structure = seen_members = ~0ull; }
-  ParticleSet& of(const model::Model&, std::uint32_t group, std::uint32_t other = model::none);
+  ParticleSet& of(const model::Model&, std::uint32_t group, std::uint32_t other = model::none,
+                  bool has_normals = false);
   neighbors::PairSum& sum(std::uint32_t pairs);
 
   std::vector<std::unique_ptr<ParticleSet>> sets;

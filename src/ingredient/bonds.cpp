@@ -12,7 +12,7 @@ namespace iota::ingredient {
 
 namespace {
 
-/// `time`: at the end of the step, where a law that changes with time is taken.
+/// `time`: at the end of the step, for laws that depend on time.
 void set_parameters(solver::SpringForce& spring, const Bond& bond, double /*time*/) {
   spring.stiffness = bond.parameters[0], spring.damping = bond.parameters[1], spring.length = bond.parameters[2];
 }
@@ -76,6 +76,9 @@ void Bonds::check_links(const Model& model, model::Audit& audit) {
   audit.check_ends("bond", model.bonds);
   model.bonds.for_each([&](std::uint32_t slot, const Bond& b) {
     audit.require(model.laws.is_alive(b.law), "bond ", slot, " has no living law");
+    audit.require(!model.laws.is_alive(b.law) || !model.laws[b.law].has_derivative() ||
+                      !model.compiled(b.law).depends_on_normals(),
+                  "bond ", slot, " has a law of normals");
   });
 }
 
@@ -102,7 +105,7 @@ laws::PairState Bonds::state(const Model& model, const Bond& b, double ahead) {
 double Bonds::energy(const Model& model, std::uint32_t slot) {
   const Bond& b = model.bonds[slot];
   if (!b.ties()) return 0;
-  // An infinite one, of ends that have met for instance, counts for nothing; the next step switches the bond off.
+  // An infinite energy, for instance of coincident ends, is not counted; the next step switches the bond off.
   const double energy = model.compiled(b.law).elastic(state(model, b), b.parameters.data()).energy;
   return std::isfinite(energy) ? energy : 0;
 }
@@ -138,7 +141,7 @@ void Bonds::add_loads(const LastStep& step, std::uint32_t body, LoadReader& read
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     model.bonds.for_each_of(p, [&](std::uint32_t slot) {
       const Bond& bond = model.bonds[slot];
-      if (!bond.ties()) return;  // forces that are held are applied as pushes
+      if (!bond.ties()) return;  // held forces are applied as pushes
       Vec3 on_q;
       visit_force_of(model, bond, [&](auto force) {
         set_parameters(force, bond, model.time);
@@ -220,7 +223,7 @@ void Bonds::acting_changed(Model& model, std::uint32_t particle) {
 
 model::ChangedSlots* Bonds::scene_log(Model& model) { return &model.changed_bonds; }
 
-// Springs are drawn. They and the joints that are drawn as ties share the numbers of ties.
+// Springs are drawn. Their tie numbers are distinct from those of joints that are drawn as ties.
 void Bonds::describe(const SceneView& view, SceneChanges& changes) {
   const Model& model = view.model;
   const auto list = [&](std::uint32_t p, std::vector<std::uint32_t>& slots) {

@@ -15,20 +15,20 @@ struct Bond : model::Ends {
   std::uint32_t law = spring_law;
   std::uint8_t active = 1;
   std::uint8_t implicit = 1;
-  std::uint8_t muted = 0;   ///< one of its ends does not act
-  std::uint8_t broken = 0;  ///< by more than `break_force`
+  std::uint8_t muted = 0;   ///< one of its ends is inactive
+  std::uint8_t broken = 0;  ///< by a force above `break_force`
   std::array<double, laws::max_parameters> parameters{};
   double break_force = std::numeric_limits<double>::infinity();  ///< N
   Vec3 held_force;           ///< on p in the last step, N; of bonds that are not implicit
-  std::uint64_t script = 0;  ///< key of its own function, which lives outside the tables
+  std::uint64_t script = 0;  ///< key of its own function, which is outside of the tables
 
   /// Whether it is solved implicitly, so that its two ends belong to one problem.
   bool ties() const { return acts() && implicit; }
   bool acts() const { return active && !muted; }
 };
 
-/// Forces between two particles. Those that are solved implicitly, with the positions at the end of the step, are rows of
-/// an island; the others are taken once a step and held, see `held_forces`.
+/// Forces between two particles. Implicit ones, of the positions at the end of the step, are in the problem of an
+/// island; the others are evaluated once a step and held, see `held_forces`.
 class Bonds : public NoAnswers {
  public:
   struct Tables {
@@ -59,10 +59,10 @@ class Bonds : public NoAnswers {
   static void remove(Model&, std::uint32_t bond);
   static void set_active(Model&, std::uint32_t bond, bool active);  ///< true repairs a broken one
 
-  /// The two ends of a bond for its law: distance and its rate (positions `ahead` seconds on), time, masses.
+  /// The state of a bond for its law: distance and its rate (positions extrapolated by `ahead` seconds), time, masses.
   static laws::PairState state(const Model&, const Bond& bond, double ahead = 0);
   static double energy(const Model&, std::uint32_t bond);  ///< of one that is solved implicitly, at `Model::time`, J
-  /// On the second particle, as things stand, N.
+  /// On the second particle at the present state, N.
   static Vec3 force(const Model&, std::uint32_t bond);
 
   void build(const IslandMap&, Problem&);

@@ -14,8 +14,8 @@ namespace iota::ingredient {
 namespace {
 
 /// Shrinks smoothly from 1 to a hundredth. Each step moves positions only: forces that close the distance in a given time
-/// overshoot (measured: they add 25 to 120 J where this adds 0.03 J). A distance row has no direction at 0, so a projection
-/// closes the last bit.
+/// overshoot (measured: they add 25 to 120 J where this adds 0.03 J). A distance row has no direction at 0, so a
+/// projection closes the last part.
 double closing_factor(double elapsed, double duration) {
   const double s = std::clamp(elapsed / duration, 0.0, 1.0);
   return 1 - 0.99 * s * s * (3 - 2 * s);
@@ -122,7 +122,7 @@ std::uint32_t Closings::between(const Model& model, std::uint32_t p, std::uint32
   return found;
 }
 
-// The articulate is split at once: no cut may find one of another cut waiting.
+// The articulate is split immediately, as a cut must not find another cut pending.
 void Closings::end(Model& model, std::uint32_t closing) {
   const std::array bodies{model.particles[model.closings[closing].p].body,
                           model.particles[model.closings[closing].q].body};
@@ -130,7 +130,7 @@ void Closings::end(Model& model, std::uint32_t closing) {
   model::split_where_apart(model, bodies);
 }
 
-// On their way to each other they are one problem already.
+// While they are closing they are already one problem.
 void Closings::visit_joined(const Model& model, std::uint32_t particle, Visit visit) {
   model.closings.for_each_of(particle, [&](std::uint32_t slot) {
     const Closing& closing = model.closings[slot];
@@ -156,7 +156,7 @@ bool Closings::call_off(Model& model, std::uint32_t p, std::uint32_t q) {
   return closing != none;
 }
 
-// Where the two particles share a ring or a body by now, nothing is left to close, or nothing could.
+// If the two particles share a ring or a body now, there is nothing left to close.
 void Closings::settle(Model& model, std::span<const std::uint32_t>, std::vector<std::string>& notes) {
   if (model.closings.size() == 0) return;
   for (std::uint32_t slot = 0; slot < model.closings.slot_count(); ++slot) {

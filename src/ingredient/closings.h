@@ -5,14 +5,14 @@
 
 namespace iota::ingredient {
 
-/// Two particles on their way to each other.
+/// Two particles that are closing.
 struct Closing : model::Ends {
   double distance = 0;               ///< at the start, m
   double duration = 0, elapsed = 0;  ///< s
   double multiplier = 0;
 };
 
-/// Pairs of particles that come together over some time and are combined then: distance rows that get shorter.
+/// Pairs of particles that meet after some time and are then combined: distance rows with a decreasing length.
 class Closings : public NoAnswers {
  public:
   struct Tables {

@@ -18,16 +18,16 @@ using joint::for_each_term;
 
 namespace {
 
-constexpr double straight = 1e-6;  // sine of an angle that counts as none
+constexpr double straight = 1e-6;  // sine of an angle that counts as zero
 
-/// Of any length, tiny or huge ones too.
+/// For any length, also tiny or huge ones.
 Vec3 unit(const Vec3& v) {
   const Vec3 scaled = (1 / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)})) * v;
   return (1 / norm(scaled)) * scaled;
 }
 
-/// What one side of a joint can hold: any direction where it is the world or has four points off a plane, those in its
-/// plane or along its line where it is flat or thin, none where it is a point.
+/// The directions that one side of a joint can hold: any if it is the world or has four points not in a plane, those in
+/// its plane or along its line if it is flat or thin, none if it is a point.
 struct Side {
   std::uint32_t body = none;
   int dimensions = 3;
@@ -56,7 +56,7 @@ struct Side {
   }
 };
 
-/// The directions that a joint needs of its two sides, before anything is made.
+/// The directions that a joint needs on its two sides, checked before any change.
 struct Frames {
   std::array<Vec3, place_count> direction{};
   std::uint8_t needed = 0;
@@ -70,7 +70,7 @@ struct Frames {
   bool has(int place) const { return needed >> place & 1; }
 };
 
-/// A direction at right angles to z that the side with the least freedom holds, if any of them is that thin.
+/// A direction normal to z that the thinner side holds, if one of them is thin.
 Vec3 common_side(const Side& a, const Side& b, const Vec3& z) {
   const Side& thin = b.dimensions < a.dimensions ? b : a;
   Vec3 x;
@@ -79,8 +79,8 @@ Vec3 common_side(const Side& a, const Side& b, const Vec3& z) {
   return norm(x) < straight ? any_perpendicular(z) : unit(x);
 }
 
-/// A common axis, by what the sides can hold: an axis on one and two directions at right angles to it on the other; or
-/// the angles of the axis with a thin other's own directions; or the axis on both. False where none of these will do.
+/// A common axis, depending on the sides: an axis on one and two directions normal to it on the other; or the angles of
+/// the axis with the directions of a thin other side; or the axis on both. False if none of these is possible.
 bool plan_alignment(Frames& frames, const Side& a, const Side& b, const Vec3& z, const Vec3& x, const Vec3& y) {
   using Alignment = Constraint::Alignment;
   const auto by_axis_of = [&](const Side& p, const Side& q, int axis, int side) {
@@ -144,7 +144,7 @@ Frames plan(const ConstraintKindInfo& kind, const JointSpec& spec, const Side& a
   if (!point && !plan_alignment(frames, a, b, z, x, y))
     cannot(kind.name, "neither side holds the axis (" + a.what() + (b.is_world() ? "" : ", " + b.what()) +
                           "); give one of them a massive particle off its line or plane, or join them at two points");
-  const bool along_thin = thin.dimensions == 1 && thin.holds(z);  // it can turn about the axis unseen
+  const bool along_thin = thin.dimensions == 1 && thin.holds(z);  // its rotation about the axis is undefined
   if (!point && !along_thin && (kind.lock || kind.angle)) {
     // References of the angle, or of the last direction that is locked.
     const auto refer = [&](const Side& s, int side) {
@@ -182,7 +182,7 @@ void require_span(const Model& model, const char* kind, const Side& side, const 
                    std::to_string(at.z) + "); give it a massive particle off its point, line or plane");
 }
 
-/// A place of a constraint: a marker of its own on a body, or a fixed one in the world.
+/// A place of a constraint: its own marker on a body, or a fixed place in the world.
 void add_place(Model& model, Constraint& c, int place, std::uint32_t body, const Vec3& at) {
   const auto bit = static_cast<std::uint8_t>(1u << place);
   if (body == none) {
@@ -191,7 +191,7 @@ void add_place(Model& model, Constraint& c, int place, std::uint32_t body, const
   } else {
     const std::uint32_t marker = c.particles[place] = model.make_marker(body, at);
     c.owned |= bit;
-    // The ends of directions belong where their origin does, not where they reach.
+    // The ends of directions belong to the part of their origin, not to the nearest one.
     const std::uint32_t origin = c.particles[place < b_origin ? a_origin : b_origin];
     model.particles[marker].part = origin == marker ? model.part_at(body, at) : model.particles[origin].part;
   }
@@ -261,7 +261,7 @@ std::uint32_t make_constraint(Model& model, const DistanceSpec& spec) {
 
 namespace {
 
-/// The frame of what a curve or surface is fixed in, as side a or b.
+/// The frame of the body or world of a curve or surface, as side a or b.
 void make_frame(Model& model, Constraint& c, const Side& side, int origin, const Vec3& at, const Quaternion& q) {
   const int which = origin == b_origin;
   c.scale[which] = side.extent > 0 ? side.extent : 1;
@@ -311,7 +311,7 @@ std::uint32_t make_constraint(Model& model, const PathSpec& spec) {
   const Vec3 origin = b.is_world() ? Vec3{} : model.center_of_mass(b.body);
   std::vector<Vec3> local = spec.points;
   for (Vec3& p : local) p -= origin;
-  const auto curve = make_curve(c.curve, local);  // refuses bad points before anything changes
+  const auto curve = make_curve(c.curve, local);  // throws for bad points before any change
   make_frame(model, c, b, b_origin, origin, {});
   c.curve.first = static_cast<std::uint32_t>(model.curve_points.size());
   c.curve.count = static_cast<std::uint32_t>(local.size());
@@ -334,7 +334,7 @@ std::uint32_t make_constraint(Model& model, const SurfaceConstraintData& spec) {
   c.particles[a_origin] = spec.particle.slot;
   c.surfaces[1] = spec.surface.data;
   const auto surface = make_surface(model, c.surfaces[1]);
-  // Round a sharp edge no step is short enough: a point that is held on it would gain or lose its speed there.
+  // No step is short enough round a sharp edge: a point on it would gain or lose speed there.
   if (info(spec.kind).sign == 0 && surface->skin() > 0)
     cannot(info(spec.kind).name,
            "the shape has sharp edges, and a point that is held on them has no direction there; "
@@ -375,7 +375,7 @@ std::uint32_t make_constraint(Model& model, const SpanSpec& spec) {
 
 namespace {
 
-/// Puts a term at the end of a coupling's list and at the head of its joint's.
+/// Appends a term to a coupling's list and adds it at the head of its joint's.
 void add_term(Model& model, std::uint32_t coupling, CoupledTerm term) {
   Constraint& joint = model.constraints[term.joint];
   term.coupling = coupling, term.next = none, term.next_at_joint = joint.coupled;
@@ -413,7 +413,7 @@ std::uint32_t make_constraint(Model& model, const CouplingSpec& spec) {
   return make_coupling(model, spec.kind, terms, spec.length, spec.breaks);
 }
 
-// Pieces between the same two particles are one span, which counts as often.
+// Pieces between the same two particles are one span with a larger ratio.
 std::uint32_t make_constraint(Model& model, const TackleSpec& spec) {
   std::vector<CoupledTerm> terms;
   for (std::size_t i = 0; i + 1 < spec.points.size(); ++i) {

@@ -21,22 +21,22 @@ using model::Model;
 
 /// The places of a constraint. A joint needs a frame on each of its sides: an origin and the ends of directions that
 /// start there (axis z, side x, third y). A rod or rope joins the two origins. Curves and surfaces need the whole frame
-/// of what they are fixed in.
+/// of their body or the world.
 enum Place : std::uint8_t { a_origin, a_axis, a_side, a_third, b_origin, b_axis, b_side, b_third };
 inline constexpr int place_count = 8;
 
-/// What a kind is made of; `constraint_kinds` is the one list. Its rows are in ingredient/joint_rows.h.
+/// The parts of a kind; `constraint_kinds` lists all. The rows are in ingredient/joint_rows.h.
 struct ConstraintKindInfo {
   const char* name;
   /// Between bodies, with frames; between two particles; a particle on a curve or surface; two surfaces.
   /// Or other constraints' coordinates.
   enum class Form : std::uint8_t { joint, distance, path, surface, surface_pair, coupling } form = Form::joint;
   bool meet = false;   ///< 3 rows: the origins coincide
-  bool line = false;   ///< 2 rows: the origins lie on one line along the axis
+  bool line = false;   ///< 2 rows: the origins are on one line along the axis
   bool align = false;  ///< 2 rows: the axis is common
-  bool lock = false;   ///< 3 rows: no relative turning
+  bool lock = false;   ///< 3 rows: no relative rotation
   bool cross = false;  ///< 1 row: a's axis at right angles to b's
-  bool plane = false;  ///< 1 row: the origins lie in one plane across the axis
+  bool plane = false;  ///< 1 row: the origins are in one plane normal to the axis
   bool screw = false;  ///< 1 row: the slide follows the angle
   bool angle = false;  ///< has the coordinate
   bool slide = false;
@@ -69,7 +69,7 @@ inline constexpr std::array<ConstraintKindInfo, 20> constraint_kinds{{
 }};
 inline const ConstraintKindInfo& info(ConstraintKind kind) { return constraint_kinds[static_cast<std::size_t>(kind)]; }
 
-/// A surface as plain data: of a shape or, where that is not 0, of the function with this key.
+/// A surface as plain data: of a shape or, if the key is not 0, of the function with this key.
 struct SurfaceData {
   shape::Data shape;
   std::uint64_t function = 0;
@@ -94,29 +94,29 @@ struct CoupledTerm {
   std::array<std::uint8_t, 7> padding{};
 };
 
-/// Refers to particles only, so that restructuring carries it along; a coupling to its terms. Joints make massless particles
-/// (markers) of their own; the world's places are fixed ones.
+/// Refers to particles only, so that it follows restructuring; a coupling refers to its terms. Joints make their own
+/// massless particles (markers); the world's places are fixed.
 struct Constraint {
   ConstraintKind kind = ConstraintKind::ball;
   std::uint8_t active = 1, broken = 0;
-  std::uint8_t owned = 0;     ///< bit i: the particle at place i was made for this constraint and goes with it
+  std::uint8_t owned = 0;     ///< bit i: the particle at place i was made for this constraint and is destroyed with it
   std::uint8_t in_world = 0;  ///< bit i: b's place i is one of `fixed`
-  /// How the common axis is held: by a's axis and b's other directions, the other way round, or by both axes.
+  /// Rows of the common axis: a's axis and b's other directions, vice versa, or both axes.
   enum class Alignment : std::uint8_t { none, axis_of_a, axis_of_b, axes } alignment = Alignment::none;
-  /// Which two directions at right angles hold the turn about the axis: a's side and b's third, or a's third and b's side.
+  /// The two directions whose right angle fixes the rotation: a's side and b's third, or a's third and b's side.
   enum class Lock : std::uint8_t { none, side_of_a, third_of_a } lock = Lock::none;
-  std::uint8_t aligned = 0;    ///< how many directions the axis keeps its angle with
+  std::uint8_t aligned = 0;    ///< number of directions with a constant angle to the axis
   std::uint8_t line_side = 0;  ///< whose side and third direction hold the line: 0 a's, 1 b's
-  /// Of what is one-sided, which did something in the last step: bit 0 itself, the others the stops of its coordinates.
+  /// The one-sided rows that carried a load in the last step: bit 0 itself, the others the stops of its coordinates.
   struct Bits {
     std::uint8_t bits = 0;
     void set(int bit, bool on) { bits = static_cast<std::uint8_t>((bits & ~(1 << bit)) | on << bit); }
     bool operator[](int bit) const { return bits >> bit & 1; }
   };
-  Bits carries, told;                                  ///< now; and when that was last reported
-  std::uint8_t is_part = 0;                            ///< 1: a span that a tackle made and takes along
-  std::array<std::uint32_t, place_count> particles{};  ///< `none` where a place is not needed, or in the world
-  /// Each particle lists the places that it is at, as links place_count * slot + place.
+  Bits carries, told;                                  ///< at present; and at the last report
+  std::uint8_t is_part = 0;                            ///< 1: a span made by a tackle and destroyed with it
+  std::array<std::uint32_t, place_count> particles{};  ///< `none` if a place is not needed, or in the world
+  /// Each particle lists its places, as links place_count * slot + place.
   std::array<std::uint32_t, place_count> next{}, previous{};
   std::array<Vec3, 4> fixed{};            ///< the world's places as b's, m
   std::array<double, 2> scale{1, 1};      ///< length of the directions of a and b, m
@@ -128,7 +128,7 @@ struct Constraint {
   std::array<SurfaceData, 2> surfaces{};  ///< of a and b
   Vec3 contact;                           ///< of two surfaces, in a's frame, m
   std::array<CoordinateOptions, joint_coordinates.size()> options{};
-  /// After the last step, rad (counted on through full turns) and m.
+  /// After the last step, rad (counted through full turns) and m.
   std::array<double, joint_coordinates.size()> coordinate{};
   BreakLimits breaks;
   std::array<double, 8> multipliers{};  ///< of the rows that hold it, N; warm start and reaction
@@ -139,7 +139,7 @@ struct Constraint {
   bool has(int place) const { return particles[place] != 0xffffffff || (in_world >> place & 1); }
 };
 
-/// What a curve or surface is, made from the data: not saved.
+/// The curve or surface, made from the data: not saved.
 struct ConstraintGeometry {
   std::shared_ptr<const geometry::Curve> curve;
   std::array<std::shared_ptr<const shape::Surface>, 2> surfaces;
@@ -165,8 +165,8 @@ struct SurfacePairData {
   BreakLimits breaks;
 };
 
-/// Makes a joint with its markers, or a rod or rope. Throws std::invalid_argument, before anything changes, where a body
-/// cannot hold a place or direction that the kind needs.
+/// Makes a joint with its markers, or a rod or rope. Throws std::invalid_argument, before any change, if a body cannot
+/// hold a place or direction that the kind needs.
 std::uint32_t make_constraint(Model&, const JointSpec&);
 std::uint32_t make_constraint(Model&, const DistanceSpec&);
 std::uint32_t make_constraint(Model&, const PathSpec&);
@@ -175,14 +175,14 @@ std::uint32_t make_constraint(Model&, const SurfacePairData&);
 std::uint32_t make_constraint(Model&, const SpanSpec&);
 std::uint32_t make_constraint(Model&, const CouplingSpec&);
 std::uint32_t make_constraint(Model&, const TackleSpec&);
-/// How many points of the bodies that it couples a coupling touches, and may touch.
+/// The number of points of a coupling's bodies, and its limit.
 std::size_t coupled_points(const Model&, const Constraint&);
 inline constexpr std::size_t most_coupled_points = 32;
-/// The geometry of a constraint from its data; throws std::invalid_argument for sizes and points that make none.
+/// The geometry of a constraint from its data; throws std::invalid_argument for invalid sizes and points.
 ConstraintGeometry make_geometry(const Model&, const Constraint&);
-/// The body of a side (0: a, 1: b), `none` for the world. Of a coupling, a of its first and of its last constraint.
+/// The body of a side (0: a, 1: b), `none` for the world. For a coupling, a of its first and of its last constraint.
 std::uint32_t body_of_side(const Model&, const Constraint&, int side);
-/// Whether it does anything: it is active, neither of its bodies is inactive, and one of them can move.
+/// Whether it acts: it is active, neither of its bodies is inactive, and one of them can move.
 bool is_in_force(const Model&, const Constraint&);
 Vec3 position_of(const Model&, const Constraint&, int place);
 /// Unit vector along its axis, world frame; zero for kinds without one.

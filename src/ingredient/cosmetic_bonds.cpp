@@ -58,7 +58,7 @@ void CosmeticBonds::validate(const Model& model, model::Audit& audit) {
   audit.require_listed("cosmetic bond", model.cosmetic_bonds);
 }
 
-// Without cosmetic bonds a line leads from each particle of a body to the next.
+// Without cosmetic bonds there is a line from each particle of a body to the next.
 void CosmeticBonds::draw(const SceneView& view, std::uint32_t body, DrawnBody& drawn) {
   const Model& model = view.model;
   if (model.bodies[body].count == 1) return;

@@ -9,8 +9,8 @@ namespace iota::ingredient {
 /// Two particles of one body with a line between them.
 struct CosmeticBond : model::Ends {};
 
-/// Lines between particles of a body. They do nothing in a step: they are drawn, and tell which particles stay together
-/// when the body falls apart.
+/// Lines between particles of a body. They do not act in a step: they are drawn, and define which particles stay
+/// together when the body is split.
 class CosmeticBonds : public NoAnswers {
  public:
   struct Tables {
@@ -30,8 +30,8 @@ class CosmeticBonds : public NoAnswers {
 
   static std::uint32_t add(Model&, const CosmeticBond&);  ///< returns the slot
   static void remove(Model&, std::uint32_t bond);
-  /// Removes one. Where its two ends hang together by nothing else the body falls into two: one with the bond's first end,
-  /// which stays the body, and one with the second.
+  /// Removes one. If its two ends are not connected otherwise, the body is split: the piece with the bond's first end
+  /// stays this body, the other one is new.
   static model::Edit break_(Model&, std::uint32_t bond, RestructureReport&);
 };
 

@@ -10,7 +10,7 @@
 
 namespace iota::ingredient {
 
-/// EmitterOptions as plain data, and how far it has come.
+/// EmitterOptions as plain data, and its state.
 struct Emitter {
   shape::Data source;
   std::uint32_t active = 1, padding = 0;
@@ -20,13 +20,13 @@ struct Emitter {
   double velocity_spread = 0, lifetime = 1, lifetime_spread = 0, mass = 0, damping = 0;
   std::uint32_t max_count = 0, key_count = 0;
   std::array<AttributeKey, 8> keys{};
-  std::uint64_t seed = 0, draws = 0;  ///< numbers drawn so far: the whole state of its dice
-  double due = 0;                     ///< births that are owed, a fraction
+  std::uint64_t seed = 0, draws = 0;  ///< numbers drawn so far: the state of its random numbers
+  double due = 0;                     ///< pending births, a fraction
   std::uint32_t alive = 0, padding2 = 0;
   std::uint64_t born = 0;
 };
 
-/// Sources of particles; what they emit is born and dies between steps, see `particle_life`.
+/// Sources of particles, which are born and die between steps, see src/step/lifetimes.h.
 class Emitters : public NoAnswers {
  public:
   struct Tables {

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/fields.h"
 
+#include "ingredient/compiled.h"
 #include "ingredient/model.h"
+
 namespace iota::ingredient {
 
 namespace {
 
-template <std::size_t n>
-bool has_end(const std::array<char, n>& text) {
-  return std::find(text.begin(), text.end(), '\0') != text.end();
-}
-
-/// Bytes may hold anything.
+/// Bytes may contain any value.
 bool is_field(const Field& field) {
   return field.kind <= FieldKind::function &&
          (field.kind != FieldKind::listed || field.number < laws::field_law_count) &&
@@ -26,14 +23,7 @@ void Fields::validate(const Model& model, model::Audit& audit) {
 }
 
 std::uint32_t Fields::Tables::make_field(const Field& field) {
-  const std::uint32_t slot = fields.create(field).slot;
-  try {
-    compile(slot);
-  } catch (...) {
-    fields.destroy(slot);
-    throw;
-  }
-  return slot;
+  return create_compiled(fields, field, [&](std::uint32_t slot) { compile(slot); });
 }
 
 void Fields::Tables::compile(std::uint32_t slot) {
@@ -43,25 +33,14 @@ void Fields::Tables::compile(std::uint32_t slot) {
   if (field.kind == FieldKind::listed) {
     compiled_[slot] = std::make_shared<const laws::FieldLaw>(field.number);
   } else if (field.kind == FieldKind::expression) {
-    std::vector<std::string> names;
-    for (std::uint32_t i = 0; i < field.parameter_count; ++i) names.emplace_back(field.names[i].data());
-    compiled_[slot] = std::make_shared<const laws::FieldLaw>(field.text.data(), std::move(names));
+    compiled_[slot] =
+        std::make_shared<const laws::FieldLaw>(field.text.data(), names_of(field.names, field.parameter_count));
   }
 }
 
 bool Fields::Tables::compile() {
   compiled_.clear();
-  bool good = true;
-  fields.for_each([&](std::uint32_t slot, const Field& field) {
-    good = good && is_field(field);
-    if (!good) return;
-    try {
-      compile(slot);
-    } catch (const expression::ExpressionError&) {
-      good = false;
-    }
-  });
-  return good;
+  return compile_all(fields, is_field, [&](std::uint32_t slot) { compile(slot); });
 }
 
 bool Fields::replaces_gravity(const Model& model) {

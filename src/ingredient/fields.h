@@ -13,7 +13,7 @@ namespace iota::ingredient {
 
 enum class FieldKind : std::uint32_t { listed, expression, function };
 
-/// A force on each particle by itself.
+/// A force on each single particle.
 struct Field {
   FieldKind kind = FieldKind::listed;
   std::uint32_t number = 0;    ///< of a listed one
@@ -21,14 +21,14 @@ struct Field {
   std::uint32_t parameter_count = 0;
   std::uint8_t active = 1, replaces_gravity = 0;
   std::array<std::uint8_t, 6> padding{};
-  std::uint64_t function = 0;  ///< key of the function, which lives outside the tables
+  std::uint64_t function = 0;  ///< key of the function, which is outside of the tables
   std::array<double, laws::max_field_parameters> parameters{};
   std::array<std::array<char, 24>, laws::max_field_parameters> names{};
   std::array<char, 32> name{};
   std::array<char, 1000> text{};
 };
 
-/// Forces on each particle by itself; they are taken once a step and held.
+/// Forces on each single particle, evaluated once a step and held.
 class Fields : public NoAnswers {
  public:
   struct Tables {
@@ -41,11 +41,11 @@ class Fields : public NoAnswers {
         if (!ar.ok() || !compile()) ar.fail();
     }
 
-    std::uint32_t make_field(const Field&);  ///< throws expression::ExpressionError for a text that is no field
+    std::uint32_t make_field(const Field&);  ///< throws expression::ExpressionError for a text that is not a field
     const laws::FieldLaw& compiled_field(std::uint32_t field) const { return *compiled_[field]; }
 
    private:
-    bool compile();  // anew, after a restore; false where a record is none of a field
+    bool compile();  // after a restore; false if a record is not a field
     void compile(std::uint32_t field);
     std::vector<std::shared_ptr<const laws::FieldLaw>> compiled_;  // by slot; not saved, made from the table
   };

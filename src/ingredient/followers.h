@@ -34,17 +34,17 @@ class Followers {
   Memories<Ingredients>::Type memories_;
 };
 
-/// Ends what an edit of some bodies (all alive) has left without sense, and says so in the notes.
+/// Destroys items that an edit of some bodies (all alive) has made meaningless, with notes.
 inline void settle(Model& model, std::span<const std::uint32_t> bodies, std::vector<std::string>& notes) {
   for_each_type<Ingredients>([&]<class I>() { I::settle(model, bodies, notes); });
 }
 
-/// Adds to tables what an island with the body will write to from many threads.
+/// Adds rows to tables that an island with the body will write from several threads.
 inline void prepare(Model& model, std::uint32_t body) {
   for_each_type<Ingredients>([&]<class I>() { I::prepare(model, body); });
 }
 
-/// Bodies may have got other bases since ingredients chose the points that they hang on.
+/// Bodies may have other bases than when ingredients chose their points.
 inline void follow_bases(Model& model) {
   for_each_type<Ingredients>([&]<class I>() { I::follow_bases(model); });
 }

@@ -12,17 +12,21 @@ namespace iota::ingredient {
 
 namespace {
 
-/// Of the bodies that can move and that hang together with a body, kg.
+/// Of the movable bodies connected to a body, kg.
 double calc_tied_mass(const Model& model, std::uint32_t body) {
-  std::vector<std::uint32_t> articulates{model.bodies[body].articulate};
-  if (model.has_ties())  // a search through 10 000 links takes longer than their sum
-    for (const std::uint32_t b : model.tied_bodies(std::array{body})) articulates.push_back(model.bodies[b].articulate);
-  sort_unique(articulates);
   double mass = 0;
-  for (const std::uint32_t articulate : articulates)
-    model.for_each_body_of(articulate, [&](std::uint32_t b) {
-      if (is_free(model.bodies[b].kind)) mass += model.body_mass(b);
-    });
+  const auto add = [&](std::uint32_t b) {
+    if (is_free(model.bodies[b].kind)) mass += model.body_mass(b);
+  };
+  const std::uint32_t own = model.bodies[body].articulate;
+  if (!model.has_ties()) {  // a search through 10 000 links takes longer than a sum
+    model.for_each_body_of(own, add);
+    return mass;
+  }
+  std::vector<std::uint32_t> articulates{own};
+  for (const std::uint32_t b : model.tied_bodies(std::array{body})) articulates.push_back(model.bodies[b].articulate);
+  sort_unique(articulates);
+  for (const std::uint32_t articulate : articulates) model.for_each_body_of(articulate, add);
   return mass;
 }
 
@@ -41,13 +45,13 @@ void Grips::build(const IslandMap& map, Problem& problem) {
     force.arm.count = g.count;
     problem.add(force, {owner, {}, slot});
     if (find_felt_mass(slot, g.body)) return;
-    // A grip feels the body that it holds and, through the hinges, part of what hangs on that: enough to lift it all.
+    // A grip's effective mass: its body and, through the hinges, enough of the connected ones to lift all.
     const double own = model.body_mass(g.body);
     felt_masses_.push_back({slot, g.body, own + 0.5 * (calc_tied_mass(model, g.body) - own)});
   });
 }
 
-// All forces of their pool are grips.
+// All forces of this pool are grips.
 void Grips::renew_pulls(const IslandMap& map, Problem& problem) {
   auto& pool = problem.pool_of<solver::GripForce>();
   pool.items.clear(), pool.keys.clear(), pool.slots.clear();
@@ -71,14 +75,14 @@ void Grips::load(const Model& model, const IslandNodes&, double, Problem& proble
     const double omega = 2 * std::numbers::pi * g.frequency, mass = *find_felt_mass(key.slot, g.body);
     forces[i].arm.origin = g.target - problem.origin;
     arms_[i] = forces[i].arm.value(problem.position.data());
-    // The stiffness gives the largest force at this distance where the body is far away.
+    // The stiffness gives the largest force at this distance if the body is far away.
     const double distance = norm(arms_[i]);
     forces[i].stiffness = mass * std::min(omega * omega, g.max_acceleration / (distance + 1e-12));
     forces[i].damping = 2 * mass * omega;
   });
 }
 
-// Means over the step, taken where the scheme takes forces and before velocities are damped.
+// Means over the step, at the time of the scheme's forces and before damping.
 void Grips::store(Model& model, const IslandNodes&, double h, const Problem& problem) const {
   const auto& forces = problem.pool_of<solver::GripForce>().items;
   for_each_item_of<solver::GripForce>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
@@ -103,7 +107,7 @@ void Grips::validate(const Model& model, model::Audit& audit) {
   });
 }
 
-// It counts for the part at the place that it holds, whichever points carry that.
+// It counts for the part at the held place, whichever points carry that.
 void Grips::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   const Model& model = step.model;
   model.grips.for_each([&](std::uint32_t, const Grip& g) {

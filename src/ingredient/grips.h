@@ -16,7 +16,7 @@ struct Grip {
   Vec3 force;  ///< in the last step, N
 };
 
-/// What viewers hold: a damped spring from a point of a body to a target, of limited force.
+/// Grips of viewers: a damped spring of limited force from a point of a body to a target.
 class Grips : public NoAnswers {
  public:
   struct Tables {
@@ -32,7 +32,7 @@ class Grips : public NoAnswers {
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
   static bool holds(const Model&, std::uint32_t particle);
 
-  /// A grip stays where it is, on the body of the particle that was nearest to it.
+  /// A grip keeps its place, on the body of the nearest particle.
   struct Held {
     std::uint32_t grip;
     Vec3 point;
@@ -44,11 +44,11 @@ class Grips : public NoAnswers {
   static void follow(Model&, const Memory&);
   static void follow_bases(Model&);
 
-  /// A grip at a body has come or is going. A particle by itself enters an island with it, or leaves it.
+  /// A grip at a body was added or will be removed. A single particle then enters an island, or leaves it.
   static void touch(Model&, std::uint32_t body);
   static Vec3 point(const Model&, const Grip&);  ///< where it holds, world frame
-  /// Hangs a grip on the point of its body nearest to `point` (world frame): the span of the body's basis, for a rod
-  /// between its ends.
+  /// Attaches a grip to the point of its body nearest to `point` (world frame): in the span of the body's basis, for a
+  /// rod between its ends.
   static void anchor(const Model&, Grip&, const Vec3& point);
 
   void build(const IslandMap&, Problem&);

@@ -23,97 +23,97 @@ using model::Structure;
 using solver::Problem;
 using Visit = Structure::Visit;
 
-/// The answers of a kind of thing that has nothing to say. An ingredient inherits them and hides those that it answers
-/// itself. Static functions are about the whole model. The others are about one island: an ingredient object belongs to an
-/// island and knows the places of its rows and forces in the island's problem.
+/// The default functions of an ingredient, which do nothing. An ingredient inherits them and hides those that it
+/// defines. Static functions are for the whole model. The others are for one island: an ingredient object belongs to an
+/// island and has the indices of its rows and forces in the island's problem.
 struct NoAnswers {
-  /// Marks our items in the problem; the island numbers its ingredients.
+  /// Marks the ingredient's items in the problem; the island numbers its ingredients.
   std::uint8_t owner = 0;
 
   /// @name The model
   ///@{
 
-  /// What it keeps. `Model` inherits the tables of all ingredients, so that members are found by their names.
+  /// Its data. `Model` inherits the tables of all ingredients, so that members are found by their names.
   struct Tables {
-    /// To and from bytes. The structure is there already.
+    /// To and from bytes. The structure exists already.
     template <class Archive>
     void archive(Archive&, const Structure&) {}
   };
-  /// Moves what bytes do not hold from the model that a restored one replaces, and makes anew what is made of tables.
+  /// Moves data that are not saved from the replaced model, and rebuilds data that are derived from tables.
   static void take_over(Model& /*restored*/, Model& /*before*/) {}
   static void validate(const Model&, model::Audit&) {}
-  /// What must be true of its tables before anything follows their slots: see `Audit::check_links`.
+  /// Checks its tables before any code follows their slots: see `Audit::check_links`.
   static void check_links(const Model&, model::Audit&) {}
-  /// Its share of kinetic and potential energy, and of momentum.
+  /// Adds its kinetic and potential energy, and its momentum.
   static void add_energy(const Scope&, Energies&) {}
   static void add_momentum(const Scope&, Momenta&) {}
   /// The largest gap of its constraints, m.
   static double worst_gap(const Model&) { return 0; }
-  /// What it did to the points of a body in the last step.
+  /// Its forces on the points of a body in the last step.
   static void add_loads(const LastStep&, std::uint32_t /*body*/, LoadReader&) {}
-  /// Whether it keeps a particle that is a body by itself from flying freely.
+  /// Whether it acts on a body of a single particle, which is then not free.
   static bool holds(const Model&, std::uint32_t /*particle*/) { return false; }
 
-  /// Whether anything of it refers to a particle.
+  /// Whether it refers to a particle.
   static bool uses(const Model&, std::uint32_t /*particle*/) { return false; }
-  /// Whether a force of it takes the place of gravity.
+  /// Whether one of its forces replaces gravity.
   static bool replaces_gravity(const Model&) { return false; }
-  /// Angular momentum of a body that its points know nothing of, kg m^2/s.
+  /// Angular momentum of a body beside that of its points, kg m^2/s.
   static Vec3 inner_momentum(const Model&, std::uint32_t /*body*/) { return {}; }
   ///@}
 
-  /// @name Who hangs together
+  /// @name Connections
   ///@{
 
-  /// visit(body): of those that it joins with a particle's in one articulate, as hinges do.
+  /// visit(body): of the bodies that it joins with a particle's body in one articulate, as hinges do.
   static void visit_joined(const Model&, std::uint32_t /*particle*/, Visit) {}
-  /// visit(body): of those that must be solved together with a particle's. By constraints (rigidly), or by forces.
+  /// visit(body): of the bodies that must be solved together with a particle's body, by constraints or by forces.
   static constexpr bool ties_rigidly = false;
   static void visit_tied(const Model&, std::uint32_t /*particle*/, Visit) {}
   static bool ties_any(const Model&) { return false; }
   static bool ties_to_world(const Model&, std::uint32_t /*body*/) { return false; }  ///< by a constraint
-  /// visit(particle): of those that stay with a particle when its body falls apart.
+  /// visit(particle): of the particles that stay with a particle when its body is split.
   static void visit_companions(const Model&, std::uint32_t /*particle*/, Visit) {}
   ///@}
 
   /// @name Edits
   ///@{
 
-  /// Particle q becomes p: what refers to q refers to p from now on, or ends.
+  /// Particle p replaces q: references to q become references to p, or end.
   static void absorb(Model&, std::uint32_t /*q*/, std::uint32_t /*p*/) {}
-  /// A particle is going: ends what refers to it.
+  /// A particle will be destroyed: ends all references to it.
   static void drop(Model&, std::uint32_t /*particle*/) {}
-  static void forget_particle(Model&, std::uint32_t /*particle*/) {}  ///< it is gone
+  static void forget_particle(Model&, std::uint32_t /*particle*/) {}  ///< it was destroyed
   static void forget_body(Model&, std::uint32_t /*body*/) {}
-  /// Another particle is the first of a ring, or it is empty and gone.
+  /// The first particle of a ring has changed, or the empty ring was destroyed.
   static void ring_changed(Model&, std::uint32_t /*ring*/) {}
-  /// A ring becomes another one; `replaces`: what holds `from` in its place holds `into` there now.
+  /// A ring is merged into another one; `replaces`: the pin of `from` now holds `into`.
   static void ring_merged(Model&, std::uint32_t /*into*/, std::uint32_t /*from*/, bool /*replaces*/) {}
   static void inertia_changed(Model&, std::uint32_t /*body*/) {}     ///< the basis or the inertia pairs of a body
   static void acting_changed(Model&, std::uint32_t /*particle*/) {}  ///< see Structure::acts
-  /// Ends what brings two particles together. False if nothing does.
+  /// Ends the closing of two particles. False if there is none.
   static bool call_off(Model&, std::uint32_t /*p*/, std::uint32_t /*q*/) { return false; }
-  /// Ends what an edit of some bodies (all alive) has left without sense, and says so in the notes.
+  /// Destroys items that an edit of some bodies (all alive) has made meaningless, with notes.
   static void settle(Model&, std::span<const std::uint32_t> /*bodies*/, std::vector<std::string>& /*notes*/) {}
-  /// What it has to know from before an edit of some bodies to follow that afterwards.
+  /// Saves the state before an edit of some bodies that `follow` needs.
   struct Memory {};
   static Memory remember(const Model&, std::span<const std::uint32_t> /*bodies*/) { return {}; }
-  /// Since then particles may have been absorbed, bodies joined, torn apart or destroyed.
+  /// Since then particles may have been absorbed, bodies joined, split or destroyed.
   static void follow(Model&, const Memory&) {}
   /// Bodies may have other bases, in the same places.
   static void follow_bases(Model&) {}
-  /// Adds to tables what an island with the body will write to from many threads.
+  /// Adds rows to tables that an island with the body will write from several threads.
   static void prepare(Model&, std::uint32_t /*body*/) {}
   ///@}
 
   /// @name Viewers
   ///@{
 
-  /// Items that have changed or gone by themselves, not with a body; null: it has none.
+  /// Items that have changed or were destroyed without a change of a body; null: none.
   static model::ChangedSlots* scene_log(Model&) { return nullptr; }
-  /// Describes the items that the view asks for.
+  /// Describes the items of the view.
   static void describe(const SceneView&, SceneChanges&) {}
-  /// Its part of how a body is drawn.
+  /// Its part of the drawing of a body.
   static void draw(const SceneView&, std::uint32_t /*body*/, DrawnBody&) {}
   ///@}
 
@@ -122,35 +122,35 @@ struct NoAnswers {
 
   /// Adds the masses, rows and forces of the map's bodies, after those of the ingredients before it in the list. When an
   /// island follows a change, the map has the bodies at the nodes that changed, and the problem refuses items at other
-  /// nodes, which it has already. An item's key says what it is of: it needs no list that runs along.
+  /// nodes, which it has already. An item's key identifies it without a parallel list.
   void build(const IslandMap&, Problem&) {}
-  /// Forgets what `build` is about to list again, beyond the items of the problem.
+  /// Clears the lists of `build`, except the items of the problem.
   void leave(const IslandMap&) {}
-  /// Replaces the island's forces that come and go and couple no points but those that are coupled anyway.
+  /// Replaces the island's transient forces, which couple only points that are coupled anyway.
   void renew_pulls(const IslandMap&, Problem&) {}
-  /// Parameters and warm multipliers go into the problem, for a step of h seconds (0: a projection). The problem has its
-  /// positions and velocities already.
+  /// Loads parameters and warm multipliers into the problem, for a step of h seconds (0: a projection), after positions
+  /// and velocities.
   void load(const Model&, const IslandNodes&, double /*h*/, Problem&) {}
-  /// Changes what the scheme leaves alone, after its step of h seconds: damping, angles. Returns the energy that this
-  /// takes away, J.
+  /// Changes after the scheme's step of h seconds: damping, angles. Returns the dissipated energy,
+  /// J.
   double after_step(Model&, double /*h*/, Problem&) { return 0; }
-  /// Multipliers and readings of a step of h seconds go back. The model has its new positions and velocities already.
+  /// Stores multipliers and readings of a step of h seconds, after the model's positions and velocities.
   void store(Model&, const IslandNodes&, double /*h*/, const Problem&) const {}
-  /// Brings what depends on positions up to date when they were not changed by a step but by a projection (`moved`: of
-  /// positions too) or by an assignment.
+  /// Updates data that depend on positions after a projection (`moved`: of positions too) or an assignment, without a
+  /// step.
   void refresh(Model&, const IslandNodes&, bool /*moved*/) const {}
-  /// Whether rows are met that no step can change, since all their points are pinned.
+  /// Whether rows with only pinned points, which no step can change, are satisfied.
   bool meets_pinned(const Model&) const { return true; }
-  /// Kinetic energy in the problem that is not the model's, J.
+  /// Kinetic energy of the problem that the model does not have, J.
   double virtual_energy(const Model&) const { return 0; }
-  /// Says what a row of ours is.
+  /// Names one of its rows.
   std::string name_of_row(const Model&, solver::ItemKey) const { return {}; }
   ///@}
 
   /// @name Points whose motion is prescribed
   ///@{
 
-  /// Takes over where the script has put such points since the last step.
+  /// Reads the places that the script has assigned to such points since the last step.
   void accept_assigned(Model&, const IslandNodes&) const {}
   bool prescribes_motion(const Model&, const IslandNodes&) const { return false; }
   /// The largest difference between a velocity in the problem and the prescribed one, m/s.
@@ -161,13 +161,13 @@ struct NoAnswers {
 
   /// @name Sleep
   ///@{
-  bool wakes(const Model&, const IslandNodes&) const { return false; }  ///< an island that sleeps
+  bool wakes(const Model&, const IslandNodes&) const { return false; }  ///< a sleeping island
   bool keeps_awake(const Problem&) const { return false; }              ///< an island that would fall asleep
   void put_to_rest(Model&, const Problem&) const {}
   ///@}
 };
 
-/// What is asked of every ingredient about the model.
+/// The functions of every ingredient for the model.
 template <class I>
 concept ModelIngredient = requires(
     Model& model, const Model& seen, model::Audit& audit, const Scope& scope, Energies& energies, Momenta& momenta,
@@ -210,7 +210,7 @@ concept ModelIngredient = requires(
   I::draw(view, slot, drawn);
 };
 
-/// What the stages of a step ask of an ingredient of an island.
+/// The functions of every ingredient for the stages of a step of an island.
 template <class I>
 concept IslandIngredient =
     std::default_initializable<I> && std::movable<I> &&

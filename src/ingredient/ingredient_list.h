@@ -23,7 +23,7 @@
 
 namespace iota::ingredient {
 
-/// The one list of ingredients; every stage is a fold over it. The rows and forces of an island are in this order.
+/// The list of ingredients; every stage is a fold over it. The rows and forces of an island are in this order.
 using Ingredients = std::tuple<  //
     Masses,                      //
     Pushes,                      //

@@ -8,7 +8,7 @@ namespace iota::ingredient {
 
 void IslandNodes::build(const Model& model, std::span<const std::uint32_t> articulates,
                         std::vector<std::uint32_t>& node_of_ring) {
-  // Lists that grow by doubling would leave holes in memory, a quarter of what they hold.
+  // Lists that grow by doubling would waste a quarter of their memory.
   std::size_t body_count = 0, point_count = 0;
   for (const std::uint32_t a : articulates)
     model.for_each_body_of(a, [&](std::uint32_t body) { ++body_count, point_count += model.bodies[body].count; });

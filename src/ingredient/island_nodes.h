@@ -20,20 +20,20 @@ using model::none;
 /// Up to four nodes with their weights; a weight of 0 ends the list.
 using WeightedNodes = std::array<std::pair<std::uint32_t, double>, 4>;
 
-/// The points that an island solves for (its nodes), and the particles that follow them.
+/// The unknown points of an island (its nodes), and the particles that follow from them.
 struct IslandNodes {
   std::vector<std::uint32_t> bodies;    ///< with particles; none is inactive
   std::vector<std::uint32_t> rings;     ///< of each node
-  std::vector<std::uint8_t> pinned;     ///< of each node: 1 where a nail, a static or a scripted body holds it
-  std::vector<std::uint32_t> carried;   ///< particles that are no nodes: their body's basis carries them
+  std::vector<std::uint8_t> pinned;     ///< of each node: 1 if a nail, a static or a scripted body holds it
+  std::vector<std::uint32_t> carried;   ///< particles that are not nodes: affine combinations of their body's basis
   std::vector<WeightedNodes> carriers;  ///< of each carried particle
 
   /// `node_of_ring` has an entry for each ring of the model, `none` before and for rings outside of the island after.
   void build(const Model&, std::span<const std::uint32_t> articulates, std::vector<std::uint32_t>& node_of_ring);
-  /// Which particles of some bodies (sorted) are carried, and by whom, may have changed.
+  /// Call it if the carried particles of some bodies (sorted) or their weights may have changed.
   void find_carried_again(const Model&, std::span<const std::uint32_t> bodies,
                           const std::vector<std::uint32_t>& node_of_ring);
-  /// The last node takes the number of a node that is gone.
+  /// The last node takes the number of a removed node.
   void remove(std::uint32_t node);
 
   std::size_t size() const { return rings.size(); }
@@ -52,7 +52,7 @@ struct IslandNodes {
 };
 
 std::string name_of_ring(const Model&, std::uint32_t ring);  ///< for a sentence
-/// The particle's own ring where that is an unknown, or those of the basis that carries it.
+/// The particle's own ring if it is an unknown, otherwise those of its basis.
 WeightedNodes rings_that_carry(const Model&, std::uint32_t particle);
 
 /// The nodes of an island by the model's numbers, and the bodies whose items are to be added; lives while the island is
@@ -68,9 +68,9 @@ class IslandMap {
 
   bool has(std::uint32_t body) const { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); }
 
-  /// Of a particle's ring; `none` for one that is outside of the island, or carried.
+  /// The node of a particle's ring; `none` if it is outside of the island, or carried.
   std::uint32_t node_of(std::uint32_t particle) const { return node_of_ring_[structure_.particles[particle].ring]; }
-  /// The particle's own node, or those that carry it.
+  /// The particle's own node, or those of its basis.
   WeightedNodes nodes_of(std::uint32_t particle) const;
   bool is_pinned(std::uint32_t node) const { return nodes.pinned[node]; }
 

@@ -9,10 +9,10 @@
 
 namespace iota::ingredient {
 
-/// Makes the model's coordinates of a joint those of the present places.
+/// Updates the model's coordinates of a joint from the present places.
 void refresh_coordinates(model::Model&, std::uint32_t joint);
 
-/// Finds where two surfaces are nearest, for those that a joint brings together.
+/// Finds the nearest points of a joint's two surfaces.
 void start_contact(model::Model&, std::uint32_t joint);
 
 /// Force and torque of a joint (a coupling: of its first joint) on its side a in the last step, about `position`.
@@ -21,17 +21,17 @@ struct Reaction {
 };
 Reaction calc_reaction(const model::Model&, std::uint32_t joint);
 
-/// Force of a joint, and of what couples its coordinates, on one of its places in the last step, N.
+/// Force of a joint, and of couplings of its coordinates, on one of its places in the last step, N.
 Vec3 calc_force_at(const LastStep&, std::uint32_t joint, int place);
 
-/// The largest violation of what a joint holds, limits apart, at the present places: absolute (m; rad where it is about
-/// directions), and over the reference length of its row.
+/// The largest violation of a joint, without limits, at the present places: absolute (m; rad for directions), and
+/// relative to the reference length of its row.
 struct Violation {
   double absolute = 0, relative = 0;
 };
 Violation calc_violation(const model::Model&, std::uint32_t joint);
 
-/// False where its bodies are too thin to have a coordinate that its kind has.
+/// False if its bodies are too thin for a coordinate of its kind.
 bool has_coordinate_row(const model::Model&, std::uint32_t joint, JointCoordinate);
 
 /// Value and speed of a coordinate at the present places; the angle is unwrapped near the last one.

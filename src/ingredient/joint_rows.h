@@ -15,21 +15,21 @@
 
 namespace iota::ingredient {
 
-/// A place of a joint as the solver sees it: a weighted sum of nodes plus a constant.
+/// A place of a joint in the solver: a weighted sum of nodes plus a constant.
 struct PlaceArm {
   WeightedNodes nodes{};
   Vec3 constant;
 };
 using PlaceArms = std::array<PlaceArm, place_count>;
 
-/// What a solver's row is to its joint.
+/// The role of a solver's row in its joint.
 struct RowUse {
   enum class Role : std::uint8_t { hold, limit, motor, friction, spring } role = Role::hold;
   std::uint8_t coordinate = 0;  ///< of all but `hold`
   std::uint8_t first = 0;       ///< of `hold`: which of the joint's multipliers
 };
 
-/// Which of limit, motor, friction and spring a coordinate has rows for.
+/// The rows of a coordinate: limit, motor, friction and spring.
 using RowsOf = std::array<bool, 4>;
 RowsOf rows_of(const CoordinateOptions&);
 
@@ -40,8 +40,8 @@ using Role = RowUse::Role;
 inline constexpr int angle = static_cast<int>(JointCoordinate::angle), slide = static_cast<int>(JointCoordinate::slide),
                      second_angle = static_cast<int>(JointCoordinate::second_angle);
 
-/// Builds the rows of a joint and hands each to sink(row, use). One function for the problem, where places are combinations
-/// of nodes, and for reactions, where each place is a node of its own.
+/// Builds the rows of a joint and passes each to sink(row, use). Used for the problem, in which places are combinations
+/// of nodes, and for reactions, in which each place is a node.
 template <class Sink>
 class JointRowBuilder {
  public:
@@ -57,7 +57,7 @@ class JointRowBuilder {
       case Form::path: hold(curve_row()); return coordinate(slide, station_row());
       case Form::surface: return hold(surface_row());
       case Form::surface_pair: return hold(contact_row());
-      case Form::coupling: return;  // its row is of other joints' places
+      case Form::coupling: return;  // its row has other joints' places
     }
   }
 
@@ -75,7 +75,7 @@ class JointRowBuilder {
     if (has_second_angle(c_)) coordinate(second_angle, second_angle_row());
   }
 
-  /// visit(row): the row of one coordinate, with a target of zero. False where the bodies are too thin to have it.
+  /// visit(row): the row of one coordinate, with a target of zero. False if the bodies are too thin for it.
   template <class Visit>
   bool with_coordinate(JointCoordinate which, Visit visit) const {
     if (which == JointCoordinate::slide) {
@@ -116,7 +116,7 @@ class JointRowBuilder {
     return row;
   }
 
-  /// Of a's origin against b's, along the axis; product / scale is the target in m.
+  /// Of a's origin relative to b's, along the axis; product / scale is the target in m.
   solver::BilinearConstraint slide_row() const {
     solver::BilinearConstraint row;
     const int axis = c_.has(b_axis) ? b_axis : a_axis;
@@ -185,7 +185,7 @@ class JointRowBuilder {
     row.surface = geometry_.surfaces[1].get();
     return row;
   }
-  /// a's place against b's frame.
+  /// a's place in b's frame.
   template <class Row>
   void place_in_frame(Row& row) const {
     sides(row, {a_origin}, {b_origin, b_axis, b_side, b_third});
@@ -229,7 +229,7 @@ class JointRowBuilder {
     add(row, arm, place, 1);
     add(row, arm, place < b_origin ? a_origin : b_origin, -1);
   }
-  /// Lists the nodes of a's places first, so that the elimination can keep the two bodies apart.
+  /// Lists the nodes of a's places first, so that the elimination can separate the two bodies.
   template <class Row>
   void sides(Row& row, std::initializer_list<int> of_a, std::initializer_list<int> of_b) const {
     const auto list = [&](std::initializer_list<int> places) {
@@ -278,7 +278,7 @@ class JointRowBuilder {
   void align() {
     using Alignment = Constraint::Alignment;
     if (c_.alignment == Alignment::axes) {
-      // Equal directions: three rows, one too many, which the solver minds less than a special case.
+      // Equal directions: three rows, one of them redundant, which is simpler than a special case.
       hold(sum_of({{a_axis, 1 / c_.scale[0]},
                    {a_origin, -1 / c_.scale[0]},
                    {b_axis, -1 / c_.scale[1]},
@@ -291,7 +291,7 @@ class JointRowBuilder {
     }
   }
 
-  /// Two directions, one of each side, keep their angle.
+  /// The angle between two directions, one of each side, is constant.
   void product(int p, int q, double cosine) {
     solver::BilinearConstraint row;
     sides(row, {a_origin, a_axis, a_side, a_third}, {b_origin, b_axis, b_side, b_third});
@@ -328,12 +328,12 @@ class JointRowBuilder {
   std::uint8_t next_ = 0;
 };
 
-/// Every particle a node of its own, numbered as the places are.
+/// Every particle is a node, with the number of its place.
 struct JointPlaces {
   PlaceArms arms{};
   std::array<Vec3, place_count> position{}, velocity{};
 
-  /// Where they were at the start of the last step.
+  /// Their positions at the start of the last step.
   std::array<Vec3, place_count> calc_start(const LastStep& step, const Constraint& c) const {
     std::array<Vec3, place_count> start = position;
     for (int place = 0; place < place_count; ++place) {
@@ -355,14 +355,14 @@ struct JointPlaces {
         arms[place].constant = position[place];
       } else {
         arms[place].nodes[0] = {static_cast<std::uint32_t>(place), 1.0};
-        // As the solver's rows do: in a conflict a particle may be elsewhere than its body has it.
+        // Like the solver's rows: in a conflict a particle may differ from its place in the body.
         std::tie(position[place], velocity[place]) = model.carried(c.particles[place]);
       }
     }
   }
 };
 
-/// visit(term): of a coupling, in the order in which they were given.
+/// visit(term): of a coupling, in their order.
 template <class Visit>
 void for_each_term(const Model& model, const Constraint& coupling, Visit visit) {
   for (std::uint32_t t = coupling.first_term; t != none; t = model.coupled_terms[t].next) visit(model.coupled_terms[t]);
@@ -374,7 +374,7 @@ void for_each_coupling_of(const Model& model, const Constraint& c, Visit visit) 
     visit(model.coupled_terms[t].coupling);
 }
 
-/// `now` is the coordinate as it was last seen.
+/// `now` is the last value of the coordinate.
 inline void set_target(solver::AngleConstraint& row, double now, double target) {
   row.target_start = row.target = target;
   row.near = now;
@@ -389,8 +389,8 @@ inline void set_target(solver::StationConstraint& row, double now, double target
 }
 inline void set_target(solver::SpanConstraint& row, double, double target) { row.target = target; }
 
-/// What a joint keeps of the rows that hold it: multipliers, and where it is on a curve or between surfaces. Those on
-/// a curve are kept as a force, whatever normals the row has.
+/// Stores the state of a joint's rows: multipliers, and the place on a curve or between surfaces. For a curve the force
+/// is stored, which does not depend on the row's normals.
 template <class Row>
 void load_held(Row& row, const Constraint& c, RowUse use, double* multipliers) {
   std::copy_n(c.multipliers.begin() + use.first, Row::rows, multipliers);

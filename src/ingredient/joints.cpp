@@ -31,7 +31,7 @@ void load_limit(Row& row, const CoordinateOptions& o, double now, solver::RowLaw
   (at_lower ? law.upper : law.lower) = 0;
 }
 
-/// What a motor turns at, or what brings a servo to its aim.
+/// The speed of a motor, or the one that brings a servo to its target.
 double motor_rate(const CoordinateOptions& o, double now, double h) {
   if (std::isnan(o.servo)) return o.motor_speed;
   const double time = std::max(h, o.servo_time), most = std::abs(o.motor_speed);
@@ -60,7 +60,7 @@ solver::ItemKey key_of(std::uint8_t owner, std::uint32_t joint, RowUse use) {
   return {owner, {static_cast<std::uint8_t>(use.role), use.coordinate, use.first}, joint};
 }
 
-/// The places of a joint by the nodes of an island; none where one of its sides is inactive.
+/// The places of a joint by the nodes of an island; none if one of its sides is inactive.
 std::optional<PlaceArms> arms_of(const IslandMap& map, const Constraint& c) {
   const Model& model = map.model;
   PlaceArms places{};
@@ -70,7 +70,7 @@ std::optional<PlaceArms> arms_of(const IslandMap& map, const Constraint& c) {
       places[place].constant = c.fixed[place - b_origin];
       continue;
     }
-    // Through the basis, also where the particle is an unknown of its own: a row then couples two bodies and no more.
+    // Through the basis, even if the particle is an unknown of its own: so a row couples only two bodies.
     const model::Body& body = model.bodies[model.particles[c.particles[place]].body];
     const std::array<double, 4> weights = model.weights(c.particles[place]);
     int used = 0;
@@ -84,7 +84,7 @@ std::optional<PlaceArms> arms_of(const IslandMap& map, const Constraint& c) {
   return places;
 }
 
-/// visit(ratio, row) for the terms of a coupling, as rows of an island's nodes. False where it is not in force.
+/// visit(ratio, row) for the terms of a coupling, as rows of an island's nodes. False if it is not active.
 template <class Visit>
 bool for_each_coupled_row(const IslandMap& map, const Constraint& coupling, Visit visit) {
   const Model& model = map.model;
@@ -130,8 +130,8 @@ void Joints::add(const IslandMap& map, std::uint32_t slot, Problem& problem) {
   JointRowBuilder<decltype(sink)>(c, map.model.geometry(slot), *places, sink).run();
 }
 
-// The nodes of moving sides a first, the turning wheels and not what carries them, and all of a rope: the gradients by
-// these do not vanish together.
+// First the nodes of movable sides a (the wheels and not their carriers), and all of a rope: the gradients by these do
+// not vanish together.
 void Joints::add_coupling(const IslandMap& map, std::uint32_t slot, Problem& problem) {
   const Constraint& c = map.model.constraints[slot];
   solver::CouplingConstraint coupling;
@@ -146,7 +146,7 @@ void Joints::add_coupling(const IslandMap& map, std::uint32_t slot, Problem& pro
   for_each_coupled_row(map, c, [&](double, const auto& row) {
     for (std::uint32_t i = 0; i < row.count; ++i) fits = fits && coupling.list_node(row.nodes[i]);
   });
-  if (!fits) return;  // no edit leaves so many points: see `settle`
+  if (!fits) return;  // edits prevent so many points: see `settle`
   if (coupling.first_side == coupling.count) coupling.first_side = 0;
   for_each_coupled_row(map, c, [&](double ratio, const auto& row) { coupling.add(ratio, row); });
   joints_.push_back(slot);
@@ -156,7 +156,7 @@ void Joints::add_coupling(const IslandMap& map, std::uint32_t slot, Problem& pro
 template <class Row>
 void Joints::add_row(const IslandMap& map, std::uint32_t slot, const Row& row, RowUse use, Problem& problem) {
   const auto end = row.nodes.begin() + row.node_count();
-  // A step can do nothing about rows whose nodes are all pinned, but to see whether they are met.
+  // Rows whose nodes are all pinned are only checked, as a step cannot change them.
   if (std::all_of(row.nodes.begin(), end, [&](std::uint32_t node) { return map.is_pinned(node); })) {
     if (use.role == Role::hold && (pinned_.empty() || pinned_.back() != slot)) pinned_.push_back(slot);
     return;
@@ -167,7 +167,7 @@ void Joints::add_row(const IslandMap& map, std::uint32_t slot, const Row& row, R
 
 namespace {
 
-/// Angles are counted on from where their joints have them.
+/// Angles are counted from their joints' values.
 void follow_coordinates(const Model& model, const Constraint& c, solver::CouplingConstraint& coupling) {
   auto term = coupling.terms.begin();
   for_each_term(model, c, [&](const CoupledTerm& t) {
@@ -265,7 +265,7 @@ std::string Joints::name_of_row(const Model& model, solver::ItemKey key) const {
 
 namespace {
 
-/// That each term of a coupling is once in a list of its coupling's terms, and once in one of its joint's.
+/// Each term of a coupling must be once in its coupling's list, and once in its joint's.
 void check_terms(const Model& model, model::Audit& audit) {
   std::vector<std::uint8_t> seen(model.coupled_terms.slot_count());
   const auto check_list = [&](std::uint32_t slot, std::uint32_t first, std::uint8_t list, auto owner, auto next) {
@@ -359,7 +359,7 @@ void Joints::validate(const Model& model, model::Audit& audit) {
   audit.require(listed == places, "the particles list ", listed, " of ", places, " places of constraints");
 }
 
-// Of its springs, at the coordinates of the last step.
+// Energy of its springs, at the coordinates of the last step.
 void Joints::add_energy(const Scope& scope, Energies& sum) {
   const Model& model = scope.model;
   const auto add = [&](const Constraint& c) {
@@ -425,7 +425,7 @@ void unlink_place(Model& model, std::uint32_t slot, std::uint32_t place) {
   model.touch_particle(c.particles[place]);
 }
 
-/// The terms of a coupling leave the lists of their joints.
+/// Removes the terms of a coupling from the lists of their joints.
 void remove_terms(Model& model, std::uint32_t coupling) {
   for (std::uint32_t t = std::exchange(model.constraints[coupling].first_term, none), next; t != none; t = next) {
     next = model.coupled_terms[t].next;
@@ -436,7 +436,7 @@ void remove_terms(Model& model, std::uint32_t coupling) {
   }
 }
 
-/// Takes it out of the tables; its markers stay.
+/// Removes it from the tables; its markers stay.
 void remove(Model& model, std::uint32_t slot) {
   for (std::uint32_t place = 0; place < place_count; ++place)
     if (model.constraints[slot].particles[place] != none) unlink_place(model, slot, place);
@@ -452,7 +452,7 @@ void remove(Model& model, std::uint32_t slot) {
   });
 }
 
-/// Why an edit has left a joint without sense; null: it has not.
+/// The reason why an edit has made a joint meaningless; null: it has not.
 const char* reason_to_end(const Model& model, const Constraint& c) {
   if (c.kind == ConstraintKind::span) return nullptr;
   const std::uint32_t a = body_of_side(model, c, 0), b = body_of_side(model, c, 1);
@@ -479,7 +479,7 @@ std::uint32_t Joints::add(Model& model, const Constraint& constraint) {
 void Joints::destroy(Model& model, std::uint32_t slot) {
   while (model.constraints[slot].coupled != none) {
     destroy(model, model.coupled_terms[model.constraints[slot].coupled].coupling);
-    if (!model.constraints.is_alive(slot)) return;  // a span that was part of it
+    if (!model.constraints.is_alive(slot)) return;  // a span of a destroyed tackle
   }
   const Constraint c = model.constraints[slot];
   std::vector<std::uint32_t> parts;
@@ -494,7 +494,7 @@ void Joints::destroy(Model& model, std::uint32_t slot) {
   for (int place = 0; place < place_count; ++place) {
     if (!(c.owned >> place & 1)) continue;
     const model::Particle& p = model.particles[c.particles[place]];
-    // A marker that was hinged, bonded, constrained or given a mass since does not belong to the constraint alone.
+    // A marker that was hinged, bonded, constrained or given a mass since is not used by the constraint only.
     if (p.is_marker() && !model.is_needed(p) && !model.places.has(c.particles[place]))
       model::destroy_particle(model, c.particles[place]);
   }
@@ -509,7 +509,7 @@ void Joints::take_over(Model& restored, Model& before) {
   restored.geometries.assign(restored.constraints.slot_count(), {});
   try {
     restored.constraints.for_each([&](std::uint32_t slot, const Constraint&) { renew_geometry(restored, slot); });
-  } catch (...) {  // bytes may hold a curve or surface that cannot be
+  } catch (...) {  // bytes may contain an invalid curve or surface
     restored.surface_functions.swap(before.surface_functions);
     throw;
   }
@@ -555,7 +555,7 @@ void Joints::absorb(Model& model, std::uint32_t q, std::uint32_t p) {
   while (model.places.has(q)) {
     const std::uint32_t link = model.places[q].first, slot = link / place_count, place = link % place_count;
     Constraint& c = model.constraints[slot];
-    if (std::find(c.particles.begin(), c.particles.end(), p) != c.particles.end()) {  // two of its places in one
+    if (std::find(c.particles.begin(), c.particles.end(), p) != c.particles.end()) {  // two places at one particle
       for (std::uint32_t i = 0; i < place_count; ++i)                                 // both stay
         if (c.particles[i] == p || c.particles[i] == q) c.owned &= static_cast<std::uint8_t>(~(1u << i));
       destroy(model, slot);
@@ -580,7 +580,7 @@ void Joints::settle(Model& model, std::span<const std::uint32_t> bodies, std::ve
   if (model.constraints.size() == 0) return;
   std::vector<std::uint32_t> candidates, too_large;
   for (const std::uint32_t body : bodies)
-    model.for_each_particle_of(body, [&](std::uint32_t p) {  // a hinge also joins what was in its particles' rings
+    model.for_each_particle_of(body, [&](std::uint32_t p) {  // a hinge joins all bodies of its particles' rings
       model.for_each_in_ring(model.particles[p].ring, [&](std::uint32_t r) {
         model.for_each_constraint_of(r, [&](std::uint32_t c, int) { candidates.push_back(c); });
       });
@@ -623,7 +623,7 @@ void Joints::describe(const SceneView& view, SceneChanges& changes) {
     const std::uint32_t tie = DrawnTie::slot_of_joint(slot);
     if (is_tie) {
       const Constraint& c = model.constraints[slot];
-      // A piece of a rope over several points is drawn straight: whether it hangs through is a matter of the whole rope.
+      // A piece of a rope over several points is drawn straight, as slack is a property of the whole rope.
       const bool is_rope = c.kind == ConstraintKind::rope || c.is_part;
       const double length = c.kind == ConstraintKind::span ? 0 : c.length;
       changes.ties.set.push_back({tie, is_rope ? DrawnTie::Kind::rope : DrawnTie::Kind::rod, length,

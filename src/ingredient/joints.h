@@ -16,7 +16,7 @@ class Joints : public NoAnswers {
  public:
   struct Tables {
     SlotTable<Constraint, ConstraintId> constraints;
-    SideTable<model::ListHead> places;  ///< of particles: the first of the places that they are at
+    SideTable<model::ListHead> places;  ///< of particles: the head of the list of their places
     std::vector<Vec3> curve_points;     ///< of paths, m
     SlotTable<CoupledTerm, Id<CoupledTerm>> coupled_terms;
     /// Of function surfaces, by key; not saved.
@@ -30,7 +30,7 @@ class Joints : public NoAnswers {
       ar.vector(curve_points), coupled_terms.archive(ar);
     }
     const ConstraintGeometry& geometry(std::uint32_t constraint) const { return geometries[constraint]; }
-    /// visit(slot of the constraint, place): once for each place that the particle is at.
+    /// visit(slot of the constraint, place): once for each place of the particle.
     template <class Visit>
     void for_each_constraint_of(std::uint32_t particle, Visit visit) const {
       for (std::uint32_t link = places[particle].first, next; link != none; link = next) {
@@ -59,7 +59,7 @@ class Joints : public NoAnswers {
   static void describe(const SceneView&, SceneChanges&);
 
   static std::uint32_t add(Model&, const Constraint&);  ///< returns the slot
-  /// With the markers and spans that were made for it, and the couplings of its coordinates.
+  /// With its own markers and spans, and the couplings of its coordinates.
   static void destroy(Model&, std::uint32_t constraint);
   static void renew_geometry(Model&, std::uint32_t constraint);
 
@@ -78,7 +78,7 @@ class Joints : public NoAnswers {
   void add_row(const IslandMap&, std::uint32_t joint, const Row&, RowUse, Problem&);
 
   std::vector<std::uint32_t> joints_;
-  std::vector<std::uint32_t> pinned_;  // those with rows whose nodes are all pinned: these rows are left out
+  std::vector<std::uint32_t> pinned_;  // joints with left-out rows, whose nodes are all pinned
 };
 
 }  // namespace iota::ingredient

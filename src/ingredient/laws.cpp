@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/laws.h"
 
+#include "ingredient/compiled.h"
 #include "ingredient/model.h"
 
 #include <algorithm>
@@ -15,12 +16,7 @@ void put(std::array<char, n>& out, const char* text) {
   std::strncpy(out.data(), text, n - 1);
 }
 
-template <std::size_t n>
-bool has_end(const std::array<char, n>& text) {
-  return std::find(text.begin(), text.end(), '\0') != text.end();
-}
-
-/// Bytes may hold anything.
+/// Bytes may contain any value.
 bool is_law(const Law& law) {
   return law.kind <= LawKind::batch && (law.kind != LawKind::listed || law.number < laws::pair_law_count) &&
          law.parameter_count <= law.parameters.size() && has_end(law.name) && has_end(law.text) &&
@@ -48,14 +44,7 @@ Laws::Tables::Tables() {
 }
 
 std::uint32_t Laws::Tables::make_law(const Law& law) {
-  const std::uint32_t slot = laws.create(law).slot;
-  try {
-    compile(slot);
-  } catch (...) {
-    laws.destroy(slot);
-    throw;
-  }
-  return slot;
+  return create_compiled(laws, law, [&](std::uint32_t slot) { compile(slot); });
 }
 
 void Laws::Tables::compile(std::uint32_t slot) {
@@ -65,25 +54,14 @@ void Laws::Tables::compile(std::uint32_t slot) {
   if (law.kind == LawKind::listed) {
     compiled_[slot] = std::make_shared<const laws::PairLaw>(law.number);
   } else if (law.kind == LawKind::expression) {
-    std::vector<std::string> names;
-    for (std::uint32_t i = 0; i < law.parameter_count; ++i) names.emplace_back(law.parameters[i].data());
-    compiled_[slot] = std::make_shared<const laws::PairLaw>(law.text.data(), std::move(names));
+    compiled_[slot] =
+        std::make_shared<const laws::PairLaw>(law.text.data(), names_of(law.parameters, law.parameter_count));
   }
 }
 
 bool Laws::Tables::compile() {
   compiled_.clear();
-  bool good = true;
-  laws.for_each([&](std::uint32_t slot, const Law& law) {
-    good = good && is_law(law);
-    if (!good) return;
-    try {
-      compile(slot);
-    } catch (const expression::ExpressionError&) {
-      good = false;
-    }
-  });
-  return good;
+  return compile_all(laws, is_law, [&](std::uint32_t slot) { compile(slot); });
 }
 
 void Laws::validate(const Model& model, model::Audit& audit) {

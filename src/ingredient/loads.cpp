@@ -30,7 +30,7 @@ class PointBalance final : public LoadReader {
   }
 
  private:
-  /// The share of a load that the point bears.
+  /// The share of a load at the point.
   double weight(const Load& load) const {
     const Particle& p = model_.particles[load.particle];
     const bool through_basis = load.through_basis || p.basis_index >= 0 || !model_.is_unknown(p);
@@ -85,16 +85,17 @@ Vec3 LastStep::damping(std::uint32_t particle) const {
     const double rate = Masses::damping_rate(model, slot);
     return rate > 0 ? (std::expm1(rate * h()) / h()) * model.rings[slot].velocity : Vec3{};
   };
-  Vec3 sum;  // a carried particle has the velocity of its basis, each point of which has a rate of its own
+  Vec3 sum;  // a carried particle has the velocity of its basis, whose points have different damping
   for (const auto& [ring, weight] : rings_that_carry(model, particle))
     if (weight != 0) sum += weight * of_ring(ring);
   return sum;
 }
 
 Vec3 LastStep::moved(std::uint32_t particle) const {
-  const Vec3 at_end = ring(particle).velocity + h() * damping(particle);
+  const Vec3 undamped = ring(particle).velocity - ring(particle).correction,
+             at_end = undamped + h() * damping(particle);
   if (!stage.midpoint) return h() * at_end;
-  const Vec3 at_start = ring(particle).velocity - h() * acceleration(particle);
+  const Vec3 at_start = undamped - h() * acceleration(particle);
   return (0.5 * h()) * (at_start + at_end);
 }
 
@@ -116,7 +117,7 @@ Vec3 calc_hinge_force(const Model& model, std::uint32_t particle, ReadLoads read
     all += force, ++count;
     if (p == particle) own = force;
   });
-  if (!free) return -all;  // it carries what the others do not
+  if (!free) return -all;  // the residual of the others
   return model.is_pinned(slot) ? own : own - (1.0 / count) * all;
 }
 

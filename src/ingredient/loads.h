@@ -8,27 +8,27 @@
 
 namespace iota::ingredient {
 
-/// The last step of a model as the solver took it, from x0, v0 to x1, v1: x1 - x0 is h v1, or h (v0 + v1) / 2 by the mid-point
-/// rule. Damping came after that and made v1 the velocity that the model has, v1 exp(-c h).
-/// Exact where the step was taken as one: of a step in parts, multipliers are those of its last part. The mid-point rule
-/// also leaves the mean of the last two multipliers, see docs/constraints.md.
+/// The solver's last step of a model, from x0, v0 to x1, v1: x1 - x0 is h v1, or h (v0 + v1) / 2 by the mid-point
+/// rule. Then follow the correction that projects velocities on the constraints, and damping: the model has
+/// (v1 + correction) exp(-c h).
+/// Exact for a single step: for sub-steps, multipliers and corrections are those of the last one.
 class LastStep {
  public:
   explicit LastStep(const model::Model& model);
 
   const model::Model& model;
-  const solver::ForceStage stage;  ///< how the solver's forces were taken
+  const solver::ForceStage stage;  ///< time at which the solver's forces were evaluated
 
   double h() const { return stage.h; }
   Vec3 end(std::uint32_t particle) const { return ring(particle).position; }            ///< x1
   Vec3 start(std::uint32_t particle) const { return end(particle) - moved(particle); }  ///< x0
-  /// Where forces act: x1, or (x0 + x1) / 2.
+  /// Position for forces: x1, or (x0 + x1) / 2.
   Vec3 place(std::uint32_t particle) const {
     return stage.midpoint ? end(particle) - 0.5 * moved(particle) : end(particle);
   }
-  /// Of the velocity that the model has, (v1 exp(-c h) - v0) / h.
+  /// By forces and damping, (v1 + correction) exp(-c h) - correction - v0, divided by h.
   const Vec3& acceleration(std::uint32_t particle) const { return ring(particle).acceleration; }
-  /// The share of damping in that, (v1 - v1 exp(-c h)) / h.
+  /// The share of damping in that, (v1 + correction) (1 - exp(-c h)) / h.
   Vec3 damping(std::uint32_t particle) const;
 
  private:
@@ -39,10 +39,10 @@ class LastStep {
   const model::Structure& structure_;
 };
 
-/// A force that one of a body's particles felt in the last step.
+/// A force on one of a body's particles in the last step.
 struct Load {
   enum class Kind : std::uint8_t {
-    outside,  ///< by something that is not the body
+    outside,  ///< from outside of the body
     within,   ///< between points of the body
     inertia,  ///< minus mass times acceleration
   };
@@ -51,10 +51,10 @@ struct Load {
   Kind kind = Kind::outside;
   /// Acts on the basis points that carry the particle, also where the particle is an unknown of its own.
   bool through_basis = false;
-  BodyId part;  ///< of the body, that it counts for; null: it acts between parts
+  BodyId part;  ///< its part of the body; null: it acts between parts
 };
 
-/// Receives the loads on a body. Readings, not steps, come through here, so that a virtual call does no harm.
+/// Receives the loads on a body. Used by readings, not by steps, so a virtual call is acceptable.
 class LoadReader {
  public:
   virtual void take(const Load&) = 0;
@@ -63,24 +63,24 @@ class LoadReader {
   ~LoadReader() = default;
 };
 
-/// All loads on a body in the last step, but those of its hinges and nails: a fold over the ingredients.
+/// All loads on a body in the last step, except those of its hinges and nails: a fold over the ingredients.
 void read_loads(const LastStep&, std::uint32_t body, LoadReader&);
 using ReadLoads = void (*)(const LastStep&, std::uint32_t body, LoadReader&);
 
-/// Force in the last step on the body of a particle by all that shares or nails the particle's place, N: what the hinge
-/// carries. It is what the equation of motion of the body's point lacks. Those of one hinge add up to zero (with its nail);
-/// a force that was applied to the shared particle counts as held by all its bodies alike.
+/// Force in the last step on the body of a particle by everything that shares or nails the particle's place, N: the
+/// load of the hinge. It is the residual of the equation of motion of the body's point. Those of one hinge add up to
+/// zero (with its nail); a force on the shared particle is distributed equally over its bodies.
 Vec3 calc_hinge_force(const model::Model&, std::uint32_t particle, ReadLoads = read_loads);
 
 /// Force, N, and torque about the center of mass, N m.
 struct Wrench {
   Vec3 force, torque;
 };
-/// What acted from outside on a body in the last step, or on one part of it where that is not null: gravity, damping,
+/// Load from outside on a body in the last step, or on a part of it if that is not null: gravity, damping,
 /// applied forces, bonds, hinges, nails, joints, grips.
 Wrench calc_outside_load(const model::Model&, std::uint32_t body, BodyId part, ReadLoads = read_loads);
-/// How the momenta of a body, or of one part, changed in the last step: by the load from outside and, for a part, by what
-/// the other parts do to it.
+/// Change of momenta of a body, or of one part, in the last step: by the load from outside and, for a part, by the
+/// other parts.
 Wrench calc_net_load(const model::Model&, std::uint32_t body, BodyId part, ReadLoads = read_loads);
 
 }  // namespace iota::ingredient

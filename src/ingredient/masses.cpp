@@ -29,8 +29,8 @@ std::span<const Term> used(const WeightedNodes& list) {
   return {list.begin(), end};
 }
 
-/// A marker that is an unknown of its own would leave an empty pivot. It gets mass that acts only against leaving its place
-/// in the body; the rows that tie it there make that motion zero.
+/// A marker that is an unknown of its own would have a zero pivot. It gets a mass that resists only motion relative to
+/// its body, which the rows that tie it make zero.
 bool has_virtual_mass(const Model& model, std::uint32_t marker) {
   const model::Particle& particle = model.particles[marker];
   return particle.is_marker() && model.is_unknown(particle) && model.ring_mass(particle.ring) == 0;
@@ -170,28 +170,32 @@ void Masses::validate(const Model& model, model::Audit& audit) {
 void Masses::add_energy(const Scope& scope, Energies& sum) {
   const Model& model = scope.model;
   const Vec3 gravity = model.acting_gravity();
+  double kinetic = sum.kinetic, potential = sum.potential;  // in registers: the next addition waits for the last one
   scope.for_each_particle([&](std::uint32_t, const model::Particle& p) {
     const model::Ring& ring = model.rings[p.ring];
-    sum.kinetic += 0.5 * p.mass * dot(ring.velocity, ring.velocity);
-    sum.potential -= p.mass * dot(gravity, ring.position);
+    kinetic += 0.5 * p.mass * dot(ring.velocity, ring.velocity);
+    potential -= p.mass * dot(gravity, ring.position);
   });
   scope.for_each_inertia_pair([&](const model::InertiaPair& pair) {
     const Vec3 v = model.velocity(pair.p) - model.velocity(pair.q);
-    sum.kinetic += 0.5 * pair.inertia * dot(v, v);
+    kinetic += 0.5 * pair.inertia * dot(v, v);
   });
+  sum = {kinetic, potential};
 }
 
 void Masses::add_momentum(const Scope& scope, Momenta& sum) {
   const Model& model = scope.model;
+  Vec3 linear = sum.linear, angular = sum.angular;  // in registers, as above
   scope.for_each_particle([&](std::uint32_t, const model::Particle& p) {
     const model::Ring& ring = model.rings[p.ring];
-    sum.linear += p.mass * ring.velocity;
-    sum.angular += p.mass * cross(ring.position, ring.velocity);
+    linear += p.mass * ring.velocity;
+    angular += p.mass * cross(ring.position, ring.velocity);
   });
   scope.for_each_inertia_pair([&](const model::InertiaPair& pair) {
-    sum.angular += pair.inertia * cross(model.position(pair.p) - model.position(pair.q),
-                                        model.velocity(pair.p) - model.velocity(pair.q));
+    angular += pair.inertia *
+               cross(model.position(pair.p) - model.position(pair.q), model.velocity(pair.p) - model.velocity(pair.q));
   });
+  sum = {linear, angular};
 }
 
 void Masses::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {

@@ -12,8 +12,8 @@ class Masses : public NoAnswers {
   static void add_energy(const Scope&, Energies&);
   static void add_momentum(const Scope&, Momenta&);
   static void add_loads(const LastStep&, std::uint32_t body, LoadReader&);
-  /// At which the velocity of a ring that is an unknown falls, 1/s: that of the world, and those of its bodies in the
-  /// proportion of the masses that they give it.
+  /// Damping rate of the velocity of an unknown ring, 1/s: that of the world, and those of its bodies, weighted by
+  /// their shares of mass.
   static double damping_rate(const Model&, std::uint32_t ring);
 
   void build(const IslandMap&, Problem&);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model asks its ingredients in turn; none of them is named here.
+// A model calls all of its ingredients; none of them is named here.
 #include "ingredient/model.h"
 
 namespace iota::model {

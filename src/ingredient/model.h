@@ -14,7 +14,7 @@
 
 namespace iota::ingredient {
 
-/// The tables of one ingredient; of a type of their own, since many ingredients have none.
+/// The tables of one ingredient; a distinct type, since many ingredients have none.
 template <class I>
 struct OwnTables : I::Tables {};
 template <class List>
@@ -26,8 +26,8 @@ struct AllTables<std::tuple<I...>> : OwnTables<I>... {};
 
 namespace iota::model {
 
-/// All of a system that is saved: the structure, the settings, and the tables that the ingredients declare, under the names
-/// that they have there (`model.bonds`). It is no business of `src/model`, which knows of no ingredient; its name is.
+/// The saved state of a system: the structure, the settings, and the tables of the ingredients, with the names declared
+/// there (`model.bonds`). It is outside of `src/model`, which knows no ingredient.
 class Model final : public Structure, public ingredient::AllTables<ingredient::Ingredients> {
  public:
   Vec3 gravity{0, -9.81, 0};
@@ -35,36 +35,36 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   /// Whether forces are those at the end of a step (backward Euler), not in its middle.
   bool steps_to_end_point() const { return mode == IntegrationMode::plausible || mode == IntegrationMode::robust; }
   double damping = 0;
-  /// Name of who solves the equations of steps, ended by zeros; empty: the built-in one.
+  /// Name of the solver of the equations of steps, ended by zeros; empty: the built-in one.
   std::array<char, 32> solver{};
   double rest_after = 0, rest_speed = 0;  ///< s, m/s; see RestOptions
   double time = 0, last_dt = 0;
   std::uint64_t step = 0;
   double dissipated = 0, lost = 0, made = 0, external_work = 0, edit_energy = 0;  ///< see Energy
   double booked_energy = 0;     ///< kinetic and potential energy when edits were last booked, J
-  std::uint64_t has_edits = 0;  ///< since then
-  double held_energy = 0;       ///< of forces that are held, which `energy` leaves out, when it was last booked, J
+  std::uint64_t has_edits = 0;  ///< whether there are edits since then
+  double held_energy = 0;       ///< of held forces, which `energy` does not include, when last booked, J
 
-  /// What pulls on all masses: gravity, unless an active field replaces it.
+  /// The acceleration of all masses: gravity, unless an active field replaces it.
   Vec3 acting_gravity() const;
 
   enum class Ties { all, constraints };
-  /// The bodies of the articulates of `bodies` and of all that constraints and (where `ties` is all) forces solved
-  /// implicitly tie to those: what one problem solves. In order of discovery.
+  /// The bodies of one problem: those of the articulates of `bodies` and of all articulates tied to those by
+  /// constraints and (if `ties` is all) implicit forces. In order of discovery.
   std::vector<std::uint32_t> tied_bodies(std::span<const std::uint32_t> bodies, Ties ties = Ties::all) const;
   bool has_ties() const;                            ///< between any articulates
   bool is_tied_to_world(std::uint32_t body) const;  ///< by an active constraint
-  /// visit(body): of those tied to a particle's, without its articulate.
+  /// visit(body): of the bodies tied to a particle's body, except those of its articulate.
   void visit_tied(std::uint32_t particle, Ties ties, Visit visit) const;
 
-  /// Notes from now on what viewers have to be told: nothing so far.
+  /// Starts the log of changes for viewers, empty at first.
   void watch_scene();
   void stop_watching_scene();
 
   std::uint64_t hash() const;
   template <class Archive>
   void archive(Archive& ar);
-  /// Takes from the model that this one, read from bytes, is to replace, what bytes do not hold.
+  /// Takes data that are not saved from the model that this one, read from bytes, replaces.
   void take_over(Model& before);
 
   void absorb_uses(std::uint32_t q, std::uint32_t p) override;

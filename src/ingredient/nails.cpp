@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include "ingredient/model.h"
+#include "model/nailed.h"
 #include "solver/largest.h"
 
 namespace iota::ingredient {
@@ -60,8 +61,8 @@ void Nails::refresh(Model& model, const IslandNodes& nodes, bool moved) const {
   });
 }
 
-// A static body's rings are nailed where the body was put. Nailed where they are at each step, they would creep under
-// their load.
+// A static body's rings are nailed at the body's assigned place. Nailed at their present place in each step, they would
+// creep under load.
 void Nails::accept_assigned(Model& model, const IslandNodes& nodes) const {
   constexpr double creep = 1e-7;  // m; a ring that is farther away was moved by the script
   nodes.for_each_pinned([&](std::uint32_t slot) {
@@ -150,7 +151,7 @@ void Nails::describe(const SceneView& view, SceneChanges& changes) {
     slots.push_back(model.particles[p].ring);
   };
   for (const std::uint32_t ring : view.slots(model.rings, model.changed_nails, list)) {
-    if (model.rings.is_alive(ring) && model.rings[ring].nailed)
+    if (model.rings.is_alive(ring) && model.rings[ring].nailed == model::by_nail)
       changes.nails.set.push_back({ring, view.anchor(model.rings[ring].first)});
     else
       changes.nails.gone.push_back(ring);

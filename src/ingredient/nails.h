@@ -5,14 +5,14 @@
 
 namespace iota::ingredient {
 
-/// What holds a ring that is nailed or a static or scripted body's.
+/// The pin of a ring: a nail, or a static or scripted body.
 struct Nail {
-  /// Where it is, and where it was at the last step, m; of a ring that a static body holds: where that was put.
+  /// Its place, and that at the last step, m; for a static body's ring: the assigned place.
   Vec3 position, position_before;
   Vec3 multiplier;  ///< minus its force, N; warm start and reaction
 };
 
-/// What pins a ring to a place: a nail, a static or a scripted body. Nails that the script moves arrive at the end of the
+/// Pins of rings: nails, static and scripted bodies. Nails that the script moves arrive at the end of the
 /// step.
 class Nails : public NoAnswers {
  public:

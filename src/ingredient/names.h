@@ -7,7 +7,7 @@
 
 namespace iota::ingredient {
 
-/// What users call bodies. It does nothing in a step.
+/// Names of bodies. They have no effect in a step.
 class Names : public NoAnswers {
  public:
   using Name = std::array<char, 64>;  ///< ended by zeros

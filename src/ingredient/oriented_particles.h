@@ -5,8 +5,8 @@
 
 namespace iota::ingredient {
 
-/// What few particles have: a life, a look, and an orientation of their own. Oriented particles turn like balls; their
-/// turning is stepped in closed form, see `particle_life`.
+/// Optional attributes of particles: lifetime, look, and orientation. Oriented particles rotate like balls; their
+/// rotation is stepped in closed form, see src/step/lifetimes.h.
 class OrientedParticles : public NoAnswers {
  public:
   static void validate(const Model&, model::Audit&);

@@ -10,14 +10,14 @@ namespace iota::ingredient {
 struct PairForce {
   std::uint32_t law = none;
   std::uint32_t group = none;  ///< none: all particles
-  std::uint32_t other = none;  ///< only pairs of one of `group` and one of these; none: within `group`
+  std::uint32_t other = none;  ///< only pairs between `group` and this group; none: within `group`
   std::uint8_t active = 1, shifted = 0;
   std::array<std::uint8_t, 2> padding{};
   double cutoff = 1;  ///< m
   std::array<double, laws::max_parameters> parameters{};
 };
 
-/// Forces between all pairs of a group of particles that are near each other; they are taken once a step and held.
+/// Forces between all near pairs of a group of particles, evaluated once a step and held.
 class Pairs : public NoAnswers {
  public:
   struct Tables {

@@ -45,7 +45,7 @@ void Pushes::validate(const Model& model, model::Audit& audit) {
   audit.require_owners("a push", model.pushes, model.rings);
 }
 
-// A force that was applied to a place that bodies share is theirs in equal parts, as far as they can move.
+// A force on a shared place is distributed equally over its movable bodies.
 void Pushes::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   const Model& model = step.model;
   if (model.pushes.is_empty()) return;

@@ -8,21 +8,21 @@
 
 namespace iota::ingredient {
 
-/// Of what is stepped: forces that are held over a step are not in it.
+/// Of the stepped problem, without held forces.
 Energies calc_energies(const Scope&);
 inline Energies calc_energies(const model::Model& model) { return calc_energies(Scope(model)); }
 Momenta calc_momenta(const Scope&);
 inline Momenta calc_momenta(const model::Model& model) { return calc_momenta(Scope(model)); }
 
-/// Of some bodies and what belongs to them; those no longer alive count for nothing.
+/// Of some bodies and their items; destroyed ones are skipped.
 Energies calc_energies(const model::Model&, std::span<const std::uint32_t> bodies);
 Momenta calc_momenta(const model::Model&, std::span<const std::uint32_t> bodies);
 
 /// The largest gap over rigid distances, tied particles, nails and joints, m.
 double worst_gap(const model::Model&);
 
-/// What edits change is the difference of the energy before the first and after the last of them: one sum for all,
-/// whatever they did. Between steps `Model::booked_energy` is that of the end of the last step.
+/// The change by edits is the difference of the energy before the first and after the last of them: one sum for all.
+/// Between steps `Model::booked_energy` is that of the end of the last step.
 void begin_edits(model::Model&);
 void book_edits(model::Model&, double energy_now);
 double energy_of_edits(const model::Model&);  ///< those not booked yet included, J

@@ -85,7 +85,7 @@ void RigidRows::validate(const Model& model, model::Audit& audit) {
 double RigidRows::worst_gap(const Model& model) {
   solver::Largest worst;
   model.bodies.for_each([&](std::uint32_t slot, const model::Body& b) {
-    if (!is_free(b.kind)) return;  // nothing holds it: it is where it was put
+    if (!is_free(b.kind)) return;  // not free: it is at its assigned place
     for (int row = 0; row < b.row_count; ++row) {
       const auto [i, j] = model::basis_pairs[row];
       const double length = norm(model.position(b.basis[j]) - model.position(b.basis[i]));

@@ -5,7 +5,7 @@
 
 namespace iota::ingredient {
 
-/// The basis points of a body keep their distances.
+/// Rows that keep the distances of a body's basis points.
 class RigidRows : public NoAnswers {
  public:
   static void validate(const Model&, model::Audit&);
@@ -22,9 +22,9 @@ class RigidRows : public NoAnswers {
  private:
   struct Row {
     std::uint32_t body;
-    std::uint8_t row;  // which of the body's
+    std::uint8_t row;  // index in the body
   };
-  std::vector<Row> pinned_;  // whose points are both pinned: left out of the problem
+  std::vector<Row> pinned_;  // with two pinned points: left out of the problem
 };
 
 }  // namespace iota::ingredient

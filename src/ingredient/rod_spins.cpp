@@ -9,7 +9,7 @@ namespace iota::ingredient {
 
 namespace {
 
-/// As the solver's force has it, kg m/s.
+/// In the unit of the solver's force, kg m/s.
 double spin_of(const Model& model, std::uint32_t body) {
   return model.spins.at(body).momentum / model.bodies[body].first_row.length;
 }
@@ -77,7 +77,7 @@ void RodSpins::add_momentum(const Scope& scope, Momenta& sum) {
                          [&](std::uint32_t body) { sum.angular += inner_momentum(scope.model, body); });
 }
 
-// A force of inertia: with the axis the momentum of the spin turns.
+// An inertial force: the momentum of the spin turns with the axis.
 void RodSpins::add_loads(const LastStep& step, std::uint32_t body, LoadReader& reader) {
   const Model& model = step.model;
   if (!model.spins.has(body) || !(step.h() > 0)) return;
@@ -102,7 +102,7 @@ void RodSpins::set(Model& model, std::uint32_t body, double angular_velocity) {
 void RodSpins::forget_body(Model& model, std::uint32_t body) { model.spins.erase(body); }
 
 void RodSpins::inertia_changed(Model& model, std::uint32_t body) {
-  if (model.spins.has(body) && !(model.axial_inertia(body) > 0)) model.spins.erase(body);  // it is not a rod any more
+  if (model.spins.has(body) && !(model.axial_inertia(body) > 0)) model.spins.erase(body);  // no longer a rod
 }
 
 Vec3 RodSpins::inner_momentum(const Model& model, std::uint32_t body) {

@@ -5,7 +5,7 @@
 
 namespace iota::ingredient {
 
-/// The turning of a rod about itself, of which its two points know nothing.
+/// The spin of a rod about its axis, which its two points do not have.
 struct RodSpin {
   double momentum =
       0;             ///< about the line from the first to the second particle of its inertia pair, kg m^2/s; constant
@@ -13,7 +13,7 @@ struct RodSpin {
   double drawn = 0;  ///< of that, what the drawn frame shows
 };
 
-/// Rods turn about themselves. Their two points know nothing of that but a gyroscopic force.
+/// Rods spin about their axes. Only a gyroscopic force of that acts on their two points.
 class RodSpins : public NoAnswers {
  public:
   struct Tables {

@@ -10,9 +10,9 @@
 
 namespace iota::ingredient {
 
-/// visit(node, force): what a row of the solver did to its nodes in the last step, as `Assembly::add_rows` has it: minus its
-/// multipliers times its gradients, by the mid-point rule their means over the step. `start` and `end` have the places of
-/// the nodes.
+/// visit(node, force): the forces of a row of the solver on its nodes in the last step, as in `Assembly::add_rows`:
+/// minus its multipliers times its gradients, in the mid-point rule their means over the step. `start` and `end` have
+/// the places of the nodes.
 template <class C, class Visit>
 void for_each_row_force(const C& row, const double* multipliers, bool midpoint, const Vec3* start, const Vec3* end,
                         Visit visit) {

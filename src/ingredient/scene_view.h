@@ -11,8 +11,8 @@
 
 namespace iota::ingredient {
 
-/// A model as viewers are told of it: all of it, or what has changed since they were told last. Ingredients describe their
-/// items by it.
+/// A description of a model for viewers: complete, or the changes since the last one. Ingredients describe their items
+/// with it.
 class SceneView {
  public:
   SceneView(const model::Model&, bool whole);
@@ -20,8 +20,8 @@ class SceneView {
   const model::Model& model;
 
   bool is_whole() const { return whole_; }
-  /// The items that are to be described, each once, also those that are gone: all in `table`, or those in `log` and those
-  /// that hang on a body that has changed: list(particle, slots) adds the items of a particle.
+  /// The items to describe, each once, also destroyed ones: all in `table`, or those in `log` and those attached to a
+  /// changed body: list(particle, slots) adds the items of a particle.
   template <class Table, class List>
   std::vector<std::uint32_t> slots(const Table& table, const model::ChangedSlots& log, List list) const {
     std::vector<std::uint32_t> slots;

@@ -7,8 +7,8 @@
 
 namespace iota::ingredient {
 
-/// What energies and momenta are taken of: the whole model, or one body. An inactive body has none, even where it is hinged
-/// to one that moves. A bond or joint belongs to the body of its first end.
+/// The scope of energies and momenta: the whole model, or one body. An inactive body has none, even if it is hinged to
+/// a moving one. A bond or joint belongs to the body of its first end.
 class Scope {
  public:
   explicit Scope(const model::Model& model, std::uint32_t body = model::none);

@@ -8,7 +8,7 @@
 
 namespace iota::ingredient {
 
-/// What is wrong with a model; empty: nothing.
+/// Errors of a model; empty: none.
 std::vector<std::string> validate(const model::Model&);
 
 }  // namespace iota::ingredient

@@ -13,13 +13,13 @@ namespace iota::ingredient {
 
 namespace {
 
-/// What to measure a particle's gap by, m.
+/// Reference length of a particle's gap, m.
 double reference_length(const Model& model, std::uint32_t body) {
   const double extent = model.extent(body);
   return extent > 0 ? extent : 1;
 }
 
-/// What ties a particle to the basis of its body; its nodes are the particles.
+/// The row that ties a particle to the basis of its body; its nodes are the particles.
 solver::AffineConstraint constraint_of(const Model& model, std::uint32_t particle) {
   solver::AffineConstraint tie;
   const auto add = [&](std::uint32_t p, double weight) {
@@ -105,7 +105,7 @@ void Ties::validate(const Model& model, model::Audit& audit) {
 double Ties::worst_gap(const Model& model) {
   solver::Largest worst;
   model.ties.for_each([&](std::uint32_t p, const model::Tie&) {
-    if (!is_free(model.bodies[model.particles[p].body].kind)) return;  // nothing holds it: it is where it was put
+    if (!is_free(model.bodies[model.particles[p].body].kind)) return;  // not free: it is at its assigned place
     worst.add(norm(model.carried(p).first - model.position(p)));
   });
   return worst.value;
@@ -119,7 +119,7 @@ void Ties::add_loads(const LastStep& step, std::uint32_t slot, LoadReader& reade
     const model::Particle& particle = model.particles[p];
     if (particle.basis_index >= 0 || !model.is_unknown(particle)) return;
     const solver::AffineConstraint tie = constraint_of(model, p);
-    const std::array<Vec3, solver::AffineConstraint::max_nodes> anywhere{};  // its gradient is the same everywhere
+    const std::array<Vec3, solver::AffineConstraint::max_nodes> anywhere{};  // its gradient is constant
     for_each_row_force(tie, model.ties[p].multiplier.data(), false, anywhere.data(), anywhere.data(),
                        [&](std::uint32_t particle_of_tie, const Vec3& force) {
                          reader.take({.particle = particle_of_tie, .force = force, .kind = Load::Kind::within});

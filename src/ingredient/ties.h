@@ -5,7 +5,7 @@
 
 namespace iota::ingredient {
 
-/// Particles that are unknowns of their own though they are in no basis stay at their places in their bodies.
+/// Rows that keep particles that are unknowns of their own, but not in a basis, at their places in their bodies.
 class Ties : public NoAnswers {
  public:
   static void validate(const Model&, model::Audit&);
@@ -20,7 +20,7 @@ class Ties : public NoAnswers {
   std::string name_of_row(const Model&, solver::ItemKey) const;
 
  private:
-  std::vector<std::uint32_t> pinned_;  // particles none of whose points can move: left out of the problem
+  std::vector<std::uint32_t> pinned_;  // particles with pinned points only: left out of the problem
 };
 
 }  // namespace iota::ingredient

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names what the singular value decomposition of an island's constraints finds.
+// Describes the results of the singular value decomposition of an island's constraints.
 #include "base/text.h"
 #include "island/island.h"
 
@@ -13,14 +13,14 @@ using model::Model;
 namespace {
 
 constexpr std::size_t most_rows = 600;
-constexpr double nearly = 1e-3;  // singular values below it are worth a sentence
+constexpr double nearly = 1e-3;  // singular values below it are reported
 
 /// "a, b and 3 more", each once, in order of weight.
 std::string enumerate(std::vector<std::pair<double, std::string>> parts) {
   constexpr std::size_t shown = 6;
   double largest = 0;
   for (const auto& part : parts) largest = std::max(largest, part.first);
-  for (auto& part : parts) part.first = std::round(10 * part.first / largest);  // ties stay in order
+  for (auto& part : parts) part.first = std::round(10 * part.first / largest);  // equal ones stay in order
   std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::string> names;
   for (const auto& [weight, name] : parts)

@@ -48,7 +48,7 @@ void FreeParticles::put_to_rest(Model& model, std::uint32_t articulate) {
   model::Body& body = model.bodies[model.articulates[articulate].first];
   model::Ring& ring = model.rings[model.particles[body.first].ring];
   body.kind = BodyKind::resting;
-  ring.velocity = ring.acceleration = {};
+  ring.velocity = ring.acceleration = ring.correction = {};
 }
 
 void FreeParticles::wake(Model& model, std::uint32_t articulate) {
@@ -89,9 +89,9 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
       const Vec3 before = ring.velocity;
       const Vec3 gained = h * ((1 / mass) * force + gravity);
       const Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
-      constexpr double absurd = 1e12;  // m/s: squares of more are no energies any more
+      constexpr double absurd = 1e12;  // m/s: the energy of a higher speed would overflow
       if (!(dot(after, after) < absurd * absurd) || !is_finite(moved))
-          [[unlikely]] {  // an absurd force: the particle stays where it is, and that is told
+          [[unlikely]] {  // an extreme force: the particle keeps its place, and the report says so
         share.is_stuck = true;
         continue;
       }
@@ -106,6 +106,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
         ring.velocity *= left;
       }
       ring.acceleration = (1 / h) * (ring.velocity - before);
+      ring.correction = {};
       if (model.rest_after > 0) {
         const double speed2 = dot(ring.velocity, ring.velocity);
         double& slow_time = model.articulates[place.articulate].slow_time;

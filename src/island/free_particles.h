@@ -3,14 +3,14 @@
 
 #include "base/parallel.h"
 #include "ingredient/model.h"
-#include "solver/integrator.h"
+#include "solver/advance_report.h"
 
 #include <vector>
 
 namespace iota::island {
 
-/// Particles that nothing holds: no hinge, nail, grip, constraint or implicit bond. There is nothing to solve for them; their
-/// steps are written down. The same results as an island's, up to round-off.
+/// Particles that nothing holds: no hinge, nail, grip, constraint or implicit bond. They are integrated in closed form.
+/// The results are those of an island, up to round-off.
 class FreeParticles {
  public:
   static bool is_free(const model::Model&, std::uint32_t articulate);
@@ -19,10 +19,10 @@ class FreeParticles {
   void set(std::uint32_t articulate, bool free);
   bool contains(std::uint32_t articulate) const { return articulate < articulates_.size() && articulates_[articulate]; }
 
-  /// Stops a free particle until something pushes it, or wakes it; see System::set_rest.
+  /// Stops a free particle until a force acts on it, or wakes it; see System::set_rest.
   static void put_to_rest(model::Model&, std::uint32_t articulate);
   static void wake(model::Model&, std::uint32_t articulate);
-  std::uint32_t resting() const { return resting_; }  ///< how many rested in the last step
+  std::uint32_t resting() const { return resting_; }  ///< number of resting ones in the last step
 
   /// One step of h seconds for all of them.
   solver::AdvanceReport advance(model::Model&, double h, const Parallel&);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "island/island.h"
 
+#include "solver/integrator.h"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -26,6 +28,10 @@ solver::Care care_of(IntegrationMode mode) {
 
 }  // namespace
 
+Island::Island() : integrator_(std::make_unique<solver::Integrator>()) {}
+Island::~Island() = default;
+Island& Island::operator=(Island&&) noexcept = default;
+
 void MovedRings::put(Model& model, std::uint32_t ring, const Vec3& position, const Vec3& velocity) {
   Ring& r = model.rings[ring];
   if (r.position == position && r.velocity == velocity) return;
@@ -33,7 +39,7 @@ void MovedRings::put(Model& model, std::uint32_t ring, const Vec3& position, con
   r.position = position, r.velocity = velocity;
 }
 
-// What has been listed later is taken back earlier.
+// Later entries are restored first.
 void MovedRings::exchange(Model& model) {
   std::reverse(before.begin(), before.end());
   for (State& state : before) {
@@ -54,7 +60,7 @@ void Island::assemble(const Model& model, std::span<const std::uint32_t> articul
   const ingredient::IslandMap map(model, nodes_, nodes_.bodies, node_of_ring);
   for_each_ingredient([&](auto& i) { i.build(map, problem_); });
   for (std::size_t i = 0; i < nodes_.size(); ++i) problem_.position[i] = model.rings[nodes_.rings[i]].position;
-  integrator_.compile(problem_);
+  integrator_->compile(problem_);
   for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
 }
 
@@ -73,22 +79,22 @@ void Island::carry_along(Model& model, MovedRings& moved) {
   }
   if (differs && !idle_) {
     load(model, 0);
-    integrator_.project_velocities(problem_, 0, impulses);
+    integrator_->project_velocities(problem_, 0, impulses);
     return store_projection(model, false, moved);
   }
   store_carried(model, moved);
-  for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, false); });  // a new basis has its places elsewhere
+  for_each_ingredient([&](const auto& i) { i.refresh(model, nodes_, false); });  // a new basis has other places
 }
 
-// Zero near the world's origin. Far from it, the place of the first point: differences of neighbors are then exact, and what
-// a step computes has the digits of the island's size instead of the place's. At 1e7 m a chain of 2 cm links hung in the air.
-// Not where something holds on to a place of the world other than a nail or a grip: a path, a surface, a joint's axis.
+// Zero near the world's origin. Far from it, the place of the first point: differences of neighbors are then exact, and
+// a step has the precision of the island's size instead of the place's. At 1e7 m a chain of 2 cm links did not move.
+// Not if anything other than a nail or a grip is fixed in the world: a path, a surface, a joint's axis.
 Vec3 Island::choose_origin(const Model& model) const {
   constexpr double far = 1e4;  // mean lengths of links: closer by, 1e-12 of one is resolved
   if (nodes_.size() == 0) return {};
   const Vec3& first = model.rings[nodes_.rings.front()].position;
   const double distance = std::max({std::abs(first.x), std::abs(first.y), std::abs(first.z)});
-  if (!(distance > far * integrator_.reference_length())) return {};
+  if (!(distance > far * integrator_->reference_length())) return {};
   std::size_t held = 0;
   problem_.for_each_constraint_pool([&](const auto& pool) {
     for (const auto& c : pool.items) held += !c.is_internal();
@@ -115,16 +121,21 @@ void Island::store_carried(Model& model, MovedRings& moved) const {
 }
 
 void Island::store_step(Model& model, double h) const {
-  const auto put = [&](std::uint32_t ring, const Vec3& position, const Vec3& velocity) {
+  const auto put = [&](std::uint32_t ring, const Vec3& position, const Vec3& velocity, const Vec3& correction) {
     Ring& r = model.rings[ring];
-    r.acceleration = (1 / h) * (velocity - r.velocity);
-    r.position = position, r.velocity = velocity;
+    r.acceleration = (1 / h) * (velocity - correction - r.velocity);
+    r.position = position, r.velocity = velocity, r.correction = correction;
   };
+  const std::span<const Vec3> corrections = integrator_->velocity_corrections();
+  const auto correction_of = [&](std::size_t node) { return corrections.empty() ? Vec3{} : corrections[node]; };
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    put(nodes_.rings[i], problem_.origin + problem_.position[i], problem_.velocity[i]);
-  for (const std::uint32_t p : nodes_.carried) {
+    put(nodes_.rings[i], problem_.origin + problem_.position[i], problem_.velocity[i], correction_of(i));
+  for (std::size_t i = 0; i < nodes_.carried.size(); ++i) {
+    const std::uint32_t p = nodes_.carried[i];
     const auto [position, velocity] = model.carried(p);
-    put(model.particles[p].ring, position, velocity);
+    Vec3 correction;
+    for (const auto& [node, weight] : nodes_.carriers[i]) correction += weight * correction_of(node);
+    put(model.particles[p].ring, position, velocity, correction);
   }
   for_each_ingredient([&](const auto& i) { i.store(model, nodes_, h, problem_); });
 }
@@ -157,8 +168,8 @@ void Island::use_solver(const std::array<char, 32>& name) {
       solver_ = std::make_unique<Missing>();
     }
   }
-  integrator_.set_external(solver_.get());
-  if (solver_) integrator_.compile(problem_);  // it asks for unknowns without gaps, which an island that follows has
+  integrator_->set_external(solver_.get());
+  if (solver_) integrator_->compile(problem_);  // it needs unknowns without gaps, unlike an island that follows
 }
 
 bool Island::is_driven(const Model& model) const {
@@ -208,27 +219,27 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
   load(model, h);
   use_solver(model.solver);
   const double virtual_before = virtual_energy(model);
-  double given = 0;  // by prescribed velocities at once, J
-  // The mid-point rule would carry a jump of a prescribed velocity along for ever, as a ringing of the reactions.
-  if (velocity_jump(h) * h > 1e-10 * integrator_.reference_length()) {
+  double given = 0;  // by jumps of prescribed velocities, J
+  // With the mid-point rule a jump of a prescribed velocity would cause a permanent oscillation of the reactions.
+  if (velocity_jump(h) * h > 1e-10 * integrator_->reference_length()) {
     given -= problem_.kinetic_energy();
     impose_velocities(h);
-    integrator_.project_velocities(problem_, h);
+    integrator_->project_velocities(problem_, h);
     given += problem_.kinetic_energy();
   }
   model::Articulate& memory = articulate(model);
   problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
-  auto report = integrator_.advance(problem_, h, care_of(mode));
+  auto report = integrator_->advance(problem_, h, care_of(mode));
   memory.standing_gap = problem_.standing_gap, memory.standing_steps = problem_.standing_steps;
-  if (velocity_jump(h) > 0) {  // where there was no solution
+  if (velocity_jump(h) > 0) {  // if there was no solution
     given -= problem_.kinetic_energy();
     impose_velocities(h);
     given += problem_.kinetic_energy();
   }
   report.external_work += given;
   if (!std::isfinite(report.dissipated + report.lost + report.made + report.external_work) || !has_finite_motion()) {
-    // Forces beyond all reason (1e300 N) drive numbers beyond what a double holds. Nothing has gone to the model yet: the
-    // points stay where they are, at rest, and the report says that the step was given up.
+    // Extreme forces (1e300 N) overflow doubles. Nothing has been stored in the model yet: the points keep their
+    // places, at rest, and the report counts the step as unconverged.
     memory.standing_gap = 0;
     load(model, h);
     report = {};
@@ -249,7 +260,7 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
 }
 
 bool Island::has_finite_motion() const {
-  double sum = 0;  // zero times infinity is no number
+  double sum = 0;  // zero times infinity is not a number
   for (const Vec3& x : problem_.position) sum += 0 * x.x + 0 * x.y + 0 * x.z;
   for (const Vec3& v : problem_.velocity) sum += 0 * v.x + 0 * v.y + 0 * v.z;
   return sum == 0;
@@ -270,10 +281,10 @@ bool Island::project_all(Model& model, bool positions) {
     std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
     return true;
   }
-  const bool met = !positions || integrator_.project_positions(problem_);
-  integrator_.project_velocities(problem_);
+  const bool met = !positions || integrator_->project_positions(problem_);
+  integrator_->project_velocities(problem_);
   if (has_finite_motion()) return met;
-  load(model, 0);  // as in a step: nothing has gone to the model yet
+  load(model, 0);  // as in a step: nothing has been stored in the model yet
   std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
   return false;
 }
@@ -283,14 +294,14 @@ bool Island::settle(Model& model, std::span<const std::uint32_t> bodies, bool po
   articulate(model).standing_gap = 0;
   load(model, 0);
   const std::vector<std::uint32_t> edited = nodes_of(model, bodies);
-  const bool is_local = !idle_ && !edited.empty() && integrator_.project_locally(problem_, positions, edited);
+  const bool is_local = !idle_ && !edited.empty() && integrator_->project_locally(problem_, positions, edited);
   const bool met = is_local || project_all(model, positions);
   store_projection(model, positions && !idle_, moved,
-                   is_local ? integrator_.moved_locally() : std::span<const std::uint32_t>{});
+                   is_local ? integrator_->moved_locally() : std::span<const std::uint32_t>{});
   return met;
 }
 
-// None where there are many: looking for each would take longer than the whole projection.
+// None if there are many: searching each would take longer than the whole projection.
 std::vector<std::uint32_t> Island::nodes_of(const Model& model, std::span<const std::uint32_t> bodies) const {
   constexpr std::size_t most = 32;
   std::size_t count = 0;

@@ -3,7 +3,7 @@
 
 #include "ingredient/ingredient_list.h"
 #include "ingredient/model.h"
-#include "solver/integrator.h"
+#include "solver/advance_report.h"
 
 #include <iota/solver.h>
 
@@ -12,48 +12,56 @@
 #include <string>
 #include <vector>
 
+namespace iota::solver {
+class Integrator;
+}
+
 namespace iota::island {
 
-/// Rings that something has moved, as they were before. A ring may be listed more than once.
+/// The former states of moved rings. A ring may be listed more than once.
 struct MovedRings {
   struct State {
     std::uint32_t ring;
     Vec3 position, velocity;
   };
   std::vector<State> before = {};
-  bool is_asked_for = true;  ///< else nothing is listed
+  bool is_asked_for = true;  ///< otherwise nothing is listed
 
   void put(model::Model&, std::uint32_t ring, const Vec3& position, const Vec3& velocity);
-  /// The rings are as they were; called again, as they are.
+  /// Exchanges the rings' former and present states.
   void exchange(model::Model&);
 };
 
 /// Articulates that bonds and constraints tie together, as one problem for the solver: nodes, ingredients, an integrator.
-/// What acts on the nodes is the ingredients' business; the stages here are folds over them.
+/// The ingredients act on the nodes; the stages here are folds over them.
 class Island {
  public:
-  /// Builds the problem's structure; `node_of_ring` is scratch for all rings, `none` everywhere before and after. Islands
-  /// have no ring in common, so they may be built at once with the same scratch.
+  Island();
+  ~Island();
+  Island& operator=(Island&&) noexcept;
+
+  /// Builds the problem's structure; `node_of_ring` is scratch for all rings, `none` everywhere before and after.
+  /// Islands have no ring in common, so they may be built in parallel with the same scratch.
   void assemble(const model::Model&, std::span<const std::uint32_t> articulates,
                 std::vector<std::uint32_t>& node_of_ring);
 
-  /// Keeps up with a change at some bodies and rings; its other bodies are as they were, and which bodies it has too.
-  /// For a fraction of the time it is then as if it had been assembled anew, but for the order of elimination. False if so
-  /// much changed that it must be assembled.
+  /// Follows a change at some bodies and rings; its other bodies, and its set of bodies, are unchanged. In a fraction
+  /// of the time it is then as if assembled again, except for the order of elimination. False if so much changed that
+  /// it must be assembled.
   bool follow(model::Model&, std::span<const std::uint32_t> articulates, const model::Model::LocalChange&,
               std::vector<std::uint32_t>& node_of_ring, MovedRings&);
-  /// Takes over pulls that have come and gone: see Structure::touch_pull. False if it must be assembled.
+  /// Updates pulls that were added or removed: see Structure::touch_pull. False if it must be assembled.
   bool renew_pulls(const model::Model&, std::vector<std::uint32_t>& node_of_ring);
   std::span<const std::uint32_t> bodies() const { return nodes_.bodies; }
 
-  /// Points to solve for: a measure of the work.
+  /// Number of unknown points: a measure of the work.
   std::size_t size() const { return nodes_.size(); }
 
-  /// Puts carried particles where their basis has them, and as fast. Where they were not (assigned velocities, conflicts),
-  /// their momentum goes over to what carries them.
+  /// Sets positions and velocities of carried particles from their basis. If these differed (assigned velocities,
+  /// conflicts), their momentum is passed to the basis.
   void carry_along(model::Model&, MovedRings&);
 
-  /// State of the model into the problem, for a step of h seconds (h = 0: for projections).
+  /// Loads the state of the model into the problem, for a step of h seconds (h = 0: for projections).
   void load(const model::Model&, double h);
 
   solver::AdvanceReport advance(model::Model&, double h, IntegrationMode);
@@ -67,11 +75,11 @@ class Island {
   void put_to_rest(model::Model&) const;
   std::size_t body_count() const { return nodes_.bodies.size(); }
 
-  /// Projects velocities, and before that positions where asked to, on the constraints. False where no position meets all
+  /// Projects velocities, and before that positions on request, on the constraints. False if no position satisfies all
   /// of them.
   bool project(model::Model&, bool positions);
 
-  /// The same after an edit of some bodies (all alive), around them only where no more is needed.
+  /// The same after an edit of some bodies (all alive), only around them if that is sufficient.
   bool settle(model::Model&, std::span<const std::uint32_t> bodies, bool positions, MovedRings& moved);
   /// Whether a point of an articulate is pinned.
   bool is_pinned(const model::Model&, std::uint32_t articulate) const;
@@ -109,20 +117,20 @@ class Island {
   void store_carried(model::Model&, MovedRings&) const;
   bool meets_pinned(const model::Model&) const;
 
-  /// Whether it sleeps on; one that `wake` was called for is awake afterwards.
+  /// Whether it stays asleep; after `wake` it is awake.
   bool skip_if_asleep(model::Model&);
-  /// Falls asleep once it has been slow for long enough, if the model asks for that.
+  /// Falls asleep once it has been slow for long enough, if sleep is on.
   void update_sleep_timer(model::Model&, double h, solver::AdvanceReport&) const;
-  model::Articulate& articulate(model::Model&) const;  ///< of its first body: keeps what the island has to remember
+  model::Articulate& articulate(model::Model&) const;  ///< of its first body: has the island's state between steps
   void use_solver(const std::array<char, 32>& name);
   std::string name_of_row(const model::Model&, const solver::RowName&) const;
 
   ingredient::IslandNodes nodes_;
   ingredient::Ingredients ingredients_;
   solver::Problem problem_;
-  solver::Integrator integrator_;
+  std::unique_ptr<solver::Integrator> integrator_;  // a pointer, so that users of the header do not include it
   std::array<char, 32> solver_name_{};
-  std::unique_ptr<Solver> solver_;  // who is asked instead of the integrator's own
+  std::unique_ptr<Solver> solver_;  // replaces the integrator's own solver
   bool idle_ = false;               // no body of it can move by itself: there is nothing to solve
   bool to_wake_ = false;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// An island that keeps up with a local change: cuts and hinges, grips, closings, nails, damping.
+// An island that follows a local change: cuts and hinges, grips, closings, nails, damping.
 #include "island/island.h"
+
+#include "solver/integrator.h"
 
 #include <algorithm>
 
@@ -11,7 +13,7 @@ using model::none;
 
 namespace {
 
-/// The bodies of some articulates (sorted) at some nodes, sorted, and those nodes where they leave nobody.
+/// The bodies of some articulates (sorted) at some nodes, sorted, and those nodes that have no other bodies.
 struct Around {
   std::vector<std::uint32_t> bodies, empty_nodes;
 
@@ -37,8 +39,8 @@ struct Around {
 
 bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, const Model::LocalChange& change,
                     std::vector<std::uint32_t>& node_of_ring, MovedRings& moved) {
-  constexpr std::size_t part = 8;      // of the nodes: if more of them change, assembling it anew is as good
-  if (idle_ || solver_) return false;  // another solver asks for unknowns without gaps
+  constexpr std::size_t part = 8;      // share of the nodes: if more of them change, a new assembly is as fast
+  if (idle_ || solver_) return false;  // another solver needs unknowns without gaps
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) node_of_ring[nodes_.rings[node]] = node;
   const std::vector<std::uint32_t> changed = find_changed_nodes(model, change, node_of_ring);
   const bool are_few = changed.size() * part <= nodes_.size();
@@ -50,7 +52,7 @@ bool Island::follow(Model& model, std::span<const std::uint32_t> articulates, co
     for_each_ingredient([&](auto& i) { i.leave(map), i.build(map, problem_); });
     for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
     remove_nodes(around.empty_nodes);
-    integrator_.follow(problem_);
+    integrator_->follow(problem_);
     if (!change.pulled.empty() && !renew_pulls(model, node_of_ring)) return false;
     carry_along(model, moved);
   } else {
@@ -64,11 +66,11 @@ bool Island::renew_pulls(const Model& model, std::vector<std::uint32_t>& node_of
   const ingredient::IslandMap map(model, nodes_, {}, node_of_ring);
   for_each_ingredient([&](auto& i) { i.renew_pulls(map, problem_); });
   for (const std::uint32_t ring : nodes_.rings) node_of_ring[ring] = none;
-  return integrator_.place_forces(problem_);
+  return integrator_->place_forces(problem_);
 }
 
-// Those of the rings that changed and of all particles of the bodies that changed. A particle whose ring has none gets one,
-// beside that of the ring that its own was split from or of another particle of the body.
+// Those of the rings that changed and of all particles of the bodies that changed. A particle without a node gets one,
+// beside that of the ring from which its own was split or of another particle of the body.
 std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const Model::LocalChange& change,
                                                       std::vector<std::uint32_t>& node_of_ring) {
   std::vector<std::uint32_t> changed;
@@ -101,7 +103,7 @@ std::vector<std::uint32_t> Island::find_changed_nodes(const Model& model, const 
   return changed;
 }
 
-// The last nodes take the numbers of those that are gone, here and, as it follows, in the problem.
+// The last nodes take the numbers of removed ones, here and, when it follows, in the problem.
 void Island::remove_nodes(std::vector<std::uint32_t> nodes) {
   std::sort(nodes.begin(), nodes.end(), std::greater<>());
   for (const std::uint32_t node : nodes) problem_.mark_for_removal(node), nodes_.remove(node);

@@ -17,7 +17,7 @@ void Islands::forget() {
   knows_all_ = false, order_is_old_ = true;
 }
 
-// Its articulates wait for a new one.
+// Its articulates will get a new one.
 void Islands::drop(std::uint32_t leader) {
   island_of_leader_[leader].reset();
   std::erase_if(followed_, [&](const Followed& f) { return f.leader == leader; });
@@ -27,7 +27,7 @@ void Islands::drop(std::uint32_t leader) {
   }
 }
 
-// With all that share an island with it.
+// With all articulates of its island.
 void Islands::put_on_waiting_list(std::uint32_t articulate) {
   if (leader_of_[articulate] != none)
     drop(leader_of_[articulate]);
@@ -44,7 +44,7 @@ void Islands::set_members(std::uint32_t leader) {
   }
 }
 
-// The articulates of an island's bodies go into `members_`. False if they have other bodies, too, or are many.
+// Puts the articulates of an island's bodies into `members_`. False if they have other bodies, too, or are many.
 bool Islands::find_members(const Island& island, const Model& model) {
   constexpr std::size_t most = 16;
   members_.clear();
@@ -62,9 +62,9 @@ bool Islands::find_members(const Island& island, const Model& model) {
   return expected == island.bodies().size();
 }
 
-// An island of which nothing changed but a few bodies may follow. It then also holds what has been cut off.
+// An island of which only a few bodies changed may follow. It then still contains parts that were cut off.
 bool Islands::follow(Model& model, std::uint32_t old_leader, MovedRings& moved) {
-  constexpr std::size_t smallest = 256;  // points: smaller ones are built anew in less than 0.1 ms
+  constexpr std::size_t smallest = 64;  // points: smaller ones are built anew as quickly
   Island& island = *island_of_leader_[old_leader];
   if (island.size() < smallest || !find_members(island, model)) return false;
   const auto is_member = [&](std::uint32_t a) { return std::binary_search(members_.begin(), members_.end(), a); };
@@ -89,13 +89,13 @@ bool Islands::follow(Model& model, std::uint32_t old_leader, MovedRings& moved) 
   return true;
 }
 
-// What has been cut off gets an island of its own when things have calmed down.
+// Parts that were cut off get their own islands after some steps without edits.
 bool Islands::is_due(const Followed& followed, const Model& model) const {
   constexpr std::uint64_t calm = 120;  // steps
   return renew_ || (followed.step + calm <= model.step && next_member_[followed.leader] != none);
 }
 
-// What an island takes for granted and adds to tables, which is not for many threads.
+// Prepares data and table rows of an island before the parallel build.
 void Islands::make_ready(Model& model, std::uint32_t body) {
   model.prefer_unknowns(body);
   ingredient::prepare(model, body);
@@ -125,7 +125,7 @@ bool Islands::update(Model& model, const Parallel& parallel, MovedRings& moved) 
   return !fresh_.empty();
 }
 
-// 1. What was touched, and all that shared an island with it, is without one, unless the island can follow.
+// 1. Touched articulates, and all others of their islands, lose their island, unless it can follow.
 void Islands::follow_or_drop_touched(Model& model, MovedRings& moved) {
   waiting_.clear();
   for (const Followed& f : std::vector<Followed>(followed_))
@@ -152,12 +152,12 @@ void Islands::renew_pulls(const Model& model) {
   for (const std::uint32_t body : touched_.local.pulled) {
     if (!model.bodies.is_alive(body)) continue;
     const std::uint32_t a = model.bodies[body].articulate;
-    Island* const island = of_articulate(a);  // null: it is about to be built, with its pulls
+    Island* const island = of_articulate(a);  // null: it will be built, with its pulls
     if (island && !island->renew_pulls(model, node_of_ring_)) put_on_waiting_list(a);
   }
 }
 
-// 2. Articulates that implicit bonds and constraints tie together are solved together: a search from each that waits.
+// 2. Articulates that implicit bonds and constraints tie together are solved together: a search from each.
 void Islands::gather_waiting(const Model& model) {
   fresh_.clear();
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
@@ -186,7 +186,7 @@ void Islands::gather_waiting(const Model& model) {
   }
 }
 
-// 3. Each is built by itself, so at once where there are many.
+// 3. Each is built separately, in parallel if there are many.
 void Islands::build_fresh(Model& model, const Parallel& parallel, MovedRings& moved) {
   for (const std::uint32_t leader : fresh_) {
     island_of_leader_[leader] = std::make_unique<Island>();
@@ -230,8 +230,8 @@ std::span<Island* const> Islands::all() {
 
 std::size_t Islands::grain(const Parallel& parallel) {
   (void)all();
-  // A second thread takes about 20 us to join in; a point takes about a quarter of one. Where one island is most of the
-  // work there is nothing to share out.
+  // A second thread takes about 20 us to start; a point takes about a quarter of a microsecond. If one island is most
+  // of the work, threads do not help.
   constexpr std::size_t worthwhile = 400;  // points
   if (parallel.threads() == 1 || total_size_ - largest_size_ < worthwhile) return in_order_.size();
   return std::max<std::size_t>(1, in_order_.size() * 64 / total_size_);

@@ -7,36 +7,36 @@
 
 namespace iota::island {
 
-/// All islands of a model, re-made only where articulates or what ties them changed: an edit costs what it touches.
+/// All islands of a model, rebuilt only if articulates or their ties changed: an edit costs what it touches.
 class Islands {
  public:
-  /// True where any was made, which may put carried particles a little otherwise.
+  /// True if any was built, which may change carried particles slightly.
   bool update(model::Model& model, const Parallel& parallel) {
     MovedRings moved{.is_asked_for = false};
     return update(model, parallel, moved);
   }
   bool update(model::Model&, const Parallel&, MovedRings&);
   void forget();
-  /// From the next update on every island is as if it had just been built from the model.
+  /// The next update rebuilds every island from the model.
   void renew() { renew_ = true; }
   /// In the order of the lowest slot among their articulates, so that a restored model has the same.
   std::span<Island* const> all();
-  /// How many islands a thread should take in one go: all where threads would not pay.
+  /// Number of islands of a task: all if threads would not be faster.
   std::size_t grain(const Parallel&);
   /// Null for a free particle.
   Island* of_articulate(std::uint32_t articulate) const {
     const std::uint32_t leader = leader_of_[articulate];
     return leader == model::none ? nullptr : island_of_leader_[leader].get();
   }
-  /// Makes a list of articulates one of the leaders of their islands, each once, in order: a net of particles is one
-  /// island of as many articulates as particles.
+  /// Replaces a list of articulates by the leaders of their islands, each once, in order: a net of particles is one
+  /// island with an articulate for each particle.
   void replace_by_leaders(std::vector<std::uint32_t>& articulates) const;
   FreeParticles& free_particles() { return free_particles_; }
 
  private:
   struct Followed {
     std::uint32_t leader;
-    std::uint64_t step;  // of the last time
+    std::uint64_t step;  // of its last follow
   };
 
   void drop(std::uint32_t leader);
@@ -55,7 +55,7 @@ class Islands {
   std::vector<std::unique_ptr<Island>> island_of_leader_;
   std::vector<std::uint32_t> leader_of_;
   std::vector<std::uint32_t> next_member_;  // list of the articulates of one island, from its leader on
-  std::vector<std::uint8_t> is_waiting_;    // to be put into an island
+  std::vector<std::uint8_t> is_waiting_;    // without an island
   model::Model::Touched touched_;
   std::vector<std::uint32_t> waiting_, members_, fresh_;
   model::Model::LocalChange change_;  // of the island that follows

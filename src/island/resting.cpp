@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Islands that fall asleep and wake: whole ones, since what hangs together moves together.
+// Sleep of islands: always of a whole island, since its bodies move together.
 #include "island/island.h"
 
 #include <algorithm>
@@ -45,8 +45,9 @@ void Island::put_to_rest(Model& model) const {
   for (const std::uint32_t b : nodes_.bodies)
     if (is_free(model.bodies[b].kind)) model.bodies[b].kind = BodyKind::resting;
   for_each_ingredient([&](const auto& i) { i.put_to_rest(model, problem_); });
-  nodes_.for_each_ring(model,
-                       [&](std::uint32_t ring) { model.rings[ring].velocity = model.rings[ring].acceleration = {}; });
+  nodes_.for_each_ring(model, [&](std::uint32_t ring) {
+    model.rings[ring].velocity = model.rings[ring].acceleration = model.rings[ring].correction = {};
+  });
 }
 
 }  // namespace iota::island

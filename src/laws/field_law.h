@@ -12,9 +12,9 @@
 
 namespace iota::laws {
 
-/// A force on each of many particles by itself: one of the list, or an expression of x, y, z, vx, vy, vz, m, t and its
-/// parameters. The expression defines `energy` (J; the force is its negative gradient), or fx, fy, fz (N; a missing one is
-/// zero), or both, which add up: "energy = 0.5*k*x^2 + m*9.81*y; fx = -c*vx".
+/// A force on each single particle: one of the list, or an expression of x, y, z, vx, vy, vz, m, t and its
+/// parameters. The expression defines `energy` (J; the force is its negative gradient), or fx, fy, fz (N; a missing one
+/// is zero), or both, which are added: "energy = 0.5*k*x^2 + m*9.81*y; fx = -c*vx".
 class FieldLaw {
  public:
   explicit FieldLaw(std::uint32_t number);

@@ -19,21 +19,21 @@ struct FieldState {
   double t = 0, h = 0;
 };
 
-/// The force that over a step of h brings a free particle as far towards velocity u as f = -drag (v - u) would, exactly:
-/// v1 = u + (v - u) exp(-drag h / m). Held over the step the plain force would overshoot where drag h > m.
+/// The constant force that changes the velocity of a free particle in a step of h exactly as f = -drag (v - u) does: v1
+/// = u + (v - u) exp(-drag h / m). The plain force, held over the step, would overshoot if drag h > m.
 inline Vec3 drag_towards(const Vec3& u, double drag, const FieldState& s) {
   const double c = drag * s.h / s.mass;
   const double share = c < 1e-5 ? 1 - c / 2 : (1 - expression::exp(-c)) / c;
   return (drag * share) * (u - s.velocity);
 }
 
-/// Defaults of a field: it has no energy.
+/// Defaults of a field: no energy.
 struct NoEnergy {
   static constexpr bool has_energy = false;
   static double energy(const FieldState&, const double*) { return 0; }  ///< J; the force is its negative gradient
 };
 
-/// Acceleration (m/s^2): another gravity.
+/// Uniform acceleration (m/s^2).
 struct Uniform : NoEnergy {
   static constexpr bool has_energy = true;
   static constexpr const char* name = "uniform";
@@ -92,7 +92,7 @@ struct Well : NoEnergy {
   }
 };
 
-/// Pulls with `strength` (N) towards the center, less so beyond `range` (m): strength exp(-d/range). Negative repels.
+/// Pulls with `strength` (N) towards the center, decaying over `range` (m): strength exp(-d/range). Negative repels.
 struct Attractor : NoEnergy {
   static constexpr bool has_energy = true;
   static constexpr const char* name = "attractor";

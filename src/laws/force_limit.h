@@ -7,7 +7,7 @@
 
 namespace iota::laws {
 
-/// N. A larger force counts as not finite: squares of what it does in a step would overflow.
+/// N. A larger force counts as not finite: squares of the resulting motion would overflow.
 inline constexpr double largest_force = 1e30;
 
 inline bool is_force(double x, double y, double z) { return std::abs(x) + std::abs(y) + std::abs(z) < largest_force; }

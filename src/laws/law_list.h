@@ -11,7 +11,7 @@ namespace iota::laws {
 
 struct Parameter;
 
-/// A list of laws, each a type with a `name` and `parameters`, asked by number.
+/// A list of laws, each a type with a `name` and `parameters`, addressed by number.
 template <class Laws>
 struct LawList {
   static constexpr std::uint32_t count = std::tuple_size_v<Laws>;

@@ -27,7 +27,7 @@ Vec3 edge(std::uint32_t h) {
 }  // namespace
 
 Noise gradient_noise(const Vec3& x, std::uint32_t seed) {
-  if (!(std::abs(x.x) < 1e9 && std::abs(x.y) < 1e9 && std::abs(x.z) < 1e9)) return {};  // no lattice out there
+  if (!(std::abs(x.x) < 1e9 && std::abs(x.y) < 1e9 && std::abs(x.z) < 1e9)) return {};  // no lattice there
   const double cell[3] = {std::floor(x.x), std::floor(x.y), std::floor(x.z)};
   const double f[3] = {x.x - cell[0], x.y - cell[1], x.z - cell[2]};
   std::uint32_t i[3];
@@ -60,7 +60,7 @@ Vec3 turbulent_velocity(const Turbulence& t, const Vec3& position, double time) 
   constexpr double fall = 0.79370052598409974;  // 2^(-1/3)
   Vec3 u = t.mean;
   double frequency = 1 / t.size, speed = t.speed;
-  Vec3 drift{0.61, 0.54, 0.58};  // each octave is carried another way, so that patterns change instead of traveling
+  Vec3 drift{0.61, 0.54, 0.58};  // octaves move in different directions, so that patterns change instead of traveling
   for (int octave = 0; octave < t.octaves; ++octave) {
     const Vec3 x = frequency * position + (t.evolution * time * frequency * t.size) * drift;
     const std::uint32_t seed = t.seed + 3 * static_cast<std::uint32_t>(octave);

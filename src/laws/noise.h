@@ -19,13 +19,13 @@ struct Turbulence {
   Vec3 mean;             ///< m/s
   double speed = 1;      ///< of the largest eddies, m/s
   double size = 1;       ///< of the largest eddies, m
-  int octaves = 3;       ///< each half as large, and as fast as Kolmogorov's 5/3 law says: 2^(-1/3)
-  double evolution = 0;  ///< how fast the pattern changes, 1/s
+  int octaves = 3;       ///< each has half the size and, by Kolmogorov's 5/3 law, 2^(-1/3) times the speed
+  double evolution = 0;  ///< rate of change of the pattern, 1/s
   std::uint32_t seed = 0;
 };
 
-/// Velocity of a turbulent current: fractional Brownian motion as the curl of a noise potential, so that nothing gathers or
-/// thins out (Bridson, Hourihan, Nordenstam, SIGGRAPH 2007).
+/// Velocity of a turbulent current: fractional Brownian motion as the curl of a noise potential, so without divergence
+/// (Bridson, Hourihan, Nordenstam, SIGGRAPH 2007).
 Vec3 turbulent_velocity(const Turbulence&, const Vec3& position, double time);
 
 }  // namespace iota::laws

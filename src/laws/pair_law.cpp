@@ -17,9 +17,20 @@ using expression::Node;
 using expression::Op;
 using expression::Program;
 
-enum Variable : std::uint32_t { var_r, var_v, var_t, var_m_p, var_m_q, variable_count };
+enum Variable : std::uint32_t {
+  var_r,
+  var_v,
+  var_t,
+  var_m_p,
+  var_m_q,
+  var_cos_p,
+  var_cos_q,
+  var_cos_pq,
+  variable_count
+};
+constexpr std::array cosines = {var_cos_p, var_cos_q, var_cos_pq};
 
-/// One of each thread: islands are solved in parallel.
+/// One for each thread, as islands are solved in parallel.
 Program::Workspace& workspace() {
   static thread_local Program::Workspace space;
   return space;
@@ -85,6 +96,13 @@ PairLaw::PairLaw(std::string_view text, std::vector<std::string> parameters) : p
   const Node damping = formula.make(Op::subtract, force, push);
   has_energy_ = energy != zero, has_push_ = push != zero, has_drag_ = drag != zero;
   has_damping_ = formula.depends_on(damping, var_v);
+  const auto sees_normals = [&](Node part) {
+    return std::ranges::any_of(cosines, [&](Variable cosine) { return formula.depends_on(part, cosine); });
+  };
+  if (sees_normals(force) || sees_normals(drag))
+    throw expression::ExpressionError("only an energy may depend on cos_p, cos_q and cos_pq", text,
+                                      definitions.back().position);
+  depends_on_normals_ = sees_normals(energy);
   for (const Node part : {energy, force, drag}) {
     depends_on_time_ = depends_on_time_ || formula.depends_on(part, var_t);
     depends_on_mass_ = depends_on_mass_ || formula.depends_on(part, var_m_p) || formula.depends_on(part, var_m_q);
@@ -99,8 +117,10 @@ PairLaw::PairLaw(std::string_view text, std::vector<std::string> parameters) : p
   push_ = Program(formula, std::array{push, push_slope}, each);
   damping_ = Program(formula, std::array{damping, damping_slope}, each);
   drag_ = Program(formula, std::array{drag}, each);
-  const std::array total{formula.make(Op::subtract, force, slope), drag};
-  const auto wanted = std::span(total).first(has_drag_ ? 2 : 1);
+  std::vector<Node> wanted{formula.make(Op::subtract, force, slope)};
+  if (has_drag_) wanted.push_back(drag);
+  if (depends_on_normals_)
+    for (const Variable cosine : cosines) wanted.push_back(formula.derivative(energy, cosine));
   bonds_ = Program(formula, wanted, each);
   pairs_ = Program(formula, wanted, shared);
   bond_energies_ = Program(formula, std::array{energy}, each);
@@ -194,8 +214,11 @@ void PairLaw::evaluate(const PairBatch& b) const {
   if (number_ < pair_law_count) {
     List::visit(number_, [&]<class Law>() { evaluate_list<Law>(b, false); });
   } else {
-    double* const outputs[] = {b.force, b.drag};
-    run(bonds_, pairs_, b, outputs);
+    std::array<double*, 5> outputs{b.force};
+    std::size_t count = 1;
+    if (has_drag_) outputs[count++] = b.drag;
+    for (double* const slope : b.slopes) outputs[count++] = slope;
+    run(bonds_, pairs_, b, outputs.data());
   }
 }
 
@@ -208,7 +231,8 @@ void PairLaw::energies(const PairBatch& b) const {
 }
 
 void PairLaw::run(const Program& of_bonds, const Program& of_pairs, const PairBatch& b, double* const* outputs) const {
-  std::array<const double*, variable_count + max_parameters> lanes{b.r, b.v, nullptr, b.m_p, b.m_q};
+  std::array<const double*, variable_count + max_parameters> lanes{b.r,   b.v,     nullptr, b.m_p,
+                                                                   b.m_q, b.cos_p, b.cos_q, b.cos_pq};
   std::array<double, variable_count + max_parameters> uniforms{};
   uniforms[var_t] = b.t;
   for (std::size_t k = 0; k < parameter_count_; ++k) {

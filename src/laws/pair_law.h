@@ -4,6 +4,7 @@
 #include "expression/program.h"
 #include "laws/pair_laws.h"
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -11,24 +12,29 @@
 
 namespace iota::laws {
 
-/// Many pairs at once, as arrays of `count` numbers.
+/// Many pairs, as arrays of `count` numbers.
 struct PairBatch {
   std::size_t count = 0;
   const double *r = nullptr, *v = nullptr, *m_p = nullptr, *m_q = nullptr;
+  /// Cosines: of each normal with the line from p to q, and of both normals. Only where `depends_on_normals()`.
+  const double *cos_p = nullptr, *cos_q = nullptr, *cos_pq = nullptr;
   double t = 0;
   const double* const* parameters = nullptr;  ///< one array a parameter, or one number each
   bool same_parameters = false;               ///< one number each
   double* force = nullptr;                    ///< out: along the line, positive pushes apart, N
   double* drag = nullptr;                     ///< out: of the velocity difference, N s/m; only where `has_drag()`
-  double* energy = nullptr;                   ///< out, of `energies`: J
+  /// out: derivative of the energy with respect to cos_p, cos_q, cos_pq, J; only where `depends_on_normals()`
+  std::array<double*, 3> slopes{};
+  double* energy = nullptr;  ///< out, of `energies`: J
 };
 
 /// A law between two points: one of the list, or an expression. Its force on the second point is f n - c (v_q - v_p), with n
-/// from the first to the second and f = -U'(r, t) + push(r, t) + damping(r, v, t), where U is what the law stores as energy and
-/// damping vanishes with v. The parts are told apart because the solver treats them differently.
+/// from the first to the second and f = -U'(r, t) + push(r, t) + damping(r, v, t), where U is the energy of the law and
+/// damping vanishes with v. The solver treats the three parts differently.
 ///
 /// An expression law defines `energy` (J), `force` (N along the line, positive pushes apart) or `drag` (N s/m), or several,
-/// of r, v = dr/dt, t, m_p, m_q and its parameters: "energy = 0.5*k*(r - r0)^2; force = -c*v".
+/// of r, v = dr/dt, t, m_p, m_q and its parameters: "energy = 0.5*k*(r - r0)^2; force = -c*v". The energy may depend on the
+/// normals of two oriented particles too, by the cosines cos_p, cos_q and cos_pq: such a law turns them as well.
 class PairLaw {
  public:
   /// A law of the list.
@@ -42,10 +48,11 @@ class PairLaw {
   bool has_drag() const { return has_drag_; }
   bool depends_on_time() const { return depends_on_time_; }
   bool depends_on_mass() const { return depends_on_mass_; }
-  /// Whether it may add energy to the world: forces of a user's expression that do not derive from an energy may.
+  bool depends_on_normals() const { return depends_on_normals_; }
+  /// Whether it may add energy to the world, as forces of a user's expression without an energy may.
   bool may_do_work() const { return has_push_ || (number_ == pair_law_count && (has_damping_ || has_drag_)); }
 
-  /// @name One pair, with derivatives, for the solver
+  /// @name One pair, with derivatives, for the solver, which knows no normals
   ///@{
   Elastic elastic(const PairState&, const double* parameters) const;
   struct Slope {
@@ -62,7 +69,7 @@ class PairLaw {
   void energies(const PairBatch&) const;
 
   /// Variables of an expression law before its parameters.
-  static constexpr const char* variables[] = {"r", "v", "t", "m_p", "m_q"};
+  static constexpr const char* variables[] = {"r", "v", "t", "m_p", "m_q", "cos_p", "cos_q", "cos_pq"};
 
  private:
   void run(const expression::Program& of_bonds, const expression::Program& of_pairs, const PairBatch&,
@@ -70,10 +77,10 @@ class PairLaw {
 
   std::uint32_t number_ = pair_law_count;  // of the list; else an expression
   bool has_energy_ = false, has_push_ = false, has_damping_ = false, has_drag_ = false, depends_on_time_ = false,
-       depends_on_mass_ = false;
+       depends_on_mass_ = false, depends_on_normals_ = false;
   std::size_t parameter_count_ = 0;
   expression::Program elastic_, push_, damping_, drag_;
-  // Of batches, with parameters of each, or the same for all: force and drag, energy.
+  // Programs for batches, with parameters of each pair, or equal ones: force and drag, energy.
   expression::Program bonds_, pairs_, bond_energies_, pair_energies_;
 };
 

@@ -71,7 +71,7 @@ struct Dashpot : NoForce {
   static double dashpot(const double* p) { return p[0]; }
 };
 
-/// Only pulls: an elastic string, slack when shorter than its length.
+/// Only pulls: an elastic string, slack below its length.
 struct Tether : NoForce {
   static constexpr const char* name = "tether";
   static constexpr const char* text = "energy = 0.5*stiffness*max(r - length, 0)^2";
@@ -83,7 +83,7 @@ struct Tether : NoForce {
   }
 };
 
-/// Only pushes, nearer than its length: soft balls.
+/// Only pushes, below its length: soft balls.
 struct SoftRepulsion : NoForce {
   static constexpr const char* name = "soft_repulsion";
   static constexpr const char* text = "energy = 0.5*stiffness*min(r - length, 0)^2";
@@ -129,7 +129,7 @@ struct LennardJones : NoForce {
   }
 };
 
-/// A chemical bond that breaks: zero at rest, `depth` to tear it apart; width in 1/m. Morse, Phys. Rev. 34 (1929).
+/// A chemical bond that breaks: zero at rest, dissociation energy `depth`; width in 1/m. Morse, Phys. Rev. 34 (1929).
 struct Morse : NoForce {
   static constexpr const char* name = "morse";
   static constexpr const char* text = "energy = depth*(1 - exp(-width*(r - length)))^2";
@@ -159,7 +159,7 @@ struct AttractRepel : NoForce {
   static double drag(const double* p) { return p[4]; }
 };
 
-/// The one list. Names, parameters, batches, bindings and documentation are folds over it.
+/// The list of laws. Names, parameters, batches, bindings and documentation are folds over it.
 using PairLaws =
     std::tuple<Spring, Drag, Dashpot, Tether, SoftRepulsion, Gravity, Coulomb, LennardJones, Morse, AttractRepel>;
 inline constexpr std::uint32_t pair_law_count = std::tuple_size_v<PairLaws>;

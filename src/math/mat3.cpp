@@ -7,7 +7,7 @@
 namespace iota {
 
 SymmetricEigen symmetric_eigen(const Mat3& a) {
-  // Jacobi rotations: for 3 x 3 simple, exact to round-off, and rank decisions are clean.
+  // Jacobi rotations: for 3 x 3 simple and exact to round-off, with reliable ranks.
   double s[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) s[i][j] = a.m[i][j];
@@ -29,7 +29,7 @@ SymmetricEigen symmetric_eigen(const Mat3& a) {
           v[k][p] = c * vp - sine * vq, v[k][q] = sine * vp + c * vq;
         }
       }
-  // Turns from the identity: right-handed.
+  // A rotation from the identity, so right-handed.
   return {{s[0][0], s[1][1], s[2][2]},
           {{v[0][0], v[1][0], v[2][0]}, {v[0][1], v[1][1], v[2][1]}, {v[0][2], v[1][2], v[2][2]}}};
 }
@@ -66,6 +66,11 @@ Vec3 rotate(const Quaternion& q, const Vec3& v) {
 Quaternion axis_angle(const Vec3& axis, double angle) {
   const double s = std::sin(angle / 2);
   return {s * axis.x, s * axis.y, s * axis.z, std::cos(angle / 2)};
+}
+
+Quaternion turn_by(const Vec3& v) {
+  const double angle = norm(v);
+  return angle > 0 ? axis_angle((1 / angle) * v, angle) : Quaternion{};
 }
 
 Quaternion shortest_turn(const Vec3& from, const Vec3& to) {

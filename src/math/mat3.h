@@ -50,10 +50,10 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(const Mat3& a);
 
-/// Least-squares solution of A x = b for symmetric positive semi-definite A: directions in which A is (nearly) zero,
-/// below `tolerance` times its largest pivot, get no part. Diagonal pivoting.
+/// Least-squares solution of A x = b for symmetric positive semi-definite A: x has no component in directions in which
+/// A is (nearly) zero, below `tolerance` times its largest pivot. Diagonal pivoting.
 Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance = 1e-10);
-/// The same where the eigenvectors are known: for many right-hand sides.
+/// The same with known eigenvectors: for many right-hand sides.
 Vec3 solve_semidefinite(const SymmetricEigen& a, const Vec3& b, double tolerance);
 
 // Quaternions.
@@ -61,9 +61,11 @@ Quaternion multiply(const Quaternion& a, const Quaternion& b);
 Quaternion normalized(const Quaternion& q);
 Vec3 rotate(const Quaternion& q, const Vec3& v);
 Quaternion axis_angle(const Vec3& unit_axis, double angle);
-/// The smallest turn that carries unit vector `from` onto unit vector `to`.
+/// The rotation about a vector by its length, rad.
+Quaternion turn_by(const Vec3& v);
+/// The smallest rotation from unit vector `from` to unit vector `to`.
 Quaternion shortest_turn(const Vec3& from, const Vec3& to);
-/// The turn whose columns are the orthonormal, right-handed axes.
+/// The rotation whose columns are the orthonormal, right-handed axes.
 Quaternion from_axes(const Vec3& x, const Vec3& y, const Vec3& z);
 /// A unit vector at right angles to unit vector v.
 Vec3 any_perpendicular(const Vec3& v);

@@ -17,7 +17,7 @@ void Structure::touch(std::uint32_t articulate, Touch what) {
 }
 
 namespace {
-constexpr std::size_t most_local_changes = 1024;  // after more of them islands are built anew
+constexpr std::size_t most_local_changes = 1024;  // after more of them islands are rebuilt
 }
 
 void Structure::touch_locally(std::uint32_t body) {
@@ -39,11 +39,11 @@ void Structure::touch_pull(std::uint32_t body) {
 }
 
 void Structure::touch_ring(std::uint32_t ring, std::uint32_t split_from) {
-  // Without room the bodies of the ring are in islands that are built anew, and nobody asks for the ring.
+  // If there is no room, the bodies of the ring are in islands that are rebuilt, so the ring is not needed.
   if (local_change_.bodies.size() < most_local_changes || rings[ring].count == 0)
     local_change_.rings.push_back({ring, split_from});
   const bool few = local_change_.bodies.size() + rings[ring].count <= most_local_changes;
-  std::uint32_t articulate = none;  // of all of them, unless they are about to be hinged
+  std::uint32_t articulate = none;  // of all of them, unless they will be hinged
   for_each_in_ring(ring, [&](std::uint32_t p) {
     const std::uint32_t body = particles[p].body;
     if (few) local_change_.bodies.push_back(body);
@@ -65,7 +65,7 @@ void Structure::take_touched(Touched& taken) {
   }
 }
 
-// The smaller list is hung behind the larger as it is; only its bodies have to learn where they are now.
+// The smaller list is appended to the larger; only its bodies are relabeled.
 void Structure::join_articulates(std::uint32_t a, std::uint32_t b) {
   if (a == b) return;
   if (articulates[a].count < articulates[b].count) std::swap(a, b);
@@ -128,19 +128,30 @@ bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   std::uint32_t which = 0;
   for (; !met && next[which] < end[which]; which = 1 - which) {
     const std::uint32_t own_mark = first_mark + which;
-    const auto reach = [&](std::uint32_t body) {
+    std::uint32_t* const found = flood[which];
+    const auto reach = [=](std::uint32_t body, std::size_t& count, bool& meets) {
       if (mark_of[body] < first_mark)
-        mark_of[body] = own_mark, flood[which][end[which]++] = body;
+        mark_of[body] = own_mark, found[count++] = body;
       else
-        met = met || mark_of[body] != own_mark;
+        meets = meets || mark_of[body] != own_mark;
     };
-    for_each_particle_of(flood[which][next[which]++], [&](std::uint32_t p) {
-      const Ring& ring = rings[particles[p].ring];
+    std::size_t count = end[which];
+    bool meets = false;
+    for (std::uint32_t p = bodies[found[next[which]++]].first; p != none;) {
+      const Particle& particle = particles[p];
+      const Ring& ring = rings[particle.ring];
       if (ring.count > 1)
         for (std::uint32_t hinged = ring.first; hinged != none; hinged = particles[hinged].next_in_ring)
-          if (hinged != p) reach(particles[hinged].body);
-      if (particles[p].uses > 0) visit_joined(p, reach);  // what joins it uses it
-    });
+          if (hinged != p) reach(particles[hinged].body, count, meets);
+      if (particle.uses > 0) {       // joins count as uses
+        std::size_t joined = count;  // so that `count` can be in a register
+        bool joined_meets = meets;
+        visit_joined(p, [&](std::uint32_t body) { reach(body, joined, joined_meets); });
+        count = joined, meets = joined_meets;
+      }
+      p = particle.next_in_body;
+    }
+    end[which] = count, met = meets;
   }
   if (met) return false;
 

@@ -13,14 +13,7 @@ Audit::Audit(const Structure& model)
       in_body_(model.bodies.slot_count(), 0),
       in_ring_(model.rings.slot_count(), 0),
       in_articulate_(model.articulates.slot_count(), 0),
-      parent_(model.bodies.slot_count()) {
-  std::iota(parent_.begin(), parent_.end(), 0u);
-}
-
-std::uint32_t Audit::root(std::uint32_t body) {
-  while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
-  return body;
-}
+      connected_(model.bodies.slot_count()) {}
 
 void Audit::require_ends(const char* what, std::uint32_t slot, const Ends& ends) {
   require(model_.particles.is_alive(ends.p) && model_.particles.is_alive(ends.q) && ends.p != ends.q, what, " ", slot,
@@ -102,7 +95,7 @@ void Audit::check_structure_lists() {
 
 template <class Table>
 void Audit::check_chains(const char* what, const Table& items, std::uint32_t Body::* first) {
-  std::vector<std::uint32_t> before(items.slot_count(), 0);  // how many links lead to each
+  std::vector<std::uint32_t> before(items.slot_count(), 0);  // number of links to each
   const auto lead_to = [&](std::uint32_t item) {
     if (item == none) return;
     require(items.is_alive(item) && ++before[item] == 1, what, " ", item, " is gone, or in two lists");
@@ -200,12 +193,12 @@ void Audit::check_articulates() {
   model_.rings.for_each([&](std::uint32_t, const Ring& r) {
     if (r.first == none) return;
     for (std::uint32_t p = model_.particles[r.first].next_in_ring; p != none; p = model_.particles[p].next_in_ring)
-      parent_[root(model_.particles[p].body)] = root(model_.particles[r.first].body);
+      connected_.join(model_.particles[p].body, model_.particles[r.first].body);
   });
   std::vector<std::uint32_t> articulate_of_root(model_.bodies.slot_count(), none),
       roots_of(model_.articulates.slot_count(), 0);
   model_.bodies.for_each([&](std::uint32_t slot, const Body& b) {
-    const std::uint32_t r = root(slot);
+    const std::uint32_t r = connected_.root(slot);
     if (articulate_of_root[r] == none) articulate_of_root[r] = b.articulate, ++roots_of[b.articulate];
     require(articulate_of_root[r] == b.articulate, "bodies ", r, " and ", slot,
             " hang together but are in articulates ", articulate_of_root[r], " and ", b.articulate);

@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "base/disjoint_sets.h"
 #include "base/text.h"
 #include "model/structure.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <string>
 #include <vector>
 
 namespace iota::model {
 
-/// Looks for what is wrong with a model. Everything that records count about each other is counted here again, independent
-/// of how edits keep it. First come the links: tables that came as bytes may hold any number, and all other checks follow
-/// slots and lists.
+/// Checks a model. All counts in records are counted here again, independently of edits. Links are
+/// checked first: tables read from bytes may contain any number, and all other checks follow slots and
+/// lists.
 class Audit {
  public:
   explicit Audit(const Structure&);
   bool is_good() const { return complaints_.empty(); }
 
-  /// @name Links: that slots live, lists end, and numbers that choose are in their range
+  /// @name Links: slots are alive, lists end, and enumerators are in their range
   ///@{
   void check_links();  ///< of the structure
-  /// Lists with a way back, by numbers of links below link_count: where each begins, and what is before and after a link,
-  /// or `none`. As each link is after one other at most, and the first after none, lists end.
+  /// Lists with a way back, by numbers of links below link_count: the first of each, and the ones before and after a
+  /// link, or `none`. As each link is after at most one other, and the first after none, lists end.
   template <class IsAlive, class Next, class Previous>
   void check_lists(const char* what, const std::vector<std::uint32_t>& firsts, std::uint32_t link_count,
                    IsAlive is_alive, Next next, Previous previous);
   template <class T, class IdType>
   void check_ends(const char* what, const EndTable<T, IdType>& items);
-  /// The text of an array of characters ends in it.
+  /// The text in an array of characters has its end in it.
   template <std::size_t n>
   void require_text(const char* what, std::uint32_t slot, const std::array<char, n>& characters) {
     require(std::find(characters.begin(), characters.end(), '\0') != characters.end(), what, " ", slot,
@@ -44,28 +44,28 @@ class Audit {
   void require(bool condition, const Parts&... parts) {
     if (!condition) complaints_.push_back(text(parts...));
   }
-  /// Every value of a side table belongs to an item that is alive.
+  /// Every value of a side table belongs to an existing item.
   void require_owners(const char* what, const auto& values, const auto& owners) {
     values.for_each([&](std::uint32_t slot, const auto&) {
       require(owners.is_alive(slot), what, " of ", slot, ", which does not live");
     });
   }
   void require_ends(const char* what, std::uint32_t slot, const Ends&);
-  /// Every end of an item is in the list of its particle, and in no other.
+  /// Every end of an item is only in the list of its particle.
   template <class T, class IdType>
   void require_listed(const char* what, const EndTable<T, IdType>& items);
-  /// `group` lives, or is `none`.
+  /// `group` exists, or is `none`.
   void require_group(const char* what, std::uint32_t slot, std::uint32_t group);
-  /// An item uses one of another kind, "law" for instance; that one counts its uses and says so, before or after.
+  /// An item uses one of another kind, for instance a "law"; that one counts its uses.
   void use(const char* kind, std::uint32_t slot) { ++counts_[{kind, slot}].found; }
   void require_uses(const char* kind, std::uint32_t slot, std::uint32_t count) { counts_[{kind, slot}].told = count; }
 
   /// An item needs a particle as an unknown of its own.
   void use_particle(std::uint32_t particle) { ++uses_[particle]; }
-  /// Two bodies are in one articulate for a reason other than a hinge.
-  void join(std::uint32_t body_a, std::uint32_t body_b) { parent_[root(body_a)] = root(body_b); }
+  /// Two bodies are joined in one articulate other than by a hinge.
+  void join(std::uint32_t body_a, std::uint32_t body_b) { connected_.join(body_a, body_b); }
 
-  /// Particles, rings, bodies, articulates and their lists; then what was counted.
+  /// Particles, rings, bodies, articulates and their lists; then the counts.
   void check_structure();
   void check_counts();
   std::vector<std::string> complaints() && { return std::move(complaints_); }
@@ -73,13 +73,12 @@ class Audit {
  private:
   void check_particles();
   void check_structure_lists();
-  /// Lists without a way back, each item in one at most.
+  /// Singly linked lists, each item in one at most.
   template <class Table>
   void check_chains(const char* what, const Table& items, std::uint32_t Body::* first);
   void check_rings();
   void check_bodies();
   void check_articulates();
-  std::uint32_t root(std::uint32_t body);
 
   const Structure& model_;
   std::vector<std::string> complaints_;
@@ -89,7 +88,7 @@ class Audit {
   };
   std::map<std::pair<std::string, std::uint32_t>, Count> counts_;
   std::vector<std::uint32_t> in_body_, in_ring_, in_articulate_;
-  std::vector<std::uint32_t> parent_;  // of each body, in the forest of bodies that hang together
+  DisjointSets connected_;  // of bodies
 };
 
 template <class IsAlive, class Next, class Previous>

@@ -29,7 +29,7 @@ class BasisWeights {
       for (int j = 0; j < 3; ++j) gram.m[i][j] = dot(vectors_[i], vectors_[j]);
     gram_ = symmetric_eigen(gram);
   }
-  /// Of the point nearest to `place` that the basis spans.
+  /// Of the point of the basis' span nearest to `place`.
   std::array<double, 4> of(const Vec3& place) const {
     const Vec3 r = place - origin_;
     const Vec3 c = solve_semidefinite(gram_, {dot(vectors_[0], r), dot(vectors_[1], r), dot(vectors_[2], r)}, 1e-15);
@@ -45,9 +45,9 @@ class BasisWeights {
 }  // namespace
 
 // The first massive particle, then thrice the massive particle farthest from the span so far: well-conditioned, and for a rod simply its
-// two ends. Everything else is an affine combination of these. A body made of solids prefers points that are unknowns
-// anyway, as long as they reach a fifth as far. Ties go to the earlier one, whatever round-off says.
-// Markers have no mass to be a basis with.
+// two ends. All other points are affine combinations of these. A body made of solids prefers points that are unknowns
+// anyway, if they reach a fifth as far. Of equal ones the first is chosen, independent of round-off. Markers have no
+// mass and cannot be in a basis.
 void Structure::rebuild_basis(std::uint32_t body_slot) {
   constexpr double flat = 1e-7;  // of the extent: thinner counts as a point, line or plane
   constexpr double tie = 1 + 1e-6, far_enough = 0.2;
@@ -97,10 +97,10 @@ void Structure::rebuild_basis(std::uint32_t body_slot) {
     const auto [i, j] = basis_pairs[row];
     RigidRow& rigid = this->row(body_slot, row);
     rigid.length = norm(position(body.basis[j]) - position(body.basis[i]));
-    if (old_basis != body.basis) rigid.multiplier = 0;  // a warm start of other rows would mislead
+    if (old_basis != body.basis) rigid.multiplier = 0;  // the multipliers of other rows are no warm start
   }
 
-  std::optional<BasisWeights> weights;  // of bodies that have more points than their basis
+  std::optional<BasisWeights> weights;  // for bodies with more points than their basis
   for_each_particle_of(body_slot, [&](std::uint32_t p) {
     Particle& particle = particles[p];
     particle.basis_index = -1;
@@ -115,14 +115,14 @@ void Structure::rebuild_basis(std::uint32_t body_slot) {
 
 namespace {
 
-// Below this many particles a basis is chosen anew at each change: that costs microseconds.
+// Below this many particles a basis is chosen again at each change, which takes microseconds.
 constexpr std::uint32_t large = 64;
 
 }  // namespace
 
 bool carry_by_basis(Structure& model, std::uint32_t body_slot, std::uint32_t before,
                     std::span<const std::uint32_t> particles) {
-  constexpr double far = 1.5;  // of the basis' lengths: places farther out would amplify its round-off
+  constexpr double far = 1.5;  // of the basis' lengths: places farther out amplify its round-off
   const Body& body = model.bodies[body_slot];
   if (before < large || body.rank < 2) return false;
   const BasisWeights weights(model, body_slot);
@@ -158,10 +158,10 @@ bool keeps_basis(const Structure& model, std::uint32_t body_slot) {
 }
 
 // Rods have less inertia than point masses at their ends: a negative pair. With less mass at an end than the rod had
-// (assigned, or shared with a twin), some motions would have negative kinetic energy. If each mass is above twice the sum
-// of its pairs, as in a rod, the matrix is diagonally dominant whatever else is hinged or tied there.
+// (assigned, or shared with a copy), some motions would have negative kinetic energy. If each mass is above twice the
+// sum of its pairs, as in a rod, the matrix is diagonally dominant with any hinges or ties.
 void Structure::keep_inertia_positive(std::uint32_t body_slot) {
-  std::vector<std::pair<std::uint32_t, double>> taken;  // by each pair from each of its ends
+  std::vector<std::pair<std::uint32_t, double>> taken;  // by each pair from both of its ends
   for_each_inertia_of(body_slot, [&](std::uint32_t i) {
     const InertiaPair& pair = inertia_pairs[i];
     if (!(pair.inertia < 0)) return;
@@ -185,7 +185,7 @@ void Structure::prefer_unknowns(std::uint32_t body_slot) {
   bool outside = false, in_shape = true;
   for_each_particle_of(body_slot, [&](std::uint32_t p) {
     if (!is_needed(particles[p])) return;
-    in_shape = in_shape && follows_basis(p);  // also of a marker that was just combined: it would stay where it is
+    in_shape = in_shape && follows_basis(p);  // also for a marker that was just combined, which would keep its place
     if (particles[p].is_marker()) return;
     ++needs;
     outside = outside || particles[p].basis_index < 0;
@@ -257,7 +257,7 @@ BodyId Structure::part_at(std::uint32_t body, const Vec3& place) const {
 }
 
 bool Structure::spans(std::uint32_t body_slot, const Vec3& place) const {
-  constexpr double off = 1e-6;  // of the extent: a place farther from the body's point, line or plane is not on it
+  constexpr double off = 1e-6;  // of the extent: largest distance of a place on the body's point, line or plane
   const Body& body = bodies[body_slot];
   if (body.rank == 0) return false;
   const double longest = extent(body_slot);

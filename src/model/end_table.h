@@ -11,8 +11,8 @@ namespace iota::model {
 
 inline constexpr std::uint32_t none = 0xffffffff;
 
-/// Two particles that something joins. Each of them has a list of all that ends at it. A link is slot * 2 + end: which end
-/// of the next item is at this particle.
+/// Two particles joined by an item. Each of them has a list of all items that end at it. A link is slot * 2 + end: the
+/// end of the next item at this particle.
 struct Ends {
   std::uint32_t p = none, q = none;
   std::array<std::uint32_t, 2> next{none, none}, previous{none, none};
@@ -20,13 +20,13 @@ struct Ends {
   std::uint32_t at(std::uint32_t end) const { return end == 0 ? p : q; }
 };
 
-/// Where the list of what refers to a particle begins.
+/// The head of the list of items at a particle.
 struct ListHead {
   std::uint32_t first = none;
 };
 
-/// A table of items that join two particles (they inherit `Ends`), with the lists of the particles: looking after what ends
-/// at one particle costs what ends there.
+/// A table of items that join two particles (they inherit `Ends`), with the lists of the particles: visiting the items
+/// of one particle costs only their number.
 template <class T, class IdType>
 class EndTable : private SlotTable<T, IdType> {
   using Items = SlotTable<T, IdType>;

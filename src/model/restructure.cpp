@@ -11,7 +11,7 @@ namespace iota::model {
 
 namespace {
 
-/// Merging two rings would put two particles of one body in one place, which no rigid body can.
+/// Merging two rings would put two particles of one body at one place, which is impossible for a rigid body.
 void require_no_shared_body(const Structure& model, std::uint32_t ring_a, std::uint32_t ring_b,
                             std::uint32_t except_body) {
   model.for_each_in_ring(ring_a, [&](std::uint32_t a) {
@@ -36,12 +36,12 @@ bool is_fixed(const Structure& model, std::uint32_t ring, std::uint32_t except_b
   return fixed;
 }
 
-/// All particles of `from` join `into`; position and velocity become the mass-weighted means, unless a nail or a body that
-/// does not give way decides.
+/// All particles of `from` join `into`; position and velocity become the mass-weighted means, unless a nail or a fixed
+/// body determines them.
 Edit merge_rings(Structure& model, std::uint32_t into, std::uint32_t from) {
   Ring& r = model.rings[into];
   const Ring s = model.rings[from];
-  double share = 0;  // of `from` in the means, where they differ
+  double share = 0;  // weight of `from` in the means, if they differ
   if (r.position != s.position || r.velocity != s.velocity) {
     const double m_r = model.ring_mass(into), m_s = model.ring_mass(from);
     share = m_r + m_s > 0 ? m_s / (m_r + m_s) : 0.5;
@@ -55,7 +55,7 @@ Edit merge_rings(Structure& model, std::uint32_t into, std::uint32_t from) {
     r.position += share * (s.position - r.position);
   r.velocity += share * (s.velocity - r.velocity);
   model.ring_merged(into, from, replaces);
-  for (std::uint32_t left = s.count; left > 0; --left) {  // the last one takes the ring `from` with it
+  for (std::uint32_t left = s.count; left > 0; --left) {  // the ring `from` is destroyed with its last particle
     const std::uint32_t moved = model.rings[from].first;
     model.take_from_ring(moved);
     model.add_to_ring(moved, into);
@@ -81,15 +81,15 @@ void absorb_particle(Structure& model, std::uint32_t p, std::uint32_t q, Restruc
   model.remove_particle(q);
 }
 
-/// What the rigid union of two bodies is, in either order: what holds one of them still, or moves it, holds or moves both;
-/// only where neither takes part does the union not take part, and only where both rest does it rest.
+/// The kind of the rigid union of two bodies, in either order: static or scripted if one of them is; inactive only if
+/// both are inactive, and resting only if both are resting.
 BodyKind kind_of_union(BodyKind a, BodyKind b) {
   for (const BodyKind kind : {BodyKind::static_, BodyKind::scripted, BodyKind::dynamic})
     if (a == kind || b == kind) return kind;
   return a == b ? a : BodyKind::dynamic;
 }
 
-/// Damping is by mass.
+/// Damping is averaged by mass.
 double damping_of_union(const Structure& model, std::uint32_t a, std::uint32_t b) {
   const double of_a = model.bodies[a].damping, of_b = model.bodies[b].damping;
   if (of_a == of_b) return of_a;
@@ -108,7 +108,7 @@ const char* name_of(BodyKind kind) {
   return "";
 }
 
-/// A body that has all particles of the union gets its kind. Says so where one of the two was of another kind.
+/// Sets the kind of the body with all particles of the union. Notes if one of the two had another kind.
 void unite_kinds(Structure& model, std::uint32_t body, BodyKind of_a, BodyKind of_b, RestructureReport& report) {
   if (of_a == of_b) return;
   const BodyKind kind = kind_of_union(of_a, of_b);
@@ -123,8 +123,8 @@ void unite_kinds(Structure& model, std::uint32_t body, BodyKind of_a, BodyKind o
                          name_of(first) + ", the other " + name_of(second));
 }
 
-/// All particles of body b become body a's; where both have one in the same ring, one absorbs the other. Costs what b has,
-/// but where a needs another basis.
+/// Moves all particles of body b to body a; if both have one in the same ring, one absorbs the other. The cost is that
+/// of b, unless a needs another basis.
 Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, RestructureReport& report) {
   const BodyKind kind_a = model.bodies[a].kind, kind_b = model.bodies[b].kind;
   const BodyKind kind = kind_of_union(kind_a, kind_b);
@@ -135,7 +135,7 @@ Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, Restructure
                                   "make it static or scripted first");
   const double damping = damping_of_union(model, a, b);
   const BodyKind kind_before = kind_of_union(model.bodies[a].kind_before, model.bodies[b].kind_before);
-  // Inertia pairs and solids move with their particles, so take the lists away before the particles leave.
+  // Inertia pairs and solids move with their particles, so the lists are detached before the particles leave.
   const std::uint32_t pairs = std::exchange(model.bodies[b].first_inertia, none);
   const std::uint32_t solids = std::exchange(model.bodies[b].first_solid, none);
   std::uint32_t* last_pair = nullptr;
@@ -172,7 +172,7 @@ Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, Restructure
   }
   if (last_pair) *last_pair = std::exchange(model.bodies[a].first_inertia, pairs);
   if (solids != none) {
-    std::uint32_t* last_solid = &model.bodies[a].first_solid;  // a's first one goes on giving the frame
+    std::uint32_t* last_solid = &model.bodies[a].first_solid;  // a's first one still defines the frame
     while (*last_solid != none) last_solid = &model.solids[*last_solid].next;
     *last_solid = solids;
   }
@@ -195,7 +195,7 @@ std::uint32_t massive_count(const Structure& model, std::uint32_t body) {
   return count;
 }
 
-/// q can leave the body of p only with mass of its own, and must leave some behind.
+/// q can leave the body of p only with its own mass, and some mass must remain.
 void require_mass_on_its_own(const Structure& model, std::uint32_t p, std::uint32_t q) {
   if (model.particles[q].is_marker())
     throw std::invalid_argument("separate: particle " + std::to_string(q) +
@@ -208,7 +208,7 @@ void require_mass_on_its_own(const Structure& model, std::uint32_t p, std::uint3
                                 " is the only one with mass in its body; give another one a mass first");
 }
 
-/// The bodies at the other members of a particle's ring.
+/// The bodies of the other members of a particle's ring.
 std::vector<std::uint32_t> ring_neighbors(const Structure& model, std::uint32_t particle) {
   std::vector<std::uint32_t> bodies;
   model.for_each_in_ring(model.particles[particle].ring, [&](std::uint32_t other) {
@@ -217,7 +217,7 @@ std::vector<std::uint32_t> ring_neighbors(const Structure& model, std::uint32_t 
   return bodies;
 }
 
-/// The markers of a body that its massive particles do not reach any more.
+/// The markers of a body that are no longer in the span of its massive particles.
 std::vector<ParticleId> stray_markers(const Structure& model, std::uint32_t body) {
   std::vector<ParticleId> strays;
   model.for_each_particle_of(body, [&](std::uint32_t p) {
@@ -227,7 +227,7 @@ std::vector<ParticleId> stray_markers(const Structure& model, std::uint32_t body
   return strays;
 }
 
-/// Call it after everything else is hinged again: it splits articulates as they are.
+/// Call it after all hinges are restored, as it splits the present articulates.
 void destroy_strays(Structure& model, std::uint32_t body, const std::vector<ParticleId>& strays,
                     std::vector<std::string>& notes) {
   for (const ParticleId id : strays)
@@ -245,7 +245,7 @@ void destroy_stray_markers(Structure& model, std::uint32_t body, std::vector<std
 
 void require_can_meet(const Structure& model, std::uint32_t p, std::uint32_t q) {
   const std::uint32_t a = model.particles[p].ring, b = model.particles[q].ring;
-  const std::uint32_t body = model.particles[p].body;  // of one body, q leaves the ring that is brought to p
+  const std::uint32_t body = model.particles[p].body;  // in one body, q leaves the ring that is moved to p
   const std::uint32_t leaving = body == model.particles[q].body ? body : none;
   const bool fixed = is_fixed(model, b, leaving), held = fixed || model.rings[b].nailed;
   const bool stuck = (is_fixed(model, a) && held) || (fixed && model.is_pinned(a));
@@ -273,13 +273,13 @@ Edit combine_particles(Structure& model, std::uint32_t p, std::uint32_t q, Restr
     const Ring left_behind = model.rings[ring_q];
     if (model.rings[ring_p].count == 1) model.rings[ring_p].velocity = velocity;
     if (!q_was_hinged && left_behind.nailed && !model.rings[ring_p].nailed) {
-      model.rings[ring_p].nailed = 1;
+      model.rings[ring_p].nailed = left_behind.nailed;
       model.ring_merged(ring_p, ring_q, true);
       edit.moved = true;
     }
     absorb_particle(model, p, q, report);
     model.rebuild_basis(body_p);
-    const std::vector<ParticleId> strays = stray_markers(model, body_p);  // by its shape before anything is moved
+    const std::vector<ParticleId> strays = stray_markers(model, body_p);  // by its shape before any move
     if (q_was_hinged && ring_p != ring_q) edit = merge_rings(model, ring_p, ring_q);
     model.touch_body(body_p);
     destroy_strays(model, body_p, strays, report.notes);

@@ -9,7 +9,7 @@
 
 namespace iota::model {
 
-/// Slots of a table that were created, changed or destroyed since they were last taken, each once.
+/// Slots of a table that were created, changed or destroyed since the last call of `take`, each once.
 class ChangedSlots {
  public:
   void note(std::uint32_t slot, bool is_new = false) {
@@ -18,7 +18,7 @@ class ChangedSlots {
     if (marks_[slot] == unchanged) slots_.push_back(slot);
     if (is_new || marks_[slot] == unchanged) marks_[slot] = is_new ? created : changed;
   }
-  /// Whether it was created since: an older thing in its slot, whatever its id, is another one.
+  /// Whether it was created since: an older item in its slot, of any id, was another one.
   bool is_new(std::uint32_t slot) const { return slot < marks_.size() && marks_[slot] == created; }
   const std::vector<std::uint32_t>& slots() const { return slots_; }
   void clear() {
@@ -26,7 +26,7 @@ class ChangedSlots {
     slots_.clear();
   }
 
-  bool is_on = false;  ///< notes nothing while nobody asks
+  bool is_on = false;  ///< logs nothing while off
 
  private:
   enum Mark : std::uint8_t { unchanged, changed, created };
@@ -34,12 +34,12 @@ class ChangedSlots {
   std::vector<Mark> marks_;
 };
 
-/// What a viewer has to be told next. A body that is noted is described with all that hangs on it. Ingredients note items
-/// that change or vanish by themselves in logs of their own, beside their tables: see Model::watch_scene.
+/// The log of changes for a viewer. A logged body is described with its attached items. Ingredients log items that
+/// change or end without a body in their own logs, beside their tables: see Model::watch_scene.
 struct SceneLog {
   ChangedSlots bodies, memberships;
   std::vector<ViewEvent> events;
-  bool is_whole = true;  ///< everything is to be told anew
+  bool is_whole = true;  ///< a complete description is needed
 
   bool is_on() const { return bodies.is_on; }
   void note(ViewEvent::Kind kind, const Vec3& position) {

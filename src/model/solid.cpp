@@ -13,7 +13,7 @@ constexpr std::array<Vec3, 4> corners{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1,
 
 Quaternion conjugate(const Quaternion& q) { return {-q.x, -q.y, -q.z, q.w}; }
 
-/// Puts the four points where they have these principal mean squares about their center; axes in the world frame.
+/// Places the four points so that they have these principal mean squares about their center; axes in the world frame.
 void place_points(Structure& model, Solid& solid, const Vec3& center, const SymmetricEigen& e, const SolidPose& pose) {
   const auto root = [](double value) { return std::sqrt(std::max(value, 0.0)); };
   solid.half = {root(e.values[0]), root(e.values[1]), root(e.values[2])};
@@ -90,8 +90,8 @@ std::uint32_t attach(Structure& model, std::uint32_t slot, const Vec3& position)
     const Vec3 r = model.position(p) - center;
     squares += 0.25 * Mat3::outer(r, r);
   }
-  // The share is small enough to leave positive second moments however far away the place is: at most a ten thousandth of the mass,
-  // and a fiftieth of the second moment along the arm.
+  // The share is small enough for positive second moments at any distance of the place: at most a ten thousandth of the
+  // mass, and a fiftieth of the second moment along the arm.
   const Vec3 arm = position - center;
   const double reach = dot(arm, solve_semidefinite(squares, arm, 1e-14));
   const double share = std::min(1e-4, 0.02 / (reach + 1e-300)), rest = 1 - share;

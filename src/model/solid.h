@@ -6,26 +6,26 @@
 
 namespace iota::model {
 
-/// Where a solid's own frame is.
+/// The pose of a solid's own frame.
 struct SolidPose {
   Vec3 position;           ///< of its origin, world, m
   Quaternion orientation;  ///< turns vectors of the shape's frame into the world frame
 };
 SolidPose solid_pose(const Structure&, std::uint32_t solid);
 
-/// Gives an empty body the four point masses of a solid, at rest. `solid` comes with kind, sizes and mesh; the rest is
-/// filled in. mean_squares and center as in MassProperties.
+/// Gives an empty body the four point masses of a solid, at rest. `solid` has kind, sizes and mesh; the rest is filled
+/// in. mean_squares and center as in MassProperties.
 std::uint32_t add_solid(Structure&, std::uint32_t body, Solid solid, double mass, const Vec3& center,
                         const Mat3& mean_squares, const SolidPose& pose);
 
-/// Whether one of a body's shapes has no volume: it is a half-space. Such a body is static or scripted.
+/// Whether one of a body's shapes has no volume (a half-space). Such a body is static or scripted.
 bool is_endless(const Structure&, std::uint32_t body);
 
-/// Whether the four points of a solid may still be moved: no hinge, nail or bond holds on to them, and they are equal.
+/// Whether the four points of a solid may still be moved: they have no hinge, nail or bond, and equal masses.
 bool is_untouched(const Structure&, std::uint32_t solid);
 
 /// A further particle of a body at a place (world). It takes a small share of mass from a solid, whose four points are
-/// set anew so that the body's mass, center of mass, inertia and motion stay what they are, to round-off.
+/// recomputed so that the body's mass, center of mass, inertia and motion do not change, to round-off.
 std::uint32_t attach(Structure&, std::uint32_t solid, const Vec3& position);
 
 /// Inertia about the center of mass, world axes, kg m^2 (thesis, Eq. 2.28; inertia pairs included).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rigid bodies that fall into pieces. Nothing moves: positions and velocities are of rings, so momenta are kept.
+// Splits of rigid bodies. Nothing moves: positions and velocities belong to rings, so momenta are kept.
 #include "model/restructure.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ bool contains(const std::vector<std::uint32_t>& sorted, std::uint32_t item) {
   return std::binary_search(sorted.begin(), sorted.end(), item);
 }
 
-/// Moves the items whose particles all leave to another list, and counts the items that are torn apart.
+/// Moves the items whose particles all leave to another list, and counts the items that are split.
 template <class Table, class Leaves>
 int hand_over(Table& items, std::uint32_t& from, std::uint32_t& to, std::uint32_t new_body, Leaves how_many_leave) {
   int torn = 0;
@@ -37,8 +37,8 @@ int hand_over(Table& items, std::uint32_t& from, std::uint32_t& to, std::uint32_
   return torn;
 }
 
-/// Makes a body of its own of some particles; they stay in their rings. Solids and inertia pairs that lie across go.
-/// Returns the new body.
+/// Makes a new body of some particles, which stay in their rings. Split solids and inertia pairs are destroyed. Returns
+/// the new body.
 std::uint32_t split_off(Structure& model, std::uint32_t body, std::vector<std::uint32_t> leaving,
                         RestructureReport& report, bool& torn) {
   std::sort(leaving.begin(), leaving.end());
@@ -63,7 +63,7 @@ std::uint32_t split_off(Structure& model, std::uint32_t body, std::vector<std::u
 }
 
 /// The last part of a split, after the particles were moved.
-/// `back`: particles that have been made since.
+/// `back`: particles that were restored since.
 void finish_split(Structure& model, std::uint32_t body, std::uint32_t own, std::span<const ParticleId> back,
                   std::vector<std::string>& notes) {
   for (const std::uint32_t b : {body, own}) {
@@ -73,7 +73,7 @@ void finish_split(Structure& model, std::uint32_t body, std::uint32_t own, std::
     if (!keeps_basis(model, b) || !carry_by_basis(model, b, model.bodies[b].count, newcomers)) model.rebuild_basis(b);
     model.touch_body(b);
   }
-  split_where_apart(model, std::vector{body, own});  // before markers go, whose cuts split for themselves
+  split_where_apart(model, std::vector{body, own});  // before markers are destroyed, which splits, too
   for (const std::uint32_t b : {body, own}) destroy_stray_markers(model, b, notes);
 }
 
@@ -86,12 +86,12 @@ class Pieces {
     parent_.resize(particles.size());
     std::iota(parent_.begin(), parent_.end(), std::size_t{0});
   }
-  /// Returns nothing for a particle of another body.
+  /// Nothing for a particle of another body.
   void join(std::uint32_t p, std::uint32_t q) {
     if (has(p) && has(q)) parent_[piece(p)] = piece(q);
   }
   bool has(std::uint32_t p) const { return std::binary_search(particles.begin(), particles.end(), p); }
-  /// A number that is equal for particles of one piece.
+  /// A number of the piece of a particle.
   std::size_t piece(std::uint32_t p) const {
     auto i = static_cast<std::size_t>(std::lower_bound(particles.begin(), particles.end(), p) - particles.begin());
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
@@ -122,7 +122,7 @@ std::vector<BodyId> parts_of(const Structure& model, std::uint32_t body) {
 Edit separate_part(Structure& model, std::uint32_t body, BodyId part, RestructureReport& report) {
   std::vector<std::uint32_t> leaving;
   bool goes = false, stays = false;              // something with mass
-  bool is_part = false, has_other_part = false;  // of anything
+  bool is_part = false, has_other_part = false;  // any particle
   model.for_each_particle_of(body, [&](std::uint32_t p) {
     const bool leaves = model.particles[p].part == part;
     if (leaves) leaving.push_back(p);
@@ -142,7 +142,7 @@ Edit separate_part(Structure& model, std::uint32_t body, BodyId part, Restructur
   const std::uint32_t own = split_off(model, body, leaving, report, torn);
   for (const std::uint32_t p : leaving) model.particles[p].part = model.bodies.id(own);
 
-  // A particle that had absorbed one of the other side gives it back: the hinge is one again.
+  // A particle that had absorbed one of the other side releases it: the hinge is restored.
   bool shared = false;
   for (std::uint32_t t = 0; t < model.twins.slot_count(); ++t) {
     if (!model.twins.is_alive(t)) continue;
@@ -183,7 +183,7 @@ Edit fall_apart(Structure& model, std::uint32_t p, std::uint32_t q, RestructureR
   const std::size_t stays = pieces.piece(p), leaves = pieces.piece(q);
   if (stays == leaves) return {};
 
-  // Pieces that hang on neither end go with the nearer one.
+  // Pieces connected to neither end go with the nearer one.
   struct Nearest {
     double to_stays = -1, to_leaves = -1;
   };

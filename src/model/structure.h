@@ -28,46 +28,47 @@ inline constexpr double inactive_share = 0x1p-20;  ///< of its mass that an inac
 
 inline bool is_free(BodyKind kind) { return kind == BodyKind::dynamic || kind == BodyKind::resting; }
 
-// Memory and speed at a hundred thousand links depend on the size of these three records: what few items have is in side
-// tables beside them.
+// Memory and speed at a hundred thousand links depend on the size of these three records: rare data are in side tables
+// beside them.
 
-/// One body's point. Points of different bodies in one ring share position and velocity; each holds its share of mass.
+/// One body's point. Points of different bodies in one ring share position and velocity; each has its share of mass.
 struct Particle {
   std::uint32_t body = none, ring = none;
   std::uint32_t next_in_body = none, previous_in_body = none;
   std::uint32_t next_in_ring = none, previous_in_ring = none;
-  std::uint32_t uses = 0;           ///< items (bonds, closings) that need it as an unknown of its own
-  std::uint32_t groups = 0;         ///< a bit for each group that it is in
+  std::uint32_t uses = 0;           ///< number of items (bonds, closings) that need it as an unknown
+  std::uint32_t groups = 0;         ///< a bit for each of its groups
   std::uint32_t attributes = none;  ///< see `Attributes`
-  /// In a body's basis: which of its (at most four) basis points it is; else -1 and an affine combination of them, see
+  /// Its index in the body's basis of at most four points; -1 for an affine combination of these, see
   /// `Tie`.
   std::int8_t basis_index = -1;
-  std::uint8_t inactive = 0;  ///< its mass is then inactive_share of what it was given
+  std::uint8_t inactive = 0;  ///< its mass is then inactive_share of the assigned one
   std::array<std::uint8_t, 2> padding{};
-  BodyId part;      ///< the body it was first in: what a body was combined from can still be told apart
+  BodyId part;      ///< its first body: identifies the parts of a combined body
   double mass = 1;  ///< kg
 
-  /// A massless place on a body that its massive particles carry.
+  /// A massless place on a body, an affine combination of its massive particles.
   bool is_marker() const { return mass == 0; }
 };
 
-/// How a particle that is in no basis hangs on its body's.
+/// The affine combination of a particle outside of the basis.
 struct Tie {
   std::array<double, 4> weights{};  ///< of the basis points
   std::array<double, 3>
-      multiplier{};  ///< of the rows that tie it to them, where it is an unknown of its own, N; warm start
+      multiplier{};  ///< of the rows that tie it to the basis, if it is an unknown of its own, N; warm start
 };
 
-/// What the particles of a ring share: one position, one unknown of the solver. (The thesis: a particle is a ring of
-/// points.)
+/// The shared state of the particles of a ring: one position, one unknown of the solver. (The thesis: a particle is a
+/// ring of points.)
 struct Ring {
   std::uint32_t first = none, last = none, count = 0;
   std::uint32_t nailed = 0;
   Vec3 position, velocity;
-  Vec3 acceleration;  ///< change of velocity in the last step by its length, m/s^2
+  Vec3 acceleration;  ///< change of velocity in the last step without the correction, divided by h, m/s^2
+  Vec3 correction;    ///< of the velocity at the end of the last step, to satisfy the constraints, m/s
 };
 
-/// Two basis points of a body keep their distance.
+/// The distance of two basis points of a body.
 struct RigidRow {
   double length = 0;      ///< m
   double multiplier = 0;  ///< N; warm start
@@ -83,31 +84,31 @@ struct Body {
   std::uint32_t articulate = none;
   std::uint32_t next_in_articulate = none, previous_in_articulate = none;
   std::uint32_t first_inertia = none;  ///< list of inertia pairs
-  std::uint32_t first_solid = none;    ///< list of the solids it was given as
-  std::uint32_t basis_needs = 0;       ///< particles that were unknowns anyway when the basis was chosen
+  std::uint32_t first_solid = none;    ///< list of its solids
+  std::uint32_t basis_needs = 0;       ///< number of particles that were unknowns when the basis was chosen
   std::array<std::uint32_t, 4> basis{none, none, none, none};
   double damping = 0;      ///< 1/s
   RigidRow first_row;      ///< of the basis pairs; see Structure::row
   Quaternion orientation;  ///< of the drawn frame
 };
-using MoreRows = std::array<RigidRow, 5>;  ///< of bodies whose basis is more than two points
+using MoreRows = std::array<RigidRow, 5>;  ///< of bodies with more than two basis points
 
-/// Which two basis points the k-th rigidity row of a body joins.
+/// The two basis points of the k-th rigidity row of a body.
 inline constexpr std::array<std::array<std::uint8_t, 2>, 6> basis_pairs{
     {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
-/// Kinetic energy 1/2 inertia |v_p - v_q|^2 beside that of the particles' own masses: with it two points carry the exact
-/// inertia of a rod.
+/// Kinetic energy 1/2 inertia |v_p - v_q|^2 in addition to that of the particles' masses: with it two points have the
+/// exact inertia of a rod.
 struct InertiaPair {
   std::uint32_t body = none, next = none;
   std::uint32_t p = none, q = none;
   double inertia = 0;  ///< kg, may be negative
 };
 
-/// A homogeneous solid that a body, or a part of it, was given as. Four ordinary, equal point masses stand for it, at
+/// A homogeneous solid of a body or a part of it. Four ordinary, equal point masses represent it, at
 ///   x_k = center + R diag(half) t_k,   t_k the corners of a cube with an even number of minus signs,
-/// whose mass, center and second moments are those of the solid: half_i^2 = second moment i / mass. So a solid is nothing
-/// new to the physics; the rest of the record is for drawing and for the body's frame.
+/// whose mass, center and second moments are those of the solid: half_i^2 = second moment i / mass. So a solid needs no
+/// other physics; the rest of the record is for drawing and for the body's frame.
 struct Solid {
   std::array<std::uint32_t, 4> points{none, none, none, none};
   std::uint32_t body = none, next = none;
@@ -117,7 +118,7 @@ struct Solid {
   Quaternion principal;  ///< turns vectors of the frame of `half` into the shape's frame
 };
 
-/// A particle that was absorbed when a hinge became rigid: comes back, hinged, when its part leaves the body again.
+/// A particle that was absorbed when a hinge became rigid: restored, hinged, when its part leaves the body again.
 struct Twin {
   std::uint32_t particle = none;  ///< that absorbed it
   std::uint32_t padding = 0;
@@ -125,16 +126,16 @@ struct Twin {
   double mass = 0;  ///< its share, kg
 };
 
-/// The bodies that hang together through hinges: one independent problem.
+/// Bodies connected by hinges: one independent problem.
 struct Articulate {
   std::uint32_t first = none, last = none, count = 0;
   std::uint32_t version = 0;  ///< of its structure
   std::uint32_t velocity_dirty =
       0;                      ///< velocities were assigned and may violate constraints: project before the next step
-  std::uint32_t to_wake = 0;  ///< something has happened to it since the last step
+  std::uint32_t to_wake = 0;  ///< it was touched since the last step
   double slow_time = 0;       ///< s; of an island, at the articulate of its first body
-  std::uint64_t standing_steps = 0;  ///< since a conflict was last tried to be closed
-  double standing_gap = 0;           ///< that was left then, relative; 0: no conflict
+  std::uint64_t standing_steps = 0;  ///< since the last attempt to close a conflict
+  double standing_gap = 0;           ///< remaining gap then, relative; 0: no conflict
 };
 
 /// A named set of particles; its slot is its bit in Particle::groups.
@@ -142,13 +143,13 @@ struct Group {
   std::array<char, 32> name{};
 };
 
-/// Particles, rings, bodies and articulates: who belongs to whom, where everything is, and how that changes. It knows
-/// nothing of what acts on them (ingredients), but tells that what happens to the things that it hangs on.
+/// Particles, rings, bodies and articulates: memberships, positions, and their changes. It does not know the
+/// ingredients that act on them, but notifies these of changes.
 class Structure {
  public:
   SlotTable<Particle, ParticleId> particles;
-  SideTable<Tie> ties;      ///< of particles in no basis
-  SideTable<double> fuses;  ///< how much the hinge or nail of a particle bears, N
+  SideTable<Tie> ties;      ///< of particles outside of a basis
+  SideTable<double> fuses;  ///< breaking load of the hinge or nail of a particle, N
   SlotTable<Ring, Id<Ring>> rings;
   SlotTable<Body, BodyId> bodies;
   SideTable<MoreRows> more_rows;  ///< of bodies
@@ -159,25 +160,25 @@ class Structure {
   SlotTable<Articulate, Id<Articulate>> articulates;
   SlotTable<Group, GroupId> groups;
   std::uint32_t structure_version = 1;
-  std::uint32_t spark_changes = 0;     ///< how often `structure_version` has risen for births and deaths of sparks
-  std::uint64_t members_revision = 0;  ///< rises when a group or what takes part changes; not saved
+  std::uint32_t spark_changes = 0;     ///< rises of `structure_version` by births and deaths of sparks
+  std::uint64_t members_revision = 0;  ///< rises when a group or the set of active particles changes; not saved
   std::vector<std::string> notes;      ///< of edits that have no report, for the next step's; not saved
-  SceneLog scene;                      ///< what viewers have to be told; not saved
+  SceneLog scene;                      ///< log for viewers; not saved
 
   /// @name Membership: cheap links only, no physics
   ///@{
   std::uint32_t make_particle(std::uint32_t body, const Vec3& position, double mass, const Vec3& velocity);
-  std::uint32_t make_body(BodyKind kind, double damping);  ///< in an articulate of its own
-  void remove_particle(std::uint32_t particle);            ///< from body and ring; both must be tidied by the caller
+  std::uint32_t make_body(BodyKind kind, double damping);  ///< in a new articulate
+  void remove_particle(std::uint32_t particle);            ///< from body and ring; the caller must update both
   void add_to_body(std::uint32_t particle, std::uint32_t body);
   void take_from_body(std::uint32_t particle);
   void add_to_ring(std::uint32_t particle, std::uint32_t ring);
   void take_from_ring(std::uint32_t particle);  ///< an empty ring is destroyed
   void add_to_articulate(std::uint32_t body, std::uint32_t articulate);
   void take_from_articulate(std::uint32_t body);                       ///< an empty articulate is destroyed
-  void remove_body(std::uint32_t body);                                ///< must have no particles left
-  void remove_inertia_of(std::uint32_t body, std::uint32_t particle);  ///< pairs that name the particle (none: all)
-  void remove_solids_of(std::uint32_t body, std::uint32_t particle);   ///< solids that it stands for (none: all)
+  void remove_body(std::uint32_t body);                                ///< must have no particles
+  void remove_inertia_of(std::uint32_t body, std::uint32_t particle);  ///< pairs with the particle (none: all)
+  void remove_solids_of(std::uint32_t body, std::uint32_t particle);   ///< solids with the particle (none: all)
   ///@}
 
   /// @name Articulates (Algorithms 1 and 2 of the thesis, without the recursion)
@@ -189,18 +190,18 @@ class Structure {
   void touch(std::uint32_t articulate) { touch(articulate, anything); }
   void touch_body(std::uint32_t body) { scene.bodies.note(body), touch(bodies[body].articulate); }
   void touch_particle(std::uint32_t particle) { touch_body(particles[particle].body); }
-  /// Notes a change that concerns one body and the bodies at its rings only: a problem that holds them can follow.
+  /// Marks a change of only one body and the bodies at its rings: their problem can follow.
   void touch_locally(std::uint32_t body);
-  /// The same for rows that come and go without viewers seeing anything of them.
+  /// The same for transient rows that viewers do not see.
   void touch_rows(std::uint32_t body);
-  /// Notes that something began or ceased to pull at a body, and couples only points that are coupled anyway: a problem that
-  /// holds the body keeps its structure.
+  /// Marks that a pull on a body was added or removed that couples only points that are coupled anyway: the body's
+  /// problem keeps its structure.
   void touch_pull(std::uint32_t body);
-  /// The same for the bodies at a ring, which are about to be hinged otherwise or have been. `split_from`: the ring where a
-  /// new ring's particles were before.
+  /// The same for the bodies at a ring, before or after a change of their hinges. `split_from`: the former ring of a
+  /// new ring's particles.
   void touch_ring(std::uint32_t ring, std::uint32_t split_from = none);
   bool is_touched() const { return !touched_.empty(); }
-  /// Bodies and rings that have changed; some are listed more than once, some are gone.
+  /// Changed bodies and rings; some are listed more than once, some were destroyed.
   struct LocalChange {
     struct ChangedRing {
       std::uint32_t ring, split_from;
@@ -209,10 +210,10 @@ class Structure {
     std::vector<ChangedRing> rings;
     std::vector<std::uint32_t> pulled;  ///< bodies: see touch_pull
   };
-  /// What has changed since the last call.
+  /// The changes since the last call.
   struct Touched {
     std::vector<std::uint32_t> articulates;  ///< slots, destroyed ones too, each once
-    std::vector<std::uint8_t> only_locally;  ///< of each of those: nothing changed but membership and what `local` has
+    std::vector<std::uint8_t> only_locally;  ///< of each of those: only membership and `local` changed
     LocalChange local;
   };
   void take_touched(Touched&);
@@ -220,7 +221,7 @@ class Structure {
 
   void set_fuse(std::uint32_t particle, double force);  ///< infinite: none
 
-  /// Drops inertia pairs of a body (it is then its point masses) that could leave its mass matrix indefinite.
+  /// Drops inertia pairs of a body that could make its mass matrix indefinite; its point masses remain.
   void keep_inertia_positive(std::uint32_t body);
 
   /// The k-th rigidity row of a body, between the k-th of `basis_pairs`.
@@ -235,43 +236,43 @@ class Structure {
   /// Of the basis points in a particle's place.
   std::array<double, 4> weights(std::uint32_t particle) const;
 
-  /// Chooses a body's basis from where its particles are now, and takes its rigid distances.
+  /// Chooses a body's basis from the present places of its particles, and sets its rigid distances.
   void rebuild_basis(std::uint32_t body);
-  /// A body made of solids has more points than a basis needs: makes those its basis that are unknowns anyway (hinged,
-  /// nailed, bonded), where there are new ones and they span it well. Saves unknowns and ties.
+  /// For a body made of solids, which has more points than a basis needs: chooses those that are unknowns anyway
+  /// (hinged, nailed, bonded), if there are new ones and they span it well. Saves unknowns and ties.
   void prefer_unknowns(std::uint32_t body);
-  /// A new massless particle; the body's basis stays as it is.
+  /// A new massless particle; the body's basis does not change.
   std::uint32_t make_marker(std::uint32_t body, const Vec3& position);
-  /// Moment of inertia of a rod about itself, kg m^2; 0 of a body that is no rod: two points with an inertia pair.
+  /// Moment of inertia of a rod (two points with an inertia pair) about its axis, kg m^2; 0 for other bodies.
   double axial_inertia(std::uint32_t body) const;
   Vec3 rod_axis(std::uint32_t body) const;  ///< of a rod, unit vector
 
   /// Of the massive particle nearest to a place.
   BodyId part_at(std::uint32_t body, const Vec3& place) const;
-  /// Whether the body's massive particles span a place: only there can they carry a marker.
+  /// Whether the body's massive particles span a place, which a marker needs.
   bool spans(std::uint32_t body, const Vec3& place) const;
 
   /// Whether a particle is an unknown of its own in the solver (basis points always are).
   bool is_unknown(const Particle& p) const { return p.basis_index >= 0 || is_needed(p); }
-  /// Whether something holds on to it: another body, a nail, a bond.
+  /// Whether something is attached to it: another body, a nail, a bond.
   bool is_needed(const Particle& p) const {
     const Ring& r = rings[p.ring];
     return r.count > 1 || r.nailed || p.uses > 0;
   }
 
-  /// Whether a particle takes part: not where it, or its body, was switched off.
+  /// Whether a particle is active: neither it nor its body was switched off.
   bool acts(std::uint32_t particle) const {
     const Particle& p = particles[particle];
     return !p.inactive && bodies[p.body].kind != BodyKind::inactive;
   }
 
-  /// Held in place by a nail or by a static or scripted body in its ring.
+  /// Whether a nail or a static or scripted body in its ring holds it in place.
   bool is_pinned(std::uint32_t ring) const;
 
-  /// Whether a particle is where and as fast as its body's basis says. Not so only in a conflict; it then matters when the
-  /// particle ceases to be an unknown of its own.
+  /// Whether a particle has the position and velocity of its body's basis. It has not only in a conflict, which matters
+  /// when the particle ceases to be an unknown of its own.
   bool follows_basis(std::uint32_t particle) const;
-  /// Position and velocity that its body's basis gives a particle.
+  /// Position and velocity of a particle from its body's basis.
   std::pair<Vec3, Vec3> carried(std::uint32_t particle) const;
 
   Vec3 position(std::uint32_t particle) const { return rings[particles[particle].ring].position; }
@@ -303,37 +304,37 @@ class Structure {
     for (std::uint32_t s = bodies[body].first_solid; s != none; s = solids[s].next) visit(s);
   }
 
-  /// Remembers what a retired id became.
+  /// Stores what a retired id became.
   void record_survivor(ParticleId retired, ParticleId survivor);
   void record_survivor(BodyId retired, BodyId survivor);
   std::optional<ParticleId> survivor_of(ParticleId) const;
-  /// An emitter's particle that nothing ties: it comes and goes, and no viewer can hold it.
+  /// A free particle of an emitter, which viewers cannot grab.
   bool is_spark(std::uint32_t particle) const;
   std::optional<BodyId> survivor_of(BodyId) const;
 
   template <class Archive>
   void archive(Archive& ar);
 
-  /// @name What changes of the structure mean for all that hangs on it; `Model` passes each on to its ingredients.
+  /// @name Notifications of changes of the structure; `Model` passes each on to its ingredients.
   ///@{
-  virtual void absorb_uses(std::uint32_t q, std::uint32_t p) = 0;  ///< p takes the place of q, which is going
-  virtual void drop_uses(std::uint32_t particle) = 0;              ///< it is going; may destroy other things
-  virtual void forget_particle(std::uint32_t particle) = 0;        ///< it is gone, with whatever hung on it
+  virtual void absorb_uses(std::uint32_t q, std::uint32_t p) = 0;  ///< p replaces q, which will be destroyed
+  virtual void drop_uses(std::uint32_t particle) = 0;              ///< it will be destroyed; may destroy other things
+  virtual void forget_particle(std::uint32_t particle) = 0;        ///< it was destroyed, with everything attached to it
   virtual void forget_body(std::uint32_t body) = 0;
-  /// Another particle is the first of a ring, or the ring is empty and gone.
+  /// The first particle of a ring has changed, or the empty ring was destroyed.
   virtual void ring_changed(std::uint32_t ring) = 0;
-  /// One ring becomes another; `replaces`: what holds `from` in its place holds `into` there now.
+  /// A ring is merged into another one; `replaces`: the pin of `from` now holds `into`.
   virtual void ring_merged(std::uint32_t into, std::uint32_t from, bool replaces) = 0;
-  virtual void inertia_changed(std::uint32_t body) = 0;     ///< its basis or its inertia pairs are other ones
+  virtual void inertia_changed(std::uint32_t body) = 0;     ///< its basis or its inertia pairs have changed
   virtual void acting_changed(std::uint32_t particle) = 0;  ///< see `acts`
-  /// Ends what brings two particles together. False if nothing does.
+  /// Ends the closing of two particles. False if there is none.
   virtual bool call_off(std::uint32_t p, std::uint32_t q) = 0;
-  virtual bool is_used(std::uint32_t particle) const = 0;     ///< by anything but its body, ring and groups
-  virtual Vec3 inner_momentum(std::uint32_t body) const = 0;  ///< angular, that its points know nothing of, kg m^2/s
+  virtual bool is_used(std::uint32_t particle) const = 0;     ///< by anything except its body, ring and groups
+  virtual Vec3 inner_momentum(std::uint32_t body) const = 0;  ///< angular, beside that of its points, kg m^2/s
   using Visit = FunctionRef<void(std::uint32_t)>;
-  /// visit(body): of those that belong to one articulate with the particle's for a reason other than a hinge.
+  /// visit(body): of the bodies joined with the particle's body in one articulate other than by a hinge.
   virtual void visit_joined(std::uint32_t particle, Visit visit) const = 0;
-  /// visit(particle): of the particles of its body from which nothing but a cut would part it.
+  /// visit(particle): of the particles of its body that stay with it when the body is split.
   virtual void visit_companions(std::uint32_t particle, Visit visit) const = 0;
   ///@}
 
@@ -346,7 +347,7 @@ class Structure {
   ~Structure() = default;
 
  private:
-  /// Bodies marked in the search at hand: those with the current mark. Not saved.
+  /// Bodies marked in the present search: those with the current mark. Not saved.
   struct Marks {
     std::vector<std::uint32_t> of;
     std::uint32_t current = 0;
@@ -361,7 +362,7 @@ class Structure {
   LocalChange local_change_;
   std::vector<Touch> touch_of_;  ///< of each articulate
 
-  /// The last 65 536 retirements, oldest forgotten first.
+  /// The last 65 536 retirements; the oldest is dropped first.
   template <class IdType>
   struct Survivors {
     std::map<IdType, IdType> became;

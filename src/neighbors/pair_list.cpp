@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint64_t axis_bits = 21, axis_cells = 1ull << axis_bits;
 constexpr std::uint64_t nowhere = std::numeric_limits<std::uint64_t>::max();
 
-/// Cells of one row along x are neighbors in the order of their numbers. The outermost cells stay empty, so that a
-/// neighbor's number is that of a cell.
+/// Cells of one row along x have successive numbers. The outermost cells stay empty, so that a neighbor's number is
+/// always that of a cell.
 std::uint64_t cell_number(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   return (z << axis_bits | y) << axis_bits | x;
 }
@@ -38,7 +38,7 @@ void PairList::build(const laws::ParticleArrays& p, double radius, std::span<con
     for (int k = 0; k < 3; ++k) {
       const double at = ((*axes[k])[i] - low[k]) * inverse;
       finite = finite && std::isfinite(at);
-      // Cells beyond the two millionth share one: correct, but slow.
+      // All cells above two million share one: correct, but slow.
       c[k] = 1 + (finite ? static_cast<std::uint64_t>(std::min(at, static_cast<double>(axis_cells - 4))) : 0);
     }
     placed_[i] = {finite ? cell_number(c[0], c[1], c[2]) : nowhere, static_cast<std::uint32_t>(i)};
@@ -63,8 +63,7 @@ void PairList::build(const laws::ParticleArrays& p, double radius, std::span<con
     if (found_.size() < count + (to - from)) found_.resize(2 * found_.size() + (to - from));
     const double x = x_[a], y = y_[a], z = z_[a];
     const std::uint32_t i = particle_[a], own = family_[a];
-    for (std::size_t b = from; b < to;
-         ++b) {  // no branch: one candidate in six is near, and a branch predictor fails on that
+    for (std::size_t b = from; b < to; ++b) {  // no branch: one candidate in six is near, which is hard to predict
       const double dx = x_[b] - x, dy = y_[b] - y, dz = z_[b] - z;
       const std::uint32_t j = particle_[b];
       found_[count] = {std::min(i, j), std::max(i, j)};
@@ -79,7 +78,7 @@ void PairList::build(const laws::ParticleArrays& p, double radius, std::span<con
     std::size_t last = first, beside = 0;
     while (last < m && placed_[last].cell == cell) ++last;
     for (beside = last; beside < m && placed_[beside].cell == cell + 1;) ++beside;
-    for (int k = 0; k < 4; ++k) {  // cells come in rising order, so the ranges only move on
+    for (int k = 0; k < 4; ++k) {  // cells are in rising order, so the ranges only advance
       while (begin[k] < m && placed_[begin[k]].cell < cell + ahead[k] - 1) ++begin[k];
       end[k] = std::max(end[k], begin[k]);
       while (end[k] < m && placed_[end[k]].cell <= cell + ahead[k] + 1) ++end[k];

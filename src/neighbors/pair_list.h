@@ -7,15 +7,15 @@
 #include <span>
 #include <vector>
 
-/// Pairs of particles that are near each other.
+/// Pairs of near particles.
 namespace iota::neighbors {
 
 /// All pairs nearer than a radius, each once, as rows: row i holds the partners j > i in rising order. Found by sorting
 /// particles into cells; the particles may be anywhere, memory is linear in their number. A particle at a place that is not finite has no pairs.
 class PairList {
  public:
-  /// `family`: pairs of equal numbers are left out (points of one rigid body), except where it is empty. `sides`: only pairs
-  /// of one with bit 0 and one with bit 1, except where it is empty.
+  /// `family`: pairs with equal numbers are left out (points of one rigid body), unless it is empty. `sides`: only
+  /// pairs of one with bit 0 and one with bit 1, unless it is empty.
   void build(const laws::ParticleArrays& particles, double radius, std::span<const std::uint32_t> family,
              std::span<const std::uint8_t> sides = {});
 

@@ -3,6 +3,8 @@
 
 #include "laws/force_limit.h"
 
+#include <iota/vec3.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,10 +12,10 @@ namespace iota::neighbors {
 
 namespace {
 
-// A tenth of the cut-off. A larger skin makes every step slower, a smaller one rebuilds the list more often.
+// A tenth of the cut-off. With a larger skin every step is slower, with a smaller one the list is rebuilt more often.
 constexpr double skin = 0.1;
-constexpr std::size_t block = 512;  // pairs; a law's arrays of one block stay in the nearest cache
-constexpr std::size_t many = 4096;  // particles, from which on threads pay
+constexpr std::size_t block = 512;  // pairs; a law's arrays for one block fit in the first-level cache
+constexpr std::size_t many = 4096;  // particles, from which on threads are faster
 
 IOTA_WIDER void take_roots(std::size_t count, double* r) {
   for (std::size_t k = 0; k < count; ++k) r[k] = std::sqrt(r[k]);
@@ -62,13 +64,18 @@ PairSum::Bad PairSum::add_forces(laws::ParticleArrays& p, const Choice& choice, 
   const Task task = make_task(p, law, parameters, cutoff, t);
   const std::size_t n = list_.row_count();
   const std::size_t count = in_parts(parallel, [&](Part& part, std::size_t first, std::size_t last) {
+    const auto sums_in = [](auto& of) {
+      return Sums{of.fx.data(), of.fy.data(), of.fz.data(), of.tx.data(), of.ty.data(), of.tz.data()};
+    };
     const bool has_own = &part != parts_.data();
-    if (has_own)
+    if (has_own) {
       for (auto* const f : {&part.fx, &part.fy, &part.fz}) f->assign(n, 0.0);
-    double *const fx = has_own ? part.fx.data() : p.fx.data(), *const fy = has_own ? part.fy.data() : p.fy.data(),
-                  *const fz = has_own ? part.fz.data() : p.fz.data();
+      if (law.depends_on_normals())
+        for (auto* const t : {&part.tx, &part.ty, &part.tz}) t->assign(n, 0.0);
+    }
+    const Sums sums = has_own ? sums_in(part) : sums_in(p);
     part.bad = {};
-    gather<true>(part, task, first, last, [&](std::size_t pairs) { add_block(part, task, pairs, fx, fy, fz); });
+    gather<true>(part, task, first, last, [&](std::size_t pairs) { add_block(part, task, pairs, sums); });
   });
   Bad bad;
   for (std::size_t k = 0; k < count; ++k) {
@@ -79,6 +86,10 @@ PairSum::Bad PairSum::add_forces(laws::ParticleArrays& p, const Choice& choice, 
     for (std::size_t i = 0; i < n; ++i) p.fx[i] += part.fx[i];
     for (std::size_t i = 0; i < n; ++i) p.fy[i] += part.fy[i];
     for (std::size_t i = 0; i < n; ++i) p.fz[i] += part.fz[i];
+    if (!law.depends_on_normals()) continue;
+    for (std::size_t i = 0; i < n; ++i) p.tx[i] += part.tx[i];
+    for (std::size_t i = 0; i < n; ++i) p.ty[i] += part.ty[i];
+    for (std::size_t i = 0; i < n; ++i) p.tz[i] += part.tz[i];
   }
   return bad;
 }
@@ -91,7 +102,8 @@ double PairSum::energy(const laws::ParticleArrays& p, const Choice& choice, cons
   const std::size_t count = in_parts(parallel, [&](Part& part, std::size_t first, std::size_t last) {
     part.energy = {};
     const auto add = [&](std::size_t pairs) { add_energies(part, task, pairs); };
-    law.depends_on_mass() ? gather<true>(part, task, first, last, add) : gather<false>(part, task, first, last, add);
+    law.depends_on_mass() || law.depends_on_normals() ? gather<true>(part, task, first, last, add)
+                                                      : gather<false>(part, task, first, last, add);
   });
   double sum = 0;
   for (std::size_t k = 0; k < count; ++k)
@@ -102,6 +114,9 @@ double PairSum::energy(const laws::ParticleArrays& p, const Choice& choice, cons
 template <bool WithPartners, class Take>
 void PairSum::gather(Part& b, const Task& task, std::size_t first, std::size_t last, Take take) const {
   for (auto* const a : {&b.dx, &b.dy, &b.dz, &b.r, &b.v, &b.m_p, &b.m_q, &b.force, &b.drag}) a->resize(2 * block);
+  if (task.law.depends_on_normals())
+    for (auto* const three : {&b.cosines, &b.slopes})
+      for (auto& a : *three) a.resize(2 * block);
   b.i.resize(2 * block), b.j.resize(2 * block);
   const double cutoff2 = task.cutoff * task.cutoff;
   const double *const x = task.particles.x.data(), *const y = task.particles.y.data(),
@@ -125,7 +140,7 @@ void PairSum::gather(Part& b, const Task& task, std::size_t first, std::size_t l
       }
       if (count < block) continue;
       take(block);
-      count -= block;  // fewer than a block: they move to the front
+      count -= block;  // the rest, less than a block, moves to the front
       for (auto* const a : {&b.dx, &b.dy, &b.dz, &b.r}) std::copy_n(a->data() + block, count, a->data());
       for (auto* const a : {&b.i, &b.j}) std::copy_n(a->data() + block, count, a->data());
     }
@@ -133,17 +148,27 @@ void PairSum::gather(Part& b, const Task& task, std::size_t first, std::size_t l
   take(count);
 }
 
-/// The inputs of a law, without the rates; the caller sets where results go.
+/// The inputs of a law, without the rates; the caller sets the arrays for results.
 laws::PairBatch PairSum::prepare(Part& b, const Task& task, std::size_t count) {
   const laws::ParticleArrays& p = task.particles;
   take_roots(count, b.r.data());
   if (task.law.depends_on_mass())
     for (std::size_t k = 0; k < count; ++k) b.m_p[k] = p.m[b.i[k]], b.m_q[k] = p.m[b.j[k]];
+  if (task.law.depends_on_normals())
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = b.i[k], j = b.j[k];
+      b.cosines[0][k] = (p.nx[i] * b.dx[k] + p.ny[i] * b.dy[k] + p.nz[i] * b.dz[k]) / b.r[k];
+      b.cosines[1][k] = (p.nx[j] * b.dx[k] + p.ny[j] * b.dy[k] + p.nz[j] * b.dz[k]) / b.r[k];
+      b.cosines[2][k] = p.nx[i] * p.nx[j] + p.ny[i] * p.ny[j] + p.nz[i] * p.nz[j];
+    }
   return {.count = count,
           .r = b.r.data(),
           .v = b.v.data(),
           .m_p = b.m_p.data(),
           .m_q = b.m_q.data(),
+          .cos_p = b.cosines[0].data(),
+          .cos_q = b.cosines[1].data(),
+          .cos_pq = b.cosines[2].data(),
           .t = task.t,
           .parameters = task.parameters.data(),
           .same_parameters = true};
@@ -170,7 +195,7 @@ void PairSum::add_energies(Part& b, const Task& task, std::size_t count) {
   b.energy = sum;
 }
 
-void PairSum::add_block(Part& b, const Task& task, std::size_t count, double* fx, double* fy, double* fz) {
+void PairSum::add_block(Part& b, const Task& task, std::size_t count, const Sums& sums) {
   const laws::ParticleArrays& p = task.particles;
   laws::PairBatch batch = prepare(b, task, count);
   if (task.law.has_damping())
@@ -179,11 +204,14 @@ void PairSum::add_block(Part& b, const Task& task, std::size_t count, double* fx
       b.v[k] = (b.dx[k] * (p.vx[j] - p.vx[i]) + b.dy[k] * (p.vy[j] - p.vy[i]) + b.dz[k] * (p.vz[j] - p.vz[i])) / b.r[k];
     }
   batch.force = b.force.data(), batch.drag = b.drag.data();
+  batch.slopes = {b.slopes[0].data(), b.slopes[1].data(), b.slopes[2].data()};
   task.law.evaluate(batch);
   if (task.shifted)
     for (std::size_t k = 0; k < count; ++k) b.force[k] += task.at_cutoff.slope;  // f = -U'
   divide(count, b.force.data(), b.r.data());
+  if (task.law.depends_on_normals()) return add_turning(b, task, count, sums);
 
+  double *const fx = sums.fx, *const fy = sums.fy, *const fz = sums.fz;
   const bool has_drag = task.law.has_drag();
   for (std::size_t k = 0; k < count;) {  // by rows: the force on the first particle is summed in a register
     const std::uint32_t i = b.i[k];
@@ -203,6 +231,31 @@ void PairSum::add_block(Part& b, const Task& task, std::size_t count, double* fx
       fx[j] += x, fy[j] += y, fz[j] += z;
     }
     fx[i] -= sx, fy[i] -= sy, fz[i] -= sz;
+  }
+}
+
+// With the line u = d / r, a = n_p u, b = n_q u and c = n_p n_q, the energy U(r, a, b, c) pulls at q by
+//   -dU/dx_q = -U_r u - (U_a (n_p - a u) + U_b (n_q - b u)) / r
+// and turns p by -n_p x (U_a u + U_c n_q), q by -n_q x (U_b u + U_c n_p). These add up to no moment.
+void PairSum::add_turning(Part& part, const Task& task, std::size_t count, const Sums& sums) {
+  const laws::ParticleArrays& p = task.particles;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = part.i[k], j = part.j[k];
+    const Vec3 d{part.dx[k], part.dy[k], part.dz[k]}, u = (1 / part.r[k]) * d;
+    const Vec3 n_p{p.nx[i], p.ny[i], p.nz[i]}, n_q{p.nx[j], p.ny[j], p.nz[j]};
+    const double a = part.cosines[0][k], b = part.cosines[1][k];
+    const double U_a = part.slopes[0][k], U_b = part.slopes[1][k], U_c = part.slopes[2][k];
+    Vec3 force = part.force[k] * d - (1 / part.r[k]) * (U_a * (n_p - a * u) + U_b * (n_q - b * u));
+    if (task.law.has_drag()) force -= part.drag[k] * Vec3{p.vx[j] - p.vx[i], p.vy[j] - p.vy[i], p.vz[j] - p.vz[i]};
+    const Vec3 on_p = -cross(n_p, U_a * u + U_c * n_q), on_q = -cross(n_q, U_b * u + U_c * n_p);
+    if (!laws::is_force(force) || !laws::is_force(on_p) || !laws::is_force(on_q)) [[unlikely]] {
+      if (part.bad.count++ == 0) part.bad.i = i, part.bad.j = j;
+      continue;
+    }
+    sums.fx[i] -= force.x, sums.fy[i] -= force.y, sums.fz[i] -= force.z;
+    sums.fx[j] += force.x, sums.fy[j] += force.y, sums.fz[j] += force.z;
+    sums.tx[i] += on_p.x, sums.ty[i] += on_p.y, sums.tz[i] += on_p.z;
+    sums.tx[j] += on_q.x, sums.ty[j] += on_q.y, sums.tz[j] += on_q.z;
   }
 }
 

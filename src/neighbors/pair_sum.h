@@ -13,25 +13,25 @@
 
 namespace iota::neighbors {
 
-/// A law among all pairs nearer than a cut-off. The list of pairs reaches a skin further and is made anew only when some
-/// particle has moved half of that. Pairs beyond the cut-off are skipped, rows are sorted, and many particles are summed in
-/// four parts for any number of threads, so the bits do not depend on when the list was made or by which thread.
+/// A law among all pairs nearer than a cut-off. The list of pairs reaches a skin further and is rebuilt when a particle
+/// has moved half of that. Pairs beyond the cut-off are skipped, rows are sorted, and many particles are summed in four
+/// parts for any number of threads, so the bits do not depend on the time of the list or on the threads.
 class PairSum {
  public:
-  /// Which pairs there are: see PairList::build.
+  /// Selects pairs: see PairList::build.
   struct Choice {
     std::span<const std::uint32_t> family{};
     std::span<const std::uint8_t> sides{};
   };
-  /// shifted: a constant and a linear term are taken off the energy, so that it and the force are zero at the cut-off. Of
-  /// laws that have an energy and do not depend on masses.
+  /// shifted: a constant and a linear term are subtracted from the energy, so that it and the force are zero at the
+  /// cut-off. For laws that have an energy and do not depend on masses.
   struct Cutoff {
     Cutoff(double at, bool shifted = false) : at(at), shifted(shifted) {}  // NOLINT(google-explicit-constructor)
     double at;                                                             ///< m
     bool shifted;
   };
 
-  /// Adds the forces to particles.fx, fy, fz. Pairs whose force is not finite add nothing; returns their number and
+  /// Adds the forces to particles.fx, fy, fz, and the torques of a law of normals to particles.tx, ty, tz. Pairs whose force is not finite add nothing; returns their number and
   /// the first of them.
   struct Bad {
     std::size_t count = 0;
@@ -47,12 +47,17 @@ class PairSum {
   std::size_t build_count() const { return builds_; }  ///< for reports
 
  private:
-  /// A range of rows, with room for a block of pairs and, but for the first part, for forces of its own.
+  /// Where the forces and torques of a part are summed.
+  struct Sums {
+    double *fx, *fy, *fz, *tx, *ty, *tz;
+  };
+  /// A range of rows, with room for a block of pairs and, but for the first part, for sums of its own.
   struct Part {
     std::vector<std::uint32_t> i, j;
     std::vector<double> dx, dy, dz, r, v, m_p, m_q, force, drag;
-    std::vector<double> fx, fy, fz;
-    std::array<double, 4> energy;  // in turn, so that no addition waits for the one before
+    std::array<std::vector<double>, 3> cosines, slopes;  ///< of p with the line, of q with the line, of both
+    std::vector<double> fx, fy, fz, tx, ty, tz;
+    std::array<double, 4> energy;  // used in turn, so that additions do not wait for each other
     Bad bad;
   };
   struct Task {
@@ -61,19 +66,21 @@ class PairSum {
     std::array<const double*, laws::max_parameters> parameters;
     double cutoff, t;
     bool shifted;
-    laws::Elastic at_cutoff;  ///< what is shifted away
+    laws::Elastic at_cutoff;  ///< subtracted if shifted
   };
   static Task make_task(const laws::ParticleArrays&, const laws::PairLaw&, const double* parameters, Cutoff, double t);
   void update(const laws::ParticleArrays& particles, const Choice&, double cutoff);
   /// Calls work(part, first row, last row) for each part; returns the number of parts.
   template <class Work>
   std::size_t in_parts(const Parallel& parallel, Work work);
-  /// Gathers the pairs of these rows that are within the cut-off, and calls `take(count)` for each block of them. Energies
-  /// need no more than the distances of most laws.
+  /// Gathers the pairs of these rows that are within the cut-off, and calls `take(count)` for each block of them. For
+  /// the energy of most laws distances are sufficient.
   template <bool WithPartners, class Take>
   void gather(Part&, const Task&, std::size_t first, std::size_t last, Take take) const;
   static laws::PairBatch prepare(Part&, const Task&, std::size_t count);
-  static void add_block(Part&, const Task&, std::size_t count, double* fx, double* fy, double* fz);
+  static void add_block(Part&, const Task&, std::size_t count, const Sums&);
+  /// What the normals of the block's pairs bring about: forces across the lines, and torques.
+  static void add_turning(Part&, const Task&, std::size_t count, const Sums&);
   static void add_energies(Part&, const Task&, std::size_t count);
 
   PairList list_;

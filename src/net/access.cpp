@@ -56,7 +56,7 @@ std::optional<HostAndPort> split_host(std::string_view text, Scheme scheme) {
   return out;
 }
 
-/// How an address or name stands in a Host header.
+/// The form of an address or name in a Host header.
 std::string in_header(std::string_view host) {
   return host.find(':') == std::string_view::npos ? lower(host) : std::string("[").append(lower(host)).append("]");
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may talk to the server: checks of Host, Origin and token, and the reading of a request's target.
+// Access to the server: checks of Host, Origin and token, and parsing of a request's target.
 //
 // A page of another site can make a browser send requests to a loopback port, and can point its own name at it (DNS
-// rebinding). The first is caught by Origin, the second by Host, other programs and users by the token.
+// rebinding). Origin detects the first, Host the second; the token excludes other programs and users.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@ struct RequestTarget {
   std::string query;
 };
 
-/// Empty when the target is not an absolute path or is badly escaped.
+/// Empty if the target is not an absolute path or is badly escaped.
 std::optional<RequestTarget> parse_target(std::string_view target);
 
-/// Unescaped value of the first `name` in a query, empty when it is not there.
+/// Unescaped value of the first `name` in a query, empty if there is none.
 std::string query_value(std::string_view query, std::string_view name);
 
 enum class Scheme : std::uint8_t { http, https };
 
-/// Where a request came in.
+/// The endpoint of a request.
 struct Endpoint {
   std::string bound_host;     ///< as given to the server
   std::string local_address;  ///< address literal of this connection on our side
@@ -34,11 +34,11 @@ struct Endpoint {
   Scheme scheme = Scheme::http;
 };
 
-/// Why a Host header is refused, or nothing. Allowed: localhost, 127.0.0.1, [::1], the bound host, and the very address
-/// that was connected to, each with our port. (An address literal is no danger: rebinding needs a name.)
+/// The reason to refuse a Host header, or nothing. Allowed: localhost, 127.0.0.1, [::1], the bound host, and the
+/// address of the connection, each with our port. (An address literal is safe: rebinding needs a name.)
 std::optional<std::string> refuse_host(std::string_view host, const Endpoint& endpoint);
 
-/// Why an Origin header is refused, or nothing: it has to be our own page's, "http://" or "https://" and the Host.
+/// The reason to refuse an Origin header, or nothing: it must be our own page's, "http://" or "https://" and the Host.
 std::optional<std::string> refuse_origin(std::string_view origin, Scheme scheme, std::string_view host);
 
 }  // namespace iota::net

@@ -37,7 +37,7 @@ using X509Certificate = std::unique_ptr<X509, Freed<X509_free>>;
 using Memory = std::unique_ptr<BIO, Freed<BIO_free_all>>;
 using Extension = std::unique_ptr<X509_EXTENSION, Freed<X509_EXTENSION_free>>;
 
-/// Throws with the reason that OpenSSL gives, if something failed.
+/// Throws with OpenSSL's reason, if something failed.
 void require(bool is_done, const char* what) {
   if (is_done) return;
   std::array<char, 256> reason{};
@@ -61,7 +61,7 @@ std::string as_pem(Write write) {
   return {data, static_cast<std::size_t>(size)};
 }
 
-/// Null for a text that is none.
+/// Null if the text is not a certificate.
 X509Certificate parse_certificate(std::string_view pem) {
   X509Certificate certificate(PEM_read_bio_X509(read_only(pem).get(), nullptr, nullptr, nullptr));
   ERR_clear_error();
@@ -103,7 +103,7 @@ void add_extension(X509* certificate, int id, const std::string& value) {
 std::string alternative_names(std::span<const std::string> hosts) {
   std::string names;
   for (const std::string& host : hosts) {
-    // A comma would begin another entry.
+    // A comma would start another entry.
     if (host.empty() || host.find(',') != std::string::npos) throw std::invalid_argument("'" + host + "' is no host");
     names += (names.empty() ? "" : ",") + std::string(is_address(host) ? "IP:" : "DNS:") + host;
   }
@@ -124,7 +124,7 @@ void set_name(X509* certificate) {
   require(X509_set_issuer_name(certificate, name) == 1, "issuer");
 }
 
-/// The kept one, or an empty one where it may not be used.
+/// The kept certificate, or an empty one if it cannot be used.
 Certificate usable(const std::string& text, std::span<const std::string> hosts) {
   const X509Certificate certificate = parse_certificate(text);
   const Key key = parse_key(text);
@@ -133,7 +133,7 @@ Certificate usable(const std::string& text, std::span<const std::string> hosts) 
   for (const std::string& host : hosts) {
     if (!is_for(certificate.get(), host)) return {};
   }
-  return {text, text};  // OpenSSL finds in a text what it looks for
+  return {text, text};  // OpenSSL finds both parts in one text
 }
 
 }  // namespace
@@ -146,7 +146,7 @@ Certificate make_certificate(std::span<const std::string> hosts) {
   require(certificate && X509_set_version(certificate.get(), X509_VERSION_3) == 1, "version");
   set_serial(certificate.get());
   set_name(certificate.get());
-  // From yesterday: the clock of a phone or headset may be behind.
+  // Valid from yesterday, as the clock of a phone or headset may be late.
   require(X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -day) != nullptr, "begin");
   require(X509_gmtime_adj(X509_getm_notAfter(certificate.get()), valid_time - day) != nullptr, "end");
   require(X509_set_pubkey(certificate.get(), key.get()) == 1, "public key");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The server's own certificate, for pages that come over the network: browsers give WebXR and clipboard to https only.
+// The server's own certificate, for pages over the network: browsers allow WebXR and clipboard on https only.
 //
-// It is signed by itself, so a browser warns at the first visit; its fingerprint tells the user that it is ours.
+// It is self-signed, so a browser warns at the first visit; users can compare its fingerprint.
 #pragma once
 
 #include <filesystem>
@@ -17,12 +17,12 @@ struct Certificate {
   std::string key;
 };
 
-/// A new key on the curve P-256, signed by itself for 397 days (the most that browsers take), for host names and addresses.
-/// Throws std::runtime_error where OpenSSL fails.
+/// A new self-signed certificate on the curve P-256, valid for 397 days (the limit of browsers), for host names and
+/// addresses. Throws std::runtime_error if OpenSSL fails.
 Certificate make_certificate(std::span<const std::string> hosts);
 
-/// The one kept in `folder`/certificate.pem (mode 0600, written atomically). A new one takes its place when there is none, when it is
-/// damaged, is not for one of the hosts, or ends within 30 days. Throws std::system_error when it cannot be written.
+/// The one kept in `folder`/certificate.pem (mode 0600, written atomically). It is replaced if there is none, if it is
+/// damaged, is not for one of the hosts, or expires within 30 days. Throws std::system_error if it cannot be written.
 Certificate load_or_make_certificate(std::span<const std::string> hosts, const std::filesystem::path& folder);
 
 /// SHA-256 of the first certificate of a chain as browsers show it: "12:AB:...". Throws std::invalid_argument for another text.

@@ -37,28 +37,30 @@ using asio::ip::tcp;
 using error_code = boost::system::error_code;
 using namespace std::chrono_literals;
 
-constexpr auto header_time = 5s;    // for a request to come, on a new connection or after an answer
-constexpr auto answer_time = 20s;   // for the other side to take an answer
+constexpr auto header_time = 5s;    // for a request, on a new connection or after an answer
+constexpr auto answer_time = 20s;   // for the client to receive an answer
 constexpr auto silence_time = 30s;  // without even an answer to a ping
-constexpr auto close_time = 1s;     // for the other side's part of a close
+constexpr auto close_time = 1s;     // for the client's part of a close
 constexpr auto keyframe_time = 1s;
 constexpr std::size_t max_connections = 512;
-constexpr std::size_t max_strangers = 128;  // of them: not welcomed; a client of Iota has its token and needs few
+constexpr std::size_t max_strangers = 128;  // of connections that are not welcomed; a client with the token needs few
 constexpr std::uint8_t body_kind = entity_kind<protocol::BodyEntity>();
 
-/// The page loads only its own files and runs no inline code; three.js makes textures and workers from blobs. It talks to the
-/// WebSocket of this server only, which 'self' does not cover in every browser.
-std::string content_security_policy(Scheme scheme, std::string_view host) {
+/// The page loads only its own files and runs no inline code; three.js makes textures and workers from blobs. It uses
+/// only the WebSocket of this server, which 'self' does not include in every browser. Pages of others may frame it
+/// where they know the token (a notebook): who does not could only lay it invisibly under a click.
+std::string content_security_policy(Scheme scheme, std::string_view host, bool may_be_framed) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::strchr(".-:[]", c);
   };
-  std::string socket;  // none for a request whose Host is refused
+  std::string socket;  // empty for a request with a refused Host
   if (!host.empty() && std::ranges::all_of(host, is_plain))
     socket = std::string(scheme == Scheme::https ? " wss://" : " ws://").append(host);
   return "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; connect-src 'self'" +
          socket +
          " blob: data:; img-src 'self' blob: data:; media-src 'self' blob: data:; object-src 'none'; base-uri 'none'; "
-         "form-action 'none'; frame-ancestors 'self'";
+         "form-action 'none'" +
+         (may_be_framed ? "" : "; frame-ancestors 'self'");
 }
 
 std::string_view to_view(beast::string_view text) { return {text.data(), text.size()}; }
@@ -89,7 +91,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     socket_.read_message_max(protocol::max_client_frame_bytes);
     socket_.auto_fragment(false);
     socket_.binary(true);
-    // permessage-deflate stays off, as is Beast's default: poses hardly shrink, and it costs time and memory a client.
+    // permessage-deflate is off, Beast's default: it hardly compresses poses, and costs time and memory.
     keep_send_buffer_short();
     socket_.async_accept(request, [self = shared_from_this()](error_code error) {
       if (error) return;
@@ -99,7 +101,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     });
   }
 
-  // From the hub, and possibly in the midst of its loop over all clients: nothing here may call back into it.
+  // Called by the hub, possibly in its loop over all clients: it must not call back.
   void send(const Frame& frame, std::string_view key) override {
     if (is_closing_) return;
     if (!queue_.push(frame, key)) return drop("too slow: too much is waiting for this client");
@@ -120,7 +122,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
   Standing standing() const override { return client_ == 0 ? Standing::idle : Standing::welcomed; }
 
  private:
-  /// A slow client should skip poses, not get them late from a long buffer in the kernel.
+  /// A slow client should skip poses, not receive them late from a long buffer in the kernel.
   void keep_send_buffer_short() {
     error_code ignored;
     auto& socket = socket_.next_layer().socket();
@@ -176,14 +178,14 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
 
   void refuse(const std::string& reason) {
     if (is_closing_) return;
-    // A name from outside may stand in the reason, so it is known to be UTF-8 and short.
+    // The reason may contain a name from outside, which is known to be UTF-8 and short.
     protocol::Refused message{reason.substr(0, 1024)};
     send(std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message)), {});
     close_when_sent(websocket::close_code::policy_error, "refused");
   }
 
-  /// Sends what fits: messages first, then entities, then the newest poses, made only now so that they are the newest. So
-  /// a pose always is of the body that the client was told of last in its slot.
+  /// Sends as much as fits: messages first, then entities, then poses, encoded only now so that they are the newest. So
+  /// a pose always belongs to the last body that was sent for its slot.
   void pump() {
     if (!is_open_ || is_writing_ || is_close_started_) return;
     if (!queue_.empty()) {
@@ -226,7 +228,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
   void close_when_sent(websocket::close_code code, std::string_view reason) {
     if (is_closing_) return;
     is_closing_ = true;
-    // The protocol gives a reason 123 bytes.
+    // The protocol limits a reason to 123 bytes.
     close_reason_ = websocket::close_reason(code, beast::string_view(reason.substr(0, 123)));
     timer_.expires_after(close_time);
     timer_.async_wait([weak = weak_from_this()](error_code error) {
@@ -241,7 +243,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
     socket_.async_close(close_reason_, [self = shared_from_this()](error_code) { self->ended(); });
   }
 
-  /// Called from handlers only, so the hub is never in the midst of a loop over its clients.
+  /// Called from handlers only, so never in the hub's loop over its clients.
   void ended() {
     is_closing_ = true;
     is_close_started_ = true;
@@ -258,7 +260,7 @@ class WebSocketSession final : public std::enable_shared_from_this<WebSocketSess
   beast::flat_buffer buffer_;
   OutQueue queue_;
   std::deque<Frame> entity_frames_;
-  std::uint64_t sent_entities_ = 0;  ///< version that the client has, or has on its way
+  std::uint64_t sent_entities_ = 0;  ///< version sent to the client
   Frame outgoing_;
   std::vector<std::uint8_t> pose_bytes_;
   PoseDelta delta_;
@@ -280,7 +282,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   HttpSession(const HttpSession&) = delete;
   HttpSession& operator=(const HttpSession&) = delete;
 
-  /// With a certificate, the first byte tells whether this is https.
+  /// With a certificate, the first byte shows whether this is https.
   void start() {
     if (context_.tls == nullptr) return read();
     stream_.expires_after(header_time);
@@ -327,7 +329,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     });
   }
 
-  /// Bytes that are not HTTP (such as https:// typed by mistake) or too long a header: told before closing.
+  /// Bytes that are not HTTP (such as https:// typed by mistake) or a too long header are answered before closing.
   void refuse_unreadable(error_code error) {
     static const auto& of_http = http::make_error_code(http::error::bad_version).category();
     if (error.category() != of_http || error == http::error::end_of_stream || error == http::error::partial_message) {
@@ -344,14 +346,15 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     const Request& request = parser_->get();
     is_head_ = request.method() == http::verb::head;
     const auto target = parse_target(to_view(request.target()));
+    knows_token_ = target && knows_token(*target);
     if (const auto reason = refuse_by_host(request)) return refuse(*reason);
     if (must_redirect_) return send_to_https();
     if (!target) return send_text(http::status::bad_request, "malformed target");
     if ((parser_->content_length() && *parser_->content_length() > 0) || parser_->chunked()) {
-      must_close_ = true;  // the body stays unread
+      must_close_ = true;  // the body is not read
       return send_text(http::status::bad_request, "no request here has a body");
     }
-    if (target->path == "/ws") return upgrade(*target);
+    if (target->path == "/ws") return upgrade();
     if (websocket::is_upgrade(request)) return send_text(http::status::not_found, "the WebSocket is at /ws");
     if (request.method() != http::verb::get && !is_head_) {
       return send_text(http::status::method_not_allowed, "only GET and HEAD");
@@ -369,7 +372,11 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     return refuse_host(to_view(request[http::field::host]), endpoint);
   }
 
-  void upgrade(const RequestTarget& target) {
+  bool knows_token(const RequestTarget& target) const {
+    return equal_in_constant_time(query_value(target.query, "token"), context_.options.token);
+  }
+
+  void upgrade() {
     const Request& request = parser_->get();
     if (!websocket::is_upgrade(request)) {
       return send_text(http::status::upgrade_required, "this is the WebSocket's address");
@@ -380,14 +387,14 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
           refuse_origin(to_view(request[http::field::origin]), stream_.scheme(), to_view(request[http::field::host]));
       if (reason) return refuse(*reason);
     }
-    if (!equal_in_constant_time(query_value(target.query, "token"), context_.options.token)) {
+    if (!knows_token_) {
       return refuse("the token is wrong: open the URL that the server printed");
     }
     stream_.expires_never();
     std::make_shared<WebSocketSession>(std::move(stream_), context_)->start(request);
   }
 
-  /// The token stands in the address, so a plain answer holds nothing but the way to https.
+  /// The address contains the token, so a plain answer is only the redirect to https.
   void send_to_https() {
     const Request& request = parser_->get();
     Response response = make_response(http::status::temporary_redirect);
@@ -443,11 +450,11 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     Response response{status, request.version() == 10 ? 10U : 11U};
     response.set(http::field::server, "iota");
     response.set("Content-Security-Policy",
-                 content_security_policy(stream_.scheme(), to_view(request[http::field::host])));
+                 content_security_policy(stream_.scheme(), to_view(request[http::field::host]), knows_token_));
     response.set("X-Content-Type-Options", "nosniff");
-    response.set("Referrer-Policy", "no-referrer");  // the page's URL holds the token
+    response.set("Referrer-Policy", "no-referrer");  // the page's URL contains the token
     response.set("Cross-Origin-Opener-Policy", "same-origin");
-    response.set("Cross-Origin-Resource-Policy", "same-origin");  // else a foreign page could tell that Iota runs here
+    response.set("Cross-Origin-Resource-Policy", "same-origin");  // else another site could detect Iota here
     response.set("Permissions-Policy", "camera=(), microphone=(), geolocation=(), payment=(), usb=()");
     response.keep_alive(request.keep_alive() && !must_close_);
     return response;
@@ -459,7 +466,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     } else {
       response.prepare_payload();
     }
-    if (is_head_) response.body().clear();  // the length stays that of the whole
+    if (is_head_) response.body().clear();  // the length is that of the whole
     response_.emplace(std::move(response));
     is_served_ = true;
     stream_.expires_after(answer_time);
@@ -472,7 +479,7 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     });
   }
 
-  /// Closing while something is unread would reset the connection, and the other side might lose the answer.
+  /// Closing with unread data would reset the connection, and the client might lose the answer.
   void discard() {
     buffer_.clear();
     stream_.async_read_some(buffer_.prepare(4096), [self = shared_from_this()](error_code error, std::size_t) {
@@ -487,12 +494,13 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
   std::optional<Response> response_;
   bool is_head_ = false;
   bool must_close_ = false;
+  bool knows_token_ = false;  // of the request that is answered
   bool must_redirect_ = false;
   bool is_served_ = false;
 };
 
-/// Whether there is room for one more connection. Where strangers have taken all their places, the oldest of them that waits
-/// for something goes; without one, the oldest that is sent a file.
+/// Whether one more connection is possible. If connections that are not welcomed have all their places, the oldest idle
+/// one is closed; without an idle one, the oldest that is sent a file.
 bool make_room(ConnectionContext& context) {
   std::size_t strangers = 0;
   OpenConnection* oldest = nullptr;
@@ -504,7 +512,7 @@ bool make_room(ConnectionContext& context) {
       oldest = connection;
   }
   if (strangers >= max_strangers || (context.open.size() >= max_connections && oldest != nullptr)) {
-    std::erase(context.open, oldest);  // it is destroyed when its handlers have run
+    std::erase(context.open, oldest);  // destroyed after its handlers have run
     oldest->evict();
   }
   return context.open.size() < max_connections;

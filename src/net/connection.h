@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One TCP connection: serves files of the page until the client asks for a WebSocket, then frames. Internal to the
-// server: this header and its two .cpp files are all that sees Boost.
+// server: only this header and its two .cpp files use Boost.
 #pragma once
 
 #include "net/access.h"
@@ -21,7 +21,7 @@
 
 namespace iota::net {
 
-/// How far a connection has come. Those that are not yet welcomed may be anybody's: they share few places.
+/// The state of a connection. Those that are not welcomed yet are not trusted and share few places.
 enum class Standing : std::uint8_t {
   idle,      ///< nothing complete was received yet, or since the last answer
   served,    ///< a file is on its way to it
@@ -31,9 +31,9 @@ enum class Standing : std::uint8_t {
 /// A connection that the server can ask to end.
 class OpenConnection {
  public:
-  /// Send what is queued, then close.
+  /// Sends the queue, then closes.
   virtual void finish() = 0;
-  /// Close at once, to make room.
+  /// Closes immediately, to make room.
   virtual void evict() = 0;
   virtual Standing standing() const = 0;
 
@@ -41,12 +41,12 @@ class OpenConnection {
   ~OpenConnection() = default;
 };
 
-/// What all connections share. Outlives them; used on the server's thread only.
+/// Shared by all connections. Outlives them; used on the server's thread only.
 struct ConnectionContext {
   const ServerOptions& options;
   Counters& counters;
   boost::asio::ssl::context* tls;  ///< null: plain http for all
-  /// The hub that a hello asks for, or none and the reason.
+  /// The hub for a hello, or none and the reason.
   std::function<std::pair<std::shared_ptr<Hub>, std::string>(const std::string& world)> find_world;
   std::uint16_t port = 0;
   std::vector<OpenConnection*> open;  ///< the oldest first
@@ -61,10 +61,10 @@ struct ConnectionContext {
   }
 };
 
-/// What encrypts connections with a certificate; null for an empty one. Throws std::invalid_argument for one that is damaged.
+/// The TLS context of a certificate; null for an empty one. Throws std::invalid_argument for a damaged one.
 std::unique_ptr<boost::asio::ssl::context> make_tls(const Certificate& certificate);
 
-/// Takes over an accepted socket; the connection keeps itself alive as long as something is under way on it.
+/// Takes over an accepted socket; the connection keeps itself alive during its operations.
 void start_connection(boost::asio::ip::tcp::socket socket, ConnectionContext& context);
 
 }  // namespace iota::net

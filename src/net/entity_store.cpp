@@ -10,7 +10,7 @@
 namespace iota::net {
 namespace {
 
-/// A message of records is ended beyond this many bytes.
+/// A message of records ends above this many bytes.
 constexpr std::size_t usual_bytes = 1 << 20;
 constexpr std::size_t most_ids = 1 << 17;
 
@@ -115,7 +115,7 @@ const std::vector<Frame>& EntityStore::frames_since(std::uint64_t version) {
     set.records.insert(set.records.end(), entry->record.begin(), entry->record.end());
   }
   finish_set();
-  // Last, and what others refer to after those: nothing that is drawn lacks its style.
+  // Destructions are last, in reverse order of kinds, so that no drawn entity lacks its style.
   for (std::size_t kind = entity_kind_count; kind-- > 0;) {
     const std::vector<protocol::Id>& ids = gone[kind];
     for (std::size_t from = 0; from < ids.size(); from += most_ids) {

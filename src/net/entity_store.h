@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a world's viewers are told of its entities: the latest record of each, and which of them a client has not got yet.
-// A client that is behind is later sent each record once, as it is then; one that has just come is sent all.
+// The entities of a world for viewers: the latest record of each, and those that a client has not received yet.
+// A slow client is sent the latest record of each changed entity; a new client is sent all.
 #pragma once
 
 #include "net/out_queue.h"
@@ -20,7 +20,7 @@ namespace iota::net {
 
 inline constexpr std::size_t entity_kind_count = std::tuple_size_v<protocol::EntityKinds>;
 
-/// Place of a kind in protocol::EntityKinds.
+/// Index of a kind in protocol::EntityKinds.
 template <class Entity, std::size_t I = 0>
 constexpr std::uint8_t entity_kind() {
   if constexpr (std::is_same_v<Entity, std::tuple_element_t<I, protocol::EntityKinds>>)
@@ -32,7 +32,7 @@ constexpr std::uint8_t entity_kind() {
 std::string_view entity_kind_name(std::uint8_t kind);
 std::optional<std::uint8_t> entity_kind_of(std::string_view name);
 
-/// Changes of entities, in order: records, and ids of what is gone.
+/// Changes of entities, in order: records, and ids of destroyed ones.
 class EntityChanges {
  public:
   void set(std::uint8_t kind, protocol::Id id, std::span<const std::uint8_t> record);
@@ -40,7 +40,7 @@ class EntityChanges {
   bool empty() const { return items_.empty(); }
   void append(const EntityChanges& later);
 
-  /// visit(kind, id, record): without a record the entity is gone.
+  /// visit(kind, id, record): without a record the entity was destroyed.
   template <class Visit>
   void for_each(Visit visit) const {
     for (const Item& item : items_) visit(item.kind, item.id, std::span(bytes_).subspan(item.begin, item.size));
@@ -62,10 +62,10 @@ class EntityStore {
 
   /// Rises with each change of an entity.
   std::uint64_t version() const { return version_; }
-  /// The messages that bring a client from `version` to the present; 0: one that knows nothing. Shared by all clients that
-  /// are equally far.
+  /// The messages that update a client from `version` to the present; 0: a new client. Shared by all clients of the
+  /// same version.
   const std::vector<Frame>& frames_since(std::uint64_t version);
-  /// Of what is, or was last, in each slot of a kind.
+  /// The present or last entity in each slot of a kind.
   std::span<const std::uint32_t> generations(std::uint8_t kind) const { return generations_[kind]; }
 
  private:
@@ -73,9 +73,9 @@ class EntityStore {
   struct Entry {
     std::uint8_t kind = 0;
     protocol::Id id;
-    std::uint64_t version = 0;  ///< when it changed last
+    std::uint64_t version = 0;  ///< of its last change
     std::uint32_t older = none, newer = none;
-    std::vector<std::uint8_t> record;  ///< empty: gone
+    std::vector<std::uint8_t> record;  ///< empty: destroyed
   };
   Entry& entry_at(std::uint8_t kind, std::uint32_t slot);
   void move_to_newest(std::uint32_t index);

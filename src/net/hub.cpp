@@ -10,13 +10,13 @@
 namespace iota::net {
 namespace {
 
-/// A client that has so many events waiting sends faster than any script can take (moves come as one).
+/// A client with more queued events sends faster than any script can read (moves count as one).
 constexpr std::size_t max_waiting_input = 4096;
 constexpr std::size_t max_holds = 32;
 constexpr std::string_view clients_key = "clients";
 constexpr std::size_t max_picture_bytes = 64 << 20;
 constexpr std::size_t max_kept_notices = 8;
-constexpr auto reset_pause = std::chrono::seconds(1);  // of one client
+constexpr auto reset_pause = std::chrono::seconds(1);  // for one client
 constexpr float farthest = 1e9F;                       // m, as the engine's limit
 
 template <class Message>
@@ -24,8 +24,8 @@ Frame make_frame(const Message& message) {
   return std::make_shared<const std::vector<std::uint8_t>>(protocol::encode(message));
 }
 
-/// As much of `text` as fits, in whole UTF-8 characters; what is not UTF-8 becomes '?'. A notice often reports an error,
-/// so it must not fail itself.
+/// As much of `text` as fits, in whole UTF-8 characters; invalid bytes become '?'. A notice often reports an error, so
+/// it must not fail itself.
 std::string fit_text(std::string_view text, std::size_t max_bytes) {
   std::string out(text);
   if (!protocol::detail::is_utf8(out)) {
@@ -43,8 +43,8 @@ bool is_near(const protocol::Vec3& place) {
   return std::ranges::all_of(place, [](float x) { return std::abs(x) <= farthest; });
 }
 
-/// Whether the same client has asked for the same already, since the script took its input last: one single step a round,
-/// whatever the client sends. Only the newest speed counts, as far as nothing else was asked for after the one before.
+/// Whether the same client has already sent the same request since the script last read its input: at most one single
+/// step a round. Only the newest speed counts, unless there was another request in between.
 bool has_waiting_twin(std::vector<InputEvent>& waiting, const InputEvent& event) {
   for (auto i = waiting.rbegin(); i != waiting.rend(); ++i) {
     if (i->kind != InputEvent::Kind::control || i->client != event.client) continue;
@@ -74,7 +74,7 @@ Hub::Hub(std::string world, std::size_t max_clients, Counters& counters, std::fu
 
 bool Hub::publish(const PoseSnapshot& snapshot, EntityChanges changes) {
   const std::lock_guard lock(out_mutex_);
-  snapshot_ = snapshot;  // its vectors are reused: no allocation once they are large enough
+  snapshot_ = snapshot;  // reuses its vectors: no allocation once they are large enough
   if (!changes.empty()) changes_.push_back(std::move(changes));
   ++snapshot_number_;
   return !std::exchange(is_delivery_due_, true);
@@ -161,7 +161,7 @@ void Hub::deliver() {
 }
 
 void Hub::end() {
-  const auto clients = clients_;  // closing may take some out
+  const auto clients = clients_;  // closing may remove some
   for (const auto& [number, client] : clients)
     if (clients_.contains(number)) client.link->world_ended();
 }
@@ -258,7 +258,7 @@ void Hub::push_input(InputEvent event) {
   {
     const std::lock_guard lock(in_mutex_);
     if (event.kind == InputEvent::Kind::grab_move) {
-      // Only the newest place of a grip counts; moves of different grips may change places.
+      // Only the newest place of a grip counts; moves of different grips may be reordered.
       for (auto i = input_.rbegin(); i != input_.rend() && i->kind == InputEvent::Kind::grab_move; ++i) {
         if (i->client != client || i->hold != event.hold) continue;
         i->target = event.target;
@@ -266,7 +266,7 @@ void Hub::push_input(InputEvent event) {
       }
     }
     if (event.kind == InputEvent::Kind::change) {
-      // Only the newest value of a control counts, as far as nothing else was done after the one before.
+      // Only the newest value of a control counts, unless there was another event in between.
       if (!input_.empty() && input_.back().kind == event.kind && input_.back().client == client &&
           input_.back().body == event.body) {
         input_.back() = std::move(event);
@@ -316,7 +316,7 @@ void Hub::handle(std::uint32_t client, const protocol::GrabStart& message) {
 }
 
 void Hub::handle(std::uint32_t client, const protocol::GrabMove& message) {
-  if (clients_.at(client).role == protocol::Role::viewer) return;  // it has been told when it grabbed
+  if (clients_.at(client).role == protocol::Role::viewer) return;  // it was notified when it grabbed
   if (!clients_.at(client).holds.contains(message.hold)) return refuse_frame(client, "grab_move.hold holds nothing");
   if (!is_near(message.target)) return refuse_frame(client, "grab_move.target is beyond 1e9 m");
   InputEvent event{.kind = InputEvent::Kind::grab_move, .client = client};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the clients of one world share: its entities, settings and newest poses, who is connected, and the two boxes through
-// which the stepping thread and the server's thread pass things to each other. Knows messages, not sockets.
+// Shared by the clients of one world: its entities, settings and newest poses, the connected clients, and the two
+// queues between the stepping thread and the server's thread. Knows messages, not sockets.
 #pragma once
 
 #include "net/entity_store.h"
@@ -26,22 +26,22 @@
 
 namespace iota::net {
 
-/// A client's connection, as the hub sees it.
+/// The hub's interface of a client's connection.
 class ClientLink {
  public:
   virtual void send(const Frame& frame, std::string_view key) = 0;
-  /// There are newer entities or poses; fetch them when there is room.
+  /// There are newer entities or poses; fetch them when the socket has room.
   virtual void world_changed() = 0;
-  /// Tell the reason and close.
+  /// Sends the reason and closes.
   virtual void drop(std::string_view reason) = 0;
-  /// The world has ended: send what is queued, then close.
+  /// The world has ended: sends the queue, then closes.
   virtual void world_ended() = 0;
 
  protected:
   ~ClientLink() = default;
 };
 
-/// Of a server, over all its worlds.
+/// Of a server, for all its worlds.
 struct Counters {
   std::atomic<std::uint32_t> clients{0};
   std::atomic<std::uint64_t> bytes_sent{0}, frames_sent{0}, frames_dropped{0}, frames_refused{0}, upgrades_refused{0},
@@ -50,34 +50,34 @@ struct Counters {
 
 class Hub {
  public:
-  /// `call_frame`: has frame() called on the server's thread, a frame's time from now. Called there only.
+  /// `call_frame`: schedules a call of frame() on the server's thread after a frame's time. Called there only.
   Hub(std::string world, std::size_t max_clients, Counters& counters, std::function<void()> call_frame);
   const std::string& world() const { return world_; }
 
-  // --- from any thread. True: nothing was waiting, so deliver() has to be called on the server's thread.
-  /// Changes of entities add up, of poses only the newest counts; both reach clients together.
+  // --- from any thread. True: nothing was queued, so deliver() has to be called on the server's thread. Changes of
+  // entities are collected, of poses only the newest counts; both reach clients together.
   [[nodiscard]] bool publish(const PoseSnapshot& snapshot, EntityChanges changes);
-  /// A message that is whole: the latest of each type counts, and is given to late joiners.
+  /// A complete message: the latest of each type counts, and is sent to late joiners.
   template <class Message>
   [[nodiscard]] bool set(const Message& message);
-  /// Kept: told to clients that join later too, until it is forgotten or another with the same title takes its place.
+  /// Kept: also sent to clients that join later, until it is removed or replaced by another one with the same title.
   [[nodiscard]] bool notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
                             std::string_view hint, bool is_kept);
-  /// The kept notices with this title, or all for an empty one, are not told to those who join later.
+  /// Removes the kept notices with this title, or all for an empty one.
   [[nodiscard]] bool forget_notice(std::string_view title);
   [[nodiscard]] bool ask_picture(std::uint32_t client, std::uint32_t number);
   [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position);
   std::vector<InputEvent> take_input();
 
   // --- on the server's thread
-  /// Hands everything that was published on to the clients: edits in order, then the newest poses.
+  /// Passes everything published to the clients: edits in order, then the newest poses.
   void deliver();
-  /// Welcomes the client on `link` and replays the scene to it; gives its number, or 0 and the reason of a refusal.
+  /// Welcomes the client on `link` and replays the scene to it; returns its number, or 0 and the reason of a refusal.
   std::pair<std::uint32_t, std::string> join(ClientLink& link, const protocol::Hello& hello);
   void leave(std::uint32_t client);
-  /// Tells what waited for a frame's time to pass.
+  /// Sends messages that were delayed by a frame's time.
   void frame();
-  /// One frame of a welcomed client. What is not understood is answered by a notice.
+  /// Handles a frame of a welcomed client. Invalid frames are answered by a notice.
   void receive(std::uint32_t client, std::span<const std::uint8_t> bytes);
   void refuse_frame(std::uint32_t client, std::string_view reason);
   const PoseQuantizer& poses() const { return poses_; }
@@ -95,22 +95,22 @@ class Hub {
     protocol::Role role = protocol::Role::actor;
     protocol::Id selected;
     std::set<std::uint32_t> holds;
-    Clock::time_point reset_at = Clock::time_point::min();  ///< when it asked for a reset last
-    bool is_told_to_wait = false;                           ///< that it asks for resets too often
-    std::uint32_t picture = 0;                              ///< number of the one that it was asked for; 0: none
-    std::size_t picture_bytes = 0;                          ///< of it that came
+    Clock::time_point reset_at = Clock::time_point::min();  ///< time of its last reset
+    bool is_told_to_wait = false;                           ///< of too frequent resets
+    std::uint32_t picture = 0;                              ///< number of the requested one; 0: none
+    std::size_t picture_bytes = 0;                          ///< received bytes
   };
   using Edit = std::function<void()>;
 
   bool post(Edit edit);
   void broadcast(const Frame& frame, std::string_view key = {});
   protocol::Clients all_clients() const;
-  /// Tells everyone who is there, with the next frame: many come, go and select at once.
+  /// Sends the list of clients with the next frame, as many may join, leave and select at once.
   void tell_clients();
   [[nodiscard]] bool set_latest(std::string key, Frame frame);
   void push_input(InputEvent event);
   void tell(std::uint32_t client, const protocol::Notice& notice);
-  /// Tells a client that only watches that it does.
+  /// Tells a viewer that it can only watch.
   bool may_act(std::uint32_t client);
   /// Tells a client that resets the world too often that it has to wait.
   bool may_reset(std::uint32_t client);
@@ -143,7 +143,7 @@ class Hub {
   // ... and to the stepping thread.
   std::mutex in_mutex_;
   std::vector<InputEvent> input_;
-  std::map<std::uint32_t, std::size_t> input_counts_;  ///< waiting events by client
+  std::map<std::uint32_t, std::size_t> input_counts_;  ///< queued events by client
 
   // On the server's thread only.
   std::map<std::uint32_t, Client> clients_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames that wait for one client. Frames that carry the whole of something (a scene key, the list of clients) have a
-// key and replace an unsent frame of that key; the others (notices, effects) add up, to a cap.
+// Queued frames of one client. Frames with a complete state (settings, the list of clients) have a key and replace an
+// unsent frame of that key; the others (notices, effects) are queued, up to a limit.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@
 
 namespace iota::net {
 
-/// One encoded message, shared by all clients that it waits for.
+/// One encoded message, shared by the queues of all clients.
 using Frame = std::shared_ptr<const std::vector<std::uint8_t>>;
 
 class OutQueue {
  public:
   explicit OutQueue(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// False, and nothing queued, when the frames without a key would exceed the cap.
+  /// False, and nothing is queued, if the frames without a key would exceed the limit.
   [[nodiscard]] bool push(Frame frame, std::string_view key = {});
   /// The oldest frame; the queue must not be empty.
   Frame pop();

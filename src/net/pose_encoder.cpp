@@ -10,13 +10,13 @@ namespace iota::net {
 namespace {
 
 constexpr double steps = 65535;
-constexpr double half_range = 1 / std::numbers::sqrt2;  // no component but the largest can be beyond it
+constexpr double half_range = 1 / std::numbers::sqrt2;  // limit of all components except the largest
 constexpr double rotation_steps = 1023;
 
-/// Bodies that lie together within this are quantized together, whatever the spread at the start was, m.
+/// Bodies within this extent are quantized in one box, for any initial extent, m.
 constexpr double least_limit = 64;
 
-/// A float has no useful grid beyond this, and the box would leave its range, m.
+/// Above this a float has no useful resolution, and the box would leave its range, m.
 constexpr float farthest = 1e9F;
 
 bool is_finite(const float (&v)[3]) {
@@ -45,7 +45,7 @@ std::optional<std::uint32_t> pack_rotation(const float (&orientation)[4]) {
     if (std::abs(orientation[i]) > std::abs(orientation[largest])) largest = i;
   }
   if (!std::isfinite(square) || square < 1e-12) return std::nullopt;
-  // q and -q are the same rotation: the largest component is made positive, so its sign need not be sent.
+  // q and -q are the same rotation: the largest component is made positive, so its sign is not sent.
   const double scale = (orientation[largest] < 0 ? -1 : 1) / std::sqrt(square);
   auto packed = static_cast<std::uint32_t>(largest);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -100,7 +100,7 @@ bool PoseQuantizer::Bounds::contains(const float (&position)[3]) const {
   return true;
 }
 
-/// From the 10th to the 90th of a hundred bodies on each axis: a few that are far off do not count.
+/// From the 10th to the 90th of a hundred bodies on each axis: a few distant ones do not count.
 PoseQuantizer::Bounds PoseQuantizer::bulk_of(std::span<const BodyPose> bodies) {
   Bounds out{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -120,15 +120,15 @@ PoseQuantizer::Bounds PoseQuantizer::bulk_of(std::span<const BodyPose> bodies) {
 }
 
 void PoseQuantizer::set_box(const Bounds& bulk) {
-  // Room to swing without another box soon; the error stays a small part of what is seen, whatever its size. Bodies that come
-  // together for a moment do not change the box by more than a factor.
+  // A margin for motion, so that the box is kept; the error stays small relative to the scene. Bodies that come
+  // together for a moment change the box by at most a factor.
   widest_ = std::max(widest_, bulk.longest_edge());
   const double margin = std::max(widest_ / 16, bulk.longest_edge() / 2);
   Bounds box = bulk;
   for (std::size_t i = 0; i < 3; ++i) {
     poses_.box_min[i] = static_cast<float>(bulk.min[i] - margin);
     poses_.box_max[i] = static_cast<float>(bulk.max[i] + margin);
-    // Far from the origin a float's own grid can be coarser than the margin.
+    // Far from the origin a float's resolution can be coarser than the margin.
     if (!(poses_.box_max[i] > poses_.box_min[i])) {
       poses_.box_max[i] = std::nextafter(poses_.box_min[i], std::numeric_limits<float>::max());
     }
@@ -169,7 +169,7 @@ void PoseQuantizer::fit_box(std::span<const BodyPose> bodies) {
 void PoseQuantizer::add_body(const BodyPose& body) {
   const auto rotation = pack_rotation(body.orientation);
   if (!is_finite(body.position) || !rotation) return;
-  // Bodies at one place, or a single one, tell nothing of the size of the scene: they travel as floats.
+  // Coincident bodies, or a single one, do not define a size of the scene: they are sent as floats.
   if (body.body > 0xFFFF || widest_ == 0 || !box_->contains(body.position)) {
     poses_.far_bodies.push_back({body.body, to_vec3(body.position), *rotation});
     return;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// From snapshots to poses frames: quantization once per snapshot, then per client only what moved.
+// From snapshots to poses frames: quantization once per snapshot, then per client only moved bodies.
 //
 // A position takes 3 x 16 bits within a box around the bodies, a rotation 2 + 3 x 10 bits ("smallest three"): 12 bytes
-// a body with its slot. A body far from all others (a piece that fell off and falls on) would blow up the box and with
-// it everyone's error, so it travels on its own with a full float position, 20 bytes.
-// Errors: position at most half of box edge / 65535 per axis, rotation at most 5 mrad.
+// a body with its slot. A body far from all others (a falling piece) would enlarge the box and so all errors; it is
+// sent separately with a float position, 20 bytes. Errors: position at most half of box edge / 65535 per axis, rotation
+// at most 5 mrad.
 #pragma once
 
 #include <iota/pose_snapshot.h>
@@ -19,7 +19,7 @@
 
 namespace iota::net {
 
-/// The packed rotation of a quaternion (x y z w), normalized first; nothing when it is not finite or about zero.
+/// The packed rotation of a quaternion (x y z w), normalized first; nothing if it is not finite or about zero.
 std::optional<std::uint32_t> pack_rotation(const float (&orientation)[4]);
 
 /// The unit quaternion (x y z w) of a packed rotation.
@@ -36,7 +36,7 @@ class PoseQuantizer {
 
   /// The latest frame, a keyframe.
   const protocol::Poses& poses() const { return poses_; }
-  /// Rises with each change of the box, which gives every number a new meaning.
+  /// Rises with each change of the box, which changes the meaning of all numbers.
   std::uint32_t box_version() const { return box_version_; }
 
  private:
@@ -59,11 +59,11 @@ class PoseQuantizer {
   std::vector<float> sorted_;
 };
 
-/// What one client has got, so that it is sent only what differs.
+/// The state last sent to a client, to send only differences.
 class PoseDelta {
  public:
-  /// Replaces `out` by the next frame for this client. A keyframe when asked for, at first, and after a change of box.
-  /// generations: of the bodies in the slots, as the client has been told: another body's pose is no known one.
+  /// Replaces `out` by the next frame for this client. A keyframe on request, at first, and after a change of box.
+  /// generations: of the bodies in the slots, as sent to the client: another body's pose does not count.
   void encode(const PoseQuantizer& latest, std::span<const std::uint32_t> generations, bool wants_keyframe,
               std::vector<std::uint8_t>& out);
   bool last_was_keyframe() const { return frame_.keyframe; }

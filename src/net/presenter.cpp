@@ -13,17 +13,17 @@
 namespace iota::net {
 namespace {
 
-/// Lengths are told in steps of this part of the scene's size, and of at most 1e-6 m: finer than a page shows. The same point
-/// of a body that has moved gives the same number, and is not told again.
+/// Lengths are rounded to this share of the scene's size, at most 1e-6 m: finer than visible. So a point of a moved
+/// body keeps the same number, and is not sent again.
 constexpr double finest = 1e-6;
 constexpr std::size_t most_triangles = 50'000;
 constexpr std::size_t most_record_bytes = 8 << 20;
 constexpr double usual_thickness = 0.03;
 constexpr const char* every_look = "*";
-constexpr double of_body = 0.1;  // length of what is drawn as long as its body, m: any
+constexpr double of_body = 0.1;  // length of a look that fits its body, m: any value
 constexpr std::array tie_names{"spring", "rope", "rod"};
 
-/// 0 for what is not finite: a world that has gone wrong is shown as far as it can be.
+/// 0 for values that are not finite, so that an invalid world is shown as far as possible.
 float round_to(double step, double value) {
   return std::isfinite(value) ? static_cast<float>(std::round(value / step) * step) + 0.0F : 0.0F;
 }
@@ -47,7 +47,7 @@ protocol::Shape to_wire(const Shape& shape) {
   return wire;
 }
 
-/// Has no length, whatever the size of the scene.
+/// A zero length for any size of the scene.
 protocol::Vec3 unit_axis(const Vec3& v) {
   return {round_to(finest, v.x), round_to(finest, v.y), round_to(finest, v.z)};
 }
@@ -65,7 +65,7 @@ protocol::BodyKind kind_of(BodyKind kind) {
     case BodyKind::static_: return protocol::BodyKind::static_;
     case BodyKind::scripted: return protocol::BodyKind::scripted;
     case BodyKind::inactive: return protocol::BodyKind::inactive;
-    default: return protocol::BodyKind::dynamic;  // a resting one is drawn alike
+    default: return protocol::BodyKind::dynamic;  // a resting one looks the same
   }
 }
 
@@ -79,7 +79,7 @@ Vec3 rotated(const Quaternion& q, const Vec3& v) {
   return v + q.w * t + cross(u, t);
 }
 
-/// Radius and color in steps, so that many share a style.
+/// Rounded radius and color, so that many share a style.
 protocol::Part ball(double radius, const Color& color) {
   const double step = std::pow(10, std::floor(std::log10(radius)));
   protocol::Part part = make_part(every_look, to_wire(Sphere{std::round(radius / step) * step}), "paint");
@@ -100,7 +100,7 @@ std::pair<Vec3, Box> box_around(const Mesh& mesh) {
   return {0.5 * (low + high), Box{high - low}};
 }
 
-/// The looks that a class has parts for, and the first part of each.
+/// The looks for which a class has parts, and the first part of each.
 std::vector<std::pair<std::string, const protocol::Part*>> first_parts(const std::vector<protocol::Part>& parts) {
   std::vector<std::pair<std::string, const protocol::Part*>> first;
   for (const protocol::Part& part : parts)
@@ -119,7 +119,7 @@ void Presenter::set_class(const std::string& name, std::vector<protocol::Part> p
   if (!is_new && known.parts == parts) return;
   known.is_solid = std::ranges::any_of(parts, [](const protocol::Part& part) { return part.shape.kind == "solid"; });
   known.parts = std::move(parts);
-  // Bodies of a new class are yet to be assigned to it.
+  // Bodies of a new class are not assigned to it yet.
   needs_all_ = needs_all_ || !is_new || std::ranges::find(tie_names, name) != tie_names.end();
 }
 
@@ -238,7 +238,7 @@ void Presenter::present_statics() {
     forget<protocol::StaticShapeEntity>(slot);
 }
 
-/// After a list of everything: what it has left out is gone. Styles and static shapes are in no such list.
+/// After a complete list: entities that are not in it no longer exist. Styles and static shapes are not in such a list.
 void Presenter::forget_unlisted() {
   for (std::uint32_t slot = 0; slot < bodies_.size(); ++slot)
     if (!told<protocol::BodyEntity>()[slot].is_listed) forget_body(slot);
@@ -263,8 +263,8 @@ protocol::Id Presenter::id_of(BodyId body) const {
 
 // ------------------------------------------------------------------------------------------------------------- styles
 
-/// In whole: the shapes of solids in the materials of the body's class, the class itself where that has shapes for it, and
-/// else what suits its particles.
+/// All parts: the shapes of solids in the materials of the body's class, or the class's own shapes, otherwise a default
+/// look of its particles.
 std::uint32_t Presenter::style_of(const DrawnBody& body, const Assignment* assignment) {
   const auto named = assignment ? classes_.find(assignment->name) : classes_.end();
   const Class* const own = named == classes_.end() ? nullptr : &named->second;
@@ -307,7 +307,7 @@ std::vector<protocol::Part> Presenter::parts_of_solids(const DrawnBody& body, co
   return parts;
 }
 
-/// Capsules along the lines of a body, as thick as the shapes of its class.
+/// Capsules along the lines of a body, with the radius of its class's shapes.
 std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, const Class* like) const {
   const protocol::Part plain = make_part(every_look, to_wire(Capsule{thickness_, of_body}), "steel");
   std::vector<protocol::Part> parts;
@@ -402,7 +402,7 @@ protocol::Anchor Presenter::anchored(const Anchor& anchor) const {
   return {anchor.body ? anchor.body.slot : protocol::no_body, rounded(anchor.point)};
 }
 
-/// A radius that suits rods of this system, taken once: from their middle length or, without rods, from the size of all.
+/// Default radius of rods, determined once: from their median length or, without rods, from the size of the scene.
 void Presenter::choose_thickness(const SceneChanges& changes) {
   std::vector<double> lengths;
   for (const DrawnBody& body : changes.bodies.set)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what the engine reports of its bodies, and the looks that a script gave them, to the records of entities that viewers
-// are told. Remembers what it has told, so that only differences go out.
+// Converts the engine's scene changes and the script's looks to records of entities for viewers. Keeps the records sent
+// last, so that only differences are sent.
 #pragma once
 
 #include "net/entity_store.h"
@@ -21,27 +21,27 @@ namespace iota::net {
 
 class Presenter {
  public:
-  /// How bodies, or ties, of a class are drawn: its parts in all looks. A part of kind "solid" stands for the shape that a
-  /// body was given as, and says what that is made of. Changing a class needs all bodies anew.
+  /// The parts of a class of bodies or ties in all looks. A part of kind "solid" represents the body's own shape, and
+  /// gives its material. After a change of a class all bodies have to be described again.
   void set_class(const std::string& name, std::vector<protocol::Part> parts);
-  /// Gives a body the looks of a class; the body has to be among the engine's next changes.
+  /// Gives a body the looks of a class; the body must be in the engine's next changes.
   void assign(BodyId body, const std::string& name, bool odd);
-  /// Things that are only drawn.
+  /// Shapes without physics.
   void set_statics(std::vector<protocol::Part> parts);
 
-  /// Whether the next changes have to be whole.
+  /// Whether the next changes must be complete.
   bool needs_all() const { return needs_all_; }
-  /// Bodies that have to be among the next changes.
+  /// Bodies that must be in the next changes.
   const std::vector<BodyId>& assigned() const { return assigned_; }
 
-  /// What viewers have to be told of the engine's changes.
+  /// Converts the engine's changes to those of entities.
   EntityChanges present(const SceneChanges& changes);
-  /// Plain sentences about what could not be drawn as it is, since the last call.
+  /// Sentences since the last call about things that could not be drawn exactly.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
-  /// The body that a viewer means; nothing when it is gone.
+  /// The body of a viewer's id; nothing if it no longer exists.
   std::optional<BodyId> body(protocol::Id id) const;
-  /// What viewers call a body; null where they have not been told of it.
+  /// The viewers' id of a body; null if it has not been sent.
   protocol::Id id_of(BodyId body) const;
 
  private:
@@ -66,7 +66,7 @@ class Presenter {
     std::uint32_t slot = 0, uses = 0;
   };
 
-  /// Tells of an entity unless it is known as it is. Another thing than was in its slot gets a new generation.
+  /// Sends an entity unless it is unchanged. A new thing in a slot gets a new generation.
   template <class Entity>
   void tell(std::uint32_t slot, Entity entity, bool is_other = false);
   template <class Entity>
@@ -99,8 +99,8 @@ class Presenter {
   std::vector<BodyId> assigned_;
   std::vector<protocol::Part> statics_;
   bool needs_all_ = true, statics_changed_ = false;
-  double quantum_ = 1e-6;  ///< finer than a page shows, m
-  double thickness_ = 0;   ///< radius that suits rods of this system, m; 0: not known yet
+  double quantum_ = 1e-6;  ///< finer than visible, m
+  double thickness_ = 0;   ///< default radius of rods, m; 0: not known yet
 
   std::array<std::vector<Told>, entity_kind_count> told_;  ///< by slot
   std::vector<DrawnAs> bodies_;                            ///< by slot

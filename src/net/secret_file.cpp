@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 fs::path state_folder() {
   const char* state = std::getenv("XDG_STATE_HOME");
-  // The XDG specification: a relative path there is to be ignored.
+  // By the XDG specification, a relative path is ignored.
   if (state != nullptr && fs::path(state).is_absolute()) return fs::path(state) / "iota";
 #ifdef _WIN32
   const char* home = std::getenv("LOCALAPPDATA");

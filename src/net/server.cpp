@@ -76,7 +76,7 @@ error_code try_listen(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {
   acceptor.open(endpoint.protocol(), error);
   if (error) return error;
 #ifndef _WIN32
-  // Else a restart would have to wait for connections of the one before to be forgotten. (On Windows the option would
+  // Otherwise a restart would have to wait until old connections have timed out. (On Windows the option would
   // allow two servers on one port.)
   acceptor.set_option(asio::socket_base::reuse_address(true), error);
 #endif
@@ -85,7 +85,7 @@ error_code try_listen(tcp::acceptor& acceptor, const tcp::endpoint& endpoint) {
   return error;
 }
 
-/// A socket that listens, on the first of the host's addresses that lets it. Throws std::system_error.
+/// A listening socket, on the first possible address of the host. Throws std::system_error.
 tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
   error_code error;
   tcp::resolver resolver(io);
@@ -95,7 +95,7 @@ tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
     tcp::acceptor acceptor(io);
     error = try_listen(acceptor, entry.endpoint());
     if (!error) return acceptor;
-    if (error == asio::error::address_in_use) break;  // not on another address instead: the user would not find it
+    if (error == asio::error::address_in_use) break;  // do not try another address, which the user would not expect
   }
   if (error == asio::error::address_in_use) fail(error, place_of(options) + " is taken, choose another port");
   fail(error, "cannot listen on " + place_of(options));
@@ -119,7 +119,7 @@ class Worlds {
     const std::lock_guard lock(mutex_);
     std::erase(hubs_, hub);
   }
-  /// The hub that a hello asks for, or none and the reason.
+  /// The hub for a hello, or none and the reason.
   std::pair<std::shared_ptr<Hub>, std::string> ask(const std::string& world) {
     const std::lock_guard lock(mutex_);
     if (hubs_.empty()) return {nullptr, "there is no world here yet"};
@@ -179,7 +179,7 @@ struct Server::Implementation {
     link->cut();
     asio::post(io, [this] { finish(); });
     thread.join();
-    context.on_all_closed = nullptr;  // connections that are left go with io
+    context.on_all_closed = nullptr;  // remaining connections are destroyed with io
   }
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
@@ -190,7 +190,7 @@ struct Server::Implementation {
         io.run();
         return;
       } catch (const std::exception&) {
-        // Out of memory in one client's handler: that client is lost with its handler, the others go on.
+        // Out of memory in one client's handler: that client is lost, the others continue.
       }
     }
   }
@@ -202,7 +202,7 @@ struct Server::Implementation {
         start_connection(std::move(socket), context);
         return accept();
       }
-      // Mostly: no file descriptor left. Trying again at once would only burn time.
+      // Usually there is no file descriptor left, so it waits before trying again.
       timer.expires_after(accept_pause);
       timer.async_wait([this](error_code) {
         if (!context.is_finishing) accept();
@@ -210,7 +210,7 @@ struct Server::Implementation {
     });
   }
 
-  /// Calls frame() of all hubs, a frame's time from now.
+  /// Calls frame() of all hubs after a frame's time.
   void call_frame() {
     if (std::exchange(is_frame_due, true)) return;
     frame_timer.expires_after(frame_time);
@@ -227,7 +227,7 @@ struct Server::Implementation {
     acceptor.close(ignored);
     timer.expires_after(farewell_time);
     timer.async_wait([this](error_code) { io.stop(); });
-    const auto open = context.open;  // closing may take some out
+    const auto open = context.open;  // closing may remove some
     for (OpenConnection* connection : open) {
       if (context.is_open(connection)) connection->finish();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The server that pages talk to: static page and WebSocket on one port, on its own thread, for one world or several.
+// The server of pages: static page and WebSocket on one port, on its own thread, for one world or several.
 //
 // Sees snapshots and input events only, never the live system. Lengths in m, times in s, forces in N.
 #pragma once
@@ -26,17 +26,17 @@ using Vec3f = std::array<float, 3>;
 
 struct ServerOptions {
   std::string host = "127.0.0.1";  ///< name or address to listen on
-  /// With one, other machines talk https to the same port; plain http is for this machine only.
+  /// With a certificate, other machines use https on the same port; plain http is for this machine only.
   Certificate certificate = {};
   std::uint16_t port = 8080;              ///< 0: any free one
-  std::filesystem::path page_folder;      ///< the built page: index.html and what it loads
-  std::string token;                      ///< asked of every WebSocket; must not be empty
-  std::size_t max_queue_bytes = 1 << 20;  ///< notices and effects that may wait for one client
+  std::filesystem::path page_folder;      ///< the built page: index.html and its files
+  std::string token;                      ///< required for every WebSocket; must not be empty
+  std::size_t max_queue_bytes = 1 << 20;  ///< limit of queued notices and effects of one client
   std::size_t max_clients = 64;           ///< of each world
   double hello_time = 10;                 ///< s, from the upgrade of a connection to its first frame
 };
 
-/// What a user did, or that one came or went. Fields that a kind does not need are left at their defaults.
+/// An input of a user, or a user joined or left. Fields that a kind does not need have their defaults.
 struct InputEvent {
   enum class Kind : std::uint8_t {
     join,
@@ -55,7 +55,7 @@ struct InputEvent {
   Kind kind = Kind::join;
   std::uint32_t client = 0;        ///< from 1, never used twice in a world
   std::uint32_t hold = 0;          ///< grab_...: the client's own number for this grip
-  protocol::Id body;               ///< of an entity, not checked: it may be gone; null: none. change: of the widget
+  protocol::Id body;               ///< of an entity that may no longer exist; null: none. change: of the widget
   Vec3f local_point{};             ///< grab_start: body frame
   Vec3f target{};                  ///< grab_start, grab_move: world frame; pointer: where it hit the body
   Vec3f origin{}, direction{};     ///< pointer: its ray, world frame
@@ -64,7 +64,7 @@ struct InputEvent {
   protocol::ControlCommand command{};
   protocol::PointerKind pointer{};
   double value = 0;          ///< control: speed in times real time; change: of the widget
-  bool is_final = false;     ///< key: let go; picture: the last part
+  bool is_final = false;     ///< key: released; picture: the last part
   std::uint32_t number = 0;  ///< picture: of the request
 };
 
@@ -72,38 +72,38 @@ struct ServerStatistics {
   std::uint32_t clients = 0;     ///< welcomed and connected now
   std::uint64_t bytes_sent = 0;  ///< payload of WebSocket frames
   std::uint64_t frames_sent = 0;
-  std::uint64_t frames_dropped = 0;    ///< poses that a slow client never got, as a newer one was there
-  std::uint64_t frames_refused = 0;    ///< frames from clients that were not understood
+  std::uint64_t frames_dropped = 0;    ///< poses that were not sent to a slow client
+  std::uint64_t frames_refused = 0;    ///< frames that could not be decoded
   std::uint64_t upgrades_refused = 0;  ///< wrong Host, Origin or token
-  std::uint64_t clients_dropped = 0;   ///< over their queue, or silent
+  std::uint64_t clients_dropped = 0;   ///< for a full queue, or silence
 };
 
 class Hub;
 
-/// One world on a server. All members may be called from any thread; none waits for a client. What is said after the server
-/// is gone is lost.
+/// One world on a server. All members may be called from any thread; none waits for a client. Calls after the end of
+/// the server have no effect.
 class Room {
  public:
-  /// Its clients are told that the world has ended.
+  /// Tells its clients that the world has ended.
   ~Room();
   Room(const Room&) = delete;
   Room& operator=(const Room&) = delete;
 
   const std::string& world() const;
 
-  /// The newest state, and what has changed of entities since the last call. Each client gets the newest poses as soon as it
-  /// can take them, so slow ones skip some. A body that is not at a finite place keeps its last pose on the page.
+  /// The newest state, and changes of entities since the last call. Each client gets the newest poses as soon as its
+  /// socket has room, so slow ones skip some. A body at a place that is not finite keeps its last pose on the page.
   void publish(const PoseSnapshot& snapshot, EntityChanges changes = {});
-  /// For present and later clients. Throw std::length_error for what is above the protocol's limits and
-  /// std::invalid_argument for text that is not UTF-8.
+  /// For present and later clients. Throw std::length_error above the protocol's limits and std::invalid_argument for
+  /// text that is not UTF-8.
   void set(const protocol::WorldSettings& settings);
   void set(const protocol::WorldState& state);
   void set(const protocol::Actions& actions);
   void set(const protocol::Listens& listens);
-  /// Asks one client for a picture of what it shows; its parts come as input with this number. One at a time.
+  /// Asks one client for a picture; its parts arrive as input with this number. One at a time.
   void ask_picture(std::uint32_t client, std::uint32_t number);
-  /// A card on one client's page, or on all (client 0). Level 0 info, 1 warning, 2 error. Too long a text is cut.
-  /// Kept ones are shown to later clients too, at most eight, until `forget_notice` with their title, or an empty one for all.
+  /// A card on one client's page, or on all (client 0). Level 0 info, 1 warning, 2 error. Long texts are cut. Kept ones
+  /// are shown to later clients too, at most eight, until `forget_notice` with their title, or an empty one for all.
   void notice(std::uint32_t client, std::uint8_t level, std::string_view title, std::string_view text,
               std::string_view hint = {}, bool is_kept = false);
   void forget_notice(std::string_view title);
@@ -111,13 +111,13 @@ class Room {
   /// for a place that is not finite, std::length_error for a kind above 32 bytes.
   void effect(std::string_view kind, const Vec3f& position);
 
-  /// What happened since the last call, in order of arrival. Moves of one grip that follow each other come as one.
+  /// Events since the last call, in order of arrival. Successive moves of one grip are merged.
   /// A `leave` ends the client's holds and selection: no grab_end precedes it.
   std::vector<InputEvent> take_input();
 
  private:
   friend class Server;
-  struct Link;  ///< to the server's thread, as long as there is one
+  struct Link;  ///< to the server's thread, while it exists
   Room(std::shared_ptr<Hub> hub, std::shared_ptr<Link> link);
   void deliver_if(bool is_due);
 
@@ -127,22 +127,22 @@ class Room {
 
 class Server {
  public:
-  /// Listens when it returns. Throws std::system_error when it cannot (port taken, host unknown) and
+  /// Listens when it returns. Throws std::system_error if it cannot (port in use, host unknown) and
   /// std::invalid_argument for an empty token.
   explicit Server(ServerOptions options);
-  /// Lets what is queued leave, for a quarter of a second at most, and closes all connections.
+  /// Sends queued frames, for at most a quarter of a second, and closes all connections.
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// A world that clients can ask for by its id, from any thread. A client that names none gets the first one.
+  /// A world that clients choose by its id, from any thread. A client without an id gets the first one.
   /// Throws std::invalid_argument for an id that is empty, above 128 bytes, not UTF-8, or in use.
   std::unique_ptr<Room> open(const std::string& world);
 
   std::uint16_t port() const;
   std::string url() const;                          ///< http://127.0.0.1:8080/?token=...
   std::string url(const std::string& world) const;  ///< the same with &world=...
-  /// Address for other machines, to which this one is `host`: https://192.168.0.2:8080/?token=... An empty world: the first.
+  /// Address for other machines; `host` is this one: https://192.168.0.2:8080/?token=... An empty world: the first.
   std::string url_at(const std::string& host, const std::string& world = {}) const;
   ServerStatistics statistics() const;
 

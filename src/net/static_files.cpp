@@ -58,7 +58,7 @@ bool is_inside(const fs::path& folder, const fs::path& file) {
   return end == folder.end();
 }
 
-/// Whether an Accept-Encoding header names a coding, and not with the weight zero.
+/// Whether an Accept-Encoding header contains a coding with a weight above zero.
 bool accepts(std::string_view header, std::string_view coding) {
   while (!header.empty()) {
     const std::size_t end = std::min(header.find(','), header.size());
@@ -93,7 +93,7 @@ std::optional<StaticFile> find_static_file(const fs::path& folder, std::string_v
   const fs::path root = fs::canonical(folder, error);
   if (error) return std::nullopt;
   StaticFile file;
-  file.path = fs::canonical(root / fs::path(name), error);  // follows links, so that a link to outside is seen
+  file.path = fs::canonical(root / fs::path(name), error);  // follows links, to detect links to outside
   if (error || !is_inside(root, file.path) || !fs::is_regular_file(file.path, error)) return std::nullopt;
   file.mime_type = mime_type_of(file.path);
   for (const auto& [coding, ending] : codings) {
@@ -109,7 +109,7 @@ std::optional<StaticFile> find_static_file(const fs::path& folder, std::string_v
   const auto changed = fs::last_write_time(file.path, error).time_since_epoch().count();
   if (error) return std::nullopt;
   file.etag = '"' + std::to_string(size) + '-' + std::to_string(changed) + '"';
-  // The page's build puts a hash of the contents into the names below assets/.
+  // The page's build adds a hash of the contents to the names below assets/.
   file.cache_control = path.rfind("/assets/", 0) == 0 ? "public, max-age=31536000, immutable" : "no-cache";
   return file;
 }

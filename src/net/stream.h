@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TCP connection that may be encrypted, with a time limit: one type for http and https, so that sessions need not be
-// templates. Meets Asio's AsyncReadStream and AsyncWriteStream, and what Beast's WebSocket asks of the layer below it.
+// A TCP connection that may be encrypted, with a time limit: one type for http and https, so that sessions are no
+// templates. Satisfies Asio's AsyncReadStream and AsyncWriteStream, and Beast's requirements for WebSocket.
 #pragma once
 
 #include "net/access.h"
@@ -35,16 +35,16 @@ class Stream {
   const boost::asio::ip::tcp::socket& socket() const { return const_cast<Stream*>(this)->lowest().socket(); }
   void expires_after(std::chrono::steady_clock::duration time) { lowest().expires_after(time); }
   void expires_never() { lowest().expires_never(); }
-  /// At once, without a farewell.
+  /// Closes immediately, without a shutdown.
   void close() { lowest().close(); }
 
-  /// From now on; a handshake has to follow.
+  /// Encrypts from now on; a handshake has to follow.
   void encrypt(boost::asio::ssl::context& context) {
     Plain plain = std::move(std::get<Plain>(layer_));
     layer_.emplace<Encrypted>(std::move(plain), context);
   }
-  /// `read`: what was read already, which is the beginning of the handshake. The handler gets how much of it was used; it must
-  /// be callable without that, too, which Beast 1.81 checks by mistake.
+  /// `read`: bytes read already, the start of the handshake. The handler gets the number of used ones; it must be
+  /// callable without that, too, as Beast 1.81 checks by mistake.
   template <class Buffers, class Handler>
   void async_handshake(const Buffers& read, Handler&& handler) {
     std::get<Encrypted>(layer_).async_handshake(boost::asio::ssl::stream_base::server, read,
@@ -60,7 +60,7 @@ class Stream {
     std::visit([&](auto& layer) { layer.async_write_some(buffers, std::forward<Handler>(handler)); }, layer_);
   }
 
-  /// Tells the other side that nothing more will be sent.
+  /// Tells the client that no more data will be sent.
   template <class Handler>
   void async_shutdown_send(Handler&& handler) {
     if (auto* encrypted = std::get_if<Encrypted>(&layer_)) {
@@ -71,7 +71,7 @@ class Stream {
     boost::asio::post(get_executor(), [handler = std::forward<Handler>(handler), error]() mutable { handler(error); });
   }
 
-  // Called by Beast's WebSocket, found by their argument.
+  // Called by Beast's WebSocket, found by argument-dependent lookup.
   friend void beast_close_socket(Stream& stream) { stream.close(); }
   friend void teardown(boost::beast::role_type role, Stream& stream, error_code& error) {
     using boost::beast::websocket::teardown;

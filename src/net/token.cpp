@@ -19,7 +19,7 @@ bool is_token(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
 }
 
-/// The token in `file`, or an empty string when there is none that can be used.
+/// The token in `file`, or an empty string if there is no usable one.
 std::string read_token(const fs::path& file) {
   std::string text = read_file(file);
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
@@ -48,7 +48,7 @@ std::string load_or_make_token(const fs::path& folder) {
   std::string token = make_token();
   const fs::path temporary = temporary_beside(file);
   write_secret(temporary, token + "\n");
-  // A link fails when another process was faster, so that both end up with that one's token; a rename would not.
+  // A link fails if another process was faster, so that both use that one's token; a rename would not fail.
   std::error_code no_link;
   fs::create_hard_link(temporary, file, no_link);
   if (no_link) {

@@ -5,7 +5,7 @@
 
 namespace iota::read {
 
-/// Age, lifetime and look of a particle; the look of an emitted one is that of its age on its emitter's curve.
+/// Age, lifetime and look of a particle; the look of an emitted one is interpolated on its emitter's curve by age.
 ParticleAttributes attributes(const model::Model&, const model::Attributes&);
 
 /// Null for a particle without attributes.

@@ -30,7 +30,7 @@ void Orientations::refresh(model::Model& model) {
       b.orientation = solid_pose(model, b.first_solid).orientation;
       return;
     }
-    if (b.rank < 2) {  // a ball may know how it is turned
+    if (b.rank < 2) {  // a ball may have an orientation
       const std::uint32_t a = b.rank > 0 ? model.particles[b.basis[0]].attributes : none;
       if (a != none && model.attributes[a].oriented) b.orientation = model.attributes[a].orientation;
       return;
@@ -38,7 +38,7 @@ void Orientations::refresh(model::Model& model) {
     const Vec3 x0 = model.position(b.basis[0]);
     const Vec3 old_x = rotate(b.orientation, {1, 0, 0});
     const Vec3 x = unit_or(model.position(b.basis[1]) - x0, old_x);
-    if (b.rank == 2) {  // carry the frame along by the smallest turn, and about itself by what it has spun
+    if (b.rank == 2) {  // turn the frame by the smallest rotation, and about its axis by the spin
       b.orientation = normalized(multiply(shortest_turn(old_x, x), b.orientation));
       if (ingredient::RodSpin* const spin = model.spins.find(slot)) {
         const double sign = dot(x, model.rod_axis(slot)) < 0 ? -1 : 1;
@@ -52,8 +52,8 @@ void Orientations::refresh(model::Model& model) {
     b.orientation = from_axes(x, y, cross(x, y));
   });
 
-  // Smallest turns add up to a twist between neighbors after a round trip. Rods are let back towards the frame of the
-  // rod they hang on, a little each time and never near a fold, so that chain links neither drift nor flip.
+  // Smallest rotations accumulate a twist between neighbors on closed paths. Frames of rods are turned back towards
+  // that of the rod above, a little each time and not near a fold, so that chain links neither drift nor flip.
   constexpr double share = 0.15, largest_turn = 0.15;
   model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
     if (b.rank != 2 || model.spins.has(slot)) return;

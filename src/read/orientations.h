@@ -5,10 +5,10 @@
 
 namespace iota::read {
 
-/// Frames for drawing, in the model's bodies. They are made when somebody reads them, and no force depends on them.
+/// Frames for drawing, stored in the model's bodies. They are updated when read, and no force depends on them.
 class Orientations {
  public:
-  /// Makes them for the present step and structure, unless they are.
+  /// Updates them for the present step and structure, if necessary.
   void refresh(model::Model&);
   void forget() { made_for_ = nothing; }
 

@@ -6,12 +6,12 @@
 
 #include <iota/pose_snapshot.h>
 
-/// What viewers are told of each step.
+/// The data of each step for viewers.
 namespace iota::read {
 
 PoseSnapshot poses(model::Model&, held::HeldForces&, Orientations&);
 
-/// As `structure_version`, but births and deaths of sparks do not count: what a viewer's list of bodies depends on.
+/// As `structure_version`, without births and deaths of sparks: changes when a viewer's list of bodies does.
 inline std::uint32_t scene_version(const model::Model& model) { return model.structure_version - model.spark_changes; }
 
 }  // namespace iota::read

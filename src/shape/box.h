@@ -15,7 +15,7 @@ namespace iota::shape {
 ///      |    o----|--x--   size.y, with its edges rounded by arcs of `rounding`, its corners by spheres
 ///      '---------'  -
 ///      |-size.x--|
-/// All points within `rounding` of a core that is smaller by it: with q_k = |p_k| - (size_k / 2 - rounding),
+/// All points within `rounding` of a smaller core: with q_k = |p_k| - (size_k / 2 - rounding),
 /// phi = |max(q, 0)| + min(max_k q_k, 0) - rounding, outside the core the distance.
 template <>
 struct Traits<Box> {
@@ -110,10 +110,10 @@ struct Traits<Box> {
   }
 
  private:
-  /// A point against the core.
+  /// A point relative to the core.
   struct From {
     double core[3], q[3], sign[3], length = 0;  // length: distance from the core
-    int largest = 0;                            // the nearest face of a point within
+    int largest = 0;                            // the nearest face of an inner point
     From(const Box& b, const Vec3& p) {
       const double at[3] = {p.x, p.y, p.z}, size[3] = {b.size.x, b.size.y, b.size.z};
       for (int k = 0; k < 3; ++k) {

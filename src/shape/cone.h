@@ -66,13 +66,13 @@ struct Traits<Cone> {
   }
   template <class Number>
   static Vec3 inside(const Cone& c, Number& number) {
-    const double part = std::cbrt(number(0, 1));  // of the way from the tip
+    const double part = std::cbrt(number(0, 1));  // share of the distance from the tip
     const auto [y, z] = in_disc(number);
     return {c.length * (0.5 - part), c.radius * part * y, c.radius * part * z};
   }
 
  private:
-  /// A point against the triangle that the cone is in a half plane through its axis.
+  /// A point relative to the cone's triangle in a half plane through its axis.
   struct From {
     enum { base, side, rim, tip } nearest;
     double base_distance, side_distance;  // from the lines, negative inside

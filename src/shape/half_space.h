@@ -11,7 +11,7 @@ namespace iota::shape {
 ///         |
 ///  -------o-------   all points p with normal . p <= 0: the ground, a wall
 ///  /////////////////
-/// phi = normal . p / |normal|. It has no end, so no volume.
+/// phi = normal . p / |normal|. It is infinite, so without a volume.
 template <>
 struct Traits<HalfSpace> {
   static constexpr std::string_view name = "half_space",

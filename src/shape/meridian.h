@@ -7,8 +7,8 @@
 
 namespace iota::shape {
 
-/// A point in the half plane through it and the x axis: how far along the axis, how far from it. Shapes that look the same
-/// from all sides of the x axis are plane figures there.
+/// A point in the half plane through it and the x axis: its place along the axis and distance from it. Shapes of
+/// revolution about the x axis are plane figures there.
 struct Meridian {
   double x, rho;
   Vec3 out, round;  ///< unit vectors away from the axis and around it
@@ -19,7 +19,7 @@ struct Meridian {
   }
   Vec3 at(double along, double away) const { return Vec3{along, 0, 0} + away * out; }
 
-  /// Derivatives in space of a function with these ones by (x, rho). On the axis the slope away from it is taken as 0.
+  /// Derivatives in space of a function with these derivatives by (x, rho). On the axis the radial slope is taken as 0.
   Level level(double value, double by_x, double by_rho, double by_xx, double by_xrho, double by_rho_rho) const {
     const Vec3 axis{1, 0, 0};
     Level l{value, by_x * axis + by_rho * out, {}};
@@ -28,8 +28,8 @@ struct Meridian {
     if (rho > 0) l.hessian += (by_rho / rho) * Mat3::outer(round, round);
     return l;
   }
-  /// Of the distance from a sharp edge, the circle of radius `away` at `along`. Nearer than `blunt` the curvature is as it
-  /// is there: Newton's matrix must stay finite at the edge itself.
+  /// Of the distance from a sharp edge, the circle of radius `away` at `along`. Nearer than `blunt` the curvature is
+  /// constant, so that Newton's matrix stays finite at the edge.
   Level edge(double along, double away, double blunt) const {
     const double u = x - along, v = rho - away, distance = std::sqrt(u * u + v * v);
     const double a = u / distance, b = v / distance, bend = 1 / std::max(distance, blunt);
@@ -37,8 +37,8 @@ struct Meridian {
   }
 };
 
-/// Of these quotients of a shape's scale: within it the curvature at sharp edges is bounded; level sets at that distance
-/// stand for a sharp surface where a normal is needed (see surface_pair.h).
+/// Relative to a shape's scale: within this distance the curvature at sharp edges is bounded; level sets at that
+/// distance replace a sharp surface where a normal is needed (see surface_pair.h).
 inline constexpr double edge_bluntness = 0.01, edge_skin = 0.1;
 
 /// f(d) = d + d^2 / 2r of a level d: what makes the distance from a curve or an axis quadratic.

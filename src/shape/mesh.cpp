@@ -13,7 +13,7 @@ namespace iota::shape {
 
 namespace {
 
-/// Every edge must be run through once each way.
+/// Every edge must occur once in each direction.
 void require_closed(const Mesh& mesh) {
   struct Edge {
     std::uint32_t from, to;
@@ -37,7 +37,7 @@ void require_closed(const Mesh& mesh) {
   }
 }
 
-/// The point of triangle a b c that is nearest to p (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+/// The point of triangle a b c nearest to p (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
 Vec3 closest_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),

@@ -5,17 +5,17 @@
 
 namespace iota::shape {
 
-/// What a closed surface of triangles encloses; from outside each triangle runs counter-clockwise. Where its origin is, is
-/// up to whoever made it. Its numbers are not sizes: a system keeps them outside its tables, under a key.
+/// The volume within a closed surface of triangles; from outside each triangle is counter-clockwise. Its origin is
+/// arbitrary. Its numbers are not sizes: a system keeps them outside its tables, under a key.
 template <>
 struct Traits<Mesh> {
   static constexpr std::string_view name = "mesh", doc = "What a closed surface of triangles encloses.";
   static constexpr std::tuple<> sizes{};
   static void check(const Mesh&) {}  ///< `mass` does it
   static std::uint64_t key(const Mesh&);
-  static double scale(const Mesh&);  ///< of the sphere about its origin that holds it
+  static double scale(const Mesh&);  ///< of the enclosing sphere about its origin
 
-  static MassProperties mass(const Mesh&);  ///< throws where the surface is not closed, see mass_properties
+  static MassProperties mass(const Mesh&);  ///< throws unless the surface is closed, see mass_properties
   static bool is_within(const Mesh&, const Vec3& p);
   static Vec3 closest(const Mesh&, const Vec3& p);
   static Vec3 support(const Mesh&, const Vec3& d);

@@ -126,7 +126,7 @@ Vec3 support(const Shape& shape, const Vec3& direction) {
   return std::visit([&]<class S>(const S& s) { return Traits<S>::support(s, direction); }, shape);
 }
 
-// Sphere tracing: the distance to the surface is always safe to go (Hart 1996). A ray that runs along a surface takes many
+// Sphere tracing: a step of the distance to the surface is always safe (Hart 1996). A ray along a surface takes many
 // steps.
 std::optional<double> ray(const Shape& shape, const Vec3& from, const Vec3& unit, double farthest) {
   const double scale = std::visit([]<class S>(const S& s) { return Traits<S>::scale(s); }, shape);
@@ -152,7 +152,7 @@ Mesh triangulate(const Shape& shape, std::uint32_t fineness) {
         if constexpr (requires { Traits<S>::triangulate(s, fineness); })
           return Traits<S>::triangulate(s, fineness);
         else if constexpr (Massive<S>) {
-          // Directions spread evenly: a spiral from pole to pole (Vogel 1979).
+          // Uniform directions: a spiral from pole to pole (Vogel 1979).
           std::vector<Vec3> points;
           for (std::uint32_t i = 0; i < fineness; ++i) {
             const double along = 1 - (2.0 * i + 1) / fineness, away = std::sqrt(1 - along * along);

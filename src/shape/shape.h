@@ -12,10 +12,10 @@
 #include <string_view>
 #include <vector>
 
-/// What can be asked of any shape: folds over the list. Points and directions are in the shape's frame, lengths in m.
+/// Functions of any shape: folds over the list. Points and directions are in the shape's frame, lengths in m.
 namespace iota::shape {
 
-/// A shape as plain data, for tables and commands. What a key stands for lives outside the tables.
+/// A shape as plain data, for tables and commands. The object of a key is outside the tables.
 struct Data {
   std::uint32_t kind = 0, padding = 0;  ///< number in the list
   std::array<double, 4> sizes{};        ///< in the order of the list, those of three numbers as three
@@ -28,7 +28,7 @@ Shape from_data(const Data&);
 std::string_view name(const Shape&);
 /// The names of all sizes, one for each number of Data: "size_x", "rounding".
 std::vector<std::string> size_names(const Shape&);
-/// Throws std::invalid_argument for sizes that are out of range or do not go together. (A mesh's triangles are checked
+/// Throws std::invalid_argument for sizes that are out of range or inconsistent. (A mesh's triangles are checked
 /// where its mass is calculated.)
 void check(const Shape&);
 /// Whether it has a volume, and so mass properties.
@@ -40,10 +40,10 @@ bool is_within(const Shape&, const Vec3& p);
 Vec3 closest(const Shape&, const Vec3& p);
 /// From the surface, negative inside.
 double distance(const Shape&, const Vec3& p);
-/// A farthest point in a direction that is not zero; infinite where the shape is.
+/// A farthest point in a direction that is not zero; infinite if the shape is.
 Vec3 support(const Shape&, const Vec3& direction);
-/// How far a ray from a point, along a unit vector, goes until it meets the surface or, started inside, at once (0).
-/// Nothing where it misses: goes by more than `farthest`.
+/// Distance along a ray from a point, along a unit vector, to the surface; 0 for a start inside. Nothing if there is no
+/// hit within `farthest`.
 std::optional<double> ray(const Shape&, const Vec3& from, const Vec3& unit,
                           double farthest = std::numeric_limits<double>::infinity());
 
@@ -53,11 +53,11 @@ struct Bounds {
 };
 Bounds bounds(const Shape&);
 
-/// A closed mesh with its vertices on the surface, finer for a higher number: of a convex shape the hull of that many
-/// points. Throws std::invalid_argument for a shape without end.
+/// A closed mesh with its vertices on the surface, finer for a higher number: for a convex shape the hull of that many
+/// points. Throws std::invalid_argument for an infinite shape.
 Mesh triangulate(const Shape&, std::uint32_t fineness);
 
-/// A place anywhere within, evenly. number(low, high) draws a number. Throws std::invalid_argument where there is none.
+/// A uniformly random place within. number(low, high) draws a number. Throws std::invalid_argument if there is none.
 bool is_source(const Shape&);
 Vec3 inside(const Shape&, const std::function<double(double, double)>& number);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// One more shape: a struct and its name in the variant of iota/shapes.h, a header here, a line below, a line in
-// protocol/shapes.json and a file in web/src/scene/shapes. Nothing else names it.
+// A new shape needs a struct and its name in the variant of iota/shapes.h, a header here, a line below, a line in
+// protocol/shapes.json and a file in web/src/scene/shapes. No other code names it.
 #include "shape/box.h"
 #include "shape/capsule.h"
 #include "shape/cone.h"

@@ -10,29 +10,29 @@
 
 namespace iota::shape {
 
-/// The surface phi(p) = 0 of a shape or of a function, as constraints hold points on it. See `Holding`.
+/// The surface phi(p) = 0 of a shape or of a function, for constraints on points. See `Holding`.
 class Surface {
  public:
   virtual ~Surface() = default;
   virtual Level at(const Vec3& p) const = 0;
   virtual double scale() const = 0;  ///< a length to measure violations by, m
-  /// Where its edges are sharp it has no normals there: take phi(p) - skin_level() instead, a surface that is rounded and
-  /// farther out by skin(), m. 0 where it is smooth.
+  /// A sharp edge has no normals: use phi(p) - skin_level() instead, a rounded surface that is farther out by skin(),
+  /// m. 0 if it is smooth.
   virtual double skin() const { return 0; }
   virtual double skin_level() const { return 0; }
-  /// Why it is nowhere any more; empty while it is somewhere.
+  /// The reason why the surface failed; empty if it has not.
   virtual std::string_view failure() const { return {}; }
 };
 
-/// Throws std::invalid_argument for sizes that are out of range, and for shapes that cannot hold points on them.
+/// Throws std::invalid_argument for sizes that are out of range, and for shapes that cannot constrain points.
 std::shared_ptr<const Surface> make_surface(const Shape&);
 
-/// phi given by a function; derivatives by central differences. Once the function has thrown, or was not finite, it is not
-/// called again and the surface is nowhere: phi and its derivatives are zero, which holds nothing. (A phi that is not a
-/// number would take Newton's method, and all that is solved together with it, down.)
+/// phi given by a function; derivatives by central differences. Once the function has thrown, or was not finite, it is
+/// not called again: phi and its derivatives are then zero, which constrains nothing. (A phi that is not a number would
+/// make Newton's method fail for the whole island.)
 class FunctionSurface final : public Surface {
  public:
-  /// Without a function it has failed from the start. size: of what it describes, m.
+  /// Without a function it has failed from the start. size: of the surface, m.
   FunctionSurface(std::function<double(const Vec3&)> phi, double size);
   Level at(const Vec3& p) const override;
   double scale() const override { return size_; }

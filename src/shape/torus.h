@@ -35,7 +35,7 @@ struct Traits<Torus> {
   static MassProperties mass(const Torus& t) {
     const double pi = std::numbers::pi, a2 = t.tube * t.tube, r = t.radius, s = t.stretch;
     const double bends = 2 * pi * pi * r * a2, straights = 2 * pi * a2 * s, volume = bends + straights;
-    // Mean squares of a whole ring across its axis; of half a ring also the mean distance from its diameter.
+    // Mean squares of a whole ring normal to its axis; of half a ring also the mean distance from its diameter.
     const double across = (r * r + 0.75 * a2) / 2, middle = (4 * r * r + a2) / (2 * pi * r);
     const double x = across + bends / volume * (s * s / 4 + s * middle) + straights / volume * (s * s / 12 - across);
     const double y = across + straights / volume * (r * r + a2 / 4 - across);
@@ -70,7 +70,7 @@ struct Traits<Torus> {
     for (;;) {
       const auto [v, w] = in_disc(number);
       const double s = number(0, whole), half = s < whole / 2 ? 1 : -1, along = half > 0 ? s : s - whole / 2;
-      // Round a bend there is more room at the outer side of the wire.
+      // In a bend there is more volume at the outer side of the wire.
       const double out = t.radius + t.tube * v, room = along < bend ? out : t.radius;
       if (number(0, t.radius + t.tube) > room) continue;
       if (along >= bend) return {along - bend - t.stretch / 2, half * out, t.tube * w};
@@ -78,7 +78,7 @@ struct Traits<Torus> {
       return {half * (t.stretch / 2 + out * std::cos(angle)), out * std::sin(angle), t.tube * w};
     }
   }
-  /// It is not convex, so its triangles are laid round the wire.
+  /// It is not convex, so its triangles follow the wire.
   static Mesh triangulate(const Torus& t, std::uint32_t columns) {
     Mesh mesh;
     const std::uint32_t rows = 4 * columns;
@@ -100,7 +100,7 @@ struct Traits<Torus> {
   }
 
  private:
-  /// How far along x beyond the straight wires.
+  /// Distance along x beyond the straight wires.
   static double beyond(const Torus& t, const Vec3& p) { return p.x - std::clamp(p.x, -t.stretch / 2, t.stretch / 2); }
   static Vec3 nearest_on_line(const Torus& t, const Vec3& p) {
     const double u = beyond(t, p), rho = std::hypot(u, p.y);

@@ -15,8 +15,8 @@
 #include <string_view>
 #include <tuple>
 
-/// Shapes: one header each, listed in shape_list.h. All have one frame convention: the origin is at the center, what is
-/// long lies along x, sizes are full (but radii). What is drawn, what weighs and what constraints hold is one and the same.
+/// Shapes: one header each, listed in shape_list.h. All have one frame convention: the origin is at the center, the
+/// long axis is x, sizes are full (except radii). Drawing, mass and constraints use the same shape.
 namespace iota::shape {
 
 /// phi and its derivatives at a point, in the shape's frame.
@@ -26,11 +26,11 @@ struct Level {
   Mat3 hessian;
 };
 
-/// What a size may be.
+/// The range of a size.
 enum class Range {
   length,       ///< between shortest and longest
   length_or_0,  ///< 0, which is the default, or a length
-  direction,    ///< any vector but zero; has a default
+  direction,    ///< any vector except zero; has a default
 };
 inline constexpr double shortest = 1e-9, longest = 1e9;  ///< m
 
@@ -45,8 +45,8 @@ struct Size {
 template <class S, class T>
 Size(std::string_view, T S::*, Range, std::string_view) -> Size<S, T>;
 
-/// What is known of a shape S. Its header specializes this template. `Known` lists what it must answer; what else it may
-/// answer is below.
+/// The properties of a shape S. Its header specializes this template. `Known` lists the required functions; optional
+/// ones are below.
 template <class S>
 struct Traits;
 
@@ -55,32 +55,32 @@ concept Known = requires(const S& s, const Vec3& p) {
   { Traits<S>::name } -> std::convertible_to<std::string_view>;
   { Traits<S>::doc } -> std::convertible_to<std::string_view>;
   Traits<S>::sizes;                                             ///< tuple of Size: those that are plain numbers
-  { Traits<S>::check(s) };                                      ///< throws where sizes, each valid, do not go together
+  { Traits<S>::check(s) };                                      ///< throws if sizes, each valid, are inconsistent
   { Traits<S>::closest(s, p) } -> std::same_as<Vec3>;           ///< the nearest point of the surface
   { Traits<S>::is_within(s, p) } -> std::convertible_to<bool>;  ///< inside, or on the surface
   { Traits<S>::support(s, p) } -> std::same_as<Vec3>;           ///< a farthest point along p, which is not zero
   { Traits<S>::scale(s) } -> std::convertible_to<double>;       ///< a length to measure violations by, m
 };
 
-/// It has a volume, and so a mass: mass(s).
+/// It has a volume and so a mass: mass(s).
 template <class S>
 concept Massive = requires(const S& s) {
   { Traits<S>::mass(s) } -> std::same_as<MassProperties>;
 };
 /// A constraint can hold a point on it: level(s, p) is zero on the surface, negative inside, and near the surface about
-/// the distance. Where a quadratic does it is one, which the energy-keeping scheme then follows exactly.
+/// the distance. It is quadratic if possible, which the energy-keeping scheme follows exactly.
 template <class S>
 concept Holding = requires(const S& s, const Vec3& p) {
   { Traits<S>::level(s, p) } -> std::same_as<Level>;
 };
-/// Its surface has sharp edges, so no normals there; surfaces of constant level outside are rounded. skin(s): how far
-/// outside one of them is, m, 0 where sizes leave no sharp edge; skin_level(s): phi there.
+/// Its surface has sharp edges without normals; surfaces of constant level outside are rounded. skin(s): distance of
+/// one of them, m, 0 if the sizes leave no sharp edge; skin_level(s): phi there.
 template <class S>
 concept Edged = requires(const S& s) {
   { Traits<S>::skin(s) } -> std::convertible_to<double>;
   { Traits<S>::skin_level(s) } -> std::convertible_to<double>;
 };
-/// Particles can be born in it, evenly: inside(s, number), where number(low, high) draws a number.
+/// Particles can be born in it, uniformly: inside(s, number), where number(low, high) draws a number.
 template <class S>
 concept Source = requires(const S& s, double (*number)(double, double)) {
   { Traits<S>::inside(s, number) } -> std::same_as<Vec3>;

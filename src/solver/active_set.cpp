@@ -11,7 +11,7 @@ namespace iota::solver {
 
 namespace {
 
-constexpr double closed_gap = 1e-6;  // relative: below it a bounded row is met
+constexpr double closed_gap = 1e-6;  // relative: below it a bounded row is satisfied
 
 /// Whether velocities differ from the rate of a hold row by more than the curvature of its coordinate explains within a
 /// step. Otherwise the mid-point rule makes a motor that was just switched on oscillate around its target speed.
@@ -123,25 +123,28 @@ bool ActiveSet::choose(Problem& problem, const Stage& stage, const Vec3* x) {
   return changed;
 }
 
-void ActiveSet::begin_impulses(Problem& problem, bool as_solved) {
+void ActiveSet::begin_impulses(Problem& problem) {
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     if (!pool.has_laws()) return;
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       double g[C::rows];
-      pool.value(k, problem.position.data(), as_solved ? 1 : 0, g);
+      pool.value(k, problem.position.data(), 0, g);
       for (int r = 0; r < C::rows; ++r) {
         const RowLaw& law = pool.law(k)[r];
         RowState& state = pool.states[k * C::rows + r];
-        if (as_solved) {
-          if (law.is_compliant()) state.side = 1;
-          continue;
-        }
         const double touching = closed_gap * pool.items[k].reference_length();
         const bool pulls = law.upper_impulse() > 0 && g[r] > -touching;
         const bool pushes = law.lower_impulse() < 0 && g[r] < touching;
         state.side = pulls || pushes ? 0 : 1;
       }
     }
+  });
+}
+
+void ActiveSet::begin_impulses_after_step(Problem& problem) {
+  problem.for_each_constraint_pool([](auto& pool) {
+    for (std::size_t row = 0; row < pool.laws.size(); ++row)
+      if (pool.laws[row].is_compliant()) pool.states[row].side = 1;
   });
 }
 

@@ -8,24 +8,25 @@
 
 namespace iota::solver {
 
-/// On which side rows with bounds (RowLaw) are: at a bound, or free. A primal-dual active set (Hintermueller, Ito, Kunisch
-/// 2002): at each iteration a row is at the bound beyond which lambda + g / (natural compliance) lies, or free. All rows
-/// change at once while that lessens how many are wrong, else one at a time, lowest first, which cannot cycle (Judice and
-/// Pires 1994). Sides and multipliers live in the pools.
+/// The sides of rows with bounds (RowLaw): at a bound, or free. A primal-dual active set (Hintermueller, Ito, Kunisch
+/// 2002): at each iteration a row is at the bound beyond which lambda + g / (natural compliance) lies, or free. All
+/// rows change at once while that reduces the number of wrong ones, else one at a time, lowest first, which cannot
+/// cycle (Judice and Pires 1994). Sides and multipliers are in the pools.
 class ActiveSet {
  public:
-  /// Sides as the multipliers from the last step tell: nothing else needs to be remembered between steps.
+  /// Sets sides from the multipliers of the last step; no other state is kept between steps.
   void begin(Problem&, const Stage&);
-  /// Moves rows between their bounds and freedom, as positions x and multipliers tell; returns whether any did. What is
-  /// within the tolerance stays where it is.
+  /// Switches rows between bounds and free, by positions x and multipliers; returns whether any changed. Rows within
+  /// the tolerance do not change.
   bool choose(Problem&, const Stage&, const Vec3* x);
-  /// Rows that came from a bound to their equation since `begin`.
+  /// Number of rows that became free since `begin`.
   static int count_met(const Problem&);
 
-  /// Which bounded rows take part in a projection of velocities. `as_solved`: those that the latest solve left free, be
-  /// they motors that have reached their speed or friction that sticks; else those that forbid something and have no gap.
-  static void begin_impulses(Problem&, bool as_solved);
-  /// Lets go of rows whose impulse, by unknown, went the wrong way; returns whether there were any.
+  /// Selects bounded rows for a projection of velocities: those with one bound and no gap ...
+  static void begin_impulses(Problem&);
+  /// ... or those that the latest solve left free, including motors at their speed and sticking friction.
+  static void begin_impulses_after_step(Problem&);
+  /// Releases rows whose impulse, by unknown, has the wrong sign; returns whether there were any.
   static bool release_impulses(Problem&, std::span<const double> impulses);
 
  private:

@@ -22,6 +22,10 @@ struct NoGradients {
 template <bool Midpoint, class C>
 using MeanGradientsOf = std::conditional_t<Midpoint, MeanGradients<C>, NoGradients>;
 
+/// A small constraint is copied, so that the compiler knows that writes do not change it.
+template <class C>
+using Kept = std::conditional_t<sizeof(C) <= 32, const C, const C&>;
+
 }  // namespace
 
 template <bool Midpoint>
@@ -58,8 +62,10 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
   if (has_extreme_masses()) resistance_.assign(problem.mass.begin(), problem.mass.end());
   worst_ = violation_ = largest_multiplier_ = 0;
   problem.for_each_constraint_pool([&](const auto& pool) {
+    if (pool.items.empty()) return;
     pool.has_laws() ? add_rows<Midpoint, true>(problem, stage, pool, x)
                     : add_rows<Midpoint, false>(problem, stage, pool, x);
+    if (has_extreme_masses()) add_resistance<Midpoint>(stage, pool, problem.position.data(), x);
   });
   double worst_force = 0, mass_there = 1, lightest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < problem.size(); ++i) {
@@ -71,7 +77,7 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
   }
   const double scale = inverse_scale(stage);
   Residual found{.rows = worst_, .violation = violation_, .imbalance = worst_force * scale / mass_there};
-  // Forces that cancel leave round-off; do not chase it. Enormous multipliers mean a conflict, not noise.
+  // Canceling forces leave round-off, which counts as zero. Enormous multipliers mean a conflict, not noise.
   found.noise = std::min(round_off * largest_multiplier_ * scale / lightest, largest_noise);
   Largest worst{worst_};
   worst.add(found.imbalance > found.noise ? found.imbalance : 0);
@@ -79,13 +85,17 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
   return found;
 }
 
-// The constraint forces of a pool, and what is left of its equations.
+// The constraint forces of a pool, and the residuals of its equations.
 template <bool Midpoint, bool Laws, class C>
 void Assembly::add_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x) {
   const Vec3* const x0 = problem.position.data();
+  const double start = stage.fraction_start, end = stage.fraction;
+  const double give = row_compliance_ * stage.compliance / stage.inertia;
+  const bool gives = stage.compliance != 0;
+  double largest_multiplier = largest_multiplier_;
   Largest worst{worst_}, violation{violation_};
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
-    const C& c = pool.items[k];
+    const Kept<C> c = pool.items[k];
     const double* const lambda = pool.multiplier(k);
     if constexpr (Laws)
       if (is_out_of_play(pool, k)) {
@@ -93,28 +103,23 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
         continue;
       }
     double g[C::rows];
-    pool.value(k, x, stage.fraction, g);
+    pool.value(k, x, end, g);
     double compliance = 0, compliances[C::rows] = {};
-    const Gradients<C> gradients(c, x, stage.fraction);
-    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, stage.fraction_start, x, stage.fraction);
+    const Gradients<C> gradients(c, x, end);
+    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, start, x, end);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows];
       gradients.of_node(i, rows);
       if constexpr (Laws)
         for (int r = 0; r < C::rows; ++r) compliances[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
-      else if (stage.compliance != 0)
+      else if (gives)
         compliance += dot(rows[0], rows[0]) / problem.mass[c.nodes[i]];
       Vec3 mean_rows[C::rows];
       if constexpr (Midpoint) means.of_node(i, rows, mean_rows);
-      for (int r = 0; r < C::rows; ++r) {
-        const Vec3 direction = Midpoint ? mean_rows[r] : rows[r];
-        add_force(c.nodes[i], lambda[r] * direction);
-        if (has_extreme_masses())
-          resistance_[c.nodes[i]] += std::abs(lambda[r]) * norm(direction) * inverse_scale(stage);
-      }
+      for (int r = 0; r < C::rows; ++r) add_force(c.nodes[i], lambda[r] * (Midpoint ? mean_rows[r] : rows[r]));
     }
     const double per_length = 1 / c.reference_length();
-    compliance *= row_compliance_ * stage.compliance / stage.inertia;
+    compliance *= give;
     for (int r = 0; r < C::rows; ++r) {
       double value, gap = g[r];
       if constexpr (Laws) {
@@ -133,13 +138,32 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
       unknowns_[pool.slots[k].unknown + r] = value;
       worst.add(std::abs(value) * per_length);
       violation.add(std::abs(gap) * per_length);
-      largest_multiplier_ = std::max(largest_multiplier_, std::abs(lambda[r]));
+      largest_multiplier = std::max(largest_multiplier, std::abs(lambda[r]));
     }
   }
-  worst_ = worst.value, violation_ = violation.value;
+  worst_ = worst.value, violation_ = violation.value, largest_multiplier_ = largest_multiplier;
 }
 
-void Assembly::add_to_node(std::uint32_t node, double value) {
+// The stiffness of rows against the motion of their points: see weigh.
+template <bool Midpoint, class C>
+void Assembly::add_resistance(const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x0, const Vec3* x) {
+  for (std::size_t k = 0; k < pool.items.size(); ++k) {
+    const C& c = pool.items[k];
+    const Gradients<C> gradients(c, x, stage.fraction);
+    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, stage.fraction_start, x, stage.fraction);
+    for (int i = 0; i < c.node_count(); ++i) {
+      Vec3 rows[C::rows], directions[C::rows];
+      gradients.of_node(i, rows);
+      if constexpr (Midpoint) means.of_node(i, rows, directions);
+      for (int r = 0; r < C::rows; ++r)
+        resistance_[c.nodes[i]] +=
+            std::abs(pool.multiplier(k)[r]) * norm(Midpoint ? directions[r] : rows[r]) * inverse_scale(stage);
+    }
+  }
+}
+
+inline void Assembly::add_to_node(std::uint32_t node,
+                                  double value) {  // said again: as an exported function it is not inlined
   double* const d = factor_.diagonals() + node_diagonal_[node];
   const int s = node_stride_[node];
   d[0] += value, d[s + 1] += value, d[2 * s + 2] += value;
@@ -211,6 +235,7 @@ void Assembly::assemble(const Problem& problem, const Stage& stage, const Vec3* 
   for (std::uint32_t i = 0; i < problem.size(); ++i) add_to_node(i, stage.inertia * problem.mass[i]);
   for (const auto& c : problem.mass_couplings) add_to_pair<Midpoint>(c.slot, stage.inertia * c.mass);
   problem.for_each_constraint_pool([&](const auto& pool) {
+    if (pool.items.empty()) return;
     pool.has_laws() ? assemble_rows<Midpoint, true>(problem, stage, pool, x, hessian)
                     : assemble_rows<Midpoint, false>(problem, stage, pool, x, hessian);
   });
@@ -226,8 +251,9 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
   const bool clamp = hessian == Hessian::clamped;
   double *const diagonals = factor_.diagonals(), *const lower = factor_.lower();
   [[maybe_unused]] double* const upper = factor_.upper();
+  const double start = stage.fraction_start, end = stage.fraction;
   for (std::size_t k = 0; k < pool.items.size(); ++k) {
-    const C& c = pool.items[k];
+    const Kept<C> c = pool.items[k];
     const auto& slots = pool.slots[k];
     if constexpr (Laws)
       if (is_out_of_play(pool, k)) {
@@ -235,8 +261,8 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
         continue;
       }
     double compliance = 0, compliances[C::rows] = {};
-    const Gradients<C> gradients(c, x, stage.fraction);
-    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, stage.fraction_start, x, stage.fraction);
+    const Gradients<C> gradients(c, x, end);
+    [[maybe_unused]] const MeanGradientsOf<Midpoint, C> means(c, x0, start, x, end);
     for (int i = 0; i < c.node_count(); ++i) {
       Vec3 rows[C::rows], directions[C::rows];
       gradients.of_node(i, rows);

@@ -10,29 +10,29 @@
 
 namespace iota::solver {
 
-/// By how much the equations of a step are missed; all scaled, dimensionless.
+/// Residuals of the equations of a step; all scaled, dimensionless.
 struct Residual {
-  double worst = 0;      ///< of all equations; forces that are round-off do not count
+  double worst = 0;      ///< of all equations, without forces that are round-off
   double rows = 0;       ///< of the constraints' equations
   double violation = 0;  ///< of the constraints alone, as a fraction of their reference lengths: compliance lets
                          ///< conflicting ones "converge" without being met
   double imbalance = 0;  ///< of the forces
-  double noise = 0;      ///< what of the imbalance is round-off
+  double noise = 0;      ///< part of the imbalance that is round-off
 };
 
-/// Constraint curvature and force stiffness: as they are; made positive semi-definite (tension only); or left out.
+/// Constraint curvature and force stiffness: exact; made positive semi-definite (tension only); or left out.
 enum class Hessian { exact, clamped, none };
 
-/// The equations of a step (Stage) for one problem: their residual, their matrix and its factors. Knows where each node,
-/// row and coupling lies in the matrix.
+/// The equations of a step (Stage) for one problem: their residual, their matrix and its factors. Has the place of each
+/// node, row and coupling in the matrix.
 class Assembly {
  public:
   /// Analyzes the structure of the problem; call again after nodes, constraints or forces were added or removed ...
   void compile(Problem&);
-  /// ... or, if they were added and removed by the problem's own functions, keep up with that: removes the nodes that are
-  /// to go and finds new places for what is near the changes, for a fraction of the time.
+  /// ... or, if they were added and removed by the problem's own functions, follow the change: removes marked nodes and
+  /// finds new places near the changes, in a fraction of the time.
   void follow(Problem&);
-  /// Gives slots to the forces that have none. False if one couples points that were not coupled: then neither.
+  /// Gives slots to the forces that have none. False, without a change, if one couples points that were not coupled.
   bool place_forces(Problem&) const;
 
   /// At positions x = x0 + h v0 + u and the pools' multipliers; by unknown in `residuals()`.
@@ -41,9 +41,9 @@ class Assembly {
   /// The derivative of the residual.
   template <bool Midpoint>
   void assemble(const Problem&, const Stage&, const Vec3* x, Hessian);
-  /// Turns residuals into the step that removes them, matrix^-1 residuals, to be subtracted: with the latest factors ...
+  /// Converts residuals to the Newton step, matrix^-1 residuals, to be subtracted: with the latest factors ...
   void solve() { factor_.solve(unknowns_); }
-  /// ... or with new ones. False where pivots have signs that a minimum under constraints would not give.
+  /// ... or with new ones. False if the signs of pivots are not those of a constrained minimum.
   template <bool Midpoint>
   bool factor_and_solve(const Problem&, const Stage&, const Vec3* x, Hessian);
 
@@ -56,9 +56,9 @@ class Assembly {
     return {d[0], d[1], d[2]};
   }
   double reference_length() const { return reference_length_; }  ///< mean of the constraints', m
-  /// Forces count as what they move a point by in a step, in mean constraint lengths.
+  /// Forces are scaled to the displacement of a point in a step, in mean constraint lengths.
   double inverse_scale(const Stage& stage) const { return 1 / (stage.inertia * reference_length_); }  ///< times mass
-  /// Whether making a factor costs much more than an iteration does otherwise.
+  /// Whether a factorization costs much more than the rest of an iteration.
   bool is_dear() const { return factor_.is_dear(); }
   const BlockPattern& pattern() const { return pattern_; }
   BlockFactor& factor() { return factor_; }
@@ -69,7 +69,7 @@ class Assembly {
   template <class F>
   void set_slots(ForcePool<F>&, std::size_t item) const;
   template <class IsDue>
-  void place_items(Problem&, const CouplingGraph&, IsDue);
+  void place_items(Problem&, IsDue);
   void place_nodes(const Problem&);
   void weigh(const Problem&);
   bool has_extreme_masses() const { return row_compliance_ < 1; }
@@ -78,6 +78,8 @@ class Assembly {
   void add_momentum(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
   template <bool Midpoint, bool Laws, class C>
   void add_rows(const Problem&, const Stage&, const ConstraintPool<C>&, const Vec3* x);
+  template <bool Midpoint, class C>
+  void add_resistance(const Stage&, const ConstraintPool<C>&, const Vec3* x0, const Vec3* x);
 
   void add_force(std::uint32_t node, const Vec3& force) {
     double* const r = unknowns_.data() + node_unknown_[node];
@@ -100,10 +102,10 @@ class Assembly {
   std::vector<std::uint8_t> node_stride_;
   std::vector<double> unknowns_;  // residuals, and then the step
   double reference_length_ = 1;
-  /// Only where masses are extreme: of each node its mass, and what the rows that pull at it resist like, kg.
+  /// Only for extreme masses: of each node its mass plus the equivalent mass of its rows, kg.
   std::vector<double> resistance_;
-  double row_compliance_ = 1;  ///< a factor of the stage's, below 1 where masses are extreme
-  double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // of the rows, while a residual is being summed up
+  double row_compliance_ = 1;                                  ///< a factor of the stage's, below 1 for extreme masses
+  double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // of the rows, during the sum of a residual
 };
 
 }  // namespace iota::solver

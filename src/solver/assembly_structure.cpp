@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where things lie in the matrix: set by an analysis, or kept up with a change of the problem.
+// Places in the matrix: set by an analysis, or updated to follow a change of the problem.
 #include "solver/assembly.h"
 
 #include "base/slack.h"
+#include "solver/sparse/pattern_builder.h"
 
 #include <algorithm>
 #include <limits>
@@ -32,25 +33,23 @@ void Assembly::set_slots(ForcePool<F>& pool, std::size_t item) const {
 
 namespace {
 
-/// Constraints in the order of the pools and of their items, with the unknowns that they have had.
-CouplingGraph graph_of(const Problem& problem) {
-  CouplingGraph graph;
-  graph.node_count = static_cast<std::uint32_t>(problem.size());
-  graph.places = problem.position;
-  graph.couplings.reserve(problem.mass_couplings.size());
-  std::size_t constraints = 0;
-  problem.for_each_constraint_pool([&](const auto& pool) { constraints += pool.items.size(); });
-  graph.constraints.reserve(constraints);
-  graph.nodes.reserve(2 * constraints);
-  for (const auto& c : problem.mass_couplings) graph.couplings.push_back({c.a, c.b});
+/// Adds the items of which takes(nodes) says so: constraints in the order of the pools and of their items, with the unknowns
+/// that they have had.
+template <class Takes>
+void add_to(CouplingGraph& graph, const Problem& problem, Takes takes) {
+  for (const auto& c : problem.mass_couplings)
+    if (takes(std::array{c.a, c.b})) graph.couplings.push_back({c.a, c.b});
   problem.for_each_force_pool([&](const auto& pool) {
-    for (const auto& f : pool.items)
+    for (const auto& f : pool.items) {
+      if (!takes(pool.nodes_of(f))) continue;
       for (std::uint32_t i = 0; i < f.arm.count; ++i)
         for (std::uint32_t j = i + 1; j < f.arm.count; ++j) graph.couplings.push_back({f.arm.nodes[i], f.arm.nodes[j]});
+    }
   });
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
+      if (!takes(pool.nodes_of(c))) continue;
       auto& added = graph.add(C::rows, pool.nodes_of(c));
       if (k < pool.slots.size()) added.unknown = pool.slots[k].unknown;
       if constexpr (GeneralConstraint<C>) {
@@ -60,11 +59,47 @@ CouplingGraph graph_of(const Problem& problem) {
       }
     }
   });
+}
+
+CouplingGraph graph_of(const Problem& problem) {
+  CouplingGraph graph;
+  graph.node_count = static_cast<std::uint32_t>(problem.size());
+  graph.places = problem.position;
+  std::size_t constraints = 0;
+  problem.for_each_constraint_pool([&](const auto& pool) { constraints += pool.items.size(); });
+  graph.couplings.reserve(problem.mass_couplings.size());
+  graph.constraints.reserve(constraints);
+  graph.nodes.reserve(2 * constraints);
+  add_to(graph, problem, [](auto&&) { return true; });
   return graph;
 }
 
-/// Of the rods that bodies are made of; joints and curves have lengths of their own. Where there are none, of the forces
-/// between points; else 1 m.
+/// The nodes that a change concerns: touched ones, and those of their constraints.
+class Near {
+ public:
+  explicit Near(const Problem& problem) : mark_(problem.size(), far) {
+    for (const std::uint32_t node : problem.changes().touched) mark_[node] = touched;
+    problem.for_each_constraint_pool([&](const auto& pool) {
+      for (const auto& item : pool.items) {
+        const auto nodes = pool.nodes_of(item);
+        if (std::none_of(nodes.begin(), nodes.end(), [&](std::uint32_t n) { return mark_[n] == touched; })) continue;
+        for (const std::uint32_t node : nodes)
+          if (mark_[node] == far) mark_[node] = near;
+      }
+    });
+  }
+  template <class Nodes>
+  bool has_any(const Nodes& nodes) const {
+    return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return mark_[node] != far; });
+  }
+
+ private:
+  enum Mark : std::uint8_t { far, near, touched };
+  std::vector<Mark> mark_;
+};
+
+/// Mean length of the bodies' rods; joints and curves have their own lengths. Without rods, of the forces between
+/// points; else 1 m.
 double mean_reference_length(const Problem& problem) {
   double sum = 0;
   std::size_t count = 0;
@@ -77,7 +112,7 @@ double mean_reference_length(const Problem& problem) {
   return sum > 0 ? sum / static_cast<double>(count) : 1;
 }
 
-/// Rows of nails and of carried points are measured by the same length.
+/// Rows of nails and of carried points use the same length.
 double set_reference_lengths(Problem& problem) {
   const double length = mean_reference_length(problem);
   for (auto& c : problem.pool_of<AffineConstraint>().items) c.reference = length;
@@ -92,15 +127,19 @@ void Assembly::compile(Problem& problem) {
   pattern_.analyze(graph);
   factor_.reset(pattern_);
   problem.fit_pools();
-  place_items(problem, graph, [](auto...) { return true; });
+  auto constraint = graph.constraints.begin();
+  problem.for_each_constraint_pool([&](auto& pool) {
+    for (auto& slots : pool.slots) slots.unknown = constraint++->unknown;
+  });
+  place_items(problem, [](auto&&...) { return true; });
   place_nodes(problem);
   weigh(problem);
   problem.note_compiled();
 }
 
-// A row gives by its compliance times the force in it, and a light link may carry the weight of all the others: beyond a
-// ratio of 1e7 the gap would show. Then forces are measured by how far they move a point against the rows that pull at it,
-// not against its mass alone: between two heavy loads the balance of a light point is round-off of their tension.
+// A row yields by its compliance times its force, and a light link may carry the weight of all others: above a ratio of
+// 1e7 the gap would be visible. Then forces are scaled by the stiffness of the point's rows, not by its mass alone:
+// between two heavy loads the residual of a light point is round-off of their tension.
 void Assembly::weigh(const Problem& problem) {
   constexpr double usual = 1e7;
   double heaviest = 0, lightest = std::numeric_limits<double>::infinity();
@@ -109,18 +148,28 @@ void Assembly::weigh(const Problem& problem) {
 }
 
 void Assembly::follow(Problem& problem) {
-  CouplingGraph graph = graph_of(problem);
-  const bool order_suits = pattern_.follow(graph, problem.changes());
+  CouplingGraph graph;
+  graph.node_count = static_cast<std::uint32_t>(problem.size());
+  const Near near(problem);
+  const auto is_near = [&](const auto& nodes) { return near.has_any(nodes); };
+  add_to(graph, problem, is_near);
+  const auto complete = [&] { add_to(graph, problem, [&](const auto& nodes) { return !is_near(nodes); }); };
+  const bool order_suits = PatternBuilder::follow_part(pattern_, graph, problem.changes(), complete);
+  problem.fit_pools();
+  auto constraint = graph.constraints.begin();
+  problem.for_each_constraint_pool([&](auto& pool) {
+    for (std::size_t i = 0; i < pool.items.size(); ++i)
+      if (is_near(pool.nodes_of(pool.items[i]))) pool.slots[i].unknown = constraint++->unknown;
+  });
   problem.remove_nodes(problem.changes().removed);
   if (!order_suits) return compile(problem);
   reference_length_ = set_reference_lengths(problem);
   factor_.grow();
-  problem.fit_pools();
   place_nodes(problem);
   weigh(problem);
   const auto has_moved = [&](std::uint32_t node) { return pattern_.has_moved(node_unknown_[node]); };
-  place_items(problem, graph, [&](const auto& nodes, std::size_t count, std::uint32_t unknown) {
-    return std::any_of(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(count), has_moved) ||
+  place_items(problem, [&](const auto& nodes, std::uint32_t unknown) {
+    return std::any_of(nodes.begin(), nodes.end(), has_moved) ||
            (unknown != CouplingGraph::no_unknown && pattern_.has_moved(unknown));
   });
   pattern_.forget_moves();
@@ -143,21 +192,18 @@ bool Assembly::place_forces(Problem& problem) const {
   return are_coupled;
 }
 
-// Gives slots to the items of which `is_due` says so: (nodes, how many, unknown of a constraint).
+// Gives slots to the items of which `is_due` says so: (nodes, unknown of a constraint).
 template <class IsDue>
-void Assembly::place_items(Problem& problem, const CouplingGraph& graph, IsDue is_due) {
+void Assembly::place_items(Problem& problem, IsDue is_due) {
   for (auto& c : problem.mass_couplings)
-    if (is_due(std::array{c.a, c.b}, 2, CouplingGraph::no_unknown)) c.slot = pattern_.pair_slot(c.a, c.b);
-  auto constraint = graph.constraints.begin();
-  problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
-    for (std::size_t i = 0; i < pool.items.size(); ++i, ++constraint) {
-      const auto count = static_cast<std::size_t>(pool.items[i].node_count());
-      if (is_due(pool.items[i].nodes, count, constraint->unknown)) set_slots(pool, i, constraint->unknown);
-    }
+    if (is_due(std::array{c.a, c.b}, CouplingGraph::no_unknown)) c.slot = pattern_.pair_slot(c.a, c.b);
+  problem.for_each_constraint_pool([&](auto& pool) {
+    for (std::size_t i = 0; i < pool.items.size(); ++i)
+      if (is_due(pool.nodes_of(pool.items[i]), pool.slots[i].unknown)) set_slots(pool, i, pool.slots[i].unknown);
   });
   problem.for_each_force_pool([&](auto& pool) {
     for (std::size_t i = 0; i < pool.items.size(); ++i)
-      if (is_due(pool.items[i].arm.nodes, pool.items[i].arm.count, CouplingGraph::no_unknown)) set_slots(pool, i);
+      if (is_due(pool.nodes_of(pool.items[i]), CouplingGraph::no_unknown)) set_slots(pool, i);
   });
 }
 

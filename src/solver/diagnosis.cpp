@@ -9,7 +9,7 @@ namespace iota::solver {
 
 namespace {
 
-/// Equations, and bounded rows that are met: open stops, slack ropes, springs and friction hold nothing.
+/// Equations, and bounded rows at their bound: without open stops, slack ropes, springs and friction.
 template <class C>
 bool holds(const ConstraintPool<C>& pool, std::size_t item, int row, const Vec3* x) {
   constexpr double touching = 1e-6;
@@ -65,7 +65,7 @@ ConstraintSpectrum calc_spectrum(const Problem& problem) {
   if (rows == 0) return spectrum;
 
   const Dense l = factor_masses(problem);
-  Dense g(rows, std::max(3 * n, rows + 1));  // wider than high, so that U comes out whole
+  Dense g(rows, std::max(3 * n, rows + 1));  // wider than high, so that U is complete
   std::size_t at = 0;
   for_each_row_that_holds(problem, [&]<class C>(const C& c, const RowName& name) {
     const Gradients<C> gradients(c, problem.position.data(), 0);
@@ -95,7 +95,7 @@ Dense ConstraintSpectrum::repeated_rows() const {
   Dense null(rows - rank, rows);
   for (std::size_t k = 0; k < null.rows; ++k)
     for (std::size_t i = 0; i < rows; ++i) null(k, i) = svd.u(i, rank + k);
-  // Gauss-Jordan with full pivoting: each combination then has a row of its own that no other one has.
+  // Gauss-Jordan with full pivoting: each combination then has a row that is in no other one.
   std::vector<bool> used(null.rows, false);
   for (std::size_t step = 0; step < null.rows; ++step) {
     std::size_t pivot_row = 0, pivot_column = 0;
@@ -121,7 +121,7 @@ Dense ConstraintSpectrum::repeated_rows() const {
 }
 
 double ConstraintSpectrum::kkt_condition(double compliance) const {
-  // Each singular value s gives the pair of eigenvalues of [1 s; s -compliance]; unknowns that no row sees give 1.
+  // Each singular value s gives the pair of eigenvalues of [1 s; s -compliance]; unknowns without rows give 1.
   double largest = 1, smallest = 1;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double s = svd.s[i], mean = (1 - compliance) / 2, product = -compliance - s * s;

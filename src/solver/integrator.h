@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "solver/advance_report.h"
 #include "solver/local_projection.h"
 #include "solver/newton.h"
+#include "solver/rigid_motion.h"
 
 #include <memory>
 
@@ -13,15 +15,15 @@ enum class Scheme : std::uint8_t {
   mid_point,  ///< energy-momentum: v1 = 2 (x1 - x0)/h - v0 (Betsch and Leyendecker 2006)
 };
 
-/// How carefully to step: the dial from plausible to accurate. `docs/solver.md` has what each setting costs and is worth.
+/// Settings from plausible to accurate. `docs/solver.md` lists cost and accuracy of each.
 struct Care {
   Scheme scheme = Scheme::mid_point;
-  double tolerance = 1;  ///< of Newton's method, as a multiple of the usual 1e-9 (end point) and 1e-10 (mid-point)
+  double tolerance = 1;  ///< of Newton's method, as a multiple of 1e-9 (end point) and 1e-10 (mid-point)
   double max_turn = 1.1, max_turn_cosine = 0.4536;  ///< rad: a mid-point (sub-)step that turns a link further is halved
   int max_depth = 6;                                ///< sub-steps down to a 64th: a whip needs them, for a few steps
   int patience = 400;                               ///< Newton iterations after which sub-steps are no longer halved
-  int max_iterations = 0;  ///< of all solves of a step, but for the last resort's; 0: unlimited
-  double max_error = 0;    ///< estimated, of mid-point (sub-)steps, in link lengths per second; 0: not asked
+  int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited
+  double max_error = 0;    ///< estimated, of mid-point (sub-)steps, in link lengths per second; 0: no limit
 
   static Care plausible() { return {.scheme = Scheme::end_point, .tolerance = 100, .max_depth = 4}; }
   static Care robust() { return {.scheme = Scheme::end_point}; }
@@ -36,24 +38,7 @@ struct Care {
   }
 };
 
-/// What one problem went through in one step.
-struct [[nodiscard]] AdvanceReport {
-  int solves = 0;
-  int iterations = 0;
-  int iterations_max = 0;
-  int substeps = 0;
-  int handed_back = 0;  ///< solves in which the solver that was asked found no root
-  int fallbacks = 0;    ///< mid-point sub-steps that had to be taken by the end-point scheme
-  bool converged = true;
-  bool cut_short = false;     ///< by the settings' most iterations
-  double gap = 0;             ///< worst at the end of a step that was cut short, m
-  double external_work = 0;   ///< of explicit forces, grips and moving targets, J
-  double dissipated = 0;      ///< by dampers, friction, dashpots and impacts: their own work, J
-  double lost = 0, made = 0;  ///< by the scheme, J: what a (sub-)step leaves unexplained
-  double closing_energy = 0;  ///< by moving violated constraints together before the step, J
-};
-
-/// Advances problems by one step each. One integrator serves one problem structure; it owns the work space, so a warm
+/// Advances problems by one step each. One integrator is for one problem structure; it owns the work space, so a warm
 /// step allocates nothing.
 class Integrator {
  public:
@@ -62,30 +47,35 @@ class Integrator {
   void follow(Problem& problem);
   bool place_forces(Problem& problem) const { return newton_.place_forces(problem); }  ///< see Assembly
 
-  /// Positions, velocities and multipliers of `problem` become those after h seconds.
+  /// Advances positions, velocities and multipliers of `problem` by h seconds.
   /// mid_point halves the step (to a 64th) when a link turns too far in it, its error is too large or Newton fails, and
-  /// then falls back to end_point, for that sub-step only. end_point never ends with more energy than it began with,
-  /// unless something outside does work. Constraints that are violated at the start are first closed by moving
-  /// positions only; what cannot be closed is held as it is, so that a conflict neither shakes nor heats the world.
+  /// then falls back to end_point, for that sub-step only. end_point never gains energy without external work.
+  /// Constraints that are violated at the start are first closed by moving positions only; remaining gaps are held at
+  /// their size, so that a conflict adds neither motion nor energy.
   AdvanceReport advance(Problem& problem, double h, const Care& care);
 
   /// Moves positions by the least mass-weighted displacement that meets all constraints; velocities stay.
-  /// Returns false where no solution was found: the violation is then shared, and smaller after each call.
+  /// Returns false if no solution was found: the violation is then distributed, and smaller after each call.
   bool project_positions(Problem& problem);
 
-  /// Does both around some points, and around rows that are open, for less time and for no other row than those. False
-  /// where it has to be done in the whole problem: see LocalProjection. Positions only where asked to.
+  /// Does both only around some points and violated rows, in less time. False if the whole problem must be projected:
+  /// see LocalProjection. Positions only on request.
   bool project_locally(Problem& problem, bool positions, std::span<const std::uint32_t> nodes = {});
   /// The points that `project_locally` may have moved.
   std::span<const std::uint32_t> moved_locally() const { return local_->nodes(); }
 
+  /// The correction of velocities at the end of the latest step to satisfy the rows, m/s; empty: none.
+  std::span<const Vec3> velocity_corrections() const {
+    return has_corrected_ ? newton_.velocities_before() : std::span<const Vec3>{};
+  }
+
   double reference_length() const { return newton_.reference_length(); }  ///< of what is compiled, m
 
-  /// Who solves the equations of steps; null: the built-in Newton.
+  /// The solver of the equations of steps; null: the built-in Newton.
   void set_external(Solver* solver) { newton_.set_external(solver); }
 
   void project_velocities(Problem& problem, double h = 0, std::span<const Vec3> impulses = {}) {
-    newton_.project_velocities(problem, h, false, impulses);
+    newton_.project_velocities(problem, h, impulses);
   }
 
  private:
@@ -97,12 +87,13 @@ class Integrator {
   bool solve(Problem&, const Stage&, AdvanceReport&);
   void commit(Problem&, const Stage&, AdvanceReport&);
   void measure_energy(const Problem&, double fraction);
-  void project_velocities_after_impact(Problem&, double to, bool met, AdvanceReport&);
+  void measure_kinetic_energy(const Problem&);
+  void project_velocities_after_step(Problem&, const Stage&, bool met, AdvanceReport&);
   double work_of_drives(const Problem&, const Stage&) const;
-  /// What laws take from the motion in a solved step, J.
+  /// Energy dissipated by laws in a solved step, J.
   struct Dissipation {
-    double steady = 0;  ///< by dampers, dashpots and friction: their own work
-    double impact = 0;  ///< by rows that have just met; at most
+    double steady = 0;  ///< work of dampers, dashpots and friction
+    double impact = 0;  ///< upper bound for rows that have just become active
   };
   Dissipation calc_dissipation(const Problem&, const Stage&) const;
   template <class C>
@@ -118,11 +109,19 @@ class Integrator {
   void advance_end_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   bool will_turn_too_far(const Problem&, double h) const;
   bool turns_too_far(const Problem&) const;
-  void smooth_multipliers(Problem&) const;
   bool gains_energy_on_curves(const Problem&, const Stage&);
   double calc_energy_gain(const Problem&, const Stage&);
-  void change_kinetic_energy(Problem&, double excess, double fraction);
-  void correct_energy(Problem&, double fraction);
+  void change_kinetic_energy(Problem& problem, double excess) {
+    change_kinetic_energy(problem, excess, rigid_motion(problem));
+  }
+  void change_kinetic_energy(Problem&, double excess, const std::optional<RigidMotion>& shared);
+  std::optional<RigidMotion> rigid_motion(const Problem&) const;
+  bool scale_motion(Problem&, double excess, const std::optional<RigidMotion>& shared);
+  bool give_energy_back(Problem&, const Stage&, double taken, AdvanceReport&);
+  void give_energy_back_by_piece(Problem&);
+  void keep_spin(Problem&, const Stage&);
+  void keep_correction(const Problem&);
+  void find_pieces(const Problem&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
   void hold_offsets(Problem&, AdvanceReport&);
   void restore_bounds(Problem&);
@@ -135,25 +134,47 @@ class Integrator {
   void close_gaps(Problem&, AdvanceReport&);
 
   Newton newton_;
-  std::unique_ptr<LocalProjection> local_;  // where it was needed
+  std::unique_ptr<LocalProjection> local_;  // if it was needed
   std::vector<std::uint32_t> center_;       // of the latest
   Care care_;
   std::vector<Vec3> start_position_, start_velocity_;
-  std::vector<Vec3> candidate_;  // only where errors are estimated, or nothing else helps
+  std::vector<Vec3> candidate_;  // only for error estimates and the last resort
   std::vector<double> lumped_mass_;
   std::vector<double> multipliers_saved_, candidate_multipliers_;
   double step_length_ = 0;           ///< of the whole step, s
-  double kinetic_ = 0, energy_ = 0;  ///< of the problem's state as it is now, J
-  double missing_ = 0, slack_ = 0;  ///< energy that the (sub-)step leaves unexplained; too much within its tolerance, J
-  bool has_curved_rows_ = false;    ///< which the mid-point rule does not keep the energy of
-  bool drives_rows_ = false;        ///< a target moves during this step, or a row has a rate
-  bool conservative_ = true;        ///< nothing outside does work during this step
+  double kinetic_ = 0, energy_ = 0;  ///< of the problem's present state, J
+  double missing_ = 0, slack_ = 0;   ///< unexplained energy of the (sub-)step; surplus within its tolerance, J
+  bool has_curved_rows_ = false;     ///< whose energy the mid-point rule does not keep
+  bool drives_rows_ = false;         ///< a target moves during this step, or a row has a rate
+  bool conservative_ = true;         ///< no external work during this step
   bool holds_offsets_ = false;
   int iterations_left_ = std::numeric_limits<int>::max();
   bool cut_short_ = false;
+  bool has_corrected_ = false;  ///< velocities after the latest (sub-)step; Newton has the correction
+  /// What outside holds on to the problem, or to a piece of it.
+  struct Holds {
+    int count = 0;                ///< of rows that are not between points of the problem
+    std::optional<Vec3> place;    ///< of the latest, where that is a point at rest
+    bool are_directions = false;  ///< a row refers to a direction in the world
+    bool are_none() const { return count == 0 && !are_directions; }
+    /// All hangs on that point, and may turn about it.
+    std::optional<Vec3> pivot() const { return count == 1 && !are_directions ? place : std::nullopt; }
+    template <class C>
+    void add(const C&);
+  };
+  Holds holds_;
+  bool is_free_body_ = false;  ///< one rigid thing that nothing holds
+  bool may_be_in_pieces_ = false;
+  struct Piece {
+    std::uint32_t first;  ///< node
+    Holds holds;
+    double taken = 0, kinetic = 0;
+  };
+  std::vector<Piece> pieces_;            // of a disconnected problem; else none
+  std::vector<std::uint32_t> piece_of_;  // of each node
   bool keeps_start_ = false;
   double violation_ = 0;  ///< relative, left by the latest solve
-  int met_ = 0;           ///< bounded rows that met in the latest solve
+  int met_ = 0;           ///< bounded rows that became active in the latest solve
 };
 
 }  // namespace iota::solver

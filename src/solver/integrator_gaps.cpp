@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Constraints that are violated where a step begins: closed by moving positions only, or held as they are.
+// Constraints that are violated at the start of a step: closed by moving positions only, or held at their gap.
 #include "solver/integrator.h"
 
 #include <algorithm>
@@ -11,11 +11,11 @@ namespace iota::solver {
 namespace {
 
 constexpr double standing_gap = 1e-6;  // relative start gap beyond which positions are projected before the step
-constexpr std::uint64_t shortest_wait = 8, longest_wait = 256;  // steps until a conflict that stands is tried again
+constexpr std::uint64_t shortest_wait = 8, longest_wait = 256;  // steps until an unchanged conflict is tried again
 // Of a gap that moves; relaxes it by 10 %: at full extension the constraint gradient is singular.
 constexpr double relaxation = 1.1;
 
-/// Whether a conflict that has stood for so many steps is tried again: each time after twice as many.
+/// Whether a conflict that is unchanged for this many steps is tried again: the interval doubles each time.
 bool is_due(std::uint64_t steps) {
   return steps % longest_wait == 0 || (steps >= shortest_wait && (steps & (steps - 1)) == 0);
 }
@@ -52,14 +52,14 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   const double added = energy_ - before;
   report.closing_energy += added;
   if (holds_offsets_ && conservative_ && added > 0) {  // repeated attempts must not add energy without end
-    change_kinetic_energy(problem, added, 0);
+    change_kinetic_energy(problem, added);
     report.closing_energy -= std::exchange(missing_, 0);
   }
 }
 
-// Gaps that cannot be closed stay as they are during the step. If nails move, a gap may become what it will be at the
-// nails' end, or less: its row gets a bound instead of an equation. With an equation, an arm that was pulled beyond its
-// reach would have to snap sideways when the pull ends (measured: 400 J to 3 kJ, against 20 J).
+// Gaps that cannot be closed are constant during the step. If nails move, a gap may be at most the one at the nails'
+// final places: its row gets a bound instead of an equation. With an equation, an arm that was pulled beyond its reach
+// would have to snap sideways when the pull ends (measured: 400 J to 3 kJ, against 20 J).
 void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
   report.converged = false;
   holds_offsets_ = true;
@@ -86,7 +86,7 @@ void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
         if (pool.has_laws() && pool.laws[row].violation(offset[r]) == 0) offset[r] = 0;
         if (!moving || !(std::abs(offset[r]) > standing_gap * pool.items[i].reference_length())) continue;
         RowLaw& law = pool.law(i)[r];
-        if (law.lower_impulse() == 0 || law.upper_impulse() == 0) continue;  // has a bound already
+        if (law.lower_impulse() == 0 || law.upper_impulse() == 0) continue;  // already bounded
         (offset[r] > 0 ? law.lower : law.upper) = 0;
         offset[r] *= relaxation;
         pool.held.push_back(row);
@@ -121,7 +121,7 @@ bool Integrator::share_gaps(Problem& problem, double fraction, AdvanceReport& re
       Stage stage = Stage::projection(compliance);
       stage.fraction = fraction, stage.max_iterations = 40;
       solved = try_step(problem, stage, report);
-      // Also where it has not converged: from far away it takes several rounds.
+      // Also without convergence: from far away it takes several rounds.
       const double before = problem.worst_gap(problem.position.data(), fraction, true);
       if (!solved && !(problem.worst_gap(newton_.solution().data(), fraction, true) < 0.9 * before)) return helped;
       std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
@@ -165,7 +165,7 @@ bool Integrator::project_positions(Problem& problem) {
     if (solved) std::copy(newton_.solution().begin(), newton_.solution().end(), problem.position.begin());
     return solved;
   };
-  // At once; if that fails, bit by bit; if that fails, by soft steps, which share the violation among the rows.
+  // In one solve; if that fails, in parts; if that fails, by soft steps, which distribute the violation over the rows.
   bool solved = attempt(1e-12, 20) || close_bit_by_bit(problem, attempt);
   for (int soft = 0; soft < 3 && !solved; ++soft) {
     if (!share_gaps(problem, 0, ignored)) break;
@@ -176,7 +176,7 @@ bool Integrator::project_positions(Problem& problem) {
 }
 
 // Newton's method may diverge over a distance of many links, but converge over a part of it (a fine chain pulled together
-// over centimeters). Meanwhile offsets hold the rest.
+// over centimeters). Offsets hold the rest of the gap.
 template <class Attempt>
 bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
   double remaining = 1, part = 0.25;

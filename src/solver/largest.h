@@ -8,7 +8,7 @@
 
 namespace iota::solver {
 
-/// Largest of many, where a NaN counts as infinite (std::max would drop it).
+/// Maximum in which a NaN counts as infinite (std::max would drop it).
 struct Largest {
   double value = 0;
   void add(double v) {

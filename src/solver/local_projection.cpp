@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::uint32_t none = 0xffffffff;
 constexpr std::size_t largest_center = 64;  // points
-constexpr std::size_t share = 8;            // a part has at most so much of the points
+constexpr std::size_t share = 8;            // a part has at most this share of the points
 constexpr std::uint32_t first_reach = 32;   // couplings
 constexpr double died_out = 1e-12;          // of the largest change
-constexpr double largest_speed_ratio = 10;  // of changes over speeds: beyond, the rows are close to redundant
+constexpr double largest_speed_ratio = 10;  // of changes to speeds: above it the rows are nearly redundant
 
 constexpr std::uint8_t rim = 1, kept = 2, wanted = 3;  // owners of the rows of a part: what they are
 
-/// A copy of an item with the nodes' numbers in the part.
+/// A copy of an item with node numbers of the part.
 template <class C>
 C renumbered(C item, const std::vector<std::uint32_t>& number) {
   for (int i = 0; i < item.node_count(); ++i) item.nodes[i] = number[item.nodes[i]];
@@ -55,7 +55,7 @@ bool LocalProjection::project(Problem& problem, std::span<const std::uint32_t> c
     }
     if (outcome == Outcome::done) break;
     if (outcome == Outcome::none || !(decay_ > 0 && decay_ < 1)) return false;
-    // As far again as it takes to die out at the same rate; if that is far, the whole problem costs less.
+    // Extends the reach until the decay suffices at the same rate; if that is far, the whole problem costs less.
     const double farther = reach * std::log(died_out) / std::log(decay_);
     if (!(farther < 8 * first_reach) || reach > first_reach) return false;
     reach = static_cast<std::uint32_t>(1.25 * farther) + 1;
@@ -67,7 +67,7 @@ bool LocalProjection::project(Problem& problem, std::span<const std::uint32_t> c
 
 // --- the part ------------------------------------------------------------------------------------------------------------
 
-// Of each node those that constraints couple with it, in one list.
+// For each node those coupled with it by constraints, in one list.
 void LocalProjection::list_neighbors(const Problem& problem) {
   const auto for_each_pair = [&](auto visit) {
     problem.for_each_constraint_pool([&](const auto& pool) {
@@ -87,7 +87,7 @@ void LocalProjection::list_neighbors(const Problem& problem) {
   });
 }
 
-// A search from the center, layer by layer. False where the part would be large.
+// A search from the center, layer by layer. False if the part would be large.
 bool LocalProjection::choose_part(const Problem& problem, std::uint32_t reach) {
   number_in_part_.resize(problem.size(), none);
   for (const std::uint32_t node : nodes_) number_in_part_[node] = none;
@@ -109,7 +109,7 @@ bool LocalProjection::choose_part(const Problem& problem, std::uint32_t reach) {
   return true;
 }
 
-// False where bounded rows are in it.
+// False if it has bounded rows.
 bool LocalProjection::build_part(const Problem& problem) {
   part_ = {};
   part_.add_nodes(nodes_.size());
@@ -187,7 +187,7 @@ LocalProjection::Outcome LocalProjection::solve_velocities(std::span<const doubl
   return outcome;
 }
 
-// How fast each row opens.
+// The rate of each row.
 void LocalProjection::find_rates(std::vector<double>& rates) const {
   rates.clear();
   part_.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
@@ -211,7 +211,7 @@ LocalProjection::Outcome LocalProjection::judge(std::span<const Vec3> change) {
     if (i >= skin_begin_) in_skin.add(largest_component(change[i]));
   }
   if (!std::isfinite(anywhere.value)) return Outcome::none;
-  const bool is_whole = nodes_.size() == inner_count_;  // there is no rim
+  const bool is_whole = nodes_.size() == inner_count_;  // without a rim
   if (is_whole || in_skin.value <= died_out * anywhere.value) return Outcome::done;
   decay_ = in_skin.value / anywhere.value;
   return Outcome::reaches_further;

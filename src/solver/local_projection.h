@@ -8,18 +8,18 @@
 
 namespace iota::solver {
 
-/// Projects positions and velocities of a large problem on its rows by moving only the points around a few of them, for a
-/// time that does not depend on how large the problem is. An edit disturbs few rows, and along a chain what it takes to
-/// restore them decays by a factor a link, unless the links are in line. So the part around the disturbed points is solved by
-/// itself, with its rim held, and the answer counts only if it has died out before the rim: it is then that of the whole
-/// problem, to 1e-12. Other rows keep the gaps and rates that they have.
+/// Projects positions and velocities of a large problem on its rows by moving only the points around a few of them, in
+/// a time independent of the problem's size. An edit disturbs few rows, and along a chain the correction decays by a
+/// factor per link, unless the links are in a straight line. So only the part around the disturbed points is solved,
+/// with its rim fixed, and the solution is accepted only if it has decayed before the rim: it is then that of the whole
+/// problem, to 1e-12. Other rows keep their gaps and rates.
 class LocalProjection {
  public:
-  /// Restores the rows at some points, the center, for velocities and, where asked to, for positions. False where that has
-  /// to be done in the whole problem: the center is large or its surroundings are, the answer reaches further, there is
-  /// none, or bounded rows would have to choose their sides. Nothing has changed then.
+  /// Restores the rows at some points, the center, for velocities and, on request, for positions. False, without a
+  /// change, if the whole problem must be projected: the center or its surroundings are large, the solution reaches
+  /// further, there is none, or bounded rows would have to choose their sides.
   bool project(Problem&, std::span<const std::uint32_t> center, bool positions);
-  /// Small problems are solved whole in less time than it takes to choose a part of them.
+  /// A whole small problem is solved in less time than a part of it is chosen.
   static bool is_worthwhile(const Problem& problem) { return problem.size() >= 1024; }
   /// The structure of the problem has changed.
   void forget() { is_known_ = false; }
@@ -40,7 +40,7 @@ class LocalProjection {
   std::vector<std::uint32_t> center_;             // of the part, in order
   std::vector<std::uint32_t> nodes_;              // of the part, by distance from the center: inner ones, then the rim
   std::size_t inner_count_ = 0, skin_begin_ = 0;  // the skin: the last inner ones
-  bool is_known_ = false;                         // the part of the latest center can be used again
+  bool is_known_ = false;                         // whether the part of the latest center can be used again
   double decay_ = 0;                              // from the largest change to that in the skin, of the latest answer
 
   Problem part_;

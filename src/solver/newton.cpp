@@ -16,9 +16,9 @@ namespace iota::solver {
 namespace {
 
 constexpr int max_halvings = 12;
-constexpr double near_by = 1e-2;            // a residual below which Newton's own direction is better than a safe one
-constexpr double largest_violation = 1e-6;  // that still counts as met
-constexpr double round_off_floor = 1e-8;    // a residual below it that no step lessens is as good as zero
+constexpr double near_by = 1e-2;            // residual below which Newton's exact direction is used
+constexpr double largest_violation = 1e-6;  // that still counts as satisfied
+constexpr double round_off_floor = 1e-8;    // a residual below it that no step reduces counts as zero
 constexpr double round_off = 4e-15;         // relative
 
 }  // namespace
@@ -66,8 +66,8 @@ void Newton::measure(const Problem& problem, const Stage& stage) {
   residual_ = assembly_.residual<Midpoint>(problem, stage, x_.data(), u_.data());
 }
 
-// Far from the origin positions have fewer digits than the directions of links need, and so have the forces along these:
-// at 10 km, the error is 1e-11 of the force in a link of 0.1 m.
+// Far from the origin positions are too coarse for the directions of links and so for the forces along these: at 10 km,
+// the error is 1e-11 of the force in a link of 0.1 m.
 double Newton::blur_of_places(const Problem& problem) const {
   Largest place;
   for (const Vec3& x : problem.position) place.add(largest_component(x));
@@ -76,13 +76,13 @@ double Newton::blur_of_places(const Problem& problem) const {
 
 // With a new factor. Far from a solution, pivots of the wrong sign lead to a saddle, so the Hessian is clamped. Near a
 // solution they may belong to it (a chain compressed in a whip), and a clamped Hessian would converge linearly or diverge
-// from 1e-5. Then returns true: the step is on trial.
+// from 1e-5. Then returns true: the step is tentative.
 template <bool Midpoint>
 bool Newton::find_step(const Problem& problem, const Stage& stage, Hessian hessian) {
   const bool good = assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), hessian);
   if (good || hessian != Hessian::exact) return false;
   if (residual_.worst <= near_by) return true;
-  measure<Midpoint>(problem, stage);  // the step has taken the residuals' place
+  measure<Midpoint>(problem, stage);  // the step has overwritten the residuals
   (void)assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), Hessian::clamped);
   return false;
 }
@@ -127,12 +127,12 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       } else if (!stuck) {
         const int halvings = shorten<Midpoint>(problem, stage, before);
         stuck = halvings == max_halvings && !(residual_.worst < before);  // lost
-        // A full step that merely helped is no reason to give up quadratic convergence: wrong pivots would tell.
+        // A full step with a small decrease is no reason to give up quadratic convergence; wrong pivots would be.
         if (halvings > 0 || !(residual_.worst < before)) hessian = Hessian::clamped;
       }
       if (stuck) break;
     }
-    // Near the solution the old factor is used again if making a new one costs much more than an iteration.
+    // Near the solution the old factor is reused if a factorization costs much more than an iteration.
     factor_will_do = assembly_.is_dear() && residual_.worst <= (factor_will_do ? 0.1 : 0.03) * before;
   }
   if (!stuck && !stage.is_projection() && (Midpoint || report.iterations == 0))
@@ -145,10 +145,10 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   return report;
 }
 
-// Halves the step until the residual or the merit falls; returns how often.
+// Halves the step until the residual or the merit falls; returns the number of halvings.
 template <bool Midpoint>
 int Newton::shorten(Problem& problem, const Stage& stage, double before) {
-  // Weights above the new multipliers make the merit exact: it cannot fall by leaving the constraints.
+  // Weights above the new multipliers make the merit exact: violating constraints cannot reduce it.
   merit_weights_.resize(problem.multiplier_count());
   problem.copy_multipliers_to(merit_weights_);
   for (double& weight : merit_weights_) weight = 1.5 * std::abs(weight);
@@ -244,13 +244,13 @@ bool Newton::is_balanced() const {
   return residual_.imbalance <= std::max(residual_.noise, round_off * displacement.value / reference_length());
 }
 
-// The tolerance is a displacement. Divided by a short step it is a velocity and a force that count: a slow thing would
-// stop short of its rest, and momentum of a spinning body leak by 1e-8 of itself. A step or two more with the factor that
-// is there anyway take the residual to round-off (measured: 10 % of a step in the energy-keeping mode; the robust mode,
-// which dissipates far more, pays it only where the guess was good enough by itself).
+// The tolerance is a displacement. Divided by a short step it is a considerable velocity and force: a slow body would
+// stop too early, and a spinning body would lose 1e-8 of its momentum. One or two more steps with the existing factor
+// reduce the residual to round-off (measured: 10 % of a step in the energy-keeping mode; the robust mode, which
+// dissipates far more, does it only if the guess met the tolerance).
 //
-// A factor that has served on is made anew where it leaves more than that: among redundant rows it leaves 1e-12 of their
-// lengths, and the energy of a four-bar drifted by 4e-7 instead of 5e-11.
+// A reused factor is replaced if the residual stays above that: with redundant rows 1e-12 of their lengths remains, and
+// the energy of a four-bar linkage drifted by 4e-7 instead of 5e-11.
 template <bool Midpoint>
 void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, bool factor_is_old) {
   constexpr int most_steps = 4;
@@ -268,8 +268,8 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
       assembly_.solve();
     take_step(problem, stage);
     measure<Midpoint>(problem, stage);
-    // Below 1e-12 the residual norm is noise. Keep the step anyway: it reduces the error that all points have in common,
-    // which momentum and angular momentum consist of (without it those of a tumbling mixture drifted twenty times as far).
+    // Below 1e-12 the residual norm is noise. Keep the step anyway: it reduces the common error of all points, which
+    // determines momentum and angular momentum (without it those of a tumbling mixture drifted twenty times as far).
     const bool worse = !(residual_.worst <= std::max(before.worst, noise));
     if (worse) take_back_step<Midpoint>(problem, stage);
     if (!worse && ((!met && residual_.rows <= sufficient * before.rows) ||
@@ -280,7 +280,7 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
   }
 }
 
-// Another solver finds the root for rows as they stand, and rows change sides between its calls.
+// Another solver finds the root for the present sides of rows, and rows change sides between its calls.
 NewtonReport Newton::solve_externally(Problem& problem, const Stage& stage) {
   constexpr int most_rounds = 30;
   NewtonReport report;

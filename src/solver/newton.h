@@ -4,6 +4,7 @@
 #include "solver/active_set.h"
 #include "solver/assembly.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,9 +17,9 @@ namespace iota::solver {
 struct [[nodiscard]] NewtonReport {
   bool converged = false;
   int iterations = 0;
-  bool handed_back = false;  ///< another solver was asked and found no root
-  int met = 0;  ///< bounded rows that came from a bound to their equation: impacts, friction that begins to stick
-  double residual = 0;  ///< scaled, dimensionless
+  bool handed_back = false;  ///< another solver found no root
+  int met = 0;               ///< bounded rows that became equations: impacts, friction that begins to stick
+  double residual = 0;       ///< scaled, dimensionless
   double violation =
       0;  ///< of the constraints alone, as a fraction of their reference lengths: compliance lets conflicting
           ///< ones "converge" without being met
@@ -30,7 +31,7 @@ struct [[nodiscard]] NewtonReport {
 /// at a bound a row keeps its place in the matrix, as an identity.
 class Newton {
  public:
-  /// Makes room and analyzes the structure of the problem, or follows it: see Assembly.
+  /// Allocates and analyzes the structure of the problem, or follows it: see Assembly.
   void compile(Problem& problem);
   void follow(Problem& problem);
   bool place_forces(Problem& problem) const { return assembly_.place_forces(problem); }  ///< see Assembly
@@ -39,26 +40,39 @@ class Newton {
   /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.
   NewtonReport solve(Problem& problem, const Stage& stage);
   std::span<const Vec3> solution() const { return x_; }
-  /// Where the next solution will be: scratch until then.
+  /// The array of the next solution: scratch until then.
   std::span<Vec3> room() { return x_; }
-  /// From free flight: x - x0 - h v0, m. The unknown itself, to its own relative precision: velocities taken from it keep
-  /// momentum to round-off, whereas differences of positions lose 1e-16 |x| / h a step.
+  /// From free flight: x - x0 - h v0, m. This is the unknown itself with its own relative precision: velocities
+  /// calculated from it keep momentum to round-off, whereas differences of positions lose 1e-16 |x| / h a step.
   std::span<Vec3> displacement() { return u_; }
   std::span<const Vec3> displacement() const { return u_; }
 
-  /// Hands the equations of steps, not of projections, to another solver; null: solves them itself. What the other one
-  /// finds no root of is solved here after all.
+  /// Passes the equations of steps, not of projections, to another solver; null: solves them itself. If the other one
+  /// finds no root, they are solved here.
   void set_external(Solver* solver) { external_ = solver; }
 
   /// The velocity nearest to `velocity` in the mass norm with G(position) v = rate, in place; rate is that of targets and
   /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what
-  /// nails take. Of bounded rows those count that are met and would take an impulse; `as_solved`: those that the latest
-  /// solve left free.
-  /// `impulses`: of each node, if any, that act at the same time, N s.
-  void project_velocities(Problem& problem, double h, bool as_solved = false, std::span<const Vec3> impulses = {});
+  /// nails take. Only those bounded rows count that are active and would take an impulse.
+  /// `impulses`: simultaneous impulses of each node, if any, N s.
+  void project_velocities(Problem& problem, double h, std::span<const Vec3> impulses = {});
+  /// State of a problem after a (sub-)step.
+  struct AfterStep {
+    double kinetic = 0;        ///< energy, J
+    bool drives_rows = false;  ///< rows have moving targets
+    bool is_isolated = false;  ///< nothing connects it to the world
+  };
+  /// The same after a committed (sub-)step, with its sides of bounded rows. Drives and couplings get their average
+  /// rate: a rotation by an angle a in a step has the velocity 2 tan(a/2) / h in the mid-point rule, and a projection
+  /// on a / h would brake a fast wheel at every step. Returns the kinetic energy afterwards; nothing if velocities have
+  /// not changed, as they satisfied the rows already or cannot.
+  std::optional<double> project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known);
+  /// Before the latest projection.
+  std::span<Vec3> velocities_before() { return u_saved_; }
+  std::span<const Vec3> velocities_before() const { return u_saved_; }
 
-  /// The least change of velocities, in the mass norm, that takes the given rates (of the rows, in the order of the pools)
-  /// off the rows.
+  /// The least change of velocities, in the mass norm, that removes the given rates (of the rows, in the order of the
+  /// pools).
   void find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change);
 
   double reference_length() const { return assembly_.reference_length(); }  ///< mean of the constraints', m
@@ -79,9 +93,9 @@ class Newton {
   int shorten(Problem&, const Stage&, double before);
   double merit(const Problem&, const Stage&, const Vec3* x) const;
   bool is_balanced() const;
-  /// How much coarser than usual round-off is, for links far from the origin; at least 1.
+  /// Factor of round-off for links far from the origin; at least 1.
   double blur_of_places(const Problem& problem) const;
-  /// Takes a residual that is within tolerance to round-off.
+  /// Reduces a residual within tolerance to round-off.
   template <bool Midpoint>
   void polish(Problem&, const Stage&, NewtonReport&, bool factor_is_old);
   void take_step(Problem&, const Stage&);
@@ -89,16 +103,28 @@ class Newton {
   template <bool Midpoint>
   void take_back_step(Problem&, const Stage&);
 
-  bool project_onto_sides(Problem&, double h, bool as_solved, std::span<const Vec3> impulses);
-  double find_rates(const Problem&, double h, std::span<const Vec3> impulses);
+  /// The velocities wanted from a projection.
+  struct Wanted {
+    double h = 0;                    ///< targets move during the next h seconds
+    std::span<const Vec3> impulses;  ///< of each node, if any
+    bool is_after_step = false;
+    double tolerance() const { return is_after_step ? 1e-12 : 2e-15; }  ///< of the largest velocity
+    double fraction() const { return is_after_step ? 1 : 0; }           ///< of the step, for targets that move
+  };
+  std::optional<double> project_onto_sides(Problem&, const Wanted&, double energy);
+  double find_rates(const Problem&, const Wanted&);
+  template <class C>
+  void add_mean_rates(const C&, double* row) const;
   void add_step_to_velocities(Problem&);
   void give_back_momentum(Problem&, std::span<const Vec3> impulses) const;
 
   Assembly assembly_;
   ActiveSet active_set_;
   Residual residual_;                  // of the iterate
-  std::vector<Vec3> x_, u_, u_saved_;  // saved: where the latest step began, as its multipliers
+  std::vector<Vec3> x_, u_, u_saved_;  // saved: at the start of the latest step, as its multipliers
   std::vector<double> impulses_, multipliers_saved_, merit_weights_;
+  std::vector<Vec3> mean_place_,
+      mean_velocity_;  // over the last step; only if rows keep their rates
   bool has_laws_ = false;
   Solver* external_ = nullptr;
 };

@@ -1,31 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
-// Velocities that constraints allow.
+// Projections of velocities on the constraints.
 #include "solver/largest.h"
 #include "solver/newton.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <type_traits>
 
 namespace iota::solver {
 
-void Newton::project_velocities(Problem& problem, double h, bool as_solved, std::span<const Vec3> impulses) {
-  std::copy(problem.position.begin(), problem.position.end(), x_.begin());
+void Newton::project_velocities(Problem& problem, double h, std::span<const Vec3> impulses) {
   std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
-  has_laws_ = problem.has_laws();  // which may have been lent since the last solve
+  has_laws_ = problem.has_laws();  // which may have been added since the last solve
   impulses_.resize(has_laws_ ? assembly_.unknown_count() : 0);
-  if (has_laws_) ActiveSet::begin_impulses(problem, as_solved);
-  bool found = project_onto_sides(problem, h, as_solved, impulses);
-  while (has_laws_ && !as_solved && found && ActiveSet::release_impulses(problem, impulses_)) {
+  if (has_laws_) ActiveSet::begin_impulses(problem);
+  const Wanted wanted{.h = h, .impulses = impulses};
+  const double energy = problem.kinetic_energy();
+  bool found = project_onto_sides(problem, wanted, energy).has_value();
+  while (has_laws_ && found && ActiveSet::release_impulses(problem, impulses_)) {
     std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
-    found = project_onto_sides(problem, h, as_solved, impulses);
+    found = project_onto_sides(problem, wanted, energy).has_value();
   }
-
   if (found && problem.is_isolated()) give_back_momentum(problem, impulses);
 }
 
+std::optional<double> Newton::project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known) {
+  const double whole_step = stage.h / (stage.fraction - stage.fraction_start);
+  const Wanted wanted{.h = known.drives_rows ? whole_step : 0, .is_after_step = true};
+  if (has_laws_ || !std::get<ConstraintPool<CouplingConstraint>>(problem.constraints).items.empty()) {
+    mean_place_.resize(problem.size()), mean_velocity_.resize(problem.size());
+    for (std::size_t i = 0; i < problem.size(); ++i) {
+      mean_velocity_[i] = problem.velocity[i] - (1 / stage.h) * u_[i];
+      mean_place_[i] = problem.position[i] - (0.5 * stage.h) * mean_velocity_[i];
+    }
+  }
+  if (has_laws_) ActiveSet::begin_impulses_after_step(problem);
+  std::copy(problem.velocity.begin(), problem.velocity.end(), u_saved_.begin());
+  impulses_.resize(has_laws_ ? assembly_.unknown_count() : 0);
+  const std::optional<double> kinetic = project_onto_sides(problem, wanted, known.kinetic);
+  if (!kinetic || !known.is_isolated) return kinetic;
+  give_back_momentum(problem, {});
+  return problem.kinetic_energy();
+}
+
 void Newton::find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change) {
-  constexpr int passes = 3;  // the later ones take away what compliance and round-off leave
+  constexpr int passes = 3;  // the later ones remove errors of compliance and round-off
   std::copy(problem.position.begin(), problem.position.end(), x_.begin());
   std::fill(change.begin(), change.end(), Vec3{});
   Stage stage = Stage::projection();
@@ -55,8 +75,8 @@ void Newton::find_velocity_change(const Problem& problem, std::span<const double
   }
 }
 
-// Nearly redundant rows have huge multipliers that cancel only to round-off. Where nothing outside holds on, momentum is
-// given back by a translation, which no internal constraint notices.
+// Nearly redundant rows have huge multipliers that cancel only to round-off. In an isolated problem momentum is
+// restored by a translation, which does not affect internal constraints.
 void Newton::give_back_momentum(Problem& problem, std::span<const Vec3> impulses) const {
   double mass = 0;
   Vec3 lost;
@@ -73,55 +93,83 @@ void Newton::give_back_momentum(Problem& problem, std::span<const Vec3> impulses
 }
 
 // min |v - velocity|_M with G v = rate: one linear solve with the matrix of a projection without curvature. Redundant
-// rows (a closed loop in a plane) can leave no pivot at the usual compliance, so it may have to rise. So it may for an arm that
-// is straight but for a hair while its end is driven inwards: its elbow would have to leave at any speed.
-bool Newton::project_onto_sides(Problem& problem, double h, bool as_solved, std::span<const Vec3> impulses) {
-  constexpr double leverage = 10;  // of speeds over those that drive them
-  const double mass = std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0);
-  double fastest = 0;
-  for (const Vec3& v : problem.velocity) fastest = std::max(fastest, norm(v));
+// rows (a closed loop in a plane) can make pivots vanish at the default compliance, so it may have to rise. So it may
+// for an almost straight arm with its end driven inwards: the speed of its elbow would be unbounded. Returns the
+// kinetic energy afterwards; `energy` is that before. After a step, rates within the tolerance are left alone.
+std::optional<double> Newton::project_onto_sides(Problem& problem, const Wanted& wanted, double energy) {
+  constexpr double leverage = 10;  // of speeds relative to those that drive them
+  double most = energy * (1 + 1e-9);
   for (const double compliance : {1e-12, 1e-9, 1e-6, 1e-3}) {
     Stage stage = Stage::projection(compliance);
-    stage.fraction = as_solved ? 1 : 0;
+    stage.fraction = wanted.fraction();
     std::fill(impulses_.begin(), impulses_.end(), 0.0);
-    const double energy = problem.kinetic_energy();
-    const double drive = std::max(find_rates(problem, h, impulses), fastest);
-    (void)assembly_.factor_and_solve<false>(problem, stage, x_.data(), Hessian::none);
+    double drive = find_rates(problem, wanted);
+    if (wanted.is_after_step && drive == 0) return {};
+    for (std::size_t i = 0; i < wanted.impulses.size(); ++i) {
+      const Vec3& impulse = wanted.impulses[i];
+      double* const r = assembly_.residuals().data() + assembly_.unknown_of(static_cast<std::uint32_t>(i));
+      r[0] = -impulse.x, r[1] = -impulse.y, r[2] = -impulse.z;
+    }
+    if (wanted.h > 0) {  // energy may be added
+      for (const Vec3& v : problem.velocity) drive = std::max(drive, norm(v));
+      const double mass = std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0);
+      most = std::max(most, energy * (1 + 1e-9) + 0.5 * mass * (leverage * drive) * (leverage * drive));
+    }
+    (void)assembly_.factor_and_solve<false>(problem, stage, problem.position.data(), Hessian::none);
     add_step_to_velocities(problem);
-    for (int again = 0; again < 2 && find_rates(problem, h, {}) > 0; ++again) {  // compliance and round-off
+    for (int pass = 0; pass < 2 && find_rates(problem, wanted) > 0; ++pass) {  // compliance and round-off
       assembly_.solve();
       add_step_to_velocities(problem);
     }
     const double projected = problem.kinetic_energy();
-    double most = energy * (1 + 1e-9);
-    if (h > 0) most += 0.5 * mass * (leverage * drive) * (leverage * drive);  // energy may come in
-    if (std::isfinite(projected) && (projected <= most || !impulses.empty())) return true;
+    if (std::isfinite(projected) && (projected <= most || !wanted.impulses.empty())) return projected;
     std::copy(u_saved_.begin(), u_saved_.end(), problem.velocity.begin());
   }
-  return false;
+  return {};
 }
 
-// What the velocities miss in each row goes into the residuals. Returns the largest; zero where it is round-off.
-double Newton::find_rates(const Problem& problem, double h, std::span<const Vec3> impulses) {
-  constexpr double round_off = 2e-15;  // of the largest velocity
+namespace {
+
+/// Rows that keep their average rate of the last step.
+template <class C>
+bool keeps_mean_rate(const ConstraintPool<C>& pool, std::size_t item) {
+  if (std::is_same_v<C, CouplingConstraint>) return true;
+  if (!pool.has_laws()) return false;
+  const RowLaw* const law = pool.law(item);
+  return std::any_of(law, law + C::rows, [](const RowLaw& l) { return l.hold && l.rate != 0; });
+}
+
+}  // namespace
+
+template <class C>
+void Newton::add_mean_rates(const C& c, double* row) const {
+  const Gradients<C> gradients(c, mean_place_.data(), 1);
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 rows[C::rows];
+    gradients.of_node(i, rows);
+    for (int r = 0; r < C::rows; ++r) row[r] -= dot(rows[r], mean_velocity_[c.nodes[i]]);
+  }
+}
+
+// What the velocities miss in each row goes into the residuals. Returns the largest; zero where it is within the tolerance.
+double Newton::find_rates(const Problem& problem, const Wanted& wanted) {
   const std::span<double> residuals = assembly_.residuals();
   Largest worst;
   std::fill(residuals.begin(), residuals.end(), 0.0);
-  for (std::size_t i = 0; i < impulses.size(); ++i) {
-    double* const r = residuals.data() + assembly_.unknown_of(static_cast<std::uint32_t>(i));
-    r[0] = -impulses[i].x, r[1] = -impulses[i].y, r[2] = -impulses[i].z;
-  }
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const C& c = pool.items[k];
       double* const row = residuals.data() + pool.slots[k].unknown;
-      if (h > 0) {
+      const bool keeps_rate = wanted.is_after_step && keeps_mean_rate(pool, k);
+      if (keeps_rate) {
+        add_mean_rates(c, row);
+      } else if (wanted.h > 0 && c.is_moving()) {
         double start[C::rows], end[C::rows];
         c.value(problem.position.data(), 0, start);
         c.value(problem.position.data(), 1, end);
-        for (int r = 0; r < C::rows; ++r) row[r] = (end[r] - start[r]) / h;
+        for (int r = 0; r < C::rows; ++r) row[r] = (end[r] - start[r]) / wanted.h;
       }
-      const Gradients<C> gradients(c, problem.position.data(), 0);
+      const Gradients<C> gradients(c, problem.position.data(), wanted.fraction());
       for (int i = 0; i < c.node_count(); ++i) {
         Vec3 rows[C::rows];
         gradients.of_node(i, rows);
@@ -129,7 +177,7 @@ double Newton::find_rates(const Problem& problem, double h, std::span<const Vec3
       }
       if (pool.has_laws())
         for (int r = 0; r < C::rows; ++r) {
-          if (pool.law(k)[r].hold) row[r] -= pool.law(k)[r].rate;
+          if (pool.law(k)[r].hold && !keeps_rate) row[r] -= pool.law(k)[r].rate;
           if (pool.states[k * C::rows + r].side != 0) row[r] = 0;
         }
       for (int r = 0; r < C::rows; ++r) worst.add(std::abs(row[r]));
@@ -137,7 +185,7 @@ double Newton::find_rates(const Problem& problem, double h, std::span<const Vec3
   });
   Largest speed;
   for (const Vec3& v : problem.velocity) speed.add(largest_component(v));
-  return worst.value <= round_off * speed.value ? 0 : worst.value;
+  return worst.value <= wanted.tolerance() * speed.value ? 0 : worst.value;
 }
 
 void Newton::add_step_to_velocities(Problem& problem) {

@@ -13,18 +13,15 @@ namespace iota::solver {
 
 namespace {
 
-/// Keeps the groups of `count` values for which keeps(index of the group).
-template <class T, class Keeps>
-void compact(std::vector<T>& list, std::size_t count, Keeps keeps) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i * count < list.size(); ++i) {
-    if (!keeps(i)) continue;
-    if (kept != i)
-      std::copy_n(list.begin() + static_cast<std::ptrdiff_t>(i * count), count,
-                  list.begin() + static_cast<std::ptrdiff_t>(kept * count));
-    ++kept;
-  }
-  list.resize(kept * count);
+/// Takes the groups of `count` values at some places (in order) out of a list. What lies between them moves as it is.
+template <class T>
+void take_out(std::vector<T>& list, std::size_t count, std::span<const std::size_t> places) {
+  if (places.empty() || list.empty()) return;
+  const auto at = [&](std::size_t place) { return list.begin() + static_cast<std::ptrdiff_t>(place * count); };
+  auto end = at(places[0]);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    end = std::move(at(places[i] + 1), i + 1 < places.size() ? at(places[i + 1]) : list.end(), end);
+  list.erase(end, list.end());
 }
 
 }  // namespace
@@ -60,31 +57,25 @@ void Problem::open(std::span<const std::uint32_t> nodes) {
     if (!damping.empty()) damping[node] = 0;
   }
   touch(nodes);
-  std::erase_if(mass_couplings, [&](const MassCoupling& c) {
-    const bool goes = is_any_open(std::array{c.a, c.b});
-    if (goes) touch(std::array{c.a, c.b});
-    return goes;
-  });
-  std::vector<std::uint8_t> goes;
-  const auto note_leaving = [&](const auto& pool) {
-    goes.assign(pool.items.size(), 0);
-    for (std::size_t i = 0; i < pool.items.size(); ++i) {
-      const auto nodes_of_item = pool.nodes_of(pool.items[i]);
-      if ((goes[i] = is_any_open(nodes_of_item))) touch(nodes_of_item);
-    }
+  std::vector<std::size_t> leaving;
+  const auto find_leaving = [&](const auto& items, auto nodes_of) {
+    leaving.clear();
+    for (std::size_t i = 0; i < items.size(); ++i)
+      if (const auto nodes_of_item = nodes_of(items[i]); is_any_open(nodes_of_item))
+        touch(nodes_of_item), leaving.push_back(i);
   };
-  const auto stays = [&](std::size_t i) { return !goes[i]; };
+  find_leaving(mass_couplings, [](const MassCoupling& c) { return std::array{c.a, c.b}; });
+  take_out(mass_couplings, 1, leaving);
   for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
-    note_leaving(pool);
-    for (std::size_t i = 0; i < pool.items.size(); ++i)
-      if (goes[i]) changes_.removed_rows.push_back(pool.slots[i].unknown);
-    compact(pool.items, 1, stays), compact(pool.keys, 1, stays), compact(pool.slots, 1, stays);
-    compact(pool.multipliers, C::rows, stays), compact(pool.laws, C::rows, stays);
+    find_leaving(pool.items, pool.nodes_of);
+    for (const std::size_t i : leaving) changes_.removed_rows.push_back(pool.slots[i].unknown);
+    take_out(pool.items, 1, leaving), take_out(pool.keys, 1, leaving), take_out(pool.slots, 1, leaving);
+    take_out(pool.multipliers, C::rows, leaving), take_out(pool.laws, C::rows, leaving);
     pool.offsets.clear(), pool.states.clear();
   });
   for_each_force_pool([&](auto& pool) {
-    note_leaving(pool);
-    compact(pool.items, 1, stays), compact(pool.keys, 1, stays), compact(pool.slots, 1, stays);
+    find_leaving(pool.items, pool.nodes_of);
+    take_out(pool.items, 1, leaving), take_out(pool.keys, 1, leaving), take_out(pool.slots, 1, leaving);
   });
 }
 
@@ -131,7 +122,7 @@ double Problem::potential_energy(const Vec3* x, bool with_external) const {
     if (F::is_external && !with_external) return;
     for (const auto& f : pool.items) {
       const double stored = f.energy(f.arm.value(x));
-      // Infinite where ends have met: nothing in the book, as the model has it; a barrier to a search.
+      // Infinite for coincident ends: not counted in the balance, as in the model; a barrier for a search.
       if (with_external || std::isfinite(stored)) energy += stored;
     }
   });

@@ -17,10 +17,10 @@
 
 namespace iota::solver {
 
-/// What the multiplier of a row may be. By default any: an equation, g = 0. With bounds
+/// The bounds of a row's multiplier. Default: none, an equation, g = 0. With bounds
 ///   lambda = upper => g >= 0,   lambda = lower => g <= 0,   in between g = 0
 /// so that a rope, g = length - L <= 0, has lower = 0; a stop g >= 0 has upper = 0; both 0: switched off. A `hold` row
-/// (dry friction, speed motors) measures g from where it was at the start of each (sub-)step, and moves on by `rate`:
+/// (dry friction, speed motors) measures g from its value at the start of each (sub-)step, plus `rate` times the time:
 /// bounds are then the friction or the motor's strength. A compliant row is a spring, within its bounds:
 ///   lambda = g / compliance + damping dg/dt
 struct RowLaw {
@@ -34,10 +34,10 @@ struct RowLaw {
   friend bool operator==(const RowLaw&, const RowLaw&) = default;
   bool is_off() const { return lower == upper; }  ///< both 0
   bool is_compliant() const { return compliance > 0; }
-  /// What is left of the bounds where only positions or impulses count: finite forces do nothing there.
+  /// The bounds for positions or impulses, on which finite forces have no effect.
   double lower_impulse() const { return lower == -unbounded && !is_compliant() && !hold ? -unbounded : 0; }
   double upper_impulse() const { return upper == unbounded && !is_compliant() && !hold ? unbounded : 0; }
-  /// How far g is on a forbidden side.
+  /// Distance of g into the forbidden side.
   double violation(double g) const { return g > 0 ? (upper_impulse() > 0 ? g : 0) : (lower_impulse() < 0 ? -g : 0); }
   /// Energy that a spring row stores, J; a pure dashpot stores none.
   double energy(double g) const {
@@ -47,16 +47,16 @@ struct RowLaw {
   }
 };
 
-/// Where a row with a law stands; kept by the solver.
+/// State of a row with a law; kept by the solver.
 struct RowState {
   std::int8_t side = 0;         ///< -1, 1: its multiplier is at the lower, upper bound; 0: free, the equation holds
   std::int8_t side_before = 0;  ///< at the start of the (sub-)step
-  bool off_speed = false;       ///< a hold row whose velocity there was not the wanted one
+  bool off_speed = false;       ///< a hold row whose velocity there was not the target
   double start = 0;             ///< g there
 };
 
-/// What a constraint or force is to whoever added it; the solver does not read it. Its owner finds it by this key again,
-/// wherever it lies in its pool.
+/// Identifies a constraint or force for its owner, which finds it by this key in its pool; the solver does not read
+/// it.
 struct ItemKey {
   std::uint8_t owner = 0;  ///< a number for each kind of owner
   std::array<std::uint8_t, 3> part{};
@@ -77,11 +77,11 @@ struct ConstraintPool {
   std::vector<C> items;
   std::vector<ItemKey> keys;
   std::vector<double> multipliers;  ///< C::rows each, N
-  std::vector<double> offsets;      ///< C::rows each: what cannot be closed and is held as it is; or empty: nothing
+  std::vector<double> offsets;      ///< C::rows each: held gaps that cannot be closed; or empty: none
   std::vector<RowLaw> laws;         ///< C::rows each; or empty: all are equations, which costs nothing
   std::vector<RowState> states;     ///< beside laws
   std::vector<std::uint32_t>
-      held;  ///< rows to which the integrator has lent a bound for a step: Integrator::hold_offsets
+      held;  ///< rows with a temporary bound that the integrator has set: Integrator::hold_offsets
   std::vector<Slots> slots;
 
   double* multiplier(std::size_t i) { return multipliers.data() + i * C::rows; }
@@ -97,7 +97,7 @@ struct ConstraintPool {
   static std::span<const std::uint32_t> nodes_of(const C& item) {
     return {item.nodes.data(), static_cast<std::size_t>(item.node_count())};
   }
-  /// What the solver brings to zero: the constraint less its offset.
+  /// The function whose root the solver finds: the constraint minus its offset.
   void value(std::size_t i, const Vec3* x, double fraction, double* g) const {
     items[i].value(x, fraction, g);
     if (offsets.empty()) return;
@@ -117,8 +117,8 @@ struct ForcePool {
   static std::span<const std::uint32_t> nodes_of(const F& item) { return {item.arm.nodes.data(), item.arm.count}; }
 };
 
-/// One independent problem: points with masses, what constrains them and what pushes them. It knows no bodies; the step
-/// fills it from the model and reads positions, velocities and multipliers back.
+/// One independent problem: points with masses, constraints and forces. It knows no bodies; the step fills it from the
+/// model and reads positions, velocities and multipliers back.
 struct Problem {
   struct MassCoupling {
     std::uint32_t a, b;
@@ -129,14 +129,14 @@ struct Problem {
   std::vector<Vec3> position, velocity;  ///< m, m/s
   std::vector<Vec3> force;               ///< explicit, held over the step, N; or empty: none
   std::vector<double> mass;              ///< diagonal of the mass matrix, kg
-  std::vector<double> damping;           ///< of velocities, 1/s, for whoever advances the problem; or empty: none
+  std::vector<double> damping;           ///< of velocities, 1/s, for the caller of the integrator; or empty: none
   std::vector<MassCoupling> mass_couplings;
   ConstraintPools<ConstraintPool> constraints;
   ForcePools<ForcePool> forces;
   Vec3 gravity;
-  /// What positions and targets are relative to, m. Far from the world's origin they keep their digits that way.
+  /// Origin of positions and targets, m. It keeps their precision far from the world's origin.
   Vec3 origin;
-  /// Velocities may violate a row that is new: they are projected at the start of the next step.
+  /// Velocities may violate a new row: they are projected at the start of the next step.
   bool has_new_rows = false;
   double standing_gap = 0;           ///< of a conflict that the last attempt could not close, relative; 0: none
   std::uint64_t standing_steps = 0;  ///< since then
@@ -144,10 +144,10 @@ struct Problem {
   std::size_t size() const { return position.size(); }
 
   /// @name Structure
-  /// A problem is built by adding nodes and what acts on them; `compile` then finds it a pattern. It is changed in this
-  /// order: new nodes are added; the nodes at which anything changes are opened, which takes away all that acts on them;
-  /// what acts on them now is added as if the whole problem were built again (the rest is refused, being there already);
-  /// nodes on which nothing acts any more are marked for removal. `follow` then brings the pattern up to date.
+  /// A problem is built by adding nodes and items that act on them; `compile` then makes its pattern. It is changed in
+  /// this order: new nodes are added; the nodes with changes are opened, which removes all items on them; their items
+  /// are added as if the whole problem were built again (other items are refused, as they exist already); nodes without
+  /// items are marked for removal. `follow` then updates the pattern.
   ///@{
   void add_nodes(std::size_t count);  ///< without mass
   void add_mass(std::uint32_t node, double m) {
@@ -161,15 +161,15 @@ struct Problem {
   /// Returns the number of a new node, which is eliminated right after the one beside it.
   std::uint32_t add_node_beside(std::uint32_t);
   void open(std::span<const std::uint32_t> nodes);
-  /// Whether what acts on a node is being added.
+  /// Whether items on a node are being added.
   bool is_open(std::uint32_t node) const { return is_open_.empty() || is_open_[node]; }
   void mark_for_removal(std::uint32_t node) { changes_.removed.push_back(node); }
 
-  /// Since the pattern was made.
+  /// Changes since the pattern was made.
   const GraphChange& changes() const { return changes_; }
-  /// Takes out nodes on which nothing acts; the last ones get their numbers, the highest first.
+  /// Removes nodes without items; the last ones get their numbers, the highest first.
   void remove_nodes(std::span<const std::uint32_t> removed);
-  /// Gives all lists of the pools the length that their items ask for.
+  /// Resizes all lists of the pools to their items.
   void fit_pools();
   void note_compiled() { changes_.clear(), is_open_.clear(); }
   ///@}
@@ -240,7 +240,7 @@ struct Problem {
     for_each_constraint_pool([](auto& pool) { pool.offsets.clear(); });
   }
 
-  /// Whether no constraint holds on to the world: momentum stays.
+  /// Whether no constraint is connected to the world, so that momentum is kept.
   bool is_isolated() const {
     bool internal = true;
     for_each_constraint_pool([&](const auto& pool) {
@@ -260,7 +260,7 @@ struct Problem {
   double kinetic_energy() const {
     return kinetic_energy([&](std::size_t i) -> const Vec3& { return velocity[i]; });
   }
-  /// Gravity and implicit forces; external ones (grips) are no part of the world's energy, only of Newton's merit.
+  /// Gravity and implicit forces; external ones (grips) are not in the world's energy, only in Newton's merit.
   double potential_energy(const Vec3* x, bool with_external = false) const;
   /// Stored in spring rows, with targets as at `fraction` of the step.
   double row_energy(const Vec3* x, double fraction) const;

@@ -6,12 +6,12 @@
 
 namespace iota::solver {
 
-/// What a free row is to meet: value - softness * lambda = 0.
+/// The equation of a free row: value - softness * lambda = 0.
 struct RowEquation {
   double value, softness;
 };
 
-/// A spring takes its mean stretch in the mid-point scheme, so that its energy is kept exactly.
+/// In the mid-point scheme a spring uses its mean stretch, so that its energy is kept exactly.
 inline RowEquation equation_of(const RowLaw& law, const RowState& state, double g, const Stage& stage) {
   if (law.hold) g -= state.start + law.rate * stage.h;
   if (!law.is_compliant()) return {g, 0};
@@ -31,7 +31,7 @@ inline Bounds bounds_of(const RowLaw& law, const Stage& stage) {
   return {law.lower, law.upper};
 }
 
-/// Whether all rows of an item are at a bound that is zero: then it is as if it were not there.
+/// Whether all rows of an item are at a bound of zero, so that it has no effect.
 template <class C>
 bool is_out_of_play(const ConstraintPool<C>& pool, std::size_t item) {
   for (std::size_t row = item * C::rows; row < (item + 1) * C::rows; ++row)

@@ -3,7 +3,7 @@
 
 namespace iota::solver {
 
-/// Which equations a Newton solve closes. With u = x - x0 - h v0:
+/// The equations of a Newton solve. With u = x - x0 - h v0:
 ///   inertia * M u - f(x) + Gh' lambda = 0,   g(x) - compliance * lambda = 0
 /// end point (backward Euler): inertia = 1/h^2, Gh = G(x);  mid-point: inertia = 2/h^2, Gh = (G(x0) + G(x)) / 2.
 struct Stage {
@@ -11,10 +11,10 @@ struct Stage {
   double inertia = 1;
   bool midpoint = false;
   double fraction = 1;        ///< of the step, for targets that move during it
-  double fraction_start = 0;  ///< where this (sub-)step begins
+  double fraction_start = 0;  ///< start of this (sub-)step
   double compliance = 1e-12;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
 
-  double tolerance = 1e-9;  ///< of the scaled residual; gaps end at about this fraction of a link
+  double tolerance = 1e-9;  ///< of the scaled residual; remaining gaps are about this fraction of a link
   int max_iterations = 60;
 
   bool is_projection() const { return h == 0; }

@@ -86,7 +86,7 @@ bool StepEquations::jacobian(std::span<const double> x, std::span<double> jacobi
   for (const BlockPattern::Vertex& v : pattern.vertices()) {
     for (std::uint32_t i = 0; i < v.pivot; ++i)
       for (std::uint32_t j = 0; j < v.pivot; ++j) {
-        const bool mirrored = !stage_.midpoint && j > i;  // a symmetric matrix is filled below its diagonal only
+        const bool mirrored = !stage_.midpoint && j > i;  // of a symmetric matrix only the lower triangle is filled
         put(v.unknown + i, v.unknown + j, diagonals[v.diagonal + (mirrored ? j * v.pivot + i : i * v.pivot + j)]);
       }
     for (const auto& entry : pattern.entries().subspan(v.first_entry, v.entry_count))

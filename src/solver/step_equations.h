@@ -20,7 +20,7 @@ class StepEquations final : public NonlinearProblem {
 
   /// Newton's iterate and the pools' multipliers, scaled.
   std::vector<double> unknowns() const;
-  /// Makes them Newton's iterate and the pools' multipliers; returns the residual as Newton measures it.
+  /// Sets Newton's iterate and the pools' multipliers; returns the residual in Newton's scaling.
   double assign(std::span<const double> unknowns);
 
  private:

@@ -5,7 +5,7 @@
 
 namespace iota::step {
 
-/// Breaks constraints, bonds, hinges and nails that the step has loaded beyond their limits.
+/// Breaks constraints, bonds, hinges and nails whose load in the step was above their limits.
 void break_overloaded(edit::Editor&, StepReport&);
 
 /// Switches off constraints on surfaces whose function has failed.

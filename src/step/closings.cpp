@@ -15,13 +15,13 @@ void finish_closings(edit::Editor& editor, StepReport& report) {
       due.push_back({model.closings.id(slot), {model.particles.id(c.p), model.particles.id(c.q), 0}});
   });
   for (const auto& [closing, combine] : due) {
-    if (!model.closings.contains(closing)) continue;  // an earlier one has settled it
+    if (!model.closings.contains(closing)) continue;  // destroyed by an earlier one
     ingredient::begin_edits(model);
     try {
       const RestructureReport combined = apply(editor, combine);
       report.unconverged += combined.remaining_gap > 0;
       for (const std::string& note : combined.notes) report.warnings.push_back(note);
-    } catch (const std::exception& error) {  // it is impossible; give up rather than ask again at every step
+    } catch (const std::exception& error) {  // impossible: gives up instead of trying again at every step
       if (model.closings.contains(closing)) (void)call_off(editor, closing.slot);
       report.warnings.push_back(error.what());
     }

@@ -5,7 +5,7 @@
 
 namespace iota::step {
 
-/// Combines particles whose time to meet is over.
+/// Combines particles whose closing has ended.
 void finish_closings(edit::Editor&, StepReport&);
 
 }  // namespace iota::step

@@ -5,7 +5,7 @@
 
 namespace iota::step {
 
-/// Reports which one-sided constraints and stops have begun or ended to carry a load since the last call.
+/// Reports the one-sided constraints and stops that began or ceased to carry a load since the last call.
 void tell_contacts(model::Model&, StepReport&);
 
 }  // namespace iota::step

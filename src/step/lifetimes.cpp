@@ -38,13 +38,7 @@ class Draw {
   ingredient::Emitter& emitter_;
 };
 
-/// The turn about a vector by its length.
-Quaternion turn_by(const Vec3& v) {
-  const double angle = norm(v);
-  return angle > 0 ? axis_angle((1 / angle) * v, angle) : Quaternion{};
-}
-
-// The births of a step are spread over it: each particle has already moved since its own.
+// The births of a step are spread over it: each particle has already moved since its birth.
 void bear_particles(edit::Editor& editor, std::uint32_t slot, StepReport& report) {
   model::Model& model = editor.model;
   const double h = report.dt;
@@ -77,8 +71,8 @@ void bear_particles(edit::Editor& editor, std::uint32_t slot, StepReport& report
   }
 }
 
-// Free spin is exact: angular velocity is constant, and the turn about it is by its length. The pull towards a direction is
-// taken linearly implicit, so that any stiffness is stable.
+// Free spin is exact: angular velocity is constant, and the rotation is by its length. The torque towards a direction
+// is linearly implicit, so that any stiffness is stable.
 void turn(model::Model& model, model::Attributes& a, double h) {
   const model::Particle& p = model.particles[a.particle];
   if (model.bodies[p.body].kind == BodyKind::inactive) return;
@@ -106,18 +100,23 @@ void turn(model::Model& model, model::Attributes& a, double h) {
 
 }  // namespace
 
+void turn_particles(model::Model& model, double h) {
+  model.attributes.for_each([&](std::uint32_t, model::Attributes& a) {
+    if (a.oriented) turn(model, a, h);
+  });
+}
+
 void update_lifetimes(edit::Editor& editor, StepReport& report) {
   model::Model& model = editor.model;
   if (model.attributes.size() + model.emitters.size() == 0) return;
   const double h = report.dt;
   model.attributes.for_each([&](std::uint32_t, model::Attributes& a) {
-    if (a.oriented) turn(model, a, h);
     a.age += h;
     if (a.age >= a.lifetime) report.died.push_back(model.particles.id(a.particle));
   });
   if (!report.died.empty()) ingredient::begin_edits(model);
   std::erase_if(report.died, [&](ParticleId particle) {
-    if (!model.particles.contains(particle)) return true;  // it went with another one
+    if (!model.particles.contains(particle)) return true;  // destroyed with another one
     const std::uint32_t before = model.structure_version, is_spark = model.is_spark(particle.slot);
     apply(editor, edit::Destroy<ParticleId>{particle});
     if (is_spark) model.spark_changes += model.structure_version - before;

@@ -5,7 +5,10 @@
 
 namespace iota::step {
 
-/// Oriented particles turn, particles age and die, emitters bear new ones.
+/// Rotates oriented particles by the torques of the step.
+void turn_particles(model::Model&, double h);
+
+/// Ages particles, destroys them at the end of their lifetime, and creates those of emitters.
 void update_lifetimes(edit::Editor&, StepReport&);
 
 }  // namespace iota::step

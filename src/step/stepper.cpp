@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One step of the whole system, stage by stage; `docs/architecture.md` tells the same story.
+// One step of the whole system, stage by stage; see `docs/architecture.md`.
 #include "step/stepper.h"
 
 #include "base/text.h"
@@ -27,10 +27,10 @@ StepReport Stepper::step(double dt) {
   return report;
 }
 
-// 1. Functions of the script, and other forces that are held, at the state at the start of the step.
+// 1. Functions of the script, and other held forces, at the start of the step.
 void Stepper::take_held_forces(StepReport& report) { editor_.held.begin_step(report); }
 
-// 2. Islands whose structure changed are analyzed anew; velocities that were assigned are made consistent.
+// 2. Islands with a changed structure are analyzed again; assigned velocities are projected.
 void Stepper::update_islands() {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
@@ -52,7 +52,7 @@ void Stepper::update_islands() {
   if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
 }
 
-// 3. Every island by itself, on as many threads as pay; reports are added up in a fixed order.
+// 3. Every island separately, on several threads if that is faster; reports are added up in a fixed order.
 void Stepper::advance_islands(StepReport& report) {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
@@ -81,13 +81,14 @@ void Stepper::advance_islands(StepReport& report) {
     report.warnings.push_back(text("the solver ", model.solver.data(), " found no root in ", handed_back, " of ",
                                    solves, " solves; the built-in one took over"));
   report.iterations_mean = solves ? static_cast<double>(iterations) / solves : 0;
+  turn_particles(model, report.dt);
   model.time += report.dt, model.last_dt = report.dt;
   ++model.step;
 }
 
 namespace {
 
-/// Forces act for one step, also on points that cannot move: kept, they would act at once when such a body becomes dynamic.
+/// Forces act for one step, also on points that cannot move: otherwise they would act when such a body becomes dynamic.
 void drop_forces_on_pinned_points(model::Model& model) {
   model.pushes.for_each([&](std::uint32_t ring, const ingredient::Push& push) {
     if (push.force == Vec3{}) return;
@@ -101,7 +102,7 @@ void drop_forces_on_pinned_points(model::Model& model) {
 
 }  // namespace
 
-// 4. Edits: what failed, what broke and particles that have met; then what was asked for during the step, in order.
+// 4. Edits: failures, breaks and particles that have met; then the requests of the step, in order.
 void Stepper::apply_edits(StepReport& report) {
   drop_forces_on_pinned_points(editor_.model);
   editor_.held.end_step();

@@ -14,7 +14,7 @@ class Stepper {
   StepReport step(double dt);
 
  private:
-  // The stages, in their order; stepper.cpp says what each does.
+  // The stages, in their order; described in stepper.cpp.
   void take_held_forces(StepReport&);
   void update_islands();
   void advance_islands(StepReport&);
@@ -23,7 +23,7 @@ class Stepper {
 
   edit::Editor& editor_;
   edit::Door& door_;
-  // Of the step at hand, kept for their room.
+  // Scratch of the present step, kept for its capacity.
   std::vector<solver::AdvanceReport> advanced_;  // of each island
   std::vector<std::uint32_t> dirty_, woken_;     // articulates: velocities to project, sleepers to wake
 };

@@ -8,7 +8,7 @@
 
 namespace iota {
 
-/// The parts of a system. Each knows those above it in this list.
+/// The parts of a system. Each uses those above it in this list.
 struct Core {
   model::Model model;
   Parallel parallel;
@@ -19,12 +19,12 @@ struct Core {
   edit::Door door{editor};
   step::Stepper stepper{editor, door};
 
-  /// The one way to change anything.
+  /// All changes go through it.
   template <class C>
   auto execute(const C& command) {
     if constexpr (std::is_same_v<C, edit::Step>) {
       if (door.is_stepping()) edit::Door::refuse_in_step();
-      const StepReport report = stepper.step(command.dt);
+      StepReport report = stepper.step(command.dt);
       door.record_step(command);
       return report;
     } else {
@@ -32,7 +32,7 @@ struct Core {
     }
   }
 
-  /// Slot of a living thing. Throws StaleIdError, which says what became of it.
+  /// Slot of an existing object. Throws StaleIdError, which says what became of it.
   template <class IdType>
   std::uint32_t slot(IdType id) const {
     return edit::require(model, id);

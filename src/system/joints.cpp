@@ -10,7 +10,7 @@ namespace iota {
 
 namespace {
 
-/// A surface as plain data; its function, if it has one, is kept under the next key.
+/// A surface as plain data; its function, if any, is kept under the next key.
 ingredient::PlacedSurface place(Core& core, const Surface& surface) {
   ingredient::PlacedSurface placed{{}, surface.position, surface.orientation};
   if (const auto* shape = std::get_if<Shape>(&surface.shape)) {
@@ -29,7 +29,7 @@ ConstraintId create_with_functions(Core& core, Specify specify) {
   const std::uint64_t first = core.held.functions.next_key;
   try {
     return core.execute(specify());
-  } catch (...) {  // refused: nothing uses its functions
+  } catch (...) {  // refused: its functions are unused
     auto& functions = core.model.surface_functions;
     functions.erase(functions.lower_bound(first), functions.end());
     throw;

@@ -26,7 +26,7 @@ std::size_t width(Quantity quantity) {
 
 namespace {
 
-/// Hands out rows of the right width.
+/// Provides rows of the right width.
 template <class IdType, class Write>
 void write_rows(const Core& core, Quantity quantity, std::span<const IdType> ids, std::span<double> out, Write write) {
   const std::size_t columns = width(quantity);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ingredient/loads.h"
+#include "model/nailed.h"
 #include "read/attributes.h"
 #include "system/core.h"
 
@@ -120,7 +121,7 @@ double Particles::mass(ParticleId id) const {
 
 bool Particles::is_nailed(ParticleId id) const {
   const model::Model& m = core_.model;
-  return m.rings[m.particles[core_.slot(id)].ring].nailed;
+  return m.rings[m.particles[core_.slot(id)].ring].nailed == model::by_nail;
 }
 
 Vec3 Particles::nail_force(ParticleId id) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Describes to viewers what has changed: the bodies that the scene log names, what hangs on them, and what has vanished.
+// Describes changes for viewers: the bodies in the scene log, the ingredients attached to them, and destroyed objects.
 #include "math/mat3.h"
 #include "system/core.h"
 

@@ -16,7 +16,7 @@ Diagnosis System::diagnose(BodyId id) const {
     articulates.push_back(model.bodies[b].articulate);
   std::sort(articulates.begin(), articulates.end());
   articulates.erase(std::unique(articulates.begin(), articulates.end()), articulates.end());
-  // An island of its own: the one that steps is left alone, and with it the state.
+  // A separate island, so that the stepped one and the state do not change.
   island::Island island;
   std::vector<std::uint32_t> node_of_ring(model.rings.slot_count(), model::none);
   island.assemble(model, articulates, node_of_ring);

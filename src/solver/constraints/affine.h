@@ -9,9 +9,9 @@
 
 namespace iota::solver {
 
-/// A weighted sum of points stays at a target: a nail (one point, weight 1), or a point of a rigid body that is tied to
-/// the body's basis (weights 1, -w_1 ... -w_4, target 0), or two such points of different bodies that coincide.
-///   constraint  g(x) = sum_i w_i x_i - t(fraction)   (3 rows, m)
+/// A weighted sum of points equals a target: a nail (one point, weight 1), a point of a rigid body tied to the body's
+/// basis (weights 1, -w_1 ... -w_4, target 0), or two coincident such points of different bodies. constraint g(x) =
+/// sum_i w_i x_i - t(fraction) (3 rows, m)
 ///   gradient    dg/dx_i = w_i I;   Hessian zero
 /// t moves linearly from target_start to target during the step. The multiplier is minus the force on the sum, N.
 struct AffineConstraint {
@@ -23,7 +23,7 @@ struct AffineConstraint {
   std::array<double, max_nodes> weights{};
   std::uint32_t count = 0;
   Vec3 target_start, target;
-  double reference = 1;  ///< a length to measure violations by, m
+  double reference = 1;  ///< reference length of violations, m
 
   int node_count() const { return static_cast<int>(count); }
   void value(const Vec3* x, double fraction, double* g) const {

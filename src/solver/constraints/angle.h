@@ -13,8 +13,8 @@ namespace iota::solver {
 ///   constraint  g(x) = theta - target(fraction)   (rad);   theta = atan2(S, C) + 2 pi k
 ///               S = |n| n.(r x d),  C = |n|^2 r.d - (n.r)(n.d);  k brings theta within half a turn of `near`
 ///   gradient    dtheta = (C dS - S dC) / (S^2 + C^2)
-/// Arms: 0 = n, 1 = r, 2 = d; no unit lengths needed, r and d not along n. The multiplier is the torque in N m that turns
-/// d back towards r. `track` makes the present angle the one to unwrap near, so that turns are counted.
+/// Arms: 0 = n, 1 = r, 2 = d; of any lengths, r and d not along n. The multiplier is the torque in N m that turns d
+/// back towards r. `track` unwraps further angles near the present one, so that turns are counted.
 struct AngleConstraint : ArmConstraint<AngleConstraint, 1, 3> {
   double target_start = 0, target = 0;  ///< rad
   double near = 0;                      ///< rad
@@ -38,9 +38,9 @@ struct AngleConstraint : ArmConstraint<AngleConstraint, 1, 3> {
     const First f(e);
     for (int a = 0; a < 3; ++a) out[0][a] = (1 / f.size2()) * (f.c * f.ds[a] - f.s * f.dc[a]);
   }
-  /// The mean of the gradients at both ends of a step, times a factor that makes it give the change of the angle: for an
-  /// axis at rest the mean gives its sine. Where an angle changes by less than `least` while its axis turns fast, part of
-  /// the factor is left out, since it is a ratio of small differences there.
+  /// The mean of the gradients at both ends of a step, times a factor that gives the exact change of the angle: for a
+  /// fixed axis the mean gives its sine. If an angle changes by less than `least` while its axis turns fast, part of
+  /// the factor is left out, as it is a ratio of small differences.
   void mean_gradients(const Vec3* x0, double start, const Vec3* x1, double end, Vec3* out) const {
     constexpr double least = 1e-3;  // rad
     Vec3 at_start[max_nodes];

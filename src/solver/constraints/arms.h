@@ -10,8 +10,8 @@
 
 namespace iota::solver {
 
-/// A few vectors that are affine in at most eight points, e_a = sum_i w_ai x_i + c_a: the axis, direction or place that
-/// is fixed in a body (by the body's basis) or, without points, in the world. Constants move linearly during the step.
+/// A few vectors that are affine in at most eight points, e_a = sum_i w_ai x_i + c_a: an axis, direction or place fixed
+/// in a body (by the body's basis) or, without points, in the world. Constants move linearly during the step.
 template <int Count>
 struct Arms {
   static constexpr int arm_count = Count;
@@ -21,11 +21,11 @@ struct Arms {
   std::array<std::array<double, max_nodes>, Count> weights{};
   std::array<Vec3, Count> constant_start{}, constant{};
   std::uint32_t count = 0;
-  /// The nodes [0, first_side) belong to one of two bodies, the others to the second; the elimination then puts the rows
-  /// behind the body that goes first, so that a hub with many joints stays O(n). 0: they all belong together.
+  /// The nodes [0, first_side) belong to one of two bodies, the others to the second; the elimination then puts the
+  /// rows behind the body that is eliminated first, so that a hub with many joints stays O(n). 0: one group.
   std::uint32_t first_side = 0;
 
-  /// Adds weight * x_node to an arm. Returns false, and changes nothing, where a ninth point would be needed.
+  /// Adds weight * x_node to an arm. Returns false, and changes nothing, if a ninth point would be needed.
   bool add(int arm, std::uint32_t node, double weight) {
     const auto end = nodes.begin() + count;
     const auto at = static_cast<std::uint32_t>(std::find(nodes.begin(), end, node) - nodes.begin());
@@ -42,7 +42,7 @@ struct Arms {
     for (std::uint32_t i = 0; i < count; ++i) e += weights[a][i] * x[nodes[i]];
     return e;
   }
-  /// Whether all arms are differences of points: then forces on them keep momentum.
+  /// Whether all arms are differences of points, so that forces on them keep momentum.
   bool is_internal() const {
     return std::all_of(weights.begin(), weights.end(), [this](const auto& w) {
       double sum = 0, size = 0;
@@ -58,7 +58,7 @@ struct Arms {
 ///   void calc_gradient(const Vec3* e, Vec3 (*d)[Count]) const                  d[r][a] = dg_r / de_a
 ///   void calc_hessian(const Vec3* e, const double* lambda, bool clamp, Mat3 (*h)[Count]) const
 ///                                                                              h[a][b] = sum_r lambda_r d2g_r / de_a de_b, a <= b
-/// and the chain rule to the points is here. `clamp`: leave what is positive semi-definite.
+/// and the chain rule to the points is here. `clamp`: keep the positive semi-definite part.
 template <class Derived, int Rows, int Count>
 struct ArmConstraint : Arms<Count> {
   static constexpr int rows = Rows;

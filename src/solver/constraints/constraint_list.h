@@ -18,7 +18,7 @@
 
 namespace iota::solver {
 
-/// What the solver asks of a constraint: pure mathematics on an array of points.
+/// The interface of a constraint for the solver: pure mathematics on an array of points.
 template <class C>
 concept Constraint = requires(const C& c, const Vec3* x, double* g) {
   { C::rows } -> std::convertible_to<int>;
@@ -27,37 +27,43 @@ concept Constraint = requires(const C& c, const Vec3* x, double* g) {
   { c.node_count() } -> std::convertible_to<int>;
   c.value(x, 1.0, g);
   { c.reference_length() } -> std::convertible_to<double>;
-  { c.is_internal() } -> std::convertible_to<bool>;  ///< moving all points alike leaves g as it is
-  { c.is_moving() } -> std::convertible_to<bool>;    ///< g changes during the step by itself
+  { c.is_internal() } -> std::convertible_to<bool>;  ///< g is invariant under translations
+  { c.is_moving() } -> std::convertible_to<bool>;    ///< g depends on time during the step
 };
 
-/// Gradients come node by node and Hessian blocks are multiples of the identity: the few rows of which bodies are made.
+/// Gradients are given by node and Hessian blocks are multiples of the identity: the rows of bodies.
 template <class C>
 concept SimpleConstraint = Constraint<C> && requires(const C& c, const Vec3* x, Vec3* rows, const double* multiplier) {
   c.gradient(x, 0, rows);
   { c.curvature(multiplier, 0, 0) } -> std::convertible_to<double>;
 };
 
-/// Gradients come all at once and Hessian blocks are full matrices: see ArmConstraint.
+/// Gradients are given for all nodes and Hessian blocks are full matrices: see ArmConstraint.
 template <class C>
 concept GeneralConstraint = Constraint<C> && requires(const C& c, const Vec3* x, Vec3* rows) {
   c.gradients(x, 1.0, rows);
   { c.first_side } -> std::convertible_to<std::uint32_t>;
 };
 
-/// Remembers where it is, to stay on the same branch: `track` after each (sub-)step.
+/// Stores its present place, to stay on the same branch: `track` after each (sub-)step.
 template <class C>
 concept TrackingConstraint = requires(C& c, const Vec3* x) { c.track(x, 1.0); };
 
-/// Gradients of a constraint at x, node by node.
+/// Gradients of a constraint at x, node by node. Those of the general ones and of distances are evaluated before the
+/// visits: otherwise the compiler must assume that the caller's writes change their inputs.
 template <class C>
 class Gradients {
+  static constexpr bool all_at_once = GeneralConstraint<C> || C::max_nodes <= 2;
+
  public:
   Gradients(const C& c, const Vec3* x, double fraction) : constraint_(c), x_(x) {
-    if constexpr (GeneralConstraint<C>) c.gradients(x, fraction, rows_.data());
+    if constexpr (GeneralConstraint<C>)
+      c.gradients(x, fraction, rows_.data());
+    else if constexpr (all_at_once)
+      for (int i = 0; i < C::max_nodes; ++i) c.gradient(x, i, rows_.data() + i * C::rows);
   }
   void of_node(int i, Vec3* out) const {
-    if constexpr (GeneralConstraint<C>)
+    if constexpr (all_at_once)
       for (int r = 0; r < C::rows; ++r) out[r] = rows_[i * C::rows + r];
     else
       constraint_.gradient(x_, i, out);
@@ -66,16 +72,16 @@ class Gradients {
  private:
   const C& constraint_;
   const Vec3* x_;
-  std::array<Vec3, GeneralConstraint<C> ? C::max_nodes * C::rows : 0> rows_;
+  std::array<Vec3, all_at_once ? C::max_nodes * C::rows : 0> rows_;
 };
 
-/// Has a discrete gradient of its own for the mid-point scheme, where the mean of the gradients at both ends of a step does
-/// not give its change exactly.
+/// Has its own discrete gradient for the mid-point scheme, as the mean of the gradients at both ends of a step does not
+/// give its change exactly.
 template <class C>
 concept DiscreteGradientConstraint =
     GeneralConstraint<C> && requires(const C& c, const Vec3* x, Vec3* rows) { c.mean_gradients(x, 0.0, x, 1.0, rows); };
 
-/// What the mid-point scheme takes for gradients: their mean over a step from x0 to x1.
+/// The gradients of the mid-point scheme: the mean over a step from x0 to x1.
 template <class C>
 class MeanGradients {
  public:
@@ -100,7 +106,7 @@ class MeanGradients {
   std::array<Vec3, DiscreteGradientConstraint<C> ? C::max_nodes * C::rows : 0> rows_;
 };
 
-/// The one list of constraint types; pools, sparsity, assembly and reports are folds over it.
+/// The list of constraint types; pools, sparsity, assembly and reports are folds over it.
 template <template <class> class Pool>
 using ConstraintPools =
     std::tuple<Pool<DistanceConstraint>, Pool<AffineConstraint>, Pool<BilinearConstraint>, Pool<AngleConstraint>,

@@ -15,12 +15,12 @@
 
 namespace iota::solver {
 
-/// A weighted sum of coordinates stays at a target: gears, belts (two angles), rack and pinion, screw (an angle and a
+/// A weighted sum of coordinates equals a target: gears, belts (two angles), rack and pinion, screw (an angle and a
 /// slide), differential (three angles), or, with a one-sided multiplier, a rope over several points (lengths).
 ///   constraint  g(x) = sum_k r_k q_k(x) - target(fraction);   q_k: a row of one coordinate, whose own target is zero
 ///   gradient    sum_k r_k grad q_k;   Hessian sum_k r_k Hess q_k
 /// The multiplier times r_k is the torque or force (N m, N) that pulls coordinate k down. In the mid-point scheme each
-/// coordinate has a discrete gradient, so that the coupling passes on as much work as it takes, however unlike the ratios.
+/// coordinate has a discrete gradient, so that the coupling transmits all work at any ratios.
 struct CouplingConstraint {
   static constexpr int rows = 1;
   static constexpr int max_nodes = 32;
@@ -30,16 +30,16 @@ struct CouplingConstraint {
   using Coordinate = std::variant<AngleConstraint, BilinearConstraint, SpanConstraint, StationConstraint>;
   struct Term {
     double ratio = 1;
-    Coordinate coordinate;  ///< its nodes are places in ours
+    Coordinate coordinate;  ///< its nodes are indices of `nodes`
   };
   std::array<std::uint32_t, max_nodes> nodes{};  ///< distinct
   std::uint32_t count = 0;
-  std::uint32_t first_side = 0;  ///< see Arms; the gradient by these nodes never vanishes
+  std::uint32_t first_side = 0;  ///< see Arms; the gradient by these nodes does not vanish
   std::vector<Term> terms;
   double target_start = 0, target = 0;
   double reference = 0;  ///< the largest of the terms, in the unit of g
 
-  /// False, and nothing changes, where there is no room.
+  /// False, without a change, if there is no room.
   bool list_node(std::uint32_t node) {
     if (std::find(nodes.begin(), nodes.begin() + count, node) != nodes.begin() + count) return true;
     if (count == max_nodes) return false;
@@ -120,14 +120,14 @@ struct CouplingConstraint {
   }
 
  private:
-  /// Our points by their places in `nodes`.
+  /// The points by their indices in `nodes`.
   struct Points {
     Vec3 x[max_nodes];
     Points(const CouplingConstraint& c, const Vec3* all) {
       for (std::uint32_t i = 0; i < c.count; ++i) x[i] = all[c.nodes[i]];
     }
   };
-  /// Blocks of the upper triangle lie row by row.
+  /// Blocks of the upper triangle, row by row.
   std::uint32_t place_of_block(std::uint32_t i, std::uint32_t j) const { return i * count - i * (i + 1) / 2 + j; }
 
   template <class Visit>

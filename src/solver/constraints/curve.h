@@ -29,15 +29,15 @@ struct CurveFoot {
   double slope_;
 };
 
-/// A point on a curve that is fixed in a body or in the world.
+/// A point on a curve fixed in a body or in the world.
 ///   constraint  g_k = n_k(s).(p - c(s)),  k = 1, 2   (m);   s the foot of p
 ///   gradient    n_k + (n_k'.w) grad s
-/// n_k = N_k - (N_k.t) / (1 + t0.t) (t0 + t): the normals N_k at the foot where `track` was last called, turned with the
-/// tangent by the smallest turn (parallel transport; Bishop 1975), so that multipliers, the forces along them in N, are
-/// continuous. Good for turns of the tangent up to half a turn between calls.
+/// n_k = N_k - (N_k.t) / (1 + t0.t) (t0 + t): the normals N_k at the foot where `track` was last called, turned with
+/// the tangent by the smallest rotation (parallel transport; Bishop 1975), so that multipliers, the forces along them
+/// in N, are continuous. Valid for turns of the tangent up to half a turn between calls.
 struct CurveConstraint : PlaceConstraint<CurveConstraint, 2> {
   const geometry::Curve* curve = nullptr;
-  double parameter = 0;      ///< where the point was at the last `track`, m
+  double parameter = 0;      ///< of the point at the last `track`, m
   Vec3 tangent, normals[2];  ///< there, in the curve's frame
   double reference = 1;
 
@@ -50,7 +50,7 @@ struct CurveConstraint : PlaceConstraint<CurveConstraint, 2> {
     normals[0] = any_perpendicular(tangent), normals[1] = cross(tangent, normals[0]);
     multipliers[0] = dot(force, normals[0]), multipliers[1] = dot(force, normals[1]);
   }
-  /// What multipliers mean, as `start` takes it; the force on the point is the opposite.
+  /// The force of multipliers, for `start`; the force on the point is the opposite.
   Vec3 force(const double* multipliers) const { return multipliers[0] * normals[0] + multipliers[1] * normals[1]; }
   void track(const Vec3* x, double fraction) {
     const CurveFoot foot(*curve, place(x, fraction), parameter);
@@ -105,9 +105,9 @@ struct CurveConstraint : PlaceConstraint<CurveConstraint, 2> {
   };
 };
 
-/// How far along a curve a point's foot is: ends, motors, friction and springs of beads.
+/// The arc length of a point's foot on a curve: ends, motors, friction and springs of beads.
 ///   constraint  g = s - target(fraction)   (m);   the multiplier is the force along the curve, N
-/// On closed curves s goes on counting, from the parameter at the last `track`.
+/// On closed curves s is counted through full turns, from the parameter at the last `track`.
 struct StationConstraint : PlaceConstraint<StationConstraint, 1> {
   const geometry::Curve* curve = nullptr;
   double parameter = 0;  ///< m

@@ -8,11 +8,11 @@
 
 namespace iota::solver {
 
-/// Two points keep their distance; the row of which all rigid bodies are made.
+/// A constant distance of two points; the row of all rigid bodies.
 ///   constraint  g(x) = (|d|^2 - L^2) / (2 s),   d = x_b - x_a
 ///   gradient    dg/dx_b = d / s,  dg/dx_a = -d / s
 ///   Hessian     (1 / s) [I -I; -I I]: constant, so that the mean of two gradients is a discrete gradient
-/// L: wanted length, m; s: scale, m (L itself, or the first length of a pair that is being brought together). The multiplier is
+/// L: wanted length, m; s: scale, m (L itself, or the first length of a closing pair). The multiplier is
 /// then the tension in N (times |d|/s). Source: Garcia de Jalon, Twenty-five years of natural coordinates, 2007.
 struct DistanceConstraint {
   static constexpr int rows = 1;
@@ -26,7 +26,7 @@ struct DistanceConstraint {
   static constexpr int node_count() { return 2; }
   void value(const Vec3* x, double /*fraction*/, double* g) const {
     const Vec3 d = x[nodes[1]] - x[nodes[0]];
-    g[0] = (0.5 * (1 / scale)) * (dot(d, d) - length * length);  // everywhere the same division: it is done once
+    g[0] = (0.5 * (1 / scale)) * (dot(d, d) - length * length);  // the same division as elsewhere, so it is done once
   }
   /// Gradient with respect to node i, at x, one Vec3 a row.
   void gradient(const Vec3* x, int i, Vec3* rows_out) const {
@@ -38,7 +38,7 @@ struct DistanceConstraint {
     return (i == j ? 1 : -1) * (multiplier[0] * (1 / scale));
   }
   double reference_length() const { return scale; }
-  /// Whether moving all points alike leaves g as it is: then its forces keep momentum.
+  /// Whether g is invariant under translations, so that its forces keep momentum.
   static constexpr bool is_internal() { return true; }
   static constexpr bool is_moving() { return false; }
 };

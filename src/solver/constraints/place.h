@@ -5,13 +5,13 @@
 
 namespace iota::solver {
 
-/// Constraints on where a point is in a frame, which is fixed in a body or in the world: functions of
+/// Constraints on the place of a point in a frame fixed in a body or in the world: functions of
 ///   xi_k = a_k . e;  arms 0: e = point - origin of the frame, 1 ... 3: its axes a_k (orthonormal; the basis of the body)
 /// `Derived` has, as functions of xi,
 ///   void calc_place_value(const Vec3& xi, double fraction, double* g) const
 ///   void calc_place_gradient(const Vec3& xi, Vec3* d) const
 ///   Mat3 calc_place_hessian(const Vec3& xi, const double* lambda) const         sum_r lambda_r Hess(g_r), symmetric
-/// Clamped, no curvature is left: which part of it is positive is not worth eigenvalues.
+/// Clamped, all curvature is left out, as eigenvalues for its positive part would cost too much.
 template <class Derived, int Rows>
 struct PlaceConstraint : ArmConstraint<Derived, Rows, 4> {
   /// The frame is the world's, with this origin. (Otherwise `add` the weights of origin and axes.)

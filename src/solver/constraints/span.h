@@ -8,10 +8,10 @@ namespace iota::solver {
 /// The distance of two points: limits, motors, friction and springs along it, and the pieces of a rope over several points.
 ///   constraint  g(x) = |d| - target   (m);   arm 0: d
 ///   gradient    dg/dd = n = d / |d|;   Hessian (I - n n') / |d|
-/// The multiplier is the tension, N. Where the points meet the direction is undefined, and no force acts.
+/// The multiplier is the tension, N. If the points coincide the direction is undefined, and no force acts.
 struct SpanConstraint : ArmConstraint<SpanConstraint, 1, 1> {
   double target = 0;     ///< m
-  double reference = 1;  ///< a length to measure violations by, m
+  double reference = 1;  ///< reference length of violations, m
 
   double reference_length() const { return reference; }
   void calc_value(const Vec3* e, double /*fraction*/, double* g) const { g[0] = norm(e[0]) - target; }

@@ -6,7 +6,7 @@
 
 namespace iota::solver {
 
-/// A point on a surface that is fixed in a body or in the world, or, with a one-sided multiplier, on one side of it.
+/// A point on a surface fixed in a body or in the world, or, with a one-sided multiplier, on one side of it.
 ///   constraint  g(x) = phi(xi)   (m);   gradient and Hessian: those of phi through xi (see place.h)
 /// Inside: multiplier >= 0; outside: <= 0. The multiplier is the normal force over |grad phi|, N, pulling inwards.
 struct SurfaceConstraint : PlaceConstraint<SurfaceConstraint, 1> {

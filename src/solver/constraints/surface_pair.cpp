@@ -11,7 +11,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// x of A x = b by elimination with row pivoting; zero where A is singular.
+/// x of A x = b by elimination with row pivoting; zero if A is singular.
 void solve4(double (&a)[4][5], double* x) {
   for (int k = 0; k < 4; ++k) {
     int p = k;
@@ -34,7 +34,7 @@ void solve4(double (&a)[4][5], double* x) {
   }
 }
 
-/// A's frame seen from B's and back.
+/// The transformation between A's and B's frames.
 struct Relative {
   Vec3 t;     // origin of B in A
   Mat3 turn;  // columns: axes of B in A
@@ -47,7 +47,7 @@ struct Relative {
   Vec3 into_b(const Vec3& p) const { return turn.transposed() * (p - t); }
 };
 
-/// phi, zero where normals exist: on the surface, or a skin farther out.
+/// phi, zero on a surface with normals: the surface itself, or a skin farther out.
 shape::Level smooth_at(const shape::Surface& surface, const Vec3& p) {
   shape::Level level = surface.at(p);
   level.value -= surface.skin_level();
@@ -71,7 +71,7 @@ Mat3 unit_derivative(const Vec3& unit, double size, const Mat3& change) {
 
 // Unknowns p and gap g; with n = grad A / |grad A| at p, q = p + g n, m = grad B / |grad B| at q (all in A's frame):
 //   A(p) = 0,  B(q) = 0,  two tangents . (n + m) = 0.
-// Flat faces leave the tangential place open; a little damping keeps it near where it was.
+// For flat faces the tangential place is undefined; a small damping keeps it near its former place.
 SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const Vec3& near) const {
   const Relative relative(e);
   const double size = std::min(surface_a->scale(), surface_b->scale());
@@ -94,7 +94,7 @@ SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const 
     const double b_size = norm(b_gradient) + 1e-300;
     const Vec3 m = (1 / b_size) * b_gradient;
     const double residual = std::abs(a.value) / size + std::abs(b.value) / size + norm(n + m);
-    if (!(residual < best) && part > 0.01 && best > 1e-12) {  // kinks, as between face and edge: go less far
+    if (!(residual < best) && part > 0.01 && best > 1e-12) {  // kinks, as between face and edge: shorten the step
       part /= 2;
       p = start + part * dp, gap = start_gap + part * dgap;
       continue;
@@ -132,7 +132,7 @@ SurfacePairConstraint::Contact SurfacePairConstraint::find(const Vec3* e, const 
 void SurfacePairConstraint::start(const Vec3* x, double fraction) {
   Vec3 e[7];
   for (int a = 0; a < 7; ++a) e[a] = arm(a, x, fraction);
-  // Walk on A's surface towards B's origin: what faces B.
+  // A search on A's surface towards B's origin: the side that faces B.
   const Relative relative(e);
   Vec3 p = relative.t;
   for (int i = 0; i < 30; ++i) {

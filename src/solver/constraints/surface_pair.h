@@ -6,16 +6,16 @@
 
 namespace iota::solver {
 
-/// Two surfaces, each fixed in a body or in the world, touch, or, with a one-sided multiplier, stay apart or overlap.
+/// Two surfaces, each fixed in a body or in the world, touch, or, with a one-sided multiplier, do not overlap.
 ///   constraint  g = signed distance along the common normal n   (m): positive apart, negative overlapping
-///   gradient    +-n at the two contact points, taken as points of the bodies (envelope theorem: how the contact points
-///               wander does not count); no Hessian: Newton gets on without what is second order in the step
-/// The contact points p on A and q = p + g n on B solve phi_A(p) = 0, phi_B(q) = 0, grad phi_A || -grad phi_B, by Newton's
-/// method from those of the last `track`: unlike the least distance, this stays regular while the surfaces touch.
-/// Where a surface has sharp edges, and so no normals there, another surface of constant phi takes its place, farther out by
-/// its skin and rounded; the gap is then measured to that and the skin added again, which is exact for convex shapes.
-/// Arms: 0: d = origin of B - origin of A; 1 ... 3: axes of A; 4 ... 6: axes of B (orthonormal). The multiplier is the
-/// normal force, N, positive where it pulls the bodies together: one-sided contact has upper = 0.
+/// gradient +-n at the two contact points, as points of the bodies (envelope theorem: the motion of the contact points
+/// does not matter); no Hessian: Newton's method does not need this second-order part The contact points p on A and q =
+/// p + g n on B solve phi_A(p) = 0, phi_B(q) = 0, grad phi_A || -grad phi_B, by Newton's method from those of the last
+/// `track`: unlike the least distance, this stays regular while the surfaces touch. A surface with sharp edges, which
+/// have no normals, is replaced by another surface of constant phi, farther out by its skin and rounded; the gap is
+/// then measured to that and the skin added, which is exact for convex shapes. Arms: 0: d = origin of B - origin of A;
+/// 1 ... 3: axes of A; 4 ... 6: axes of B (orthonormal). The multiplier is the normal force, N, positive if it pulls
+/// the bodies together: one-sided contact has upper = 0.
 struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
   static constexpr bool has_curvature = false;
 
@@ -24,7 +24,7 @@ struct SurfacePairConstraint : ArmConstraint<SurfacePairConstraint, 1, 7> {
   double reference = 1;
 
   double reference_length() const { return reference; }
-  /// Searches the contact from scratch.
+  /// Searches the contact without a guess.
   void start(const Vec3* x, double fraction);
   void track(const Vec3* x, double fraction);
 

@@ -9,8 +9,8 @@
 
 namespace iota::solver {
 
-/// What every implicit force acts on: the vector e = sum_i w_i x_i - origin of a few points. A force F(e) acts on point i
-/// as w_i F, so that momentum is kept wherever the weights sum to zero.
+/// The argument of an implicit force: the vector e = sum_i w_i x_i - origin of a few points. A force F(e) acts on point
+/// i as w_i F, so that momentum is kept if the weights sum to zero.
 struct ForceArm {
   static constexpr int max_nodes = 4;
   std::array<std::uint32_t, max_nodes> nodes{};
@@ -18,7 +18,7 @@ struct ForceArm {
   std::uint32_t count = 0;
   Vec3 origin;
 
-  /// Whether it is a difference of points: neither an end of it nor a grip is fixed in the world.
+  /// Whether it is a difference of points, with no end fixed in the world.
   bool is_internal() const {
     double sum = 0;
     for (std::uint32_t i = 0; i < count; ++i) sum += weights[i];
@@ -31,7 +31,7 @@ struct ForceArm {
   }
 };
 
-/// Where in a step a force is taken: backward Euler at its end, the mid-point rule by a discrete gradient.
+/// The evaluation of a force in a step: backward Euler at its end, the mid-point rule by a discrete gradient.
 struct ForceStage {
   double h = 0;  ///< s
   bool midpoint = false;

@@ -93,11 +93,11 @@ concept ImplicitForce = requires(const F& f, const Vec3& e, const ForceStage& st
   { f.arm } -> std::convertible_to<ForceArm>;
   { f.energy(e) } -> std::convertible_to<double>;
   { f.force(e, e, stage) } -> std::convertible_to<Vec3>;
-  { f.dissipation(e, e, stage) } -> std::convertible_to<double>;  // what it takes from the motion between e0 and e1, J
+  { f.dissipation(e, e, stage) } -> std::convertible_to<double>;  // between e0 and e1, J
   { f.stiffness_matrix(e, e, stage) } -> std::convertible_to<Mat3>;
 };
 
-/// The one list of implicit forces.
+/// The list of implicit forces.
 template <template <class> class Pool>
 using ForcePools =
     std::tuple<Pool<SpringForce>, Pool<DragForce>, Pool<GripForce>, Pool<RadialForce>, Pool<GyroscopicForce>>;

@@ -5,13 +5,13 @@
 
 namespace iota::solver {
 
-/// What turns a rod that spins about itself. Its two points, e from the first to the second, carry all angular momentum
-/// but S e/|e| of the spin; nothing on its axis changes S. With em = (e0 + e1)/2 and s = S/|e|
-///   F = s em x (e1 - e0)/h / |em|^2   on the second point, -F on the first,
-/// has the moment h em x F = -s (e1 - e0), exactly minus the change of the spin's part, and does no work: energy and
-/// angular momentum are kept to round-off by the mid-point rule.
-/// Its derivative is antisymmetric. The symmetric matrix of the end-point scheme cannot have it: there it is left out, and
-/// Newton's method contracts by (S/It) h instead of quadratically; fast spins cost sub-steps.
+/// The gyroscopic force of a rod that spins about its axis. Its two points, e from the first to the second, have all
+/// angular momentum except S e/|e| of the spin; forces on the axis do not change S. With em = (e0 + e1)/2 and s = S/|e|
+/// F = s em x (e1 - e0)/h / |em|^2 on the second point, -F on the first, has the moment h em x F = -s (e1 - e0),
+/// exactly minus the change of the spin's part, and does no work: energy and angular momentum are kept to round-off by
+/// the mid-point rule.
+/// Its derivative is antisymmetric. The symmetric matrix of the end-point scheme cannot contain it: there it is left
+/// out, and Newton's method converges linearly by (S/It) h instead of quadratically; fast spins cost sub-steps.
 struct GyroscopicForce {
   static constexpr bool is_external = false;
   ForceArm arm;

@@ -13,7 +13,7 @@ namespace iota::solver {
 ///   end point: F = -T(r1) n1 + D(r0, n0.(e1-e0)/h) n0 - c (e1-e0)/h
 ///   mid-point: T(r1) n1 becomes T* (e0+e1)/(r0+r1), with T* = (U(r1)-U(r0))/(r1-r0) - push((r0+r1)/2), so that the work
 ///   of the elastic part is exactly minus the change of energy (Gonzalez 1996).
-/// Where r1 is near r0 the quotient would be round-off: U' at the two Gauss points has the same value to (r1-r0)^4.
+/// If r1 is near r0 the quotient would be round-off: U' at the two Gauss points has the same value to (r1-r0)^4.
 struct RadialForce {
   static constexpr bool is_external = false;
   ForceArm arm;
@@ -66,7 +66,7 @@ struct RadialForce {
     return k;
   }
 
-  /// Work on the rest by the part of the force that no energy stands behind, J.
+  /// Work by the part of the force without an energy, J.
   double push_work(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     if (!law->has_push()) return 0;
     const double r0 = norm(e0), r1 = norm(e1);

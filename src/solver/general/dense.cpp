@@ -65,7 +65,7 @@ std::vector<double> Svd::solve(std::span<const double> b, double tolerance) cons
 
 namespace {
 
-/// Four sums at once: additions need not wait for each other.
+/// Four independent sums, so that additions do not wait for each other.
 double dot(const double* a, const double* b, std::size_t n) {
   double sums[4] = {};
   std::size_t i = 0;
@@ -75,7 +75,7 @@ double dot(const double* a, const double* b, std::size_t n) {
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
-/// (x, y) becomes (c x - s y, s x + c y).
+/// Replaces (x, y) by (c x - s y, s x + c y).
 void rotate(double* x, double* y, std::size_t n, double c, double s) {
   for (std::size_t i = 0; i < n; ++i) {
     const double old = x[i];
@@ -83,13 +83,13 @@ void rotate(double* x, double* y, std::size_t n, double c, double s) {
   }
 }
 
-/// Rotates pairs of rows of `work` until all are orthogonal; `turns` goes along.
+/// Rotates pairs of rows of `work` until all are orthogonal; `turns` is rotated too.
 void orthogonalize(Dense& work, Dense& turns) {
   constexpr int max_sweeps = 40;
   constexpr double round_off = 1e-15;
   const std::size_t n = work.rows, m = work.columns;
   std::vector<double> square(n);  // of each row's length
-  double nothing = 0;             // what is round-off beside the whole
+  double nothing = 0;             // round-off relative to the whole
   for (std::size_t i = 0; i < n; ++i) nothing += 1e-34 * dot(work.row(i), work.row(i), m);
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     bool rotated = false;

@@ -24,9 +24,9 @@ struct Dense {
 /// L U = P A with partial pivoting.
 class DenseLu {
  public:
-  /// False where a pivot is below `tolerance` times the largest entry, or not finite: the matrix is as good as singular.
+  /// False if a pivot is below `tolerance` times the largest entry, or not finite: the matrix is nearly singular.
   bool factorize(Dense a, double tolerance = 1e-13);
-  /// b in, solution out.
+  /// Replaces b by the solution.
   void solve(std::span<double> b) const;
 
  private:
@@ -42,12 +42,12 @@ struct Svd {
 
   /// Singular values above `tolerance` times the largest.
   std::size_t rank(double tolerance) const;
-  /// Least-squares solution of least norm; directions below `tolerance` times the largest singular value get no part.
-  /// (The thesis, C.3: 1/w becomes 0 where w is as good as zero.)
+  /// Least-squares solution of least norm, without directions below `tolerance` times the largest singular value. (The
+  /// thesis, C.3: 1/w becomes 0 if w is nearly zero.)
   std::vector<double> solve(std::span<const double> b, double tolerance) const;
 };
 
-/// One-sided Jacobi rotations: small singular values come out with full relative accuracy. O(rows columns^2) a sweep,
+/// One-sided Jacobi rotations: small singular values have full relative accuracy. O(rows columns^2) a sweep,
 /// some ten sweeps. Source: Hestenes 1958; Demmel and Veselic 1992.
 Svd calc_svd(const Dense& a);
 

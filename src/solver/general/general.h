@@ -8,7 +8,7 @@
 
 namespace iota::solver {
 
-/// Largest |f_i|; infinite where one is not finite.
+/// Largest |f_i|; infinite if one is not finite.
 inline double largest(std::span<const double> f) {
   double worst = 0;
   for (const double v : f) {
@@ -20,7 +20,7 @@ inline double largest(std::span<const double> f) {
 
 std::unique_ptr<Solver> make_newton_raphson();
 
-/// Throws std::runtime_error where this build has no SUNDIALS.
+/// Throws std::runtime_error if this build has no SUNDIALS.
 std::unique_ptr<Solver> make_kinsol();
 bool has_kinsol();
 

@@ -33,7 +33,7 @@ struct Owned {
   operator Handle() const { return handle; }
 };
 
-/// What KINSOL's callbacks are given. They are called from C: nothing may pass through them.
+/// The user data of KINSOL's callbacks. They are called from C, so no exception may leave them.
 struct Call {
   NonlinearProblem& problem;
   std::vector<double> jacobian;

@@ -8,9 +8,9 @@ namespace iota::solver {
 
 namespace {
 
-constexpr double sufficient = 1e-4;      // share of the promised decrease that a step must bring (Armijo)
+constexpr double sufficient = 1e-4;      // required share of the predicted decrease (Armijo)
 constexpr double shortest_step = 1e-12;  // of the Newton direction
-constexpr double singular = 1e-12;       // singular values below it times the largest are taken for zero
+constexpr double singular = 1e-12;       // singular values below it times the largest count as zero
 constexpr double stationary = 1e-9;      // |J' f| / (|J| |f|) below it: |f| has a minimum there, but no zero
 
 double half_square(std::span<const double> f) {
@@ -21,10 +21,10 @@ double half_square(std::span<const double> f) {
 
 double norm(std::span<const double> v) { return std::sqrt(2 * half_square(v)); }
 
-/// Newton's direction d = -J^-1 f, scaled back along the way until 1/2 |f|^2 falls: a parabola through what is known
-/// tells by how much, between a tenth and a half at a time. Where J is singular, d is the shortest least-squares
-/// solution. Source: Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 1983, chapter 6; the thesis,
-/// Appendix C.4.
+/// Newton's direction d = -J^-1 f, shortened until 1/2 |f|^2 falls: by a parabola through the known values,
+/// between a tenth and a half at a time. If J is singular, d is the shortest least-squares solution. Source:
+/// Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 1983, chapter 6; the thesis, Appendix
+/// C.4.
 class NewtonRaphson final : public Solver {
   Ending search(NonlinearProblem& problem, std::span<double> x, const SolverOptions& options) override {
     const std::size_t n = problem.size();

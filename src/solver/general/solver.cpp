@@ -16,10 +16,10 @@ void calc_jacobian(NonlinearProblem& problem, std::span<const double> x, std::sp
   std::vector<double> moved(x.begin(), x.end()), f(n), f_moved(n);
   problem.evaluate(x, f);
   for (std::size_t j = 0; j < n; ++j) {
-    // The square root of round-off balances the error of the difference against that of the function.
+    // The square root of round-off balances the errors of the difference and of the function.
     const double wanted = 1.5e-8 * std::max(std::abs(x[j]), 1.0);
     moved[j] = x[j] + wanted;
-    const double step = moved[j] - x[j];  // what was really added
+    const double step = moved[j] - x[j];  // the actual difference
     problem.evaluate(moved, f_moved);
     for (std::size_t i = 0; i < n; ++i) jacobian[i * n + j] = (f_moved[i] - f[i]) / step;
     moved[j] = x[j];
@@ -116,7 +116,7 @@ std::unique_ptr<Solver> make_solver(std::string_view name) {
     const auto found = registry().factories.find(name);
     if (found != registry().factories.end()) factory = found->second;
   }
-  if (factory) return factory();  // outside the lock: it may be slow, or the script's
+  if (factory) return factory();  // outside of the lock: it may be slow, or call the script
   if (name == "kinsol")
     throw std::invalid_argument(
         "the solver \"kinsol\" is not in this build, which was made without SUNDIALS. `make build` fetches it; or use "

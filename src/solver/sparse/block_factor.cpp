@@ -23,8 +23,8 @@ void subtract_product(double* target, int stride, const double* a, int rows, con
       target[r * stride + c] -= sum;
     }
 }
-/// The same for two nodes, which is nearly always: all in registers, since target, a and b may alias for all that the
-/// compiler knows. `Lower`: only the lower triangle, the rest of a symmetric diagonal block is never read.
+/// The same for two nodes, the usual case: all in registers, since the compiler must assume that target, a and b alias.
+/// `Lower`: only the lower triangle; the rest of a symmetric diagonal block is never read.
 template <int Pivot, bool Lower>
 void subtract_product_3x3(double* target, int stride, const double* a, const double* b) {
   double sum[3][3];
@@ -89,17 +89,15 @@ void BlockFactor::clear(bool symmetric) {
 }
 
 template <int Pivot, bool Symmetric>
-int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
+[[gnu::flatten]] int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
   double* const diagonal = diagonals_.data() + v.diagonal;
   int wrong = 0;
 
   double d[Pivot][Pivot];
-  for (int i = 0; i < Pivot; ++i)
-    for (int j = 0; j < (Symmetric ? i + 1 : Pivot); ++j) d[i][j] = diagonal[i * Pivot + j];
+  unroll<Pivot>([&](auto i) { unroll<Symmetric ? i + 1 : Pivot>([&](auto j) { d[i][j] = diagonal[i * Pivot + j]; }); });
   factor_pivot_block<Symmetric>(d,
                                 [&](int k, double pivot) { wrong += k < v.positives ? !(pivot > 0) : !(pivot < 0); });
-  for (int i = 0; i < Pivot; ++i)
-    for (int j = 0; j < (Symmetric ? i + 1 : Pivot); ++j) diagonal[i * Pivot + j] = d[i][j];
+  unroll<Pivot>([&](auto i) { unroll<Symmetric ? i + 1 : Pivot>([&](auto j) { diagonal[i * Pivot + j] = d[i][j]; }); });
   if (v.entry_count == 0) return wrong;
 
   const auto entries = pattern_->entries().subspan(v.first_entry, v.entry_count);
@@ -109,15 +107,15 @@ int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
   double* const u12 = Symmetric ? unscaled_.data() : upper_.data() + entries.front().offset;
   for (int r = 0; r < rows; ++r) {
     double l[Pivot], u[Pivot];
-    for (int k = 0; k < Pivot; ++k) {
+    unroll<Pivot>([&](auto k) {
       l[k] = l21[r * Pivot + k];
       if constexpr (!Symmetric) u[k] = u12[r * Pivot + k];
-    }
+    });
     factor_row_below<Symmetric>(d, l, u);
-    for (int k = 0; k < Pivot; ++k) l21[r * Pivot + k] = l[k], u12[r * Pivot + k] = u[k];
+    unroll<Pivot>([&](auto k) { l21[r * Pivot + k] = l[k], u12[r * Pivot + k] = u[k]; });
   }
 
-  // What is left for the later vertices.
+  // Updates the later vertices.
   const std::uint32_t* target = pattern_->pair_targets().data() + v.first_pair;
   const auto vertices = pattern_->vertices();
   const double* la = l21;
@@ -199,7 +197,7 @@ void BlockFactor::gather(const BlockPattern::Panel& panel) {
   }
 }
 
-// What the columns before leave, then the pivot block, then the rows below it.
+// Updates by the previous columns, then the pivot block, then the rows below it.
 template <bool Symmetric, int Pivot>
 int BlockFactor::factor_columns(const BlockPattern::Vertex& vertex, std::uint32_t at, std::uint32_t rows) {
   double* const lower = panel_lower_.data() + at;  // at row `at` of column 0
@@ -223,7 +221,7 @@ int BlockFactor::factor_columns(const BlockPattern::Vertex& vertex, std::uint32_
       d, [&](int k, double pivot) { wrong += k < vertex.positives ? !(pivot > 0) : !(pivot < 0); });
   for (int r = 0; r < Pivot; ++r)
     for (int c = 0; c < (Symmetric ? r + 1 : Pivot); ++c) diagonals_[vertex.diagonal + r * Pivot + c] = d[r][c];
-  for (int k = 0; k < Pivot; ++k) {  // as factor_row_below, by columns
+  for (int k = 0; k < Pivot; ++k) {  // like factor_row_below, by columns
     double *const lk = l + k * stride_, *const uk = u + k * stride_;
     if constexpr (Symmetric) {
       std::copy(lk + Pivot, lk + below, uk + Pivot);
@@ -310,21 +308,6 @@ void BlockFactor::for_each_forward(Visit visit) const {
   }
 }
 
-int BlockFactor::leaves_from(std::size_t vertex) const {
-  const auto vertices = pattern_->vertices();
-  const auto entries = pattern_->entries();
-  const auto panel_of = pattern_->panel_of();
-  const auto is_leaf = [&](const BlockPattern::Vertex& v) {
-    return v.entry_count == 1 && entries[v.first_entry].width == 3 &&
-           (panel_of.empty() || panel_of[static_cast<std::size_t>(&v - vertices.data())] == BlockPattern::no_panel);
-  };
-  const BlockPattern::Vertex& v = vertices[vertex];
-  if (!is_leaf(v)) return 0;
-  if (vertex + 1 == vertices.size() || entries[v.first_entry].vertex == vertex + 1) return 1;
-  const BlockPattern::Vertex& w = vertices[vertex + 1];
-  return is_leaf(w) && w.pivot == v.pivot && w.positives == v.positives ? 2 : 1;
-}
-
 template <int Pivot, int N>
 Leaves<Pivot, N> BlockFactor::leaves(std::size_t first, double* unknowns) {
   Leaves<Pivot, N> leaves{};
@@ -360,7 +343,7 @@ int BlockFactor::factorize(std::span<double> unknowns) {
       ++i;
       continue;
     }
-    const int alike = leaves_from(i);
+    const int alike = v.leaves;
     with_pivot(v.pivot, [&]<int Pivot> {
       const auto eliminate_all = [&](const auto& leaves) {
         wrong +=
@@ -423,9 +406,10 @@ void BlockFactor::solve(std::span<double> unknowns) {
 
 void BlockFactor::finish(std::span<double> unknowns) {
   double* const b = unknowns.data();
-  for (std::size_t end = pattern_->vertices().size(); end > 0;) {
-    const int alike = end > 1 && leaves_from(end - 2) == 2 ? 2 : leaves_from(end - 1) > 0 ? 1 : 0;
-    const BlockPattern::Vertex& v = pattern_->vertices()[end - 1];
+  const auto vertices = pattern_->vertices();
+  for (std::size_t end = vertices.size(); end > 0;) {
+    const int alike = end > 1 && vertices[end - 2].leaves == 2 ? 2 : std::min<int>(vertices[end - 1].leaves, 1);
+    const BlockPattern::Vertex& v = vertices[end - 1];
     with_pivot(v.pivot, [&]<int Pivot> {
       const auto finish_all = [&](const auto& leaves) {
         symmetric_ ? leaves.template finish<true>() : leaves.template finish<false>();

@@ -15,35 +15,33 @@ class BlockFactor {
  public:
   /// Sizes the storage. The pattern must outlive the factor.
   void reset(const BlockPattern& pattern);
-  /// Whether a factorization costs several times what a solution does: not on chains, but in nets and among many-point
+  /// Whether a factorization costs several times as much as a solution: not on chains, but in nets and for many-point
   /// bodies.
   bool is_dear() const { return diagonals_.size() + lower_.size() > 10 * std::size_t{pattern_->unknown_count()}; }
-  /// Makes room for a pattern that has followed a change.
+  /// Resizes for a pattern that has followed a change.
   void grow();
 
-  /// Sets all values to zero; `symmetric` tells which triangles are going to be filled.
+  /// Sets all values to zero; `symmetric`: only the lower triangle will be filled.
   void clear(bool symmetric);
 
-  /// Diagonal blocks, and those below them, at the offsets that the pattern gives.
+  /// Diagonal blocks, and those below them, at the pattern's offsets.
   double* diagonals() { return diagonals_.data(); }
   double* lower() { return lower_.data(); }
-  /// Blocks above the diagonal of an unsymmetric matrix: element (i, j) lies where (j, i) does in `lower`.
+  /// Blocks above the diagonal of an unsymmetric matrix: element (i, j) is at the place of (j, i) in `lower`.
   double* upper() { return upper_.data(); }
 
-  /// Factors in place; returns how many pivots have the wrong sign (not finite counts as wrong). Zero means that the
-  /// matrix has as many positive and negative pivots as a minimum under constraints should.
+  /// Factors in place; returns the number of pivots with the wrong sign (or not finite). Zero means that the matrix has
+  /// the positive and negative pivots of a constrained minimum.
   int factorize() { return factorize({}); }
 
-  /// Solves in place: right-hand side in, solution out, both in the pattern's unknowns.
+  /// Solves in place: replaces the right-hand side by the solution, both in the pattern's unknowns.
   void solve(std::span<double> unknowns);
-  /// The same along with `factorize`, for one pass over the factors less: substitution forward while they are made, and
-  /// then backward.
+  /// The same together with `factorize`, with one pass over the factors less: forward substitution during the
+  /// factorization, then backward.
   int factorize(std::span<double> unknowns);
   void finish(std::span<double> unknowns);
 
  private:
-  /// How many of the vertices from one on are alike and do not couple: 2, or 1; 0: it couples with more than one node.
-  int leaves_from(std::size_t vertex) const;
   template <int Pivot, int N>
   Leaves<Pivot, N> leaves(std::size_t first, double* unknowns);
   template <int Pivot, bool Symmetric>

@@ -12,21 +12,28 @@ void BlockPattern::analyze(CouplingGraph& graph) {
   *this = {};
   PatternBuilder(*this, graph).analyze();
   find_panels();
+  find_leaves();
   analyzed_fill_ = fill();
 }
 
 bool BlockPattern::follow(CouplingGraph& graph, const GraphChange& change) {
-  constexpr std::uint32_t always_fine = 1024;  // values: not worth an analysis
-  PatternBuilder(*this, graph).follow(change);
-  find_panels();
-  return fill() <= 2 * analyzed_fill_ + always_fine;
+  return PatternBuilder::follow_part(*this, graph, change, [] {});
 }
 
-// From the last vertex down, each joins the panel that its parent in the elimination tree begins, if that pads its columns
-// with few zeros. Zeros stay zeros, so nothing but the time depends on the choice.
+bool PatternBuilder::follow_part(BlockPattern& pattern, CouplingGraph& graph, const GraphChange& change,
+                                 FunctionRef<void()> complete) {
+  constexpr std::uint32_t always_fine = 1024;  // values: not worth an analysis
+  PatternBuilder(pattern, graph).follow(change, complete);
+  pattern.find_panels();
+  pattern.find_leaves();
+  return pattern.fill() <= 2 * pattern.analyzed_fill_ + always_fine;
+}
+
+// From the last vertex down, each joins the panel that starts at its parent in the elimination tree, if that pads its
+// columns with few zeros. Zeros stay zeros, so only the time depends on the choice.
 void BlockPattern::find_panels() {
-  constexpr std::uint32_t most_columns = 96;   // two panels of them fit into the caches next to the processor
-  constexpr std::uint32_t fewest_padding = 8;  // rows that are always worth it
+  constexpr std::uint32_t most_columns = 96;   // two such panels fit into the first caches
+  constexpr std::uint32_t fewest_padding = 8;  // always acceptable rows
   panels_.clear(), panel_vertices_.clear(), panel_of_.clear();
   if (std::none_of(vertices_.begin(), vertices_.end(), [](const Vertex& v) { return v.is_wide(); })) return;
   const auto count = static_cast<std::uint32_t>(vertices_.size());
@@ -72,6 +79,21 @@ void BlockPattern::find_panels() {
   }
 }
 
+void BlockPattern::find_leaves() {
+  bool is_leaf_behind = false;
+  for (std::size_t i = vertices_.size(); i-- > 0;) {
+    Vertex& v = vertices_[i];
+    const Entry* const entry = v.entry_count == 1 ? &entries_[v.first_entry] : nullptr;
+    const bool is_leaf = entry && entry->width == 3 && (panel_of_.empty() || panel_of_[i] == no_panel);
+    v.leaves = is_leaf;
+    if (is_leaf && is_leaf_behind && entry->vertex != i + 1) {
+      const Vertex& w = vertices_[i + 1];
+      if (w.pivot == v.pivot && w.positives == v.positives) v.leaves = 2;
+    }
+    is_leaf_behind = is_leaf;
+  }
+}
+
 std::uint32_t BlockPattern::find_entry(std::uint32_t vertex, std::uint32_t later_vertex) const {
   const auto begin = entries_.begin() + vertices_[vertex].first_entry;
   const auto end = begin + vertices_[vertex].entry_count;
@@ -94,7 +116,7 @@ bool BlockPattern::are_coupled(std::uint32_t a, std::uint32_t b) const {
   return entry < vertices_[first].first_entry + vertices_[first].entry_count && entries_[entry].vertex == later;
 }
 
-// Rows that stand by themselves come right after one of the constraint's nodes, so they are in that node's front.
+// Separate rows come right after one of the constraint's nodes, so they are in that node's front.
 std::uint32_t BlockPattern::find_home(std::span<const std::uint32_t> nodes, std::uint32_t unknown) const {
   for (const std::uint32_t node : nodes)
     if (vertices_[node_vertex_[node]].holds(unknown)) return node_vertex_[node];

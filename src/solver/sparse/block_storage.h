@@ -7,8 +7,8 @@
 
 namespace iota::solver {
 
-/// Hands out blocks of an array. A block that was given back is used again for the next one of the same size, so that
-/// an array whose blocks come and go does not grow.
+/// Allocates blocks of an array. A freed block is reused for the next one of the same size, so that an array with
+/// changing blocks does not grow.
 class BlockStorage {
  public:
   std::uint32_t take(std::uint32_t size) {

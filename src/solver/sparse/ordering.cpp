@@ -36,19 +36,19 @@ struct Adjacency {
   }
 };
 
-// An elimination graph with explicit fill. Leaves are taken first come, first served: the ends of a chain take turns, so
-// that successive eliminations do not wait for each other's divisions (512 rods: a step takes 0.23 instead of 0.27 us a
-// link). Others are taken last come, first served: a sixth less work in a net of 100 x 100 than the other way. Lists are
+// An elimination graph with explicit fill. Leaves are taken first in, first out: the ends of a chain alternate, so that
+// successive eliminations do not wait for each other's divisions (512 rods: a step takes 0.23 instead of 0.27 us a
+// link). Others are taken last in, first out: a sixth less work in a net of 100 x 100 than the reverse. Lists are
 // cleaned of eliminated neighbors only when they are read, so that a hub with a thousand leaves costs O(1) a leaf; the
 // degree itself is counted exactly.
 //
-// Of n nodes those from `own` on stay to the end and are left out: the surroundings of a part. Gives up, and returns
-// nothing, where the pairs of neighbors that eliminations couple are more than `most_pairs`.
+// Of n nodes those from `own` on, the surroundings of a part, are not eliminated. Gives up, and returns nothing, if
+// eliminations couple more than `most_pairs` pairs of neighbors.
 std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::uint32_t own, std::span<const Edge> edges,
                                                 std::size_t most_pairs) {
   const Adjacency graph(n, edges);
   std::vector<std::uint32_t> degree(n);
-  std::vector<std::vector<std::uint32_t>> filled(n);  // lists that fill has changed; empty: still the graph's own
+  std::vector<std::vector<std::uint32_t>> filled(n);  // lists changed by fill; empty: the graph's own
   std::vector<std::uint8_t> eliminated(n, 0);
   struct Queue {
     std::vector<std::uint32_t> nodes;
@@ -73,7 +73,7 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::uint32_t o
     Queue& queue = buckets[lowest];
     const std::uint32_t node = lowest <= 1 ? queue.nodes[queue.next++] : queue.nodes.back();
     if (lowest > 1) queue.nodes.pop_back();
-    if (eliminated[node] || degree[node] != lowest) continue;  // an outdated place in the queue
+    if (eliminated[node] || degree[node] != lowest) continue;  // an outdated entry of the queue
     eliminated[node] = 1;
     order.push_back(node);
 
@@ -115,9 +115,9 @@ std::vector<std::uint32_t> minimum_degree_order(std::uint32_t n, std::uint32_t o
   return order;
 }
 
-/// Nested dissection by places (George 1973): the smallest of three planes' sets of nodes that couple across it is
-/// eliminated after what lies on either side, which is cut in the same way. Parts of some tens of nodes are ordered by
-/// minimum degree, among the nodes around them (Pellegrini, Roman, Amestoy 2000: without these a tenth more fill).
+/// Nested dissection by places (George 1973): the smallest of three planes' separators is eliminated after both sides,
+/// which are cut in the same way. Parts of some tens of nodes are ordered by minimum degree, among the nodes around
+/// them (Pellegrini, Roman, Amestoy 2000: otherwise a tenth more fill).
 class Dissection {
  public:
   Dissection(std::uint32_t n, std::span<const Edge> edges, std::span<const Vec3> places)
@@ -188,7 +188,7 @@ class Dissection {
       }
       for (const std::uint32_t node : part) number_[node] = none;
     }
-    if (left.empty() || right.empty()) return order_part(std::move(part));  // all couple with all
+    if (left.empty() || right.empty()) return order_part(std::move(part));  // a complete graph
     std::sort(separator.begin(), separator.end());
     part = {};
     cut(std::move(left)), cut(std::move(right));
@@ -197,7 +197,7 @@ class Dissection {
 
   Adjacency graph_;
   std::span<const Vec3> places_;
-  std::vector<std::uint32_t> number_;  // none, except while a part is at hand
+  std::vector<std::uint32_t> number_;  // none, except for nodes of the present part
   std::vector<std::uint8_t> is_separating_;
   std::vector<std::uint32_t> order_;
 };

@@ -10,82 +10,75 @@ namespace iota::solver {
 
 void PatternBuilder::analyze() {
   is_touched_.assign(graph_.node_count, 1);
-  is_listed_.assign(graph_.node_count, 1);
+  is_listed_.assign(graph_.node_count, 1), all_are_listed_ = true;
   rows_at_.assign(graph_.node_count, 0);
   homeless_.resize(graph_.constraints.size());
   std::iota(homeless_.begin(), homeless_.end(), 0u);
   order_all_nodes();
   find_homes();
-  make_vertices();
-  make_fronts();
+  make_all_vertices();
+  make_fronts([] {});
   set_targets();
 }
 
-void PatternBuilder::follow(const GraphChange& change) {
+void PatternBuilder::follow(const GraphChange& change, FunctionRef<void()> complete) {
   constexpr std::size_t usual_growth = 64;
   reserve_with_slack(pattern_.entries_, pattern_.entries_.size() + usual_growth);
   reserve_with_slack(pattern_.pair_targets_, pattern_.pair_targets_.size() + usual_growth);
+  old_nodes_ = pattern_.node_count();
   take_rows_off_touched_nodes(change);
-  insert_nodes(change);
+  find_insertions(change);
   find_homes();
-  make_vertices();
-  make_fronts();
+  renew_vertices(change);
+  make_fronts(complete);
   set_targets();
-  note_moves();
+  note_moves(change);
   renumber_nodes(change);
 }
 
 // --- 1. the order of the nodes -----------------------------------------------------------------------------------------
 
-// A constraint makes a clique of its nodes, as its multipliers are eliminated among them.
+// A constraint makes its nodes a clique, as its multipliers are eliminated among them.
 void PatternBuilder::order_all_nodes() {
   std::vector<std::array<std::uint32_t, 2>> edges(graph_.couplings);
   for (const auto& c : graph_.constraints)
     for (auto nodes = graph_.nodes_of(c); !nodes.empty(); nodes = nodes.subspan(1))
       for (const std::uint32_t other : nodes.subspan(1)) edges.push_back({nodes[0], other});
   node_order_ = elimination_order(graph_.node_count, edges, graph_.places);
-  rank_.resize(graph_.node_count);
-  for (std::uint32_t i = 0; i < graph_.node_count; ++i) rank_[node_order_[i]] = i;
+  old_nodes_ = graph_.node_count;
+  pattern_.node_vertex_.resize(graph_.node_count);  // until there are vertices: places in the order
+  for (std::uint32_t i = 0; i < graph_.node_count; ++i) pattern_.node_vertex_[node_order_[i]] = i;
 }
 
-// The old order, without the removed nodes and with each new one behind the node beside it.
-void PatternBuilder::insert_nodes(const GraphChange& change) {
-  const auto old_nodes = static_cast<std::uint32_t>(pattern_.node_vertex_.size());
-  std::vector<std::uint32_t> anchors;  // old vertices: of each new node
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> insertions;
+// The old order stays, with each new node behind the node beside it.
+void PatternBuilder::find_insertions(const GraphChange& change) {
+  std::vector<std::uint32_t> after;  // of each new node
   for (const auto& [node, beside] : change.added) {
-    anchors.push_back(beside < old_nodes ? pattern_.node_vertex_[beside] : anchors[beside - old_nodes]);
-    insertions.push_back({anchors.back(), node});
+    after.push_back(beside < old_nodes_ ? pattern_.node_vertex_[beside] : after[beside - old_nodes_]);
+    insertions_.push_back({after.back(), node});
   }
-  std::sort(insertions.begin(), insertions.end());
+  std::sort(insertions_.begin(), insertions_.end());
+  rank_of_added_.resize(insertions_.size());
+  for (std::size_t i = 0; i < insertions_.size(); ++i)
+    rank_of_added_[insertions_[i].node - old_nodes_] = (std::uint64_t{insertions_[i].after} << 32) + i + 1;
+}
 
-  std::vector<std::uint32_t> node_at(pattern_.vertices_.size(), none);
-  for (std::uint32_t node = 0; node < old_nodes; ++node) node_at[pattern_.node_vertex_[node]] = node;
-  node_order_.reserve(graph_.node_count);
-  auto next = insertions.begin();
-  for (std::uint32_t v = 0; v < node_at.size(); ++v) {
-    if (node_at[v] != none && !is_gone_[v]) node_order_.push_back(node_at[v]);
-    for (; next != insertions.end() && next->first == v; ++next) node_order_.push_back(next->second);
-  }
-  rank_.assign(graph_.node_count, none);
-  for (std::uint32_t i = 0; i < node_order_.size(); ++i) rank_[node_order_[i]] = i;
+/// A number that is higher for a node that is eliminated later.
+std::uint64_t PatternBuilder::rank_of(std::uint32_t node) const {
+  return node < old_nodes_ ? std::uint64_t{pattern_.node_vertex_[node]} << 32 : rank_of_added_[node - old_nodes_];
 }
 
 // --- 2. homes ----------------------------------------------------------------------------------------------------------
 
-// The rows of touched nodes look for a home again, unless they are at home in a node that is not touched.
+// The rows of touched nodes get a home again, unless their home is an untouched node.
 void PatternBuilder::take_rows_off_touched_nodes(const GraphChange& change) {
-  const auto old_nodes = static_cast<std::uint32_t>(pattern_.node_vertex_.size());
-  is_touched_.assign(graph_.node_count, 0);
-  for (const std::uint32_t node : change.touched) is_touched_[node] = 1;
-  is_listed_ = is_touched_;
+  is_touched_.assign(graph_.node_count, 0), is_listed_.assign(graph_.node_count, 0);
   rows_at_.assign(graph_.node_count, 0);
-  for (std::uint32_t node = 0; node < old_nodes; ++node)
-    if (!is_touched_[node]) rows_at_[node] = static_cast<std::uint8_t>(pattern_.node_stride(node) - 3);
+  for (const std::uint32_t node : change.touched) is_touched_[node] = 1, list(node);
 
   is_gone_.assign(pattern_.vertices_.size(), 0);
   for (const std::uint32_t node : change.removed) is_gone_[pattern_.node_vertex_[node]] = 1;
-  list_rows_by_themselves();
+  list_rows_by_themselves(old_nodes_);
   for (const std::uint32_t unknown : change.removed_rows)
     if (const std::uint32_t v = rows_by_themselves_at(unknown); v != none) is_gone_[v] = 1;
 
@@ -96,7 +89,7 @@ void PatternBuilder::take_rows_off_touched_nodes(const GraphChange& change) {
     if (std::none_of(begin, end, [&](std::uint32_t node) { return is_touched_[node]; })) continue;
     if (c.unknown != CouplingGraph::no_unknown) {
       const auto home = std::find_if(begin, end, [&](std::uint32_t node) {
-        return node < old_nodes && pattern_.vertices_[pattern_.node_vertex_[node]].holds(c.unknown);
+        return node < old_nodes_ && pattern_.vertices_[pattern_.node_vertex_[node]].holds(c.unknown);
       });
       if (home == end)
         is_gone_[rows_by_themselves_at(c.unknown)] = 1;
@@ -104,15 +97,22 @@ void PatternBuilder::take_rows_off_touched_nodes(const GraphChange& change) {
         continue;
     }
     homeless_.push_back(i);
-    for (auto node = begin; node != end; ++node) is_listed_[*node] = 1;
+    for (auto node = begin; node != end; ++node) list(*node);
   }
 }
 
-// Each constraint lives with the first-eliminated of its nodes that has room, the widest constraints first.
+void PatternBuilder::list(std::uint32_t node) {
+  if (is_listed_[node]) return;
+  is_listed_[node] = 1;
+  listed_.push_back(node);
+  if (!is_touched_[node]) rows_at_[node] = static_cast<std::uint8_t>(pattern_.node_stride(node) - 3);
+}
+
+// The home of a constraint is the first-eliminated of its nodes with room; the widest constraints come first.
 void PatternBuilder::find_homes() {
   homes_.assign(homeless_.size(), {none, 0});
   std::vector<std::uint32_t> nodes;
-  const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; };
+  const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank_of(a) < rank_of(b); };
   for (const std::uint8_t rows : {std::uint8_t{3}, std::uint8_t{2}, std::uint8_t{1}})
     for (std::size_t i = 0; i < homeless_.size(); ++i) {
       const auto& constraint = graph_.constraints[homeless_[i]];
@@ -134,12 +134,12 @@ void PatternBuilder::find_homes() {
   for (const std::uint32_t c : homeless_)
     if (graph_.constraints[c].apart) own_rows_.push_back({find_node_for_rows_apart(graph_.constraints[c]), c});
   std::stable_sort(own_rows_.begin(), own_rows_.end(),
-                   [&](const OwnRows& a, const OwnRows& b) { return rank_[a.node] < rank_[b.node]; });
+                   [&](const OwnRows& a, const OwnRows& b) { return rank_of(a.node) < rank_of(b.node); });
 }
 
-// The last node of the side that is eliminated first. A side that its own rows hold fast (nails) would leave no pivot.
+// The last node of the side that is eliminated first. A side that its own rows fix (nails) would leave no pivot.
 std::uint32_t PatternBuilder::find_node_for_rows_apart(const CouplingGraph::Constraint& c) const {
-  const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; };
+  const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank_of(a) < rank_of(b); };
   const auto nodes = graph_.nodes_of(c);
   const auto begin = nodes.begin(), middle = begin + c.first_side, end = nodes.end();
   std::uint32_t found = *std::max_element(begin, end, by_rank);
@@ -155,55 +155,129 @@ std::uint32_t PatternBuilder::find_node_for_rows_apart(const CouplingGraph::Cons
 
 // --- 3. vertices -------------------------------------------------------------------------------------------------------
 
-// Rows by themselves stay right behind their node. A vertex that is new or has another size gets other unknowns.
-void PatternBuilder::make_vertices() {
-  auto& vertices = pattern_.vertices_;
-  const std::vector<Vertex> old = std::exchange(vertices, {});
-  const auto old_nodes = pattern_.node_vertex_.size();
-  std::vector<std::uint32_t> now_at(old.size(), none);
-  vertices.reserve(std::max<std::size_t>(graph_.node_count, old.size()));
-  const auto add = [&](Vertex vertex, std::uint32_t node, bool is_resized, bool is_due) {
-    if (is_resized) vertex.unknown = pattern_.unknown_storage_.take(vertex.pivot), vertex.diagonal = none;
-    vertices.push_back(vertex);
-    node_of_.push_back(node), is_moved_.push_back(is_resized), is_due_.push_back(is_due);
-    return static_cast<std::uint32_t>(vertices.size() - 1);
-  };
-  for (std::size_t v = 0; v < old.size(); ++v)
-    if (is_gone_[v]) release(old[v]);
-  node_of_.reserve(vertices.capacity()), is_moved_.reserve(vertices.capacity()), is_due_.reserve(vertices.capacity());
-  pattern_.node_vertex_.resize(graph_.node_count, none);
-  auto own = own_rows_.begin();
-  for (const std::uint32_t node : node_order_) {
-    const auto pivot = static_cast<std::uint8_t>(3 + rows_at_[node]);
-    const std::uint32_t before = pattern_.node_vertex_[node];
-    if (node >= old_nodes) {
-      pattern_.node_vertex_[node] = add({.pivot = pivot}, node, true, true);
-    } else {
-      Vertex vertex = old[before];
-      const bool is_resized = vertex.pivot != pivot;
-      if (is_resized) {
-        release_values(vertex);
-        pattern_.unknown_storage_.give_back(vertex.unknown, vertex.pivot);
-        vertex.pivot = pivot;
-      }
-      pattern_.node_vertex_[node] = now_at[before] = add(vertex, node, is_resized, is_listed_[node]);
-      for (std::uint32_t v = before + 1; v < old.size() && !old[v].is_node(); ++v)
-        if (!is_gone_[v]) now_at[v] = add(old[v], none, false, false);
-    }
-    for (; own != own_rows_.end() && own->node == node; ++own) {
-      auto& constraint = graph_.constraints[own->constraint];
-      constraint.unknown = vertices[add({.pivot = constraint.rows, .positives = 0}, none, true, true)].unknown;
-    }
+// A vertex that is new or has another size gets other unknowns.
+std::uint32_t PatternBuilder::add_vertex(Vertex vertex, bool is_resized) {
+  if (is_resized) vertex.unknown = pattern_.unknown_storage_.take(vertex.pivot), vertex.diagonal = none;
+  pattern_.vertices_.push_back(vertex);
+  is_moved_.push_back(is_resized), is_due_.push_back(is_resized);
+  return static_cast<std::uint32_t>(pattern_.vertices_.size() - 1);
+}
+
+// Rows by themselves stay right behind their node.
+void PatternBuilder::add_own_rows_of(std::uint32_t node) {
+  for (; next_own_rows_ < own_rows_.size() && own_rows_[next_own_rows_].node == node; ++next_own_rows_) {
+    auto& constraint = graph_.constraints[own_rows_[next_own_rows_].constraint];
+    const std::uint32_t v = add_vertex({.pivot = constraint.rows, .positives = 0}, true);
+    constraint.unknown = pattern_.vertices_[v].unknown;
   }
+}
+
+void PatternBuilder::note_homes(std::size_t nodes) {
   for (std::size_t i = 0; i < homeless_.size(); ++i)
     if (const auto [node, row] = homes_[i]; node != none)
       graph_.constraints[homeless_[i]].unknown = pattern_.node_unknown(node) + row;
-  if (!old.empty()) renumber_entries(old, now_at);
-  list_rows_by_themselves();
+  list_rows_by_themselves(nodes);
+}
+
+void PatternBuilder::make_all_vertices() {
+  pattern_.vertices_.reserve(graph_.node_count);
+  is_moved_.reserve(graph_.node_count), is_due_.reserve(graph_.node_count);
+  for (const std::uint32_t node : node_order_) {
+    const auto pivot = static_cast<std::uint8_t>(3 + rows_at_[node]);
+    pattern_.node_vertex_[node] = add_vertex({.pivot = pivot}, true);
+    add_own_rows_of(node);
+  }
+  note_homes(graph_.node_count);
+}
+
+// Only some vertices change: what lies between them is taken over as it is.
+void PatternBuilder::renew_vertices(const GraphChange& change) {
+  const std::vector<std::uint32_t> changing = list_changing_vertices(change);
+  std::vector<std::uint32_t> node_at(changing.size(), none);  // of these; of nodes that may take rows
+  const auto note_node = [&](std::uint32_t node) {
+    if (node >= old_nodes_) return;
+    const auto at = std::lower_bound(changing.begin(), changing.end(), pattern_.node_vertex_[node]);
+    node_at[static_cast<std::size_t>(at - changing.begin())] = node;
+  };
+  for (const std::uint32_t node : change.touched) note_node(node);
+  for (const OwnRows& rows : own_rows_) note_node(rows.node);
+
+  for (const std::uint32_t v : changing)
+    if (is_gone_[v]) release(pattern_.vertices_[v]);
+  auto& vertices = pattern_.vertices_;
+  const std::vector<Vertex> old = std::exchange(vertices, {});
+  const std::size_t room = old.size() + insertions_.size() + own_rows_.size();
+  vertices.reserve(room), is_moved_.reserve(room), is_due_.reserve(room);
+  now_at_.assign(old.size(), none);
+  pattern_.node_vertex_.resize(graph_.node_count, none);
+
+  std::uint32_t next = 0;  // old vertex
+  const auto take_until = [&](std::uint32_t end) {
+    const auto shifted = static_cast<std::uint32_t>(vertices.size());
+    std::iota(now_at_.begin() + next, now_at_.begin() + end, shifted);
+    vertices.insert(vertices.end(), old.begin() + next, old.begin() + end);
+    is_moved_.resize(vertices.size(), 0), is_due_.resize(vertices.size(), 0);
+    next = end;
+  };
+  auto insertion = insertions_.begin();
+  for (std::size_t i = 0; i < changing.size(); ++i) {
+    const std::uint32_t v = changing[i], node = node_at[i];
+    if (v < next) continue;  // rows by themselves, which have gone with their node
+    take_until(v);
+    if (is_gone_[v]) {
+      ++next;
+    } else if (node != none && is_touched_[node] && old[v].pivot != 3 + rows_at_[node]) {
+      Vertex resized = old[v];
+      release_values(resized);
+      pattern_.unknown_storage_.give_back(resized.unknown, resized.pivot);
+      resized.pivot = static_cast<std::uint8_t>(3 + rows_at_[node]);
+      now_at_[v] = add_vertex(resized, true);
+      ++next;
+    } else {
+      take_until(v + 1);
+    }
+    if (!old[v].is_node()) continue;
+    for (; next < old.size() && !old[next].is_node();)
+      if (is_gone_[next])
+        ++next;
+      else
+        take_until(next + 1);
+    if (node != none) add_own_rows_of(node);
+    for (; insertion != insertions_.end() && insertion->after == v; ++insertion) {
+      const auto pivot = static_cast<std::uint8_t>(3 + rows_at_[insertion->node]);
+      pattern_.node_vertex_[insertion->node] = add_vertex({.pivot = pivot}, true);
+      add_own_rows_of(insertion->node);
+    }
+  }
+  take_until(static_cast<std::uint32_t>(old.size()));
+
+  for (std::uint32_t node = 0; node < old_nodes_; ++node)
+    pattern_.node_vertex_[node] = now_at_[pattern_.node_vertex_[node]];  // none: it is gone
+  note_homes(graph_.node_count - change.removed.size());
+  for (const std::uint32_t node : listed_)
+    if (const std::uint32_t v = pattern_.node_vertex_[node]; v != none) is_due_[v] = 1;
+  renumber_entries(old, changing);
+}
+
+// Old ones that go, that may get another size, and behind which new ones come; in order.
+std::vector<std::uint32_t> PatternBuilder::list_changing_vertices(const GraphChange& change) const {
+  std::vector<std::uint32_t> changing;
+  const auto add_node = [&](std::uint32_t node) {
+    if (node < old_nodes_) changing.push_back(pattern_.node_vertex_[node]);
+  };
+  for (const std::uint32_t node : change.touched) add_node(node);
+  for (const std::uint32_t node : change.removed) add_node(node);
+  for (const OwnRows& rows : own_rows_) add_node(rows.node);
+  for (const Insertion& insertion : insertions_) changing.push_back(insertion.after);
+  for (const auto& [unknown, v] : own_at_)
+    if (is_gone_[v]) changing.push_back(v);
+  std::sort(changing.begin(), changing.end());
+  changing.erase(std::unique(changing.begin(), changing.end()), changing.end());
+  return changing;
 }
 
 void PatternBuilder::release_values(const Vertex& vertex) {
-  if (vertex.diagonal == none) return;  // it has none yet
+  if (vertex.diagonal == none) return;  // no front yet
   pattern_.diagonal_storage_.give_back(vertex.diagonal, std::uint32_t{vertex.pivot} * vertex.pivot);
   if (vertex.entry_count == 0) return;
   std::uint32_t rows = 0;
@@ -218,24 +292,26 @@ void PatternBuilder::release(const Vertex& vertex) {
   pattern_.pair_storage_.give_back(vertex.first_pair, vertex.pair_count());
 }
 
-// Fronts with a vertex that is gone are due, and so is the front to which a vertex that is gone has passed on its own.
-void PatternBuilder::renumber_entries(const std::vector<Vertex>& old, const std::vector<std::uint32_t>& now_at) {
-  for (std::size_t v = 0; v < old.size(); ++v)
+// Fronts with a removed vertex are due, and so is the parent front of a removed vertex.
+void PatternBuilder::renumber_entries(const std::vector<Vertex>& old, std::span<const std::uint32_t> changing) {
+  for (const std::uint32_t v : changing)
     if (is_gone_[v] && old[v].entry_count > 0)
-      if (const std::uint32_t parent = now_at[pattern_.entries_[old[v].first_entry].vertex]; parent != none)
+      if (const std::uint32_t parent = now_at_[pattern_.entries_[old[v].first_entry].vertex]; parent != none)
         is_due_[parent] = 1;
-  for (std::size_t v = 0; v < pattern_.vertices_.size(); ++v) {
+  Entry* const entries = pattern_.entries_.data();
+  const auto count = static_cast<std::uint32_t>(pattern_.vertices_.size());
+  for (std::uint32_t v = 0; v < count; ++v) {
     const Vertex& vertex = pattern_.vertices_[v];
     for (std::uint32_t e = vertex.first_entry; e < vertex.first_entry + vertex.entry_count; ++e) {
-      Entry& entry = pattern_.entries_[e];
-      entry.vertex = now_at[entry.vertex];
-      if (entry.vertex == none) is_due_[v] = 1;
+      entries[e].vertex = now_at_[entries[e].vertex];
+      if (entries[e].vertex == none) is_due_[v] = 1;
     }
   }
 }
 
-void PatternBuilder::list_rows_by_themselves() {
+void PatternBuilder::list_rows_by_themselves(std::size_t nodes) {
   own_at_.clear();
+  if (pattern_.vertices_.size() == nodes) return;  // there are none
   for (std::uint32_t v = 0; v < pattern_.vertices_.size(); ++v)
     if (!pattern_.vertices_[v].is_node()) own_at_.push_back({pattern_.vertices_[v].unknown, v});
   std::sort(own_at_.begin(), own_at_.end());
@@ -248,9 +324,9 @@ std::uint32_t PatternBuilder::rows_by_themselves_at(std::uint32_t unknown) const
 
 // --- 4. fronts ---------------------------------------------------------------------------------------------------------
 
-// A front is what a vertex couples with by itself and what its children leave behind. Where it comes out as before,
-// nothing further up depends on the change.
-void PatternBuilder::make_fronts() {
+// A front is the vertex's own couplings and those of its children's fronts. If it is unchanged, no front further up
+// depends on the change.
+void PatternBuilder::make_fronts(FunctionRef<void()> complete) {
   const auto count = static_cast<std::uint32_t>(pattern_.vertices_.size());
   first_child_.assign(count, none), next_child_.assign(count, none);
   width_.assign(count, 0);
@@ -261,10 +337,10 @@ void PatternBuilder::make_fronts() {
   }
   list_couplings();
   for (std::uint32_t v = 0; v < count; ++v)
-    if (is_due_[v]) make_front(v);
+    if (is_due_[v]) make_front(v, complete);
 }
 
-// A later vertex takes part with its node's three unknowns, or with as many of its rows too as reach the earlier one.
+// A later vertex takes part with its node's three unknowns, or also with those of its rows that reach the earlier one.
 void PatternBuilder::list_couplings() {
   const auto count = pattern_.vertices_.size();
   std::vector<std::pair<std::uint32_t, Coupling>> found;  // with the earlier vertex
@@ -273,8 +349,9 @@ void PatternBuilder::list_couplings() {
     if (a != b) found.push_back({std::min(a, b), {std::max(a, b), width}});
   };
   const auto vertex_of = [&](std::uint32_t node) { return pattern_.node_vertex_[node]; };
-  is_known_.assign(count, 0);
-  for (std::size_t v = 0; v < count; ++v) is_known_[v] = node_of_[v] != none && is_listed_[node_of_[v]];
+  is_known_.assign(count, all_are_listed_);
+  for (const std::uint32_t node : listed_)
+    if (const std::uint32_t v = vertex_of(node); v != none) is_known_[v] = 1;
 
   for (const auto [a, b] : graph_.couplings)
     if (is_listed_[a] || is_listed_[b]) couple(vertex_of(a), vertex_of(b), 3);
@@ -284,7 +361,7 @@ void PatternBuilder::list_couplings() {
     if (std::none_of(begin, end, [&](std::uint32_t node) { return is_listed_[node]; })) continue;
     const std::uint32_t home = home_of(c);
     const auto width = static_cast<std::uint8_t>(c.unknown - pattern_.vertices_[home].unknown + c.rows);
-    const bool by_itself = node_of_[home] == none;
+    const bool by_itself = !pattern_.vertices_[home].is_node();
     if (by_itself) is_known_[home] = 1;
     for (auto node = begin; node != end; ++node) {
       const std::uint32_t v = vertex_of(*node);
@@ -306,9 +383,10 @@ std::uint32_t PatternBuilder::home_of(const CouplingGraph::Constraint& c) const 
   return rows_by_themselves_at(c.unknown);
 }
 
-void PatternBuilder::make_front(std::uint32_t v) {
+void PatternBuilder::make_front(std::uint32_t v, FunctionRef<void()> complete) {
   if (!is_known_[v]) {  // the change has spread beyond the touched nodes
-    is_listed_.assign(graph_.node_count, 1);
+    complete();
+    is_listed_.assign(graph_.node_count, 1), all_are_listed_ = true;
     list_couplings();
   }
   collect_front(v);
@@ -344,7 +422,7 @@ bool PatternBuilder::is_front_of(const Vertex& vertex) const {
                     [&](std::uint32_t later, const Entry& e) { return later == e.vertex && width_[later] == e.width; });
 }
 
-// Both the old and the new parent see another front.
+// The fronts of the old and the new parent change.
 void PatternBuilder::change_parent(std::uint32_t v, std::uint32_t before, std::uint32_t now) {
   if (before != none) is_due_[before] = 1;
   if (now != none) is_due_[now] = 1;
@@ -401,11 +479,13 @@ void PatternBuilder::set_targets() {
   }
 }
 
-void PatternBuilder::note_moves() {
+void PatternBuilder::note_moves(const GraphChange& change) {
   pattern_.moved_.assign(pattern_.unknown_count(), 0);
+  const auto note = [&](const Vertex& v) { std::fill_n(pattern_.moved_.begin() + v.unknown, v.pivot, 1); };
   for (std::size_t v = 0; v < pattern_.vertices_.size(); ++v)
-    if (is_moved_[v] || (node_of_[v] != none && is_touched_[node_of_[v]]))
-      std::fill_n(pattern_.moved_.begin() + pattern_.vertices_[v].unknown, pattern_.vertices_[v].pivot, 1);
+    if (is_moved_[v]) note(pattern_.vertices_[v]);
+  for (const std::uint32_t node : change.touched)
+    if (const std::uint32_t v = pattern_.node_vertex_[node]; v != none) note(pattern_.vertices_[v]);
 }
 
 void PatternBuilder::renumber_nodes(const GraphChange& change) {

@@ -1,49 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 namespace iota::solver {
 
+/// Calls body(i) for i = 0 ... N-1, each a constant, so that small arrays can be in registers. Otherwise a compiler
+/// makes copies and vectors of such short loops, with three times the instructions. The caller must be `flatten`.
+template <int N, class Body>
+inline void unroll(Body body) {
+  [&]<int... i>(std::integer_sequence<int, i...>) {
+    (body(std::integral_constant<int, i>{}), ...);
+  }(std::make_integer_sequence<int, N>{});
+}
+
 /// Factors a pivot block in place: unit lower L11 below the diagonal, reciprocal pivots on it, and for LU the rest of U11
-/// above it. `Number`: a double, or several that go side by side. judge(k, pivot) sees each pivot.
+/// above it. `Number`: a double, or several in SIMD lanes. judge(k, pivot) is called for each pivot.
 template <bool Symmetric, int Pivot, class Number, class Judge>
 inline void factor_pivot_block(Number (&d)[Pivot][Pivot], Judge judge) {
-  for (int k = 0; k < Pivot; ++k) {
+  unroll<Pivot>([&](auto k) {
     judge(k, d[k][k]);
     const Number inverse = 1.0 / d[k][k];
     d[k][k] = inverse;
-    if constexpr (Symmetric) {
-      Number column[Pivot];
-      for (int i = k + 1; i < Pivot; ++i) {
+    Number column[Pivot];
+    unroll<Pivot - 1 - k>([&](auto below) {
+      constexpr int i = k + 1 + below;
+      if constexpr (Symmetric) {
         column[i] = d[i][k];
         d[i][k] = column[i] * inverse;
-        for (int j = k + 1; j <= i; ++j) d[i][j] -= d[i][k] * column[j];
-      }
-    } else {
-      for (int i = k + 1; i < Pivot; ++i) {
+        unroll<i - k>([&](auto right) { d[i][k + 1 + right] -= d[i][k] * column[k + 1 + right]; });
+      } else {
         d[i][k] *= inverse;
-        for (int j = k + 1; j < Pivot; ++j) d[i][j] -= d[i][k] * d[k][j];
+        unroll<Pivot - 1 - k>([&](auto right) { d[i][k + 1 + right] -= d[i][k] * d[k][k + 1 + right]; });
       }
-    }
-  }
+    });
+  });
 }
 
 /// One row l of the blocks below a factored pivot block, L21 = A21 U11^-1, and the transposed column u of U12 (symmetric:
-/// L21 D). In: those of the matrix; u counts for LU only.
+/// L21 D). Input: those of the matrix; u is used for LU only.
 template <bool Symmetric, int Pivot, class Number>
 inline void factor_row_below(const Number (&d)[Pivot][Pivot], Number (&l)[Pivot], Number (&u)[Pivot]) {
-  for (int k = 0; k < Pivot; ++k) {
+  unroll<Pivot>([&](auto k) {
     if constexpr (Symmetric) {
       u[k] = l[k];
-      for (int j = 0; j < k; ++j) u[k] -= u[j] * d[k][j];
+      unroll<k>([&](auto j) { u[k] -= u[j] * d[k][j]; });
       l[k] = u[k] * d[k][k];
     } else {
-      for (int j = 0; j < k; ++j) {
+      unroll<k>([&](auto j) {
         l[k] -= l[j] * d[j][k];
         u[k] -= u[j] * d[k][j];
-      }
+      });
       l[k] *= d[k][k];
     }
-  }
+  });
 }
 
 }  // namespace iota::solver

@@ -83,7 +83,7 @@ TEST(Expression, errors_point_at_the_place_and_suggest) {
       {"y = r < v < k", "cannot be chained"},
       {"y = r == v", "comparisons are"},
       {"y = 1e999", "too large"},
-      {"y = 1.2.3", "no number"},
+      {"y = 1.2.3", "not a number"},
       {"r = 2", "already"},
       {"sin = 2", "meaning already"},
       {"y = r; y = v", "defined twice"},

@@ -95,7 +95,8 @@ StepReport push_and_step(Contraption& c) {
 }
 
 TEST(Loads, from_outside_are_mass_times_acceleration) {
-  for (const IntegrationMode mode : {IntegrationMode::robust, IntegrationMode::plausible}) {
+  for (const IntegrationMode mode :
+       {IntegrationMode::plausible, IntegrationMode::robust, IntegrationMode::energy_keeping}) {
     int checked = 0;
     for (std::uint32_t seed = 0; seed < 50; ++seed) {
       Contraption c(seed, mode);
@@ -103,29 +104,20 @@ TEST(Loads, from_outside_are_mass_times_acceleration) {
         const StepReport report = push_and_step(c);
         if (report.substeps_max > 1 || report.fallbacks > 0) continue;  // multipliers are of the last sub-step
         ++checked;
-        ASSERT_LT(calc_worst_imbalance(c), mode == IntegrationMode::robust ? 1e-9 : 1e-7)
-            << "seed " << seed << " step " << i;
+        ASSERT_LT(calc_worst_imbalance(c), mode == IntegrationMode::plausible ? 1e-7 : 1e-9)
+            << "mode " << static_cast<int>(mode) << " seed " << seed << " step " << i;
       }
     }
-    EXPECT_GT(checked, 1500);
+    EXPECT_GT(checked, 1000);
   }
 }
 
-// The mid-point rule finds the mean of two successive multipliers and leaves that, which is off by some percent of the forces
-// here. In the first step there is no other.
-TEST(Loads, from_outside_are_mass_times_acceleration_by_the_mid_point_rule_too) {
-  for (const IntegrationMode mode : {IntegrationMode::energy_keeping, IntegrationMode::accurate}) {
-    int checked = 0;
-    for (std::uint32_t seed = 0; seed < 100; ++seed) {
-      Contraption c(seed, mode);
-      const StepReport report = push_and_step(c);
-      if (report.substeps_max > 1 || report.fallbacks > 0) continue;
-      ++checked;
-      ASSERT_LT(calc_worst_imbalance(c), 1e-9) << "seed " << seed;
-    }
-    if (mode == IntegrationMode::energy_keeping) {
-      EXPECT_GT(checked, 50);
-    }
+TEST(Loads, from_outside_are_mass_times_acceleration_in_accurate_mode_too) {
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    Contraption c(seed, IntegrationMode::accurate);
+    const StepReport report = push_and_step(c);
+    if (report.substeps_max > 1 || report.fallbacks > 0) continue;
+    ASSERT_LT(calc_worst_imbalance(c), 1e-9) << "seed " << seed;
   }
 }
 

@@ -48,7 +48,16 @@ TEST(PairLaw, every_law_of_the_list_is_what_its_text_says) {
     const double* parameters[max_parameters];
     for (int k = 0; k < max_parameters; ++k) parameters[k] = columns[k].data();
     for (const bool same : {false, true}) {
-      PairBatch batch{n, r.data(), v.data(), m_p.data(), m_q.data(), 0.5, parameters, same, force.data(), drag.data()};
+      PairBatch batch{.count = n,
+                      .r = r.data(),
+                      .v = v.data(),
+                      .m_p = m_p.data(),
+                      .m_q = m_q.data(),
+                      .t = 0.5,
+                      .parameters = parameters,
+                      .same_parameters = same,
+                      .force = force.data(),
+                      .drag = drag.data()};
       listed.evaluate(batch);
       batch.force = force_written.data(), batch.drag = drag_written.data();
       written.evaluate(batch);

@@ -101,6 +101,64 @@ TEST(PairSum, is_the_sum_over_all_pairs) {
   }
 }
 
+TEST(PairSum, of_normals_pushes_and_turns_by_the_slope_of_its_energy) {
+  const laws::PairLaw law("energy = k*(1 - r/w)^2*(cos_p^2 + 0.5*cos_q^2 + cos_p*cos_q - 0.7*cos_pq + 0.3*cos_pq^2)",
+                          {"k", "w"});
+  ASSERT_TRUE(law.depends_on_normals());
+  const double parameters[laws::max_parameters] = {3, 0.9}, cutoff = 0.9;
+  laws::ParticleArrays p = cloud(40, 0.5, 11);
+  p.resize_with_normals(40);
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Vec3 n{normal(random), normal(random), normal(random)};
+    p.nx[i] = n.x / norm(n), p.ny[i] = n.y / norm(n), p.nz[i] = n.z / norm(n);
+  }
+  PairSum sum;
+  EXPECT_EQ(sum.add_forces(p, {}, law, parameters, cutoff, 0, one).count, 0u);
+  const auto energy = [&] { return PairSum().energy(p, {}, law, parameters, cutoff, 0, one); };
+  constexpr double step = 1e-5;
+  Vec3 force, moment;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const auto slope_at = [&](double& x) {
+      const double before = x;
+      x = before + step;
+      const double above = energy();
+      x = before - step;
+      const double below = energy();
+      x = before;
+      return (above - below) / (2 * step);
+    };
+    EXPECT_NEAR(p.fx[i], -slope_at(p.x[i]), 1e-6);
+    EXPECT_NEAR(p.fy[i], -slope_at(p.y[i]), 1e-6);
+    EXPECT_NEAR(p.fz[i], -slope_at(p.z[i]), 1e-6);
+    // A turn about z moves the normal by (-ny, nx, 0): the torque is the slope along that, against the energy.
+    const Vec3 n{p.nx[i], p.ny[i], p.nz[i]};
+    const Vec3 slope{slope_at(p.nx[i]), slope_at(p.ny[i]), slope_at(p.nz[i])};
+    const Vec3 torque = -cross(n, slope);
+    EXPECT_NEAR(p.tx[i], torque.x, 1e-6);
+    EXPECT_NEAR(p.ty[i], torque.y, 1e-6);
+    EXPECT_NEAR(p.tz[i], torque.z, 1e-6);
+    const Vec3 f{p.fx[i], p.fy[i], p.fz[i]};
+    force += f;
+    moment += cross(Vec3{p.x[i], p.y[i], p.z[i]}, f) + Vec3{p.tx[i], p.ty[i], p.tz[i]};
+  }
+  EXPECT_LT(norm(force), 1e-12);
+  EXPECT_LT(norm(moment), 1e-12);
+}
+
+TEST(PairSum, of_normals_has_the_same_bits_by_any_number_of_threads) {
+  const laws::PairLaw law("energy = (1 - r/0.3)^2*(cos_p^2 + cos_q^2 - cos_pq)", {});
+  laws::ParticleArrays p = cloud(6000, 1.4, 6);
+  p.resize_with_normals(6000);
+  std::fill(p.nz.begin(), p.nz.end(), 1.0);
+  laws::ParticleArrays q = p;
+  (void)PairSum().add_forces(p, {}, law, nullptr, 0.3, 0, one);
+  (void)PairSum().add_forces(q, {}, law, nullptr, 0.3, 0, two);
+  EXPECT_EQ(p.fx, q.fx);
+  EXPECT_EQ(p.tx, q.tx);
+}
+
 TEST(PairSum, has_an_energy_with_the_same_bits_too) {
   const laws::PairLaw law(laws::find_pair_law("lennard_jones"));
   const double parameters[laws::max_parameters] = {1, 0.1};

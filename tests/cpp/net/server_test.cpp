@@ -213,6 +213,11 @@ TEST_F(ServerTest, serves_the_page_with_safe_headers) {
   const std::string socket = "connect-src 'self' ws://localhost:" + std::to_string(server_->port()) + " blob:";
   EXPECT_NE(policy.find(socket), std::string::npos) << policy;
   EXPECT_EQ(policy.find("unsafe-inline"), std::string::npos);
+  EXPECT_EQ(policy.find("frame-ancestors"), std::string::npos) << "who knows the token may frame the page";
+  for (const char* target : {"/", "/?token=wrong", "/index.html?token="}) {
+    const HttpAnswer to_strangers = test::http_request(server_->port(), "GET", target);
+    EXPECT_NE(to_strangers.headers.at("Content-Security-Policy").find("frame-ancestors 'self'"), std::string::npos);
+  }
   EXPECT_EQ(answer.headers.at("Cross-Origin-Resource-Policy"), "same-origin");
 }
 

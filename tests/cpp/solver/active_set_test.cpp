@@ -185,7 +185,7 @@ TEST(ActiveSet, takes_no_row_into_an_impact_that_is_open) {
   for (const double height : {0.0, 0.5}) {
     OneStop one;
     one.problem.position[0].y = height;
-    ActiveSet::begin_impulses(one.problem, false);
+    ActiveSet::begin_impulses(one.problem);
     EXPECT_EQ(one.state().side == 0, height == 0);
   }
 }

@@ -39,6 +39,12 @@ void disturb(Problem& problem, double by) {
     problem.velocity[i] += Vec3{any(random), any(random), any(random)};
 }
 
+bool project_around_middle(Problem& problem) {
+  Integrator integrator;
+  integrator.compile(problem);
+  return integrator.project_locally(problem, true, std::vector<std::uint32_t>{middle});
+}
+
 double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double most = 0;
   for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, norm(a[i] - b[i]));
@@ -69,10 +75,7 @@ TEST(LocalProjection, keeps_momentum_and_whatever_is_further_away) {
   for (Vec3& v : problem.velocity) v = {1, 2, 3};
   disturb(problem, 1e-3);
   const Problem before = problem;
-  Integrator integrator;
-  integrator.compile(problem);
-  const std::vector<std::uint32_t> center{middle};
-  ASSERT_TRUE(integrator.project_locally(problem, true, center));
+  ASSERT_TRUE(project_around_middle(problem));
   Vec3 change;
   for (std::uint32_t i = 0; i < size; ++i) change += problem.mass[i] * (problem.velocity[i] - before.velocity[i]);
   EXPECT_LT(norm(change), 1e-11);
@@ -86,10 +89,7 @@ TEST(LocalProjection, leaves_to_the_whole_problem_what_reaches_far) {
   Problem problem = make_zigzag(true, 0.01);  // almost straight: a pull along it goes on for hundreds of links
   disturb(problem, 1e-4);
   const Problem before = problem;
-  Integrator integrator;
-  integrator.compile(problem);
-  const std::vector<std::uint32_t> center{middle};
-  EXPECT_FALSE(integrator.project_locally(problem, true, center));
+  EXPECT_FALSE(project_around_middle(problem));
   EXPECT_EQ(farthest(problem.position, before.position), 0);
   EXPECT_EQ(farthest(problem.velocity, before.velocity), 0);
 }

@@ -2,11 +2,13 @@
 #include "solver/sparse/block_factor.h"
 #include "solver/sparse/block_pattern.h"
 #include "solver/sparse/panel_product.h"
+#include "solver/sparse/pattern_builder.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <utility>
 
@@ -475,6 +477,73 @@ TEST(BlockPattern, following_random_changes_factors_like_a_dense_matrix) {
     followed += changing.followed, analyzed += changing.analyzed;
   }
   EXPECT_GT(followed, 20 * analyzed);
+}
+
+/// What couples with touched nodes and with the nodes of their constraints, and then all the rest.
+struct Parts {
+  CouplingGraph graph;
+  std::vector<std::size_t> source;  ///< of each constraint: its place in the whole graph
+  std::function<void()> complete;
+
+  Parts(const CouplingGraph& whole, const GraphChange& change) {
+    std::vector<bool> touched(whole.node_count), near(whole.node_count);
+    for (const std::uint32_t node : change.touched) touched[node] = near[node] = true;
+    const auto any = [](const auto& nodes, const std::vector<bool>& marks) {
+      return std::any_of(nodes.begin(), nodes.end(), [&](std::uint32_t node) { return marks[node]; });
+    };
+    for (const auto& c : whole.constraints)
+      if (any(whole.nodes_of(c), touched))
+        for (const std::uint32_t node : whole.nodes_of(c)) near[node] = true;
+    graph.node_count = whole.node_count;
+    const auto add = [this, &whole, near, any](bool which) {
+      for (const auto& c : whole.couplings)
+        if (any(c, near) == which) graph.couplings.push_back(c);
+      for (std::size_t k = 0; k < whole.constraints.size(); ++k) {
+        const auto& c = whole.constraints[k];
+        if (any(whole.nodes_of(c), near) != which) continue;
+        const auto first = graph.add(c.rows, whole.nodes_of(c)).first_node;
+        graph.constraints.back() = c;
+        graph.constraints.back().first_node = first;
+        source.push_back(k);
+      }
+    };
+    add(true);
+    complete = [add] { add(false); };
+  }
+};
+
+TEST(BlockPattern, follows_what_is_near_a_change_as_it_follows_the_whole_graph) {
+  std::mt19937 random(14);
+  ChangingGraph changing(random, 200);
+  int stayed_near = 0;
+  for (int edit = 0; edit < 300; ++edit) {
+    changing.edit(random);
+    Parts parts(changing.graph, changing.change);
+    BlockPattern pattern = changing.pattern;
+    const bool suits = PatternBuilder::follow_part(pattern, parts.graph, changing.change, parts.complete);
+    stayed_near += parts.graph.constraints.size() < changing.graph.constraints.size();
+    ASSERT_EQ(suits, changing.pattern.follow(changing.graph, changing.change));
+    ASSERT_EQ(pattern.vertices().size(), changing.pattern.vertices().size());
+    for (std::size_t k = 0; k < parts.source.size(); ++k)
+      ASSERT_EQ(parts.graph.constraints[k].unknown, changing.graph.constraints[parts.source[k]].unknown);
+    for (std::size_t v = 0; v < pattern.vertices().size(); ++v) {
+      const BlockPattern::Vertex &mine = pattern.vertices()[v], &its = changing.pattern.vertices()[v];
+      ASSERT_EQ(mine.unknown, its.unknown);
+      ASSERT_EQ(mine.diagonal, its.diagonal);
+      ASSERT_EQ(mine.entry_count, its.entry_count);
+      for (std::uint32_t e = 0; e < mine.entry_count; ++e) {
+        const auto &entry = pattern.entries()[mine.first_entry + e],
+                   &other = changing.pattern.entries()[its.first_entry + e];
+        ASSERT_EQ(entry.vertex, other.vertex);
+        ASSERT_EQ(entry.offset, other.offset);
+      }
+    }
+    if (changing.change.removed.size() == 1) changing.rename(--changing.graph.node_count, changing.change.removed[0]);
+    changing.change.clear();
+    if (!suits) changing.pattern.analyze(changing.graph);
+  }
+  EXPECT_GT(stayed_near, 30) << "the rest was asked for each time";
+  EXPECT_LT(stayed_near, 300) << "and never";
 }
 
 TEST(BlockPattern, that_has_followed_and_gone_back_is_no_larger) {

@@ -66,7 +66,7 @@ TEST(HeldEnergy, is_potential_and_is_kept) {
     least_potential = std::min(least_potential, e.potential);
     drift = std::max(drift, std::abs(e.total() - start.total()));
     ASSERT_NEAR(book(e), book(start), 1e-10 * std::abs(start.total()));
-    ASSERT_NEAR(e.external_work, e.total() - start.total(), 1e-9) << "what is left there is the error of holding";
+    ASSERT_NEAR(e.external_work, e.total() - start.total(), 1e-9) << "the error of holding";
   }
   EXPECT_GT(most, 5) << "a lot goes to and fro";
   EXPECT_LT(drift, 2e-4 * most) << "and next to nothing is lost";

@@ -246,5 +246,34 @@ TEST(Active, an_inactive_particle_weighs_next_to_nothing) {
   EXPECT_TRUE(system.validate().empty());
 }
 
+TEST(Scripted, what_the_script_has_moved_is_free_once_it_is_dynamic_and_its_nails_stay) {
+  for (const bool nailed : {false, true})
+    for (const bool by_way_of_static : {false, true}) {
+      System system;
+      const BodyId rod = system.bodies().create();
+      const ParticleId first = system.particles().create(rod, {0, 2, 0}),
+                       last = system.particles().create(rod, {1, 2, 0});
+      if (nailed) system.particles().nail(first);
+      system.bodies().set_kind(rod, BodyKind::scripted);
+      for (int i = 1; i <= 30; ++i) {
+        system.bodies().set_pose(rod, {0.5, 2 + 0.02 * i, 0}, {});
+        (void)system.step(0.01);
+      }
+      EXPECT_NEAR(system.particles().position(last).y, 2.6, 1e-9);
+      EXPECT_EQ(system.particles().is_nailed(first), nailed);
+      EXPECT_FALSE(system.particles().is_nailed(last));
+      if (by_way_of_static) system.bodies().set_kind(rod, BodyKind::static_);
+      system.bodies().set_kind(rod, BodyKind::dynamic);
+      system.particles().set_velocity(first, {});
+      system.particles().set_velocity(last, {});
+      for (int i = 0; i < 20; ++i) (void)system.step(0.01);
+      const double fallen = 2.6 - system.particles().position(last).y;
+      // Freely, or as a rod with a weight at its end about the other one: both begin with g.
+      EXPECT_NEAR(fallen, 9.81 * 0.2 * 0.2 / 2, 0.01) << nailed << by_way_of_static;
+      EXPECT_NEAR(system.particles().position(first).y, nailed ? 2.6 : 2.6 - fallen, 1e-9);
+      EXPECT_TRUE(system.validate().empty());
+    }
+}
+
 }  // namespace
 }  // namespace iota

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// The hub without sockets: links that keep what they are sent, in place of connections.
+#include "net/hub.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace iota::net {
+namespace {
+
+class Link : public ClientLink {
+ public:
+  void send(const Frame& frame, std::string_view) override {
+    const auto decoded = protocol::decode_server_message(*frame);
+    ASSERT_TRUE(decoded) << decoded.error;
+    received.push_back(*decoded.value);
+  }
+  void world_changed() override { ++changes; }
+  void drop(std::string_view reason) override { dropped = reason; }
+  void world_ended() override { has_ended = true; }
+
+  template <class Message>
+  std::vector<Message> all() const {
+    std::vector<Message> found;
+    for (const auto& message : received)
+      if (const auto* one = std::get_if<Message>(&message)) found.push_back(*one);
+    return found;
+  }
+  std::string last_notice() const {
+    const auto notices = all<protocol::Notice>();
+    return notices.empty() ? "" : notices.back().title + ": " + notices.back().text;
+  }
+
+  std::vector<protocol::ServerMessage> received;
+  int changes = 0;
+  std::string dropped;
+  bool has_ended = false;
+};
+
+class HubTest : public testing::Test {
+ protected:
+  static protocol::Hello hello(const std::string& name = {}, protocol::Role role = protocol::Role::actor) {
+    return {protocol::protocol_magic, protocol::protocol_version, {}, role, name};
+  }
+  std::uint32_t join(Link& link, const std::string& name = {}, protocol::Role role = protocol::Role::actor) {
+    return hub.join(link, hello(name, role)).first;
+  }
+  template <class Message>
+  void receive(std::uint32_t client, const Message& message) {
+    hub.receive(client, protocol::encode(message));
+  }
+  /// The kinds of the events that wait for the script, without those of coming and going.
+  std::vector<InputEvent> take_gestures() {
+    std::vector<InputEvent> events = hub.take_input();
+    std::erase_if(events, [](const InputEvent& event) {
+      return event.kind == InputEvent::Kind::join || event.kind == InputEvent::Kind::leave;
+    });
+    return events;
+  }
+
+  Counters counters;
+  int frames_asked = 0;
+  Hub hub{"world", 2, counters, [this] { ++frames_asked; }};
+};
+
+TEST_F(HubTest, welcomes_who_joins_and_says_who_is_there) {
+  Link link;
+  const std::uint32_t client = join(link, "Ada");
+  ASSERT_GE(link.received.size(), 2u);
+  const auto& welcome = std::get<protocol::Welcome>(link.received[0]);
+  EXPECT_EQ(welcome.client, client);
+  EXPECT_EQ(welcome.world, "world");
+  EXPECT_EQ(link.all<protocol::Clients>().at(0).clients.at(0).name, "Ada");
+  EXPECT_EQ(counters.clients, 1u);
+  const auto events = hub.take_input();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, InputEvent::Kind::join);
+  EXPECT_EQ(events[0].name, "Ada");
+}
+
+TEST_F(HubTest, refuses_a_full_world_and_another_protocol_with_a_reason) {
+  Link one, two, three;
+  protocol::Hello old = hello();
+  old.version = protocol::protocol_version - 1;
+  EXPECT_NE(hub.join(one, old).second.find("reload the page"), std::string::npos);
+  protocol::Hello other = hello();
+  other.magic = 7;
+  EXPECT_FALSE(hub.join(one, other).second.empty());
+  join(one);
+  join(two);
+  const auto [client, reason] = hub.join(three, hello());
+  EXPECT_EQ(client, 0u);
+  EXPECT_EQ(reason, "the world is full: 2 clients are connected");
+  EXPECT_TRUE(three.received.empty());
+}
+
+TEST_F(HubTest, asks_for_one_delivery_however_much_is_published) {
+  EXPECT_TRUE(hub.notice(0, 0, "one", "", "", false));
+  EXPECT_FALSE(hub.notice(0, 0, "two", "", "", false));
+  EXPECT_FALSE(hub.publish({}, {}));
+  Link link;
+  join(link);
+  hub.deliver();
+  EXPECT_EQ(link.all<protocol::Notice>().size(), 2u);
+  EXPECT_EQ(link.changes, 1);
+  EXPECT_TRUE(hub.publish({}, {})) << "nothing waits any more";
+}
+
+TEST_F(HubTest, tells_a_client_of_its_own_and_all_of_what_is_for_all) {
+  Link one, two;
+  const std::uint32_t first = join(one);
+  join(two);
+  (void)hub.notice(first, 1, "for one", "text", "", false);
+  (void)hub.effect("break", {1, 2, 3});
+  hub.deliver();
+  EXPECT_EQ(one.last_notice(), "for one: text");
+  EXPECT_EQ(two.last_notice(), "");
+  EXPECT_EQ(two.all<protocol::Effect>().at(0).kind, "break");
+}
+
+TEST_F(HubTest, gives_the_latest_of_each_message_and_kept_notices_to_late_joiners) {
+  (void)hub.set(protocol::WorldSettings{.title = "old"});
+  (void)hub.set(protocol::WorldSettings{.title = "new"});
+  for (int i = 0; i < 9; ++i) (void)hub.notice(0, 1, "kept " + std::to_string(i), "text", "", true);
+  (void)hub.notice(0, 1, "kept 8", "again", "", true);
+  hub.deliver();
+  Link link;
+  join(link);
+  const auto settings = link.all<protocol::WorldSettings>();
+  ASSERT_EQ(settings.size(), 1u);
+  EXPECT_EQ(settings[0].title, "new");
+  const auto notices = link.all<protocol::Notice>();
+  ASSERT_EQ(notices.size(), 8u) << "the oldest is forgotten";
+  EXPECT_EQ(notices.front().title, "kept 1");
+  EXPECT_EQ(notices.back().text, "again");
+  (void)hub.forget_notice("kept 1");
+  hub.deliver();
+  Link later;
+  join(later);
+  EXPECT_EQ(later.all<protocol::Notice>().size(), 7u);
+}
+
+TEST_F(HubTest, cuts_a_notice_between_characters_and_mends_what_is_not_utf8) {
+  Link link;
+  join(link);
+  std::string title;
+  for (int i = 0; i < 200; ++i) title += "\xC3\xA9";  // 400 bytes of a letter of two
+  (void)hub.notice(0, 9, title, "a\xFFz", "", false);
+  hub.deliver();
+  const auto notice = link.all<protocol::Notice>().at(0);
+  EXPECT_LE(notice.title.size(), 256u);
+  EXPECT_EQ(notice.title.substr(notice.title.size() - 5), "\xC3\xA9...");
+  EXPECT_EQ(notice.text, "a?z");
+}
+
+TEST_F(HubTest, keeps_the_newest_place_of_each_grip) {
+  Link link;
+  const std::uint32_t client = join(link);
+  for (const std::uint32_t hold : {1u, 2u}) receive(client, protocol::GrabStart{.hold = hold});
+  for (int i = 1; i <= 5; ++i) {
+    for (const std::uint32_t hold : {1u, 2u})
+      receive(client, protocol::GrabMove{hold, {static_cast<float>(i), static_cast<float>(hold), 0}});
+  }
+  receive(client, protocol::GrabEnd{1});
+  receive(client, protocol::GrabMove{2, {9, 2, 0}});
+  const auto events = take_gestures();
+  ASSERT_EQ(events.size(), 6u) << "2 starts, 2 moves, an end, and a move after it";
+  EXPECT_EQ(events[2].target[0], 5);
+  EXPECT_EQ(events[3].target[0], 5);
+  EXPECT_EQ(events[4].kind, InputEvent::Kind::grab_end);
+  EXPECT_EQ(events[5].target[0], 9);
+}
+
+TEST_F(HubTest, refuses_grips_that_do_not_fit_and_the_client_stays) {
+  Link link;
+  const std::uint32_t client = join(link);
+  receive(client, protocol::GrabStart{.hold = 1});
+  receive(client, protocol::GrabStart{.hold = 1});
+  EXPECT_NE(link.last_notice().find("in use already"), std::string::npos);
+  receive(client, protocol::GrabMove{7, {}});
+  EXPECT_NE(link.last_notice().find("holds nothing"), std::string::npos);
+  receive(client, protocol::GrabMove{1, {2e9F, 0, 0}});
+  EXPECT_NE(link.last_notice().find("1e9 m"), std::string::npos);
+  for (std::uint32_t hold = 2; hold < 40; ++hold) receive(client, protocol::GrabStart{.hold = hold});
+  EXPECT_NE(link.last_notice().find("holds too much"), std::string::npos);
+  EXPECT_EQ(take_gestures().size(), 32u);
+  EXPECT_EQ(counters.frames_refused, 10u);
+  EXPECT_EQ(link.dropped, "");
+}
+
+TEST_F(HubTest, answers_bytes_that_are_no_message_with_a_notice) {
+  Link link;
+  const std::uint32_t client = join(link);
+  hub.receive(client, std::vector<std::uint8_t>{});
+  hub.receive(client, std::vector<std::uint8_t>{255, 1, 2});
+  std::vector<std::uint8_t> cut = protocol::encode(protocol::GrabStart{.hold = 1});
+  cut.pop_back();
+  hub.receive(client, cut);
+  EXPECT_EQ(link.all<protocol::Notice>().size(), 3u);
+  EXPECT_TRUE(take_gestures().empty());
+}
+
+TEST_F(HubTest, lets_a_viewer_select_and_nothing_else) {
+  Link link;
+  const std::uint32_t client = join(link, "", protocol::Role::viewer);
+  receive(client, protocol::Select{{4, 1}});
+  receive(client, protocol::GrabStart{.hold = 1});
+  EXPECT_NE(link.last_notice().find("You only watch"), std::string::npos);
+  receive(client, protocol::Action{.name = "break", .body = {4, 1}});
+  receive(client, protocol::Control{protocol::ControlCommand::reset, 0});
+  const auto events = take_gestures();
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, InputEvent::Kind::select);
+}
+
+TEST_F(HubTest, takes_one_single_step_a_round_and_one_reset_a_second) {
+  Link link;
+  const std::uint32_t client = join(link);
+  for (int i = 0; i < 100; ++i) {
+    receive(client, protocol::Control{protocol::ControlCommand::single_step, 0});
+    receive(client, protocol::Control{protocol::ControlCommand::reset, 0});
+  }
+  EXPECT_EQ(take_gestures().size(), 2u);
+  EXPECT_EQ(link.all<protocol::Notice>().size(), 1u) << "told once to wait";
+}
+
+TEST_F(HubTest, drops_a_client_that_sends_more_than_the_script_takes_and_only_it) {
+  Link flood, calm;
+  const std::uint32_t client = join(flood), other = join(calm);
+  for (int i = 0; i < 5000; ++i) receive(client, protocol::Key{.key = "a", .down = i % 2 == 0});
+  EXPECT_EQ(flood.dropped, "more input than the script can take");
+  receive(other, protocol::Key{.key = "b", .down = true});
+  const auto events = take_gestures();
+  EXPECT_EQ(events.size(), 4097u);
+  EXPECT_EQ(events.back().client, other);
+  EXPECT_EQ(calm.dropped, "");
+}
+
+TEST_F(HubTest, takes_a_picture_only_from_whom_it_asked) {
+  Link link;
+  const std::uint32_t client = join(link);
+  receive(client, protocol::Picture{.request = 1, .is_last = true, .data = {1}});
+  EXPECT_NE(link.last_notice().find("none was asked for"), std::string::npos);
+  (void)hub.ask_picture(client, 1);
+  hub.deliver();
+  EXPECT_EQ(link.all<protocol::AskPicture>().at(0).request, 1u);
+  receive(client, protocol::Picture{.request = 1, .is_last = false, .data = {1}});
+  receive(client, protocol::Picture{.request = 1, .is_last = true, .data = {2}});
+  receive(client, protocol::Picture{.request = 1, .is_last = true, .data = {3}});
+  EXPECT_EQ(take_gestures().size(), 2u) << "it was whole";
+}
+
+TEST_F(HubTest, tells_who_is_there_at_most_once_a_frame) {
+  Link one, two;
+  const std::uint32_t client = join(one);
+  join(two);
+  for (std::uint32_t slot = 0; slot < 50; ++slot) receive(client, protocol::Select{{slot, 1}});
+  EXPECT_EQ(frames_asked, 1);
+  const std::size_t before = two.all<protocol::Clients>().size();
+  hub.frame();
+  hub.frame();
+  const auto told = two.all<protocol::Clients>();
+  ASSERT_EQ(told.size(), before + 1);
+  EXPECT_EQ(told.back().clients.at(0).selected, (protocol::Id{49, 1}));
+}
+
+TEST_F(HubTest, says_when_the_world_ends_and_forgets_who_left) {
+  Link one, two;
+  const std::uint32_t client = join(one);
+  join(two);
+  hub.leave(client);
+  hub.leave(client);
+  EXPECT_EQ(counters.clients, 1u);
+  hub.end();
+  EXPECT_FALSE(one.has_ended);
+  EXPECT_TRUE(two.has_ended);
+  EXPECT_EQ(hub.take_input().back().kind, InputEvent::Kind::leave);
+}
+
+}  // namespace
+}  // namespace iota::net
