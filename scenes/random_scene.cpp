@@ -61,7 +61,7 @@ constexpr std::array<const char*, 33> names{"make_body",
 
 constexpr std::uint32_t newest = 0xffffffff;  // as a or b: the particle in the last slot
 
-/// Turns deeds into calls.
+/// Converts deeds to calls.
 class Player {
  public:
   explicit Player(Tally& tally, std::string* log = nullptr) : tally_(tally), watched_(tally, log) {}
@@ -227,7 +227,7 @@ class Player {
   }
   const std::vector<GripId>& grips() const { return watched_.grips(); }
 
-  /// Particles of bodies that hang together already can seldom meet; one pair in eight may try.
+  /// Particles of connected bodies can seldom meet; one pair in eight may try.
   bool may_meet(ParticleId p, ParticleId q, Dice& dice) const {
     return dice.below(8) == 0 || system_.bodies().articulate(system_.particles().body(p)) !=
                                      system_.bodies().articulate(system_.particles().body(q));
@@ -278,7 +278,7 @@ class Player {
          angle.stiffness, angle.damping, slide.lower, slide.upper, slide.friction, slide.stiffness, slide.damping);
   }
 
-  /// A particle on a sphere or half-space through its place, inside or outside of one that it is inside or outside of.
+  /// A particle on a sphere or half-space through its place, or inside or outside of one, as it is at present.
   void make_surface(ParticleId p, Dice& dice) {
     constexpr std::array kinds{ConstraintKind::surface, ConstraintKind::inside, ConstraintKind::outside};
     const ConstraintKind kind = kinds[dice.below(kinds.size())];
@@ -326,8 +326,8 @@ std::vector<Deed> random_script(std::uint64_t seed, const RandomSceneOptions& op
   if (graph == Graph::soup)
     for (std::uint32_t i = 0; i < bodies; ++i) add_anywhere(DeedKind::combine);
 
-  // What happens how often; a scene that falls to dust tests little, so joining outweighs cutting.
-  // Every other scene has joints and all that.
+  // Frequencies of deeds; joining is more frequent than cutting, as a scene of single particles tests little. Every
+  // other scene has joints and constraints.
   const bool jointed = seed % 2 == 0;
   const std::vector<std::pair<DeedKind, int>> weights{
       {DeedKind::make_body, 2},
@@ -390,7 +390,7 @@ std::optional<std::string> play(const std::vector<Deed>& script, Tally& tally) {
 }
 
 std::function<bool(const std::vector<Deed>&)> same_complaint_as(const std::vector<Deed>& script) {
-  // Its words up to the first number, without the place in the script.
+  // The text up to the first number, without the place in the script.
   const auto gist = [](const std::vector<Deed>& played) {
     Tally ignored;
     const std::string text = play(played, ignored).value_or(": nothing");

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-/// Random scenes and what may be asked of any of them: random graphs, loops, nails, springs, grips and edits every frame,
-/// masses over six decades.
+/// Random scenes and checks that all of them must pass: random graphs, loops, nails, springs, grips and edits every
+/// frame, masses over six decades.
 namespace iota::scenes {
 
 enum class DeedKind : std::uint8_t {
   make_body,       // of one to five particles
   make_solid,      // a box, sphere, cylinder ... with two attachments, the first combined with particle a
-  make_link,       // a two-point body that hangs on particle a
+  make_link,       // a two-point body hinged to particle a
   bridge,          // a two-point body from particle a to particle b
   combine,         // particles a and b
   combine_slowly,  // over a time
@@ -28,7 +28,7 @@ enum class DeedKind : std::uint8_t {
   release,
   spring,
   drag,
-  law,  // another one of the predefined laws
+  law,  // changes to another predefined law
   destroy_bond,
   joint,     // of any kind between the bodies of a and b, or between a's and the world
   distance,  // a rod or a rope between a and b
@@ -50,14 +50,14 @@ enum class DeedKind : std::uint8_t {
 };
 
 /// One thing done to a scene, as plain numbers. `a` and `b` are taken modulo how many particles there are, and further
-/// numbers come from `seed`: so any part of a script is a script.
+/// numbers come from `seed`: so any part of a script is a valid script.
 struct Deed {
   DeedKind kind = DeedKind::step;
   std::uint32_t a = 0, b = 0;
   std::uint64_t seed = 0;
 };
 
-/// How a scene starts: of which shape the graph of its bodies is.
+/// The start of a scene: the shape of the graph of its bodies.
 enum class Graph : std::uint8_t { soup, chain, ring, tree, star, net, count };
 
 struct RandomSceneOptions {
@@ -68,17 +68,17 @@ struct RandomSceneOptions {
 
 std::vector<Deed> random_script(std::uint64_t seed, const RandomSceneOptions& options = {});
 
-/// Plays a script on a fresh system. Returns what is wrong, in a sentence, after the first deed that shows it: numbers that
-/// are not finite, structure that is not whole, a gap of a step reported as solved, energy out of nothing, a refused edit
-/// that changed something.
+/// Plays a script on a new system. Returns the error, in a sentence, after the first deed that shows it: numbers that
+/// are not finite, an invalid structure, a gap of a step reported as solved, a gain of energy, a refused edit that
+/// changed something.
 std::optional<std::string> play(const std::vector<Deed>& script, Tally& tally);
 
-/// Whether another script ends in the same complaint as this one.
+/// Whether two errors are of the same kind.
 std::function<bool(const std::vector<Deed>&)> same_complaint_as(const std::vector<Deed>& script);
 /// The shortest script found, by leaving out, that still fails.
 std::vector<Deed> shrink(std::vector<Deed> script, const std::function<bool(const std::vector<Deed>&)>& fails);
 
-/// What a script does to a system, line by line: to be played without this file, see WatchedSystem.
+/// The calls of a script, line by line, which can be played without this file: see WatchedSystem.
 std::string tell(const std::vector<Deed>& script);
 
 }  // namespace iota::scenes

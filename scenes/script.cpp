@@ -10,7 +10,7 @@ namespace iota::scenes {
 
 namespace {
 
-/// The words of a line, read one after the other.
+/// Reads the words of a line in order.
 class Words {
  public:
   explicit Words(const std::string& line) : in_(line) {}
@@ -198,7 +198,7 @@ std::optional<std::string> WatchedSystem::step(double dt) {
   const Energy& after = report.energy;
   if (!std::isfinite(after.total()) || !std::isfinite(after.dissipated) || !std::isfinite(report.worst_gap))
     return "a step ended with numbers that are not finite";
-  if (report.unconverged == 0 && report.resting == 0) {  // who was put to rest in a conflict keeps it
+  if (report.unconverged == 0 && report.resting == 0) {  // a body that sleeps with a conflict keeps it
     tally_.gap = std::max(tally_.gap, report.worst_gap);
     // 1e-6 of a body, which may be 3 m long.
     if (report.worst_gap > 3e-6) return say("a gap of ", report.worst_gap, " m, and the step says that it converged");
@@ -207,7 +207,7 @@ std::optional<std::string> WatchedSystem::step(double dt) {
   const double size = before.kinetic + after.kinetic + std::abs(before.potential) + std::abs(after.potential) +
                       std::abs(after.edits) + std::abs(after.external_work) + std::abs(after.dissipated) + after.lost +
                       after.made;
-  // Joints that are pulled together at once from far away may turn by more than half a turn: one scene in ten thousand.
+  // Joints that are closed from far away in one step may turn by more than half a turn: one scene in ten thousand.
   const double exact = jointed_ ? 1e-2 : 1e-9;
   if (std::abs(book) > exact * size) return say("the energy book does not add up: ", book, " J of ", size);
   // Gaps of 1e-9 of a link times the forces of a thousand kilograms: energy may wander a little, not jump.
@@ -215,10 +215,10 @@ std::optional<std::string> WatchedSystem::step(double dt) {
   const double motion = before.kinetic + after.kinetic + std::abs(after.potential - before.potential) +
                         std::abs(after.edits - before.edits) + 1e-6 * std::abs(after.potential) + 1e-6;
   if (!disturbed_) {
-    const bool rescued = report.fallbacks > 0 || report.unconverged > 0;  // had to fall back, and says so
+    const bool rescued = report.fallbacks > 0 || report.unconverged > 0;  // had fall-backs, as the report says
     double& most = jointed_ ? tally_.made_up_with_joints : rescued ? tally_.made_up_by_rescues : tally_.made_up;
     most = std::max(most, made_up / motion);
-    // Curves and surfaces are no quadratic constraints: at the default accuracy a fast step round a bend may gain.
+    // Curves and surfaces are not quadratic: at the default accuracy a fast step round a bend may gain energy.
     const double allowed = jointed_ ? 0.5 : rescued ? 0.2 : 2e-3;
     if (made_up > allowed * motion) return say("a step made up ", made_up, " J of ", motion, " J");
   }

@@ -16,17 +16,17 @@ namespace iota::scenes {
 /// Counts over many plays.
 struct Tally {
   std::uint64_t scenes = 0, steps = 0, edits = 0, refused = 0, unconverged = 0, fallbacks = 0;
-  /// Largest energy made up by a step without hands and moved nails, over its motion; by one that had to fall back to the
-  /// robust scheme or to a least violation; and in scenes with joints.
+  /// Largest gain of energy in a step without hands and moved nails, relative to its motion; in a step that fell back
+  /// to the robust scheme or to a least violation; and in scenes with joints.
   double made_up = 0, made_up_by_rescues = 0, made_up_with_joints = 0;
   double gap = 0;  ///< worst of the steps that were reported as solved, m
 };
 
-/// A system that is driven by lines of text, each one call of it, and watched. A line is a verb and its arguments, such as
-///   particle 0.1 0.5 0 0 2 0 0 0      body, position, mass, velocity
-///   combine 3.1 7.1 0.25              particles, seconds
-/// Ids are slot.generation. Numbers have 17 digits, so that reading them gives the same bits. A script thus needs nothing
-/// but this interpreter; should slots be given out in another order one day, it fails instead of testing something else.
+/// A system driven by lines of text, each of which is one call, with checks. A line is a verb and its
+/// arguments, such as particle 0.1 0.5 0 0 2 0 0 0 body, position, mass, velocity combine 3.1 7.1 0.25
+/// particles, seconds
+/// Ids are slot.generation. Numbers have 17 digits, so that reading them gives the same bits. So a script needs only
+/// this interpreter; if the order of slots changes, it fails instead of testing something else.
 class WatchedSystem {
  public:
   explicit WatchedSystem(Tally& tally, std::string* log = nullptr) : tally_(tally), log_(log) {}
@@ -35,7 +35,7 @@ class WatchedSystem {
   const System& system() const { return system_; }
   const std::vector<GripId>& grips() const { return grips_; }
 
-  /// What the latest call has made.
+  /// The result of the latest call.
   BodyId body;
   ParticleId particle;
 
@@ -55,9 +55,9 @@ class WatchedSystem {
   }
   void perform(const std::string& line);
 
-  /// A step and what may be asked of any: what is wrong, in a sentence.
+  /// Takes a step and checks it: returns the error, in a sentence.
   std::optional<std::string> step(double dt);
-  /// Whether the structure is whole and the energy finite.
+  /// Whether the structure is valid and the energy finite.
   std::optional<std::string> check() const;
 
  private:
@@ -75,10 +75,10 @@ class WatchedSystem {
   System system_;
   std::vector<GripId> grips_;
   bool jointed_ = false;    // has had constraints, which are less exact
-  bool disturbed_ = false;  // somebody outside does work in the next step
+  bool disturbed_ = false;  // external forces do work in the next step
 };
 
-/// Plays lines on a fresh system; those that begin with # are comments. Returns what is wrong, in a sentence with the number of the line.
+/// Plays lines on a fresh system; those that begin with # are comments. Returns the error, with the number of the line.
 std::optional<std::string> play(std::string_view lines, Tally& tally);
 
 }  // namespace iota::scenes

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulator of one's own in the place of iota's: a cloth of point masses and springs, symplectic Euler, NumPy.
+"""A custom simulator in place of iota's: a cloth of point masses and springs, symplectic Euler, NumPy.
 
     iota run examples/python/explicit_particles.py
 
-The page, its hands, keys, pause and reset are those of every World; docs/replaceable.md tells how it is done.
+The page, its hands, keys, pause and reset are those of every World; see docs/replaceable.md.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ class Hand(iota.SimulatedGrip):
 
 
 class ParticleSimulator(iota.Simulator):
-    """Point masses and damped springs. Explicit: a step is cut so that the stiffest spring stays stable."""
+    """Point masses and damped springs. Explicit: a step is divided so that the stiffest spring is stable."""
 
     def __init__(self, positions, mass, pairs, stiffness, damping, fixed=(), gravity=(0, -9.81, 0), drag=0.1):
         self.x = np.array(positions, float)
@@ -51,7 +51,7 @@ class ParticleSimulator(iota.Simulator):
         self.hands, self.flashes = [], []
         self._bodies = [Knot(self, i) for i in range(len(self.x))]
 
-    # --- what a World asks for ------------------------------------------------------------------------------------
+    # --- required by a World ------------------------------------------------------------------------------------
 
     @property
     def bodies(self):
@@ -71,7 +71,7 @@ class ParticleSimulator(iota.Simulator):
         self.structure_version += 1
 
     def step(self, dt):
-        # A knot of eight springs swings with at most sqrt(16 k/m); Euler is stable up to 2 over that.
+        # A knot of eight springs has a frequency of at most sqrt(16 k/m); Euler is stable up to 2 / frequency.
         parts = int(np.ceil(dt * np.sqrt(16 * self.stiffness / self.mass)))
         h = dt / parts
         for _ in range(parts):
@@ -83,7 +83,7 @@ class ParticleSimulator(iota.Simulator):
         self.step_count += 1
         return iota.types.StepReport(step=self.step_count, time=self.time, dt=dt, energy=self.energy)
 
-    # --- and what it may be asked for -----------------------------------------------------------------------------
+    # --- optional -----------------------------------------------------------------------------
 
     @property
     def energy(self):
@@ -103,7 +103,7 @@ class ParticleSimulator(iota.Simulator):
 
     def body_articulates(self):
         part = np.arange(len(self.x))
-        while True:  # the lowest number spreads along the springs
+        while True:  # spread the lowest number along the springs
             lowest = part.copy()
             np.minimum.at(lowest, self.pairs[:, 0], part[self.pairs[:, 1]])
             np.minimum.at(lowest, self.pairs[:, 1], part[self.pairs[:, 0]])

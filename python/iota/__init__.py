@@ -8,11 +8,11 @@
     world = iota.World(system, title="chain")
     world.run()          # prints the address of a page that shows it
 
-Here is what a script calls, catches or holds; types of what comes back are in `iota.types`. SI units; right-handed, y up.
-Vectors are any 2 or 3 numbers (z is then 0) and come back as `Vec3`. docs/conventions.md has the rules.
+This module has the names that scripts use; types of returned values are in `iota.types`. SI units; right-handed, y up.
+Vectors are any 2 or 3 numbers (default z: 0) and are returned as `Vec3`. docs/conventions.md has the rules.
 """
 
-from iota import starting as starting  # noqa: I001  # first: what follows takes time
+from iota import starting as starting  # noqa: I001  # first: the other imports take time
 
 from collections.abc import Sequence
 

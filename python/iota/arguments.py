@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with the arguments of a call, in a sentence: the engine asks for it when a call fits no signature.
+"""Explains in a sentence why the arguments of a call are wrong; the engine calls it when a call fits no signature.
 
-Signatures are the engine's own, as the stub file has them, so there is nothing to keep up to date here.
+The signatures come from the engine, as in the stub file.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from iota import _core
 
 SHORT = reprlib.Repr()
 SHORT.maxother = SHORT.maxstring = 60
-VECTOR = ("Sequence", "NDArray")  # what may stand for a Vec3
+VECTOR = ("Sequence", "NDArray")  # types accepted as a Vec3
 LARGEST = 2**31
 
 
@@ -26,31 +26,31 @@ def explain_call(
 ) -> str:
     """Why none of the signatures takes these arguments.
 
-    name: 'Body.particle', 'Body.__init__', 'Body.damping = ...' for an assignment. signatures: as nanobind tells them.
-    given, named: the arguments, that of `self` included.
+    name: 'Body.particle', 'Body.__init__', 'Body.damping = ...' for an assignment. signatures: as nanobind prints them.
+    given, named: the arguments, including `self`.
     """
     texts = []
     for text, documentation, *_ in signatures:
         try:
             texts.append(Signature(name, str(text), str(documentation or "")).explain(given, named))
         except SyntaxError:
-            continue  # what nanobind writes is not always Python
+            continue  # nanobind's signatures are not always valid Python
     return next(
         (text for text in texts if text), f"{called(name)} cannot take these arguments: see help({called(name)})"
     )
 
 
 def explain_making(kind: type) -> str:
-    """Why a type cannot be called; its documentation says what makes it."""
+    """Why a type cannot be called; its documentation names the function that makes it."""
     _, found, rest = (kind.__doc__ or "").partition("made by ")
     if not found:
-        return f"a script cannot make {a(kind.__name__)}: it comes from what the engine reports"
+        return f"a script cannot make {a(kind.__name__)}: it comes from reports of the engine"
     maker = re.split(r"[.;:](?:\s|$)", rest)[0].replace("`", "").rstrip(". ")
     return f"{kind.__name__} cannot be called: {a(kind.__name__)} is made by {maker}"
 
 
 def explain_assignment(kind: type, name: str) -> str | None:
-    """Why an attribute cannot be assigned; None where it can be, and what was assigned is at fault."""
+    """Why an attribute cannot be assigned; None if it can, so that the assigned value is wrong."""
     known = [n for n in dir(kind) if not n.startswith("_")]
     member = getattr(kind, name, None)
     if name not in known:
@@ -71,7 +71,8 @@ class Signature:
     """One signature of a function."""
 
     def __init__(self, name: str, text: str, documentation: str = "") -> None:
-        """text: 'def particle(self, position: Vec3 = \\0) -> Particle'; defaults by number, and setters have no name."""
+        """text: 'def particle(self, position: Vec3 = \\0) -> Particle'; defaults are numbers, and setters have no
+        name."""
         self.name, self.documentation = name, documentation
         text = re.sub(r"ndarray\[[^\]]*\]", "ArrayLike", text.replace("def (", "def f("))
         function = ast.parse(re.sub(r"= \\\d+", "= None", text) + ": ...").body[0]
@@ -138,7 +139,7 @@ class Signature:
         result = class_of(self.result)
         near = suggestion(word, words)
         if not near and result and is_settable(result, word):
-            return f"{text}; assign it to what comes back: {result.__name__.lower()}.{word} = ..."
+            return f"{text}; assign it to the result: {result.__name__.lower()}.{word} = ..."
         takes = f"t takes {', '.join(words) or 'none'}"
         return f"{text}{near} I{takes}" if near else f"{text}; i{takes}"
 
@@ -186,7 +187,7 @@ def is_settable(kind: type, name: str) -> bool:
 
 
 def fits(annotation: ast.expr | None, value: Any) -> bool:
-    """Whether the engine takes a value for what is annotated, as far as its type tells."""
+    """Whether the engine takes a value for an annotation, judged by its type."""
     options = list(options_of(annotation))
     return not options or any(fits_one(option, value) for option in options)
 
@@ -268,7 +269,7 @@ def option_in_words(option: ast.expr) -> str:
 
 
 def called(name: str) -> str:
-    """What a script writes: 'Box' for 'Box.__init__', 'particle' for 'Body.particle'."""
+    """The name in a script: 'Box' for 'Box.__init__', 'particle' for 'Body.particle'."""
     return name.removesuffix(".__init__").split(".")[-1]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What iota raises beside ValueError (bad numbers), TypeError (not a number at all) and OSError (files, ports)."""
+"""The exceptions of iota besides ValueError (bad values), TypeError (wrong types) and OSError (files, ports)."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ if TYPE_CHECKING:
 
 
 class StaleIdError(ValueError):
-    """A handle was used whose body, particle, bond or grip is gone; the text says what became of it.
+    """The body, particle, bond or grip of a handle no longer exists; the text says what became of it.
 
-    survivor: the living handle of what absorbed it, None if it was destroyed.
+    survivor: the handle of the object that absorbed it, None if it was destroyed.
     """
 
     def __init__(self, text: str, survivor: Body | Particle | None = None) -> None:
@@ -21,9 +21,9 @@ class StaleIdError(ValueError):
 
 
 class ForceError(RuntimeError):
-    """A function of the script that gives forces raised; the step was finished and what the function is for switched off.
+    """A force function of the script raised; the step was completed, and the law or field was switched off.
 
-    report: of that step. `__cause__` is what the function raised.
+    report: of that step. `__cause__` is the function's exception.
     """
 
     def __init__(self, text: str, report: StepReport) -> None:
@@ -32,9 +32,9 @@ class ForceError(RuntimeError):
 
 
 class BondError(ForceError):
-    """A bond's function raised, or its law gave no finite force; the step was finished and the bond switched off.
+    """A bond's function raised, or its law gave no finite force; the step was completed and the bond switched off.
 
-    bond: the handle. report: of that step. `__cause__` is what the function raised, if it did.
+    bond: the handle. report: of that step. `__cause__` is the function's exception, if any.
     """
 
     def __init__(self, text: str, report: StepReport, bond: Bond) -> None:
@@ -43,10 +43,10 @@ class BondError(ForceError):
 
 
 class ConstraintError(ForceError):
-    """The function of a constraint's surface raised, or gave no finite number; the step was finished without the
+    """The function of a constraint's surface raised, or returned no finite number; the step was completed without the
     constraint, which is switched off.
 
-    constraint: the handle. report: of that step. `__cause__` is what the function raised, if it did.
+    constraint: the handle. report: of that step. `__cause__` is the function's exception, if any.
     """
 
     def __init__(self, text: str, report: StepReport, constraint: Constraint) -> None:
@@ -55,7 +55,7 @@ class ConstraintError(ForceError):
 
 
 class ForceWarning(RuntimeWarning):
-    """As ForceError, where `System.force_errors` is 'warn'."""
+    """As ForceError, if `System.force_errors` is 'warn'."""
 
 
 class WrongThreadError(RuntimeError):

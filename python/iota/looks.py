@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How the page draws bodies: shapes, what they are made of, and where they are on their body.
+"""Looks of bodies on the page: shapes, their materials, and their places on the body.
 
 Bodies are drawn by a `Look`, by a list of looks that are drawn together, or by those of each style; users switch styles on
 the page while it runs. The style "*" is used for every style:
@@ -7,9 +7,9 @@ the page while it runs. The style "*" is used for every style:
     world.draw(wheel, looks.solid("brass"))
     world.draw(links, {"rope": looks.cylinder(0.012, "rope"), "chain": looks.chain_link(0.1)})
 
-Any shape of iota will do: `Look(iota.Cone(0.1, 0.3), "wood")`. What is drawn is what the engine means by that shape. The
-functions below are short for the usual ones. Lengths in m, colors as "#rrggbb", materials one of `MATERIALS`. The body's
-frame has its origin at the center of mass and +x from its first particle to its last.
+Any shape of iota will do: `Look(iota.Cone(0.1, 0.3), "wood")`. The page draws exactly the engine's shape. The functions
+below are shortcuts. Lengths in m, colors as "#rrggbb", materials one of `MATERIALS`. The body's frame has its origin at
+the center of mass and +x from its first particle to its last.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ MOST_TRIANGLES = 50_000
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """One shape as the page draws it. Raises ValueError for an unknown material and for a mesh of too many triangles."""
+    """A drawn shape. Raises ValueError for an unknown material and for a mesh of too many triangles."""
 
     shape: Shape | None  #: None: the body's own shape, see `solid`
     material: str = "paint"
-    color: str | None = None  #: "#rrggbb", or "#rrggbbaa" to be seen through; None: that of the material
+    color: str | None = None  #: "#rrggbb", or "#rrggbbaa" with transparency; None: that of the material
     offset: Sequence[float] = (0.0, 0.0, 0.0)  #: of the shape's origin, in the body's frame, m
     rotation: Sequence[float] = (0.0, 0.0, 0.0, 1.0)  #: of the shape's frame, quaternion x y z w
-    turn: float = 0.0  #: of every other body that is drawn so, about the body's x axis, rad
-    fits: bool = False  #: as long as the body, or the strut, that it is drawn for
+    turn: float = 0.0  #: of every other body with this look, about the body's x axis, rad
+    fits: bool = False  #: has the length of its body or strut
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "offset", tuple(float(v) for v in self.offset))
@@ -54,7 +54,7 @@ class Look:
 
     @property
     def length(self) -> float:
-        """Of the shape along its x axis, m; of a capsule that of its cylinder."""
+        """Length of the shape along its x axis, m; for a capsule that of its cylinder."""
         shape = self.shape
         if isinstance(shape, Cylinder | Capsule | Cone):
             return shape.length
@@ -67,13 +67,13 @@ class Look:
         return 2 * shape.radius if isinstance(shape, Sphere) else 1.0
 
     def of_length(self, length: float) -> Look:
-        """The same, as long as what it is drawn for (m) where it fits itself to that."""
+        """The same look with a length (m), if it fits its body."""
         if not self.fits or not isinstance(self.shape, Cylinder | Capsule):
             return self
         return replace(self, shape=type(self.shape)(self.shape.radius, length))
 
     def describe(self) -> dict[str, Any]:
-        """Plain data, as the page reads it."""
+        """Plain data for the page."""
         described: dict[str, Any] = {"material": self.material}
         if self.shape is not None:
             described |= {"kind": self.shape.kind, "sizes": list(self.shape.numbers)}
@@ -88,14 +88,14 @@ class Look:
 
 
 def material_of(name: str) -> str:
-    """The name itself. Raises ValueError for one of no material."""
+    """Returns the name. Raises ValueError unless it is a material."""
     if name not in MATERIALS:
         raise ValueError(f"material must be one of {', '.join(MATERIALS)}, not {name!r}")
     return name
 
 
 def color_number(text: str) -> int:
-    """0xRRGGBB of "#rrggbb"; of "#rrggbbaa" with how much is seen through it in the highest byte. Raises ValueError."""
+    """0xRRGGBB of "#rrggbb"; of "#rrggbbaa" with the transparency in the highest byte. Raises ValueError."""
     digits = text.removeprefix("#")
     if text == digits or len(digits) not in (6, 8) or not all(digit in "0123456789abcdefABCDEF" for digit in digits):
         raise ValueError(f'a color is "#rrggbb" or "#rrggbbaa", not {text!r}')
@@ -103,11 +103,11 @@ def color_number(text: str) -> int:
 
 
 Looks: TypeAlias = dict[str, Look | list[Look]]
-Drawn: TypeAlias = Look | list[Look] | Looks  # one look, several that are drawn together, or those of each style
+Drawn: TypeAlias = Look | list[Look] | Looks  # one look, several drawn together, or those of each style
 
 
 def by_style(look: Drawn) -> Looks:
-    """The looks of each style. Raises TypeError for what is not a look."""
+    """The looks of each style. Raises TypeError for anything else."""
     styles = look if isinstance(look, dict) else {"*": look}
     for looks in styles.values():
         for each in _listed(looks):
@@ -153,7 +153,7 @@ def ellipsoid(size: Sequence[float], material: str = "paint", **more: Any) -> Lo
 
 
 def disc(radius: float, thickness: float | None = None, material: str = "paint", **more: Any) -> Look:
-    """Across local x; without `thickness` a hundredth of its radius."""
+    """Normal to local x; default `thickness`: a hundredth of its radius."""
     return Look(Cylinder(radius, thickness or radius / 100), material, **more)
 
 
@@ -172,8 +172,8 @@ def half_sphere(radius: float, material: str = "paint", segments: int = 32, **mo
 
 
 def polygon(corners: Sequence[Sequence[float]], thickness: float, material: str = "paint", **more: Any) -> Look:
-    """A plate with these corners (x, y), m, in the local x-y plane, in order, without crossings; `thickness` along z. Raises
-    ValueError for corners that are no outline."""
+    """A plate with these corners (x, y), m, in the local x-y plane, in order, without crossings; `thickness` along z.
+    Raises ValueError for corners that are not a simple polygon."""
     outline = np.array(corners, float)
     if outline.ndim != 2 or outline.shape[1] != 2 or len(outline) < 3:
         raise ValueError("a polygon needs at least three corners (x, y)")
@@ -190,8 +190,8 @@ def polygon(corners: Sequence[Sequence[float]], thickness: float, material: str 
 
 
 def ears(outline: Any) -> list[tuple[int, int, int]]:
-    """Triangles of a simple polygon, corners (n, 2) counter-clockwise, by cutting off ears (Meisters 1975). Raises ValueError
-    where there are none: it crosses itself."""
+    """Triangles of a simple polygon, corners (n, 2) counter-clockwise, by cutting off ears (Meisters 1975). Raises
+    ValueError if there are none: it crosses itself."""
 
     def turn(a: Any, b: Any, c: Any) -> float:
         return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
@@ -213,7 +213,8 @@ def ears(outline: Any) -> list[tuple[int, int, int]]:
 
 
 def _revolved(profile: Sequence[tuple[float, float]], segments: int, material: str, **more: Any) -> Look:
-    """About local x: (x, radius) from the axis to the axis, seen with +x to the right, outside above."""
+    """A solid of revolution about local x: a profile of (x, radius) from axis to axis, with +x to the right and the
+    outside above."""
     rings = [
         [(x, r * math.cos(a), r * math.sin(a)) for a in np.arange(segments) * 2 * math.pi / segments]
         for x, r in profile[1:-1]
@@ -238,7 +239,7 @@ def mesh(vertices: Any, triangles: Any, material: str = "paint", **more: Any) ->
 
 
 def chain_link(length: float, material: str = "steel") -> Look:
-    """A link of a real chain for a body of `length` m: neighbors touch where they are hinged, turned by 90 degrees."""
+    """A link of a real chain for a body of `length` m: neighbors touch at their hinge, turned by 90 degrees."""
     tube, radius = 0.085 * length, 0.26 * length
     return torus(radius, tube, material, stretch=length + 2 * (tube - radius), turn=math.pi / 2)
 
@@ -250,7 +251,7 @@ def spring(radius: float, wire: float, material: str = "steel", color: str | Non
 
 
 def solid(material: str, color: str | None = None) -> Look:
-    """For bodies given by shape: that shape, made of this."""
+    """For bodies given by shape: that shape, of a material."""
     return Look(None, material, color)
 
 
@@ -260,7 +261,7 @@ def to_json(look: Drawn) -> dict[str, Any]:
 
 
 def from_json(data: dict[str, Any]) -> Looks:
-    """The looks that `to_json` wrote. Raises ValueError that says what is wrong with them."""
+    """Reads the result of `to_json`. Raises ValueError that names the error."""
     styles: Looks = {}
     for style, described in data.items():
         looks = [_from_json(entry) for entry in described]
@@ -273,7 +274,7 @@ def _listed(looks: Look | list[Look]) -> list[Look]:
 
 
 def _to_json(look: Look) -> dict[str, Any]:
-    """Without the fields that have their usual value."""
+    """Without the fields that have their default value."""
     entry = {f.name: value for f in fields(look) if (value := getattr(look, f.name)) != f.default}
     return entry | {"shape": look.shape and shapes.to_json(look.shape)}
 
@@ -286,4 +287,4 @@ def _from_json(entry: dict[str, Any]) -> Look:
         raise ValueError(f"a look is described wrongly: {error}") from None
 
 
-UNKNOWN = 0.1  # length of what fits itself to a body that has none, m
+UNKNOWN = 0.1  # length of a fitting look for a body without one, m

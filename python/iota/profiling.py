@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the forces of a system cost, each by itself."""
+"""The cost of each force of a system."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from iota._core import Field, Law, PairForce, System
 
-LEAST = 0.02  # s of processor time a row, so that the clock's grain does not show
+LEAST = 0.02  # s of processor time per row, much longer than the clock's resolution
 
 
 @dataclass
@@ -36,10 +36,10 @@ class ForceProfile(list[ForceCost]):
 
 
 def profile(system: System, dt: float = 1 / 120) -> ForceProfile:
-    """What each law, field and pairwise force of a system costs, in ns for each bond or particle.
+    """The cost of each law, field and pairwise force of a system, in ns for each bond or particle.
 
-    Forces are evaluated where everything is now, again and again, without being applied; functions of the script are
-    called. Implicit bonds: force and stiffness once, as each iteration of the solver asks for them.
+    Forces are evaluated repeatedly at the present state, without being applied; functions of the script are called.
+    Implicit bonds: force and stiffness once, as in each iteration of the solver.
 
         print(system.profile())
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shapes as plain data, and back: for files."""
+"""Conversion of shapes to plain data and back, for files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def to_json(shape: Shape) -> dict[str, Any]:
 
 
 def from_json(data: dict[str, Any]) -> Shape:
-    """The shape that `to_json` wrote. Raises ValueError that says what is wrong with it."""
+    """Reads the result of `to_json`. Raises ValueError that names the error."""
     sizes = dict(data)
     kind = sizes.pop("kind", None)
     if kind not in KINDS:

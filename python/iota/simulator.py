@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a World asks of the simulator that it runs: put another one in the place of `System`.
+"""The interface of a simulator for `World`, to replace `System` by another one.
 
-`World` drives anything that derives from `Simulator`: it is stepped, drawn, grabbed, paused and reset like the built-in
-one. docs/replaceable.md tells how, with examples/python/explicit_particles.py as the worked example.
+`World` steps, draws, pauses and resets any class that derives from `Simulator`, and users grab its bodies.
+docs/replaceable.md explains it; examples/python/explicit_particles.py is an example.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Vector = Sequence[float] | Vec3
 
 
 class SimulatedParticle:
-    """A point of a body, as drawing asks for it."""
+    """A point of a body, for drawing."""
 
     alive = True
 
@@ -31,13 +31,13 @@ class SimulatedParticle:
 
 
 class SimulatedBody:
-    """Something that is drawn and can be held. slot: its number on the page, used for one body at a time. generation: tells
-    the bodies apart that have the same slot one after the other."""
+    """A body that is drawn and can be grabbed. slot: its number on the page, unique at a time. generation:
+    distinguishes successive bodies of one slot."""
 
     generation = 1
     kind = "dynamic"  # or "static", "inactive"
     is_spark = False  # see `Body.is_spark`
-    solids: Sequence[Solid] = ()  # shapes that it is drawn as; without them it is drawn by its particles
+    solids: Sequence[Solid] = ()  # its drawn shapes; without them its particles are drawn
 
     def __init__(self, system: Simulator, slot: int) -> None:
         self.system, self.slot = system, slot
@@ -63,7 +63,7 @@ class SimulatedBody:
 
     @property
     def survivor(self) -> SimulatedBody | None:
-        """Itself, or None once it is gone: what was selected or held is then let go."""
+        """Itself, or None once it is destroyed: then selections and holds of it end."""
         return self
 
 
@@ -74,46 +74,47 @@ class SimulatedGrip(ABC):
 
     @abstractmethod
     def move(self, target: Vector) -> None:
-        """Pull towards a place in the world, m."""
+        """Pulls towards a place in the world, m."""
 
     @abstractmethod
     def destroy(self) -> None:
-        """Let go."""
+        """Releases the body."""
 
 
 class Simulator(ABC):
-    """A simulator for `World`. Four methods and `bodies` are all that one needs; the rest has defaults that do nothing.
+    """A simulator for `World`. Only four methods and `bodies` are required; the others have defaults that do nothing.
 
-    All is called from the thread that runs the world. SI units, right-handed, y up.
+    All are called on the thread that runs the world. SI units, right-handed, y up.
     """
 
     time: float = 0.0  # s, simulated
     step_count: int = 0
-    structure_version: int = 0  # raise it when bodies come, go, or change how they are drawn
+    structure_version: int = 0  # increase it when bodies are created, destroyed, or change their look
     cosmetic_lines: Sequence[tuple[Any, Any]] = ()
 
     @property
     @abstractmethod
     def bodies(self) -> Sequence[SimulatedBody]:
-        """What there is, in a fixed order."""
+        """All bodies, in a fixed order."""
 
     @abstractmethod
     def step(self, dt: float) -> StepReport:
-        """Advance by dt seconds: StepReport(step=..., time=..., dt=..., energy=iota.types.Energy(...), warnings=[...])."""
+        """Advances by dt seconds: StepReport(step=..., time=..., dt=..., energy=iota.types.Energy(...),
+        warnings=[...])."""
 
     @abstractmethod
     def poses(self) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Where bodies are drawn: slots (n,), and (n, 7): center of mass (m) and unit quaternion x y z w."""
+        """Drawn poses of bodies: slots (n,), and (n, 7): center of mass (m) and unit quaternion x y z w."""
 
     @abstractmethod
     def snapshot(self) -> Any:
-        """All that `restore` needs to come back to this moment."""
+        """All data that `restore` needs to return to this state."""
 
     @abstractmethod
     def restore(self, snapshot: Any) -> None:
-        """Back to a snapshot: the page's reset."""
+        """Restores a snapshot: used by the page's reset."""
 
-    # --- what may be left as it is --------------------------------------------------------------------------------
+    # --- optional --------------------------------------------------------------------------------
 
     @property
     def energy(self) -> Energy:
@@ -122,7 +123,7 @@ class Simulator(ABC):
 
     @property
     def scene_version(self) -> int:
-        """What a page's list of bodies depends on: see `System.scene_version`."""
+        """Changes when a page's list of bodies does: see `System.scene_version`."""
         return self.structure_version
 
     @property
@@ -131,19 +132,19 @@ class Simulator(ABC):
         return 0.0
 
     def body_at(self, slot: int) -> SimulatedBody | None:
-        """The body that a user points at; None for a slot that is empty."""
+        """The body of a slot; None for an empty slot."""
         return next((body for body in self.bodies if body.slot == slot), None)
 
     def grip(self, body: SimulatedBody, local_point: Vector, target: Vector, client: int, hold: int) -> SimulatedGrip:
-        """A hand takes a body at a point of its drawn frame."""
+        """A hand grabs a body at a point of its drawn frame."""
         raise NotImplementedError(f"{type(self).__name__} has no hands")
 
     def holds(self) -> Iterable[tuple[int, int, int, Vector, Vector, float]]:
-        """Hands to be drawn: client, hold, the body's slot, where it is held (m), where the hand is (m), force (N)."""
+        """Hands for drawing: client, hold, the body's slot, held place (m), place of the hand (m), force (N)."""
         return ()
 
     def body_articulates(self) -> Iterable[tuple[int, int]]:
-        """(slot, number of its articulate) of each body: equal for bodies that hang together."""
+        """(slot, number of its articulate) of each body: equal for connected bodies."""
         return ((body.slot, body.slot) for body in self.bodies)
 
     @property
@@ -156,10 +157,10 @@ class Simulator(ABC):
         return np.array([p.position for body in self.bodies for p in body.particles], float).reshape(-1, 3)
 
     def adopt(self) -> None:  # noqa: B027
-        """The calling thread takes over."""
+        """Makes the calling thread the owner."""
 
     def take_edits(self) -> Sequence[tuple[str, Vec3]]:
-        """Flashes since the last call: kind ("join" or "break") and place."""
+        """Effects since the last call: kind ("join" or "break") and place."""
         return ()
 
 

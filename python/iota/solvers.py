@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Simultaneous equations: solve them by any solver, write a solver of your own.
+"""Simultaneous equations: solve them with any solver, or write your own solver.
 
     iota.solve(lambda x: [x[0] ** 2 - 2], [1.0]).x          # the square root of two
     iota.solve(problem, x0, method="kinsol")                # by SUNDIALS
 
-Every solver, those of the script included, is known by its name: to `solve` and to `System.solver`, where it solves the
-equations of each step.
+Every solver, including those of the script, has a name, for `solve` and for `System.solver`, which chooses the solver
+of the equations of each step.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     MaybeFunction = Callable[[NDArray[np.float64]], ArrayLike | None]
     SolverFunction = Callable[[_core.Equations, NDArray[np.float64], float, int], ArrayLike]
 
-_functions: dict[str, SolverFunction] = {}  # solvers of the script by name; the engine looks them up here
+_functions: dict[str, SolverFunction] = {}  # solvers of the script by name; the engine finds them here
 
 
 class Problem(ABC):
-    """n equations f(x) = 0 in n unknowns; derive and give it to `solve`. Scale them so that 1 is a usual size.
+    """n equations f(x) = 0 in n unknowns; derive and pass it to `solve`. Scale them so that 1 is a typical size.
 
     class Circle(iota.Problem):
         size = 2
@@ -43,17 +43,17 @@ class Problem(ABC):
 
     @abstractmethod
     def evaluate(self, x: NDArray[np.float64]) -> ArrayLike:
-        """f(x), n numbers. What is not finite makes the solver try a shorter step."""
+        """f(x), n numbers. After a value that is not finite the solver tries a shorter step."""
 
     def jacobian(self, x: NDArray[np.float64]) -> ArrayLike | None:
-        """(n, n): df_i/dx_j. None: the solver takes differences."""
+        """(n, n): df_i/dx_j. None: the solver uses finite differences."""
         return None
 
 
 @dataclass(frozen=True)
 class Solution:
-    """What a solver found. x: the best point, a root where `converged`. residual: largest |f_i| there, infinite where one
-    is not finite. reason: why it ended. Not converged is a result, no exception."""
+    """Result of a solver. x: the best point, a root if `converged`. residual: largest |f_i| there, infinite if one is
+    not finite. reason: why it ended. Non-convergence is a result, not an exception."""
 
     x: NDArray[np.float64]
     converged: bool
@@ -75,8 +75,8 @@ def solve(
     """Solves f(x) = 0 from the guess x0; problem: a `Problem`, or f itself. tolerance: of the largest |f_i|.
 
     method: 'newton' (Newton-Raphson with line search; Dennis and Schnabel 1983), 'kinsol' (SUNDIALS) or a solver of the
-    script, see `solver`. What the equations raise passes. Raises ValueError for shapes that do not match, a guess that
-    is not finite, and methods that there are not.
+    script, see `solver`. Exceptions of the equations propagate. Raises ValueError for shapes that do not match, a guess
+    that is not finite, and unknown methods.
     """
     evaluate: Function
     derivative: MaybeFunction | None = jacobian
@@ -94,8 +94,8 @@ def solve(
 def solver(name: str) -> Callable[[SolverFunction], SolverFunction]:
     """Decorator: makes a function a solver of that name, for `solve` and `System.solver`.
 
-    The function is given the equations (`size`, `evaluate(x)`, `jacobian(x)`), the guess, the tolerance and the largest
-    number of iterations, and returns its best x. Whether that is a root is measured afterwards.
+    The function takes the equations (`size`, `evaluate(x)`, `jacobian(x)`), the guess, the tolerance and the largest
+    number of iterations, and returns its best x. The residual is measured afterwards.
 
         @iota.solver("picard")
         def picard(equations, x, tolerance, max_iterations):
@@ -115,7 +115,7 @@ def solver(name: str) -> Callable[[SolverFunction], SolverFunction]:
 
 
 def solver_names() -> list[str]:
-    """Solvers that there are: built-in ones and those of the script."""
+    """The names of all solvers: built-in ones and those of the script."""
     return list(_core.solver_names())
 
 

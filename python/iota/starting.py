@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ctrl-C while the command line starts is one line, not a traceback out of some import. Imported first; `iota.cli` takes over."""
+"""Makes Ctrl-C during the start of the command line end with one line, not with a traceback. Imported first; `iota.cli`
+takes over."""
 
 from __future__ import annotations
 
@@ -14,6 +15,6 @@ def _leave(number: int, frame: FrameType | None) -> None:
     os._exit(130)
 
 
-# "-m" is what Python says while it imports the package for `python -m iota`.
+# Python sets "-m" while it imports the package for `python -m iota`.
 if os.path.basename(getattr(sys, "argv", [""])[0]) in ("iota", "-m"):
     signal.signal(signal.SIGINT, _leave)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types of what calls give back or hand to a script's functions: for annotations, and for simulators of one's own.
+"""Types of returned values and of arguments of a script's functions: for annotations, and for custom simulators.
 
 def pull(bond: iota.types.BondState) -> iota.Vec3:
     return 50 * (bond.distance - 1) * bond.direction

@@ -242,3 +242,13 @@ def test_a_bond_tells_its_force_breaks_and_is_mended() -> None:
     assert thread.active and not thread.broken
     with pytest.raises(ValueError, match="break_force"):
         thread.break_force = -1
+
+
+def test_a_parameter_whose_step_would_overflow_is_refused(system: iota.System) -> None:
+    p, q = (system.body().particle((x, 0, 0)) for x in (0, 1))
+    with pytest.raises(ValueError, match=r"stiffness must be at most 1e\+?30, got 1e\+?300"):
+        system.bond(p, q, "spring", stiffness=1e300)
+    bond = system.bond(p, q, "spring", stiffness=10)
+    with pytest.raises(ValueError, match="at most"):
+        bond.set(stiffness=1e31)
+    assert bond.parameters["stiffness"] == 10

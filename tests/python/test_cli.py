@@ -112,6 +112,11 @@ def test_headless_runs_ten_seconds_by_itself_and_takes_links() -> None:
         (["run", "chain", "--seconds", "nan"], "must be above 0, not nan", 2),
         (["run", "chain", "--port", "70000"], "argument --port: must be from 0 to 65535, not 70000", 2),
         (["run", "chain", "--port", "x"], "argument --port: invalid port value: 'x'", 2),
+        (
+            ["run", "chain", "--cert", "no.pem", "--key", "no.key"],
+            "iota: the certificate or key no.pem cannot be read: No such file or directory. Try: --lan alone",
+            1,
+        ),
         (["run"], "the following arguments are required: NAME|FILE.py", 2),
         (["fly"], "invalid choice: 'fly'", 2),
         ([], "the following arguments are required: COMMAND", 2),
@@ -167,7 +172,7 @@ def test_a_script_that_cannot_be_read_is_one_line(tmp_path: Path, script: Path) 
     path.write_bytes(b"\x00\xff\xfe")
     assert "bad.py" in fails_with_one_line("run", path)
     path.write_text("import iota\n")
-    assert "--links means nothing to it" in fails_with_one_line("run", path, "--links", "3")
+    assert "--links has no effect" in fails_with_one_line("run", path, "--links", "3")
 
 
 def test_a_taken_port_is_one_line(script: Path) -> None:

@@ -326,7 +326,7 @@ REFUSED = {
     ),
     "rest of no spring": (
         lambda s, a, b: s.revolute(a, at=(0, 0, 0), axis=(1, 0, 0), spring=(0, 1, 0.5)),
-        "a spring without a stiffness does not go to its rest",
+        "a spring with a rest needs a stiffness",
     ),
     "interval of points": (
         lambda s, a, b: s.on_path(b.particles[0], [(0, 2, 0), (1, 2, 0)], interval=(0, 2)),

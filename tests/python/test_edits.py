@@ -29,7 +29,7 @@ def test_a_batch_that_raises_never_was(system: iota.System, chain: list[iota.Bod
         chain[0].destroy()
         _ = 1 / 0
     assert system.state_hash() == before and chain[0].alive and system.undo_count == 1
-    with pytest.raises(RuntimeError, match="once its block is over"):
+    with pytest.raises(RuntimeError, match="available after its block"):
         _ = edit.report
 
 

@@ -104,3 +104,35 @@ def test_heat_flows_softens_and_melts() -> None:
     melting.heat((0.3, 2, 0), radius=0.01, energy=200)
     assert melting.step(1e-3) == 2
     assert [bond.alive for bond in made.bonds] == [True, True, False, False, True]
+
+
+def test_the_skin_of_one_particle_is_a_ball_and_near_ones_melt_into_one() -> None:
+    points, triangles = effects.skin([(1, 2, 3)], radius=0.3, cell=0.05)
+    ball = iota.Mesh(points, triangles).mass_properties  # refuses what is open or inside out
+    assert ball.volume == pytest.approx(4 / 3 * np.pi * 0.3**3, rel=0.05)
+    assert ball.center == pytest.approx((1, 2, 3), abs=1e-3)
+    assert np.linalg.norm(points - (1, 2, 3), axis=1) == pytest.approx(np.full(len(points), 0.3), rel=0.05)
+    volumes = [
+        iota.Mesh(*effects.skin([(0, 0, 0), (apart, 0, 0)], radius=0.3, cell=0.05)).mass_properties.volume
+        for apart in (0.0, 0.5, 1.3)
+    ]
+    assert volumes[1] > 2.05 * ball.volume, "a neck between them"
+    assert volumes[2] == pytest.approx(2 * ball.volume, rel=0.01)
+
+
+def test_a_skin_follows_its_particles_and_refuses_what_it_cannot_make() -> None:
+    system = iota.System()
+    jelly = iota.builder.soft_block(cells=(3, 2, 2)).realize(system)
+    before, triangles = effects.skin(system.positions, radius=0.1)
+    for _ in range(30):
+        system.step(1 / 60)
+    after, _ = effects.skin(system.positions, radius=0.1)
+    assert len(jelly.points) < len(before) and triangles.max() < len(before)
+    fallen = before[:, 1].mean() - after[:, 1].mean()
+    assert fallen == pytest.approx(9.81 * 0.5**2 / 2, rel=0.05)
+    nothing, none = effects.skin(np.empty((0, 3)), radius=0.1)
+    assert len(nothing) == len(none) == 0
+    with pytest.raises(ValueError, match="make cell larger"):
+        effects.skin([(0, 0, 0), (100, 100, 100)], radius=0.1)
+    with pytest.raises(ValueError, match="finite"):
+        effects.skin([(np.nan, 0, 0)], radius=0.1)

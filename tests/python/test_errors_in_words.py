@@ -110,7 +110,7 @@ MISTAKES: dict[str, tuple[Callable[[sweep.Scene], Any], str]] = {
     "a body for a particle": (lambda c: c.system.bond(c.box, c.point, "spring"), "bond: p must be a Particle, not <Body"),
     "an attribute as an argument": (
         lambda c: c.box.particle(V, lifetime=4),
-        "has no argument 'lifetime'; assign it to what comes back: particle.lifetime = ...",
+        "has no argument 'lifetime'; assign it to the result: particle.lifetime = ...",
     ),
     "a misspelled argument": (
         lambda c: c.system.revolute(c.box, c.ball, at=V, axis=V, limit=3),

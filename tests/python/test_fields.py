@@ -102,7 +102,7 @@ def test_a_function_sees_arrays_in_the_order_of_its_particles(space: iota.System
     space.step(0.5)
     assert seen[0] == 3 and seen[1] == particles[1:4] and seen[2].tolist() == [1, 1, 1] and seen[3:5] == [0, 0.5]
     assert [p.velocity.x for p in particles] == pytest.approx([0, 0, 0.5, 1, 0])
-    with pytest.raises(RuntimeError, match="only until the function"):
+    with pytest.raises(RuntimeError, match="valid only until"):
         len(seen[5])
 
 
@@ -206,6 +206,72 @@ def test_a_flock_aligns(space: iota.System) -> None:
         space.step(0.02)
     assert np.std(space.velocities, axis=0).sum() < 0.5 * spread
     assert abs(space.momentum - before) < 1e-11
+
+
+def bent_sheet(space: iota.System) -> tuple[list[iota.Particle], iota.PairForce]:
+    """7 x 7 surfels on a wavy sheet of springs 0.1 m long; their normals are off by up to half a radian."""
+    random = np.random.default_rng(3)
+    surfels = {}
+    for i in range(7):
+        for j in range(7):
+            surfels[i, j] = surfel = space.body().particle((0.1 * i, 0.03 * math.sin(2 * i + j), 0.1 * j), mass=0.01)
+            tilt = 0.2 * random.normal(size=3)
+            surfel.orientation = (tilt[0] - 0.7071, tilt[1], tilt[2], 0.7071)  # its normal is near +y
+            surfel.moment = 1e-5
+            for other in (surfels.get((i - 1, j)), surfels.get((i, j - 1))):
+                if other is not None:
+                    space.bond(surfel, other, "spring", stiffness=50, length=0.1)
+    law = "energy = k*exp(-(r/w)^2)*(cos_p^2 + cos_q^2 + 1 - cos_pq)"
+    return list(surfels.values()), space.pair_force(law, cutoff=0.5, k=0.01, w=0.15)
+
+
+@pytest.mark.parametrize("mode", ["robust", "energy_keeping"])
+def test_surfels_keep_momentum_and_angular_momentum_and_exchange_energy(mode: str) -> None:
+    space = iota.System(gravity=(0, 0, 0), mode=mode)
+    _, pairs = bent_sheet(space)
+    start, momentum, turning = space.energy, space.momentum, space.angular_momentum
+    lowest = potential = pairs.energy
+    for _ in range(400):
+        space.step(0.0005)
+        lowest = min(lowest, pairs.energy)
+        assert abs(space.momentum - momentum) < 1e-14
+        assert abs(space.energy.balance - start.balance) < 1e-12
+    assert lowest < 0.5 * potential, "they have moved"
+    if mode == "energy_keeping":
+        assert abs(space.angular_momentum - turning) < 1e-7
+        assert space.energy.total == pytest.approx(start.total, abs=1e-3 * (potential - lowest))
+
+
+def test_a_bent_sheet_of_surfels_flattens(space: iota.System) -> None:
+    surfels, _ = bent_sheet(space)
+    space.damping = 3
+
+    def bend() -> float:
+        places = space.positions - space.positions.mean(axis=0)
+        return float(np.linalg.svd(places, compute_uv=False)[2] / math.sqrt(len(places)))
+
+    def spread() -> float:
+        normals = np.array([surfel.normal for surfel in surfels])
+        return float(1 - np.linalg.norm(normals.mean(axis=0)))
+
+    before = bend(), spread()
+    for _ in range(2000):
+        space.step(0.002)
+    assert bend() < 0.01 * before[0] and spread() < 1e-4 * before[1]
+
+
+def test_laws_of_normals_are_for_pairs_of_oriented_particles(space: iota.System) -> None:
+    p, q = scatter(space, 2)
+    with pytest.raises(ValueError, match=r"depends on normals .* only pairwise forces know them"):
+        space.bond(p, q, "energy = cos_p^2")
+    with pytest.raises(ValueError, match="only an energy may depend on cos_p"):
+        space.pair_force("force = cos_p", cutoff=1)
+    with pytest.raises(ValueError, match="depends on the distance alone"):
+        space.pair_force("energy = cos_p^2", cutoff=1, shifted=True)
+    pairs = space.pair_force("energy = 1 + cos_p", cutoff=10)
+    assert pairs.energy == 0, "neither is oriented"
+    p.orientation = q.orientation = (0, 0, 0, 1)
+    assert pairs.energy == pytest.approx(1 + abs(q.position - p.position) ** -1 * (q.position - p.position).z)
 
 
 def test_two_particles_at_one_place_are_told(space: iota.System) -> None:

@@ -41,8 +41,8 @@ def lowest(body: iota.Body, shape: iota.Shape) -> float:
     """Of the shape's touching points where the body is now, m."""
     x, y, z, w = body.orientation
     up = (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x))  # world y in the body's frame
-    places = touching_points(shape)
-    return body.center_of_mass.y + min(sum(a * b for a, b in zip(up, p, strict=True)) - r for p, r in places)
+    places, radius = touching_points(shape)
+    return body.center_of_mass.y + min(sum(a * b for a, b in zip(up, p, strict=True)) for p in places) - radius
 
 
 @pytest.mark.parametrize("size", [0.02, 0.3, 3.0])

@@ -69,6 +69,29 @@ def test_users_break_join_and_take_it_back(chain: list[iota.Body], run_world: Ru
         world.offer("dance")
 
 
+def test_a_break_during_a_join_calls_it_off(chain: list[iota.Body], run_world: Runner) -> None:
+    system = chain[0].system
+    end, own = chain[2].particles[1], chain[3].particles[0]
+    end.separate(own)
+    for body in chain[3:]:
+        for particle in body.particles:
+            particle.position += (2.0, 0.0, 0.0)
+    system.gravity = (0, 0, 0)  # nothing else moves the two together
+    world = iota.World(system, ground=None)
+    world.offer("break", "join")
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: len(page.entities["body"]) == 6)
+        lower = page.body(chain[3].slot)
+        act(page, "join", lower)
+        page.wait_for(lambda: world.call(lambda: system.closing_count) == 1)
+        act(page, "break", lower)
+        page.wait_for(lambda: world.call(lambda: system.closing_count) == 0)
+        assert world.call(lambda: system.articulate_count) == 2
+        assert world.call(lambda: abs(end.position - own.position)) > 0.5
+        act(page, "break", lower)  # now there is nothing above it any more
+        page.wait_for(lambda: any(n["title"] == "Nothing to break" for n in page.notices))
+
+
 def test_a_copy_has_the_same_shape_mass_motion_and_look(system: iota.System, run_world: Runner) -> None:
     system.gravity = (0, 0, 0)
     turned = (0.0, 0.6, 0.0, 0.8)
@@ -162,6 +185,47 @@ def test_a_plug_that_is_let_go_near_its_socket_is_joined(system: iota.System, ru
         page.send("grab_end", hold=1)
         page.wait_for(lambda: page.parts() == 1)
         assert world.call(lambda: joined == [plug])
+
+
+@pytest.mark.parametrize("pull", [0.0, 3.0])
+def test_a_socket_pulls_a_held_plug_that_is_near_with_a_bounded_force(
+    system: iota.System, run_world: Runner, pull: float
+) -> None:
+    system.gravity = (0, 0, 0)
+    system.damping = 2.0
+    wall = system.body()
+    place = wall.particle((0, 1, 0))
+    place.nail()
+    plug = system.body().particle((1, 1, 0))
+    slot = plug.body.slot
+    world = iota.World(system, ground=None)
+    world.socket(place, [plug], within=0.2, pull=pull)
+    forces: list[float] = []
+
+    @world.on_frame
+    def record() -> None:
+        forces.extend(abs(bond.force) for bond in system.bonds)
+
+    with PageClient(run_world(world)) as page:
+        page.send("grab_start", hold=1, body=page.body(slot), local_point=(0, 0, 0), target=(1, 1, 0))
+
+        def rest(x: float) -> float:
+            """Where the plug comes to rest under a hand."""
+            for _ in range(40):
+                page.send("grab_move", hold=1, target=(x, 1 + 1e-4 * (_ % 2), 0))
+                time.sleep(0.03)
+            return world.call(lambda: plug.position.x)
+
+        assert rest(0.8) == pytest.approx(0.8, abs=0.01) and not forces
+        drawn = rest(0.3)
+        assert drawn < 0.295 if pull else drawn == pytest.approx(0.3, abs=0.003)
+        assert max(forces, default=0.0) <= pull
+        if pull:
+            assert forces[-1] > 0.9 * pull
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: world.call(lambda: not list(system.bonds)))
+    with pytest.raises(ValueError, match="pull must be a finite force"):
+        world.socket(place, [plug], pull=-1)
 
 
 def test_forces_are_shown_as_they_are(chain: list[iota.Body], run_world: Runner) -> None:

@@ -36,7 +36,7 @@ def test_what_cannot_be_played_is_told_in_one_line(tmp_path: Path) -> None:
     (tmp_path / "bad.iota").write_bytes(b"bad")
     for arguments, words in (
         (["none.iota"], "No such file"),
-        ([tmp_path / "bad.iota", "-o", tmp_path / "page.html"], "no recording"),
+        ([tmp_path / "bad.iota", "-o", tmp_path / "page.html"], "not a recording"),
         ([tmp_path / "bad.iota", "-o", tmp_path / "page.txt"], "must end in .html"),
         ([tmp_path, "-o", tmp_path / "page.html"], "Is a directory"),
     ):

@@ -85,6 +85,29 @@ def test_a_film_is_smooth_and_in_real_time_on_any_machine(script: Path, tmp_path
 
 
 @needs_browser
+def test_a_film_shows_the_plots_of_the_script_on_request(script: Path, tmp_path: Path) -> None:
+    plotted = script.read_text().replace(
+        "return world", 'world.plot("up", lambda: system.time, seconds=1); return world'
+    )
+    script.write_text(plotted.replace("#ff0000", "#000000"))
+
+    def curve(*arguments: str) -> tuple[int, int]:
+        """Pixels in the color of the first curve, in the left and in the right half of the last frame."""
+        film = tmp_path / "film.mp4"
+        done = record(script, "-o", film, "--seconds", "0.9", "--rate", "10", "--size", "640x480", *arguments)
+        assert done.returncode == 0, done.stderr
+        with av.open(str(film)) as container:
+            *_, last = (frame.to_ndarray(format="rgb24").astype(int) for frame in container.decode(video=0))
+        red, green, blue = last[..., 0], last[..., 1], last[..., 2]
+        is_curve = (green > red + 40) & (blue > red + 30)  # 2f9d92, blurred by the film
+        return int(is_curve[:, :320].sum()), int(is_curve[:, 320:].sum())
+
+    assert curve() == (0, 0)
+    left, right = curve("--plots")
+    assert left == 0 and right > 40
+
+
+@needs_browser
 def test_what_fails_leaves_the_old_film_and_nothing_else(script: Path, tmp_path: Path) -> None:
     film = tmp_path / "old.mp4"
     film.write_bytes(b"old")

@@ -160,7 +160,7 @@ def test_of_an_atom_in_two_places_the_first_is_taken(write: Write) -> None:
 def test_the_first_model_of_several_is_taken(write: Write) -> None:
     model = "".join(line for line in ETHANOL_PDB.splitlines(True) if line[:4] in ("ATOM", "HETA"))
     found = shapelib.molecule(write("m.pdb", f"MODEL 1\n{model}ENDMDL\nMODEL 2\n{model}ENDMDL\nEND\n"))
-    assert found.counts["atoms"] == 4 and found.notes == ["the first of 2 models is taken"]
+    assert found.counts["atoms"] == 4 and found.notes == ["only the first of 2 models is read"]
 
 
 def test_a_molfile_keeps_its_bonds(write: Write) -> None:
@@ -248,7 +248,7 @@ def test_damaged_molecules_are_refused_with_file_and_line(write: Write) -> None:
     fails(write("a.xyz", b"\0\1\2"), "not a text file")
     fails(write("b.pdb", "HEADER\nEND\n"), "no ATOM")
     fails(write("c.pdb", ETHANOL_PDB.replace("0.463", "xxxxx")), "line 3", "x must be a number")
-    fails(write("d.pdb", ETHANOL_PDB[:150]), "line 3", "cut off")
+    fails(write("d.pdb", ETHANOL_PDB[:150]), "line 3", "ends before its coordinates")
     fails(write("e.pdb", ETHANOL_PDB.replace("           O\nHET", "          Qq\nHET")), "line 4", "not an element")
     fails(write("f.xyz", "3\nwater\nO 0 0 0\nH 1 0 0\n"), "line 4", "2 of 3 atoms")
     fails(write("g.xyz", WATER_XYZ.replace("H 0.96", "Zz 0.96")), "line 4", "'Zz' is not an element")
@@ -256,7 +256,7 @@ def test_damaged_molecules_are_refused_with_file_and_line(write: Write) -> None:
     fails(write("i.xyz", WATER_XYZ.replace("0.96", "0.01")), "O1 and H2 are 0.01 angstrom apart")
     fails(write("j.xyz", "1000000\n\n"), "more than 100000 atoms")
     fails(write("k.mol", CARBON_MONOXIDE_MOL.replace("  1  2  3", "  1  7  3")), "line 7", "atom 7")
-    fails(write("l.mol", CARBON_MONOXIDE_MOL.replace("M  END\n", "")), "cut off")
+    fails(write("l.mol", CARBON_MONOXIDE_MOL.replace("M  END\n", "")), "truncated")
     fails(write("m.mol", CARBON_MONOXIDE_MOL[:80]), "ends before")
     fails(write("n.mol", "a picture\n"), "four lines")
     fails(write("o.cif", GLYCINE_CIF.replace(" 1.6 0.0\n", " 1.6\n")), "line 17", "9 values for 10 names")
@@ -470,9 +470,7 @@ def test_a_surface_that_is_inside_out_is_turned_and_says_so(write: Write) -> Non
     rows = CUBE_OFF.splitlines()
     turned = rows[:10] + [" ".join([row.split()[0], *row.split()[4:0:-1]]) for row in rows[10:]]
     found = shapelib.polyhedron(write("inside.off", "\n".join(turned)))
-    assert found.counts["volume"] == pytest.approx(1) and found.notes == [
-        "its faces went round the wrong way and were turned"
-    ]
+    assert found.counts["volume"] == pytest.approx(1) and found.notes == ["its faces were wound inward and were turned"]
 
 
 def test_a_cavity_stays_in_its_body(write: Write) -> None:
@@ -501,12 +499,12 @@ def test_damaged_surfaces_are_refused_with_file_and_line(write: Write) -> None:
     fails(write("e.off", "\n".join([*CUBE_OFF.splitlines()[:1], "8 5 0", *CUBE_OFF.splitlines()[2:15]])), "open")
     twice = CUBE_OFF.replace("8 6 0", "8 7 0") + "4 3 0 4 7\n"
     fails(write("f.off", twice), "is in 3 faces")
-    fails(write("g.off", CUBE_OFF.replace("4 3 0 4 7", "4 7 4 0 3")), "the same way", "line 16")
+    fails(write("g.off", CUBE_OFF.replace("4 3 0 4 7", "4 7 4 0 3")), "the same direction", "line 16")
     fails(write("h.off", "OFF\n99999999 1 0\n"), "line 2", "more than 1000000")
     fails(write("i.obj", OBJ.replace("f 1 3 2", "f 1 9 2")), "line 7", "face 1 (of 4, line 7) uses vertex 9", "1..4")
     fails(write("j.obj", OBJ.replace("v 1 0 0", "v 1 zero 0")), "line 3", "'zero'")
     fails(write("k.obj", "<html>\n"), "line 1", "no lines that begin with")
-    fails(write("l.stl", STL[:200]), "cut off")
+    fails(write("l.stl", STL[:200]), "truncated")
     fails(write("m.stl", triangles_of(STL)[:-7]), "4 triangles need 284 bytes, it has 277")
     fails(write("n.stl", "solid x\nendsolid x\n"), "no faces")
     fails(write("o.stl", STL.replace("vertex 0 1 0\nvertex 1 0 0\nendloop", "vertex 0 1 0\nendloop", 1)), "2 vertices")
@@ -514,7 +512,7 @@ def test_damaged_surfaces_are_refused_with_file_and_line(write: Write) -> None:
     fails(write("q.ply", "\n".join(PLY.splitlines()[:-1])), "q.ply")
     fails(write("r.ply", PLY.replace("3 1 2 3", "3 1 2 9")), "r.ply")
     fails(write("s.gltf", "{"), "not glTF")
-    fails(write("t.glb", b"glTF" + bytes(20)), "cut off")
+    fails(write("t.glb", b"glTF" + bytes(20)), "truncated")
     fails(write("u.off", CUBE_OFF.replace("1 1 1 #", "inf 1 1 #")), "line 9", "finite")
 
 

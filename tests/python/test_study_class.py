@@ -43,6 +43,9 @@ def test_the_appendix_scripts_fall_swing_and_fold_and_land_on_the_ground() -> No
     p, q = (particle.position for particle in second.system.particles)
     assert p.y == q.y == pytest.approx(-2, abs=0.02) and p.x + q.x == pytest.approx(30)
     assert third.system.articulate_count == 1 and third.system.worst_gap < 1e-7
+    for number, length in enumerate([math.hypot(30, 35), math.hypot(35, 35)]):
+        ends = third.system.bodies[number].particles
+        assert abs(ends[0].position - ends[1].position) == pytest.approx(length, rel=1e-9)
     distances = []
     for _ in range(400):
         second.step()
@@ -104,17 +107,19 @@ def test_rockets_climb_burst_at_their_top_and_stand_in_their_tubes_again() -> No
     world = fireworks.build()
     system = world.system
     rockets = system.particles[: len(fireworks.COLORS)]
-    world._state.actions["finale"].hook.function()
-    tops, sparks = np.zeros(len(rockets)), 0
-    for _ in range(round(2.5 / world.dt)):
-        world.step()
-        tops = np.maximum(tops, [rocket.position.y for rocket in rockets])
-        sparks = max(sparks, sum(body.is_spark for body in system.bodies))
-    climb = fireworks.CLIMB
-    assert ((climb - 1.1) ** 2 / 19.62 < tops - fireworks.TUBE).all()
-    assert (tops - fireworks.TUBE < (climb + 1.1) ** 2 / 19.62).all()
-    assert sparks > 1000
-    assert all(rocket.body.kind == "scripted" and abs(rocket.position.y - fireworks.TUBE) < 1e-9 for rocket in rockets)
+    for _ in range(2):  # what has been carried back to its tube climbs again
+        world._state.actions["finale"].hook.function()
+        tops, sparks = np.zeros(len(rockets)), 0
+        for _ in range(round(2.5 / world.dt)):
+            world.step()
+            tops = np.maximum(tops, [rocket.position.y for rocket in rockets])
+            sparks = max(sparks, sum(body.is_spark for body in system.bodies))
+        climb = fireworks.CLIMB
+        assert ((climb - 1.1) ** 2 / 19.62 < tops - fireworks.TUBE).all()
+        assert (tops - fireworks.TUBE < (climb + 1.1) ** 2 / 19.62).all()
+        assert sparks > 1000
+        assert all(rocket.body.kind == "scripted" for rocket in rockets)
+        assert all(abs(rocket.position.y - fireworks.TUBE) < 1e-9 for rocket in rockets)
     run(world, 1.4)
     assert sum(body.is_spark for body in system.bodies) < 400, "stars die; the fires go on"
 

@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 
+import iota
 from iota.studies import cloth, shoal
 
 
@@ -42,6 +43,13 @@ def test_the_shoal_stays_together_apart_and_behind_its_leader() -> None:
     x = np.stack([1 - 2 * (q[:, 1] ** 2 + q[:, 2] ** 2), 2 * (q[:, 0] * q[:, 1] + q[:, 2] * q[:, 3])], axis=1)
     ahead = system.velocities[:, :2] / speeds[:, None]
     assert np.median(np.abs(x - ahead)) < 0.25
+
+
+def test_a_thousand_fish_are_drawn_of_few_triangles() -> None:
+    looks = shoal.fish_looks()
+    assert all(look.shape.mass_properties.volume > 0 for look in looks if isinstance(look.shape, iota.Mesh))
+    of_one = sum(len(look.shape.triangles) for look in looks if isinstance(look.shape, iota.Mesh))
+    assert 2 * shoal.FISH * of_one < 120_000  # and as many for their shadows
 
 
 def test_a_thousand_fish_cost_less_than_half_a_frame() -> None:

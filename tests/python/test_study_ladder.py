@@ -80,7 +80,7 @@ def test_a_ripple_runs_the_length_of_the_ladder() -> None:
     assert list(dict.fromkeys(watched.flips)) == [0, 1, 2, 3, 4, 5]  # from the top down
     assert [pair.hinge for pair in watched.ladder.pairs] == [1, 2, 1, 2, 1, 2]
     assert watched.ladder.axle.angle.value == pytest.approx(math.pi, abs=0.01)
-    assert max(watched.angles) < math.radians(30)  # it hangs again, every block the other way up
+    assert max(watched.angles) < math.radians(15)  # it hangs again, every block the other way up
     assert watched.locks > 5 and watched.unconverged == 0
     watched.ladder.tip()
     watched.run(6)
@@ -135,7 +135,7 @@ def test_two_ripples_run_and_leave_it_as_it_was() -> None:
     assert max(watched.angles) < math.radians(45)
 
 
-@pytest.mark.parametrize("blocks", [5, 7, 9])
+@pytest.mark.parametrize("blocks", [5, 6, 7, 8, 9])
 def test_it_is_never_stuck_nor_torn(blocks: int) -> None:
     """Somebody tips it for a minute, and pulls at blocks from all sides."""
     watched = Watched(blocks)
@@ -151,12 +151,7 @@ def test_it_is_never_stuck_nor_torn(blocks: int) -> None:
         grip.destroy()
     watched.run(25)
     assert watched.unconverged < 1e-3 * watched.system.step_count  # a hand can pull too hard for a step
-    # Under the weight of many slats a ripple may come to rest half way, until the next tip.
-    for _ in range(3):
-        if max(watched.angles) > math.radians(45):
-            watched.ladder.tip()
-            watched.run(8)
-    assert max(watched.angles) < math.radians(45)
+    assert max(watched.angles) < math.radians(15)  # no ripple has come to rest half way
     assert all(pair.hinge >> 1 == n % 2 for n, pair in enumerate(watched.ladder.pairs))
 
 
@@ -169,7 +164,7 @@ def test_a_hand_turns_the_top_block_and_it_stays_as_it_is_left(monkeypatch: pyte
     monkeypatch.setattr(watched.world, "held", lambda client=None: block.ends[0].body)
     for step in range(120):
         turn = 2.8 * step / 120
-        grip.move(ladder.TOP + iota.Vec3(-math.sin(turn), math.cos(turn), 0) * (2 * arm))
+        grip.move(ladder.TOP + iota.Vec3(-math.sin(turn), math.cos(turn), 0) * (4 * arm))
         watched.run(1 / 120)
     grip.destroy()
     monkeypatch.undo()

@@ -16,7 +16,7 @@ BEGIN, TEAR, LET_GO = 3.0, 10.0, 21.0  # s
 
 def build() -> tuple[iota.World, undersea.Meal, Any]:
     world = undersea.build()
-    (meal,) = (thing for thing in gc.get_objects() if isinstance(thing, undersea.Meal) and thing._world is world)
+    (meal,) = (thing for thing in gc.get_objects() if type(thing) is undersea.Meal and thing._world is world)
     return world, meal, meal._school
 
 

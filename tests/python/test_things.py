@@ -194,7 +194,7 @@ def test_controls_reach_the_script_and_all_pages(system: iota.System, run_world:
         other.wait_for(lambda: not other.entities["widget"][1]["enabled"])
         change(1, 0)
         page.send("change", widget=(999, 1), value=0, text="")
-        page.wait_for(lambda: page.notices[-1]["title"] == "That is gone")
+        page.wait_for(lambda: page.notices[-1]["title"] == "It no longer exists")
         assert check.value is True
 
 
@@ -327,6 +327,21 @@ def test_an_on_frame_that_raises_is_told_once(run_world: Runner) -> None:
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: page.pose_frames > 10)
         assert len(page.notices) == 1
+
+
+def test_effects_of_the_script_reach_all_pages(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+    world.effect("join", (0, 0, 0))  # nobody is there to see it
+    url = run_world(world)
+    with PageClient(url) as one, PageClient(url) as two:
+        world.call(lambda: world.effect("break", (1, 2, 3)))
+        for page in (one, two):
+            (effect,) = page.wait_for(lambda page=page: page.effects)
+            assert effect["kind"] == "break" and effect["position"] == pytest.approx((1, 2, 3))
+    with pytest.raises(ValueError, match="kind must be one of 'break', 'join', 'grab', not 'boom'"):
+        world.effect("boom", (0, 0, 0))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="finite"):
+        world.effect("join", (0, float("nan"), 0))
 
 
 def test_a_picture_comes_from_the_page(run_world: Runner, tmp_path: Path) -> None:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from iota.world.options import RunOptions, use
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -48,6 +50,18 @@ def test_the_blocks_of_the_page_on_builders_run() -> None:
     names: dict[str, object] = {}
     for block in blocks(ROOT / "docs" / "builder.md"):
         exec(compile(block, "docs/builder.md", "exec"), names)
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs" / "tutorials").glob("*.md")), ids=lambda page: page.stem)
+def test_a_tutorial_runs_and_has_its_picture(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    with use(RunOptions(headless=True, seconds=0.5)) as options:
+        for number, block in enumerate(blocks(page), start=1):
+            exec(compile(block, f"docs/tutorials/{page.name}, block {number}", "exec"), names)
+    assert options.summary is not None and options.summary.steps > 0, "it ends in a world that runs"
+    (picture,) = re.findall(r"!\[.+\]\((.+)\)", page.read_text())
+    assert (page.parent / picture).is_file()
 
 
 @pytest.mark.parametrize("page", sorted((ROOT / "docs" / "studies").glob("*.md")), ids=lambda page: page.stem)

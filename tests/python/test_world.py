@@ -177,7 +177,7 @@ def test_an_action_that_raises_is_told_on_the_page_with_its_line(
         (notice,) = page.wait_for(lambda: page.notices)
         assert notice["level"] == 2 and "'burn' failed" in notice["title"]
         assert notice["text"] == f"RuntimeError: too hot (test_world.py, line {line})"
-        assert "goes on" in notice["hint"]
+        assert "continues" in notice["hint"]
         step = page.last["poses"]["step"]
         page.wait_for(lambda: page.last["poses"]["step"] > step + 10)
     assert "RuntimeError: too hot" in capsys.readouterr().err
@@ -432,7 +432,7 @@ def test_what_names_a_body_that_is_gone_is_answered_by_a_notice(system: iota.Sys
         page.send("grab_start", hold=1, body=old, local_point=(0, 0, 0), target=(0, 5, 0))
         page.send("select", body=old)
         page.send("action", name="poke", body=old)
-        page.wait_for(lambda: [n["title"] for n in page.notices] == ["That is gone"] * 3)
+        page.wait_for(lambda: [n["title"] for n in page.notices] == ["It no longer exists"] * 3)
         assert asked == [] and not page.last["poses"]["holds"]
         assert world.call(lambda: world.selected(page.id)) is None
         page.send("action", name="poke", body=now)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builders: whole structures as plain data, and their way into a system."""
+"""Builders: structures as plain data, and their realization in a system."""
 
 from iota.builder.chain import chain
 from iota.builder.lines import ring, rope, snake

@@ -27,7 +27,7 @@ def chain(
 
     links: at least 1. length: of the whole chain, m. mass: of the whole chain, kg. top: of the first link, m.
     direction: from top to end. rods: links are solid cylinders of `radius` m instead of two point masses. nailed: the
-    top is held. Raises ValueError.
+    top is nailed. Raises ValueError.
 
         links = iota.builder.chain(links=24, length=2.4).realize(system).bodies
     """
@@ -48,7 +48,7 @@ def chain(
     if rods and not 0 < radius <= 1e6:
         raise ValueError(f"radius must be above 0 and at most 1e6 m, not {radius}")
     structure = Structure()
-    ends = np.arange(1, 2 * links + 1) // 2  # 0, 1, 1, 2, 2, ...: a link begins where the one before it ends
+    ends = np.arange(1, 2 * links + 1) // 2  # 0, 1, 1, 2, 2, ...: a link begins at the end of the one before it
     structure.points.add(np.asarray(start) + np.outer(ends, np.asarray(step)), mass / links / 2)
     rod = (mass / links, radius) if rods else None
     structure.bodies = [RigidBody([p, p + 1], rod=rod) for p in range(0, 2 * links, 2)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with a structure, in sentences that name the item."""
+"""Checks of a structure; the errors name the item."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Numbers = NDArray[np.int64]
 
-NEAR = 1e-6  # m: a hinge's two points are at one place
+NEAR = 1e-6  # m: largest distance of a hinge's two points
 
 
 def label(what: str, number: int, name: str = "") -> str:
@@ -32,7 +32,7 @@ def problems(structure: Contents) -> Iterator[str]:
     """One sentence for each inconsistency; none for a structure that can be realized."""
     members = _members(structure)
     wrong = [*_missing_points(structure, members), *_missing_bodies(structure)]
-    if wrong:  # the other checks look things up
+    if wrong:  # the other checks need valid indices
         yield from wrong
         return
     owner = np.full(len(structure.points), -1)
@@ -45,12 +45,12 @@ def problems(structure: Contents) -> Iterator[str]:
 
 
 def _members(structure: Contents) -> Numbers:
-    """The points of all bodies, one after the other."""
+    """The points of all bodies, in one list."""
     return _numbers(chain.from_iterable(body.points for body in structure.bodies))
 
 
 def _numbers(values: Iterable[int]) -> Numbers:
-    """As an array; what is no whole number becomes -1."""
+    """As an array; items that are not whole numbers become -1."""
     listed = list(values)
     try:
         return np.fromiter(map(index, listed), int, len(listed))
@@ -59,7 +59,7 @@ def _numbers(values: Iterable[int]) -> Numbers:
 
 
 def _missing_points(structure: Contents, members: Numbers) -> Iterator[str]:
-    """Points that are referred to and are not there."""
+    """References to points that do not exist."""
     count = len(structure.points)
 
     def all_there(numbers: Numbers) -> bool:

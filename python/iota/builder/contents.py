@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a structure holds: plain data, without a system."""
+"""The contents of a structure: plain data, without a system."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from iota.looks import Drawn
 
 @dataclass
 class Contents:
-    """Points, and what connects them. A point that is in no body is a body of its own."""
+    """Points and their connections. A point that is in no body is a body of its own."""
 
     points: Points = field(default_factory=Points)
     bodies: list[RigidBody] = field(default_factory=list)
-    hinges: list[tuple[int, int]] = field(default_factory=list)  # of points at one place
+    hinges: list[tuple[int, int]] = field(default_factory=list)  # pairs of points at one place
     bonds: list[SoftBond] = field(default_factory=list)
     joints: list[Joint] = field(default_factory=list)
     ties: list[Tie] = field(default_factory=list)
     lines: list[tuple[int, int]] = field(default_factory=list)  # cosmetic bonds
-    nails: list[int] = field(default_factory=list)  # points that are held where they are
+    nails: list[int] = field(default_factory=list)  # points
     groups: dict[str, list[int]] = field(default_factory=dict)  # points, for fields and pair forces
     point_names: dict[str, int] = field(default_factory=dict)
     looks: dict[str, Drawn] = field(default_factory=dict)  # how bodies are drawn, as `World.draw` takes it

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What makers share: checks of their numbers, and looks that a callback may replace."""
+"""Common functions of makers: checks of numbers, and looks that a callback may replace."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Dress: TypeAlias = Callable[[str, int], Drawn | None]
-"""Takes what a body is ("plank") and which of them, counted from 0; returns its look, None for the usual one."""
+"""Takes the kind of a body ("plank") and its index from 0; returns its look, None for the default one."""
 
 MOST_PARTS = 1_000_000
 
 
 def check(**numbers: float) -> None:
-    """Raises ValueError for one that is not finite and above 0."""
+    """Raises ValueError for values that are not finite and above 0."""
     for name, value in numbers.items():
         if not 0 < value < math.inf:
             raise ValueError(f"{name} must be above 0 and finite, not {value}")
 
 
 def check_counts(least: int = 1, **counts: int) -> None:
-    """Raises ValueError for one that is no whole number from `least` up, and for too many parts in all."""
+    """Raises ValueError for counts that are not whole numbers from `least` up, and for too many parts in total."""
     for name, count in counts.items():
         if not (isinstance(count, int | np.integer) and count >= least):
             raise ValueError(f"{name} must be a whole number from {least} up, not {count!r}")
@@ -47,7 +47,8 @@ def place(name: str, vector: Vector) -> NDArray[np.float64]:
 
 
 def dress(structure: Structure, usual: dict[str, Drawn], look: Dress | None) -> Structure:
-    """Gives each body whose `look` is a name in `usual` that look, or what the callback says for it. Returns the structure."""
+    """Gives each body whose `look` is a name in `usual` that look, or the one of the callback. Returns the
+    structure."""
     count = dict.fromkeys(usual, 0)
     structure.looks |= usual
     for body in structure.bodies:

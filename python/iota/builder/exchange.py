@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Structures as JSON: the contents' own fields, without those that have their usual value; shapes as `iota.shapes` describes
-them, looks as `iota.looks` does."""
+"""Structures as JSON: the fields of the contents, without default values; shapes in the format of `iota.shapes`, looks
+in that of `iota.looks`."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _part(part: Any, name: str) -> dict[str, Any]:
 
 
 def _plain(value: Any, name: str) -> Any:
-    """The value as lists, numbers and texts. Raises ValueError that says whose it is."""
+    """The value as lists, numbers and texts. Raises ValueError that names its owner."""
     if value is None or isinstance(value, bool | int | str):
         return value
     if isinstance(value, float) and math.isfinite(value):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makers of what is long and thin: rope, ring, snake."""
+"""Makers of long, thin structures: rope, ring, snake."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def rope(
     nailed: bool = True,
     look: Dress | None = None,
 ) -> Structure:
-    """Short rods, hinged: it keeps its length and bends freely. length, radius: m. density: kg/m^3. Bodies: "piece".
+    """Short hinged rods: the rope keeps its length and bends freely. length, radius: m. density: kg/m^3. Bodies:
+    "piece".
 
     iota.builder.rope(length=3, top=(0, 3, 0)).realize(system, world)
     """
@@ -47,7 +48,7 @@ def ring(
     mass: float = 1.0,
     look: Dress | None = None,
 ) -> Structure:
-    """A closed chain of rods, a circle across z. radius, tube: m. mass: of all, kg. Bodies: "link"."""
+    """A closed chain of rods, a circle in the x-y plane. radius, tube: m. mass: of all, kg. Bodies: "link"."""
     check(radius=radius, tube=tube, mass=mass)
     check_counts(3, links=links)
     angle = 2 * math.pi * (np.arange(1, 2 * links + 1) // 2) / links
@@ -68,7 +69,7 @@ def snake(
     density: float = 1000.0,
     look: Dress | None = None,
 ) -> Structure:
-    """Capsules in a row along -x, each turning against the one before about a vertical axis, with a spring that a script may
+    """Capsules in a row along -x, each hinged to the one before about a vertical axis, with a spring that a script may
     bend: `made["joint 3"].angle.spring = (k, c, rest)`. length, radius: m. stiffness: N m/rad. Bodies: "segment"."""
     check(length=length, radius=radius, stiffness=stiffness, density=density)
     check_counts(2, segments=segments)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parts of a structure besides its points. Points and bodies are named by their numbers."""
+"""The parts of a structure besides its points. Points and bodies are referred to by their numbers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TIE_KINDS: tuple[str, ...] = ("rod", "rope")
 
 @dataclass
 class RigidBody:
-    """A rigid connection of points. By shape, it has the shape's mass and inertia, and its points, of mass 0, are
+    """A rigid connection of points. With a shape, it has the shape's mass and inertia, and its points, of mass 0, are
     attachments. rod: mass (kg) and radius (m) of a solid cylinder between its two points."""
 
     points: list[int]
@@ -36,12 +36,12 @@ class RigidBody:
     orientation: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0)  # of the shape, x y z w
     velocity: Vector = (0.0, 0.0, 0.0)  # m/s, of a body with a shape
     spin: Vector = (0.0, 0.0, 0.0)  # rad/s, of a body with a shape
-    look: str = ""  # one of the structure's looks
+    look: str = ""  # name of one of the structure's looks
 
 
 @dataclass
 class SoftBond:
-    """A force between two points, as `System.bond` takes it."""
+    """A force between two points, see `System.bond`."""
 
     p: int
     q: int
@@ -54,7 +54,7 @@ class SoftBond:
 
 @dataclass
 class Joint:
-    """A joint between two bodies, as the method of `System` of that name takes it. b: None for the world."""
+    """A joint between two bodies, see the method of `System` of that name. b: None for the world."""
 
     kind: JointKind
     a: int

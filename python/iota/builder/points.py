@@ -19,10 +19,10 @@ Vector = Sequence[float] | Vec3
 
 
 class Points:
-    """Places (m), velocities (m/s), masses (kg), and how they are drawn: radii (m) and colors of n points, one row each.
+    """Places (m), velocities (m/s), masses (kg), drawn radii (m) and colors of n points, one row each.
 
-    `position`, `velocity` and `color` (n, 3), `mass` and `radius` (n,) are views, float64: write into them, but ask again
-    after `add`. A radius of 0 leaves it to the page how a point is drawn; colors, 0 to 1, are of points with a radius.
+    `position`, `velocity` and `color` (n, 3), `mass` and `radius` (n,) are views, float64: write into them, but read
+    them again after `add`. With a radius of 0 the page chooses the look; colors, 0 to 1, are for points with a radius.
     """
 
     def __init__(self) -> None:

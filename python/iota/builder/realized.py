@@ -26,7 +26,7 @@ MOST_SHOWN = 5  # problems in one error
 
 @dataclass
 class Realized:
-    """The handles of a structure that is in a system, in the structure's order; `realized["door"]` by name."""
+    """The handles of a realized structure, in the structure's order; `realized["door"]` by name."""
 
     points: list[_core.Particle] = field(default_factory=list)
     bodies: list[_core.Body] = field(default_factory=list)
@@ -63,8 +63,7 @@ def realize(structure: Contents, system: _core.System, world: World | None = Non
 
 @contextmanager
 def _without_collector() -> Iterator[None]:
-    """Handles are made by the thousand, and none becomes garbage: passes of the collector over all of them took a third of
-    the time."""
+    """Thousands of handles are made, and none becomes garbage: the garbage collector took a third of the time."""
     was_on = gc.isenabled()
     gc.disable()
     try:
@@ -104,7 +103,7 @@ def _make_plain(
     points: list[_core.Particle | None],
     made: Realized,
 ) -> None:
-    """Many at once: bodies of particles and nothing else."""
+    """Makes many at once: bodies of particles only."""
     numbers = list(chain.from_iterable(part.points for part in parts))
     rows, counts = structure.points, [len(part.points) for part in parts]
     bodies, particles = _core.make_bodies(

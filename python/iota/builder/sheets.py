@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makers of what is thin and wide: net, cloth, leaf. Their points are bodies of their own."""
+"""Makers of thin, wide structures: net, cloth, leaf. Their points are bodies of their own."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Color = tuple[float, float, float]
 def _grid(
     made: Structure, corner: Vector, columns: int, rows: int, spacing: float, mass: float, color: Color
 ) -> NDArray[np.int64]:
-    """Points from a corner along x and down: their numbers, (rows, columns)."""
+    """Adds points from a corner along x and down; returns their numbers, (rows, columns)."""
     row, column = np.indices((rows, columns))
     places = place("corner", corner) + spacing * np.stack([column, -row, 0 * row], axis=-1)
     numbers = made.points.add(places.reshape(-1, 3), mass / (rows * columns), radius=0.08 * spacing, color=color)
@@ -42,8 +42,8 @@ def net(
     break_force: float = math.inf,
     color: Color = (0.75, 0.6, 0.35),
 ) -> Structure:
-    """Knots with ropes between them that give nothing and push nothing; the upper two corners are nailed. spacing: m. mass:
-    of all, kg. break_force: of a rope, N."""
+    """Knots with ropes between them, inextensible and without compression; the upper two corners are nailed. spacing:
+    m. mass: of all, kg. break_force: of a rope, N."""
     check(spacing=spacing, mass=mass)
     check_counts(2, columns=columns, rows=rows)
     made = Structure()
@@ -67,7 +67,7 @@ def cloth(
     color: Color = (0.75, 0.2, 0.2),
 ) -> Structure:
     """Knots with springs along threads, weaker ones across the cells against shear and over two cells against bending
-    (Provot 1995). It tears: a spring that carries more than `tear` N breaks. spacing: m. mass: of all, kg. stiffness: of a
+    (Provot 1995). A spring breaks above `tear` N. spacing: m. mass: of all, kg. stiffness: of a
     thread, N/m; damping: N s/m. Its upper edge is nailed; its points are the group "cloth"."""
     check(spacing=spacing, mass=mass, stiffness=stiffness)
     check_counts(2, columns=columns, rows=rows)
@@ -93,8 +93,8 @@ def leaf(
     stiffness: float = 20.0,
     color: Color = (0.35, 0.6, 0.2),
 ) -> Structure:
-    """A midrib along x with ribs to both sides, in the outline of a leaf, held by springs; to be blown about by a wind on its
-    group "leaf". length, width: m. mass: of all, kg. stiffness: N/m."""
+    """A midrib along x with ribs to both sides, in the outline of a leaf, held by springs; a wind may act on its group
+    "leaf". length, width: m. mass: of all, kg. stiffness: N/m."""
     check(length=length, width=width, mass=mass, stiffness=stiffness)
     check_counts(2, ribs=ribs)
     made = Structure()

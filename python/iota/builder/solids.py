@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makers of what is built of solids: cuboid, ladder, bridge, tower, tree, soft block."""
+"""Makers of structures of solids: cuboid, ladder, bridge, tower, tree, soft block."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def bridge(
     look: Dress | None = None,
 ) -> Structure:
     """A footbridge along x: planks hinged by their edges, hanging in an arc from two nailed edges at the height of `middle`.
-    length: of all planks, m. sag: how much shorter the way from end to end is, as a share of it. Each plank has four points.
+    length: of all planks, m. sag: share by which the distance of the ends is shorter. Each plank has four points.
     Bodies: "plank"."""
     check(length=length, width=width, thickness=thickness, density=density, sag=sag)
     check_counts(2, planks=planks)
@@ -105,8 +105,8 @@ def tower(
     strength: float = math.inf,
     look: Dress | None = None,
 ) -> Structure:
-    """Boxes on top of each other, the lowest one on the world, held together by welds that break at a torque of `strength`
-    N m. size: of a box, m. Bodies: "storey"."""
+    """Boxes on top of each other, the lowest one fixed to the world, joined by welds that break at a torque of
+    `strength` N m. size: of a box, m. Bodies: "storey"."""
     x, y, z = place("size", size)
     check(x=x, y=y, z=z, density=density, strength=min(strength, 1e30))
     check_counts(storeys=storeys)
@@ -130,9 +130,9 @@ def tree(
     density: float = 600.0,
     look: Dress | None = None,
 ) -> Structure:
-    """A trunk that forks: each branch is a cylinder that bends against the one below it on springs, two thirds as long, half as
-    thick. height, radius: of the trunk, m. stiffness: of its foot, N m/rad. The points are the ends of the outermost branches:
-    the group "twigs". Bodies: "branch"."""
+    """A trunk that forks: each branch is a cylinder joined by springs to the one below it, two thirds as long, half as
+    thick. height, radius: of the trunk, m. stiffness: of its foot, N m/rad. The points are the ends of the outermost
+    branches: the group "twigs". Bodies: "branch"."""
     check(height=height, radius=radius, stiffness=stiffness, density=density)
     check_counts(levels=levels, branches=branches)
     if branches**levels > 100_000:
@@ -145,7 +145,7 @@ def tree(
         end, middle = start + long * way, start + long / 2 * way
         across = np.cross(way, [0.0, 0, 1] if abs(way[2]) < 0.9 else [1.0, 0, 0])
         across /= np.linalg.norm(across)
-        half = math.acos(float(np.clip(way[0], -1, 1))) / 2  # from x, about an axis across both
+        half = math.acos(float(np.clip(way[0], -1, 1))) / 2  # from x, about an axis normal to both
         axis = np.cross([1.0, 0, 0], way)
         axis = axis / np.linalg.norm(axis) if np.linalg.norm(axis) > 1e-9 else np.array([0.0, 1, 0])
         turned = (*(math.sin(half) * axis).tolist(), math.cos(half))

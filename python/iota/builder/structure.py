@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Shift(NamedTuple):
-    """What is added to the numbers of points and bodies of a structure that was merged into another one."""
+    """The offsets of the numbers of points and bodies of a structure that was merged into another one."""
 
     points: int
     bodies: int
@@ -30,9 +30,9 @@ class Shift(NamedTuple):
 
 class Structure(Contents):
     """Points, rigid and soft connections, joints, nails, groups and looks as plain data: made without a system, copied,
-    moved, merged, saved, and put into a system as often as wanted.
+    moved, merged, saved, and realized in a system any number of times.
 
-    The methods that add something have the names that make it in a `System`, and return its number.
+    The methods that add something have the same names as those of `System`, and return its number.
 
         ladder = iota.builder.Structure()
         a, b = ladder.point((0, 2, 0)), ladder.point((0.3, 2, 0))
@@ -70,12 +70,12 @@ class Structure(Contents):
         name: str = "",
         **parameters: float | None,
     ) -> int:
-        """A force between two points, as `System.bond` takes it."""
+        """A force between two points, see `System.bond`."""
         self.bonds.append(SoftBond(p, q, law, parameters, implicit, break_force, name))
         return len(self.bonds) - 1
 
     def joint(self, kind: JointKind, a: int, b: int | None = None, *, name: str = "", **options: Any) -> int:
-        """A joint of body a with body b, None for the world; options: as the method of `System` of that name has them.
+        """A joint of body a with body b, None for the world; options: see the method of `System` of that name.
 
         cart.joint("revolute", wheel, frame, at=(0, 0.1, 0), axis=(0, 0, 1))
         """
@@ -97,33 +97,34 @@ class Structure(Contents):
         return len(self.ties) - 1
 
     def cosmetic_bond(self, p: int, q: int) -> None:
-        """A line to be drawn between two points of one body."""
+        """A line drawn between two points of one body."""
         self.lines.append((p, q))
 
     def nail(self, *points: int) -> None:
-        """Holds points where they are."""
+        """Nails points at their places."""
         self.nails += points
 
     def group(self, name: str, points: Iterable[int]) -> None:
         """Adds points to the named set of particles."""
         self.groups.setdefault(name, []).extend(points)
 
-    # --- as a whole -----------------------------------------------------------------------------------------------
+    # --- the whole structure
+    # -----------------------------------------------------------------------------------------------
 
     def problems(self) -> list[str]:
         """One sentence for each inconsistency, naming the item; none for a structure that can be realized."""
         return list(problems(self))
 
     def realize(self, system: System, world: World | None = None) -> Realized:
-        """Puts it into a system, all of it or nothing, and returns the handles. With a world, its bodies get their looks
-        there. A group that the system has already takes the points in. Raises ValueError that names what is wrong.
+        """Puts it into a system, completely or not at all, and returns the handles. With a world, its bodies get their
+        looks there. Points of an existing group are added to it. Raises ValueError that names the errors.
 
             chain = iota.builder.chain(links=24).realize(system)
         """
         return realize(self, system, world)
 
     def copy(self) -> Structure:
-        """An independent one; shapes and looks, which nobody changes, are shared."""
+        """An independent copy; immutable shapes and looks are shared."""
         twin = Structure()
         twin.points.add_all(self.points)
         twin.bodies = [replace(body, points=list(body.points)) for body in self.bodies]
@@ -148,8 +149,8 @@ class Structure(Contents):
         return moved
 
     def merge(self, other: Structure, prefix: str = "") -> Shift:
-        """Takes in another structure, whose names get `prefix` in front. Groups of one name become one; looks of one name
-        must be equal. Returns what was added to its numbers of points and bodies.
+        """Adds another structure, with `prefix` before its names. Groups with equal names are merged; looks with equal
+        names must be equal. Returns the offsets of its numbers of points and bodies.
 
             for x in range(3):
                 row.merge(tower + (x, 0, 0), prefix=f"{x} ")
@@ -193,5 +194,5 @@ class Structure(Contents):
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Structure:
-        """What `to_json` gave. Raises ValueError that names what is wrong."""
+        """Reads the result of `to_json`. Raises ValueError that names the errors."""
         return exchange.from_json(cls(), data)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`iota bench chain`: what a step of a chain costs, through Python.
+"""`iota bench chain`: the cost of a step of a chain, through Python.
 
-The chain is straight and level, nailed at one end, and let go; links of 0.1 m and 0.1 kg. Time is processor time of the
-steps alone, after a warm-up; gap, energy and iterations are over the steps that were timed.
+The chain is straight and level, nailed at one end, and released; links of 0.1 m and 0.1 kg. Time is processor time of
+the steps alone, after a warm-up; gap, energy and iterations are those of the timed steps.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def measure_all(links: list[int]) -> Iterator[Case]:
 
 
 def measure(system: iota.System, links: int, kind: str, dt: float) -> Case:
-    """Steps until the processor time, or 10 simulated seconds, are used up."""
+    """Steps until the processor time, or 10 simulated seconds, have passed."""
     for _ in range(WARM_UP):
         system.step(dt)
     energy, kinetic, gap, iterations, fallbacks, steps = system.energy.total, 0.0, 0.0, 0.0, 0, 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`iota bench forces`: what one bond costs on each rung of the ladder of docs/forces.md, and what pairwise forces cost."""
+"""`iota bench forces`: the cost of a bond for each way to write a law in docs/forces.md, and of pairwise forces."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _one(bond: iota.types.BondState) -> iota.Vec3:
 
 
 def _compiled(system: iota.System) -> iota.Law:
-    """A function of the C library stands for compiled code: x y + z of r, v, t is no spring, but as quick as one."""
+    """A function of the C library in place of compiled code: x y + z of r, v, t is not a spring, but as fast as one."""
     return system.law(_Radial(("fma", ctypes.CDLL(None))), name="compiled", k=10, r0=0.1)
 
 

@@ -2,4 +2,4 @@
 
 
 class Failure(Exception):
-    """What the user is told in one line."""
+    """An error that the user is told in one line."""

@@ -15,7 +15,7 @@ from iota.cli.run import can_show_a_page
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Reads it, prints what is in it, and saves or shows it where that is asked for."""
+    """Reads a source, prints its content, and saves or shows it if requested."""
     from iota import shapelib
 
     options = {name: value for name in ("kind", "scale") if (value := getattr(arguments, name)) is not None}
@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def save(structure: iota.builder.Structure, path: str) -> None:
-    """All of it or nothing: written beside and then put in its place."""
+    """Writes a new file and renames it, so that the file is complete or unchanged."""
     text = json.dumps(structure.to_json())
     part = None
     try:
@@ -59,7 +59,7 @@ def save(structure: iota.builder.Structure, path: str) -> None:
 
 
 def show(structure: iota.shapelib.Imported, port: int | None) -> None:
-    """Weightless, so that it stays where it is put; machines, which have joints, are heavy."""
+    """Without gravity, so that it does not fall; machines, which have joints, have gravity."""
     system = iota.System(gravity=(0, -9.81 if structure.joints else 0, 0), damping=0.3)
     world = iota.World(system, title=structure.title)
     lowest = min(structure.points.position[:, 1], default=0.0)

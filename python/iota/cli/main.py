@@ -20,7 +20,7 @@ MOST_LINKS = 1_000_000  # some GB
 
 
 class Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line, without the usage text before it."""
+    """Prints an error in one line, without the usage text before it."""
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {message}. Try: {self.prog} --help\n")
@@ -64,25 +64,27 @@ def make_parser() -> Parser:
 
     running = commands.add_parser("run", help="runs a study, or a script of your own, and serves its page")
     running.add_argument("what", metavar="NAME|FILE.py")
-    running.add_argument("--links", type=link_count, help="number of links, for what has a build(links=...)")
+    running.add_argument("--links", type=link_count, help="number of links, for scripts with build(links=...)")
     running.add_argument("--port", type=port, help="of the page; 0 for any free one (default: 8080)")
-    running.add_argument("--seconds", type=positive, help="stop by itself after so long")
+    running.add_argument("--seconds", type=positive, help="stop after this time")
     running.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
     running.add_argument(
-        "--headless", action="store_true", help="serve nothing; run so many simulated seconds (default: 10)"
+        "--headless", action="store_true", help="serve nothing; run --seconds of simulated time (default: 10)"
     )
     running.add_argument("--json", action="store_true", help="print the run's figures as one JSON object at its end")
     running.add_argument(
         "--lan", action="store_true", help="let phones, headsets and other computers in, by https; shows a QR code"
     )
-    running.add_argument("--cert", type=Path, metavar="FILE.pem", help="a certificate for --lan, instead of an own one")
+    running.add_argument(
+        "--cert", type=Path, metavar="FILE.pem", help="a certificate for --lan, instead of a self-signed one"
+    )
     running.add_argument("--key", type=Path, metavar="FILE.pem", help="the key of --cert")
-    running.add_argument("--watch", action="store_true", help="run the file anew whenever it is saved")
+    running.add_argument("--watch", action="store_true", help="run the file again whenever it is saved")
     running.set_defaults(function=lambda a: (watch.watch if a.watch else run.run)(a))
 
-    showing = commands.add_parser("gallery", help="serves a page with pictures of all studies, each a click away")
+    showing = commands.add_parser("gallery", help="serves a page with pictures of all studies, which a click starts")
     showing.add_argument("--port", type=port, help="of the page; 0 for any free one (default: 8080)")
-    showing.add_argument("--seconds", type=positive, help="stop by itself after so long")
+    showing.add_argument("--seconds", type=positive, help="stop after this time")
     showing.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
     showing.set_defaults(function=gallery.run)
 
@@ -103,6 +105,7 @@ def make_parser() -> Parser:
     )
     recording.add_argument("--pictures", type=count, default=12, help="on the sheet (default: 12)")
     recording.add_argument("--columns", type=count, default=4, help="of the sheet (default: 4)")
+    recording.add_argument("--plots", action="store_true", help="show the plots of the script in the film")
     recording.set_defaults(function=record.record_film)
 
     profiling = commands.add_parser("profile", help="runs a study or a script and prints where its time goes")
@@ -114,15 +117,17 @@ def make_parser() -> Parser:
 
     playing = commands.add_parser("play", help="shows a recording, in a page that needs no server")
     playing.add_argument("file", type=Path, metavar="FILE.iota", help="made by iota record -o FILE.iota")
-    playing.add_argument("-o", "--output", type=Path, metavar="FILE.html", help="where the page goes")
+    playing.add_argument("-o", "--output", type=Path, metavar="FILE.html", help="name of the page")
     playing.add_argument("--no-open", action="store_true", help="do not open it in a browser")
     playing.set_defaults(function=play.play)
 
     token = commands.add_parser("token", help="prints the secret in the page's address, or makes a new one")
-    token.add_argument("--renew", action="store_true", help="a new one: addresses from before are refused from then on")
+    token.add_argument(
+        "--renew", action="store_true", help="make a new one: earlier addresses are refused from then on"
+    )
     token.set_defaults(function=run.token)
 
-    importing = commands.add_parser("import", help="reads a molecule, polyhedron or mechanism and tells what is in it")
+    importing = commands.add_parser("import", help="reads a molecule, polyhedron or mechanism and lists its content")
     importing.add_argument("source", metavar="FILE|NAME|smiles:TEXT")
     importing.add_argument("--kind", choices=["rigid", "soft", "flexible"], help="of molecules and polyhedra")
     importing.add_argument("--scale", type=positive, help="m for an angstrom (molecules) or for a unit of the file")
@@ -138,7 +143,7 @@ def make_parser() -> Parser:
     benching.add_argument("--json", action="store_true", help="print one JSON object instead of a table")
     benching.set_defaults(function=lambda a: (bench_forces if a.what == "forces" else bench).run(a))
 
-    verifying = commands.add_parser("verify", help="compares what the engine computes with what is known")
+    verifying = commands.add_parser("verify", help="compares the engine with exact and independent results")
     verifying.add_argument("--list", action="store_true", help="print the names of the verifications")
     verifying.add_argument("--figure", metavar="NAME", nargs="+", help="only these")
     scale = verifying.add_mutually_exclusive_group()
@@ -146,7 +151,7 @@ def make_parser() -> Parser:
     scale.add_argument("--long", action="store_const", dest="scale", const="long", help="longer runs, many minutes")
     verifying.set_defaults(scale="full")
     verifying.add_argument(
-        "--out", metavar="FOLDER", help="where page and figures go (default: docs; nowhere for --quick, --long)"
+        "--out", metavar="FOLDER", help="folder for page and figures (default: docs; none for --quick, --long)"
     )
     verifying.set_defaults(function=verify.run)
     return parser
@@ -157,7 +162,7 @@ def _stop(number: int, frame: FrameType | None) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Returns the exit code: 0, 1 for what failed, 2 for wrong arguments."""
+    """Returns the exit code: 0, 1 for failures, 2 for wrong arguments."""
     signal.signal(signal.SIGINT, signal.default_int_handler)  # see iota.starting
     signal.signal(signal.SIGTERM, _stop)  # `kill` ends a server as cleanly as Ctrl-C
     parsed = make_parser().parse_args(arguments)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`iota play`: shows what `iota record -o FILE.iota` has recorded, in a page that needs no server."""
+"""`iota play`: shows a recording of `iota record -o FILE.iota` in a page that needs no server."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from iota.saving import replacing
 
 
 def play(arguments: argparse.Namespace) -> None:
-    """Makes the page beside the system's temporary files, or where -o says, and opens it."""
+    """Makes the page in the system's temporary folder, or at the path of -o, and opens it."""
     source: Path = arguments.file
     target = arguments.output or Path(tempfile.gettempdir()) / f"iota-{source.stem}.html"
     if target.suffix != ".html":
         raise Failure(f"{target} must end in .html")
     try:
         packed = source.read_bytes()
-        unpack(packed)  # it is whole
+        unpack(packed)  # raises unless it is complete
         with replacing(target) as fresh:
             fresh.write_text(player(packed, source.stem), encoding="utf-8")
     except Failed as failed:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`iota profile`: where the time of a world goes."""
+"""`iota profile`: the time that each part of a world takes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from iota.cli.failure import Failure
 from iota.world import World
 from iota.world.options import RunOptions, use
 
-FRAMES = 60  # for pages, a simulated second
+FRAMES = 60  # for pages, per simulated second
 COLORS = ("#2f9d92", "#e8452c", "#3f7fd0", "#f2a324", "#8d6fd1", "#4c9a52")
 
 
 def profile(arguments: argparse.Namespace) -> None:
-    """Runs a study or a script as fast as it goes, with frames for pages, and prints what each part took."""
+    """Runs a study or a script as fast as possible, with frames for pages, and prints the time of each part."""
     rows: list[dict[str, Any]] = []
     forces: list[str] = []
 
@@ -53,14 +53,14 @@ def profile(arguments: argparse.Namespace) -> None:
 
 
 def rows_of(costs: dict[str, float], wall: float, steps: int) -> list[dict[str, Any]]:
-    """The dearest first, and what is left over. ms: for each step."""
+    """The most expensive part first, and the remainder. ms: for each step."""
     rest = max(0.0, wall - sum(costs.values()))
     parts = [*sorted(costs.items(), key=lambda part: -part[1]), ("the rest", rest)]
     return [{"part": part, "ms": 1e3 * s / steps, "share": s / wall} for part, s in parts]
 
 
 def plot(rows: list[dict[str, Any]], title: str, file: Path) -> None:
-    """A pie, as those of the thesis."""
+    """A pie chart, as in the thesis."""
     try:
         from matplotlib.figure import Figure
     except ImportError:

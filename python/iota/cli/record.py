@@ -19,11 +19,11 @@ BAR = 30  # characters
 
 
 def record_film(arguments: argparse.Namespace) -> None:
-    """Builds the world, makes the files, says where they are."""
+    """Builds the world, makes the files, prints their paths."""
     width, height = arguments.size
     film = Film(
         arguments.output, arguments.sheet, arguments.seconds, arguments.rate, width, height, arguments.pictures,
-        arguments.columns,
+        arguments.columns, arguments.plots,
     )  # fmt: skip
     start = run.find(arguments.what)
     bar = Bar(arguments.what)
@@ -48,7 +48,7 @@ def record_film(arguments: argparse.Namespace) -> None:
 
 @contextmanager
 def plain(bar: Bar) -> Iterator[None]:
-    """What cannot be filmed is told in one line, below the bar's."""
+    """Prints an error in one line, below the bar."""
     try:
         yield
     except Failed as failed:
@@ -58,13 +58,13 @@ def plain(bar: Bar) -> Iterator[None]:
 
 
 def size(text: str) -> tuple[int, int]:
-    """From 640x480."""
+    """Reads 640x480."""
     width, _, height = text.partition("x")
     return int(width), int(height)
 
 
 class Bar:
-    """One line on the terminal that says how far it is; nothing where nobody sees it."""
+    """One line on the terminal with the progress; nothing if stderr is not a terminal."""
 
     def __init__(self, name: str) -> None:
         self._name = name

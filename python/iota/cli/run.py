@@ -58,10 +58,18 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def lan(arguments: argparse.Namespace) -> Lan | None:
+    if not (arguments.lan or arguments.cert or arguments.key):
+        return None
     try:
-        return Lan(arguments.cert, arguments.key) if arguments.lan or arguments.cert or arguments.key else None
+        chosen = Lan(arguments.cert, arguments.key)
+        if chosen.cert is not None:
+            chosen.certificate()  # files that cannot be read are told before the script runs
     except ValueError as error:
         raise Failure(str(error)) from None
+    except OSError as error:
+        hint = "Try: --lan alone, which makes a certificate"
+        raise Failure(f"the certificate or key {error.filename} cannot be read: {error.strerror}. {hint}") from None
+    return chosen
 
 
 def token(arguments: argparse.Namespace) -> None:
@@ -73,13 +81,13 @@ def token(arguments: argparse.Namespace) -> None:
 
 
 def can_show_a_page() -> bool:
-    """Somebody sits at this machine: without a display, Python would look for a browser in the terminal."""
+    """Whether this machine has a display: without one, Python would look for a browser in the terminal."""
     has_display = sys.platform in ("darwin", "win32") or "DISPLAY" in os.environ or "WAYLAND_DISPLAY" in os.environ
     return has_display and sys.stdout.isatty()
 
 
 def find(what: str) -> Callable[[int | None], None]:
-    """What runs a study by name, or a file."""
+    """A function that runs a study by name, or a file."""
     names = studies.names()
     if what in names:
         return lambda links: run_study(what, links)
@@ -99,11 +107,11 @@ def run_study(name: str, links: int | None) -> None:
 
 
 def run_file(path: Path, links: int | None) -> None:
-    """Runs a script as Python would. With --links, or where it runs no World itself, its build() is called."""
+    """Runs a script as Python would. With --links, or if it runs no World itself, its build() is called."""
     tree = parse(path)
     has_build = any(isinstance(node, ast.FunctionDef) and node.name == "build" for node in tree.body)
     if links is not None and not has_build:
-        raise Failure(f"{path} has no build(links=...), so --links means nothing to it")
+        raise Failure(f"{path} has no build(links=...), so --links has no effect")
     sys.argv = [str(path)]
     sys.path.insert(0, str(path.resolve().parent))
     space = runpy.run_path(str(path), run_name="__main__" if links is None else NOT_MAIN)
@@ -136,7 +144,7 @@ def build_and_run(build: Callable[..., Any], links: int | None, name: str) -> No
 
 @contextmanager
 def plain_failures(port: int | None) -> Iterator[None]:
-    """Errors as one line at the end, after the traceback in the user's own file where it is the script that failed."""
+    """Prints errors in one line at the end, after the traceback in the user's own file if the script failed."""
     try:
         yield
     except (Failure, KeyboardInterrupt):

@@ -19,7 +19,7 @@ BAR = 24
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Runs the cases asked for, writes page and figures, prints the table. Fails where a check did."""
+    """Runs the requested cases, writes page and figures, prints the table. Fails if a check failed."""
     try:
         from iota.verify.cases import CASES
     except ImportError as missing:
@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def run_case(case: Case, scale: Literal["quick", "full", "long"]) -> Run:
-    """Runs one case with a bar while it runs, where somebody watches."""
+    """Runs one case, with a progress bar on a terminal."""
     from iota.verify.run import Run
 
     watched = sys.stderr.isatty()

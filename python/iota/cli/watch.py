@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`iota run --watch`: runs a script in a process of its own, and anew whenever it or a module beside it is saved.
+"""`iota run --watch`: runs a script in its own process, and again whenever it or a module beside it is saved.
 
-Open pages find the new world by themselves, as the address stays, and keep their camera. A script that cannot be read
-leaves the world before it running; one that fails is waited for.
+The address stays the same, so open pages show the new world and keep their camera. If the script cannot be read, the
+previous world continues; if it fails, the next save is waited for.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from pathlib import Path
 from iota.cli import run
 from iota.cli.failure import Failure
 
-EVERY = 0.2  # s, between two looks at the files
-PATIENCE = 5.0  # s, for a world to end
+EVERY = 0.2  # s, between two checks of the files
+PATIENCE = 5.0  # s, within which a world has to end
 MOST_FILES = 2000
 OTHERS = {"__pycache__", "node_modules", "site-packages"}
 
 
 def watch(arguments: argparse.Namespace) -> None:
-    """Until Ctrl-C, or until the script ends by itself without an error."""
+    """Runs until Ctrl-C, or until the script ends without an error."""
     path = Path(arguments.what)
     if not path.is_file():
         raise Failure(f"--watch needs a file, and there is no {arguments.what}")
@@ -62,7 +62,7 @@ def start(arguments: argparse.Namespace, is_first: bool) -> subprocess.Popen[byt
 def again(
     arguments: argparse.Namespace, path: Path, child: subprocess.Popen[bytes] | None
 ) -> subprocess.Popen[bytes] | None:
-    """The new world; the one before where the script cannot be read."""
+    """The new world; the previous one if the script cannot be read."""
     try:
         run.parse(path)
     except Failure as failure:
@@ -85,8 +85,8 @@ def end(child: subprocess.Popen[bytes] | None) -> None:
 
 
 def stamps(path: Path) -> dict[Path, tuple[int, int]]:
-    """When the script and the modules beside it were changed last, and their sizes. An editor may replace a file: one that is
-    not there for a moment counts when it is back."""
+    """Times of the last change of the script and the modules beside it, and their sizes. An editor may replace a file,
+    so a missing file is ignored until it exists again."""
     found = {}
     for file in [path, *modules(path.resolve().parent)]:
         try:
@@ -98,7 +98,7 @@ def stamps(path: Path) -> dict[Path, tuple[int, int]]:
 
 
 def modules(folder: Path) -> list[Path]:
-    """Beside the script, and in packages there."""
+    """Modules beside the script, and in packages there."""
     found = sorted(folder.glob("*.py"))
     for package in sorted(folder.glob("*/__init__.py")):
         if package.parent.name not in OTHERS and len(found) < MOST_FILES:
@@ -107,7 +107,7 @@ def modules(folder: Path) -> list[Path]:
 
 
 def free_port() -> int:
-    """One for all worlds that follow each other."""
+    """One port for all successive worlds."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])

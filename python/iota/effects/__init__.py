@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small parts to put together: winds, sparks, bonds that creep and melt. Each works on a `System` and needs nothing else."""
+"""Small parts to combine: winds, sparks, bonds that creep and melt, skins. Each needs only a `System`."""
 
+from iota.effects.skin import skin
 from iota.effects.soft import Melting, Unit, viscoelastic
 from iota.effects.sparks import burst, fire, waterfall
 from iota.effects.winds import Wind, gust, source, uniform, vortex
@@ -12,6 +13,7 @@ __all__ = [
     "burst",
     "fire",
     "gust",
+    "skin",
     "source",
     "uniform",
     "viscoelastic",

@@ -13,7 +13,7 @@ from iota.builder.points import Vector
 
 
 class Unit(NamedTuple):
-    """What `viscoelastic` makes."""
+    """The result of `viscoelastic`."""
 
     middle: Particle
     bonds: tuple[Bond, Bond, Bond]
@@ -22,10 +22,10 @@ class Unit(NamedTuple):
 def viscoelastic(
     system: System, p: Particle, q: Particle, stiffness: float, creep_stiffness: float, viscosity: float
 ) -> Unit:
-    """The unit of two springs and a dashpot: a spring between p and q and, beside it, a second spring in series with a dashpot
-    (the standard linear solid; Terzopoulos and Fleischer 1988). Pulled fast it is as stiff as both springs; held, it gives
-    way to the first one alone, within viscosity / creep_stiffness seconds. stiffness: N/m; viscosity: N s/m. Between the second
-    spring and the dashpot there is a light particle of its own, where q is.
+    """A unit of two springs and a dashpot: a spring between p and q and, in parallel, a second spring in series with a
+    dashpot (the standard linear solid; Terzopoulos and Fleischer 1988). A fast pull meets the stiffness of both
+    springs; after viscosity / creep_stiffness seconds only that of the first. stiffness: N/m; viscosity: N s/m. Between
+    the second spring and the dashpot is a light particle, at first at the place of q.
 
         effects.viscoelastic(system, a, b, stiffness=50, creep_stiffness=200, viscosity=100)
     """
@@ -41,11 +41,12 @@ def viscoelastic(
 
 
 class Melting:
-    """Springs that conduct heat, soften as they get warm and are gone at their melting point (Terzopoulos, Platt and Fleischer,
-    Heating and melting deformable models, 1989). Temperatures are those of particles; a bond has the mean of its ends.
+    """Springs that conduct heat, soften when warm and are destroyed at their melting point (Terzopoulos, Platt and
+    Fleischer, Heating and melting deformable models, 1989). Temperatures are those of particles; a bond has the mean of
+    its ends.
 
-    bonds: with the law "spring". melts_at: K above where they are now, all the same. conduction: of a bond, W/K. capacity: of
-    matter, J/(kg K). Call `step(dt)` once a step, for instance from `world.on_step`.
+    bonds: with the law "spring". melts_at: K above the present, uniform temperature. conduction: of a bond, W/K.
+    capacity: heat capacity, J/(kg K). Call `step(dt)` once a step, for instance from `world.on_step`.
 
         ice = effects.Melting(made.bonds, melts_at=50)
         ice.heat((0, 1, 0), radius=0.2, energy=100)
@@ -69,15 +70,15 @@ class Melting:
         self._solid = np.ones(len(self._bonds), bool)
 
     def heat(self, place: Vector, radius: float, energy: float) -> None:
-        """Gives an energy (J) to the particles within a radius (m), by their heat capacity."""
+        """Distributes an energy (J) over the particles within a radius (m), by their heat capacity."""
         places = np.array([tuple(particle.position) for particle in self.particles])
         near = np.linalg.norm(places - np.asarray(tuple(place)), axis=1) < radius
         if near.any():
             self.temperature[near] += energy / self._capacity[near].sum()
 
     def step(self, dt: float = 1 / 120) -> int:
-        """Lets heat flow for dt s, softens bonds, and destroys those that melt; how many these were. The flow is cut into
-        parts that no particle overshoots in."""
+        """Conducts heat for dt s, softens bonds, and destroys those that melt; returns their number. The time is
+        divided into parts in which no particle's temperature overshoots."""
         p, q = self._ends[self._solid].T
         busiest = np.bincount(self._ends[self._solid].ravel(), minlength=len(self.particles)) * self._conduction
         parts = int(np.ceil(dt * float((busiest / self._capacity).max(initial=0)) * 2)) or 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Emitters with the usual numbers (Reeves, Particle systems, 1983). What is given besides goes to `System.emitter`."""
+"""Emitters with suitable numbers (Reeves, Particle systems, 1983). Further arguments are passed to `System.emitter`."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 from iota._core import Box, Cylinder, Emitter, Sphere, System, Vec3
 from iota.builder.points import Vector
 
-UPRIGHT = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))  # what lies along x stands
+UPRIGHT = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))  # turns x to y
 
 
 def fire(system: System, at: Vector = (0, 0, 0), size: float = 0.25, **more: Any) -> Emitter:
-    """Flames that rise from a disk of radius `size` m. Sparks are as light as the hot air: where gravity pulls, they get enough
-    speed to rise for their life.
+    """Flames that rise from a disk of radius `size` m. The sparks' velocity compensates gravity for their lifetime, as
+    buoyancy would.
 
     effects.fire(system, at=(0, 0.1, 0))
     """
@@ -45,8 +45,8 @@ def burst(
     system: System, at: Vector, color: tuple[float, float, float] = (1, 0.4, 0.2), count: int = 250, speed: float = 5.0,
     seed: int = 1, **more: Any,
 ) -> Emitter:  # fmt: skip
-    """The star of a firework: `count` sparks in all directions, born within a tenth of a second. Switch it off then, or it
-    goes on: `world.after(0.1)(lambda: setattr(star, "active", False))`."""
+    """The star of a firework: `count` sparks in all directions, born within a tenth of a second. Then switch it off:
+    `world.after(0.1)(lambda: setattr(star, "active", False))`."""
     pale = tuple((2 + c) / 3 for c in color)
     settings = {
         "rate": 10.0 * count, "source": Sphere(0.05), "velocity": (0, 0, 0), "velocity_spread": speed, "lifetime": 1.6,

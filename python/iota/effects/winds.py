@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Winds that are added up from primitive flows (Wejchert and Haumann, Animation aerodynamics, SIGGRAPH 1991)."""
+"""Winds as sums of primitive flows (Wejchert and Haumann, Animation aerodynamics, SIGGRAPH 1991)."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class Wind:
         return self.x, self.y, self.z
 
     def blow(self, system: System, group: Group | None = None, drag: float = 0.01) -> Field:
-        """A field that drags the particles of a group, or all, along: drag (N s/m) times what they are slower than the wind.
-        Raises ValueError for a sum that is longer than an expression may be (999 characters).
+        """A field that acts on a group, or on all particles: drag (N s/m) times the velocity of the wind relative to
+        the particle. Raises ValueError for a sum that is longer than the limit of an expression (999 characters).
 
             wind = effects.uniform((2, 0, 0)) + effects.vortex((0, 1, 0), circulation=3)
             wind.blow(system, leaves, drag=0.002)
@@ -42,14 +42,14 @@ class Wind:
 
 
 def uniform(velocity: Vector) -> Wind:
-    """The same everywhere, m/s."""
+    """A uniform velocity, m/s."""
     x, y, z = Vec3(*velocity)
     return Wind(repr(x), repr(y), repr(z))
 
 
 def vortex(center: Vector, circulation: float, core: float = 0.2) -> Wind:
-    """About a vertical axis through a place: circulation / (2 pi r) m/s at r m from it, counter-clockwise from above; within
-    the core (m) slower again."""
+    """A vortex about a vertical axis through a place: circulation / (2 pi r) m/s at distance r, counter-clockwise from
+    above; slower within the core (m)."""
     x, _, z = Vec3(*center)
     k = circulation / 6.283185307179586
     share = f"{k:.6g}/((x-{x:.6g})^2 + (z-{z:.6g})^2 + {core**2:.6g})"
@@ -57,7 +57,7 @@ def vortex(center: Vector, circulation: float, core: float = 0.2) -> Wind:
 
 
 def source(center: Vector, strength: float, core: float = 0.2) -> Wind:
-    """From a place outwards in all directions: strength / (4 pi r^2) m/s; a negative one is a sink."""
+    """A source at a place: strength / (4 pi r^2) m/s outwards; a negative one is a sink."""
     x, y, z = Vec3(*center)
     k = strength / 12.566370614359172
     share = f"{k:.6g}/((x-{x:.6g})^2 + (y-{y:.6g})^2 + (z-{z:.6g})^2 + {core**2:.6g})^1.5"
@@ -65,7 +65,7 @@ def source(center: Vector, strength: float, core: float = 0.2) -> Wind:
 
 
 def gust(velocity: Vector, period: float) -> Wind:
-    """Comes and goes: from nothing to a velocity (m/s) and back in each period (s)."""
+    """A periodic gust: from zero to a velocity (m/s) and back in each period (s)."""
     x, y, z = Vec3(*velocity)
     share = f"*sin({3.141592653589793 / period:.9g}*t)^2"
     return Wind(*(f"{v!r}{share}" for v in (x, y, z)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A browser without a window that draws a world's page frame by frame, by a clock that only we move."""
+"""A headless browser that draws a world's page frame by frame, with a clock that we control."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ FLAGS = (
     "--use-gl=angle",
     "--use-angle=gl-egl",
 )
-PATIENCE = 30.0  # s, for the page to show what it has been sent
+PATIENCE = 30.0  # s, within which the page has to show a state
 
 
 class FilmPage:
-    """The page of a world. Its time stands still between two frames."""
+    """The page of a world. Its clock stops between two frames."""
 
     def __init__(self, page: Any) -> None:
         self._page = page
@@ -36,16 +36,16 @@ class FilmPage:
         page.on("websocket", lambda socket: socket.on("framereceived", lambda data: self._told.append(bytes(data))))
 
     def take_frames(self) -> list[bytes]:
-        """What the server has told it since the last call."""
+        """The server's messages since the last call."""
         told, self._told[:] = list(self._told), []
         return told
 
     def pass_time(self, seconds: float) -> None:
-        """The page draws nothing meanwhile."""
+        """Pauses drawing in the page."""
         self._page.clock.fast_forward(round(seconds * 1000))
 
     def wait_for(self, step: int, meanwhile: Callable[[], None] = lambda: None) -> None:
-        """Until it has been told of a step. Raises Failed when that takes too long."""
+        """Waits until the page has received a step. Raises Failed after PATIENCE seconds."""
         end = time.monotonic() + PATIENCE
         while not self._page.evaluate(f"globalThis.iota?.page.world.poses.count > 0 && iota.step === {step}"):
             if time.monotonic() > end:
@@ -53,16 +53,16 @@ class FilmPage:
             meanwhile()
             time.sleep(0.002)
 
-    def picture(self, seconds: float) -> bytes:
-        """Lets so much time pass on the page, and draws it: a JPEG file."""
+    def picture(self, seconds: float, plots: bool = False) -> bytes:
+        """Advances the clock of the page and draws it: a JPEG file."""
         self.pass_time(seconds)
-        address: str = self._page.evaluate("iota.filmFrame()")
+        address: str = self._page.evaluate(f"iota.filmFrame({str(plots).lower()})")
         return base64.b64decode(address.split(",", 1)[1])
 
 
 @contextmanager
 def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
-    """A page of that size, px. Raises Failed where no browser can be started."""
+    """A page of that size, px. Raises Failed if no browser can be started."""
     try:
         from playwright.sync_api import Error, sync_playwright
     except ImportError:
@@ -86,7 +86,7 @@ def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
         except KeyboardInterrupt:
             logging.getLogger(
                 "asyncio"
-            ).disabled = True  # Ctrl-C ends Playwright's own process too, which it would complain of
+            ).disabled = True  # Ctrl-C also ends Playwright's own process, which would log an error
             raise
         except Error as error:
             raise Failed(f"the browser failed: {error.message.splitlines()[0]}") from None
@@ -95,5 +95,5 @@ def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
 
 
 def find_browser() -> str | None:
-    """The one that $CHROMIUM names, or of the system; None: Playwright's own, if that is there."""
+    """The one that $CHROMIUM names, or the system's; None: Playwright's own, if installed."""
     return os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)

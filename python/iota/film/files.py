@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes films and contact sheets. A file is there whole or not at all."""
+"""Writes films and contact sheets, completely or not at all."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ WIDEST = 1280  # px, a sheet of more than one picture
 
 
 class Failed(Exception):
-    """What the user is told in one line."""
+    """An error that the user is told in one line."""
 
 
 def video_library() -> Any:
-    """PyAV. Raises Failed where it is not installed."""
+    """PyAV. Raises Failed if it is not installed."""
     try:
         import av
     except ImportError:
@@ -55,7 +55,7 @@ class FilmFile:
         self._count = 0
 
     def add(self, jpeg: bytes) -> None:
-        """The next picture."""
+        """Adds the next picture."""
         for picture in self._reader.decode(self._av.Packet(jpeg)):
             frame = picture.reformat(format="yuv420p", src_color_range="JPEG", dst_color_range="MPEG")
             frame.pts, frame.time_base = self._count, Fraction(1, int(self._stream.codec_context.framerate))
@@ -63,7 +63,7 @@ class FilmFile:
             self._count += 1
 
     def close(self) -> None:
-        """All that is left goes into the file."""
+        """Writes the remaining data to the file."""
         try:
             self._container.mux(self._stream.encode(None))
         finally:
@@ -80,7 +80,7 @@ def read_picture(jpeg: bytes, shrink: float = 1.0) -> NDArray[np.uint8]:
 
 
 def write_sheet(path: Path, pictures: Sequence[bytes], columns: int, width: int) -> None:
-    """A contact sheet of JPEG pictures, row by row. width: of a picture, px; they are made smaller where many are side by side.
+    """A contact sheet of JPEG pictures, row by row. width: of a picture, px; reduced if a row would be too wide.
     path ends in .png or .jpg."""
     tiles = [read_picture(picture, min(1.0, (WIDEST / columns - GAP) / width)) for picture in pictures]
     height, width = tiles[0].shape[:2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Records a world frame by frame: however slow the machine, the film is smooth and runs at the world's own speed."""
+"""Records a world frame by frame: the film is smooth and runs at the world's own speed on any machine."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ MOST_PIXELS = 4096
 
 @dataclass
 class Film:
-    """What is to be made. film: an .mp4 file, an .iota file of what the server says, or an .html page that plays that. sheet: a .png or .jpg file with `pictures` of its frames, evenly spaced in time,
-    `columns` in a row. seconds: simulated. rate: frames a second."""
+    """Options of a recording. film: an .mp4 file, an .iota file with the server's messages, or an .html page that plays
+    these. sheet: a .png or .jpg file with `pictures` of its frames, evenly spaced in time, `columns` in a row. seconds:
+    simulated. rate: frames a second. plots: those of the script are drawn over the picture."""
 
     film: Path | None = None
     sheet: Path | None = None
@@ -31,13 +32,14 @@ class Film:
     height: int = 480
     pictures: int = 12
     columns: int = 4
+    plots: bool = False
 
     @property
     def frames(self) -> int:
         return max(1, round(self.seconds * self.rate))
 
     def check(self) -> None:
-        """Raises Failed for what cannot be made, before a world is built for it."""
+        """Raises Failed for invalid options, before a world is built."""
         if self.film is None and self.sheet is None:
             raise Failed("nothing to make: name a film by -o FILE.mp4, a contact sheet by --sheet FILE.png, or both")
         if self.film is not None:
@@ -52,7 +54,7 @@ class Film:
 
     @property
     def is_drawn(self) -> bool:
-        """All frames are needed as pictures."""
+        """Whether all frames are needed as pictures."""
         return self.film is not None and self.film.suffix == ".mp4"
 
     def on_sheet(self) -> set[int]:
@@ -62,7 +64,7 @@ class Film:
 
 
 def record(world: World, film: Film, progress: Callable[[int, int], None] = lambda done, all: None) -> None:
-    """Runs a world and makes its film. progress: called after each frame. Raises Failed; no file is half written."""
+    """Runs a world and makes its film. progress: called after each frame. Raises Failed; no incomplete file is left."""
     film.check()
     with plain_errors(), ExitStack() as stack:
         sheet = stack.enter_context(replacing(film.sheet)) if film.sheet is not None else None
@@ -92,7 +94,7 @@ def record(world: World, film: Film, progress: Callable[[int, int], None] = lamb
 
 @contextmanager
 def plain_errors() -> Iterator[None]:
-    """A disk that is full, or a folder that may not be written."""
+    """For a full disk, or a folder that cannot be written."""
     try:
         yield
     except OSError as error:
@@ -100,16 +102,16 @@ def plain_errors() -> Iterator[None]:
 
 
 def next_frame(world: World, page: FilmPage, film: Film, number: int, is_drawn: bool) -> bytes:
-    """The picture of a frame, empty if it is not drawn; that of the first one shows the beginning."""
+    """The picture of a frame, empty if it is not drawn; the first frame shows the start."""
     if number == 0:
         page.wait_for(world.system.step_count, meanwhile=lambda: world.advance(0))
         for _ in range(WARM_UP):
-            page.picture(1 / film.rate)
+            page.picture(1 / film.rate, film.plots)
     else:
         steps = 1 / film.rate / world.dt
         world.advance(round(number * steps) - round((number - 1) * steps))
         page.wait_for(world.system.step_count)
     if is_drawn:
-        return page.picture(1 / film.rate)
+        return page.picture(1 / film.rate, film.plots)
     page.pass_time(1 / film.rate)
     return b""

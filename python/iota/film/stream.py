@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the server told a page, with times: recorded to a file, and put into a page of its own that plays it without a server.
+"""The server's messages to a page, with times: saved in a file, or embedded in a page that plays them without a server.
 
 A file is gzip over the line "iota stream 1" and, for each frame, its time (s, f64), length (u32) and bytes, little-endian.
 """
@@ -44,27 +44,27 @@ def pack(frames: Iterable[tuple[float, bytes]]) -> bytes:
 
 
 def unpack(packed: bytes) -> list[tuple[float, bytes]]:
-    """The frames of a file. Raises Failed for what is none."""
+    """The frames of a file. Raises Failed for a file of another format."""
     try:
         data = gzip.decompress(packed)
     except (OSError, EOFError, zlib.error) as error:
-        raise Failed(f"it is no recording, or cut off: {error}") from None
+        raise Failed(f"it is not a recording, or truncated: {error}") from None
     if not data.startswith(MAGIC):
-        raise Failed("it is no recording of iota")
+        raise Failed("it is not a recording of iota")
     frames, at = [], len(MAGIC)
     while at < len(data):
         if at + 12 > len(data):
-            raise Failed("it is cut off")
+            raise Failed("it is truncated")
         time, length = struct.unpack_from("<dI", data, at)
         if at + 12 + length > len(data):
-            raise Failed("it is cut off")
+            raise Failed("it is truncated")
         frames.append((time, data[at + 12 : at + 12 + length]))
         at += 12 + length
     return frames
 
 
 def player(packed: bytes, title: str) -> str:
-    """A page that plays a file: all that it needs is in it. Raises PageMissingError where the page is not built."""
+    """A self-contained page that plays a file. Raises PageMissingError if the page is not built."""
     folder = page_folder()
 
     def read(name: str, tag: str) -> str:

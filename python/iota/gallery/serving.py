@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Serves every study on one port. A study is built when the first visitor comes, and ends some time after the last has left."""
+"""Serves every study on one port. A study is built for its first visitor, and ends some time after the last one has
+left."""
 
 from __future__ import annotations
 
@@ -19,11 +20,11 @@ from iota.world.page import page_folder
 
 LEAVE = 15.0  # s without a visitor, after which a study ends
 FIRST = ("chain", "ladder", "cradle", "undersea", "cloth", "playground", "physics-class", "fireworks")  # on the page
-LOOK = 0.1  # s, between two looks at who has come
+LOOK = 0.1  # s, between two checks for visitors
 
 
 class WaitingRoom:
-    """The room of a study that does not run yet. It keeps what it has seen of its visitors for the world that takes it over."""
+    """The room of a study that is not running yet. It keeps its visitors' events for the world that takes it over."""
 
     def __init__(self, room: Room) -> None:
         self._room = room
@@ -49,7 +50,7 @@ class Gallery(Server):
         super().__init__(port=port, folder=folder)
         self._waiting = {name: WaitingRoom(super(Gallery, self).open(name)) for name in names or studies.names()}
         self._worlds: dict[str, World] = {}
-        self._left: dict[str, float] = {}  # when a study was seen without visitors first
+        self._left: dict[str, float] = {}  # when a study was first found without visitors
 
     def open(self, world: str) -> Any:
         """The waiting room of a study."""
@@ -57,11 +58,11 @@ class Gallery(Server):
 
     @property
     def running(self) -> list[str]:
-        """Studies that run now."""
+        """The running studies."""
         return list(self._worlds)
 
     def run(self, goes_on: Callable[[], bool] = lambda: True) -> None:
-        """Until `goes_on` says no."""
+        """Runs until `goes_on` returns False."""
         try:
             while goes_on():
                 self.look()
@@ -72,7 +73,7 @@ class Gallery(Server):
             self.close()
 
     def look(self) -> None:
-        """Starts studies that somebody has come to see, and ends those that all have left."""
+        """Starts studies with visitors, and ends those without."""
         for name, room in list(self._waiting.items()):
             if room.has_visitors():
                 self._start(name, room)
@@ -86,7 +87,7 @@ class Gallery(Server):
     def _start(self, name: str, room: WaitingRoom) -> None:
         try:
             world = studies.module(name).build()
-        except Exception as error:  # such as a package that is missing: the other studies go on
+        except Exception as error:  # such as a missing package: the other studies continue
             print_error(error)
             room.notice(0, 2, f"{name} cannot be shown", one_line(error), "", True)
             room.take_input()

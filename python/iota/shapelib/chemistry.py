@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""RDKit, where it is needed: the periodic table, and reading with its complaints as text."""
+"""Access to RDKit: the periodic table, and reading with its messages as text."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 
 Color = tuple[float, float, float]
 
-# After Corey, Pauling and Koltun: what most programs draw.
+# The colors of Corey, Pauling and Koltun, as in most programs.
 COLORS: dict[str, Color] = {
     "H": (0.95, 0.95, 0.95), "C": (0.25, 0.25, 0.27), "N": (0.15, 0.3, 0.9), "O": (0.9, 0.1, 0.1),
     "F": (0.35, 0.85, 0.3), "Cl": (0.2, 0.8, 0.2), "Br": (0.6, 0.15, 0.1), "I": (0.45, 0.1, 0.6),
     "S": (0.95, 0.8, 0.15), "P": (1.0, 0.55, 0.1), "B": (1.0, 0.7, 0.6), "Fe": (0.85, 0.4, 0.15),
 }  # fmt: skip
-# mass in dalton, covalent radius in angstrom (Cordero et al., Dalton Trans. 2008), so that the usual ones need no RDKit.
+# mass in dalton, covalent radius in angstrom (Cordero et al., Dalton Trans. 2008), so that common ones need no RDKit.
 USUAL: dict[str, tuple[float, float]] = {
     "H": (1.008, 0.31), "B": (10.81, 0.84), "C": (12.011, 0.76), "N": (14.007, 0.71), "O": (15.999, 0.66),
     "F": (18.998, 0.57), "Na": (22.990, 1.66), "Mg": (24.305, 1.41), "Si": (28.085, 1.11), "P": (30.974, 1.07),
@@ -47,7 +47,7 @@ def rdkit() -> Any:
 
 @cache
 def element(symbol: str) -> Element | None:
-    """By its symbol in any letter case, None for what is not an element. Deuterium is hydrogen of mass 2."""
+    """By its symbol in any letter case, None if there is no such element. Deuterium is hydrogen of mass 2."""
     name = symbol.strip().capitalize()
     if name in ("D", "T"):
         return Element("H", {"D": 2.014, "T": 3.016}[name], 0.31, COLORS["H"])
@@ -76,7 +76,7 @@ class _Kept(logging.Handler):
 
 @contextmanager
 def complaints() -> Iterator[list[str]]:
-    """What RDKit says meanwhile, instead of on the terminal."""
+    """Collects messages of RDKit instead of printing them."""
     from rdkit import rdBase
 
     kept, logger = _Kept(), logging.getLogger("rdkit")

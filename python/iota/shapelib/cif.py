@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from iota.shapelib.files import FileError, PathLike
 
-# A quoted text ends where a space follows the quote: 'O5'' is O5'.
+# A quoted text ends at a quote that a space follows: 'O5'' is O5'.
 TOKEN = re.compile(r"""\s+|\#.*|'(.*?)'(?=\s|$)|"(.*?)"(?=\s|$)|([^\s'"\#]\S*)""")
 
 Token = tuple[str, bool, int]  # text, whether it was quoted, line
@@ -32,8 +32,8 @@ class Table:
 
 
 def read_first_block(text: str, path: PathLike) -> dict[str, Table]:
-    """The tables of the first data block by their categories, the part of a name before its dot; old names without a dot
-    go by their beginning: `_atom_site_fract_x` is in `_atom_site`. Raises FileError."""
+    """The tables of the first data block by their categories, the part of a name before its dot; old names without a
+    dot are sorted by their prefix: `_atom_site_fract_x` is in `_atom_site`. Raises FileError."""
     tables: dict[str, Table] = {}
     tokens = _tokens(text, path)
     token = next(tokens, None)
@@ -113,7 +113,7 @@ def _tokens(text: str, path: PathLike) -> Iterator[Token]:
     while at < len(lines):
         line = lines[at]
         at += 1
-        if line.startswith(";"):  # a text field, up to the next line that begins so
+        if line.startswith(";"):  # a text field, up to the next line that begins with ;
             began, parts = at, [line[1:]]
             while at < len(lines) and not lines[at].startswith(";"):
                 parts.append(lines[at])

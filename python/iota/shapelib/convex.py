@@ -16,17 +16,17 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-SAME = 1e-6  # of coordinates near 1
+SAME = 1e-6  # for coordinates near 1
 
 
 def distinct(points: Array) -> Array:
-    """The points without those that are given more than once, in their order."""
+    """The points without duplicates, in their order."""
     pairs, _ = near_pairs(points, 10 * SAME)
     return np.delete(points, np.unique(pairs[:, 1]), axis=0)
 
 
 def hull(points: Array) -> Surface:
-    """The skin round points that are all corners of it; triangles in one plane are one face."""
+    """The convex hull of points that are all corners of it; triangles in one plane are one face."""
     corners = distinct(points)
     mesh = Mesh.convex_hull(corners)
     vertices, triangles = mesh.vertices, mesh.triangles.astype(int)
@@ -41,7 +41,7 @@ def hull(points: Array) -> Surface:
 
 
 def _around(vertices: Array, normal: Array, height: float) -> list[int]:
-    """The vertices in a plane, counter-clockwise as seen from where the normal points."""
+    """The vertices in a plane, counter-clockwise as seen from the side of the normal."""
     members = np.flatnonzero(np.abs(vertices @ normal - height) < 10 * SAME)
     spokes = vertices[members] - vertices[members].mean(axis=0)
     x = spokes[0] / np.linalg.norm(spokes[0])
@@ -50,7 +50,8 @@ def _around(vertices: Array, normal: Array, height: float) -> list[int]:
 
 
 def dual(surface: Surface) -> Surface:
-    """Of a uniform polyhedron round the origin: polar to it about the sphere that touches its edges."""
+    """The dual of a uniform polyhedron about the origin: its polar with respect to the sphere that touches its
+    edges."""
     p, q = surface.vertices[surface.edges()[0]]
     radius = float(np.linalg.norm(p + q)) / 2
     corners = []

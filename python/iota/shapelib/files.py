@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reading files: what is wrong with one is said in one line that names the file and the place."""
+"""Reads files; an error is one line that names the file and the place."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ PathLike: TypeAlias = str | os.PathLike[str]
 Item = TypeVar("Item")
 
 MOST_BYTES = 1 << 28
-QUIET_S = 1.0  # what is done sooner shows no progress
+QUIET_S = 1.0  # shorter tasks show no progress
 
 
 class FileError(ValueError):
-    """A file that cannot be used. Its text names the file, the line where there is one, and the reason."""
+    """A file that cannot be used. The text names the file, the line if known, and the reason."""
 
     def __init__(self, path: PathLike, reason: str, line: int | None = None) -> None:
         where = os.fspath(path) if line is None else f"{os.fspath(path)}, line {line}"
@@ -55,7 +55,7 @@ def read_text(path: PathLike) -> str:
 
 
 def number(text: str, path: PathLike, line: int, what: str) -> float:
-    """A finite number. Raises FileError that says what it should have been."""
+    """A finite number. Raises FileError that names the expected value."""
     try:
         value = float(text)
     except ValueError:
@@ -66,7 +66,7 @@ def number(text: str, path: PathLike, line: int, what: str) -> float:
 
 
 def whole(text: str, path: PathLike, line: int, what: str) -> int:
-    """A whole number. Raises FileError that says what it should have been."""
+    """A whole number. Raises FileError that names the expected value."""
     try:
         return int(text)
     except ValueError:
@@ -74,7 +74,7 @@ def whole(text: str, path: PathLike, line: int, what: str) -> int:
 
 
 def with_progress(items: Sequence[Item], what: str) -> Iterator[Item]:
-    """The items; after a second, a line on the terminal says how far it has come, and is taken away at the end."""
+    """Iterates over items; after a second, a line on the terminal shows the progress until the end."""
     began = shown = time.monotonic()
     is_shown = False
     for done, item in enumerate(items):

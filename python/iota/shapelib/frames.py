@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Places and turns of links, and solids with the mass and inertia that a file tells."""
+"""Places and rotations of links, and solids with the mass and inertia from a file."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ if TYPE_CHECKING:
 
 Quaternion = tuple[float, float, float, float]  # x y z w
 
-# Robots are described with z up.
+# Files of robots have z up.
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])
 
 
 @dataclass
 class Frame:
-    """A place (m) and a turn (3, 3) that takes vectors of the frame to those of the frame it is in."""
+    """A place (m) and a rotation (3, 3) from this frame to its parent frame."""
 
     place: Array = field(default_factory=lambda: np.zeros(3))
     turn: Array = field(default_factory=lambda: np.eye(3))
 
     def __matmul__(self, other: Frame) -> Frame:
-        """A frame within this one, as seen from outside."""
+        """A child frame, in the parent frame."""
         return Frame(self.place + self.turn @ other.place, self.turn @ other.turn)
 
     def inverse(self) -> Frame:
-        """What lies outside, seen from within."""
+        """The inverse."""
         return Frame(-self.turn.T @ self.place, self.turn.T)
 
 
@@ -64,7 +64,7 @@ def from_quaternion(x: float, y: float, z: float, w: float) -> Array:
 
 
 def to_quaternion(turn: Array) -> Quaternion:
-    """The unit quaternion x y z w of a turn; by its largest component (Shepperd 1978)."""
+    """The unit quaternion x y z w of a rotation, from its largest component (Shepperd 1978)."""
     m = turn
     squares = np.array(
         [
@@ -92,7 +92,7 @@ class LinkSolid:
     mass: float
     frame: Frame
     shape: Ellipsoid
-    is_changed: bool  # the inertia is that of no rigid body, or is too thin
+    is_changed: bool  # the given inertia is impossible for a rigid body, or too thin
 
 
 def solid_of(mass: float, inertia: Array, at: Frame) -> LinkSolid:
@@ -111,7 +111,7 @@ def solid_of(mass: float, inertia: Array, at: Frame) -> LinkSolid:
 
 
 def look_in(frame: Frame, look: looks.Look, at: Frame) -> looks.Look:
-    """A look at a place in the link's frame, as a look in the frame of the link's solid."""
+    """A look in the link's frame, converted to the frame of the link's solid."""
     from dataclasses import replace
 
     own = frame.inverse() @ at

@@ -22,8 +22,8 @@ MOST = 20_000  # vertices
 
 
 def geodesic(h: int, k: int = 0) -> Surface:
-    """An icosahedron whose faces are cut into h^2 + h k + k^2 triangles each, blown up to a ball of radius 1: 10 (h^2 + h k +
-    k^2) + 2 vertices."""
+    """An icosahedron whose faces are divided into h^2 + h k + k^2 triangles each, projected on a sphere of radius 1: 10
+    (h^2 + h k + k^2) + 2 vertices."""
     count = h * h + h * k + k * k
     if not (h >= 1 and k >= 0 and 10 * count + 2 <= MOST):
         raise ValueError(f"a geodesic ball has from 12 to {MOST} vertices, not {10 * count + 2}")
@@ -43,8 +43,8 @@ def geodesic(h: int, k: int = 0) -> Surface:
 
 
 def fullerene(atoms: int) -> Surface:
-    """A cage of 12 pentagons and hexagons with the symmetry of the icosahedron: 20 (h^2 + h k + k^2) corners, which are moved
-    on a ball of radius 1 until the edges are as equal as they come. Raises ValueError."""
+    """A cage of 12 pentagons and hexagons with the symmetry of the icosahedron: 20 (h^2 + h k + k^2) corners, which are
+    moved on a sphere of radius 1 to make the edges as equal as possible. Raises ValueError."""
     if atoms == 60:  # all edges are equal here
         solid = uniform("truncated icosahedron")
         solid.vertices /= np.linalg.norm(solid.vertices[0])
@@ -55,7 +55,7 @@ def fullerene(atoms: int) -> Surface:
                 return _cage(geodesic(h, k))
     sizes = sorted({20 * (h * h + h * k + k * k) for h in range(1, 5) for k in range(h + 1)})
     raise ValueError(
-        f"fullerenes as round as an icosahedron have {', '.join(map(str, sizes[:9]))} ... atoms, not {atoms}"
+        f"fullerenes with the symmetry of an icosahedron have {', '.join(map(str, sizes[:9]))} ... atoms, not {atoms}"
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Graphs of points and bonds: connected pieces, and bonds that no ring contains."""
+"""Graphs of points and bonds: connected pieces, and bonds outside of rings."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def pieces(count: int, edges: Numbers) -> Numbers:
     """The connected piece of each of `count` points, numbered in the order of their first points: (count,)."""
     part = np.arange(count)
-    while len(edges):  # the lowest number spreads along the edges, and along what it has reached
+    while len(edges):  # the lowest number spreads along the edges
         lowest = part.copy()
         np.minimum.at(lowest, edges[:, 0], part[edges[:, 1]])
         np.minimum.at(lowest, edges[:, 1], part[edges[:, 0]])
@@ -28,7 +28,7 @@ def pieces(count: int, edges: Numbers) -> Numbers:
 
 
 def bridges(count: int, edges: Numbers) -> NDArray[np.bool_]:
-    """Which edges are in no ring: without one of them, its two ends hang together no more (Tarjan 1974). (k,)"""
+    """The bridges: edges without which their two ends are not connected (Tarjan 1974). (k,)"""
     neighbors: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     for number, (p, q) in enumerate(edges.tolist()):
         neighbors[p].append((q, number))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an importer gives: a structure, and what became of the file."""
+"""The result of an importer: a structure, and notes on the file."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from iota.builder import Structure
 
 @dataclass
 class Imported(Structure):
-    """A structure that was read from a file or computed from a name. counts: of what the source holds, such as atoms
-    and bonds. notes: one sentence for each thing that was changed or left out."""
+    """A structure that was read from a file or computed from a name. counts: of items in the source, such as atoms and
+    bonds. notes: one sentence for each change or omission."""
 
     title: str = ""
     counts: dict[str, int | float | str] = field(default_factory=dict)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Johnson solids (Johnson, Convex polyhedra with regular faces, 1966): caps and belts set on each other, pieces added to,
-turned on and cut from uniform polyhedra. Computed from the lengths of edges, all 1. Those that are in no such family (J84 to
-J92) are roots of equations; the first four of them are here."""
+turned on and cut from uniform polyhedra. All edges have length 1. Those outside of these families (J84 to J92) are
+roots of equations; the first four of them are included."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def ring(n: int, height: float = 0.0, turn: float = 0.0) -> Array:
-    """A regular polygon across z; at turn 0 one edge looks along +x."""
+    """A regular polygon normal to z; at turn 0 one edge faces +x."""
     radius = 1 / (2 * math.sin(math.pi / n))
     angle = (2 * np.arange(n) + 1) * math.pi / n + turn
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), np.full(n, height)], axis=1)
@@ -46,7 +46,7 @@ def rotunda(_: int = 5) -> Array:
     own = hull(points).vertices
     z = own[face].mean(axis=0)
     z /= np.linalg.norm(z)
-    y = own[face[0]] - own[face[1]]  # across the direction of an edge
+    y = own[face[0]] - own[face[1]]  # normal to an edge
     y /= np.linalg.norm(y)
     turned = own @ np.stack([np.cross(y, z), y, z], axis=1)
     return np.asarray(turned[turned[:, 2] > 1e-6])
@@ -56,7 +56,7 @@ CAPS: dict[str, tuple[Callable[[int], Array] | None, int]] = {
     "": (None, 1), "pyramid": (pyramid, 1), "cupola": (cupola, 2), "rotunda": (rotunda, 2),
 }  # fmt: skip
 
-# number: n, cap above, belt, cap below, whether the lower cap is turned by half a step against the mirror image
+# number: n, cap above, belt, cap below, whether the lower cap is turned by half a step relative to the mirror image
 STACKS: dict[int, tuple[int, str, str, str, bool]] = {
     1: (4, "pyramid", "", "", False), 2: (5, "pyramid", "", "", False), 3: (3, "cupola", "", "", False),
     4: (4, "cupola", "", "", False), 5: (5, "cupola", "", "", False), 6: (5, "rotunda", "", "", False),
@@ -83,7 +83,7 @@ STACKS: dict[int, tuple[int, str, str, str, bool]] = {
     47: (5, "cupola", "antiprism", "rotunda", False), 48: (5, "rotunda", "antiprism", "rotunda", False),
 }  # fmt: skip
 
-# number: what it is made of, which faces of how many corners get a cap; faces are chosen by how they lie, see `_choose`
+# number: base, which faces of how many corners get a cap; faces are chosen by their arrangement, see `_choose`
 AUGMENTED: dict[int, tuple[str, int, int, str]] = {
     49: ("prism 3", 4, 1, ""), 50: ("prism 3", 4, 2, ""), 51: ("prism 3", 4, 3, ""), 52: ("prism 5", 4, 1, ""),
     53: ("prism 5", 4, 2, "meta"), 54: ("prism 6", 4, 1, ""), 55: ("prism 6", 4, 2, "para"),
@@ -94,7 +94,7 @@ AUGMENTED: dict[int, tuple[str, int, int, str]] = {
     70: ("truncated dodecahedron", 10, 2, "meta"), 71: ("truncated dodecahedron", 10, 3, "meta"),
 }  # fmt: skip
 
-# number: how many caps of the rhombicosidodecahedron are turned, how many cut off, how they lie
+# number: how many caps of the rhombicosidodecahedron are turned, how many cut off, their arrangement
 GYRATED: dict[int, tuple[int, int, str]] = {
     72: (1, 0, ""), 73: (2, 0, "para"), 74: (2, 0, "meta"), 75: (3, 0, "meta"), 76: (0, 1, ""), 77: (1, 1, "para"),
     78: (1, 1, "meta"), 79: (2, 1, "meta"), 80: (0, 2, "para"), 81: (0, 2, "meta"), 82: (1, 2, "meta"), 83: (0, 3, "meta"),
@@ -132,12 +132,12 @@ def johnson(number: int) -> Surface:
 
 
 def prism(n: int) -> Array:
-    """Its corners, round the origin."""
+    """Its corners, about the origin."""
     return np.concatenate([ring(n, 0.5), ring(n, -0.5)])
 
 
 def antiprism(n: int) -> Array:
-    """Its corners, round the origin."""
+    """Its corners, about the origin."""
     height = math.sqrt(1 - 1 / (4 * math.cos(math.pi / (2 * n)) ** 2)) / 2
     return np.concatenate([ring(n, height), ring(n, -height, math.pi / n)])
 
@@ -171,8 +171,8 @@ def _normal(surface: Surface, face: int) -> Array:
 
 
 def _choose(directions: Array, count: int, how: str) -> list[int]:
-    """So many of the directions: "para", opposite ones; "meta", the nearest to each other of those that neither are
-    neighbors nor opposite; "", any."""
+    """A number of the directions: "para", opposite ones; "meta", the nearest ones that are neither neighbors nor
+    opposite; "", any."""
     dots = directions @ directions.T
     nearest = np.sort(dots, axis=1)[:, -2].max()
     for chosen in combinations(range(len(directions)), count):

@@ -16,7 +16,7 @@ from iota.shapelib.imported import Imported
 
 @dataclass
 class Link:
-    """frame: in the world, z up. solid: None for a place that only others refer to. drawn: looks and where they are in the
+    """frame: in the world, z up. solid: None for a link that is only a reference. drawn: looks and their places in the
     link's frame."""
 
     name: str
@@ -28,7 +28,7 @@ class Link:
 
 @dataclass
 class LinkJoint:
-    """As a joint of ours: link a moves against b, None for the world. at, axis: in the world, z up."""
+    """As a joint of iota: link a moves relative to b, None for the world. at, axis: in the world, z up."""
 
     kind: JointKind
     name: str
@@ -41,7 +41,7 @@ class LinkJoint:
 
 @dataclass
 class Mechanism:
-    """What a file holds. ropes: two pairs of a link and a place in the world, and a length in m."""
+    """The content of a file. ropes: two pairs of a link and a place in the world, and a length in m."""
 
     title: str
     links: list[Link] = field(default_factory=list)
@@ -105,7 +105,7 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
 
 
 def _scaled(look: looks.Look, scale: float) -> looks.Look:
-    """Larger, with the shape's own sizes."""
+    """Scaled, with the shape's own sizes."""
     from dataclasses import replace
 
     from iota import shapes

@@ -24,14 +24,14 @@ def mechanism(
     scale: float = 1.0,
     at: Vector = (0.0, 0.0, 0.0),
 ) -> Imported:
-    """A robot or machine from a URDF or MJCF file: a body for each link that can move, with the mass and inertia that the file
-    tells and the shapes that it draws, and a joint of ours for each of its joints, with limits, damping and friction. Names
-    are those of the file. Files have z up, the structure has y up.
+    """A robot or machine from a URDF or MJCF file: a body for each link that can move, with the mass, inertia and
+    shapes of the file, and a joint of iota for each of its joints, with limits, damping and friction. Names are those
+    of the file. Files have z up, the structure has y up.
 
-    base: of URDF, whether links that no joint holds are welded to the world ("fixed", the usual) or free; MJCF says so
-    itself. scale: of lengths; masses are kept. at: where the file's origin goes, m. What has no counterpart is left out and
-    listed in `notes`: mimic joints, transmissions, actuators, contacts, tendons over pulleys, meshes that are missing.
-    Raises `FileError` that names file and line, ImportError without MuJoCo for MJCF.
+    base: of URDF, whether root links are welded to the world ("fixed", the default) or free; MJCF files specify it.
+    scale: of lengths; masses are kept. at: place of the file's origin, m. Unsupported parts are left out and listed in
+    `notes`: mimic joints, transmissions, actuators, contacts, tendons over pulleys, missing meshes. Raises `FileError`
+    that names file and line, ImportError without MuJoCo for MJCF.
 
         arm = iota.shapelib.mechanism("arm.urdf").realize(system, world)
         arm["elbow"].angle.motor = (1.0, 20)

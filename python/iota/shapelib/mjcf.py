@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MuJoCo models (MJCF): MuJoCo itself reads them, with its defaults, classes and includes, and tells masses, frames and joints."""
+"""MuJoCo models (MJCF): MuJoCo itself reads them, with defaults, classes and includes, and gives masses, frames and
+joints."""
 
 from __future__ import annotations
 
@@ -20,7 +21,7 @@ from iota.shapelib.urdf import LIGHTEST, X_TO_Z
 FREE, BALL, SLIDE, HINGE = range(4)  # mjtJoint
 CONNECT, WELD = 0, 1  # mjtEq
 SITE = 6  # mjtObj
-CARDAN = 1e-3  # share of a link's mass in each of the light rings that two joints of one link need between them
+CARDAN = 1e-3  # share of a link's mass in each light ring between two joints of one link
 
 
 def read_mjcf(path: PathLike) -> Mechanism:
@@ -46,7 +47,7 @@ def read_mjcf(path: PathLike) -> Mechanism:
 
 
 class _Reader:
-    """One model, in the places of its first configuration."""
+    """A model in its initial configuration."""
 
     def __init__(self, model: Any, state: Any, title: str) -> None:
         self.model, self.state = model, state
@@ -110,7 +111,7 @@ class _Reader:
         return link
 
     def shape(self, geom: int) -> tuple[Shape, Any] | None:
-        """As mjtGeom numbers them; None for planes and what has no closed surface."""
+        """By the numbers of mjtGeom; None for planes and geometries without a closed surface."""
         m = self.model
         size, kind = [float(v) for v in m.geom_size[geom]], int(m.geom_type[geom])
         if kind == 2:
@@ -136,7 +137,7 @@ class _Reader:
     # --- joints ---------------------------------------------------------------------------------------------------
 
     def join(self, link: Link, joints: list[int]) -> None:
-        """One joint of ours for each of a body's; between two of them there is a light ring."""
+        """One joint of iota for each of a body's; between two of them there is a light ring."""
         parent = int(self.model.body_parentid[self.names.index(link.name)])
         above = self.name_of(parent)
         if not joints:
@@ -191,7 +192,7 @@ class _Reader:
             if low <= 0 <= high and low < high:
                 options["limits"] = (low, high)
             else:
-                self.mechanism.notes.append(f"the limits of {name} exclude its first place: left out")
+                self.mechanism.notes.append(f"the limits of {name} exclude its initial pose: left out")
         self.armatures += m.dof_armature[dof] > 0
         self.mechanism.joints.append(
             LinkJoint("prismatic" if kind == SLIDE else "revolute", name, a, b, at, axis, options)
@@ -217,7 +218,7 @@ class _Reader:
             turns = [self.state.site_xmat[end].reshape(3, 3) for end in ends]
         else:
             frames = [self.frame(body) for body in bodies]
-            # connect: a place in each body. weld: one in the second, and the second as the first sees it.
+            # connect: a place in each body. weld: one in the second, and the pose of the second relative to the first.
             local = [data[0:3], data[3:6]] if kind == CONNECT else [data[0:3], data[0:3]]
             places = [frame.place + frame.turn @ place for frame, place in zip(frames, local, strict=True)]
             turns = [frame.turn for frame in frames]
@@ -230,20 +231,20 @@ class _Reader:
         a, b = (self.name_of(body) for body in bodies)
         at = places[1] if a is None or b is not None else places[0]
         if a is None and b is None:
-            self.mechanism.notes.append(f"the equality {name} is between bodies that do not move: left out")
+            self.mechanism.notes.append(f"the equality {name} is between fixed bodies: left out")
             return
         gap = float(np.linalg.norm(places[0] - places[1]))
         turn = float(np.linalg.norm(turns[0] - turns[1])) if kind == WELD else 0.0
         if gap > 1e-6 or turn > 1e-6:
             self.mechanism.notes.append(
-                f"the equality {name} does not hold at the start: it is made as its bodies are now"
+                f"the equality {name} is violated initially: it keeps the initial poses of its bodies"
             )
         first, second = (a, b) if a is not None else (b, a)
         assert first is not None
         self.mechanism.joints.append(LinkJoint("ball" if kind == CONNECT else "weld", name, first, second, at))
 
     def tendon(self, number: int) -> None:
-        """One between two sites, without pulleys, with a largest length, is a rope of ours."""
+        """A tendon between two sites, without pulleys, with a largest length, becomes a rope."""
         m = self.model
         name = f"the tendon {m.tendon(number).name or number}"
         wraps = range(m.tendon_adr[number], m.tendon_adr[number] + m.tendon_num[number])

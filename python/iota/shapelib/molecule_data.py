@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A molecule as data, and how its bonds are found where a file has none."""
+"""A molecule as data, and the perception of bonds for files without them."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MOST_ATOMS = 100_000
-SLACK = 0.45  # angstrom, how much longer than the sum of its radii a bond may be
-COLLIDING = 0.4  # angstrom: nearer than any two nuclei
+SLACK = 0.45  # angstrom, by which a bond may be longer than the sum of its radii
+COLLIDING = 0.4  # angstrom: less than the distance of any two nuclei
 
 
 @dataclass
 class Molecule:
-    """Atoms and bonds. position: (n, 3), angstrom. bonds: (k, 2). orders: (k,), 1.5 for aromatic ones, 1 where unknown.
+    """Atoms and bonds. position: (n, 3), angstrom. bonds: (k, 2). orders: (k,), 1.5 for aromatic ones, 1 if unknown.
     names: for messages, such as "CA of ARG 27"."""
 
     title: str
@@ -50,7 +50,7 @@ def check_count(count: int, path: PathLike, line: int | None = None) -> None:
 
 
 def check_places(molecule: Molecule, path: PathLike) -> None:
-    """Raises FileError where two atoms are in one place."""
+    """Raises FileError if two atoms coincide."""
     if not len(molecule.elements):
         raise FileError(path, "has no atoms")
     pairs, distances = near_pairs(molecule.position, COLLIDING)
@@ -62,8 +62,8 @@ def check_places(molecule: Molecule, path: PathLike) -> None:
 
 
 def perceive_bonds(elements: list[Element], position: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Bonds between atoms that are no further apart than their covalent radii and a slack; hydrogen takes its nearest atom
-    only. (k, 2)"""
+    """Bonds between atoms with a distance of at most the sum of their covalent radii and a slack; hydrogen only to its
+    nearest atom. (k, 2)"""
     radius = np.array([element.bond_radius for element in elements])
     pairs, distances = near_pairs(position, 2 * radius.max() + SLACK)
     is_bond = distances < radius[pairs[:, 0]] + radius[pairs[:, 1]] + SLACK

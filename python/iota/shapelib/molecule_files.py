@@ -31,7 +31,7 @@ def read_molecule(path: PathLike) -> Molecule:
 
 def parse_smiles(text: str, seed: int = 1) -> Molecule:
     """A molecule in three dimensions from a SMILES string, hydrogens added: RDKit's distance geometry (ETKDG; Riniker and
-    Landrum 2015), relaxed in its force field. Raises ValueError that says what is wrong with the text."""
+    Landrum 2015), relaxed in its force field. Raises ValueError that names the error in the text."""
     chem = rdkit()
     from rdkit.Chem import rdDistGeom as shapes
     from rdkit.Chem import rdForceFieldHelpers as fields
@@ -56,7 +56,7 @@ def parse_smiles(text: str, seed: int = 1) -> Molecule:
 
 
 def _reason(said: list[str]) -> str:
-    """The first thing that RDKit said, without the time of day and its log's punctuation."""
+    """RDKit's first message, without time and log format."""
     for text in said:
         lines = [re.sub(r"^(\[[\d:]+\]\s*)?(SMILES Parse Error:\s*)?", "", line).strip() for line in text.splitlines()]
         plain = next((line for line in lines if line and not set(line) <= set("*~^-")), "")
@@ -93,8 +93,8 @@ def _element_at(symbol: str, path: PathLike, line: int) -> Element:
 
 
 def _read_pdb(text: str, path: PathLike) -> Molecule:
-    """The first model; of atoms in several places, the first place. RDKit finds the bonds; what it does not tell, lines with
-    wrong numbers, is looked for first."""
+    """Reads the first model, and the first of alternative places of atoms. RDKit finds the bonds; lines with wrong
+    numbers, which it does not report, are found before."""
     kept: list[str] = []
     names: list[str] = []
     kind_of_residue: dict[str, str] = {}
@@ -110,7 +110,7 @@ def _read_pdb(text: str, path: PathLike) -> Molecule:
         if models > 1:
             continue
         if len(line) < 54:
-            raise FileError(path, "this atom's line is cut off before its place in space", at)
+            raise FileError(path, "the line of this atom ends before its coordinates", at)
         for begin, what in ((30, "x"), (38, "y"), (46, "z")):
             number(line[begin : begin + 8], path, at, what)
         residue, kind, name = line[21:27], line[17:20].strip(), line[12:16].strip()
@@ -125,7 +125,7 @@ def _read_pdb(text: str, path: PathLike) -> Molecule:
             _element_at(line[76:78], path, at)
         kept.append(line[:16] + " " + line[17:])
     if not names:
-        raise FileError(path, "has no ATOM or HETATM lines: it is not a PDB file, or is cut off")
+        raise FileError(path, "has no ATOM or HETATM lines: it is not a PDB file, or is truncated")
     with complaints() as said:
         found = rdkit().MolFromPDBBlock("\n".join(kept), sanitize=False, removeHs=False, flavor=0)
     if found is None:
@@ -138,9 +138,9 @@ def _read_pdb(text: str, path: PathLike) -> Molecule:
     if others:
         molecule.notes.append(f"{others} alternate places of atoms are left out")
     if models > 1:
-        molecule.notes.append(f"the first of {models} models is taken")
+        molecule.notes.append(f"only the first of {models} models is read")
     if not any(line.startswith("END") for line in kept):
-        molecule.notes.append("the file has no END line: it may be cut off")
+        molecule.notes.append("the file has no END line: it may be truncated")
     return molecule
 
 
@@ -148,7 +148,7 @@ def _read_pdb(text: str, path: PathLike) -> Molecule:
 
 
 def _read_sdf(text: str, path: PathLike) -> Molecule:
-    """The first molecule."""
+    """Reads the first molecule."""
     lines = text.splitlines()
     if len(lines) < 4:
         raise FileError(path, f"a molfile begins with four lines, this one has {len(lines)}")
@@ -161,7 +161,7 @@ def _read_sdf(text: str, path: PathLike) -> Molecule:
         if atoms < 1:
             raise FileError(path, "has no atoms", 4)
         if len(lines) < 4 + atoms + bonds:
-            raise FileError(path, f"ends before its {atoms} atoms and {bonds} bonds are told", len(lines))
+            raise FileError(path, f"ends before its {atoms} atoms and {bonds} bonds", len(lines))
         for at in range(5, 5 + atoms):
             row = lines[at - 1]
             for begin, what in ((0, "x"), (10, "y"), (20, "z")):
@@ -174,7 +174,7 @@ def _read_sdf(text: str, path: PathLike) -> Molecule:
                     raise FileError(path, f"this bond names atom {end}; there are 1..{atoms}", at)
     end_at = next((at for at, line in enumerate(lines) if line.startswith("M  END")), None)
     if end_at is None:
-        raise FileError(path, "has no 'M  END': it is cut off", len(lines))
+        raise FileError(path, "has no 'M  END': it is truncated", len(lines))
     with complaints() as said:
         found = rdkit().MolFromMolBlock("\n".join(lines[: end_at + 1]), sanitize=False, removeHs=False)
     if found is None:
@@ -186,9 +186,9 @@ def _read_sdf(text: str, path: PathLike) -> Molecule:
     molecule.title = lines[0].strip()
     molecules = sum(line.startswith("M  END") for line in lines)
     if molecules > 1:
-        molecule.notes.append(f"the first of {molecules} molecules is taken")
+        molecule.notes.append(f"only the first of {molecules} molecules is read")
     if not found.GetConformer().Is3D():
-        molecule.notes.append("the file has a drawing in a plane, not a shape in space")
+        molecule.notes.append("the file has plane coordinates of a drawing, not a shape in space")
     return molecule
 
 
@@ -196,7 +196,7 @@ def _read_sdf(text: str, path: PathLike) -> Molecule:
 
 
 def _read_xyz(text: str, path: PathLike) -> Molecule:
-    """The first frame; bonds are perceived. Columns behind x y z are passed over."""
+    """Reads the first frame and perceives bonds. Columns after x y z are ignored."""
     lines = text.splitlines()
     count = whole(lines[0], path, 1, "the first line of an XYZ file, the number of atoms,")
     if count < 1:
@@ -217,7 +217,7 @@ def _read_xyz(text: str, path: PathLike) -> Molecule:
         places.append([number(word, path, at, what) for word, what in zip(words[1:4], "xyz", strict=True)])
     molecule = _perceived(lines[1].strip(), atoms, np.array(places), path)
     if any(line.strip() for line in lines[count + 2 :]):
-        molecule.notes.append("the first frame is taken; the file goes on behind it")
+        molecule.notes.append("only the first frame is read")
     return molecule
 
 
@@ -236,7 +236,7 @@ def _perceived(
 
 
 def _read_cif(text: str, path: PathLike) -> Molecule:
-    """The first block. In crystals the atoms as listed are taken, without their images under the symmetry."""
+    """Reads the first block. For crystals only the listed atoms are read, without their images under the symmetry."""
     tables = cif.read_first_block(text, path)
     table = tables.get("_atom_site")
     if table is None or not table.rows:
@@ -273,7 +273,7 @@ def _read_cif(text: str, path: PathLike) -> Molecule:
         symbol = symbols[row] if table.column("type_symbol") else re.sub(r"[^A-Za-z].*", "", symbols[row])
         atoms.append(_element_at(re.sub(r"\d*[+-]?$", "", symbol), path, at))
         check_count(len(atoms), path, at)
-        # A number of a crystal has its uncertainty behind it: 0.1234(5).
+        # A number may have its uncertainty in parentheses: 0.1234(5).
         place = [number(column[row].split("(")[0], path, at, "a coordinate") for column in columns if column]
         places.append(cell @ place)
         names.append(f"{name} of {kind} {residue}" if is_protein else f"{atoms[-1].symbol}{len(atoms)}")
@@ -282,7 +282,7 @@ def _read_cif(text: str, path: PathLike) -> Molecule:
     if others:
         molecule.notes.append(f"{others} alternate places of atoms are left out")
     if other_models:
-        molecule.notes.append("the first model is taken")
+        molecule.notes.append("only the first model is read")
     return molecule
 
 

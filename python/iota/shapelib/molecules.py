@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Molecules as structures: rigid, soft, or rigid with bonds that turn."""
+"""Molecules as structures: rigid, soft, or rigid with rotatable bonds."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ AtomLook = Callable[[str], tuple[float, tuple[float, float, float]]]
 KINDS = ("rigid", "soft", "flexible")
 BALL = 0.45  # of the covalent radius: a ball-and-stick model
 STICK = 0.12  # angstrom, radius
-ANGLE = 0.1  # stiffness between the ends of an angle, of that of a bond
+ANGLE = 0.1  # stiffness between the ends of an angle, relative to that of a bond
 UNDRAWN = "energy = 0.5*k*(r - r0)^2; force = -c*v"  # a spring that pages do not show
-SAG = 0.1  # of a bond's length: what one bond gives under the weight of all
+SAG = 0.1  # stretch of one bond under the total weight, relative to its length
 
 
 def molecule(
@@ -52,11 +52,11 @@ def molecule(
     cosmetic; "soft", each atom is a body, bonds are springs, and weaker springs hold the angles between them; "flexible",
     rigid pieces that turn about the single bonds outside of rings (two hinges each, so that angles and lengths are exact).
 
-    scale: m for an angstrom; by default a nanometer is 1 m. mass_scale: kg for a dalton. at: where the center of mass
-    goes, m. stiffness: of a bond of kind "soft", N/m; None: one bond gives a tenth under the weight of all. damping: its
-    share of the critical one. atom_look: takes the symbol of an element, returns radius (m) and color (three numbers from
-    0 to 1). seed: for the shape of a SMILES. Raises `FileError` (a ValueError) that names file and line, ValueError for
-    SMILES, ImportError without RDKit.
+    scale: m for an angstrom; by default a nanometer is 1 m. mass_scale: kg for a dalton. at: place of the center of
+    mass, m. stiffness: of a bond of kind "soft", N/m; None: the total weight stretches one bond by a tenth. damping:
+    damping ratio. atom_look: takes the symbol of an element, returns radius (m) and color (three numbers from 0 to 1).
+    seed: for the shape of a SMILES. Raises `FileError` (a ValueError) that names file and line, ValueError for SMILES,
+    ImportError without RDKit.
 
         caffeine = iota.shapelib.molecule("CN1C=NC2=C1C(=O)N(C(=O)N2C)C", kind="soft", at=(0, 2, 0))
     """
@@ -91,7 +91,7 @@ def molecule(
 
 
 def is_file(source: PathLike) -> bool:
-    """Whether it names a file rather than a SMILES: it is there, or ends like one, or has a folder in front."""
+    """Whether it names a file rather than a SMILES: it exists, or has the ending of one, or contains a folder."""
     if not isinstance(source, str):
         return True
     return Path(source).suffix.lower() in READERS or (0 < len(source.strip()) < 256 and Path(source).exists())
@@ -107,7 +107,7 @@ def ball_of(symbol: str, scale: float) -> tuple[float, tuple[float, float, float
 
 
 def _add_bodies(structure: Imported, body_of: NDArray[np.int64], bonds: NDArray[np.int64]) -> None:
-    """A body for each number in `body_of`; bonds within one are cosmetic. An atom by itself is a body anyway."""
+    """A body for each number in `body_of`; bonds within one are cosmetic. A single atom is a body by default."""
     order = np.argsort(body_of, kind="stable")
     for members in np.split(order, np.flatnonzero(np.diff(body_of[order])) + 1):
         if len(members) > 1:
@@ -117,7 +117,8 @@ def _add_bodies(structure: Imported, body_of: NDArray[np.int64], bonds: NDArray[
 
 
 def rotatable(data: Molecule) -> NDArray[np.bool_]:
-    """Single bonds that are in no ring, end nowhere, and are no amide's, whose double-bond character keeps it flat. (k,)"""
+    """Rotatable bonds: single, in no ring, not terminal, and not of an amide, which is flat because of its partial
+    double bond. (k,)"""
     degree = np.bincount(data.bonds.ravel(), minlength=len(data.elements))
     turns = bridges(len(data.elements), data.bonds) & (data.orders == 1) & (degree[data.bonds] > 1).all(axis=1)
     symbols = [element.symbol for element in data.elements]
@@ -135,8 +136,8 @@ def rotatable(data: Molecule) -> NDArray[np.bool_]:
 
 
 def _make_flexible(structure: Imported, data: Molecule) -> None:
-    """Each piece between turning bonds has copies of the atoms beyond them: two hinges are the axis of a turn. An atom and its
-    copies are in one place, so that they share its mass evenly and nothing moves differently for it."""
+    """Each piece between rotatable bonds has copies of the atoms beyond them: two hinges are the axis of rotation. An
+    atom and its copies coincide and share its mass evenly, which does not change the motion."""
     turns = rotatable(data)
     count = len(structure.points)
     body_of = pieces(count, data.bonds[~turns])
@@ -164,8 +165,8 @@ def _make_flexible(structure: Imported, data: Molecule) -> None:
 
 
 def add_springs(structure: Imported, bonds: NDArray[np.int64], stiffness: float | None, damping: float) -> None:
-    """Springs along bonds between points, (k, 2), and a tenth as stiff between the two ends of each angle. stiffness, damping:
-    as for `molecule`."""
+    """Springs along bonds between points, (k, 2), and a tenth as stiff between the two ends of each angle. stiffness,
+    damping: see `molecule`."""
     if not len(bonds):
         return
     place, mass = structure.points.position, structure.points.mass

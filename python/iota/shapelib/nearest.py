@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pairs of points that are near each other."""
+"""Pairs of near points."""
 
 from __future__ import annotations
 

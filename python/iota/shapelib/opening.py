@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Any source, by what it looks like."""
+"""Opens a source of any kind."""
 
 from __future__ import annotations
 

@@ -47,11 +47,12 @@ def polyhedron(
 
     kind: "rigid", each connected piece of the surface is a solid body of a `density` (kg/m^3); "soft", vertices are points,
     edges are springs, and weaker springs hold their angles; "flexible", edges are rods, hinged at the vertices. mass: of all,
-    kg, instead of the density; soft and flexible ones have 1 kg by default. at: where the center of mass goes, m. stiffness,
-    damping: as for `molecule`. radius: of the vertices of soft ones and the rods of flexible ones, m. look: of the bodies.
+    kg, instead of the density; soft and flexible ones have 1 kg by default. at: place of the center of mass, m.
+    stiffness, damping: see `molecule`. radius: of the vertices of soft ones and the rods of flexible ones, m. look: of
+    the bodies.
 
-    Faces that go round the wrong way all together are turned, with a note. Raises `FileError` (a ValueError) that names
-    file, line and the first wrong edge of a surface that encloses nothing.
+    If all faces are wound inward, they are turned, with a note. Raises `FileError` (a ValueError) that names file, line
+    and the first wrong edge of a surface that is not closed.
 
         ball = iota.shapelib.polyhedron("truncated icosahedron", kind="soft", scale=0.2, at=(0, 2, 0))
         part = iota.shapelib.polyhedron("part.stl", scale=0.001, density=7800)
@@ -107,8 +108,8 @@ def _make_solid(
         for part in (surface, *parts):
             part.faces = [face[::-1] for face in part.faces]
         volumes = [-volume for volume in volumes]
-        structure.notes.append("its faces went round the wrong way and were turned")
-    elif min(volumes) < 0:  # a cavity has to stay with what is round it
+        structure.notes.append("its faces were wound inward and were turned")
+    elif min(volumes) < 0:  # a cavity has to stay with its enclosing surface
         parts, volumes = [surface], [sum(volumes)]
     structure.counts |= {"pieces": len(parts), "volume": sum(volumes)}
     structure.looks["solid"] = look if look is not None else looks.solid("paint")
@@ -159,7 +160,7 @@ def _make_frame(
 
 
 def _center(structure: Imported, at: Vector) -> None:
-    """Moves all so that the center of mass is at a place."""
+    """Moves all points so that the center of mass is at a place."""
     weights, centers = list(structure.points.mass), [*structure.points.position]
     for body in structure.bodies:
         if body.shape is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A surface of polygons, and what is wrong with it."""
+"""A surface of polygons, and its checks."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MOST_FACES = 1_000_000
 @dataclass
 class Surface:
     """vertices: (n, 3). faces: the numbers of their vertices, from outside counter-clockwise. groups: a name for each face,
-    "" for none. lines: where the file tells each face; empty where it does not say."""
+    "" for none. lines: the line of each face in the file, empty if unknown."""
 
     vertices: Array
     faces: list[list[int]]
@@ -37,7 +37,7 @@ class Surface:
         return f"face {face + 1} (of {len(self.faces)}{line})"
 
     def weld(self) -> None:
-        """Makes vertices at one place one, and takes away faces that have no area then."""
+        """Merges coincident vertices, and removes faces without an area."""
         places, number = np.unique(self.vertices + 0.0, axis=0, return_inverse=True)
         first = np.full(len(places), len(self.vertices))
         number = number.ravel()
@@ -67,12 +67,12 @@ class Surface:
         return np.unique(np.sort(self._sides(), axis=1), axis=0)
 
     def _sides(self) -> Numbers:
-        """Every side of every face, as the face goes round: (k, 2)."""
+        """Every side of every face, in the direction of the face: (k, 2)."""
         return np.array([(v, face[(i + 1) % len(face)]) for face in self.faces for i, v in enumerate(face)], np.int64)
 
     def check(self, path: PathLike) -> None:
-        """Raises FileError where the surface does not enclose a volume: the first edge that is open, is in three faces or
-        more, or whose faces go round it in the same direction."""
+        """Raises FileError if the surface does not enclose a volume; names the first edge that is open, is in three
+        faces or more, or has the same direction in both faces."""
         sides = self._sides()
         owner = np.repeat(np.arange(len(self.faces)), [len(face) for face in self.faces])
         pairs, number, uses = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
@@ -81,7 +81,7 @@ class Surface:
         for wrong, what in (
             (uses > 2, "is in {n} faces, so the surface is not that of a solid"),
             (uses < 2, "is in one face only, so the surface is open"),
-            (way != 0, "has two faces that go round it the same way: one of them is inside out"),
+            (way != 0, "has the same direction in both faces: one of them is inside out"),
         ):
             found = np.flatnonzero(wrong)
             if len(found):
@@ -96,7 +96,7 @@ class Surface:
                 )
 
     def triangles(self) -> tuple[Numbers, Numbers]:
-        """Three vertices each, (k, 3), and the face that each is of, (k,)."""
+        """Three vertices each, (k, 3), and the face of each, (k,)."""
         found, owner = [], []
         for at, face in enumerate(self.faces):
             parts = [face] if len(face) == 3 else _cut(self.vertices[face], face)
@@ -105,7 +105,7 @@ class Surface:
         return np.array(found, np.int64).reshape(-1, 3), np.array(owner, np.int64)
 
     def volume(self) -> float:
-        """Enclosed; negative inside out."""
+        """The enclosed volume; negative if inside out."""
         triangles, _ = self.triangles()
         a, b, c = (self.vertices[triangles[:, i]] - self.vertices.mean(axis=0) for i in range(3))
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
@@ -145,12 +145,12 @@ def _cut(places: Array, face: list[int]) -> list[list[int]]:
 
     while len(left) > 3:
         for at in range(len(left)):
-            # Beginning at the second corner makes the fan of a convex polygon begin at its first.
+            # Starting at the second corner makes the fan of a convex polygon start at its first.
             a, b, c = left[at], left[(at + 1) % len(left)], left[(at + 2) % len(left)]
             others = [p for p in left if p not in (a, b, c)]
             if turn(a, b, c) > 0 and not any(min(turn(a, b, p), turn(b, c, p), turn(c, a, p)) > 0 for p in others):
                 break
-        else:  # nowhere an ear: flat or crossing itself
+        else:  # no ear: flat or crossing itself
             at = 0
             a, b, c = left[:3]
         found.append([face[a], face[b], face[c]])

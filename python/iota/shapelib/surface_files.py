@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surfaces from OFF, OBJ, STL, PLY and glTF files. The text formats are read here, so that a mistake is named with its line;
-PLY and glTF by trimesh."""
+"""Surfaces from OFF, OBJ, STL, PLY and glTF files. The text formats are read here, so that an error names its line; PLY
+and glTF by trimesh."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from iota.shapelib.surface import MOST_FACES, Surface
 
 
 def read_surface(path: PathLike) -> Surface:
-    """By the file's ending. Vertices are as the file has them. Raises FileError."""
+    """By the file's ending. Vertices are those of the file. Raises FileError."""
     ending = Path(path).suffix.lower()
     if ending not in READERS:
         raise FileError(path, f"surfaces are in files that end in {', '.join(READERS)}, not in {ending or 'nothing'!r}")
@@ -38,7 +38,7 @@ def _check_count(count: int, what: str, path: PathLike, line: int | None = None)
 
 
 def _read_off(path: PathLike) -> Surface:
-    """Object File Format (Geomview). What follows the corners of a face is its color, and passed over."""
+    """Object File Format (Geomview). Numbers after the corners of a face are its color, and ignored."""
     lines = _lines_of(read_text(path))
     at, words = next(lines, (1, [""]))
     head = words[0].upper()
@@ -97,7 +97,7 @@ def _lines_of(text: str) -> Iterator[tuple[int, list[str]]]:
 
 
 def _read_obj(path: PathLike) -> Surface:
-    """Vertices, faces and groups; the rest (normals, materials, curves) is passed over, curves with a note."""
+    """Vertices, faces and groups; the rest (normals, materials, curves) is ignored, curves with a note."""
     places: list[list[float]] = []
     surface = Surface(np.empty((0, 3)), [])
     group, passed_over = "", set()
@@ -152,7 +152,7 @@ OBJ_WORDS = frozenset(
 
 
 def _read_stl(path: PathLike) -> Surface:
-    """Text with any number of solids, or binary, which a file is whose length says so."""
+    """Text with any number of solids, or binary, which is recognized by the length of the file."""
     data = read_bytes(path)
     if len(data) >= 84:
         count = struct.unpack("<I", data[80:84])[0]
@@ -164,7 +164,8 @@ def _read_stl(path: PathLike) -> Surface:
                 path, f"has {len(data)} bytes: neither a text STL, which begins with solid, nor a binary one"
             )
         raise FileError(
-            path, f"{count} triangles need {84 + 50 * count} bytes, it has {len(data)}: it is cut off or no STL"
+            path,
+            f"{count} triangles need {84 + 50 * count} bytes, it has {len(data)}: it is truncated or not an STL file",
         )
     return _from_text_stl(read_text(path), path)
 
@@ -209,7 +210,7 @@ def _from_text_stl(text: str, path: PathLike) -> Surface:
         elif word not in ("", "outer", "endloop"):
             raise FileError(path, f"an STL file has no lines that begin with {word[:20]!r}", at)
     if solid is not None or in_facet:
-        raise FileError(path, f"ends within a {'facet' if in_facet else 'solid'}: it is cut off", at)
+        raise FileError(path, f"ends within a {'facet' if in_facet else 'solid'}: it is truncated", at)
     surface.vertices = np.array(places, float).reshape(-1, 3)
     return surface
 
@@ -250,7 +251,7 @@ def _read_ply(path: PathLike) -> Surface:
 
 
 def _read_gltf(path: PathLike) -> Surface:
-    """All meshes of the scene, where its nodes put them."""
+    """All meshes of the scene, transformed by its nodes."""
     data = read_bytes(path)
     if Path(path).suffix.lower() == ".gltf":
         try:
@@ -258,7 +259,7 @@ def _read_gltf(path: PathLike) -> Surface:
         except (ValueError, RecursionError) as error:
             raise FileError(path, f"is not glTF: {error}", getattr(error, "lineno", None)) from None
     elif len(data) < 12 or data[:4] != b"glTF" or struct.unpack("<I", data[8:12])[0] != len(data):
-        raise FileError(path, "is not a binary glTF file, or is cut off")
+        raise FileError(path, "is not a binary glTF file, or is truncated")
     scene = _load(path, force="scene")
     if not scene.geometry:
         raise FileError(path, "has no meshes")
@@ -280,7 +281,7 @@ def _load(path: PathLike, **options: Any) -> Any:
     library = trimesh()
     try:
         return library.load(Path(path), process=False, **options)
-    except Exception as error:  # trimesh raises whatever it meets in a damaged file
+    except Exception as error:  # trimesh raises any exception for a damaged file
         raise FileError(path, f"trimesh cannot read it: {type(error).__name__}: {error}") from None
 
 
@@ -290,7 +291,7 @@ def _from_trimesh(mesh: Any, path: PathLike) -> Surface:
     faces = np.asarray(mesh.faces)
     wrong = np.flatnonzero(((faces < 0) | (faces >= len(mesh.vertices))).any(axis=1))
     if len(wrong):
-        raise FileError(path, f"face {wrong[0] + 1} (of {len(faces)}) uses a vertex that is not there")
+        raise FileError(path, f"face {wrong[0] + 1} (of {len(faces)}) uses a vertex that does not exist")
     return Surface(np.array(mesh.vertices, float), faces.tolist())
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""XML as a tree of elements that know their lines. Documents that declare types or entities are refused before anything is
-expanded; how deep elements are nested is bounded."""
+"""XML as a tree of elements with their lines. Documents that declare types or entities are refused before anything is
+expanded; the depth of nesting is limited."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Element:
         return found
 
     def text(self, name: str, default: str | None = None) -> str:
-        """An attribute. Raises FileError where it is missing and there is no default."""
+        """An attribute. Raises FileError if it is missing and there is no default."""
         value = self.attributes.get(name, default)
         if value is None:
             raise self.wrong(f"<{self.tag}> needs the attribute {name}")
@@ -51,7 +51,7 @@ class Element:
         return number(self.text(name, None if default is None else str(default)), self.path, self.line, name)
 
     def numbers(self, name: str, count: int, default: str | None = None) -> list[float]:
-        """An attribute as so many numbers."""
+        """An attribute as `count` numbers."""
         words = self.text(name, default).split()
         if len(words) != count:
             raise self.wrong(f"{name} must be {count} numbers, not {' '.join(words)[:60]!r}")

@@ -46,7 +46,7 @@ def uniform_points(name: str) -> Array:
         return _snub(SNUB[name])
     p, active = UNIFORM[name]
     mirrors = _mirrors(p)
-    seed = np.linalg.solve(mirrors, np.array(active) / 2)  # the image in each mirror is 1 away, or itself
+    seed = np.linalg.solve(mirrors, np.array(active) / 2)  # the distance to each mirror image is 1 or 0
     return _orbit(seed, [_reflection(normal) for normal in mirrors])
 
 
@@ -82,7 +82,7 @@ def _snub(p: int) -> Array:
     place, with differences for derivatives."""
     mirrors = _mirrors(p)
     turns = [_reflection(mirrors[i]) @ _reflection(mirrors[j]) for i, j in combinations(range(3), 2)]
-    corners = np.linalg.inv(mirrors).T  # rows: where two mirrors meet
+    corners = np.linalg.inv(mirrors).T  # rows: intersections of two mirrors
     corners = corners / np.linalg.norm(corners, axis=1)[:, None]
 
     def place(weights: Array) -> Array:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robots as URDF files: http://wiki.ros.org/urdf/XML. Read here, because a message has to name the line."""
+"""Robots as URDF files: http://wiki.ros.org/urdf/XML. Read by our own code, because an error has to name the line."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from iota.shapelib.trees import Element, read_tree
 
 JOINTS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 MOST_LINKS = 10_000
-# A cylinder of URDF is long along z, ours along x.
+# The axis of a cylinder is z in URDF, and x in iota.
 X_TO_Z = np.array([[0.0, 0, -1], [0, 1, 0], [1, 0, 0]])
-LIGHTEST = 1e-6  # kg: a link without mass that something has to carry
+LIGHTEST = 1e-6  # kg: for movable links without mass
 
 
 def read_urdf(path: PathLike, root: Element | None = None, base: str | None = None) -> Mechanism:
@@ -65,7 +65,7 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
             mechanism.joints.append(LinkJoint("weld", f"{name} to the world", name, None, frames[name].place))
     if missing:
         listed = ", ".join(sorted(set(missing))[:3]) + (" ..." if len(set(missing)) > 3 else "")
-        mechanism.notes.append(f"{len(missing)} meshes are missing, of which nothing is drawn: {listed}")
+        mechanism.notes.append(f"{len(missing)} meshes are missing, and are not drawn: {listed}")
     for tag in ("transmission", "gazebo", "sensor"):
         if count := sum(1 for _ in robot.all(tag)):
             mechanism.notes.append(f"{count} <{tag}> are left out")
@@ -78,7 +78,8 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
 
 
 def _tree(robot: Element, links: dict[str, Element]) -> tuple[dict[str, Element], list[str], bool]:
-    """The joint above each link, all links from the roots down, and whether the world is a parent that is not declared."""
+    """The joint above each link, all links from the roots down, and whether `world` is a parent without a
+    declaration."""
     joint_of: dict[str, Element] = {}
     children: dict[str, list[str]] = {}
     names: set[str] = set()
@@ -91,7 +92,7 @@ def _tree(robot: Element, links: dict[str, Element]) -> tuple[dict[str, Element]
             raise joint.wrong(f"the joint {name} is of no known type: {joint.text('type')}")
         for link in (parent, child):
             if link not in links and not (link == "world" and link == parent):
-                raise joint.wrong(f"the joint {name} names the link {link}, which is not there")
+                raise joint.wrong(f"the joint {name} names the link {link}, which does not exist")
         if child in joint_of:
             both = f"{joint_of[child].text('name')}, {name}"
             raise joint.wrong(f"{child} has two parents ({both}): URDF must be a tree")
@@ -142,7 +143,7 @@ def _link(
         mass, inertia = LIGHTEST, LIGHTEST * 1e-2 * np.eye(3)
     solid = solid_of(mass, inertia, at)
     if solid.is_changed:
-        notes.append(f"the inertia of the link {name} is that of no rigid body; the nearest one is taken")
+        notes.append(f"the inertia of the link {name} is impossible for a rigid body; the nearest possible one is used")
     link = Link(name, frame, solid)
     for visual in element.all("visual"):
         found = _shape(visual.need("geometry"), path, missing)
@@ -151,7 +152,7 @@ def _link(
             color = _color(visual, colors)
             where = _origin(visual)
             link.drawn.append((looks.Look(shape, "paint", color), Frame(where.place, where.turn @ turn)))
-    for collision in element.all("collision"):  # not used, but what is missing there is missing
+    for collision in element.all("collision"):  # not used, but its missing meshes are reported
         mesh = collision.need("geometry").first("mesh")
         if mesh is not None and _find(mesh.text("filename"), Path(path)) is None:
             missing.append(mesh.text("filename"))
@@ -159,7 +160,7 @@ def _link(
 
 
 def _shape(geometry: Element, path: PathLike, missing: list[str]) -> tuple[Shape, np.ndarray] | None:
-    """A shape and its turn; None for a mesh that cannot be read, which goes into `missing`."""
+    """A shape and its rotation; None for a mesh that cannot be read, which is added to `missing`."""
     for child in geometry.children:
         try:
             if child.tag == "box":
@@ -187,8 +188,8 @@ def _shape(geometry: Element, path: PathLike, missing: list[str]) -> tuple[Shape
 
 
 def _find(name: str, path: Path) -> Path | None:
-    """A mesh file: beside the URDF file, or for package://name/rest in a folder above it that has such a file. Never outside
-    of the tree that the URDF file is in."""
+    """A mesh file: beside the URDF file, or for package://name/rest in a folder above it that has such a file. Never
+    outside of the folder tree of the URDF file."""
     plain = name.removeprefix("file://")
     folders = [path.parent]
     if name.startswith("package://"):
@@ -229,7 +230,7 @@ def _hex(color: Element) -> str:
 
 
 def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
-    """frame: of its child, where the joint is. None for one that leaves its child free."""
+    """frame: of its child, at the joint. None for a free joint."""
     name, kind = joint.text("name"), joint.text("type")
     parent, child = joint.need("parent").text("link"), joint.need("child").text("link")
     b = None if parent == "world" else parent
@@ -254,7 +255,7 @@ def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
             options["limits"] = (lower, upper)
         else:
             notes.append(
-                f"the limits of {name}, {lower} to {upper}, exclude its first place or leave no room: left out"
+                f"the limits of {name}, {lower} to {upper}, exclude its initial pose or leave no range: left out"
             )
     dynamics = joint.first("dynamics")
     if dynamics is not None:
@@ -264,6 +265,6 @@ def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
         if friction > 0:
             options["friction"] = friction
     if joint.first("mimic") is not None:
-        notes.append(f"{name} mimics {joint.need('mimic').text('joint')}, which is left out: it moves by itself")
+        notes.append(f"{name} mimics {joint.need('mimic').text('joint')}, which is left out: it moves independently")
     ours: JointKind = "prismatic" if kind == "prismatic" else "revolute"
     return LinkJoint(ours, name, child, b, frame.place, frame.turn @ axis, options)

@@ -17,7 +17,7 @@ def build(links: int = 24, demonstrate: bool = False) -> iota.World:
 
     Up to 500 links keep their energy; finer chains, whose links whirl faster than any eye, are stepped robustly."""
     system = iota.System(damping=0.05, mode="energy_keeping" if links <= 500 else "robust")
-    chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(-0.35, -0.9, 0.25)).realize(system).bodies
+    chain = iota.builder.chain(links, LENGTH, top=NAIL, direction=(-0.2, -0.9, 0.35)).realize(system).bodies
     world = iota.World(system, title="chain", style="rope")
     present(world, chain)
 
@@ -29,17 +29,17 @@ def build(links: int = 24, demonstrate: bool = False) -> iota.World:
 def present(world: iota.World, chain: list[iota.Body]) -> None:
     """Two looks for the links, and the tripod with the eye that they hang from."""
     link = LENGTH / len(chain)
-    radius = min(0.02, 0.3 * link)
+    radius = min(0.03, 0.4 * link)
     world.draw(chain, {"rope": looks.capsule(radius, "rope"), "chain": looks.chain_link(link)})
     x, y, z = NAIL
-    for foot in ((-0.85, 0, 0.35), (0.85, 0, 0.35), (0, 0, -0.9)):
+    for foot in ((-0.8, 0, 0.5), (0.8, 0, 0.5), (0, 0, -1.0)):
         side = math.hypot(foot[0], foot[2])
         top = (x + 0.035 * foot[0] / side, y + 0.16, z + 0.035 * foot[2] / side)
-        world.add_strut(foot, top, looks.cylinder(0.028, "wood"))
-    world.add_strut((x, y + 0.10, z), (x, y + 0.22, z), looks.cylinder(0.06, "brass"))
+        world.add_strut(foot, top, looks.cylinder(0.018, "wood"))
+    world.add_strut((x, y + 0.10, z), (x, y + 0.22, z), looks.cylinder(0.05, "brass"))
     world.add_static(looks.torus(0.03, 0.007, "steel"), (x, y + 0.03, z))
     world.add_strut((x, y + 0.06, z), (x, y + 0.10, z), looks.cylinder(0.012, "steel"))
-    world.camera = iota.Camera(position=(0.45, 1.3, 3.75), target=(0, 1.06, 0))
+    world.camera = iota.Camera(position=(0.5, 1.35, 3.55), target=(0, 1.12, 0))
 
 
 def script_break(world: iota.World, chain: list[iota.Body], demonstrate: bool) -> None:

@@ -8,12 +8,12 @@ from iota import looks
 from iota.studies import _laboratory, cradle, ladder
 from iota.studies._laboratory import TOP
 
-LADDER = iota.Vec3(-0.45, 1.72, 0.02)  # the axle of its top block, m
-CRADLE = iota.Vec3(0.25, TOP, 0.12)
+LADDER = iota.Vec3(-0.3, 1.46, 0.02)  # the axle of its top block, m
+CRADLE = iota.Vec3(0.14, TOP, 0.14)
 VIEWS = (
-    iota.Camera(position=(0.45, 1.6, 2.2), target=(-0.12, 1.12, -0.4)),
-    iota.Camera(position=(0.05, 1.5, 1.35), target=(LADDER.x, 1.38, 0)),
-    iota.Camera(position=(0.45, 1.2, 1.0), target=(CRADLE.x, TOP + 0.1, CRADLE.z)),
+    iota.Camera(position=(0.3, 1.45, 1.5), target=(-0.1, 1.12, -0.1)),
+    iota.Camera(position=(0.05, 1.4, 1.0), target=(LADDER.x, 1.25, 0)),
+    iota.Camera(position=(0.35, 1.1, 0.85), target=(CRADLE.x, TOP + 0.1, CRADLE.z)),
 )
 
 
@@ -21,7 +21,7 @@ def build() -> iota.World:
     """The world of the study."""
     world = iota.World(iota.System(damping=0.06), title="lab: 9 x 7 m", dt=1 / 240, ground=None)
     room = _laboratory.Furniture()
-    _laboratory.screen(room, (LADDER.x, TOP, LADDER.z - 0.07), 0.6, 0.95, lift=0.12)
+    _laboratory.screen(room, (LADDER.x, TOP, LADDER.z - 0.07), 0.44, 0.7, lift=0.1)
     room.show(world)
     _laboratory.furnish(world)
     world.add_strut(tuple(LADDER - (0, 0, 0.06)), tuple(LADDER + (0, 0, 0.035)), looks.cylinder(0.003, "steel"))

@@ -12,24 +12,23 @@ from iota.studies._story import Story
 from iota.world.frames import relative_turn
 from iota.world.shown import Marker
 
-LENGTH, THICKNESS, WIDTH = (
-    0.09,
-    0.0035,
-    0.055,
-)  # of a block, m; thicker ones come to rest half tipped under the weight below
+LENGTH, THICKNESS, WIDTH = 0.06, 0.01, 0.04  # of a block, m
 WOOD = 650.0  # kg/m^3
-TOP = iota.Vec3(0, 0.7, 0)  # the axle through the top block
+TOP = iota.Vec3(0, 0.55, 0)  # the axle through the top block
 TORQUE, SPEED = 0.25, 6.0  # N m, rad/s: with which the top block is turned
 STICK = 1e-6  # N m: a smaller moment does not part two faces
 PATIENCE = 8.0  # s without a touch until the story begins
-RIBBONS = {"outer": (-0.018, 0.018), "inner": (0.0,)}  # places along z, m
+# Ribbons are elastic: their pull keeps a pair straight. It grows from 0 over a few mm, and is a little more than what balances the
+# weight below, which hangs from a face and so a block's thickness away from the hinge.
+PULL, SPARE = "force = -pull*r/(r + 0.002)", 1.25
+RIBBONS = {"outer": (-0.013, 0.013), "inner": (0.0,)}  # places along z, m
 COLORS = {"outer": "#c8343c", "inner": "#2b6a9b"}
-BLOCK = looks.solid("wood", "#e6c48f")
+BLOCK = looks.solid("wood", "#fff1dc")
 
 
 def build(blocks: int = 7) -> iota.World:
     """The world of the study. blocks: how many; five to nine is usual."""
-    world = iota.World(iota.System(damping=0.25), title="ladder: a block is 9 cm long", dt=1 / 240)
+    world = iota.World(iota.System(damping=0.25), title="ladder: a block is 6 cm long", dt=1 / 240)
     add_actions(world, Ladder(world, blocks))
     present(world)
     return world
@@ -71,7 +70,7 @@ class Block:
         world.draw(self.body, BLOCK)
 
     def _strip(self, world: iota.World, place: iota.Vec3, color: str) -> Marker:
-        look = looks.box((0.0008, LENGTH - 0.001, 0.01), "paint", color=color)
+        look = looks.box((0.0008, LENGTH - 0.001, 0.008), "paint", color=color)
         strip = world.shape(look, on=self.body.particle(place, mass=0))
         strip.visible = False
         return strip
@@ -91,12 +90,13 @@ class Block:
 
 class Pair:
     """Two neighbors, hinged at corners of one number: 0 or 1, or, in every other pair, 2 or 3. They open from straight (0) over
-    one face to folded (pi)."""
+    one face to folded (pi). pull: of the ribbons, N, on points that meet when it is straight: a bond for a hinge at either end."""
 
-    def __init__(self, upper: Block, lower: Block, hinge: int) -> None:
+    def __init__(self, system: iota.System, upper: Block, lower: Block, hinge: int, pull: float) -> None:
         self.upper, self.lower, self.hinge, self.locked = upper, lower, hinge, False
+        self.bands = [system.bond(point, lower.middle, PULL, pull=pull) for point in upper.beyond]
         self._join(hinge)
-        self.show_ribbons()
+        self.move_ribbons()
 
     @property
     def sense(self) -> int:
@@ -114,7 +114,7 @@ class Pair:
         self._join(self.hinge ^ 1)
         self.upper.corners[self.hinge].separate(self.lower.corners[self.hinge])
         self.hinge ^= 1
-        self.show_ribbons()
+        self.move_ribbons()
 
     def lock(self) -> None:
         """Thesis, Algorithm 6: hinged points combined once more make one body. They are made straight first."""
@@ -140,13 +140,16 @@ class Pair:
                 moment += load.z
         return -self.sense * moment > STICK
 
-    def show_ribbons(self) -> None:
-        """Outer ones run from end 0 above to end 1 below, inner ones from end 1 to end 0, so a flip moves them to the other block."""
+    def move_ribbons(self) -> None:
+        """Outer ones run from end 0 above to end 1 below, inner ones from end 1 to end 0, so a flip moves them to the other block.
+        They pull at the end with the hinge."""
         first, second = (self.upper, self.lower) if self.hinge & 1 else (self.lower, self.upper)
         for kind in RIBBONS:
             for block, shown in ((first, kind == "outer"), (second, kind == "inner")):
                 for strip in block.strips[self.hinge >> 1][kind]:
                     strip.visible = shown
+        for end, band in enumerate(self.bands):
+            band.active = end == self.hinge & 1
 
     def _join(self, corner: int) -> None:
         self.upper.corners[corner].combine(self.lower.corners[corner])
@@ -159,13 +162,15 @@ class Ladder:
         self.world, system = world, world.system
         self.blocks = [Block(world, number, top - (0, LENGTH * number, 0)) for number in range(blocks)]
         self.axle = system.revolute(self.blocks[0].body, at=top, axis=(0, 0, 1), limits=(0, math.pi))
-        for block in self.blocks[
-            1:
-        ]:  # two points on either side, far from all hinges, keep it in the plane z = 0 of the axle
+        for block in self.blocks[1:]:  # two points far from all hinges keep it in the plane z = 0 of the axle
             for x in (-LENGTH, LENGTH):
                 side = block.body.particle(block.body.position + (x, 0, 0), mass=0)
                 system.on_surface(side, iota.HalfSpace((0, 0, 1)), at=top)
-        self.pairs = [Pair(p, q, 3 * (number % 2)) for number, (p, q) in enumerate(pairwise(self.blocks))]
+        pull = SPARE * abs(system.gravity) * self.blocks[0].body.mass * 2 * THICKNESS / LENGTH  # for each block below
+        self.pairs = [
+            Pair(system, p, q, 3 * (number % 2), pull * (blocks - 1 - number))
+            for number, (p, q) in enumerate(pairwise(self.blocks))
+        ]
         self.begun = [(block.body, list(block.corners)) for block in self.blocks]
         self.aim = 0.0  # of the top block, rad
         self.rest()
@@ -179,7 +184,7 @@ class Ladder:
             block.lay_ribbons()
         for number, pair in enumerate(self.pairs):
             pair.hinge, pair.locked = 3 * (number % 2), False
-            pair.show_ribbons()
+            pair.move_ribbons()
         self.rest()
 
     def tip(self) -> None:
@@ -242,8 +247,8 @@ def present(world: iota.World) -> None:
     world.add_strut((x, y, back), (x, y, z + 0.7 * WIDTH), looks.cylinder(0.003, "steel"))
     world.add_static(looks.cylinder(0.012, "brass", 0.012, rotation=about_x), (x, y, z + 0.7 * WIDTH))
     world.add_strut((x, 0.015, back), (x, y + 0.03, back), looks.cylinder(0.008, "wood"))
-    world.add_static(looks.box((0.28, 0.02, 0.18), "wood", 0.004), (x - 0.02, 0.01, back + 0.04))
-    world.add_static(looks.box((0.03, 0.6, 0.003), "paint", color="#d8a53a"), (x - 0.12, 0.32, back))
-    for mark in range(1, 6):
-        world.add_static(looks.box((0.03, 0.0015, 0.0036), "rubber"), (x - 0.12, 0.02 + 0.1 * mark, back))
-    world.camera = iota.Camera(position=(0.78, 0.62, 0.82), target=(0, 0.365, 0))
+    world.add_static(looks.box((0.26, 0.02, 0.16), "wood", 0.004), (x - 0.02, 0.01, back + 0.04))
+    world.add_static(looks.box((0.025, 0.5, 0.003), "paint", color="#d8a53a"), (x - 0.1, 0.27, back))
+    for mark in range(1, 5):
+        world.add_static(looks.box((0.025, 0.0015, 0.0036), "rubber"), (x - 0.1, 0.02 + 0.1 * mark, back))
+    world.camera = iota.Camera(position=(0.58, 0.45, 0.72), target=(0, 0.29, 0))

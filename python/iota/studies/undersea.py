@@ -26,7 +26,7 @@ LURE = "force = -3*(r - r0 - 0.05*sin(7*t))/(r + 0.3) - 0.5*v; drag = 0.25"  # t
 def build(fish: int = FISH) -> iota.World:
     """The world of the study."""
     system = iota.System(mode="robust", gravity=(0, 0, 0))
-    world = iota.World(system, title="undersea", dt=1 / 60)
+    world = iota.World(system, title="undersea", dt=1 / 60, ground=0.0)
     school = School(world, fish, leader_at, spread=0.8)
     weed = system.group("weed")
     system.field("uniform", group=weed, acceleration=(0, BUOYANCY, 0))
@@ -34,11 +34,11 @@ def build(fish: int = FISH) -> iota.World:
     school.current.set(speed=0.3)
     kelps = [kelp(world, weed, x, z) for x, z in KELPS]
     bush(world, weed, (-0.7, 0, -1.6))
-    bush(world, weed, (4.0, 0, 0.4))
-    for x, z in ((-3.4, 0.6), (1.6, -2.2), (-1.4, 1.3)):
+    bush(world, weed, (3.4, 0, 0.4))
+    for x, z in ((-3.0, 0.6), (1.6, -2.2), (-1.4, 1.3)):
         ribbon(world, weed, (x, 0, z))
     present(world)
-    world.camera = iota.Camera(position=(0.3, 3.1, 10.5), target=(0.3, 2.9, 0))
+    world.camera = iota.Camera(position=(0.2, 1.3, 9.0), target=(0.2, 2.4, 0))
     bubbles(world)
     world.draw_ties("spring", looks.capsule(0.018, "rubber", color="#5c8a4a"))
     meal = Meal(world, school, kelps)
@@ -58,7 +58,7 @@ def build(fish: int = FISH) -> iota.World:
 def leader_at(time: float) -> Any:
     """Where the shoal wants to be, m: round the seaweed, nearly as fast as a fish can swim."""
     turn = 2 * math.pi * time / 16
-    return np.array([3.3 * math.cos(turn), 2.8 + 0.4 * math.sin(3 * turn), 0.2 + 1.7 * math.sin(turn)])
+    return np.array([2.6 * math.cos(turn), 2.8 + 0.4 * math.sin(3 * turn), 0.2 + 2.4 * math.sin(turn)])
 
 
 class Meal:
@@ -218,7 +218,7 @@ def strand(
 
 def bubbles(world: iota.World) -> None:
     """They rise from between the stones."""
-    for x, z, rate in ((-4.2, 0.2, 9), (3.3, 0.9, 6)):
+    for x, z, rate in ((-3.6, 0.2, 9), (2.0, 1.6, 6)):
         world.system.emitter(
             rate=rate, source=iota.Sphere(0.08), position=(x, 0.4, z), velocity=(0, 0.7, 0), velocity_spread=0.12, mass=0.001,
             lifetime=7, lifetime_spread=1, curve=[(0, 0.015, (0.8, 0.93, 1)), (1, 0.04, (0.9, 0.97, 1))],

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Independent solvers, by SciPy: minimal coordinates and a high-order ODE solver for the truth, MINPACK's hybrid method
-for the equations of one step. Nothing here is shared with the engine but the physics."""
+"""Independent solvers, by SciPy: minimal coordinates and a high-order ODE solver for exact motions, MINPACK's hybrid
+method for the equations of one step. They share no code with the engine."""
 
 from __future__ import annotations
 
@@ -37,10 +37,11 @@ def still(position: Sequence[float]) -> Path:
 
 @dataclass
 class PlanarChain:
-    """Point masses on massless rods that hang one from the other in a vertical plane, in angles from straight down.
+    """Point masses on massless rods, each hanging from the one above, in a vertical plane, in angles from straight
+    down.
 
-    lengths: (n,) m. masses: (n,) kg, at the lower end of each rod. pivot: where the first one hangs. damping: 1/s, a
-    force -damping m v on each mass. Lagrange's equations of the n-fold pendulum.
+    lengths: (n,) m. masses: (n,) kg, at the lower end of each rod. pivot: the place of the first one's upper end.
+    damping: 1/s, a force -damping m v on each mass. Lagrange's equations of the n-fold pendulum.
     """
 
     lengths: Array
@@ -75,12 +76,13 @@ class PlanarChain:
 
 @dataclass
 class StepByFsolve:
-    """The equations of one step of a hanging chain of point masses, given to MINPACK's hybrid method.
+    """The equations of one step of a hanging chain of point masses, solved by MINPACK's hybrid method.
 
     a M (x1 - x0 - h v0) - M g + G' lambda = 0 and |d|^2 = L^2 for each link, in 3-D, unknowns the n points and n
     multipliers: 24 for six links, as in the thesis. midpoint: the energy-keeping scheme; otherwise backward Euler.
-    Where the pivot's mean velocity differs from that of the step before, velocities are first made to follow it by the
-    least impulses along the links, as iota does.
+    If the pivot's mean velocity differs from that of the previous step, velocities are first projected by the least
+    impulses along the links, as iota does. If it rests, a mid-point step ends with such a projection too, and what that
+    takes of the kinetic energy is given back by scaling velocities relative to the rigid rotation about the pivot.
     """
 
     lengths: Array
@@ -96,18 +98,29 @@ class StepByFsolve:
         self.failures = 0
 
     def follow(self, pivot: Array, velocity: Array) -> None:
-        """Projects velocities on the links when the pivot, at `pivot`, begins to move by `velocity`."""
+        """Projects velocities on the links when the pivot, at `pivot`, starts to move with `velocity`."""
         if np.linalg.norm(velocity - self.pivot_velocity) > 1e-9:
-            links = np.diff(np.vstack([pivot, self.position]), axis=0) / self.lengths[:, None]
-            n = len(links)
-            rows = np.zeros((n, n, 3))
-            rows[np.arange(n), np.arange(n)] = links
-            rows[np.arange(1, n), np.arange(n - 1)] = -links[1:]
-            rate = np.einsum("ijk,jk->i", rows, self.velocity)
-            rate[0] -= links[0] @ velocity
-            impulses = np.linalg.solve(np.einsum("ijk,ljk,j->il", rows, rows, 1 / self.masses), rate)
-            self.velocity = self.velocity - np.einsum("ijk,i->jk", rows, impulses) / self.masses[:, None]
+            self.project(pivot, velocity)
         self.pivot_velocity = velocity
+
+    def project(self, pivot: Array, velocity: Array) -> None:
+        links = np.diff(np.vstack([pivot, self.position]), axis=0) / self.lengths[:, None]
+        n = len(links)
+        rows = np.zeros((n, n, 3))
+        rows[np.arange(n), np.arange(n)] = links
+        rows[np.arange(1, n), np.arange(n - 1)] = -links[1:]
+        rate = np.einsum("ijk,jk->i", rows, self.velocity)
+        rate[0] -= links[0] @ velocity
+        impulses = np.linalg.solve(np.einsum("ijk,ljk,j->il", rows, rows, 1 / self.masses), rate)
+        self.velocity = self.velocity - np.einsum("ijk,i->jk", rows, impulses) / self.masses[:, None]
+
+    def rotation_about(self, pivot: Array) -> Array:
+        """Velocities (n, 3) of the rigid rotation about the pivot with the chain's angular momentum."""
+        arms = self.position - pivot
+        inertia = np.einsum("i,ij,ij->", self.masses, arms, arms) * np.eye(3) - np.einsum(
+            "i,ij,ik->jk", self.masses, arms, arms
+        )
+        return np.cross(np.linalg.solve(inertia, self.masses @ np.cross(arms, self.velocity)), arms)
 
     def step(self, h: float, pivot_before: Array, pivot: Array) -> None:
         n = len(self.lengths)
@@ -160,6 +173,13 @@ class StepByFsolve:
         x = solution[: 3 * n].reshape(n, 3)
         self.multipliers = solution[3 * n :]
         moved = x - self.position
-        self.velocity = 2 * moved / h - self.velocity if self.midpoint else moved / h
-        self.velocity = self.velocity * np.exp(-self.damping * h)
         self.position = x
+        self.velocity = 2 * moved / h - self.velocity if self.midpoint else moved / h
+        if self.midpoint and not self.pivot_velocity.any():
+            kinetic = self.masses @ np.sum(self.velocity**2, axis=1)
+            self.project(pivot, self.pivot_velocity)
+            rigid = self.rotation_about(pivot)
+            rest = self.velocity - rigid
+            shared = self.masses @ np.sum(rigid**2, axis=1)
+            self.velocity = rigid + rest * np.sqrt((kinetic - shared) / (self.masses @ np.sum(rest**2, axis=1)))
+        self.velocity = self.velocity * np.exp(-self.damping * h)

@@ -16,18 +16,20 @@ PAGE, PICTURES = "verification.md", "verification"
 
 HEAD = """# Verification
 
-What the engine computes, against independent solvers (SciPy: MINPACK's hybrid method for the equations of a step,
-Dormand-Prince 8(5,3) at 1e-13 for the equations of motion) and exact answers. Every number and picture comes from a run of
+Results of the engine compared with independent solvers (SciPy: MINPACK's hybrid method for the equations of a step,
+Dormand-Prince 8(5,3) at 1e-13 for the equations of motion) and exact answers. Every number and picture comes from a run
+of
 
     iota verify                 # all of it, some minutes; writes this page and its figures
     iota verify --quick         # smaller sizes, seconds; writes nothing unless --out is given
     iota verify --figure orbit  # one of them
 
 The same checks at the small sizes are tests (`tests/python/test_verification.py`). `make soak` runs `iota verify --long`, and
-10 000 random scenes and ten million random edits beside a twin that only knows labels (`soak/`; 400 scenes and a million
-edits are tests): random graphs, joints, nails, springs, hands and edits every frame, masses over six decades. A scene may not
-crash, end in a number that is not finite or in a broken structure, call a step solved that has a gap, or lose energy out of
-the book. What fails is shrunk to the shortest script that still does, and printed with its seed.
+10 000 random scenes and ten million random edits, compared with a reference that only tracks labels (`soak/`; 400
+scenes and a million edits are tests): random graphs, joints, nails, springs, hands and edits every frame, masses over
+six decades. A scene fails if it crashes, ends with a non-finite number or an invalid structure, reports a step with a
+gap as solved, or violates the energy balance. A failing scene is reduced to the shortest script that still fails, and
+printed with its seed and as calls; scenes that once failed are kept in `tests/cpp/soak/scenes`.
 """
 
 STYLE: dict[str, Any] = {
@@ -39,7 +41,7 @@ STYLE: dict[str, Any] = {
     "axes.spines.right": False,
     "axes.titlesize": 9,
     "legend.frameon": False,
-    "svg.hashsalt": "iota",  # the same numbers give the same file
+    "svg.hashsalt": "iota",  # for reproducible files
     "svg.fonttype": "path",
 }
 
@@ -81,7 +83,7 @@ def section(case: Case, run: Run, pictures: list[Path]) -> str:
 
 
 def write(folder: Path, done: list[tuple[Case, Run]], order: list[str]) -> Path:
-    """Writes the figures, and the sections of the cases done into the page; other sections stay as they were."""
+    """Writes the figures, and the sections of the given cases into the page; other sections do not change."""
     page, pictures = folder / PAGE, folder / PICTURES
     pictures.mkdir(parents=True, exist_ok=True)
     old = page.read_text() if page.is_file() else ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a verification case is given and what comes out of it."""
+"""Input and results of a verification case."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Draw = Callable[[Any], None]  # draws on a matplotlib Figure
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the table. expected and tolerance are as shown; `passed` was decided from the numbers themselves."""
+    """One line of the table. expected and tolerance are texts; `passed` was decided from the numbers."""
 
     quantity: str
     expected: str
@@ -25,7 +25,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure that `draw` puts on a matplotlib Figure of `size` inches. raster: PNG instead of SVG."""
+    """A figure that `draw` makes on a matplotlib Figure of `size` inches. raster: PNG instead of SVG."""
 
     name: str
     caption: str
@@ -38,7 +38,7 @@ class Picture:
 class Run:
     """Collects the rows and pictures of one case.
 
-    scale: 'quick' suits a test suite, 'full' a report, 'long' a night. progress: called with 0 ... 1.
+    scale: 'quick' for tests, 'full' for the report, 'long' for a long run. progress: called with 0 ... 1.
     """
 
     scale: Literal["quick", "full", "long"] = "full"
@@ -63,7 +63,7 @@ class Run:
         self.rows.append(Row(quantity, f"≥ {number(bound)}", number(measured), "", measured >= bound))
 
     def note(self, quantity: str, value: float | str) -> None:
-        """A figure to be shown that nothing is asked of."""
+        """A value that is shown without a check."""
         self.rows.append(Row(quantity, "", value if isinstance(value, str) else number(value), "", True))
 
     def picture(self, name: str, caption: str, draw: Draw, **options: Any) -> None:

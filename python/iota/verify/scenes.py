@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small scenes that several cases use."""
+"""Small scenes for several cases."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def string_of_links(
 
 
 def masses_of(links: int, link_mass: float = 1.0) -> Array:
-    """Of the rings of `string_of_links` below the nail: a whole link's mass each, half of it at the free end."""
+    """Masses of the rings of `string_of_links` below the nail: a link's mass each, half of it at the free end."""
     masses = np.full(links, link_mass)
     masses[-1] = link_mass / 2
     return masses
@@ -49,6 +49,12 @@ def hanging_points(top: Sequence[float], lengths: Iterable[float], angles: Itera
     return np.vstack([start, start + np.cumsum(steps, axis=0)])
 
 
+def level_points(start: Sequence[float], links: int, length: float) -> Array:
+    """(links + 1, 3), m: from a place along x, `length` apart."""
+    along = length * np.arange(links + 1)
+    return np.column_stack([start[0] + along, np.full_like(along, start[1]), np.zeros_like(along)])
+
+
 def place(particle: iota.Particle) -> Array:
     return np.asarray(particle.position)
 
@@ -56,6 +62,11 @@ def place(particle: iota.Particle) -> Array:
 def places(particles: Sequence[iota.Particle]) -> Array:
     """(n, 3), m."""
     return np.array([p.position for p in particles])
+
+
+def lengths_between(particles: Sequence[iota.Particle]) -> Array:
+    """(n - 1,), m: from each to the next."""
+    return np.asarray(np.linalg.norm(np.diff(places(particles), axis=0), axis=1))
 
 
 def rigid_body(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`World`: a system in real time, on a page, in users' hands."""
+"""`World`: runs a system in real time and shows it on a page, where users act on it."""
 
 from iota.world.event import Event
 from iota.world.hands import Client

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What users can ask of the script."""
+"""Actions of the script that users can run."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 from iota.world.callbacks import Hook
 
-# What the page does by a key as long as no action has it: web/src/page/page_commands.ts and web/src/ui.
+# Keys of the page, which actions may replace: web/src/page/page_commands.ts and web/src/ui.
 PAGE_KEYS = {
     " ": "pause", ".": "one step", "r": "reset", "[": "slower", "]": "faster", "l": "next look", "f": "fly", "g": "grid",
-    "j": "follow", **dict.fromkeys("123456789", "viewpoint"), "m": "sound", "p": "picture", "0": "first view", "Home": "first view", "?": "help", "Escape": "select nothing",
+    "j": "follow", **dict.fromkeys("123456789", "viewpoint"), "m": "sound", "p": "picture", "i": "profile",
+    "0": "first view", "Home": "first view", "?": "help", "Escape": "select nothing", "o": "select several",
     "ArrowRight": "select next", "ArrowDown": "select next", "ArrowLeft": "select previous", "ArrowUp": "select previous",
     **dict.fromkeys("wasdqe", "walk"),
 }  # fmt: skip
@@ -19,7 +20,7 @@ PAGE_KEYS = {
 
 @dataclass
 class Action:
-    """What a key, a controller button or the panel does."""
+    """A function for a key, a controller button or the panel."""
 
     name: str
     hook: Hook
@@ -31,23 +32,23 @@ class Action:
 
     @property
     def line(self) -> str:
-        """For the terminal: its key, what it does, and what of the page's it takes the key from."""
+        """For the terminal: its key, its help, and the page's command that it replaces."""
         taken = PAGE_KEYS.get(self.key or "")
         return f"  {self.key}  {self.help or self.label}" + (f"  (instead of the page's: {taken})" if taken else "")
 
     def describe(self) -> tuple[str, str, str, str, bool, str]:
-        """As a room takes it."""
+        """As arguments of a room."""
         return (self.name, self.key or "", self.label, self.help, self.on == "body", self.button or "")
 
 
 class Actions:
-    """By name, in the order in which they were made."""
+    """By name, in the order of creation."""
 
     def __init__(self) -> None:
         self._by_name: dict[str, Action] = {}
 
     def check(self, name: str, key: str | None, button: str | None, on: str) -> None:
-        """Raises ValueError for what cannot become an action."""
+        """Raises ValueError for invalid or duplicate actions."""
         if on not in ("body", "world"):
             raise ValueError(f"on must be 'body' or 'world', not {on!r}")
         if button not in (None, "a", "b"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Calls the script's functions so that one that raises or dawdles is named, and the world goes on."""
+"""Calls the script's functions; reports those that raise or are slow, and the world continues."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from typing import Any
 from iota.world.costs import Costs
 
 SLOW = 0.5  # s
-GO_ON = "The world goes on. Correct the script and run it again."
-_PACKAGE = str(Path(__file__).parent.parent)  # as frames name it, symbolic links and all
+GO_ON = "The world continues. Correct the script and run it again."
+_PACKAGE = str(Path(__file__).parent.parent)  # as in frames, without resolving symbolic links
 
 Tell = Callable[[str, str, str], None]  # title, text, hint
 
 
 def wants_event(function: Callable[..., Any]) -> bool:
-    """True where the function has to be given an argument; decided when it is registered."""
+    """Whether the function takes an argument; decided when it is registered."""
     try:
         signature = inspect.signature(function)
     except (TypeError, ValueError):
@@ -41,7 +41,7 @@ def wants_event(function: Callable[..., Any]) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Hook:
-    """A function of the script, as it was registered."""
+    """A registered function of the script."""
 
     function: Callable[..., Any]
     takes_event: bool
@@ -88,17 +88,18 @@ def print_error(error: BaseException) -> None:
 
 
 def print_on_terminal(text: str) -> None:
-    """On stderr. A terminal that is closed or a log on a full disk must not end the world: pages are told as well."""
-    with suppress(OSError, ValueError, AttributeError):  # full or a broken pipe, closed, there is none (pythonw)
+    """Prints on stderr. A closed terminal or a log on a full disk must not end the world: pages show the error as
+    well."""
+    with suppress(OSError, ValueError, AttributeError):  # disk full or broken pipe, closed, no stderr (pythonw)
         sys.stderr.write(text)
         sys.stderr.flush()
 
 
 class Guard:
-    """Calls functions of the script; tells of errors and slowness by `tell(title, text, hint)`, and by `over(title)` that a
-    slow one has returned.
+    """Calls functions of the script; reports errors and slow functions by `tell(title, text, hint)`, and the return of
+    a slow one by `over(title)`.
 
-    A watching thread tells of a slow function while it still runs: the page, served by another thread, goes on drawing.
+    A thread reports a slow function while it still runs; the page, served by another thread, continues to draw.
     """
 
     def __init__(self, tell_error: Tell, tell_slow: Tell, over: Callable[[str], None], costs: Costs) -> None:
@@ -109,7 +110,7 @@ class Guard:
         self._watcher: threading.Thread | None = None
 
     def call(self, what: str, function: Callable[..., Any], *arguments: Any, hint: str = GO_ON) -> bool:
-        """Calls it; False when it raised, which is told. KeyboardInterrupt and SystemExit pass."""
+        """Calls it; False if it raised, which is reported. KeyboardInterrupt and SystemExit propagate."""
         before, self._running = self._running, (what, time.monotonic())
         try:
             with self._costs.of(f"script: {what}"):
@@ -127,7 +128,7 @@ class Guard:
         self._tell_error(f"{what} failed", one_line(error), hint)
 
     def watch(self) -> None:
-        """Starts the watching thread."""
+        """Starts the thread that watches for slow functions."""
         if self._watcher is None:
             self._stop.clear()
             self._watcher = threading.Thread(target=self._watch, name="iota-slow-callbacks", daemon=True)
@@ -145,7 +146,7 @@ class Guard:
             return
         seconds = time.monotonic() - running[1]
         if seconds > SLOW:
-            print_on_terminal(f"iota: {what} took {seconds:.1f} s; the world stood still meanwhile\n")
+            print_on_terminal(f"iota: {what} took {seconds:.1f} s; the world was stopped meanwhile\n")
             self._over(slow_title(what))
 
     def _watch(self) -> None:
@@ -154,4 +155,4 @@ class Guard:
             if running and running != self._told and time.monotonic() - running[1] > SLOW:
                 self._told = running
                 hint = "Do long work elsewhere, or in small pieces once a step."
-                self._tell_slow(slow_title(running[0]), "The world waits for it; the page goes on.", hint)
+                self._tell_slow(slow_title(running[0]), "The world waits for it; the page continues.", hint)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fixed steps against the wall clock. The engine itself reads no clock."""
+"""Paces fixed steps to real time. The engine itself reads no clock."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ MAX_SPEED = 10.0
 
 
 class Clock:
-    """How many steps are due now, and how long to sleep. Time that cannot be caught up is let go: slow motion, no spiral.
+    """The number of due steps, and the time to sleep. Time that cannot be caught up is dropped: slow motion.
 
-    paused: no step is due. reached: share of the speed asked for that this machine reaches, smoothed; 1 when all is well.
+    paused: no step is due. reached: achieved share of the requested speed, smoothed; 1 if the machine keeps up.
     """
 
     def __init__(self, dt: float, frame: float = 1 / 60) -> None:
@@ -36,7 +36,7 @@ class Clock:
 
     @property
     def speed(self) -> float:
-        """Simulated seconds for each real second that users asked for; 0 to 10."""
+        """Simulated seconds per real second, requested by users; 0 to 10."""
         return self._speed
 
     @speed.setter
@@ -50,7 +50,7 @@ class Clock:
         self._owed = 0.0
 
     def due(self) -> int:
-        """Steps to take now."""
+        """The number of steps to take now."""
         now = time.perf_counter()
         passed, self._last = now - self._last, now
         if not self._runs():
@@ -73,7 +73,7 @@ class Clock:
         return True
 
     def sleep(self) -> None:
-        """Until the next step or frame is due."""
+        """Sleeps until the next step or frame is due."""
         now = time.perf_counter()
         until = self._next_frame
         if self._runs():

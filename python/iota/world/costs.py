@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the time of a world goes: simulator, functions of the script, floor, pages."""
+"""The time that each part of a world takes: simulator, functions of the script, floor, pages."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from contextlib import contextmanager
 
 
 class Costs:
-    """Seconds that each part has taken since the last `clear`, without those of the parts that it called. A part of the script
-    is named "script: ..."."""
+    """Seconds that each part has taken since the last `clear`, without the parts that it called. Parts of the script
+    are named "script: ..."."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
@@ -21,7 +21,7 @@ class Costs:
 
     @contextmanager
     def of(self, part: str) -> Iterator[None]:
-        """What the with block takes is the part's."""
+        """Adds the time of the with block to a part."""
         self._inner.append(0.0)
         began = time.perf_counter()
         try:

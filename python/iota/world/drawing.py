@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a World offers to draw beside its bodies, and controls for users. Each call gives a handle; assigning is updating."""
+"""Drawing of things without physics in a World, and controls for users. Each call returns a handle; assigning an
+attribute updates the page."""
 
 from __future__ import annotations
 
@@ -33,15 +34,15 @@ Color = Any  # "#rrggbb", 0xRRGGBB, three numbers from 0 to 1, or None
 
 
 def _listed(points: tuple[Any, ...]) -> Any:
-    """One array, or places one by one."""
+    """Whether it is one array, not a list of places."""
     return points[0] if len(points) == 1 and not isinstance(points[0], Attachable) else points
 
 
 def _triangles_of(surface: Any) -> tuple[Any, Any]:
-    """Vertices and triangles of something that has vertices and faces."""
+    """Vertices and triangles of an object with vertices and faces."""
     if not hasattr(surface, "vertices") or not hasattr(surface, "faces"):
         raise TypeError(
-            "a surface needs triangles beside its points, or vertices and faces, as of iota.shapelib.read_surface"
+            "a surface needs triangles besides its points, or vertices and faces, as from iota.shapelib.read_surface"
         )
     return surface.vertices, [(face[0], b, c) for face in surface.faces for b, c in pairwise(face[1:])]
 
@@ -50,9 +51,9 @@ class Drawing:
     """Labels, lines, tubes, arrows, axes, traces, points, shapes, struts, surfaces, colors of bodies, frames; buttons, sliders,
     check boxes, choices, texts and plots.
 
-    A place is a particle, a body, a bond, a frame or a point of the world (m). What is on one of these moves with it, at no cost, stays
-    on it when bodies are cut and joined, and goes when it goes. `handle.destroy()` takes a thing off the page, `handle.visible`
-    hides it. Reset leaves all of them as they are.
+    A place is a particle, a body, a bond, a frame or a point of the world (m). A thing on one of these moves with it,
+    without cost, stays on it when bodies are cut and joined, and ends with it. `handle.destroy()` removes a thing from
+    the page, `handle.visible` hides it. Reset does not change them.
 
         label = world.label("top", at=ball)
         label.text = "still the top"
@@ -62,10 +63,10 @@ class Drawing:
 
     @property
     def things(self) -> list[Thing]:
-        """Everything that was made by the functions below, in that order."""
+        """All things made by the functions below, in the order of creation."""
         return list(self._state.things)
 
-    # --- to look at -----------------------------------------------------------------------------------------------
+    # --- drawn things -----------------------------------------------------------------------------------------------
 
     def label(
         self,
@@ -75,8 +76,8 @@ class Drawing:
         height: float = 0.0,
         color: Color = None,
     ) -> Label:
-        """Text at a place (of a bond its middle). offset: world, m. height: of a capital, m; 0: the same on the screen from
-        wherever it is seen."""
+        """Text at a place (for a bond its middle). offset: world, m. height: of a capital, m; 0: a constant size on the
+        screen."""
         return Label(self._state.things, text=text, at=at, offset=offset, height=height, color=color)
 
     def line(self, *points: Any, radius: float = 0.0, color: Color = None, closed: bool = False) -> Line:
@@ -101,13 +102,13 @@ class Drawing:
     def trace(
         self, at: Place, seconds: float = 0.0, radius: float = 0.0, color: Color = None, capacity: int = 2000
     ) -> Trace:
-        """The path that a particle or body has taken, as each page has seen it. seconds: of simulated time that it shows, 0: its
-        newest `capacity` points."""
+        """The past path of a particle or body, as recorded by each page. seconds: of simulated time, 0: the newest
+        `capacity` points."""
         return Trace(self._state.things, at=at, seconds=seconds, radius=radius, color=color, capacity=capacity)
 
     def points(self, points: Any, radius: Any = 0.02, color: Any = None, at: Place = None) -> Points:
         """Many balls. points: array of shape (n, 3), m, in the frame of `at`. radius: m, one or n. color: one, an array of shape
-        (n, 3) from 0 to 1, or a list of n colors. An array assigned moves all of them."""
+        (n, 3) from 0 to 1, or a list of n colors. Assigning an array moves all of them."""
         return Points(self._state.things, points=points, radius=radius, color=color, at=at)
 
     def shape(
@@ -118,8 +119,8 @@ class Drawing:
         on: Attachable | SimulatedBody | None = None,
         color: Color = None,
     ) -> Marker:
-        """A look of `iota.looks` that is only drawn, on a body or in the world. position: m and rotation: quaternion x y z w, in
-        the frame of what it is on."""
+        """A look of `iota.looks` without physics, on a body or in the world. position: m and rotation: quaternion x y z
+        w, in the frame of the body or world."""
         return Marker(
             self._state.things,
             look=look,
@@ -138,9 +139,9 @@ class Drawing:
         color: Any = None,
         at: Place = None,
     ) -> Shapes:
-        """A look thousands of times. positions: (n, 3), m, in the frame of `at`. rotations: (n, 4), quaternions x y z w. sizes:
-        times the look's, one, (n,) or (n, 3) along its axes. color: one, a list of n or an array (n, 3) from 0 to 1. An
-        array assigned changes all of them.
+        """Thousands of copies of a look. positions: (n, 3), m, in the frame of `at`. rotations: (n, 4), quaternions x y
+        z w. sizes: factors of the look's size, one, (n,) or (n, 3) along its axes. color: one, a list of n or an array
+        (n, 3) from 0 to 1. Assigning an array changes all of them.
 
         bricks = world.shapes(looks.box((0.2, 0.1, 0.1)), places)
         bricks.positions = places + (0, 1, 0)
@@ -178,9 +179,9 @@ class Drawing:
         material: str = "paint",
         threads: Sequence[Any] = (),
     ) -> Surface:
-        """Triangles, seen from both sides. points: an array (n, 3) in the frame of `at`, m; or particles, bodies and places,
-        with which it bends; or what `iota.shapelib.read_surface` has read (then without triangles). triangles: (k, 3) numbers
-        of points. threads: springs or ropes; once one is gone, the triangles along it are as well.
+        """Triangles, visible from both sides. points: an array (n, 3) in the frame of `at`, m; or particles, bodies and
+        places, with which it bends; or a result of `iota.shapelib.read_surface` (then without triangles). triangles:
+        (k, 3) indices of points. threads: springs or ropes; the triangles along a thread are removed with it.
 
         world.surface(iota.shapelib.read_surface("teapot.obj"), at=body, color="#4c9a52")
         world.surface(knots, triangles, threads=springs, color="#b0303a")
@@ -198,14 +199,15 @@ class Drawing:
         )
 
     def paint(self, bodies: Any, color: Any) -> Paint:
-        """Colors of bodies, in place of those of their materials. color: one, one for each body, or an array (n, 3) from 0 to 1.
+        """Colors of bodies, instead of those of their materials. color: one, one for each body, or an array (n, 3) from
+        0 to 1.
 
         world.paint(links, "#e8452c")
         """
         return Paint(self._state.things, bodies=bodies, color=color)
 
     def frame(self, at: Place = None, rotation: Sequence[float] = (0, 0, 0, 1)) -> Frame:
-        """A frame that other things are put on, in place of a body: they move, hide and go with it. rotation: quaternion x y z w.
+        """A frame for other things, like a body: they move, hide and end with it. rotation: quaternion x y z w.
 
         hand = world.frame((0, 1, 0))
         world.shape(looks.sphere(0.1), on=hand, position=(0.2, 0, 0))
@@ -214,8 +216,8 @@ class Drawing:
         return Frame(self._state.things, at=at, rotation=rotation)
 
     def viewpoint(self, name: str, position: Place, target: Place) -> Viewpoint:
-        """A place to look from that users go to by a key, 1 for the first, or the page's bar. On a particle, body or frame the
-        camera goes along.
+        """A viewpoint that users go to by a key, 1 for the first, or the page's bar. On a particle, body or frame the
+        camera moves with it.
 
         world.viewpoint("from above", (0, 8, 0.1), (0, 0, 0))
         world.viewpoint("driver", car.attachment((0, 1.2, 0)), car.attachment((3, 1, 0)))
@@ -223,17 +225,17 @@ class Drawing:
         return Viewpoint(self._state.things, name=name, position=position, target=target)
 
     def stage(self, sky: Color = None, horizon: Color = None, ground: Color = None, light: float = 1.0) -> Stage:
-        """Surroundings in place of the page's own: the sky overhead, what ground and sky fade to, the floor, and how strong all
-        lamps are, times the usual.
+        """Surroundings instead of the page's own: colors of the sky overhead, the horizon and the ground, and a factor
+        for the light of all lamps.
 
         world.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.5)  # a night
         """
         return Stage(self._state.things, sky=sky, horizon=horizon, ground=ground, light=light)
 
-    # --- to be changed by users -----------------------------------------------------------------------------------
+    # --- controls for users -----------------------------------------------------------------------------------
 
     def button(self, label: str, help: str = "") -> Callable[[Callback], Button]:
-        """Decorator: a button that calls a function. What comes back is its handle."""
+        """Decorator: a button that calls a function. Returns its handle."""
 
         def register(function: Callback) -> Button:
             made = Button(self._state.things, label, help=help)
@@ -252,7 +254,7 @@ class Drawing:
         unit: str = "",
         help: str = "",
     ) -> Slider:
-        """A number from `minimum` to `maximum` in whole `step`s, 0: any. value: at first, None: the minimum.
+        """A number from `minimum` to `maximum` in whole `step`s, 0: any. value: initial, None: the minimum.
 
         gravity = world.slider("gravity", 0, 20, 9.81, unit="m/s²")
 
@@ -267,11 +269,11 @@ class Drawing:
         return Checkbox(self._state.things, label, value=value, help=help)
 
     def choice(self, label: str, options: Sequence[str], value: str | None = None, help: str = "") -> Choice:
-        """One of several texts. value: at first, None: the first of them."""
+        """One of several texts. value: initial, None: the first of them."""
         return Choice(self._state.things, label, options, value, help=help)
 
     def text(self, label: str, value: str = "", help: str = "") -> TextField:
-        """A line that users can write."""
+        """A text field of one line."""
         return TextField(self._state.things, label, value=value, help=help)
 
     def plot(
@@ -281,8 +283,8 @@ class Drawing:
         unit: str = "",
         seconds: float = 10.0,
     ) -> Plot:
-        """Curves over the last `seconds` of simulated time. curves: a function, or several by name, that are asked once a frame;
-        or names of curves that the script feeds by `plot.add(time, value, ...)`.
+        """Curves over the last `seconds` of simulated time. curves: a function, or several by name, called once a
+        frame; or names of curves that the script feeds by `plot.add(time, value, ...)`.
 
         world.plot("energy", {"kinetic": lambda: system.energy.kinetic, "total": lambda: system.energy.total}, unit="J")
         """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a callback is given."""
+"""The argument of callbacks."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from iota.world.notices import Notices
 
 @dataclass(frozen=True)
 class Event:
-    """What a callback is given. name: of the action, or of what happened. client: whose it is, 0 for no user's. target: the
-    body that it is on, for actions the held or selected one; None where there is none.
+    """The argument of callbacks. name: of the action, or of the event. client: number of the user, 0 for none. target:
+    the body of the event, for actions the held or selected one; None without a body.
 
-    point: where a pointer hit the body, or where a hand is, world, m; None where nothing was hit. origin, direction: of the
-    pointer's ray, where it is known. pointer: "mouse", "touch 1", "left", "right". phase: "start", "update" or "end" of a
-    drag or hover, "start" or "end" of a contact. hold: number of the hand. key: that was pressed or let go. contact, broken:
-    what has met or parted, and what has broken."""
+    point: where a pointer hit the body, or the place of a hand, world, m; None without a hit. origin, direction: of the
+    pointer's ray, if known. pointer: "mouse", "touch 1", "left", "right". phase: "start", "update" or "end" of a drag
+    or hover, "start" or "end" of a contact. hold: number of the hand. key: that was pressed or released. contact,
+    broken: the ContactEvent or Broken."""
 
     system: System
     name: str
@@ -36,13 +36,13 @@ class Event:
 
     @property
     def body(self) -> Body:
-        """The held or selected body. Raises LookupError where there is none: `target` is None then. An action with
-        on="body" always has one."""
+        """The held or selected body. Raises LookupError without one (`target` is None). An action with on="body" always
+        has one."""
         if self.target is None:
             raise LookupError(f"the event {self.name!r} is on no body")
         return self.target
 
     def notice(self, title: str, text: str = "", hint: str = "", level: str = "info") -> None:
-        """Shows a small card to the user whose event it is; on all pages where it is no user's. level: "info", "warning"
-        or "error"."""
+        """Shows a small card to the user of the event, or on all pages if it has no user. level: "info", "warning" or
+        "error"."""
         self.notices.send(title, text, hint, level, self.client)

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A level floor that holds particles and bodies, by forces that are worked out once a step.
+"""A level floor that supports particles and bodies by forces that are calculated once a step.
 
-Where a body can touch the floor is a list of round points, fixed on the body: its particles, or the corners, rims and ends of its
-shape. Each step finds the pushes that stop those points at the floor, with dry friction, as if nothing but gravity acted on their
-body (sequential impulses: E. Catto, Iterative Dynamics with Temporal Coherence, GDC 2005). What else hangs on the body shows as a
-speed that a resting point should not have: `load` learns it, a part each step. A floor that is rows of the solver would need none
-of this.
+A body touches the floor at a list of spheres fixed on it: its particles, or the corners, rims and ends of its shape.
+Each step calculates the impulses that stop those points at the floor, with dry friction, as if only gravity acted on
+their body (sequential impulses: E. Catto, Iterative Dynamics with Temporal Coherence, GDC 2005). Other loads of the
+body appear as a speed of a resting point; `load` estimates them step by step. A floor that is a row of the solver would
+not need this.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,44 +24,53 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Flags = NDArray[np.bool_]
 
-GIVEN_BACK = 0.2  # of the depth in a step
-LOAD_GAIN = 0.3  # of what is lacking, a step
-MOST_LOAD = 100.0  # times the weight of what is pushed
-MOST_FORCE = 0.99e9  # N, on a particle: the engine takes no larger one
+GIVEN_BACK = 0.2  # share of the depth corrected in a step
+LOAD_GAIN = 0.3  # share of the missing force added in a step
+MOST_LOAD = 100.0  # times the weight of the body
+MOST_FORCE = 0.99e9  # N, on a particle: the engine's limit
 ROUNDS = 4  # over the points of a body
 ROUND_POINTS = 8  # on a rim
-DIRECTIONS = 26  # in which a rounded body or a mesh is looked at
+DIRECTIONS = 26  # for the support points of a rounded body or a mesh
+CORNERS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])  # of a box
+UNITS = (Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1))
+NO_POINTS = (np.empty((0, 4)), np.empty(0))  # weights and radii
 
 
 @dataclass
-class Touch:
-    """One point at which a body can touch. Up to four particles carry it: where it is, and what it is pushed with, is their
-    weighted sum."""
+class Carrier:
+    """A solid with its points, or a particle: what moves as one. Up to four particles carry it: where each of its points is, and
+    what it is pushed with, is their weighted sum."""
 
-    key: tuple[Body, int]
-    carrier: int  # what it is a part of: a solid, or a particle by itself
+    body: Body
+    number: int  # among those of the body; a particle's slot
     rows: list[int]  # of `System.positions`; four
-    weights: list[float]
-    masses: list[float]  # kg
-    radius: float  # m
+    weights: Array  # (n, 4), of each point
+    masses: list[float]  # kg; four
+    radii: Array  # (n,), m
     is_solid: bool  # four particles span space, so that a push on the surface turns the body
-    is_joined: bool  # other bodies hang on its body
+    is_joined: bool  # other bodies are hinged to its body
 
 
 class Touches:
-    """All of them, as arrays with a row for each, and what is remembered of each."""
+    """All points, as arrays with a row for each, and what is remembered of each."""
 
-    def __init__(self, touches: list[Touch], before: Touches | None) -> None:
-        self.keys = [touch.key for touch in touches]
-        self.carriers = np.array([touch.carrier for touch in touches], np.intp)
-        self.rows = np.array([touch.rows for touch in touches], np.intp).reshape(-1, 4)
-        self.weights = np.array([touch.weights for touch in touches], float).reshape(-1, 4)
-        self.masses = np.array([touch.masses for touch in touches], float).reshape(-1, 4)
-        self.radius = np.array([touch.radius for touch in touches], float)
-        self.is_solid = np.array([touch.is_solid for touch in touches], bool)
-        self.is_joined = np.array([touch.is_joined for touch in touches], bool)
-        self.load = np.zeros(len(touches))  # down, besides the weight of the body, N
-        self.was_above = np.zeros(len(touches), bool)
+    def __init__(self, carriers: list[Carrier], before: Touches | None) -> None:
+        counts = [len(each.radii) for each in carriers]
+        of = np.repeat(np.arange(len(carriers)), counts)
+        self.keys = [
+            (each.body, each.number, index)
+            for each, count in zip(carriers, counts, strict=True)
+            for index in range(count)
+        ]
+        self.carriers = of
+        self.rows = np.array([each.rows for each in carriers], np.intp).reshape(-1, 4)[of]
+        self.weights = np.concatenate([np.empty((0, 4)), *(each.weights for each in carriers)])
+        self.masses = np.array([each.masses for each in carriers], float).reshape(-1, 4)[of]
+        self.radius = np.concatenate([np.empty(0), *(each.radii for each in carriers)])
+        self.is_solid = np.array([each.is_solid for each in carriers], bool)[of]
+        self.is_joined = np.array([each.is_joined for each in carriers], bool)[of]
+        self.load = np.zeros(len(of))  # down, besides the weight of the body, N
+        self.was_above = np.zeros(len(of), bool)
         self.is_new = True
         known = {} if before is None else {key: index for index, key in enumerate(before.keys)}
         for index, key in enumerate(self.keys):
@@ -69,13 +78,13 @@ class Touches:
                 self.load[index], self.was_above[index] = before.load[old], before.was_above[old]
 
     def leave(self) -> None:
-        """All of them are above."""
+        """Resets the state: all points are above the floor."""
         self.load[:] = 0
         self.was_above[:] = True
 
 
 def level_below(system: System | Simulator) -> float:
-    """A height of the ground under all that is there and what hangs from nails, m: 0, or lower where that is lower."""
+    """Height of a ground below all bodies and the reach of those that hang from nails, m: at most 0."""
     places = system.positions
     if not len(places):
         return 0.0
@@ -91,8 +100,8 @@ def level_below(system: System | Simulator) -> float:
 
 
 class Floor:
-    """Holds all that moves in a system above `height` m, where gravity draws it down. friction: coefficient. thickness_of: radius
-    of what a body of particles is drawn with, m; it rests on that."""
+    """Keeps all moving bodies of a system above `height` m against gravity. friction: coefficient. thickness_of: drawn
+    radius of a body of particles, m, on which it rests."""
 
     def __init__(
         self,
@@ -108,10 +117,10 @@ class Floor:
         self._bodies: list[Body] = []
         self._slots: Indices = np.empty((0, 4), np.intp)  # of the particles in `rows`
         self._particle_count = 0
-        self._reach = 0.0  # how far a point is from the particles of its body, at most, m
+        self._reach = 0.0  # largest distance of a point from the particles of its body, m
 
     def forget(self) -> None:
-        """After the system was restored."""
+        """Call it after the system was restored."""
         self._version = -1
         self._touches = None
 
@@ -125,7 +134,7 @@ class Floor:
         lowest = positions[:, 1].min() - self.height - self._reach
         is_clear = lowest > 0 and lowest + (velocities[:, 1].min() - gravity * dt) * dt > 0
         version = self._system.structure_version
-        # What is cut or joined high above the floor is of no concern; what is new may reach farther than all before.
+        # Edits high above the floor have no effect, but new bodies may reach farther than all before.
         if self._touches is None or (self._version != version and not (is_clear and len(positions) == self._row_count)):
             self._version, self._row_count = version, len(positions)
             self._take_structure(positions)
@@ -143,7 +152,7 @@ class Floor:
         heights = (positions[touches.rows, 1] * touches.weights).sum(axis=1) - touches.radius - self.height
         speeds = (velocities[touches.rows, 1] * touches.weights).sum(axis=1) - gravity * dt
         if touches.is_new:
-            # What begins below the floor is left there until it has been above; a little below is on it.
+            # Points that start below the floor are ignored until they have been above; a little below counts as on it.
             size = float(np.linalg.norm(np.ptp(positions, axis=0)))
             touches.was_above |= heights >= -(0.05 * size + 0.2 * self._reach)
             touches.is_new = False
@@ -170,12 +179,12 @@ class Floor:
         load = np.clip(load, 0, MOST_LOAD * gravity * ways.felt[:, 1])
         touches.load[near] = load
 
-        # As the next step would leave the bodies without a floor.
+        # Velocities after the next step without a floor.
         motion = bodies.motion
         motion[:, 1] -= gravity * dt
         np.add.at(motion, of, -ways.gain[:, :, 1] * (load * dt)[:, None])
         wanted = np.zeros((len(near), 3))
-        # Depth is given back slowly enough to throw nothing higher than a tenth of it.
+        # Depth is corrected slowly enough to throw no body higher than a tenth of it.
         depth = np.maximum(-heights, 0)
         wanted[:, 1] = np.where(
             heights < 0, np.minimum(GIVEN_BACK * depth / dt, np.sqrt(0.2 * gravity * depth)), -heights / dt
@@ -199,10 +208,10 @@ class Floor:
         for row in np.unique(rows):
             self._particles[row].apply_force(Vec3(*pushes[row]))
 
-    # --- where bodies can touch -------------------------------------------------------------------------------------
+    # --- touch points -------------------------------------------------------------------------------------
 
     def _take_structure(self, positions: Array) -> None:
-        """Lists points anew; where only sparks have come and gone, their rows are enough."""
+        """Lists the points again; if only sparks have changed, only the rows are updated."""
         self._particles = self._system.particles
         slots = np.fromiter((particle.slot for particle in self._particles), np.intp, len(self._particles))
         rows = np.full(slots.max() + 1, -1)
@@ -221,9 +230,8 @@ class Floor:
         self._slots = slots[self._touches.rows]
 
     def _list(self, positions: Array, row_of: Indices) -> None:
-        touches: list[Touch] = []
+        carriers: list[Carrier] = []
         self._reach = 0.0
-        carrier = 0
         for body in self._bodies:
             if body.kind not in ("dynamic", "resting"):
                 continue
@@ -231,38 +239,36 @@ class Floor:
             particles = body.particles
             rows, masses = [int(row_of[p.slot]) for p in particles], [p.mass for p in particles]
             corners = positions[rows[:4]]
-            found = list(_of_shapes(body, corners)) if body.solids and len(rows) >= 4 else []
-            carrier += 1
-            for index, (weights, radius) in enumerate(found):
-                touches.append(
-                    Touch((body, index), carrier, rows[:4], list(weights), masses[:4], radius, True, is_joined)
-                )
-                self._reach = max(self._reach, radius + float(np.linalg.norm(weights @ corners - corners[0])))
-            if found:
+            weights, radii = _of_shapes(body, corners) if body.solids and len(rows) >= 4 else NO_POINTS
+            if len(radii):
+                carriers.append(Carrier(body, -1, rows[:4], weights, masses[:4], radii, True, is_joined))
+                reaches = radii + np.linalg.norm(weights @ corners - corners[0], axis=1)
+                self._reach = max(self._reach, float(reaches.max()))
                 continue
             thickness = self._thickness_of(body)
             for particle, row, mass in zip(particles, rows, masses, strict=True):
-                carrier += 1
                 if mass <= 0:
                     continue
                 radius = particle.radius if particle.has_attributes and particle.radius > 0 else thickness
-                key = (body, particle.slot)
-                touches.append(Touch(key, carrier, [row] * 4, [1, 0, 0, 0], [mass, 0, 0, 0], radius, False, is_joined))
+                alone, its_mass = np.array([[1.0, 0, 0, 0]]), [mass, 0.0, 0.0, 0.0]
+                carriers.append(
+                    Carrier(body, particle.slot, [row] * 4, alone, its_mass, np.array([radius]), False, is_joined)
+                )
                 self._reach = max(self._reach, radius)
-        self._touches = Touches(touches, self._touches)
+        self._touches = Touches(carriers, self._touches)
 
 
 @dataclass
 class _Ways:
-    """How places on bodies and the motion of those bodies (velocity and spin, six numbers) hang together."""
+    """The relation between places on bodies and the motion of those bodies (velocity and spin, six numbers)."""
 
     speed: Array  # (n, 3, 6): motion -> velocity of the place
     gain: Array  # (n, 6, 3): push at the place, N s -> change of motion
-    felt: Array  # (n, 3): mass that a push along x, y or z feels, kg
+    felt: Array  # (n, 3): effective mass along x, y or z, kg
 
 
 class _Bodies:
-    """Rigid bodies of up to four point masses each, x, v: (n, 4, 3), m: (n, 4), as long as nothing else acts on them."""
+    """Rigid bodies of up to four point masses each, x, v: (n, 4, 3), m: (n, 4), without other forces."""
 
     def __init__(self, x: Array, v: Array, m: Array) -> None:
         self.mass = m.sum(axis=1)
@@ -274,7 +280,7 @@ class _Bodies:
         size = np.trace(inertia, axis1=1, axis2=2)
         self._inverse = np.zeros_like(inertia)
         spread = size > 0
-        # A rod has none about its own axis: there nothing can be pushed with an arm.
+        # A rod has no inertia about its own axis, but no force has an arm about it either.
         self._inverse[spread] = np.linalg.inv(inertia[spread] + 1e-9 * size[spread, None, None] * np.eye(3))
         momentum = np.einsum("nijk,nik,ni->nj", _crosses(arms), v - velocity[:, None, :], m)
         self.motion = np.hstack([velocity, np.einsum("njk,nk->nj", self._inverse, momentum)])
@@ -299,7 +305,7 @@ def _crosses(arms: Array) -> Array:
 
 
 def _into_cone(force: Array, friction: float) -> None:
-    """Shortens the sideways parts to `friction` of the upward ones."""
+    """Limits the horizontal parts to `friction` times the vertical ones."""
     sideways = np.hypot(force[:, 0], force[:, 2])
     most = friction * force[:, 1]
     scale = np.where(sideways > most, most / np.maximum(sideways, 1e-300), 1.0)
@@ -308,7 +314,7 @@ def _into_cone(force: Array, friction: float) -> None:
 
 
 def _turns(of: Indices) -> Iterator[Indices]:
-    """Which points are the first of their body, which the second, and so on."""
+    """Groups the points: all first ones of bodies, all second ones, and so on."""
     order = np.argsort(of, kind="stable")
     starts = np.flatnonzero(np.diff(of[order], prepend=-1))
     rank = np.empty(len(of), np.intp)
@@ -317,7 +323,8 @@ def _turns(of: Indices) -> Iterator[Indices]:
 
 
 def weights_at(x: Array, w: Array, place: Array, which: Flags) -> Array:
-    """Weights of four points each, x: (n, 4, 3), whose sum is at a place; those not asked for as they are in `w`."""
+    """Weights of four points each, x: (n, 4, 3), whose weighted sum is a place; rows that are not requested stay as in
+    `w`."""
     if not which.any():
         return w
     w = w.copy()
@@ -328,49 +335,49 @@ def weights_at(x: Array, w: Array, place: Array, which: Flags) -> Array:
     return w
 
 
-def _of_shapes(body: Body, corners: Array) -> Iterable[tuple[Array, float]]:
-    """Weights of four particles, and radius, of each point at which a body's shapes can touch."""
+def _of_shapes(body: Body, corners: Array) -> tuple[Array, Array]:
+    """Of each point at which a body's shapes can touch: weights of four particles (n, 4), and radius (n,)."""
     edges = (corners[1:] - corners[0]).T
     if abs(np.linalg.det(edges)) < 1e-9 * np.abs(edges).max() ** 3:
-        return
-    inverse = np.linalg.inv(edges)
+        return NO_POINTS
+    places, radii = [np.empty((0, 3))], [np.empty(0)]
     for solid in body.solids:
-        for local, radius in touching_points(solid.shape):
-            place = np.array(tuple(solid.position + turned(solid.orientation, Vec3(*local))))
-            shares = inverse @ (place - corners[0])
-            yield np.array([1 - shares.sum(), *shares]), radius
+        local, thickness = touching_points(solid.shape)
+        axes = [tuple(turned(solid.orientation, unit)) for unit in UNITS]
+        places.append(np.array(tuple(solid.position)) + local @ np.array(axes))
+        radii.append(np.full(len(local), thickness))
+    shares = np.linalg.solve(edges, (np.concatenate(places) - corners[0]).T).T
+    return np.hstack([1 - shares.sum(axis=1, keepdims=True), shares]), np.concatenate(radii)
 
 
-def touching_points(shape: Shape) -> list[tuple[Array, float]]:
-    """Round points, in the frame of a shape, whose hull is about the shape's: places and radii, m."""
+def touching_points(shape: Shape) -> tuple[Array, float]:
+    """Round points, in the frame of a shape, whose hull is about the shape's: places (n, 3) and their radius, m."""
     if isinstance(shape, Sphere):
-        return [(np.zeros(3), shape.radius)]
+        return np.zeros((1, 3)), shape.radius
     if isinstance(shape, Capsule):
-        return [(np.array([side * shape.length / 2, 0, 0]), shape.radius) for side in (-1, 1)]
+        return np.array([[side * shape.length / 2, 0, 0] for side in (-1, 1)]), shape.radius
     if isinstance(shape, Box):
-        half = np.array(tuple(shape.size)) / 2 - shape.rounding
-        signs = np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1]), axis=-1).reshape(-1, 3)
-        return [(half * sign, shape.rounding) for sign in signs]
+        return CORNERS * (np.array(tuple(shape.size)) / 2 - shape.rounding), shape.rounding
     around = 2 * np.pi * (np.arange(ROUND_POINTS) + 0.5) / ROUND_POINTS
     if isinstance(shape, Cylinder):
         rim = np.stack([0 * around, np.cos(around), np.sin(around)], axis=1) * shape.radius
-        return [(place + [side * shape.length / 2, 0, 0], 0.0) for side in (-1, 1) for place in rim]
+        return np.concatenate([rim + [side * shape.length / 2, 0, 0] for side in (-1, 1)]), 0.0
     if isinstance(shape, Torus):
         ring = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1) * shape.radius
         ring[:, 0] += np.sign(ring[:, 0]) * shape.stretch / 2
-        return [(place, shape.tube) for place in ring]
+        return ring, shape.tube
     if isinstance(shape, Mesh):
         vertices = np.array([tuple(v) for v in shape.vertices])
-        return [(vertices[i], 0.0) for i in np.unique(np.argmax(vertices @ _directions().T, axis=0))]
+        return vertices[np.unique(np.argmax(vertices @ _directions().T, axis=0))], 0.0
     if isinstance(shape, HalfSpace):
-        return []
-    # What of a convex shape is nearest to a place far off lies farthest out in that direction.
+        return np.empty((0, 3)), 0.0
+    # The point of a convex shape nearest to a far place is the support point in that direction.
     far = 1e3 * max(abs(number) for number in shape.numbers)
-    return [(np.array(tuple(shape.closest(tuple(far * d)))), 0.0) for d in _directions()]
+    return np.array([tuple(shape.closest(tuple(far * d))) for d in _directions()]), 0.0
 
 
 def _directions() -> Array:
-    """All around, evenly: a spiral on the ball."""
+    """Uniform directions: a spiral on the sphere."""
     n = np.arange(DIRECTIONS)
     height = 1 - 2 * (n + 0.5) / DIRECTIONS
     turn = n * np.pi * (3 - np.sqrt(5))

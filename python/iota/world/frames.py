@@ -11,7 +11,7 @@ Quaternion = Sequence[float]
 
 
 def into_frame(point: Vec3, center: Vec3, orientation: Quaternion) -> Vec3:
-    """World place -> the body's drawn frame."""
+    """Transforms a world place to the body's drawn frame."""
     x, y, z, w = orientation
     axis, arm = Vec3(-x, -y, -z), point - center
     twice = axis.cross(arm) * 2.0
@@ -19,14 +19,14 @@ def into_frame(point: Vec3, center: Vec3, orientation: Quaternion) -> Vec3:
 
 
 def turned(q: Quaternion, v: Vec3) -> Vec3:
-    """The vector after the rotation q."""
+    """Rotates a vector by q."""
     axis = Vec3(q[0], q[1], q[2])
     twice = axis.cross(v) * 2.0
     return v + twice * q[3] + axis.cross(twice)
 
 
 def turn_from_x(direction: Vec3) -> tuple[float, float, float, float]:
-    """The shortest rotation that takes +x to a unit vector, as a quaternion x y z w."""
+    """The smallest rotation from +x to a unit vector, as a quaternion x y z w."""
     if direction.x < -0.999999:
         return (0.0, 0.0, 1.0, 0.0)
     w = ((1 + direction.x) / 2) ** 0.5
@@ -35,7 +35,7 @@ def turn_from_x(direction: Vec3) -> tuple[float, float, float, float]:
 
 
 def relative_turn(frame: Quaternion, turned: Quaternion) -> Quaternion:
-    """The rotation from a frame to another one, as a quaternion x y z w with w at least 0."""
+    """The rotation from one frame to another, as a quaternion x y z w with w at least 0."""
     ax, ay, az, aw = -frame[0], -frame[1], -frame[2], frame[3]
     bx, by, bz, bw = turned
     w = aw * bw - ax * bx - ay * by - az * bz

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who is there, what they have selected, and what they hold."""
+"""The clients, their selections and their holds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 from iota._core import Body, Grip, InputEvent, System
 from iota.simulator import SimulatedGrip
 
-TakePicture = Callable[[int, float], bytes]  # client, longest wait in s
+TakePicture = Callable[[int, float], bytes]  # client, time limit in s
 
 
 @dataclass
@@ -33,8 +33,9 @@ class Client:
     take_picture: TakePicture | None = field(default=None, repr=False, compare=False)
 
     def screenshot(self, file: str | Path | None = None, seconds: float = 20.0) -> bytes:
-        """What this page shows now, as a PNG file; also written to `file`. The world waits for it, `seconds` at most. Raises
-        TimeoutError when it does not come (the page is in the background), RuntimeError when the world is on no page."""
+        """The page's current picture, as a PNG file; also written to `file`. The world waits for it, at most `seconds`.
+        Raises TimeoutError if it does not arrive (the page is in the background), RuntimeError if the world is not
+        served."""
         if self.take_picture is None:
             raise RuntimeError("this client is on no page")
         picture = self.take_picture(self.id, seconds)
@@ -44,12 +45,12 @@ class Client:
 
 
 def alive(body: Body | None) -> Body | None:
-    """The body, or what it was absorbed by; None if it is gone."""
+    """The body, or the one that absorbed it; None if it was destroyed."""
     return None if body is None else body.survivor
 
 
 class Hands:
-    """Turns input events into grips. Forces of several holders add up, as each has a grip of its own."""
+    """Turns input events into grips. Each holder has a grip of its own, so their forces are added."""
 
     def __init__(self, system: System) -> None:
         self._system = system
@@ -57,7 +58,7 @@ class Hands:
         self.take_picture: TakePicture | None = None
 
     def take(self, event: InputEvent, body: Any) -> None:
-        """One event of kind join, leave, select or grab_*. body: that it is on, if any."""
+        """Handles an event of kind join, leave, select or grab_*. body: of the event, if any."""
         if event.kind == "join":
             self.clients[event.client] = Client(event.client, event.name, take_picture=self.take_picture)
             return
@@ -94,7 +95,7 @@ class Hands:
             self._release(client, hold)
 
     def forget(self) -> None:
-        """After the system was restored: its grips are those of then, which are none of ours."""
+        """Call it after the system was restored: the restored grips belong to no present hand."""
         for client in self.clients.values():
             client.holds.clear()
 

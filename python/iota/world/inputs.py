@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What users do: events of the server, in the order in which they came, and calls from other threads."""
+"""Users' input: events of the server, in order of arrival, and calls from other threads."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from iota.world.widgets import Widget
 
 
 class Inputs:
-    """Brings them to the world, between steps. step, reset: what users may ask the world for."""
+    """Passes them to the world, between steps. step, reset: functions for users' requests."""
 
     def __init__(self, state: State, guard: Guard, step: Callable[[], object], reset: Callable[[], None]) -> None:
         self._state, self._guard, self._step, self._reset = state, guard, step, reset
@@ -27,7 +27,7 @@ class Inputs:
         self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
     def call(self, function: Callable[[], None]) -> None:
-        """Has it called with the next inputs. From any thread."""
+        """Calls a function with the next inputs. May be used on any thread."""
         self._calls.put(function)
 
     def take_calls(self) -> None:
@@ -35,7 +35,7 @@ class Inputs:
             self._calls.get()()
 
     def take(self, events: Iterable[tuple[InputEvent, Any]]) -> None:
-        """Everything that users did, each with the body that it is on, if that is there."""
+        """Handles all events of users, each with its body, if that still exists."""
         waited, self._waiting = self._waiting, []
         for event, body in (*waited, *events):
             if event.kind == "picture":
@@ -44,8 +44,8 @@ class Inputs:
             if event.names_body and body is None:
                 if event.kind == "pointer":
                     continue
-                text = "It was destroyed, or made one with another body."
-                self._state.notices.send("That is gone", text, client=event.client)
+                text = "It was destroyed, or combined with another body."
+                self._state.notices.send("It no longer exists", text, client=event.client)
                 if event.kind != "select":
                     continue
             if event.kind == "action":
@@ -63,7 +63,7 @@ class Inputs:
                 self._take_hands(event, body)
 
     def take_pictures(self, events: Iterable[tuple[InputEvent, Any]]) -> None:
-        """Only parts of pictures; all else waits for `take`."""
+        """Handles only parts of pictures; all other events wait for `take`."""
         for event, body in events:
             if event.kind == "picture":
                 self._state.pictures.take(event)
@@ -76,7 +76,7 @@ class Inputs:
         for listener in state.listeners.of("frame"):
             arguments = (Event(state.system, "frame", notices=state.notices),) if listener.hook.takes_event else ()
             if not self._guard.call(f"on_frame ({listener.hook.name})", listener.hook.function, *arguments):
-                state.listeners.remove(listener.hook.function)  # sixty errors a second help nobody
+                state.listeners.remove(listener.hook.function)  # avoids an error in each frame
 
     def _tell(self, listener: Listener, event: InputEvent, body: Any = None, **more: Any) -> None:
         """Calls one of the script's functions."""
@@ -87,7 +87,9 @@ class Inputs:
     def _change(self, event: InputEvent) -> None:
         widget = self._state.things.find("widget", event.widget)
         if not isinstance(widget, Widget):
-            self._state.notices.send("That is gone", "The script has taken it off the page.", client=event.client)
+            self._state.notices.send(
+                "It no longer exists", "The script has removed it from the page.", client=event.client
+            )
             return
         given = Event(self._state.system, widget.label, event.client, notices=self._state.notices)
         widget.take(event.value, event.name, given, self._guard)
@@ -101,7 +103,7 @@ class Inputs:
             self._tell(listener, event, body, point=point, pointer=event.name, phase=phase, **ray)
 
     def _take_hands(self, event: InputEvent, body: Any) -> None:
-        """Hands of users, and who is there. The script hears of both; it may move by itself what they would pull."""
+        """Hands of users, joins and leaves. The script's listeners are called; they may replace the pull of a hand."""
         listeners, kind = self._state.listeners, event.kind
         if kind == "grab_start" and body is not None and body.kind != "inactive":
             drag = Drag(body, list(listeners.of("drag", body)))
@@ -144,7 +146,7 @@ class Inputs:
             self._tell(listener, event, body, point=point, phase=phase, hold=event.hold)
 
     def _move_hands(self, event: InputEvent, body: Any) -> None:
-        """What a page asks for that the system refuses is that page's error alone, and nothing of the script's."""
+        """If the system refuses a request of a page, only that page gets an error, not the script."""
         try:
             self._state.hands.take(event, body)
         except (ValueError, RuntimeError, LookupError) as error:

@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ready parts of interaction: break, join, copy, undo, redo, measure; sockets that plugs snap into; forces as arrows."""
+"""Predefined interaction: break, join, copy, undo, redo, measure; sockets that plugs snap into; forces as arrows."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property
 from typing import Any
 
-from iota._core import Body, Particle, System, Vec3
+from iota._core import Body, Bond, Particle, System, Vec3
 from iota.looks import sphere
 from iota.world.drawing import Drawing
 from iota.world.event import Event
-from iota.world.joining import hinge_above, nearest_ends
+from iota.world.joining import Joins, hinge_above, nearest_ends
 from iota.world.listening import Listening
 from iota.world.shown import Arrow, Label, Line, Marker
 
-JOIN_SPEED = 1.2  # m/s, of ends that are drawn together
 FREE, READY = "#2f9d92", "#f2a324"  # of a socket
 
 
 class Interacting(Drawing, Listening):
-    """What users do in many worlds, by one call each."""
+    """Common interactions, by one call each."""
 
     # Of World, whose module imports this one.
 
@@ -36,10 +37,14 @@ class Interacting(Drawing, Listening):
     def on_reset(self, function: Callable[[], Any]) -> Callable[[], Any]:
         raise NotImplementedError
 
+    @cached_property
+    def _joins(self) -> Joins:
+        return Joins()
+
     def offer(self, *parts: str) -> None:
-        """Lets users break ("break", key b), join ("join", c) and copy ("copy", n) what they hold or have selected, measure
-        ("measure", v) between two bodies, and take back and repeat ("undo", z; "redo", y) these edits and those that the
-        script makes in `with world.system.edit():`. Without names all of them. Raises ValueError for other names.
+        """Lets users break ("break", key b), join ("join", c) and copy ("copy", n) the held or selected body, measure
+        ("measure", v) between two bodies, and undo ("undo", z) and redo ("redo", y) these edits and those of the script
+        in `with world.system.edit():`. Without names all of them. Raises ValueError for other names.
 
         world.offer("break", "join")
         """
@@ -54,17 +59,19 @@ class Interacting(Drawing, Listening):
         plugs: Iterable[Particle],
         within: float = 0.1,
         on_snap: Callable[[Particle], object] | None = None,
+        pull: float = 0.0,
     ) -> Socket:
-        """A place that plugs snap into: one that a user lets go of within `within` m of it is joined to it. While one of
-        them is held, a ball shows where, amber when letting go would join them. on_snap gets the plug that was joined.
+        """A place that plugs snap into: a plug that a user releases within `within` m of it is joined to it. While a
+        plug is held, a ball shows the place, amber when a release would join it. on_snap gets the joined plug. pull: largest force that
+        draws a held plug to the place, N; it acts within twice the distance.
 
         world.socket(wall.particles[0], [cable.particles[-1]], within=0.2)
         """
-        return Socket(self, place, plugs, within, on_snap)
+        return Socket(self, place, plugs, within, on_snap, pull)
 
     def show_forces(self, bodies: Iterable[Body] | None = None, scale: float | None = None) -> Forces:
-        """Arrows for what nails, hinges and hands do to bodies (None: all), red the nails, blue the hinges, as long as the
-        force times `scale` (m/N; None: the largest is a fifth of the scene). `forces.destroy()` ends it.
+        """Arrows for the forces of nails (red), hinges (blue) and hands on bodies (None: all), of length force times
+        `scale` (m/N; None: the largest is a fifth of the scene). `forces.destroy()` removes them.
 
         forces = world.show_forces()
         """
@@ -75,13 +82,15 @@ class Interacting(Drawing, Listening):
 
 
 def _break(world: Interacting) -> None:
-    @world.action("break", key="b", button="b", help="separates the held or selected body from the one above")
+    @world.action(
+        "break", key="b", button="b", help="separates the held or selected body from the one above, or calls a join off"
+    )
     def break_it(event: Event) -> None:
-        hinge = hinge_above(event.body)
-        if hinge is None:
-            event.notice("Nothing to break", "This one has none above it.")
+        pair = hinge_above(event.body) or world._joins.under_way(event.body)
+        if pair is None:
+            event.notice("Nothing to break", "No hinge is above this body.")
             return
-        above, own = hinge
+        above, own = pair
         with world.system.edit():
             above.separate(own)
 
@@ -91,15 +100,14 @@ def _join(world: Interacting) -> None:
     def join(event: Event) -> None:
         pair = nearest_ends(event.body)
         if pair is None:
-            event.notice("Nothing to join", "Everything hangs together already, or has no loose end.")
+            event.notice("Nothing to join", "Everything is connected already, or has no loose end.")
             return
-        end, own = pair
         with world.system.edit():
-            end.combine(own, over=max(0.3, abs(end.position - own.position) / JOIN_SPEED))
+            world._joins.begin(*pair, shortest=0.3)
 
 
 def _copy(world: Interacting) -> None:
-    @world.action("copy", key="n", help="another one of the held or selected body, beside it")
+    @world.action("copy", key="n", help="copies the held or selected body")
     def copy_it(event: Event) -> None:
         with world.system.edit():
             made = copy_body(event.body)
@@ -108,14 +116,14 @@ def _copy(world: Interacting) -> None:
 
 
 def _undo(world: Interacting) -> None:
-    @world.action("undo", key="z", help="takes the last edit back", on="world")
+    @world.action("undo", key="z", help="undoes the last edit", on="world")
     def undo(event: Event) -> None:
         if not world.undo():
             event.notice("Nothing to undo")
 
 
 def _redo(world: Interacting) -> None:
-    @world.action("redo", key="y", help="repeats what was taken back", on="world")
+    @world.action("redo", key="y", help="repeats the undone edit", on="world")
     def redo(event: Event) -> None:
         if not world.redo():
             event.notice("Nothing to redo")
@@ -161,7 +169,7 @@ PARTS: dict[str, Callable[[Interacting], None]] = {
 
 
 def copy_body(body: Body) -> Body:
-    """Another one of the same shape, mass and motion, beside it along x; without its hinges, nails and bonds. Raises
+    """Makes a body of the same shape, mass and motion, beside it along x, without its hinges, nails and bonds. Raises
     ValueError for a body of several solids."""
     system = body.system
     places = [p.position for p in body.particles]
@@ -198,9 +206,14 @@ class Socket:
         plugs: Iterable[Particle],
         within: float,
         on_snap: Callable[[Particle], object] | None,
+        pull: float,
     ) -> None:
         if not within > 0:
             raise ValueError(f"within must be more than 0 m, not {within}")
+        if not 0 <= pull < math.inf:
+            raise ValueError(f"pull must be a finite force of 0 N or more, not {pull}")
+        self.pull = pull
+        self._bond: Bond | None = None
         self.place, self.within, self._world, self._on_snap = place, within, world, on_snap
         self.plugs = list(plugs)
         self._ghost: Marker = world.shape(sphere(0.3 * within, "glass", color=FREE), on=place)
@@ -208,12 +221,25 @@ class Socket:
         self._drag = world.on_drag("anything")(self._dragged)
 
     def destroy(self) -> None:
-        """It takes no plugs any more; what is joined stays so."""
+        """Removes the socket; joined plugs stay joined."""
         self._world.forget(self._drag)
+        self._draw(None)
         self._ghost.destroy()
 
+    def _draw(self, plug: Particle | None) -> None:
+        """Draws a plug to the place, or none any more."""
+        bond = self._bond if self._bond is not None and self._bond.alive else None
+        if bond is not None and (plug is None or plug not in bond.ends):
+            bond.destroy()
+            bond = None
+        if bond is None and plug is not None:
+            # As strong from everywhere but close to the place, where it fades.
+            law = "energy = pull*sqrt(r^2 + soft^2)"
+            bond = self._world.system.bond(plug, self.place, law, pull=self.pull, soft=0.2 * self.within)
+        self._bond = bond
+
     def _held(self, body: Body) -> Particle | None:
-        """The plug on the held part that is nearest, unless it is in already."""
+        """The nearest plug on the held part, unless it is joined already."""
         mine = [p for p in self.plugs if p.alive and self.place.alive and p.body.articulate == body.articulate]
         free = [p for p in mine if p.body != self.place.body and p not in self.place.ring]
         return min(free, key=lambda p: abs(p.position - self.place.position), default=None)
@@ -222,13 +248,16 @@ class Socket:
         plug = None if event.target is None else self._held(event.target)
         self._ghost.visible = plug is not None and event.phase != "end"
         if plug is None:
+            self._draw(None)
             return
         apart = abs(plug.position - self.place.position)
+        is_near = apart <= 2 * self.within and event.phase != "end"
+        self._draw(plug if is_near and self.pull > 0 else None)
         self._ghost.color = READY if apart <= self.within else FREE
         if event.phase != "end" or apart > self.within:
             return
         with self._world.system.edit():
-            self.place.combine(plug, over=max(0.1, apart / JOIN_SPEED))
+            self._world._joins.begin(self.place, plug, shortest=0.1)
         if self._on_snap is not None:
             self._on_snap(plug)
 
@@ -243,7 +272,7 @@ class Forces:
         self._follow = world.on_frame(self._write)
 
     def destroy(self) -> None:
-        """Takes them off the page."""
+        """Removes them from the page."""
         self._world.forget(self._follow)
         for arrow in self._arrows.values():
             arrow.destroy()
@@ -273,6 +302,6 @@ class Forces:
 
 
 def _size(world: Interacting) -> float:
-    """Of all that is there, m."""
+    """Size of the scene, m."""
     places: Any = world.system.positions
     return float(abs(places.max(axis=0) - places.min(axis=0)).max()) if len(places) else 1.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which hinges and ends users mean when they break and join what hangs together."""
+"""Finds the hinge to break and the ends to join for users' actions."""
 
 from __future__ import annotations
 
@@ -8,16 +8,35 @@ from collections.abc import Iterable
 from iota._core import Body, Particle
 
 Pair = tuple[Particle, Particle]
+SPEED = 1.2  # m/s, of ends that are drawn together
+
+
+class Joins:
+    """Joins that take time: the two particles are drawn together until they meet."""
+
+    def __init__(self) -> None:
+        self._pairs: list[Pair] = []
+
+    def begin(self, end: Particle, own: Particle, shortest: float) -> None:
+        """Draws `own` to `end` at a bounded speed, in no less than `shortest` s."""
+        self._pairs = [pair for pair in self._pairs if _are_apart(pair)]
+        self._pairs.append((end, own))
+        end.combine(own, over=max(shortest, abs(end.position - own.position) / SPEED))
+
+    def under_way(self, body: Body) -> Pair | None:
+        """The pair begun last that still draws the body's part to another; separating the two calls it off."""
+        # Particles that are drawn together are in one articulate before they have met. An undo or a reset ends that too.
+        return next((p for p in reversed(self._pairs) if _are_apart(p) and body in p[0].body.articulate), None)
 
 
 def loose_ends(bodies: Iterable[Body]) -> list[Particle]:
-    """The particles that nothing is hinged to and no nail holds, apart from a solid's own four points."""
+    """The particles without hinge and nail, except a solid's own four points."""
     return [p for body in bodies for p in _places(body) if len(p.ring) == 1 and not p.is_nailed]
 
 
 def hinge_above(body: Body) -> Pair | None:
-    """The hinge towards the nail, or towards the highest end of a part that has none: (the one above, the body's own). None
-    for the uppermost."""
+    """The hinge towards the nail, or towards the highest end of a part without nails: (particle above, particle of the
+    body). None for the uppermost body."""
     part = body.articulate
     roots = [p for each in part for p in each.particles if p.is_nailed]
     roots = roots or [max(loose_ends(part) or body.particles, key=lambda p: p.position.y)]
@@ -37,7 +56,7 @@ def hinge_above(body: Body) -> Pair | None:
 
 
 def nearest_ends(body: Body) -> Pair | None:
-    """The loose end elsewhere and the one of the body's part that are nearest to each other; None without any."""
+    """The nearest pair of a loose end of another part and one of the body's part; None if there is none."""
     others = [other for other in body.system.bodies if other not in body.articulate]
     pairs = [(theirs, own) for theirs in loose_ends(others) for own in loose_ends(body.articulate)]
     return min(pairs, key=lambda pair: abs(pair[0].position - pair[1].position), default=None)
@@ -45,3 +64,11 @@ def nearest_ends(body: Body) -> Pair | None:
 
 def _places(body: Body) -> list[Particle]:
     return body.attachments if body.solids else body.particles
+
+
+def _are_apart(pair: Pair) -> bool:
+    """Both are there, in one articulate, and have not met."""
+    end, own = pair
+    if not (end.alive and own.alive) or end.body == own.body or own in end.ring:
+        return False
+    return end.body.articulate == own.body.articulate

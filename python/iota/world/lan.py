@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Phones, headsets and other computers on the local network: addresses, certificate, and what is told about them."""
+"""Phones, headsets and other computers on the local network: addresses, certificate, and the text about them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from iota._core import kept_certificate
 
 @dataclass(frozen=True)
 class Lan:
-    """That a server takes other machines, by https. cert, key: files in PEM; without them a certificate of its own is made."""
+    """Lets a server accept other machines, by https. cert, key: files in PEM; without them a self-signed certificate is
+    made."""
 
     cert: Path | None = None
     key: Path | None = None
@@ -30,18 +31,18 @@ class Lan:
 
 
 def address() -> str:
-    """This machine's address on the network that leads outside. Raises OSError where there is none."""
+    """This machine's address on its network. Raises OSError if there is none."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.connect(("192.0.2.1", 9))  # an address for documentation; connecting a datagram socket sends nothing
         except OSError:
-            raise OSError("this machine is on no network, so there is nobody to serve with lan") from None
+            raise OSError("this machine is on no network, so lan cannot serve other machines") from None
         return str(probe.getsockname()[0])
 
 
 def qr_code(text: str) -> str:
-    """For a terminal with light letters on dark or dark ones on light."""
-    import segno  # 30 ms, which most that import iota need not wait for
+    """A QR code for a terminal with light text on dark or dark text on light."""
+    import segno  # 30 ms, needed only here
 
     out = StringIO()
     segno.make(text, error="l").terminal(out, compact=True)
@@ -49,11 +50,13 @@ def qr_code(text: str) -> str:
 
 
 def announcement(url: str, fingerprint: str, port: int, shows_code: bool) -> list[str]:
-    """Lines that tell how to come in."""
+    """Lines with the addresses."""
     lines = [f"  phones, headsets, other computers: {url}"]
     if shows_code:
         lines += qr_code(url).split("\n")
-    lines.append("  their browser warns once, as the certificate is this machine's own; SHA-256 fingerprint:")
+    lines.append("  their browser warns once, as the certificate is self-signed; SHA-256 fingerprint:")
     lines.append(f"    {fingerprint}")
-    lines.append(f"  a headset on a cable needs none: adb reverse tcp:{port} tcp:{port}, then the first address there")
+    lines.append(
+        f"  a headset on a cable needs no certificate: adb reverse tcp:{port} tcp:{port}, then the first address there"
+    )
     return lines

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The script's functions for what users do: with a body, with anything, with nothing, or with a key; and for what happens."""
+"""The script's functions for events of users (on a body, on any body, on empty space, by a key) and of the
+simulation."""
 
 from __future__ import annotations
 
@@ -16,8 +17,8 @@ KINDS = ("click", "press", "release", "drag", "hover", "key", "join", "leave", "
 
 @dataclass(frozen=True, eq=False)
 class Listener:
-    """A function and what it is for. bodies: None for any, none of them for nothing. takes_over: in place of what happens by
-    default. on_release: of a key, when it is let go."""
+    """A function and its events. bodies: None for any body, empty for empty space. takes_over: replaces the default
+    reaction. on_release: for the release of a key."""
 
     kind: str
     hook: Hook
@@ -33,12 +34,12 @@ class Listener:
             return self.bodies is not None and not self.bodies
         if self.bodies is None:
             return True
-        # A body that was absorbed is what has absorbed it.
+        # An absorbed body is represented by its survivor.
         return body in self.bodies or any(isinstance(each, Body) and each.survivor == body for each in self.bodies)
 
 
 def things_of(target: Any) -> frozenset[Any] | None:
-    """Bodies and constraints that a target of what happens stands for. Raises TypeError for what is none."""
+    """The bodies and constraints of a target of simulation events. Raises TypeError for other targets."""
     if target == "anything" or isinstance(target, Body | SimulatedBody | Particle):
         return bodies_of(target)
     if isinstance(target, Constraint):
@@ -51,7 +52,7 @@ def things_of(target: Any) -> frozenset[Any] | None:
 
 
 def bodies_of(target: Any) -> frozenset[Any] | None:
-    """What a target stands for. Raises TypeError for what is none."""
+    """The bodies of a target. Raises TypeError for other targets."""
     if target == "anything":
         return None
     if target == "nothing":
@@ -69,14 +70,14 @@ def bodies_of(target: Any) -> frozenset[Any] | None:
 
 @dataclass
 class Drag:
-    """A hand that the script moves things by."""
+    """A hand whose drag the script handles."""
 
     body: Any
     listeners: list[Listener] = field(default_factory=list)
 
 
 class Listeners:
-    """All of a world. version: rises when what pages have to tell may have changed."""
+    """All listeners of a world. version: rises when the input events that pages have to send may have changed."""
 
     def __init__(self) -> None:
         self._by_kind: dict[str, list[Listener]] = {kind: [] for kind in KINDS}
@@ -88,7 +89,7 @@ class Listeners:
         self.version += 1
 
     def remove(self, function: Callable[..., Any]) -> bool:
-        """Forgets a function, whatever it was for; False where it is not known."""
+        """Removes a function from all events; False if it is not known."""
         before = sum(map(len, self._by_kind.values()))
         for kind, listeners in self._by_kind.items():
             self._by_kind[kind] = [each for each in listeners if each.hook.function is not function]
@@ -96,7 +97,7 @@ class Listeners:
         return sum(map(len, self._by_kind.values())) < before
 
     def of(self, kind: str, body: Any = None) -> Iterator[Listener]:
-        """Those for a kind and a body; None: nothing was hit, or it is about no body."""
+        """Those for a kind and a body; None: no hit, or an event without a body."""
         return iter([each for each in self._by_kind[kind] if each.hears(body)])
 
     def of_any(self, kind: str, things: Iterable[Any]) -> Iterator[Listener]:
@@ -113,5 +114,5 @@ class Listeners:
 
     @property
     def keys(self) -> list[str]:
-        """In the order in which they were asked for."""
+        """In the order of registration."""
         return list(dict.fromkeys(each.key for each in self._by_kind["key"] if each.key is not None))

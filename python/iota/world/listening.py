@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a World tells the script of its users, and of what happens."""
+"""Callbacks of a World for events of users and of the simulation."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ Callback = TypeVar("Callback", bound=Callable[..., Any])
 
 
 class Listening:
-    """Decorators for functions that are called when users do something, or something happens. They get one `Event`, or nothing; the event names the
-    client, the body and the place.
+    """Decorators for functions that are called on events of users or of the simulation. They take one `Event`, or
+    nothing; the event has the client, the body and the place.
 
-    on: a body, several, "anything" (any body) or "nothing" (no body was hit). `world.forget(function)` ends it.
+    on: a body, several, "anything" (any body) or "nothing" (no body was hit). `world.forget(function)` removes the
+    function.
     """
 
     _state: State
@@ -46,7 +47,7 @@ class Listening:
         return register
 
     def on_click(self, on: Any = "anything") -> Any:
-        """Decorator: pressed and let go at once, by mouse, finger, controller or hand.
+        """Decorator: a short press, by mouse, finger, controller or hand.
 
         @world.on_click(ball)
         def hit(event): event.body.velocity += (0, 3, 0)
@@ -57,26 +58,25 @@ class Listening:
         return self._listen("click", on)
 
     def on_press(self, on: Any = "anything") -> Any:
-        """Decorator: a hand closes on a body; event.point is where."""
+        """Decorator: a hand presses a body, at event.point."""
         return self._listen("press", on)
 
     def on_release(self, on: Any = "anything") -> Any:
-        """Decorator: the hand opens again."""
+        """Decorator: the hand releases it."""
         return self._listen("release", on)
 
     def on_drag(self, on: Any = "anything", grab: bool = True) -> Any:
-        """Decorator: a hand takes hold of a body (event.phase "start"), moves ("update") and lets go ("end"); event.point is
-        where the hand is, world, m. grab: the hand also pulls by its spring; False: nothing happens but what the function
-        does."""
+        """Decorator: a hand grabs a body (event.phase "start"), moves ("update") and releases it ("end"); event.point
+        is the place of the hand, world, m. grab: the hand also pulls with its spring; False: only the function acts."""
         return self._listen("drag", on, takes_over=not grab)
 
     def on_hover(self, on: Any = "anything") -> Any:
-        """Decorator: a pointer comes over a body (event.phase "start") or leaves it ("end")."""
+        """Decorator: a pointer enters a body (event.phase "start") or leaves it ("end")."""
         return self._listen("hover", on)
 
     def on_key(self, key: str, release: bool = False) -> Callable[[Callback], Callback]:
-        """Decorator: a key is pressed, or let go; it is the script's then and does nothing else on the page. key: as browsers
-        name it: "k", " ", "ArrowUp", "Enter". Actions have a button and a line in the help as well: see `action`."""
+        """Decorator: a key is pressed, or released; the page then does not use this key. key: by its name in browsers:
+        "k", " ", "ArrowUp", "Enter". Actions also have a button and a line in the help: see `action`."""
         if not key:
             raise ValueError("a key needs a name")
         return self._add("key", key=key, on_release=release)
@@ -86,17 +86,18 @@ class Listening:
         return self._add("join")(function)
 
     def on_leave(self, function: Callback) -> Callback:
-        """Decorator: a page was closed, or lost."""
+        """Decorator: a page was closed, or its connection lost."""
         return self._add("leave")(function)
 
     def on_frame(self, function: Callback) -> Callback:
-        """Decorator: calls a function before each picture that pages are sent, 60 times a second, paused or not."""
+        """Decorator: calls a function before each frame for pages, 60 times a second, also while paused."""
         return self._add("frame")(function)
 
     def on_contact(self, on: Any = "anything") -> Any:
-        """Decorator: what is one-sided begins (event.phase "start") or ends ("end") to carry a load: surfaces meet and part, a
-        rope goes taut or slack, a joint reaches or leaves a stop. Called between two steps; event.contact says which
-        constraint and stop, event.point where. on: a body, a constraint, several, or "anything".
+        """Decorator: a one-sided constraint begins (event.phase "start") or ceases ("end") to carry a load: surfaces
+        meet or part, a rope becomes taut or slack, a joint reaches or leaves a stop. Called between two steps;
+        event.contact has the constraint and stop, event.point the place. on: a body, a constraint, several, or
+        "anything".
 
         @world.on_contact(door_hinge)
         def stopped(event):
@@ -105,12 +106,12 @@ class Listening:
         return self._hear("contact", on)
 
     def on_break(self, on: Any = "anything") -> Any:
-        """Decorator: a load beyond its limit has broken a constraint, bond, hinge or nail: event.broken says which and how
-        large the load was. on: a body, a constraint, several, or "anything"."""
+        """Decorator: a constraint, bond, hinge or nail broke because of its load: event.broken has it and the load. on:
+        a body, a constraint, several, or "anything"."""
         return self._hear("break", on)
 
     def forget(self, function: Callable[..., Any]) -> bool:
-        """Ends calls that were asked for by the decorators above; False for a function that they do not know."""
+        """Removes a function registered by the decorators above; False for an unknown function."""
         self._state.is_changed = True
         return self._state.listeners.remove(function)
 

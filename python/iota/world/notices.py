@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small cards that tell users something."""
+"""Small cards with messages for users."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Forget = Callable[[str], object]  # a title, or nothing for all
 
 
 class Notices:
-    """Shows cards by `show`; before it is set and after it is taken away there is nobody to see them.
+    """Shows cards by `show`, which is set while the world is served.
 
-    Errors of the script are kept by the server, so that pages that open later are told why nothing happens."""
+    The server keeps errors of the script, so that pages that open later show them too."""
 
     def __init__(self) -> None:
         self.show: Show | None = None
@@ -27,28 +27,28 @@ class Notices:
     def send(
         self, title: str, text: str = "", hint: str = "", level: str = "info", client: int = 0, keep: bool = False
     ) -> None:
-        """On all pages, or on one client's. keep: pages that open later are shown it too. Raises ValueError for an unknown
-        level."""
+        """Shows a card on all pages, or on one client's. keep: pages that open later show it too. Raises ValueError for
+        an unknown level."""
         if level not in LEVELS:
             raise ValueError(f"level must be one of {', '.join(LEVELS)}, not {level!r}")
         if self.show is not None:
             self.show(client, LEVELS.index(level), title, text, hint, keep)
 
     def error(self, title: str, text: str, hint: str) -> None:
-        """Of the script. It is kept until `over`."""
+        """An error of the script, kept until `over`."""
         self.send(title, text, hint, "error", keep=True)
 
     def warning(self, title: str, text: str, hint: str) -> None:
-        """Of what goes on just now. It is kept until `over`."""
+        """A warning about the present state, kept until `over`."""
         self.send(title, text, hint, "warning", keep=True)
 
     def over(self, title: str = "") -> None:
-        """What was kept under a title, or all, is not shown to pages that open from now on."""
+        """Pages that open from now on do not show the kept cards with a title, or all."""
         if self.forget is not None:
             self.forget(title)
 
     def warn_once(self, text: str) -> None:
-        """The same text is shown only once."""
+        """Shows a text only once."""
         if text not in self._warnings and len(self._warnings) < MOST_WARNINGS:
             self._warnings.add(text)
             self.send("Note", text, level="warning")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the command line lays over the arguments that a script gives to its World."""
+"""Options of the command line, which override the arguments of a script's World."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 @dataclass
 class RunOptions:
-    """None: what the script says. drive: runs a World in place of real time, see `iota.film`. `ran`, `summary`: filled in by the
-    World that ran."""
+    """None: the script's value. drive: runs a World instead of in real time, see `iota.film`. `ran`, `summary`: set by
+    the World that ran."""
 
     port: int | None = None
     seconds: float | None = None
@@ -37,7 +37,7 @@ def current() -> RunOptions:
 
 @contextmanager
 def use(options: RunOptions) -> Iterator[RunOptions]:
-    """Lays `options` over all Worlds that run inside the with block."""
+    """Applies `options` to all Worlds that run inside the with block."""
     global _current
     before, _current = _current, options
     try:

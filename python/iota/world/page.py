@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the built page is, and the token that a browser needs to talk to us."""
+"""The folder of the built page, and the token that browsers need."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from iota.errors import PageMissingError
 
 
 def page_folder() -> Path:
-    """The folder with the page's index.html: inside the package, or where the repository builds it."""
+    """The folder with the page's index.html: inside the package, or in the repository's build."""
     package = Path(__file__).resolve().parent.parent
     candidates = [package / "page", package.parent.parent / "web" / "dist"]
     for folder in candidates:
@@ -20,8 +20,8 @@ def page_folder() -> Path:
 
 
 def token() -> str:
-    """The secret in the page's address, kept in $XDG_STATE_HOME/iota or ~/.local/state/iota with mode 0600, so that open
-    pages find a restarted server again; a fresh one each time where that cannot be written."""
+    """The secret in the page's address, kept in $XDG_STATE_HOME/iota or ~/.local/state/iota with mode 0600, so that
+    open pages can reconnect to a restarted server; a new one each time if that cannot be written."""
     try:
         return kept_token()
     except OSError:

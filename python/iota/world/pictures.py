@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures that pages take of themselves."""
+"""Pictures taken by pages."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from iota._core import InputEvent
 
 
 class Pictures:
-    """Puts them together from their parts."""
+    """Assembles them from their parts."""
 
     def __init__(self) -> None:
         self._parts: dict[int, list[bytes]] = {}
@@ -15,7 +15,7 @@ class Pictures:
         self._number = 0
 
     def ask(self) -> int:
-        """Number of a new request."""
+        """The number of a new request."""
         self._number += 1
         self._parts[self._number] = []
         return self._number
@@ -29,7 +29,7 @@ class Pictures:
             self._ready[event.number] = b"".join(self._parts.pop(event.number))
 
     def ready(self, number: int) -> bytes | None:
-        """A PNG file, empty where the page could make none; None while it has not come."""
+        """A PNG file, empty if the page could not make one; None until it arrives."""
         return self._ready.pop(number, None)
 
     def forget(self, number: int) -> None:

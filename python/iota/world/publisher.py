@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sends a World to its viewers: what is there, how it looks, where it is."""
+"""Sends a World to its viewers: bodies, looks, poses."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from iota.world.state import State
 
 
 class Publisher:
-    """A world's room on a server. The room tells viewers only what has changed."""
+    """A world's room on a server. The room sends only changes to viewers."""
 
     def __init__(self, state: State, server: Server, room: Room, is_alone: bool) -> None:
         self._state, self._server, self._is_alone = state, server, is_alone
@@ -29,17 +29,17 @@ class Publisher:
 
     @classmethod
     def open(cls, state: State, host: str, port: int, lan: bool | Lan) -> Publisher:
-        """Listens. Raises OSError where the port is taken, PageMissingError where the page is not built."""
+        """Starts a server. Raises OSError if the port is in use, PageMissingError if the page is not built."""
         server = Server(host, port, lan=lan)
         return cls(state, server, server.open("default"), is_alone=True)
 
     @classmethod
     def join(cls, state: State, server: Server, id: str) -> Publisher:
-        """Opens a world on a server that may have others. Raises ValueError for an id in use."""
+        """Opens a world on a server, which may have others. Raises ValueError for an id in use."""
         return cls(state, server, server.open(id), is_alone=False)
 
     def announce_lan(self, shows_code: bool) -> list[str]:
-        """Lines that tell other machines how to come in; none where they cannot."""
+        """Lines with addresses for other machines; empty if they are not served."""
         if self.lan_url is None or self._server.fingerprint is None:
             return []
         return announcement(self.lan_url, self._server.fingerprint, self._server.port, shows_code)
@@ -51,7 +51,7 @@ class Publisher:
             self._server.close()
 
     def frame(self) -> None:
-        """One frame: what has changed, and the poses."""
+        """Sends one frame: changes and poses."""
         state = self._state
         if state.is_changed:
             self._tell_settings()
@@ -64,7 +64,7 @@ class Publisher:
             state.notices.warn_once(text)
 
     def take_input(self) -> Iterator[tuple[InputEvent, Any]]:
-        """What users did, each with the body that it is on, if that is there."""
+        """The events of users, each with its body, if that still exists."""
         for event in self.room.take_input():
             yield event, self._source.body_of(self.room, event) if event.names_body else None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the fields of entities that a script makes as the protocol lays them down."""
+"""Encodes the fields of a script's entities in the format of the protocol."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Write = Callable[[Any], bytes]
 
 
 def encode(kind: str, values: Mapping[str, Any]) -> bytes:
-    """All fields of a kind but its id. Raises ValueError for text and lists above the protocol's limits."""
+    """Encodes all fields of a kind except its id. Raises ValueError for text and lists above the protocol's limits."""
     return b"".join(write(values[name]) for name, write in _writers(kind))
 
 
@@ -31,7 +31,7 @@ def _writers(kind: str) -> tuple[tuple[str, Write], ...]:
 
 
 def _writer(name: str, word: str, most: int, most_each: int) -> Write:
-    """Of one field. word: its type, as in `iota._protocol`."""
+    """Encodes one field. word: its type, as in `iota._protocol`."""
     if word.startswith("array "):
         return _array_writer(name, word.removeprefix("array "), most, most_each)
     if word.startswith("struct "):

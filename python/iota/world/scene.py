@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How bodies are drawn: the classes that the script gave them, as pages are told of them."""
+"""The looks of bodies: the classes given by the script, as sent to pages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from iota.simulator import SimulatedBody
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a viewer starts: eye and point looked at, m."""
+    """The first view: place of the camera and its target, m."""
 
     position: Sequence[float] = (2.5, 1.6, 3.5)
     target: Sequence[float] = (0.0, 1.2, 0.0)
@@ -25,7 +25,7 @@ def listed(style: Look | list[Look]) -> list[Look]:
 
 
 def part_of(described: dict[str, Any], style: str = "*", **place: Any) -> DrawnPart:
-    """A look, as `Look.describe` gives it, as a page is told of it. place: offset and rotation in place of its own."""
+    """Encodes a result of `Look.describe` for pages. place: replaces its offset and rotation."""
     where = described | place
     color = described.get("color")
     return DrawnPart(
@@ -55,13 +55,13 @@ class Scene:
             self._class_of[body] = self._untold[body] = (name, index % 2)
 
     def dress_alike(self, body: Body, like: Body) -> None:
-        """Draws a body as another one is drawn."""
+        """Gives a body the look of another one."""
         if like in self._class_of:
             name, odd = self._class_of[like]
             self._class_of[body] = self._untold[body] = (name, 1 - odd)
 
     def thickness_of(self, body: Body) -> float | None:
-        """Radius of what a body is drawn with, m, where that is round and about the body's line; None: it has no such look."""
+        """Radius of a body's look, m, if it is round about the body's line; None otherwise."""
         if body not in self._class_of:
             return None
         radii = []
@@ -74,11 +74,11 @@ class Scene:
         return min(radii, default=None)
 
     def tell_anew(self) -> None:
-        """The next room knows nothing."""
+        """Forgets what was sent: the next room is empty."""
         self._untold = dict(self._class_of)
 
     def tell(self, room: Room, statics: Iterable[dict[str, Any]] = ()) -> None:
-        """What the room has not been told yet. statics: what is only drawn."""
+        """Sends all that was not sent yet. statics: shapes without physics."""
         for name, looks in self.classes.items():
             parts = [part_of(look.describe(), style) for style, drawn in looks.items() for look in listed(drawn)]
             room.set_class(name, parts)

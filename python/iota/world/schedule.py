@@ -13,7 +13,7 @@ from iota.world.callbacks import Hook
 
 @dataclass(order=True)
 class Task:
-    """A hook and when it is due; tasks due at one time run in the order in which they were asked for."""
+    """A hook and its due time; tasks due at one time run in the order of registration."""
 
     time: float
     order: int
@@ -22,7 +22,7 @@ class Task:
 
 
 class Schedule:
-    """Tasks by time. Those asked for before `begin` come back with `rewind`; later ones belong to their run only."""
+    """Tasks by time. `rewind` restores those registered before `begin`; later ones belong to their run only."""
 
     def __init__(self) -> None:
         self._waiting: list[Task] = []
@@ -45,21 +45,21 @@ class Schedule:
         self._begun = True
 
     def rewind(self) -> None:
-        """As at `begin`."""
+        """Restores the tasks at `begin`."""
         self._waiting = list(self._plan)
         heapq.heapify(self._waiting)
 
     def due(self, time: float) -> Iterator[Task]:
-        """Takes out what is due; a periodic task is put back for its next time first, so that it may raise."""
+        """Removes the due tasks; a periodic task is scheduled again before its call, so that it may raise."""
         while self._waiting and self._waiting[0].time <= time:
             task = heapq.heappop(self._waiting)
             if task.period is not None:
-                # Counted from the task's own time: no drift.
+                # Relative to the task's own time, so without drift.
                 again = Task(task.time + task.period, task.order, task.hook, task.period)
                 heapq.heappush(self._waiting, again)
             yield task
 
     def drop(self, hook: Hook) -> None:
-        """Forgets a hook until the next rewind."""
+        """Removes a hook until the next rewind."""
         self._waiting = [task for task in self._waiting if task.hook is not hook]
         heapq.heapify(self._waiting)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Things that are only drawn: labels, lines, arrows, axes, traces, points, shapes, surfaces, colors. Each is one kind of the
-protocol."""
+"""Things without physics: labels, lines, arrows, axes, traces, points, shapes, surfaces, colors. Each is one kind of
+the protocol."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ MOST_TRACE = 16384
 
 
 class Label(Thing):
-    """A line of text. at: particle, body, bond (its middle) or a place. offset: world, m. height: of a capital, m; 0: the same
-    on the screen wherever it is."""
+    """A line of text. at: particle, body, bond (its middle) or a place. offset: world, m. height: of a capital, m; 0: a
+    constant size on the screen."""
 
     kind = "label"
     at, offset, text, height, color = Field(place), Field(vector), Field(text), Field(length), Field(color)
@@ -54,7 +54,7 @@ def _points(value: Any) -> Any:
 
 
 def _on_bodies(given: Any) -> dict[str, Any] | None:
-    """Points as pages are told of them; None where what one of them is on is gone."""
+    """Points as sent to pages; None if one of them is on something that no longer exists."""
     if isinstance(given, np.ndarray):
         return {"bodies": (), "points": given}
     anchors = [anchor(at) for at in given]
@@ -64,39 +64,36 @@ def _on_bodies(given: Any) -> dict[str, Any] | None:
     return {"bodies": [a["body"] for a in there], "points": [tuple(a["point"]) for a in there]}
 
 
-class Line(Thing):
+class _Curve(Thing):
+    """Through points, each a particle, body or place."""
+
+    points, color, closed = Field(_points), Field(color), Field(bool)
+
+    def _record(self) -> dict[str, Any] | None:
+        placed = _on_bodies(self.points)
+        return None if placed is None else self._values | placed
+
+    def _is_attached(self) -> bool:
+        return not isinstance(self.points, np.ndarray)
+
+
+class Line(_Curve):
     """Straight pieces through points: each a particle, body or place. radius: m; 0: a few pixels. closed: back to the first."""
 
     kind = "line"
-    radius, color, closed = Field(length), Field(color), Field(bool)
-
-    points = Field(_points)
-
-    def _record(self) -> dict[str, Any] | None:
-        placed = _on_bodies(self.points)
-        return None if placed is None else self._values | placed
-
-    def _is_attached(self) -> bool:
-        return not isinstance(self.points, np.ndarray)
+    radius = Field(length)
 
 
-class Tube(Thing):
-    """A round tube along a smooth curve through points, as of `Line`. radius: m. closed: back to the first."""
+class Tube(_Curve):
+    """A round tube along a smooth curve through points, see `Line`. radius: m. closed: back to the first."""
 
     kind = "tube"
-    points, color, closed, material = Field(_points), Field(color), Field(bool), Field(text)
+    material = Field(text)
     radius = Field(number(1e-15, FARTHEST))
-
-    def _record(self) -> dict[str, Any] | None:
-        placed = _on_bodies(self.points)
-        return None if placed is None else self._values | placed
-
-    def _is_attached(self) -> bool:
-        return not isinstance(self.points, np.ndarray)
 
 
 class Arrow(Thing):
-    """From `at` to `to`, or along `vector` (world, m) where there is no `to`. radius: of the shaft, m; 0: by its length."""
+    """From `at` to `to`, or without `to` along `vector` (world, m). radius: of the shaft, m; 0: by its length."""
 
     kind = "arrow"
     at, vector, radius, color = Field(place), Field(vector), Field(length), Field(color)
@@ -120,8 +117,8 @@ class Axes(Thing):
 
 
 class Trace(Thing):
-    """The path of a point, as each page has seen it; it begins anew when the world goes back in time. seconds: of simulated
-    time, 0: as many points as it may have."""
+    """The past path of a point, as recorded by each page; it is cleared when the world goes back in time. seconds: of
+    simulated time, 0: the largest number of points."""
 
     kind = "trace"
     at, seconds, radius, color = Field(place), Field(number(0, 1e6)), Field(length), Field(color)
@@ -174,7 +171,7 @@ def _look(value: Any) -> Look:
 
 
 def _part(look: Look, color: int = NO_COLOR, **place: Any) -> dict[str, Any]:
-    """A look as pages are told of it. color: in place of its own. place: offset and rotation in place of its own."""
+    """A look as sent to pages. color: replaces its own. place: replaces its offset and rotation."""
     described = look.describe() | place
     shape = {"kind": described["kind"], "sizes": described["sizes"]}
     shape |= {"vertices": described.get("vertices", ()), "triangles": described.get("triangles", ())}
@@ -184,8 +181,8 @@ def _part(look: Look, color: int = NO_COLOR, **place: Any) -> dict[str, Any]:
 
 
 class Marker(Thing):
-    """A look on a body or frame, or in the world. position: of its origin, in the frame of that or of the world, m. rotation:
-    quaternion x y z w. color: in place of the look's."""
+    """A look on a body or frame, or in the world. position: of its origin, in that frame or the world, m. rotation:
+    quaternion x y z w. color: replaces the look's."""
 
     kind = "marker"
     position, color, rotation = Field(vector), Field(color), Field(unit_quaternion)
@@ -208,8 +205,8 @@ class Marker(Thing):
 
 
 class Strut(Thing):
-    """A look from one place to another: its x axis runs along the line, and it is stretched to its length. It never rolls about
-    it at once; where both places are the same it is not drawn."""
+    """A look from one place to another: its x axis runs along the line, and it is stretched to its length. Its roll
+    about the line changes smoothly; it is not drawn if both places coincide."""
 
     kind = "strut"
     look, at, to, color = Field(_look), Field(place), Field(place), Field(color)
@@ -218,20 +215,21 @@ class Strut(Thing):
         a, b = anchor(self.at), anchor(self.to)
         if a is None or b is None:
             return None
-        # What fits itself is made about as long as it is drawn, so that its ends keep their form.
+        # A fitting look gets about its final length, so that its ends keep their form.
         look = self.look.of_length(_apart(self.at, self.to) or 1.0)
         return {"a": a, "b": b, "part": _part(look, self.color), "length": look.length}
 
 
 def _apart(at: Any, to: Any) -> float:
-    """Distance of two places now, m; 0 where one has none of its own."""
+    """Present distance of two places, m; 0 if one is unknown."""
     places = [getattr(place, "position", getattr(place, "center_of_mass", place)) for place in (at, to)]
     return abs(Vec3(*places[0]) - Vec3(*places[1])) if all(isinstance(place, Vec3) for place in places) else 0.0
 
 
 class Shapes(Thing):
-    """The same look many times. positions: (n, 3), m, in the frame of `at`. rotations: (n, 4), quaternions x y z w, or None.
-    sizes: times the look's, one number, (n,) or (n, 3) along its axes, or None. color: one, n, or an array (n, 3) from 0 to 1."""
+    """Many copies of a look. positions: (n, 3), m, in the frame of `at`. rotations: (n, 4), quaternions x y z w, or
+    None. sizes: factors of the look's size, one number, (n,) or (n, 3) along its axes, or None. color: one, n, or an
+    array (n, 3) from 0 to 1."""
 
     kind = "shape_set"
     look, at, positions = Field(_look), Field(place), Field(points)
@@ -273,9 +271,9 @@ class Shapes(Thing):
 
 
 class Surface(Thing):
-    """Triangles, seen from both sides. points: an array (n, 3) in the frame of `at`, m, or particles, bodies and places; it then
-    bends with them. triangles: (k, 3) numbers of points. threads: springs or ropes: a triangle is not drawn any more once one
-    that ran along one of its edges has gone."""
+    """Triangles, visible from both sides. points: an array (n, 3) in the frame of `at`, m, or particles, bodies and
+    places, with which it bends. triangles: (k, 3) indices of points. threads: springs or ropes: a triangle is removed
+    with a thread along one of its edges."""
 
     kind = "surface"
     at, points, color, material = Field(place), Field(_points), Field(color), Field(text)
@@ -308,7 +306,7 @@ class Surface(Thing):
         return super()._is_attached() or not isinstance(self.points, np.ndarray)
 
     def _whole(self) -> NDArray[np.int64]:
-        """The triangles without those that have lost a thread along an edge."""
+        """The triangles except those that have lost a thread along an edge."""
         torn = self._torn()
         if not torn:
             return self.triangles
@@ -317,7 +315,7 @@ class Surface(Thing):
         return self.triangles[kept]
 
     def _torn(self) -> set[frozenset[int]]:
-        """Edges whose thread is gone."""
+        """Edges whose thread no longer exists."""
         if isinstance(self.points, np.ndarray) or not self.threads:
             return set()
         if self._edges is None:
@@ -332,7 +330,8 @@ class Surface(Thing):
 
 
 class Paint(Thing):
-    """Colors of bodies in place of those of their materials. color: one, one for each body, or an array (n, 3) from 0 to 1."""
+    """Colors of bodies, instead of those of their materials. color: one, one for each body, or an array (n, 3) from 0
+    to 1."""
 
     kind = "paint"
 
@@ -360,8 +359,8 @@ class Paint(Thing):
 
 
 class Viewpoint(Thing):
-    """A place to look from, with a name, that users go to by a key from 1 to 9 or the page's bar. position, target: places; on a
-    body or frame the camera goes along."""
+    """A named viewpoint that users go to by a key from 1 to 9 or the page's bar. position, target: places; on a body or
+    frame the camera moves with it."""
 
     kind = "viewpoint"
     name, position, target = Field(text), Field(place), Field(place)
@@ -372,8 +371,8 @@ class Viewpoint(Thing):
 
 
 class Stage(Thing):
-    """Surroundings in place of the page's own, which follow light and dark of the user's system. sky: overhead. horizon: what
-    ground and sky fade to. ground: of the floor. light: of all lamps, times the usual."""
+    """Surroundings instead of the page's own, which are light or dark as in the user's system. Colors: sky: overhead;
+    horizon: to which ground and sky fade; ground: of the floor. light: factor for all lamps."""
 
     kind = "stage"
     sky, horizon, ground = Field(color), Field(color), Field(color)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Describes the bodies of a simulator that is not the built-in one, as a room takes them."""
+"""Describes the bodies of a custom simulator, in the format of a room."""
 
 from __future__ import annotations
 

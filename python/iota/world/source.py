@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is published of a simulator: of the engine's own system directly, of any other through its `Simulator` interface."""
+"""Publishes a simulator: the engine's own system directly, any other one through its `Simulator` interface."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from iota.world import simulated
 
 
 class Source(ABC):
-    """Sends what a simulator has to show."""
+    """Sends the state of a simulator."""
 
     @abstractmethod
     def publish(self, room: Room) -> None:
-        """Where everything is now, and what has changed."""
+        """Sends present poses and changes."""
 
     @abstractmethod
     def body_of(self, room: Room, event: InputEvent) -> Any:
-        """The body that an event names; None once it is gone."""
+        """The body of an event; None once it is destroyed."""
 
 
 class EngineSource(Source):
-    """The engine's own system: what it has to show goes from it to the server without Python."""
+    """The engine's own system: its data go to the server without Python."""
 
     def __init__(self, system: System) -> None:
         self._system = system

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the parts of a world share."""
+"""The shared state of the parts of a world."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from iota.world.pictures import Pictures
 from iota.world.scene import Camera, Scene
 from iota.world.things import Things
 
-TIES = ("spring", "rope", "rod")  # what is drawn between two points, by classes of these names
+TIES = ("spring", "rope", "rod")  # drawn between two points, by classes of these names
 
 
 @dataclass
 class State:
-    """A world: what it simulates, how it is shown, how it runs, who is there."""
+    """The state of a world: simulator, looks, timing, clients."""
 
     system: System
     clock: Clock
     title: str
-    style: str | None = None  # that pages start with
+    style: str | None = None  # of pages at first
     ground: float | None = 0.0  # m
     camera: Camera | None = None
     statics: list[dict[str, Any]] = field(default_factory=list)
@@ -40,8 +40,8 @@ class State:
     pictures: Pictures = field(default_factory=Pictures)
     notices: Notices = field(default_factory=Notices)
     costs: Costs = field(default_factory=Costs)
-    step_ms: float = 0.0  # what a step takes, smoothed
-    is_changed: bool = True  # what pages were told of it, poses apart, does not hold any more
+    step_ms: float = 0.0  # of a step, smoothed
+    is_changed: bool = True  # pages need more than new poses
 
     _usual_thickness: float | None = None
 
@@ -50,7 +50,7 @@ class State:
         self.hands = Hands(self.system)
 
     def thickness_of(self, body: Body) -> float:
-        """Radius of what a body of particles is drawn with, m; as pages draw it where the script says nothing."""
+        """Radius of the look of a body of particles, m; the page's default without a look."""
         thickness = self.scene.thickness_of(body)
         if thickness is not None:
             return thickness
@@ -59,13 +59,13 @@ class State:
         return self._usual_thickness if len(body.particles) > 1 else 2 * self._usual_thickness
 
     def forget_hands(self) -> None:
-        """The system is another than a moment ago: what users held is not held any more."""
+        """Call it after the system was restored: ends all holds."""
         self.hands.forget()
         self.listeners.drags.clear()
         self.is_changed = True
 
     def class_of(self, looks: Looks) -> str:
-        """The class of bodies that are drawn so, as pages name it: a new one where there is none."""
+        """The name on pages of the class with these looks; creates it if there is none."""
         classes = self.scene.classes
         for name, known in classes.items():
             if known == looks and name not in TIES:
@@ -76,7 +76,8 @@ class State:
 
 
 def usual_thickness(system: System) -> float:
-    """Radius that suits rods of this system, m, as src/net/presenter.cpp chooses it: by their middle length or the size of all."""
+    """Default radius of rods of this system, m, as in src/net/presenter.cpp: by their median length or the size of the
+    scene."""
     places = system.positions
     lengths = sorted(
         abs(particles[1].position - particles[0].position)

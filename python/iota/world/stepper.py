@@ -19,14 +19,14 @@ SWITCHED_OFF = "It is switched off until reset. Correct the script and run it ag
 
 
 class Stepper:
-    """Calls the script's functions when they are due, steps the system, and goes back to where a run began."""
+    """Calls the script's functions when they are due, steps the system, and resets it to the start of a run."""
 
     def __init__(self, state: State, guard: Guard) -> None:
         self._state, self._guard = state, guard
         self.schedule = Schedule()
         self.on_step: list[Hook] = []
         self.on_reset: list[Hook] = []
-        self._off: set[Hook] = set()  # raised since the last reset
+        self._off: set[Hook] = set()  # functions that raised since the last reset
         self._floor: Floor | None = None
         self._start: bytes | None = None
         self._tally: Tally | None = None
@@ -36,7 +36,7 @@ class Stepper:
         return self._tally is not None
 
     def begin(self) -> None:
-        """From here on; `reset` comes back to this moment."""
+        """Starts a run; `reset` returns to this state."""
         state = self._state
         self._tally = Tally(state.system)
         if state.ground is not None and isinstance(state.system, System):
@@ -45,12 +45,12 @@ class Stepper:
         self.schedule.begin()
 
     def summary(self) -> RunSummary:
-        """Since `begin`."""
+        """Whether there were steps since `begin`."""
         assert self._tally is not None
         return self._tally.summary()
 
     def step(self) -> StepReport:
-        """One step."""
+        """Takes one step."""
         state = self._state
         for task in self.schedule.due(state.system.time + 1e-9):
             again = task.period is not None
@@ -78,12 +78,12 @@ class Stepper:
         return report
 
     def _tell_what_happened(self) -> None:
-        """Calls the script's functions for contacts and for what broke."""
+        """Calls the script's functions for contacts and breaks."""
         system, listeners = self._state.system, self._state.listeners
         if listeners.has("contact"):
             for contact in system.contacts:
                 joint = contact.constraint
-                if not joint.alive:  # a function before has ended it
+                if not joint.alive:  # destroyed by an earlier function
                     continue
                 phase, place = "start" if contact.met else "end", contact.position
                 for each in listeners.of_any("contact", (joint, joint.a, joint.b)):
@@ -99,7 +99,7 @@ class Stepper:
             self._off.add(hook)
 
     def reset(self) -> None:
-        """Back to where the run began, with timed events as they were asked for before it."""
+        """Returns to the start of the run, with the timed events registered before it."""
         if self._start is None:
             return
         self._state.system.restore(self._start)
@@ -113,13 +113,13 @@ class Stepper:
             self._call(f"on_reset ({hook.name})", hook, "reset")
 
     def _call(self, what: str, hook: Hook, name: str, again: bool = False, **more: Any) -> bool:
-        """Calls one of the script's functions; False when it raised."""
+        """Calls one of the script's functions; False if it raised."""
         arguments = (Event(self._state.system, name, notices=self._state.notices, **more),) if hook.takes_event else ()
         return self._guard.call(what, hook.function, *arguments, hint=SWITCHED_OFF if again else GO_ON)
 
 
 def _broken_things(broken: Broken) -> tuple[Any, ...]:
-    """What broke and the bodies that it held."""
+    """Something that broke, and its bodies."""
     constraint, bond, particle = broken.constraint, broken.bond, broken.particle
     if constraint is not None and constraint.alive:
         return (constraint, constraint.a, constraint.b)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of a run."""
+"""Statistics of a run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from iota._core import StepReport, System
 
 @dataclass
 class RunSummary:
-    """What a run did. dt_s: length of the last step. iterations_mean: per articulate and step; worst_gap_m: largest hinge separation or rigidity error."""
+    """Result of a run. dt_s: length of the last step. iterations_mean: per articulate and step; worst_gap_m: largest
+    hinge separation or rigidity error."""
 
     steps: int
     dt_s: float
@@ -32,7 +33,7 @@ class RunSummary:
 
 
 class Tally:
-    """Adds up step reports."""
+    """Sums up step reports."""
 
     def __init__(self, system: System) -> None:
         self._system = system

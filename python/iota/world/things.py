@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a script adds to the page beside bodies. Each thing is a handle: assigning one of its attributes is the update."""
+"""Things that a script adds to the page besides bodies. Each thing is a handle: assigning one of its attributes updates
+it."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ FARTHEST = 1e9  # m
 
 
 class Field(Generic[Value]):
-    """An attribute of a thing: `check` turns what is assigned into what is kept, or raises ValueError or TypeError."""
+    """An attribute of a thing: `check` converts an assigned value, or raises ValueError or TypeError."""
 
     def __init__(self, check: Callable[[Any], Value]) -> None:
         self._check = check
@@ -45,8 +46,7 @@ class Field(Generic[Value]):
 
 
 class Thing:
-    """One entity that a script made. visible: pages show it. Destroyed, or once the thing that it is on is gone, it is shown
-    no more."""
+    """One entity of a script. visible: pages show it. It disappears when it or the thing that it is on is destroyed."""
 
     kind: ClassVar[str]
 
@@ -62,11 +62,11 @@ class Thing:
 
     @property
     def alive(self) -> bool:
-        """It has not been destroyed."""
+        """False once it was destroyed."""
         return self._things is not None
 
     def destroy(self) -> None:
-        """Takes it off the page; once more does nothing."""
+        """Removes it from the page; further calls do nothing."""
         if self._things is not None:
             self._things.remove(self)
             self._things = None
@@ -76,18 +76,18 @@ class Thing:
             self._things.mark(self)
 
     def _record(self) -> dict[str, Any] | None:
-        """Its fields as the protocol names them; None where what it is on is gone."""
+        """Its fields with the names of the protocol; None if it is on something that no longer exists."""
         raise NotImplementedError
 
     def _is_attached(self) -> bool:
-        """On something of the system, so that an edit may move it to another body."""
+        """Whether it is on something of the system, so that an edit may move it to another body."""
         return any(isinstance(value, Attachable) for value in self._values.values())
 
 
 class Frame(Thing):
-    """A frame that other things are put on in place of a body: they go where it goes, hide with it and go with it. at: its
-    origin, on a body, on another frame or in the world. rotation: quaternion x y z w. Things on it have their places in
-    its frame; `frame.point((x, y, z))` is a place in it for ends of lines and arrows."""
+    """A frame for other things, like a body: they move, hide and end with it. at: its origin, on a body, on another
+    frame or in the world. rotation: quaternion x y z w. Things on it have places in its frame; `frame.point((x, y, z))`
+    is a place in it for ends of lines and arrows."""
 
     kind = "frame"
 
@@ -112,7 +112,7 @@ class Frame(Thing):
     rotation = Field(lambda value: unit_quaternion(value))
 
     def point(self, position: Sequence[float]) -> FramePoint:
-        """A place in it, m, that things can be on."""
+        """A place in it, m, for things."""
         return FramePoint(self, vector(position))
 
     def _changed(self) -> None:
@@ -138,7 +138,7 @@ Place = Attachable | Vec3 | Sequence[float] | None
 
 
 class Things:
-    """All things of a world. Pages are told only of those that differ from what was told last."""
+    """All things of a world. Only those that differ from the last sent state are sent to pages."""
 
     def __init__(self) -> None:
         self._ids: dict[Thing, tuple[int, int]] = {}
@@ -172,30 +172,30 @@ class Things:
             self.mark_attached()
 
     def slot_of(self, thing: Thing) -> int:
-        """What pages call it."""
+        """Its number on pages."""
         return self._ids[thing][0]
 
     def mark(self, thing: Thing) -> None:
-        """It is to be told anew."""
+        """Marks it to be sent again."""
         self._dirty[thing] = None
 
     def mark_attached(self) -> None:
-        """What is on something may be elsewhere, or nowhere."""
+        """Marks things on bodies to be sent again, as edits may have moved or removed them."""
         self._dirty |= dict.fromkeys(thing for thing in self._ids if thing._is_attached())
 
     def find(self, kind: str, id: tuple[int, int]) -> Thing | None:
-        """By what pages call it."""
+        """Finds a thing by its number on pages."""
         return next((thing for thing, known in self._ids.items() if known == id and thing.kind == kind), None)
 
     def tell_anew(self) -> None:
-        """The next room knows nothing."""
+        """Forgets what was sent: the next room is empty."""
         self._told.clear()
         self._gone.clear()
         self._dirty = dict.fromkeys(self._ids)
 
     def tell(self, room: Room, structure: int, warn: Callable[[str], None]) -> None:
-        """What the room has not been told. structure: rises when bodies change, and with them what is on which. warn: takes
-        the text for one that does not fit together; it is shown as it was."""
+        """Sends the changes. structure: rises when bodies change, which may move things. warn: called with a text for
+        an inconsistent thing, which keeps its former look."""
         if structure != self._structure:
             self._structure = structure
             self.mark_attached()
@@ -223,7 +223,7 @@ class Things:
             self._told[thing] = fields
 
 
-# --- what fields may be -------------------------------------------------------------------------------------------------
+# --- checks of fields -------------------------------------------------------------------------------------------------
 
 
 def number(least: float = -math.inf, most: float = math.inf) -> Callable[[Any], float]:
@@ -260,7 +260,7 @@ def place(value: Any) -> Place:
 
 
 def color(value: Any) -> int:
-    """From "#rrggbb", "#rrggbbaa" (aa: 00 is not seen at all), 0xRRGGBB, three or four numbers from 0 to 1, or None: the
+    """From "#rrggbb", "#rrggbbaa" (aa: 00 is invisible), 0xRRGGBB, three or four numbers from 0 to 1, or None: the
     page's own."""
     if value is None:
         return NO_COLOR
@@ -275,7 +275,7 @@ def color(value: Any) -> int:
 
 
 def unit_quaternion(value: Any) -> tuple[float, ...]:
-    """x y z w, made one of length 1."""
+    """x y z w, normalized."""
     turn = np.array(value, float)
     size = np.linalg.norm(turn)
     if turn.shape != (4,) or not size > 1e-9 or not np.isfinite(size):
@@ -295,11 +295,12 @@ def points(value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     return rows if rows.shape[1] == 3 else np.column_stack([rows, np.zeros(len(rows))])
 
 
-# --- where things are ---------------------------------------------------------------------------------------------------
+# --- places of things
+# ---------------------------------------------------------------------------------------------------
 
 
 def anchor(at: Place) -> dict[str, Any] | None:
-    """A place as pages are told of it, on what is there of it now; None where that is gone. Of a bond its first end."""
+    """A place as sent to pages, at its present body; None if that no longer exists. For a bond its first end."""
     if isinstance(at, Bond):
         return anchor(at.ends[0]) if at.alive else None
     if isinstance(at, Body):
@@ -319,7 +320,7 @@ def anchor(at: Place) -> dict[str, Any] | None:
 
 
 def ends(at: Place, to: Place = None) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
-    """Both ends of a bond; else from one place to another, or twice the same."""
+    """Both ends of a bond; otherwise from one place to another, or twice the same."""
     if isinstance(at, Bond) and to is None:
         return (anchor(at.ends[0]), anchor(at.ends[1])) if at.alive else (None, None)
     first = anchor(at)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Controls of the script on the page: what users change there, and what it shows them."""
+"""Controls and plots of the script on the page."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_SAMPLES = 400  # of a plot
 
 
 class Widget(Thing):
-    """A control. value: what it is set to; assigning it changes all pages and calls nothing. enabled: users may change it."""
+    """A control. value: assigning it updates all pages and calls no function. enabled: users may change it."""
 
     kind = "widget"
     form: WidgetKind
@@ -35,7 +35,7 @@ class Widget(Thing):
         return function
 
     def take(self, value: float, typed: str, event: Event, guard: Guard) -> None:
-        """What a user did. Values that do not fit are made to."""
+        """Applies a user's change. Values out of range are corrected."""
         if not self.enabled:
             return
         self._set(value, typed)
@@ -52,7 +52,7 @@ class Widget(Thing):
 
 
 class Button(Widget):
-    """Pressed by users."""
+    """A button."""
 
     form = WidgetKind.BUTTON
 
@@ -61,7 +61,7 @@ class Button(Widget):
 
 
 class Slider(Widget):
-    """A number from `minimum` to `maximum`, any or a whole number of `step` above the minimum."""
+    """A number from `minimum` to `maximum`, any or a multiple of `step` above the minimum."""
 
     form = WidgetKind.SLIDER
     minimum, maximum, step, unit = Field(number()), Field(number()), Field(number(0)), Field(text)
@@ -79,7 +79,7 @@ class Slider(Widget):
 
 
 class Checkbox(Widget):
-    """On or off."""
+    """A check box."""
 
     form = WidgetKind.CHECKBOX
     value = Field(bool)
@@ -89,7 +89,7 @@ class Checkbox(Widget):
 
 
 class Choice(Widget):
-    """One of several texts."""
+    """A choice of one of several texts."""
 
     form = WidgetKind.CHOICE
 
@@ -125,7 +125,7 @@ class Choice(Widget):
 
 
 class TextField(Widget):
-    """A line that users can write."""
+    """A text field of one line."""
 
     form = WidgetKind.TEXT
     value = Field(text)
@@ -139,7 +139,7 @@ class TextField(Widget):
 
 
 class Plot(Thing):
-    """Curves over the last `seconds` of simulated time. With functions it takes samples by itself, else by `add`."""
+    """Curves over the last `seconds` of simulated time. With functions it samples automatically, otherwise by `add`."""
 
     kind = "plot"
     label, unit, seconds = Field(text), Field(text), Field(number(1e-6, 1e6))
@@ -156,12 +156,12 @@ class Plot(Thing):
 
     @property
     def curves(self) -> list[str]:
-        """Their names."""
+        """Names of the curves."""
         return list(self._functions)
 
     def add(self, time: float, *values: float) -> None:
-        """A sample of each curve at a simulated time, s. What is not finite, or comes sooner after the sample before than shows,
-        is left out. Going back in time begins anew."""
+        """Adds a sample of each curve at a simulated time, s. Samples that are not finite, or too close to the previous
+        one to be visible, are skipped. Going back in time clears the curves."""
         if len(values) != len(self._functions):
             raise ValueError(f"this plot has {len(self._functions)} curves, not {len(values)}")
         if self._samples and time < self._samples[-1][0]:
@@ -178,11 +178,11 @@ class Plot(Thing):
         self._changed()
 
     def is_due(self, time: float) -> bool:
-        """A sample at that time would show."""
+        """Whether a sample at that time would be visible."""
         return not self._samples or not 0 <= time - self._samples[-1][0] < 0.99 * self.seconds / MOST_SAMPLES
 
     def sample(self, time: float, guard: Guard) -> None:
-        """Takes one by its functions, where it is due."""
+        """Takes a sample by its functions, if one is due."""
         functions = [function for function in self._functions.values() if function is not None]
         if self._off or len(functions) < len(self._functions) or not self.is_due(time):
             return

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The world loop: steps a system in real time, shows it on a page, and brings users' hands and keys to the script."""
+"""The world loop: steps a system in real time, shows it on a page, and passes users' hands and keys to the script."""
 
 from __future__ import annotations
 
 import atexit
 import concurrent.futures
+import html
 import math
 import sys
 import threading
@@ -31,20 +32,23 @@ from iota.world.server import Server
 from iota.world.state import TIES, State
 from iota.world.stepper import Stepper
 from iota.world.summary import RunSummary
+from iota.world.things import vector
 from iota.world.widgets import Plot
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 Result = TypeVar("Result")
 
-HEADLESS_SECONDS = 10.0  # where nobody says how long
+EFFECTS = ("break", "join", "grab")
+HEADLESS_SECONDS = 10.0  # default
 
 
 class World(Interacting):
     """Runs a system in real time and serves a page that shows it.
 
-    system: a System, or any Simulator in its place. title: on the page. dt: length of a step, s. style: the style of
-    drawing that pages start with, see `draw`. ground: height of the ground, m, which holds what falls on it (not under another
-    Simulator); "auto": 0, or below what begins or hangs lower; None for none. camera: where viewers start, None: all is in view.
+    system: a System, or any other Simulator. title: on the page. dt: length of a step, s. style: the style of
+    drawing that pages start with, see `draw`. ground: height of the ground, m, which supports falling bodies (not of
+    another Simulator); "auto": 0, or below bodies that start or hang lower; None for none. camera: the first view,
+    None: everything is visible.
 
         world = iota.World(system, title="pendulum")
 
@@ -54,8 +58,8 @@ class World(Interacting):
 
         world.run()
 
-    Callbacks run on the thread that runs the world, between steps; they take one Event, or nothing. One that raises is
-    told on the page and the terminal, and the world goes on.
+    Callbacks run on the thread that runs the world, between steps; they take one Event, or nothing. An exception is
+    shown on the page and the terminal, and the world continues.
     """
 
     def __init__(
@@ -67,7 +71,7 @@ class World(Interacting):
         ground: float | Literal["auto"] | None = "auto",
         camera: Camera | None = None,
     ) -> None:
-        # Scripts see the built-in system; nothing here asks for more than a Simulator.
+        # Typed as System for scripts; this class uses only the interface of Simulator.
         self._state = State(cast(System, system), Clock(dt), title, style, None if ground == "auto" else ground, camera)
         self._finds_ground = ground == "auto"
         self._guard = Guard(
@@ -82,21 +86,21 @@ class World(Interacting):
         self._stopping = False
         self._stop_at = math.inf
 
-    # --- what it is -----------------------------------------------------------------------------------------------
+    # --- properties -----------------------------------------------------------------------------------------------
 
     @property
     def system(self) -> System:
-        """What is simulated."""
+        """The simulator."""
         return self._state.system
 
     @property
     def title(self) -> str:
-        """On the page."""
+        """Shown on the page."""
         return self._state.title
 
     @property
     def dt(self) -> float:
-        """Length of a step, s; above 0, at most 1. Assigned, it holds from the next step on."""
+        """Length of a step, s; above 0, at most 1. A new value is used from the next step on."""
         return self._state.clock.dt
 
     @dt.setter
@@ -106,7 +110,7 @@ class World(Interacting):
 
     @property
     def camera(self) -> Camera | None:
-        """Where viewers start; None: where all is in view."""
+        """The first view; None: everything is visible."""
         return self._state.camera
 
     @camera.setter
@@ -114,10 +118,11 @@ class World(Interacting):
         self._state.camera = camera
         self._state.is_changed = True
 
-    # --- what the script asks for ---------------------------------------------------------------------------------
+    # --- callbacks and drawing ---------------------------------------------------------------------------------
 
     def at(self, time: float) -> Callable[[Callback], Callback]:
-        """Decorator: calls a function once at a simulated time (s). Asked for before `run`, it comes back after a reset."""
+        """Decorator: calls a function once at a simulated time (s). If registered before `run`, it is restored by a
+        reset."""
         return self._timer(time, None)
 
     def after(self, delay: float) -> Callable[[Callback], Callback]:
@@ -134,13 +139,13 @@ class World(Interacting):
         return function
 
     def on_reset(self, function: Callback) -> Callback:
-        """Decorator: calls a function after each reset, for what the script keeps itself."""
+        """Decorator: calls a function after each reset, for the script's own state."""
         self._stepper.on_reset.append(Hook.of(function))
         return function
 
     def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
-        """Says how bodies are drawn: a look of `iota.looks`, several that are drawn together, or one for each style that
-        users switch between on the page. Every other one of the bodies counts as odd for looks that turn.
+        """Sets the looks of bodies: a look of `iota.looks`, several drawn together, or one for each style, between
+        which users switch on the page. Every second body is odd, for looks with a turn.
 
             world.draw(wheel, looks.solid("brass"))
             world.draw(links, {"rope": looks.capsule(0.012, "rope"), "chain": looks.chain_link(0.1)})
@@ -150,21 +155,21 @@ class World(Interacting):
         self._state.is_changed = True
 
     def draw_ties(self, kind: Literal["spring", "rope", "rod"], look: Drawn) -> None:
-        """Says how springs, ropes or rods between bodies are drawn, as `draw`; an empty list hides them."""
+        """Sets the looks of springs, ropes or rods between bodies, as `draw`; an empty list hides them."""
         if kind not in TIES:
             raise ValueError(f"kind must be one of {', '.join(TIES)}, not {kind!r}")
         self._state.scene.classes[kind] = by_style(look)
         self._state.is_changed = True
 
     def add_static(self, look: Look, position: Sequence[float], rotation: Sequence[float] = (0, 0, 0, 1)) -> None:
-        """Adds something that is only drawn: a beam, a stand. position: m. rotation: quaternion x y z w."""
+        """Adds a shape without physics: a beam, a stand. position: m. rotation: quaternion x y z w."""
         self._state.statics.append(
             {"shape": look.describe(), "position": list(Vec3(*position)), "rotation": list(rotation)}
         )
         self._state.is_changed = True
 
     def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> None:
-        """Adds a look that is only drawn from `start` to `end` (m): its local x runs along the line, and a cylinder or
+        """Adds a look without physics from `start` to `end` (m): its local x runs along the line, and a cylinder or
         capsule without a length gets that of the line."""
         a, b = Vec3(*start), Vec3(*end)
         length = abs(b - a)
@@ -177,7 +182,19 @@ class World(Interacting):
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""
         self._state.notices.send(title, text, hint, level, client)
 
-    # --- who is there ---------------------------------------------------------------------------------------------
+    def effect(self, kind: Literal["break", "join", "grab"], position: Sequence[float]) -> None:
+        """A ring of light at a place (m), with the sound and the pulse in users' hands of a break, a join or a grab; on all
+        pages.
+
+            world.on_contact(door_hinge)(lambda event: world.effect("join", event.contact.position))
+        """
+        if kind not in EFFECTS:
+            raise ValueError(f"kind must be one of {', '.join(map(repr, EFFECTS))}, not {kind!r}")
+        place = vector(position)
+        if self._publisher is not None:
+            self._publisher.room.effect(kind, place)
+
+    # --- clients ---------------------------------------------------------------------------------------------
 
     @property
     def clients(self) -> list[Client]:
@@ -196,7 +213,7 @@ class World(Interacting):
 
     @property
     def paused(self) -> bool:
-        """No steps are made; users' hands and the script's own edits act all the same."""
+        """While True, no steps are made; users' hands and edits of the script still act."""
         return self._state.clock.paused
 
     @paused.setter
@@ -205,7 +222,7 @@ class World(Interacting):
 
     @property
     def speed(self) -> float:
-        """Simulated seconds for each real second that users asked for; 0 to 10."""
+        """Simulated seconds per real second, requested by users; 0 to 10."""
         return self._state.clock.speed
 
     @speed.setter
@@ -214,7 +231,7 @@ class World(Interacting):
 
     @property
     def reached_speed(self) -> float:
-        """Share of that speed that this machine reaches; below 1 the world runs in slow motion."""
+        """Achieved share of that speed; below 1 the world runs in slow motion."""
         return self._state.clock.reached
 
     @property
@@ -233,13 +250,22 @@ class World(Interacting):
         """Address of the page for other machines; None while it is not served with lan."""
         return None if self._publisher is None else self._publisher.lan_url
 
+    def _repr_html_(self) -> str:
+        """The page in a cell of a notebook."""
+        title = html.escape(self.title)
+        if self.url is None:
+            return f"<p>The world {title!r} is on no page. Try: <code>world.start()</code></p>"
+        style = "width: 100%; height: 480px; border: 0; border-radius: 8px"
+        allowed = "fullscreen; gamepad; xr-spatial-tracking"
+        return f'<iframe src="{html.escape(self.url)}" title="{title}" allow="{allowed}" style="{style}"></iframe>'
+
     def reset(self) -> None:
-        """Back to where the run began, with timed events as they were asked for before it."""
+        """Returns to the start of the run, with the timed events registered before it."""
         self._stepper.reset()
 
     def undo(self) -> bool:
-        """Back to just before the last batch of edits (`with world.system.edit(): ...`), time included. False when there
-        is none. Timed events and what the script keeps itself stay as they are."""
+        """Restores the state before the last batch of edits (`with world.system.edit(): ...`), time included. False if
+        there is none. Timed events and the script's own state do not change."""
         return self._moved_in_history(self.system.undo())
 
     def redo(self) -> bool:
@@ -260,7 +286,7 @@ class World(Interacting):
 
         port: 0 for any free one. open: shows the page in the system's browser. lan: for phones, headsets and other
         computers too, by https; prints their address and a QR code of it. Under `iota run --headless` nothing is
-        served and `seconds` are simulated ones, as fast as they go. Raises OSError for a port that is taken.
+        served and `seconds` are simulated, as fast as possible. Raises OSError for a port in use.
         """
         options = run_options.current()
         options.ran = True
@@ -282,8 +308,9 @@ class World(Interacting):
         return summary
 
     def start(self, port: int = 8080, server: Server | None = None, id: str = "default") -> str:
-        """Runs in the background, for notebooks and prompts; returns the page's address. Use `call` to reach the system
-        meanwhile and `stop` to end it. server, id: as for `serve`."""
+        """Runs in the background, for notebooks and prompts; returns the page's address. A cell of a notebook that ends in
+        the world shows its page. Use `call` to access the system meanwhile and `stop` to end it. server, id: see
+        `serve`."""
         if self._background is not None:
             raise RuntimeError("the world runs already")
         ready: concurrent.futures.Future[str] = concurrent.futures.Future()
@@ -327,7 +354,8 @@ class World(Interacting):
         return future.result()
 
     def stop(self) -> None:
-        """Ends `run` after the step under way. From any thread; after `start` it waits and takes the system back."""
+        """Ends `run` after the present step. May be called on any thread; after `start` it waits and makes this thread
+        the owner of the system."""
         self._stopping = True
         if self._background is not None and self._background is not threading.current_thread():
             self._background.join()
@@ -344,7 +372,7 @@ class World(Interacting):
     ) -> str:
         """Serves the page, for scripts with a loop of their own around `step()`; returns its address.
 
-        server: one that several worlds share, each with an id of its own; without it the world makes one for itself.
+        server: one that several worlds share, each with its own id; without it the world makes its own.
         lan: for phones, headsets and other computers too, by https, see `lan_url`.
         """
         if self._publisher is None:
@@ -354,7 +382,7 @@ class World(Interacting):
                 self._publisher = Publisher.open(self._state, host, port, options.lan or lan)
             else:
                 self._publisher = Publisher.join(self._state, server, id)
-            atexit.register(self.close)  # for loops of scripts that end without it
+            atexit.register(self.close)  # for scripts that do not call close
             self._begin()
             self._guard.watch()
             try:
@@ -388,14 +416,15 @@ class World(Interacting):
         return report
 
     def advance(self, steps: int) -> None:
-        """So many steps as fast as they go, then users' input and a frame to the page: for films and tests, after `serve`."""
+        """Takes steps as fast as possible, then handles users' input and sends a frame: for films and tests, after
+        `serve`."""
         for _ in range(steps):
             self._stepper.step()
         self._take_inputs()
         self._send_frame()
 
     def close(self) -> None:
-        """Ends serving; open pages say so and wait for a new server."""
+        """Ends serving; open pages show this and wait for a new server."""
         self._guard.close()
         self._runner = None
         self._stopping = False
@@ -457,14 +486,14 @@ class World(Interacting):
             self._inputs.take(self._publisher.take_input())
 
     def _take_picture(self, client: int, seconds: float) -> bytes:
-        """Waits for it without a step; what users do meanwhile comes after it."""
+        """Waits for a picture without steps; other input is handled after it."""
 
         def wait() -> bytes:
             if self._publisher is None:
                 raise RuntimeError("this world is not on a page")
             pictures = self._state.pictures
             number = pictures.ask()
-            self._publisher.frame()  # it shows what the script has just done
+            self._publisher.frame()  # so that it shows the latest changes of the script
             self._publisher.room.ask_picture(client, number)
             end = time.monotonic() + seconds
             try:
@@ -490,10 +519,10 @@ class World(Interacting):
         with self._state.costs.of("pages"):
             self._publisher.frame()
         if self.reached_speed < 0.8:
-            text = "This world is too much for real time on this machine: it runs in slow motion."
+            text = "This machine is too slow for this world in real time: it runs in slow motion."
             self._state.notices.warn_once(text)
 
-    # --- small things ---------------------------------------------------------------------------------------------
+    # --- helpers ---------------------------------------------------------------------------------------------
 
     def _timer(self, time: float, period: float | None) -> Callable[[Callback], Callback]:
         def register(function: Callback) -> Callback:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """All verifications, in the order of the report. A new one is a function that takes a Run, and a line here."""
 
-from iota.verify.cases import chains, classical, conservation, linkages, newton, tops
+from iota.verify.cases import chains, classical, conservation, linkages, newton, sizes, tops
 from iota.verify.run import Case
 
 CASES = [
@@ -25,5 +25,9 @@ CASES = [
         conservation.momenta,
         conservation.energy,
         conservation.heavy_end,
+        sizes.scales,
+        sizes.places,
+        sizes.masses,
+        sizes.conflicts,
     )
 ]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Problems of one textbook page each, with their exact answers."""
+"""Textbook problems with exact answers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from iota.verify.run import Run
 
 
 def crossings(values: Array, h: float) -> Array:
-    """Times at which a sampled motion falls through zero, by the cubic through the four nearest samples."""
+    """Times of downward zero crossings of a sampled motion, by the cubic through the four nearest samples."""
     times = []
     for i in np.flatnonzero((values[1:-2] > 0) & (values[2:-1] <= 0)) + 1:
         cubic = np.polynomial.Polynomial.fit([-1, 0, 1, 2], values[i - 1 : i + 3], 3)
@@ -28,8 +28,8 @@ def crossings(values: Array, h: float) -> Array:
 def pendulum(run: Run) -> None:
     """Pendulum.
 
-    A mass on a massless rod of 1 m, let go at up to 170 degrees: its period is 4 sqrt(L/g) K(sin(a/2)), with K the complete
-    elliptic integral of the first kind. Energy-keeping mode, 1/1000 s a step.
+    A mass on a massless rod of 1 m, released at up to 170 degrees: its period is 4 sqrt(L/g) K(sin(a/2)), with K the
+    complete elliptic integral of the first kind. Energy-keeping mode, 1/1000 s a step.
     """
     length, h = 1.0, run.size(1 / 1000, 1 / 500)
     degrees = run.size([5, 30, 60, 90, 120, 150, 170], [30, 90, 170])
@@ -47,7 +47,7 @@ def pendulum(run: Run) -> None:
         fall = crossings(np.array(x), h)
         measured.append(fall[1] - fall[0] if len(fall) > 1 else np.nan)
         expected.append(exact)
-        if np.isnan(measured[-1]):  # from rest: a quarter period to the first fall through zero
+        if np.isnan(measured[-1]):  # from rest: a quarter period to the first downward zero crossing
             measured[-1] = 4 * fall[0]
         run.near(f"period from {degrees[index]}°, s", measured[-1], exact, run.size(1e-5, 4e-5) * exact)
         run.progress((index + 1) / len(degrees))
@@ -69,8 +69,8 @@ def pendulum(run: Run) -> None:
 def double_pendulum(run: Run) -> None:
     """Double pendulum.
 
-    Two links of 1 m, let go level: against the equations of motion in two angles, integrated to 1e-13, over two seconds.
-    Energy-keeping mode is of second order, robust mode of first.
+    Two links of 1 m, released level: compared with the equations of motion in two angles, integrated to 1e-13, over two
+    seconds. Energy-keeping mode is of second order, robust mode of first.
     """
     lengths, masses, angles = np.array([1.0, 1.0]), np.array([1.0, 0.5]), np.array([np.pi / 2, np.pi / 2])
     counts = run.size([120, 240, 480, 960, 1920, 3840], [240, 480, 960])
@@ -105,8 +105,9 @@ def double_pendulum(run: Run) -> None:
 def catenary(run: Run) -> None:
     """Catenary.
 
-    A chain between two nails, damped to rest. With equal links its rest shape is known exactly: the tangents of successive
-    links rise evenly. With more links it nears the catenary y = a cosh(x/a), by the square of a link's length.
+    A chain between two nails, damped to rest. With equal links its rest shape is known exactly: the tangents of
+    successive links increase uniformly. With more links it converges to the catenary y = a cosh(x/a), with the square
+    of a link's length.
     """
     span, length = 1.0, 1.5
     a = brentq(lambda a: 2 * a * np.sinh(span / (2 * a)) - length, 0.05, 10)
@@ -122,7 +123,7 @@ def catenary(run: Run) -> None:
     counts = run.size([8, 16, 32, 64, 128], [8, 16, 32])
     sag_errors, shapes = [], {}
     for index, links in enumerate(counts):
-        # Let go from a tent: two straight halves that meet above the rest shape.
+        # Starts as a tent: two straight halves that meet above the rest shape.
         half = links // 2
         tip = np.array([span / 2, np.sqrt((length / 2) ** 2 - (span / 2) ** 2) * -1.0])
         points = np.vstack([np.linspace([0, 0], tip, half + 1), np.linspace(tip, [span, 0], links - half + 1)[1:]])
@@ -159,8 +160,8 @@ def spring_chain(run: Run) -> None:
     """Normal modes of a spring chain.
 
     Eight masses on nine equal springs between two nails, along a line: mode k has the circular frequency
-    2 sqrt(k/m) sin(k pi / 18). The mid-point rule turns a frequency w into (2/h) atan(w h / 2), exactly. Each mode is
-    started by itself; the phase that it has reached after ten periods tells its frequency.
+    2 sqrt(k/m) sin(k pi / 18). The mid-point rule changes a frequency w to (2/h) atan(w h / 2), exactly. Each mode is
+    started alone; its phase after ten periods gives its frequency.
     """
     masses, stiffness, mass, gap = 8, 400.0, 0.5, 0.2
     h = 1 / 240
@@ -196,7 +197,8 @@ def spring_chain(run: Run) -> None:
 def oscillator(run: Run) -> None:
     """Damped oscillator.
 
-    A mass on a spring with a dashpot, let go at 0.1 m, in all three regimes: x(t) of the linear oscillator. 1/960 s a step.
+    A mass on a spring with a dashpot, released at 0.1 m, in all three regimes: x(t) of the linear oscillator. 1/960 s a
+    step.
     """
     mass, stiffness, seconds = 2.0, 80.0, 3.0
     omega = np.sqrt(stiffness / mass)
@@ -243,8 +245,8 @@ def orbit(run: Run) -> None:
     """Two-body orbit.
 
     Two bodies under Newton's law of gravity, implicit in the energy-keeping scheme, on an ellipse of eccentricity 0.5: the
-    period is that of Kepler's third law, and energy and angular momentum are kept to round-off. With a function of the
-    script for the force, held over a step of robust mode, the orbit closes too, and angular momentum is kept.
+    period is that of Kepler's third law, and energy and angular momentum are kept to round-off. With a scripted force,
+    held over a step of robust mode, the orbit closes too, and angular momentum is kept.
     """
     masses, strength = np.array([3.0, 1.0]), 1 / 3  # G in m^3/(kg s^2)
     mu = strength * masses.sum()
@@ -257,7 +259,7 @@ def orbit(run: Run) -> None:
     share = np.array([-masses[1], masses[0]]) / masses.sum()
 
     def travel(scripted: bool) -> tuple[Array, float, float]:
-        """The path of one as seen from the other; largest relative changes of energy and angular momentum."""
+        """The path of one relative to the other; largest relative changes of energy and angular momentum."""
         system = iota.System(gravity=(0, 0, 0), mode="robust" if scripted else "energy_keeping")
         p, q = (
             system.body().particle((s * near, 0, 0), mass=m, velocity=(0, s * speed, 0))

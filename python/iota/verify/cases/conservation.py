@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What must not change: momentum, angular momentum, energy, and the length of a link under any load."""
+"""Conserved quantities: momentum, angular momentum, energy, and the length of a link under any load."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def momenta(run: Run) -> None:
             run.progress(step / steps)
     run.note("steps", steps)
     run.at_most("momentum, relative deviation", max(lost), 1e-12)
-    # In the long run the mixture flies 300 m away, and places there have a hundred times fewer digits.
+    # In the long run the mixture moves 300 m away, where places have a hundred times lower precision.
     run.at_most("angular momentum, relative deviation", max(twisted), run.size(1e-12, 1e-12, 1e-9))
     run.at_most("energy, relative deviation", max(drift), run.size(1e-8, 1e-8, 1e-7))
     run.at_most("steps handed to the robust scheme", fallbacks, 0)
@@ -124,9 +124,9 @@ def swing(
 def energy(run: Run) -> None:
     """Energy of a swinging chain.
 
-    64 links, let go 10 degrees from straight down, undamped, 1/240 s. Energy-keeping mode may drift by no more than a
-    millionth of the initial energy above rest in 100 000 steps (7 minutes), without any fall-back. Robust mode loses energy
-    and never gains any.
+    64 links, released 10 degrees from straight down, undamped, 1/240 s. Energy-keeping mode may drift by at most a
+    millionth of the initial energy above rest in 100 000 steps (7 minutes), without any fall-back. Robust mode loses
+    energy and never gains any.
     """
     steps = run.size(100_000, 1500, 1_000_000)
     kept, start, fallbacks, unconverged = swing("energy_keeping", 64, 10, 1 / 240, steps, run, (0, 0.8))
@@ -135,7 +135,7 @@ def energy(run: Run) -> None:
     run.at_most("energy-keeping: largest drift / energy above rest", float(np.abs(kept / start - 1).max()), 1e-6)
     run.at_most("energy-keeping: fall-backs", fallbacks, 0)
     run.at_most("energy-keeping: steps without a solution", unconverged, 0)
-    # Each rise from one step to the next counts, not only those above the start.
+    # Each rise from one step to the next counts, also below the initial energy.
     for degrees in (10, 90, 170):
         lost, first, _, _ = swing(
             "robust", 64, degrees, 1 / 240, run.size(5000, 600), run, (0.8 + degrees / 1000, 0.05)
@@ -164,14 +164,13 @@ def energy(run: Run) -> None:
 def heavy_end(run: Run) -> None:
     """Mass ratio of a million.
 
-    100 links, the last a million times as heavy as the others, let go level, 1/60 s: no step fails, no link is longer than a
-    millionth of itself, and kinetic energy never exceeds what gravity has released.
+    100 links, the last a million times as heavy as the others, released level, 1/60 s: no step fails, no link is longer
+    than a millionth of itself, and kinetic energy never exceeds the energy released by gravity.
     """
     for mode, allowed in (("robust", 1e-9), ("energy_keeping", 1e-6)):  # energy-keeping: within its drift
         system = iota.System(mode=mode)  # type: ignore[arg-type]
         links, length = 100, 0.1
-        points = np.column_stack([np.arange(links + 1) * length, np.zeros(links + 1), np.zeros(links + 1)])
-        rings = scenes.string_of_links(system, points, link_mass=0.1)
+        rings = scenes.string_of_links(system, scenes.level_points((0, 0), links, length), link_mass=0.1)
         last = rings[-1].body
         for particle in last.particles:
             particle.mass = 0.5 * 0.1 * 1e6

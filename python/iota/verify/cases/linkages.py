@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Closed loops of rigid bodies, with pins: each joint is two shared points, each bar a plate."""
+"""Closed loops of rigid bodies with pins: each joint is two shared points, each bar a plate."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ WIDTH = 0.1  # m: half the length of a pin
 
 
 class Linkage:
-    """A planar linkage built in space. Each bar is a plate with two points, at z = +-WIDTH, at every joint that it has."""
+    """A planar linkage in space. Each bar is a plate with two points, at z = +-WIDTH, at each of its joints."""
 
     def __init__(self, system: iota.System, joints: dict[str, Array]) -> None:
         self.system = system
@@ -48,13 +48,13 @@ class Linkage:
         return np.asarray(np.mean(scenes.places(self.pins[name]), axis=0)[:2])
 
     def out_of_plane(self) -> float:
-        """How far the pins have tilted, m."""
+        """Tilt of the pins, m."""
         ends = np.array([scenes.places(pins) for pins in self.pins.values()])
         return float(max(np.abs(ends[:, 0, :2] - ends[:, 1, :2]).max(), np.abs(np.abs(ends[..., 2]) - WIDTH).max()))
 
 
 def meet(a: Array, ra: float, b: Array, rb: float) -> Array:
-    """Where circles about a and b intersect: the point to the left of a -> b."""
+    """The intersection of circles about a and b to the left of a -> b."""
     d = float(np.linalg.norm(b - a))
     along = (ra * ra - rb * rb + d * d) / (2 * d)
     across = np.sqrt(max(0.0, ra * ra - along * along))
@@ -76,8 +76,8 @@ def four_bar(run: Run) -> None:
     """Four-bar linkage.
 
     A crank, a coupler plate and a rocker that turn freely, without gravity: a closed loop with many more constraints than
-    freedoms. In a minute of turning the hinges stay closed, the coupler's point stays on the curve that geometry gives for
-    the crank's angle, and energy is kept.
+    freedoms. In a minute of turning the hinges stay closed, the coupler's point stays on the geometric curve for the
+    crank's angle, and energy is kept.
     """
     crank, coupler, rocker, ground = 0.4, 1.2, 1.0, 1.1
     a, d = np.zeros(2), np.array([ground, 0.0])
@@ -144,7 +144,7 @@ JANSEN = {name: 0.02 * value for name, value in zip(
 
 
 def jansen_geometry(angle: float) -> dict[str, Array]:
-    """Every joint of the leg for the crank's angle, by circles that meet."""
+    """Every joint of the leg for the crank's angle, by intersections of circles."""
     s = JANSEN
     crank, pivot = np.zeros(2), np.array([-s["a"], -s["l"]])
     tip = crank + s["m"] * np.array([np.cos(angle), np.sin(angle)])
@@ -168,9 +168,9 @@ def jansen_geometry(angle: float) -> dict[str, Array]:
 def jansen(run: Run) -> None:
     """Jansen's linkage.
 
-    One leg of a strandbeest: seven bodies, three closed loops, pinned in space (twice redundant at every joint), its crank
-    led round once a second. The gap stays at the solver's tolerance, every joint where geometry puts it, and the path of
-    the foot repeats from turn to turn. (Public engines let this one drift apart within seconds:
+    One leg of a strandbeest: seven bodies, three closed loops, pinned in space (twice redundant at every joint), its
+    crank driven at one turn a second. The gap stays at the solver's tolerance, every joint at its geometric place, and
+    the path of the foot repeats in each turn. (In public engines it drifts apart within seconds:
     JuliaRobotics/RigidBodyDynamics.jl, issue 480.)
     """
     system = iota.System()

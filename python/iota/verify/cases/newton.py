@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Newton's method by itself, and where the thesis' solver gave up."""
+"""Newton's method alone, and the failures of the thesis' solver."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from iota.verify.run import Run
 def newton_fractal(run: Run) -> None:
     """Newton fractal (Fig. 4.18).
 
-    Iterations that Newton's method needs for z^3 = 1 from each point of the plane: plain steps z - (z^3 - 1)/(3 z^2) give the
-    thesis' picture, and are what a solver that searches along the line is compared with. iota.solve, from a grid of the
-    same points, ends at a root every time and in fewer steps.
+    Iterations that Newton's method needs for z^3 = 1 from each point of the plane: plain steps z - (z^3 - 1)/(3 z^2)
+    give the thesis' picture and are the reference for a solver with a line search. iota.solve, from a grid of the same
+    points, always ends at a root and in fewer steps.
     """
     side = run.size(600, 120)
     x = np.linspace(-1.5, 1.5, side)
@@ -74,9 +74,9 @@ def newton_fractal(run: Run) -> None:
 
 class ThesisChain:
     """The thesis' scheme for a chain of two-point links (section 4.3.2): each body has a velocity and an angular velocity;
-    the forces at the hinges are sought that make the particles of each hinge coincide after the step.
+    the unknowns are the forces at the hinges that make the particles of each hinge coincide after the step.
 
-    P += h V,  p += R(h w) applied to the arm; hinge forces act at the arms where they were at the start of the step
+    P += h V,  p += R(h w) applied to the arm; hinge forces act at the arms at the start of the step
     (Equation 4.3), so torques are explicit. Solved by Newton's method with a backtracking line search from the forces of
     the last step, as its appendix C.4. Units are ours (seconds), c = 1.
     """
@@ -148,9 +148,9 @@ class ThesisChain:
 def failure_rate(run: Run) -> None:
     """Failure rate against the length of a chain.
 
-    Chains of 2.4 m in 1 to 16 links, let go about level at 1/60 s for four seconds, several starts each. How many runs meet
-    a step that cannot be solved: by the thesis' scheme, made anew from its section 4.3.2, and by iota in both modes. The
-    thesis saw failures from eight links on.
+    Chains of 2.4 m in 1 to 16 links, released about level at 1/60 s for four seconds, several starts each. The number
+    of runs with a step that cannot be solved: by the thesis' scheme, reimplemented from its section 4.3.2, and by iota
+    in both modes. In the thesis failures began at eight links.
     """
     counts = run.size([1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16], [2, 12])
     starts, seconds, h = run.size(10, 1), run.size(4.0, 2.5), 1 / 60

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""docs/api is what the docstrings say now, and has all that is public."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+import re
+import sys
+import types
+from pathlib import Path
+
+import pytest
+
+import iota
+from iota import builder, effects, shapelib
+
+ROOT = Path(__file__).parents[2]
+specification = importlib.util.spec_from_file_location("make_api", ROOT / "tools" / "make_api.py")
+assert specification is not None and specification.loader is not None
+make_api = importlib.util.module_from_spec(specification)
+sys.modules[specification.name] = make_api
+specification.loader.exec_module(make_api)
+PAGES = make_api.pages()
+HEADINGS = {heading for text in PAGES.values() for heading in re.findall(r"^## (\w+)$", text, re.M)}
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.stem)
+def test_a_page_of_the_reference_is_up_to_date(path: Path) -> None:
+    assert path.is_file() and path.read_text() == PAGES[path], "run tools/make_api.py"
+
+
+@pytest.mark.parametrize("module", [iota, iota.types, builder, effects, shapelib], ids=lambda module: module.__name__)
+def test_the_reference_has_every_public_class_and_function(module: types.ModuleType) -> None:
+    public = [name for name in module.__all__ if callable(getattr(module, name))]
+    # Shape is the union of all shapes.
+    assert [name for name in public if name not in HEADINGS and name != "Shape"] == []
+
+
+def test_every_public_class_and_function_has_a_docstring() -> None:
+    for module in (iota, iota.types, builder, effects, shapelib):
+        for name in module.__all__:
+            thing = getattr(module, name)
+            if inspect.isclass(thing) or inspect.isroutine(thing):
+                assert inspect.getdoc(thing), f"{module.__name__}.{name}"
+
+
+def test_members_are_those_of_the_living_classes() -> None:
+    """Of a class with bases in other files, too."""
+    text = PAGES[make_api.PAGES / "world.md"].split("## World\n")[1].split("\n## ")[0]
+    told = set(re.findall(r"^### `(\w+)\(", text, re.M)) | set(re.findall(r"^\| `(\w+)` \|", text, re.M))
+    own = {name for name in dir(iota.World) if not name.startswith("_")}
+    assert own == told - {"World"}

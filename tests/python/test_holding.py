@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What hands do to bodies, seen from the page: throws, and pulls that are far too far."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import pytest
+from page_client import PageClient
+
+import iota
+
+Runner = Callable[[iota.World], str]
+
+
+def test_a_thrown_body_keeps_the_velocity_of_the_hand(run_world: Runner) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    ball = system.body(shape=iota.Sphere(0.05), mass=0.2, position=(0, 1, 0))
+    world = iota.World(system, ground=None)
+    moves: list[tuple[float, float]] = []  # s of simulated time, m
+
+    @world.on_drag(ball)
+    def drag(event: iota.Event) -> None:
+        if event.phase == "update":
+            moves.append((system.time, event.point.x))
+
+    with PageClient(run_world(world)) as page:
+        page.send("grab_start", hold=1, body=page.body(0), local_point=(0, 0, 0), target=(0, 1, 0))
+        start = time.monotonic()
+        while (gone := time.monotonic() - start) < 0.8:
+            page.send("grab_move", hold=1, target=(1.5 * gone, 1, 0))
+            time.sleep(0.008)
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: world.call(lambda: world.held() is None))
+        velocity = world.call(lambda: ball.velocity)
+        # As fast as the hand was while the world heard of it, on however busy a machine.
+        late = [move for move in moves if move[0] > moves[-1][0] - 0.3]
+        hand = (late[-1][1] - late[0][1]) / (late[-1][0] - late[0][0])
+        assert velocity.x == pytest.approx(hand, rel=0.2)
+        assert abs(velocity.y) + abs(velocity.z) < 0.05
+        assert world.call(lambda: ball.velocity.x) == pytest.approx(velocity.x, rel=0.01)
+
+
+@pytest.mark.parametrize("mass", [1e-3, 0.1, 100.0])
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_a_pull_that_is_far_too_far_explodes_nothing(run_world: Runner, mass: float, size: float) -> None:
+    system = iota.System(gravity=(0, -9.81 * size, 0), damping=0.5)
+    links = iota.builder.chain(12, size, top=(0, 2 * size, 0), mass=mass).realize(system).bodies
+    world = iota.World(system, ground=None)
+    url = run_world(world)
+
+    def figures() -> tuple[float, float]:
+        reach = max(abs(p.position - iota.Vec3(0, 2 * size, 0)) for link in links for p in link.particles)
+        return reach, system.energy.kinetic
+
+    with PageClient(url) as page:
+        page.send("grab_start", hold=1, body=page.body(6), local_point=(0, 0, 0), target=(0, size, 0))
+        for target in ((3 * size, 3 * size, 0), (-1e3 * size, 0, 0), (0, 1e5 * size, 0), (1e5 * size, 0, 1e5 * size)):
+            page.send("grab_move", hold=1, target=target)
+            time.sleep(0.15)
+            reach, kinetic = world.call(figures)
+            assert math.isfinite(kinetic) and reach <= size * 1.001
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: world.call(lambda: world.held() is None))
+        reach, kinetic = world.call(figures)
+        # At most a hundred lengths of the chain or so in a second; targets were 100 000 of them away.
+        assert kinetic < 0.5 * mass * (200 * size) ** 2 and reach <= size * 1.001
