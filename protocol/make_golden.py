@@ -4,10 +4,10 @@
 
     python3 protocol/make_golden.py
 
-This is on purpose a second encoder that never reads the schema and shares no code with
-tools/generate_protocol.py: each frame is put together by hand with struct.pack, so that a
-mistake in the schema or the generator shows as a difference. Run it only after a change
-of the protocol, and look at the difference it makes. Floats are exact in 32 bits.
+This is deliberately an independent encoder that does not read the schema and shares no code with
+tools/generate_protocol.py: each frame is written by hand with struct.pack, so that an error in the schema or the
+generator shows as a difference. Run it only after a change of the protocol, and check the difference. Floats are exact
+in 32 bits.
 """
 
 from __future__ import annotations

@@ -28,8 +28,8 @@ function compressed() {
 }
 
 /**
- * Shader text of three.js that is compiled only for what no part of the page uses: it weighs a twentieth of the page. A material that needs
- * one of these looks wrong in the first browser test; take its line out then.
+ * Shader text of three.js for features that the page does not use: a twentieth of the page's size. If a material needs
+ * one of these, the first browser test shows it; then remove its line.
  */
 const unusedShaders = new RegExp(`^(var|const) (${[
   "alphahash_\\w+", "batching_\\w+", "bumpmap_\\w+", "clearcoat_\\w+", "displacementmap_\\w+", "gradientmap_\\w+", "iridescence_\\w+",
@@ -82,7 +82,7 @@ export default defineConfig({
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1200,
-    // The minifier drops notices: the texts of everything that was bundled go along in a file of their own.
+    // The minifier drops notices: the license texts of all bundled packages are in a separate file.
     rolldownOptions: { input: ["index.html", "gallery.html"] },
     license: { fileName: "licenses.txt" },
   },

@@ -25,11 +25,11 @@ export interface BrowserOptions {
   readonly dark?: boolean;
   /** Drawn pixels for a css pixel; a half unless told. */
   readonly density?: number;
-  /** Takes certificates that nobody signed. */
+  /** Accepts self-signed certificates. */
   readonly trustsAll?: boolean;
 }
 
-/** Small windows, coarsely drawn: software rendering pays for each pixel, and what is tested does not depend on it. */
+/** Small windows at low resolution: the cost of software rendering is per pixel, and the tests do not depend on it. */
 export const small: BrowserOptions = { width: 640, height: 360 };
 
 export class Browser {
@@ -88,7 +88,7 @@ export class Tab {
     });
   }
 
-  /** Waits until a function of the page is true, and says what for when it never is. */
+  /** Waits until a function of the page is true; the error says what it waited for. */
   async until<T>(what: string, condition: (argument: T) => unknown, argument?: T, timeout = 25_000): Promise<void> {
     try {
       await this.page.waitForFunction(condition as (argument: unknown) => unknown, argument, { timeout, polling: 50 });
@@ -116,7 +116,7 @@ export class Tab {
   }
 
   async pause(paused: boolean): Promise<void> {
-    // The key toggles, and two tabs share the world: ask again where the other one's key came in between.
+    // The key toggles, and two tabs share the world: press again if the other tab's key came in between.
     for (let trial = 0; trial < 3; trial++) {
       if ((await this.page.evaluate(() => iota.paused)) === paused) return;
       await this.page.bringToFront();
@@ -127,7 +127,8 @@ export class Tab {
     throw new Error(`the world will not ${paused ? "pause" : "run"}`);
   }
 
-  /** Stops the world and waits until what is drawn has come to rest too: then a body is where it seems to be. */
+  /** Pauses the world and waits until the drawn poses have come to rest too, so that bodies are at their drawn places.
+   * */
   async freeze(): Promise<void> {
     await this.pause(true);
     const rested = await this.page.evaluate(async () => {
@@ -135,7 +136,7 @@ export class Tab {
       const drawn = () => iota.bodies().flatMap((body) => iota.bodyPosition(body).map((value) => value.toFixed(4))).join();
       let before = "";
       for (let still = 0; still < 3 && performance.now() - began < 15_000;) {
-        // A frame, or half a second where drawing stalls: it cannot be waited for without end.
+        // A frame, or half a second if drawing stalls, so that the wait ends.
         await Promise.race([new Promise(requestAnimationFrame), new Promise((resolve) => setTimeout(resolve, 500))]);
         const now = drawn();
         still = now === before ? still + 1 : 0;
@@ -148,11 +149,16 @@ export class Tab {
 
   async reset(): Promise<void> {
     await this.page.keyboard.press("Escape");
-    await this.page.keyboard.press("r");
-    await this.until("the chain is whole again", () => new Set(iota.articulates().values()).size === 1 && iota.time < 1.5);
+    // A second reset within a second is refused.
+    const isWhole = () => new Set(iota.articulates().values()).size === 1 && iota.time < 1.5;
+    for (let trial = 0; trial < 5; trial++) {
+      await this.page.keyboard.press("r");
+      if (await this.page.waitForFunction(isWhole, undefined, { timeout: 3000, polling: 50 }).then(() => true, () => false)) return;
+    }
+    await this.until("the chain is whole again", isWhole);
   }
 
-  /** Freezes the world at a moment when a body is well in view, and nothing of the page's controls before it. */
+  /** Freezes the world when a body is well in view and not covered by the page's controls. */
   async freezeInView(body: number): Promise<Place> {
     for (let trial = 0; trial < 20; trial++) {
       await this.freeze();
@@ -214,7 +220,7 @@ export class Tab {
         await this.page.screenshot({ path: file, timeout: 8000 });
         return;
       } catch (error) {
-        // A busy machine's software renderer may take seconds for a frame; a missing picture is no failed behavior.
+        // A busy machine's software renderer may take seconds for a frame; a missing picture is not a failure.
         console.warn(`no picture ${name}: ${String(error).split("\n")[0]}`);
       }
     }

@@ -26,7 +26,7 @@ beforeEach(async () => {
   await tab.reset();
 });
 
-/** What Python says, once it has caught up with the page. */
+/** The state in Python, once it has caught up with the page. */
 async function inPython(articulates: number): Promise<void> {
   await expect.poll(() => server.report?.articulates, { timeout: 5000 }).toBe(articulates);
 }
@@ -42,7 +42,7 @@ function angle(a: Quat, b: Quat): number {
   return 2 * Math.acos(Math.min(1, Math.abs(dot(a, b))));
 }
 
-/** How far b is turned about its own x axis against a, rad. */
+/** Rotation of b about its own x axis relative to a, rad. */
 function twist(a: Quat, b: Quat): number {
   const x = a[3] * b[0] - a[0] * b[3] - a[1] * b[2] + a[2] * b[1];
   return 2 * Math.atan2(Math.sign(dot(a, b)) * x, Math.abs(dot(a, b)));
@@ -123,12 +123,52 @@ describe("the page of a chain", () => {
     await tab.page.keyboard.press("c");
     await tab.until("there is one part", () => new Set(iota.articulates().values()).size === 1);
     await inPython(1);
-    // They are one part while their ends are still on the way to each other, when there is no hinge to break yet.
+    // They are one part while their ends are still closing, when there is no hinge to break yet.
     await tab.until("the ends have met", () => {
       const [above, below] = [iota.bodyPosition(11), iota.bodyPosition(12)];
       return Math.hypot(...above.map((value, axis) => value - below[axis])) < 0.101;
     });
     await tab.page.waitForTimeout(500);
+  });
+
+  it("tells where the time of a frame goes", async () => {
+    await tab.pause(false);
+    await tab.page.keyboard.press("i");
+    await expect.poll(() => tab.page.textContent("#meter")).toMatch(/steps\d+\.\d\d ms {2}\d+ %network.+script.+drawing\d/);
+    const shares = () => tab.page.evaluate(() => [...document.querySelectorAll<HTMLElement>("#meter .split i")].map((part) => parseFloat(part.style.width)));
+    await expect.poll(async () => {
+      const [steps, , script, drawing] = await shares();
+      return Math.min(steps, script, drawing);
+    }).toBeGreaterThan(0);
+    expect((await shares()).reduce((sum, share) => sum + share, 0)).toBeLessThan(100.1);
+    await tab.picture("profile");
+    await tab.pause(true);
+    await expect.poll(async () => (await shares())[0]).toBe(0);
+    await tab.pause(false);
+    await tab.page.keyboard.press("i");
+    await expect.poll(() => tab.page.textContent("#meter")).not.toContain("drawing");
+  });
+
+  it("selects several links by a rectangle, and breaks all of them at once", async () => {
+    await tab.reset();
+    await tab.freeze();
+    const places = await Promise.all([6, 9].map((link) => tab.place(link)));
+    const [left, right] = [Math.min(...places.map(([x]) => x)) - 30, Math.max(...places.map(([x]) => x)) + 30];
+    const [top, bottom] = [Math.min(...places.map(([, y]) => y)) - 1, Math.max(...places.map(([, y]) => y)) + 1];
+    await tab.page.keyboard.down("Control");
+    await tab.page.mouse.move(left, top);
+    await tab.page.mouse.down();
+    await tab.page.mouse.move(right, bottom, { steps: 4 });
+    await tab.picture("band");
+    await tab.page.mouse.up();
+    await tab.page.keyboard.up("Control");
+    expect(await tab.page.evaluate(() => [...iota.page.selection.actionBodies].sort((a, b) => a - b))).toEqual([6, 7, 8, 9]);
+    await tab.pause(false);
+    await tab.page.keyboard.press("b");
+    await tab.until("each of them is off", () => new Set(iota.articulates().values()).size === 5);
+    await tab.page.keyboard.press("Escape");
+    expect(await tab.page.evaluate(() => iota.page.selection.several.size)).toBe(0);
+    await tab.reset();
   });
 
   it("offers the same by buttons once something is selected, and in the help", async () => {
@@ -268,7 +308,7 @@ describe("two tabs on one world", () => {
       const dot = (a: number[], b: number[]) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
       return { share: dot(from, along) / dot(along, along), forces: holds.map((hold) => hold.force) };
     }, body);
-    // Pulled apart by equal springs (and by its own weight) it stays between; one alone would have it at its own end.
+    // Pulled apart by equal springs (and its own weight) it stays between; a single spring would pull it to its end.
     expect(between.share).toBeGreaterThan(0.2);
     expect(between.share).toBeLessThan(0.8);
     for (const force of between.forces) expect(force).toBeGreaterThan(1);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an edit costs on the page: `npm run bench`, after `npm run build`. A chain of 10 000 links is told to the built page in a
-// real browser, as a server would; then it is cut in the middle again and again, each time with two new bodies where one was.
-// Printed, not tested: the script of one edit, from the bytes that arrive to what the next frame has to do more than usual.
+// Measures the cost of an edit on the page: `npm run bench`, after `npm run build`. A chain of 10 000 links is sent to
+// the built page in a real browser, as by a server; then it is cut in the middle repeatedly, each time with two new
+// bodies in place of one. Printed, not tested: the script time of one edit, from the arriving bytes to the additional
+// work of the next frame.
 
 import { BodyKind, encodeEntities, encodePoses, encodeServerMessage, NO_COLOR, type EntityKind, type EntityRecords } from "../src/protocol/generated.ts";
 import { preview } from "vite";
@@ -30,7 +31,7 @@ const part = (look: string, kind: string, sizes: number[]) => ({
   offset: [0, 0, 0] as [number, number, number], rotation: [0, 0, 0, 1] as [number, number, number, number], turn: 0, material: "steel", color: NO_COLOR,
 });
 
-/** All that a page is told when it joins. */
+/** All messages to a page that joins. */
 const joining: number[][] = [
   bytes(encodeServerMessage({ type: "welcome", version: 3, world: "", client: 1 })),
   set("style", [{ id: id(0), name: "link", parts: [part("rope", "capsule", [0.012, 0.1])] }]),
@@ -56,7 +57,7 @@ function cut(number: number): number[][] {
 function summary(what: string, values: readonly number[]): string {
   const sorted = values.toSorted((a, b) => a - b);
   const at = (share: number) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))].toFixed(2);
-  return `${what.padEnd(34)} median ${at(0.5)} ms, 90 % ${at(0.9)} ms, most ${at(1)} ms`;
+  return `${what.padEnd(34)} median ${at(0.5)} ms, 90 % ${at(0.9)} ms, worst ${at(1)} ms`;
 }
 
 const server = await preview({ preview: { port: 0, host: "127.0.0.1" }, logLevel: "error" });
@@ -85,14 +86,14 @@ try {
     const usual = Array.from({ length: 20 }, update).toSorted((a, b) => a - b)[10];
     const before = viewer.renderer.info.memory.geometries;
     const meshes = world.entities.body.root.children.length;
-    const costs = edits.map((edit) => ({ told: receive(edit), more: Math.max(0, update() - usual) }));
+    const costs = edits.map((edit) => ({ receiving: receive(edit), additional: Math.max(0, update() - usual) }));
     return { joinMs, usual, costs, badFrames: session.connection.badFrames, remade: world.entities.body.root.children.length - meshes, geometries: viewer.renderer.info.memory.geometries - before };
   }, { join: joining, edits: Array.from({ length: cuts }, (_, number) => cut(number + 1)) });
-  const whole = result.costs.map(({ told, more }) => told + more);
+  const whole = result.costs.map(({ receiving, additional }) => receiving + additional);
   console.log(`${links} bodies, ${cuts} cuts of the middle; limit ${limitMs} ms`);
-  console.log(summary("what the server says", result.costs.map(({ told }) => told)));
-  console.log(summary("what the next frame does more", result.costs.map(({ more }) => more)));
-  console.log(summary("one cut", whole));
+  console.log(summary("receiving the messages", result.costs.map(({ receiving }) => receiving)));
+  console.log(summary("additional time of the next frame", result.costs.map(({ additional }) => additional)));
+  console.log(summary("one cut, total", whole));
   console.log(`joining ${result.joinMs.toFixed(1)} ms, a usual frame ${result.usual.toFixed(2)} ms, meshes made ${result.remade}, bad frames ${result.badFrames}`);
 } finally {
   await browser.stop();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What scripts draw beside bodies, as pixels at the places where it has to be; the controls of the panel, clicks and keys, as the script
-// hears of them; pictures. build/artifacts/page_entities.png is for people to look at.
+// Things that scripts draw besides bodies, as pixels at their expected places; the controls of the panel, clicks and
+// keys, as received by the script; pictures. build/artifacts/page_entities.png is for inspection.
 
 import { readFileSync } from "node:fs";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
@@ -70,7 +70,7 @@ async function colorAt(kind: string, place: Place, wanted: Place): Promise<{ sho
   }, [kind, place, wanted] as const);
 }
 
-/** How far two colors are apart in hue and saturation, whatever their brightness. */
+/** Difference of two colors in hue and saturation, without brightness. */
 function apart(a: readonly number[], b: readonly number[]): number {
   const [sizeA, sizeB] = [Math.hypot(...a) || 1, Math.hypot(...b) || 1];
   return Math.hypot(...a.map((value, channel) => value / sizeA - b[channel] / sizeB));
@@ -101,6 +101,29 @@ describe("what a script draws", () => {
     const { shown, hidden } = await colorAt(kind, place, color);
     expect(apart(shown, color), `${shown} in place of ${color}`).toBeLessThan(0.3);
     expect(apart(hidden, color) - apart(shown, color), `${hidden} without it`).toBeGreaterThan(0.1);
+  });
+
+  it("a thick line casts a shadow on the ground, as a body does", async () => {
+    const light = await tab.page.evaluate(() => {
+      const { viewer: { renderer, scene, camera }, world: { entities } } = iota.page;
+      const gl = renderer.getContext();
+      // Along the key light, from the middle of the line to the ground.
+      const clip = camera.position.clone().set(0.5 - (0.35 * 0.55) / 1.35, 0, 0.9 - (0.35 * 0.75) / 1.35).project(camera);
+      const x = Math.round(((clip.x + 1) / 2) * gl.drawingBufferWidth);
+      const y = Math.round(((clip.y + 1) / 2) * gl.drawingBufferHeight);
+      const pixels = new Uint8Array(4 * 9);
+      const take = () => {
+        renderer.render(scene, camera);
+        gl.readPixels(x - 1, y - 1, 3, 3, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+        return pixels.reduce((sum, value, index) => (index % 4 === 3 ? sum : sum + value), 0) / 27;
+      };
+      const shown = take();
+      entities.line.root.castShadow = false;
+      const without = take();
+      entities.line.root.castShadow = true;
+      return { shown, without };
+    });
+    expect(light.shown / light.without, JSON.stringify(light)).toBeLessThan(0.9);
   });
 
   it("a path goes where its body was drawn", async () => {
@@ -160,15 +183,15 @@ describe("the script hears", () => {
     await tab.page.keyboard.press("n");
     await tab.until("it is night", () => iota.page.world.entities.stage.size === 1);
     await tab.picture("page_night");
-    await expect.poll(light).toBeLessThan(70);
+    await expect.poll(light, { timeout: 10_000 }).toBeLessThan(70);
     await tab.page.keyboard.press("n");
     await tab.until("it is day", () => iota.page.world.entities.stage.size === 0);
-    await expect.poll(async () => Math.abs((await light()) - day)).toBeLessThan(3);
+    await expect.poll(async () => Math.abs((await light()) - day), { timeout: 10_000 }).toBeLessThan(3);
   });
 
   it("of a picture that it asks for, and a user takes one by a key", async () => {
     await tab.page.keyboard.press("i");
-    // Whatever resolution the page draws at to keep up.
+    // Independent of the page's resolution.
     await told('{"screenshot": [960, 540]}');
     await tab.page.evaluate(() => (document.activeElement as HTMLElement).blur());
     const [file] = await Promise.all([tab.page.waitForEvent("download"), tab.page.keyboard.press("p")]);

@@ -45,6 +45,7 @@ def draw(world: iota.World) -> None:
     """What stays where it is."""
     world.line((-1.6, 0.2, 0), (-1.35, 0.6, 0), (-1.2, 0.2, 0), radius=0.03, color="#d0402b")
     world.line((-1.6, 0.8, 0), (-1.35, 1.2, 0), (-1.2, 0.8, 0), color="#3f7fd0", closed=True)
+    world.line((0.35, 0.35, 0.9), (0.65, 0.35, 0.9), radius=0.03, color="#d0402b")
     world.arrow((-0.9, 0.2, 0), vector=(0.3, 0.6, 0), color="#2f9d92")
     world.arrow((-0.9, 1.0, 0), vector=(0.3, 0.2, 0), radius=0.03, color="#8a4fb0")
     world.axes(at=(-0.2, 0.3, 0), length=0.5)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much a page is on the wire, and how soon it shows something; figures in build/artifacts/first_paint.json.
+// The size of a page on the wire, and the time to its first paint; figures in build/artifacts/first_paint.json.
 
 import { mkdirSync, writeFileSync } from "node:fs";
 import path from "node:path";

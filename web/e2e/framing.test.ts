@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first picture shows what is there: drawn pixels are counted for studies, examples, and the same scene at sizes from a molecule
-// to a valley.
+// The first picture shows the whole scene: drawn pixels are counted for studies, examples, and one scene at sizes from
+// a molecule to a valley.
 
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { Browser, type Tab } from "./browser.ts";
@@ -22,14 +22,14 @@ afterAll(async () => {
 interface Drawn {
   /** Share of the picture's pixels. */
   readonly share: number;
-  /** Of the picture, from what is drawn farthest left, right, above, below: 0 .. 1. */
+  /** Bounds of the drawn pixels as shares of the picture: 0 .. 1. */
   readonly wide: number;
   readonly high: number;
-  /** Whether something touches the picture's edge. */
+  /** Whether drawn pixels touch the picture's edge. */
   readonly cut: boolean;
 }
 
-/** What bodies and statics take of the picture: the pixels that change when they are hidden. */
+/** The pixels of bodies and statics: those that change when these are hidden. */
 async function drawn(tab: Tab): Promise<Drawn> {
   return tab.page.evaluate(() => {
     const { viewer, world: { entities } } = iota.page;
@@ -95,7 +95,7 @@ describe("the first picture", () => {
 
   const scenes = [
     "chain", "cradle", "lab", "ladder", "mechanisms", "weather",
-    ...["appendix_e1", "appendix_e2", "appendix_e3", "bridge", "explicit_particles", "pendulum"].map((name) => `examples/python/${name}.py`),
+    ...["bridge", "explicit_particles", "pendulum"].map((name) => `examples/python/${name}.py`),
   ];
   it.each(scenes)("of %s shows it", async (what) => {
     const server = await WorldServer.start([what], await freePort());

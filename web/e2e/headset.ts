@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person with an emulated headset: looks, points, pulls triggers, pinches, presses panels.
+// Simulates a user with an emulated headset: looks, points, pulls triggers, pinches, presses panels.
 
 import { mkdirSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -34,7 +34,7 @@ export class HeadsetTab {
     await this.tab.until("the session runs", () => iotaXR?.presenting && iotaXR.inputs().length === 2 && iotaXR.panelButton("play") !== null);
   }
 
-  /** A function of the page, after so many frames. */
+  /** The result of a function of the page, after some frames. */
   async frames(count: number): Promise<void> {
     await this.tab.page.evaluate(async (frames) => {
       for (let frame = 0; frame < frames; frame++) await new Promise((resolve) => requestAnimationFrame(resolve));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures at full size, for people to look at: build/artifacts/page_*.png. Also what a grab costs in time.
+// Pictures at full size, for inspection: build/artifacts/page_*.png. Also the time of a grab.
 
 import { writeFileSync } from "node:fs";
 import path from "node:path";
@@ -26,7 +26,7 @@ afterAll(async () => {
 async function picture(name: string): Promise<void> {
   await tab.freeze();
   await tab.page.evaluate(async () => {
-    // The page itself lowers the resolution where drawing is slow, so it may have to be asked twice.
+    // The page lowers the resolution if drawing is slow, so a second attempt may be needed.
     do {
       iota.page.viewer.resize(innerWidth, innerHeight, devicePixelRatio);
       for (let frame = 0; frame < 4; frame++) await new Promise((resolve) => requestAnimationFrame(resolve));
@@ -79,7 +79,7 @@ describe("pictures", () => {
       return { load_ms: navigation.loadEventEnd, grab_ms: delays.toSorted((a, b) => a - b)[2], round_trip_ms: iota.roundTripMs, frameMs, scriptMs, renderMs, decodeMs };
     });
     writeFileSync(path.join(artifacts, "page_figures.json"), `${JSON.stringify(figures, null, 2)}\n`);
-    // Loose: software rendering on a busy machine. The figures themselves are for reading.
+    // A loose limit, because of software rendering on a busy machine. The figures are for inspection.
     expect(figures.grab_ms).toBeLessThan(2000);
     expect(figures.scriptMs).toBeLessThan(50);
   });

@@ -45,6 +45,19 @@ describe("on a phone", () => {
     await tab.until("it is let go", () => iota.held === -1 && iota.holds().length === 0);
   });
 
+  it("one finger selects several where that is switched on", async () => {
+    await tab.freeze();
+    await tab.page.evaluate(() => { document.getElementById("select-several")!.click(); });
+    const places = await Promise.all([0, 23].map((link) => tab.place(link)));
+    const [x, y] = [[0, 1].map((axis) => Math.min(...places.map((place) => place[axis])) - 60), [0, 1].map((axis) => Math.max(...places.map((place) => place[axis])) + 40)];
+    await tab.touch("touchStart", [[x[0], x[1]]]);
+    await tab.touch("touchMove", [[x[0] + 20, x[1] + 20]]);
+    await tab.touch("touchMove", [[y[0], y[1]]]);
+    await tab.lift();
+    await tab.until("all links are selected", () => iota.page.selection.actionBodies.length === 24);
+    await tab.page.evaluate(() => { document.getElementById("select-several")!.click(); });
+  });
+
   it("one finger on nothing orbits, two pinch", async () => {
     await tab.freeze();
     const nothing: Place = [330, 700];

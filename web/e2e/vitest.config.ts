@@ -2,7 +2,7 @@
 import path from "node:path";
 import { defineConfig } from "vitest/config";
 
-// One browser and one server at a time: they share few cores, and software rendering needs them.
+// One browser and one server at a time, since software rendering needs all of the few cores.
 export default defineConfig({
   root: path.resolve(import.meta.dirname, ".."),
   test: { include: ["e2e/**/*.test.ts"], fileParallelism: false, testTimeout: 60_000, hookTimeout: 60_000 },

@@ -11,7 +11,7 @@ let server: WorldServer;
 let browser: Browser;
 let me: HeadsetTab;
 
-/** Software rendering pays for each pixel of both eyes; only the pictures need many. */
+/** The cost of software rendering is per pixel of both eyes; only the pictures need a high resolution. */
 const size = { width: 400, height: 224 };
 const pictureSize = { width: 1200, height: 600 };
 const rightRest = [0.2, 1.32, -0.38] as const;
@@ -30,7 +30,7 @@ afterAll(async () => {
   await server?.stop();
 });
 
-/** The whole chain again, hanging still: earlier tests leave it broken up, folded or swinging. */
+/** Restores the whole chain at rest: earlier tests leave it broken, folded or swinging. */
 async function calm(): Promise<void> {
   await me.tab.pause(false);
   await me.tab.page.evaluate(() => iota.page.commands.run("reset"));
@@ -159,6 +159,91 @@ describe("an emulated headset", () => {
     expect(distance(before.head, after.head)).toBeLessThan(1e-4);
   });
 
+  it("turns smoothly on request, with a narrowed view meanwhile", async () => {
+    await me.look(0.3, -0.25);
+    for (const shown of ["45°", "Smooth"]) {
+      await me.pointAtPanel("right", [0.12, 1.38, -0.2], "turn by");
+      await me.click("right", "trigger");
+      await me.tab.until(`turns are ${shown}`, (wanted) => iotaXR!.headset.panel.layout.buttons.some(({ command }) => command.title() === wanted), shown);
+    }
+    await me.point("right", rightRest, [0.2, 1.32, -2]);
+    const yaw = () => me.tab.page.evaluate(() => (iotaXR!.rig().yaw * 180) / Math.PI);
+    const before = await yaw();
+    await me.stick("right", 1, 0);
+    await me.frames(3);
+    const turned = before - (await yaw());
+    expect(turned).toBeGreaterThan(0.5);
+    expect(await me.tab.page.evaluate(() => iotaXR!.headset.vignette.mesh.visible)).toBe(true);
+    await me.stick("right", 0, 0);
+    await me.tab.until("the view is wide again", () => !iotaXR!.headset.vignette.mesh.visible);
+    const rest = await yaw();
+    await me.frames(3);
+    expect(await yaw()).toBe(rest);
+    await me.pointAtPanel("right", [0.12, 1.38, -0.2], "turn by");
+    await me.click("right", "trigger");
+    await me.look(0, 0);
+  });
+
+  it("faces where the stick says at the end of a teleport", async () => {
+    await me.point("left", leftRest, [-0.2, 1.0, -1.5]);
+    const before = await me.tab.page.evaluate(() => iotaXR!.rig().yaw);
+    await me.stick("left", 0, -1);
+    await me.stick("left", -1, 0);
+    await me.frames(2);
+    await me.stick("left", 0, 0);
+    const after = await me.tab.page.evaluate(() => iotaXR!.rig().yaw);
+    expect(((after - before) * 180) / Math.PI).toBeCloseTo(90, 1);
+  });
+
+  it("sits and stands, and goes home", async () => {
+    await me.look(0.3, -0.25);
+    const press = async (name: string) => {
+      await me.pointAtPanel("right", [0.12, 1.38, -0.2], name);
+      await me.click("right", "trigger");
+      await me.frames(2);
+      return me.tab.page.evaluate(() => ({ head: iotaXR!.head(), ground: iota.page.world.ground!, rig: iotaXR!.rig() }));
+    };
+    await me.tab.page.evaluate(() => { iotaXR!.device!.position.y = 1.2; });
+    await me.frames(2);
+    const seated = await press("seated");
+    expect(seated.head[1] - seated.ground).toBeCloseTo(1.6, 2);
+    const real = await press("size");
+    expect(real.rig.scale).toBeGreaterThan(1.5);
+    expect(real.head[1] - real.ground).toBeCloseTo(1.6 * real.rig.scale, 1);
+    const again = await press("size");
+    expect(again.rig.scale).toBe(1);
+    await me.tab.page.evaluate(() => { iotaXR!.device!.position.y = 1.6; });
+    await press("seated");
+    const home = await press("home in vr");
+    expect(home.head[1] - home.ground).toBeCloseTo(1.6, 2);
+    const away = await me.tab.page.evaluate(() => {
+      const { pivot } = iota.page.navigation.home;
+      const [x, , z] = iotaXR!.head();
+      return Math.hypot(x - pivot[0], z - pivot[2]);
+    });
+    expect(away).toBeGreaterThan(0.8);
+    expect(away).toBeLessThan(2);
+    await me.look(0, 0);
+  });
+
+  it("moves, turns and scales the world between both hands", async () => {
+    await me.point("left", [-0.2, 1.3, -0.3], [-0.6, 3, -0.4]);
+    await me.point("right", [0.2, 1.3, -0.3], [0.6, 3, -0.4]);
+    for (const side of ["left", "right"] as const) await me.button(side, "squeeze", 1);
+    await me.tab.until("both hold the world", () => iotaXR!.headset.locomotion.grabbing);
+    const held = await me.tab.page.evaluate(() => iotaXR!.headset.inputs.map((input) => [...input.pointer.origin]));
+    await me.point("left", [-0.3, 1.2, -0.1], [-0.7, 3, -0.2]);
+    await me.point("right", [0.4, 1.2, -0.5], [0.8, 3, -0.6]);
+    const now = await me.tab.page.evaluate(() => ({ rig: iotaXR!.rig(), hands: iotaXR!.headset.inputs.map((input) => [...input.pointer.origin]) }));
+    expect(now.rig.scale).toBeCloseTo(0.4 / Math.hypot(0.7, 0.4), 2);
+    now.hands.forEach((hand, index) => expect(distance(hand, held[index])).toBeLessThan(2e-3));
+    await me.picture("xr-world-grab");
+    for (const side of ["left", "right"] as const) await me.button(side, "squeeze", 0);
+    expect(await me.tab.page.evaluate(() => iota.holds().length)).toBe(0);
+    await me.tab.page.evaluate(() => iota.page.commands.run("home in vr"));
+    expect((await me.tab.page.evaluate(() => iotaXR!.rig())).scale).toBe(1);
+  });
+
   it("teleports along the arc when the stick is let go", async () => {
     await me.point("left", leftRest, [-0.2, 1.0, -1.5]);
     await me.stick("left", 0, -1);
@@ -261,7 +346,7 @@ describe("leaving and coming back", () => {
       rig: iotaXR!.rig(), pointers: iota.page.gestures.pointers.map((pointer) => pointer.name),
       size: [iota.page.viewer.renderer.domElement.clientWidth, iota.page.viewer.renderer.domElement.clientHeight],
     }));
-    expect(flat).toEqual({ rig: { position: [0, 0, 0], yaw: 0 }, pointers: ["mouse"], size: [size.width, size.height] });
+    expect(flat).toEqual({ rig: { position: [0, 0, 0], yaw: 0, scale: 1 }, pointers: ["mouse"], size: [size.width, size.height] });
     await me.tab.page.setViewportSize(small);
     await me.tab.click(link);
     expect(me.tab.complaints).toEqual([]);
@@ -286,6 +371,24 @@ describe("leaving and coming back", () => {
     await me.tab.until("and lets go", () => iota.held === -1);
     await me.tab.page.keyboard.press("Escape");
     await me.tab.until("the session is over", () => !iotaXR!.presenting);
+  });
+});
+
+describe("the user's own surroundings", () => {
+  it("are behind the world on request", async () => {
+    await me.tab.page.mouse.move(200, 120);
+    await me.tab.page.mouse.move(210, 120);
+    await me.tab.page.click("#enter-ar");
+    await me.tab.until("the session runs", () => iotaXR!.presenting && iota.page.viewer.stage.passthrough);
+    await me.frames(3);
+    const seen = await me.tab.page.evaluate(() => {
+      const { viewer } = iota.page;
+      return { mode: viewer.renderer.xr.getEnvironmentBlendMode(), ground: viewer.stage.ground.visible };
+    });
+    expect(seen).toEqual({ mode: "alpha-blend", ground: false });
+    await me.tab.page.evaluate(() => iotaXR!.leave());
+    await me.tab.until("the session is over", () => !iotaXR!.presenting && iota.page.viewer.stage.ground.visible);
+    expect(me.tab.complaints).toEqual([]);
   });
 });
 

@@ -7,7 +7,7 @@ import { bodyEntity, id, packRotation, part, style, TestWorld } from "./test_wor
 const origin: Anchor = { body: NO_BODY, point: [0, 0, 0] };
 const bar = part("box", [2, 0.1, 0.1, 0]);
 
-/** Enclosed by triangles that run counter-clockwise from outside. */
+/** Volume enclosed by triangles that are counter-clockwise from outside. */
 function volume(geometry: BufferGeometry): number {
   const position = geometry.getAttribute("position");
   const index = geometry.getIndex()!;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
-import { fitView, shareOutside, viewAxes, type Frame } from "../src/navigate/framing.ts";
+import { distanceToShow, fitView, shareOutside, standBack, viewAxes, type Frame } from "../src/navigate/framing.ts";
 import { Points } from "../src/scene/points.ts";
 
 const frame: Frame = { side: 0.62, up: 0.34, down: 0.29 };
@@ -66,5 +66,32 @@ describe("a fitted view", () => {
     const view = fitView(points, 0.4, 0.2, frame)!;
     expect(shareOutside(points, { ...view, distance: view.distance * 1.001 }, frame)).toBe(0);
     expect(shareOutside(points, { ...view, pivot: [1e3, 0, 0] }, frame)).toBe(1);
+  });
+});
+
+describe("a script's camera in a narrow window", () => {
+  const target = [6, -1, 0.2] as const;
+  const eyeOf = ({ pivot, distance, yaw, pitch }: ReturnType<typeof standBack>) => pivot.map((value, axis) => value + distance * viewAxes(yaw, pitch)[2][axis]);
+
+  it("keeps its place where all is in view", () => {
+    const eye = [6, 2, 400] as const;
+    const view = standBack(cloud(1, 3), eye, target, frame, 5);
+    eyeOf(view).forEach((value, axis) => expect(value).toBeCloseTo(eye[axis], 9));
+    expect(view.pivot).toEqual(target);
+  });
+
+  it("goes back no farther than it has to or may, looks at the same place, and is never lower", () => {
+    for (const height of [-3, -1.2, -1, 0, 3]) {
+      const eye = [6.5, height, 1.5] as const;
+      const points = cloud(1, 7);
+      const near = standBack(points, eye, target, frame, 2);
+      const all = standBack(points, eye, target, frame, 1e3);
+      const distance = Math.hypot(...eye.map((value, axis) => value - target[axis]));
+      expect(near.distance).toBeLessThan(2.001 * distance);
+      expect(near.pivot).toEqual(target);
+      for (const view of [near, all]) expect(eyeOf(view)[1]).toBeGreaterThan(height - 1e-9);
+      if (height >= target[1] && all.distance > 1.06 * distance) expect(fullness(points, all)).toBeCloseTo(1, 6);
+      expect(distanceToShow(points, all, frame)).toBeLessThan(1.4 * all.distance);
+    }
   });
 });

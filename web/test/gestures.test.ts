@@ -61,7 +61,7 @@ describe("the gesture pipeline", () => {
     gestures.updateAll();
     pointer.pressed = false;
     gestures.update(pointer);
-    // Taken at the front of the sphere, 1.9 m away: 0.2 of that is 0.38.
+    // Grabbed at the front of the sphere, 1.9 m away: 0.2 of that is 0.38.
     expect(log.take().slice(0, 4)).toEqual(["mouse hovers 0", "mouse takes 0 as 1", "1 to 0.38 0.00 -1.90", "1 ends"]);
     expect(gestures.grabs).toHaveLength(0);
   });

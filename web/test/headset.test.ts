@@ -3,10 +3,12 @@ import { Matrix4, Object3D, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 import type { Entry, ScriptCommand } from "../src/commands/command.ts";
 import { Commands } from "../src/commands/commands.ts";
+import { WidgetKind, type WidgetEntity } from "../src/protocol/generated.ts";
+import { controlRows } from "../src/xr/controls.ts";
 import { layoutPanel, panelWidth } from "../src/xr/panel_layout.ts";
-import { standBefore, type Standing } from "../src/xr/standing.ts";
+import { fitScale, standBefore, type Standing } from "../src/xr/standing.ts";
 
-const settings: Standing = { ground: 0.5, eye: [3, 1.7, 4], target: [0.2, 1.5, 0] };
+const settings: Standing = { scale: 1, ground: 0.5, eye: [3, 1.7, 4], target: [0.2, 1.5, 0] };
 
 function stand(world: Standing, head: Matrix4): { head: Vector3; ahead: Vector3; rig: Object3D } {
   const rig = new Object3D();
@@ -30,8 +32,25 @@ describe("where a user stands at first", () => {
     }
   });
 
+  it("is as far from a thing of any size, and as high, in the user's own meters", () => {
+    const real = stand(settings, new Matrix4().setPosition(0.3, 1.6, 0));
+    for (const scale of [1e-9, 1e-3, 1e3]) {
+      const times = (values: readonly number[]) => values.map((value) => scale * value) as [number, number, number];
+      const head = new Matrix4().setPosition(0.3, 1.6, 0);
+      const rig = new Object3D();
+      standBefore({ scale, ground: scale * 0.5, eye: times(settings.eye), target: times(settings.target) }, head.elements, rig);
+      const room = new Object3D();
+      room.scale.setScalar(scale);
+      rig.add(room);
+      rig.updateMatrixWorld();
+      const seen = new Vector3().setFromMatrixPosition(head).applyMatrix4(room.matrixWorld).divideScalar(scale);
+      expect(seen.distanceTo(real.head)).toBeLessThan(1e-6);
+    }
+    expect([1e-9, 0.15, 2, 15, 1e3].map(fitScale)).toEqual([1e-9 / 0.7, 1, 1, 1, 1e3 / 0.7]);
+  });
+
   it("has the thing at eye height where there is no ground", () => {
-    const { head } = stand({ ground: null, eye: [0, 1, 3], target: [0, 1, 0] }, new Matrix4().setPosition(0, 1.2, 0));
+    const { head } = stand({ scale: 1, ground: null, eye: [0, 1, 3], target: [0, 1, 0] }, new Matrix4().setPosition(0, 1.2, 0));
     expect(head.y).toBeCloseTo(1.15);
     expect(head.z).toBeGreaterThan(0.8);
   });
@@ -80,5 +99,29 @@ describe("the wrist panel's layout", () => {
     const play = (looks: number) => layoutPanel(commandsOf(looks)).buttons[0];
     expect(layoutPanel(commandsOf(1)).buttons.map((button) => button.command.name)).not.toContain("look");
     expect(play(1).x).toBe(play(2).x);
+  });
+
+  it("has the script's controls, which do what their presses say", () => {
+    const changes: [string, number][] = [];
+    const made = (kind: WidgetKind, label: string, extra: Partial<WidgetEntity> = {}): WidgetEntity => ({
+      id: { slot: 0, generation: 1 }, kind, label, help: "", unit: "", value: 0, minimum: 0, maximum: 0, step: 0, text: "", options: [], enabled: true, ...extra,
+    });
+    const rows = controlRows([
+      made(WidgetKind.slider, "gravity", { minimum: 0, maximum: 20, value: 9.5, unit: "m/s²" }),
+      made(WidgetKind.slider, "count", { minimum: 1, maximum: 5, value: 5, step: 1 }),
+      made(WidgetKind.checkbox, "wind", { value: 1 }), made(WidgetKind.button, "throw"),
+      made(WidgetKind.choice, "material", { options: ["steel", "wood"], value: 1 }),
+      made(WidgetKind.slider, "fixed", { maximum: 1, enabled: false }),
+    ], ({ label }, value) => changes.push([label, value]));
+    const { buttons, readings } = layoutPanel(commandsOf(1), rows);
+    expect(readings.map(({ command }) => command.title())).toContain("gravity: 9.5 m/s²");
+    const press = (name: string) => {
+      const { command } = buttons.find((button) => button.command.name === name)!;
+      if ("run" in command) command.run();
+    };
+    for (const name of ["more gravity", "less gravity", "more count", "less count", "control wind", "control throw", "control material"]) press(name);
+    expect(changes).toEqual([["gravity", 10.5], ["gravity", 8.5], ["count", 5], ["count", 4], ["wind", 0], ["throw", 0], ["material", 0]]);
+    expect(buttons.find(({ command }) => command.name === "control wind")!.command.active?.()).toBe(true);
+    expect(buttons.find(({ command }) => command.name === "more fixed")!.command.enabled?.()).toBe(false);
   });
 });

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
 import { Hit, pickPoint, pickRay } from "../src/interact/picking.ts";
+import { BodyKind, NO_BODY, NO_COLOR } from "../src/protocol/generated.ts";
 import { TestScene } from "./test_scene.ts";
+import { body, bodyEntity, id, part, style, TestWorld } from "./test_world.ts";
 
 const forward = [0, 0, -1];
 
@@ -86,5 +88,78 @@ describe("picking with a hand", () => {
     expect(pickPoint(scene, [0, 0, 0], 0.06, hit)).toBe(true);
     expect(hit.body).toBe(1);
     expect(hit.localPoint[0]).toBeCloseTo(0.05, 3);
+  });
+});
+
+describe("what covers bodies", () => {
+  /** Balls of 5 cm at x = 2, 4, 6, 8 and z = 0; the last one is static. */
+  const made = () => {
+    const told = new TestWorld();
+    told.join();
+    told.set("style", style(0, "ball", part("sphere", [0.05])));
+    told.set("body", ...[0, 1, 2].map((slot) => bodyEntity(slot)), bodyEntity(3, { kind: BodyKind.static }));
+    told.poses([2, 4, 6, 8].map((x, slot) => body(slot, x)));
+    return told.world.entities;
+  };
+  const down = [0, -1, 0];
+  const cloth = { id: id(0), at: { body: NO_BODY, point: [0, 0, 0] as [number, number, number] }, material: "paint", color: NO_COLOR };
+
+  it("is taken by a ray and by a hand at the nearest body that can be held", () => {
+    const entities = made();
+    // A strip from ball to ball, half a meter above them, as wide as a meter.
+    const points = [2, 4, 6, 8].flatMap((_, slot) => [[slot, -0.5], [slot, 0.5]]);
+    const triangles = [0, 1, 2].flatMap((span) => [2 * span, 2 * span + 1, 2 * span + 2, 2 * span + 1, 2 * span + 3, 2 * span + 2]);
+    entities.surface.create({
+      ...cloth, bodies: Uint32Array.from(points, ([slot]) => slot), points: Float32Array.from(points.flatMap(([, z]) => [0, 0.5, z])),
+      triangles: Uint32Array.from(triangles),
+    });
+    entities.surface.draw();
+    const hit = new Hit();
+    for (const [x, slot] of [[2.6, 0], [3.4, 1], [5.2, 2], [7.8, 2]] as const) {
+      expect(pickRay(entities.body, [x, 5, 0.2], down, 0.01, 100, hit), `at ${x}`).toBe(true);
+      expect([hit.body, hit.localPoint[1]]).toEqual([slot, 0.5]);
+      expect(hit.distance).toBeCloseTo(4.5, 3);
+      expect(pickPoint(entities.body, [x, 0.58, 0.2], 0.1, hit)).toBe(true);
+      expect(hit.body).toBe(slot);
+      expect(hit.distance).toBeCloseTo(0.08, 3);
+    }
+    expect(pickRay(entities.body, [3, 5, 0.7], down, 0.01, 100, hit)).toBe(false);
+    expect(pickPoint(entities.body, [3, 0.7, 0.2], 0.1, hit)).toBe(false);
+    // From below a ball is nearer than the cloth over it.
+    expect(pickRay(entities.body, [4, -5, 0], [0, 1, 0], 0.01, 100, hit)).toBe(true);
+    expect(hit.distance).toBeCloseTo(4.95, 3);
+  });
+
+  it("is one body's where it is rigid, at the place that was hit", () => {
+    const entities = made();
+    entities.surface.create({
+      ...cloth, at: { body: 1, point: [0, 0.5, 0] }, bodies: new Uint32Array(0), points: Float32Array.of(-1, 0, -1, 1, 0, -1, 0, 0, 2),
+      triangles: Uint32Array.of(0, 1, 2),
+    });
+    entities.surface.draw();
+    const hit = new Hit();
+    expect(pickRay(entities.body, [4.3, 5, 0.1], down, 0.01, 100, hit)).toBe(true);
+    expect(hit.body).toBe(1);
+    [0.3, 0.5, 0.1].forEach((value, axis) => expect(hit.localPoint[axis]).toBeCloseTo(value, 2));
+    entities.surface.destroy(0);
+    expect(pickRay(entities.body, [4.3, 5, 0.1], down, 0.01, 100, hit)).toBe(false);
+  });
+
+  it("is a tube as thick as it is drawn, and a little more for a finger", () => {
+    const entities = made();
+    entities.tube.create({
+      id: id(0), bodies: Uint32Array.of(0, 1, 2, 3), points: Float32Array.of(0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0), radius: 0.1, closed: false,
+      material: "rope", color: NO_COLOR,
+    });
+    entities.tube.draw();
+    const hit = new Hit();
+    for (const [x, slot] of [[2.8, 0], [3.4, 1], [6.9, 2], [7.8, 2]] as const) {
+      expect(pickRay(entities.body, [x, 5, 0.09], down, 0, 100, hit), `at ${x}`).toBe(true);
+      expect([hit.body, hit.localPoint[1]]).toEqual([slot, 1]);
+      expect(pickPoint(entities.body, [x, 1, 0.15], 0.06, hit)).toBe(true);
+      expect(hit.body).toBe(slot);
+    }
+    expect(pickRay(entities.body, [3, 5, 0.14], down, 0, 100, hit)).toBe(false);
+    expect(pickRay(entities.body, [3, 5, 0.14], down, 0.02, 100, hit)).toBe(true);
   });
 });

@@ -19,7 +19,7 @@ function play(): { playback: Playback; told: number[] } {
 }
 
 describe("a recording", () => {
-  it("is read as it was written, and refused when it is cut off or something else", () => {
+  it("reads what was written, and refuses truncated and other bytes", () => {
     const bytes = new Uint8Array(14 + 2 * 12 + 3);
     bytes.set(new TextEncoder().encode("iota stream 1\n"));
     const view = new DataView(bytes.buffer);
@@ -31,8 +31,8 @@ describe("a recording", () => {
     bytes[40] = 9;
     const read = readFrames(bytes);
     expect(read.map(({ time, data }) => [time, ...new Uint8Array(data)])).toEqual([[0.5, 7, 8], [1.5, 9]]);
-    for (const length of [20, 25, 27, 39]) expect(() => readFrames(bytes.subarray(0, length))).toThrow("cut off");
-    expect(() => readFrames(new TextEncoder().encode("something else"))).toThrow("no recording");
+    for (const length of [20, 25, 27, 39]) expect(() => readFrames(bytes.subarray(0, length))).toThrow("truncated");
+    expect(() => readFrames(new TextEncoder().encode("something else"))).toThrow("not a recording");
   });
 
   it("is told as time goes by, and from the start again after its end", () => {

@@ -6,7 +6,7 @@ import { Selection } from "../src/page/selection.ts";
 import type { ClientMessage, Id } from "../src/protocol/generated.ts";
 import { body, bodyEntity, id, part, style, TestWorld } from "./test_world.ts";
 
-/** A selection over two balls, 2 m apart on the x axis, and what it tells the server. */
+/** A selection over two balls, 2 m apart on the x axis, and its messages to the server. */
 class Bench extends TestWorld {
   readonly sent: ClientMessage[] = [];
   readonly selection: Selection;
@@ -98,5 +98,25 @@ describe("the selection", () => {
       selected.push(bench.selection.selected);
     }
     expect(selected).toEqual([0, 1, 0]);
+  });
+
+  it("may be of several bodies, which an action is about, and which go one by one", () => {
+    const bench = new Bench();
+    const { selection } = bench;
+    selection.selectMany([1, 0, 1]);
+    expect([selection.selected, [...selection.several], selection.actionBodies]).toEqual([1, [0], [1, 0]]);
+    expect(bench.sent.filter(({ type }) => type === "select")).toEqual([{ type: "select", body: id(1, 5) }]);
+    bench.aim(1);
+    bench.press(true);
+    expect(selection.actionBodies).toEqual([1, 0]);
+    bench.press(false);
+    selection.toggle(1);
+    expect([selection.selected, selection.several.size]).toEqual([0, 0]);
+    selection.toggle(1);
+    expect(selection.actionBodies).toEqual([0, 1]);
+    bench.destroy("body", id(0, 3));
+    expect([selection.selected, selection.several.size]).toEqual([1, 0]);
+    selection.select(-1);
+    expect(selection.actionBodies).toEqual([]);
   });
 });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every shape: the page measures it as the engine does (tests/shapes/samples.json), and draws what it measures.
+// Every shape: the page's distances are the engine's (tests/shapes/samples.json), and the drawn triangles agree with
+// them.
 
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
@@ -62,7 +63,7 @@ describe.each(samples.map((sample) => [`${sample.kind} of ${sample.sizes.join(" 
     expect(position.count).toBeGreaterThan(3);
     expect(Math.max(...apart)).toBeLessThan(0.01); // a bevel, see sweep.ts
     expect(geometry.getAttribute("uv").count).toBe(position.count);
-    // Seen from outside, triangles run counter-clockwise: what they enclose is positive.
+    // Seen from outside, triangles are counter-clockwise: the enclosed volume is positive.
     const index = geometry.getIndex();
     const corner = (k: number) => index?.getX(k) ?? k;
     let volume = 0;

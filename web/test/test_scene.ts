@@ -2,11 +2,12 @@
 // Bodies for tests of picking and gestures, without drawing.
 
 import { toBody } from "../src/interact/picking.ts";
-import type { Pickable } from "../src/scene/pickable.ts";
+import type { Cover, Pickable } from "../src/scene/pickable.ts";
 import { bodyDistance, bodyReach, parseShape, placeShape, type PlacedShape } from "../src/scene/shapes/shape.ts";
 
 export class TestScene implements Pickable {
   readonly size = 1.6;
+  readonly covers: Cover[] = [];
   readonly pickable: Uint32Array;
   readonly pickableCount: number;
   readonly position: Float32Array;
@@ -33,7 +34,7 @@ export class TestScene implements Pickable {
     this.rotation.set(rotation, 4 * body);
   }
 
-  /** First body along a ray from the origin by tenths of a millimeter, -1: none. The slow twin of pickRay. */
+  /** First body along a ray from the origin by tenths of a millimeter, -1: none. The slow reference of pickRay. */
   slowPick(direction: readonly number[], farthest: number): number {
     const local = new Float32Array(3);
     for (let t = 0; t < farthest; t += 2e-4) {

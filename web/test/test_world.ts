@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world told by messages, as a server would, without a server, a browser or anything drawn.
+// A world built from messages like those of a server, without server, browser or drawing.
 
 import { InstancedMesh } from "three";
 import {
@@ -21,7 +21,7 @@ export function packRotation(q: readonly number[]): number {
   return packed;
 }
 
-/** A pose frame as it comes from the socket; the box is 0 .. span m. */
+/** A pose frame as received from the socket; the box is 0 .. span m. */
 export function frame(step: number, bodies: PoseBody[], extra: Partial<Poses> = {}): PosesBuffer {
   const poses: Poses = {
     type: "poses", step, time: step / 60, structureVersion: 1, keyframe: false, kinetic: 0, potential: 0, gap: 0,
@@ -62,7 +62,7 @@ export class TestWorld implements WorldListener {
   readonly warnings: string[] = [];
   private step_ = 0;
 
-  /** Joins: what has been told before and is not told again until the next poses is gone. */
+  /** Joins: entities that are not sent again before the next poses are destroyed. */
   join(): void {
     this.world.take({ type: "welcome", version: 4, world: "", client: 1 });
   }
@@ -75,7 +75,7 @@ export class TestWorld implements WorldListener {
     this.world.take({ type: "entitiesDestroyed", kind: snake(kind), ids });
   }
 
-  /** Takes a pose frame, 16 ms after the one before, and works out what is drawn then. */
+  /** Receives a pose frame, 16 ms after the previous one, and updates the drawn poses. */
   poses(bodies: PoseBody[], extra: Partial<Poses> = {}): void {
     const step = ++this.step_;
     this.world.takePoses(frame(step, bodies, extra), 16 * step);

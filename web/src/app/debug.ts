@@ -20,12 +20,12 @@ export interface IotaDebug {
   readonly look: string;
   readonly looks: readonly string[];
   readonly frameMs: number;
-  /** Our own script a frame, ms. */
+  /** Time of our script in a frame, ms. */
   readonly scriptMs: number;
   readonly roundTripMs: number;
   /** Frames from the server that could not be read. */
   readonly badFrames: number;
-  /** All holds of all clients as the server last told; force in N. */
+  /** All holds of all clients in the server's last message; force in N. */
   holds(): { client: number; hold: number; body: number; force: number; target: number[] }[];
   clients(): { client: number; name: string; selected: number }[];
   articulates(): Map<number, number>;
@@ -39,9 +39,10 @@ export interface IotaDebug {
   screenPosition(body: number): [number, number] | null;
   setLook(look: string): void;
   select(body: number): void;
-  /** The next frame of a film, as the address of a JPEG; the page draws by itself no more. `iota record` asks for it. */
-  filmFrame(): string;
-  /** The parts themselves, for the console. */
+  /** The next frame of a film, as the address of a JPEG; afterwards the page draws only on this call. For
+   * `iota record`. `plots`: with those of the script. */
+  filmFrame(plots?: boolean): Promise<string> | string;
+  /** The parts of the page, for the console. */
   readonly page: Page;
 }
 
@@ -97,6 +98,23 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
     },
     setLook: (look) => page.world.setLook(look),
     select: (body) => page.selection.select(body),
-    filmFrame: () => takeFilmFrame(page),
+    filmFrame: (plots = false) => (plots ? takeFrameWithPlots(page) : takeFilmFrame(page)),
   };
+}
+
+/** The picture has to be taken in the task that draws it, so what is needed for it is fetched before. */
+async function takeFrameWithPlots(page: Page): Promise<string> {
+  const { drawPlots } = await import("../ui/plot.ts");
+  const { viewer, world } = page;
+  const { domElement: { width, height } } = viewer.renderer;
+  const canvas = document.createElement("canvas");
+  canvas.width = width;
+  canvas.height = height;
+  const context = canvas.getContext("2d");
+  if (context === null) return takeFilmFrame(page);
+  world.poses.exact = true;
+  viewer.drawFilmFrame();
+  context.drawImage(viewer.renderer.domElement, 0, 0);
+  drawPlots(context, world.entities.plot.all(), width, height);
+  return canvas.toDataURL("image/jpeg", 0.95);
 }

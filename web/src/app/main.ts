@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts the page together: world, input, overlay, and the headset when there is one.
+// Assembles the page: world, input, overlay, and the headset if there is one.
 
 import { ScreenInput } from "../interact/screen_input.ts";
 import type { JoinRequest } from "../net/connection.ts";
@@ -8,12 +8,13 @@ import { makePage, type Page } from "../page/page.ts";
 import { Resolution } from "../page/resolution.ts";
 import type { FramePart } from "../page/viewer.ts";
 import { Role } from "../protocol/generated.ts";
+import type { Band } from "../ui/band.ts";
 import { Overlay } from "../ui/overlay.ts";
 import { byId } from "../ui/dom.ts";
 import { offerHeadset } from "../xr/entry.ts";
 import { makeDebug } from "./debug.ts";
 
-/** Where the world's socket is: beside this page, with its token. */
+/** Address of the world's socket: beside this page, with its token. */
 function socketUrl(): string {
   const url = new URL("ws", document.baseURI);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
@@ -22,13 +23,13 @@ function socketUrl(): string {
   return url.href;
 }
 
-/** The world and the role that the page's address asks for. */
+/** The world and the role in the page's address. */
 function requestOf(search: string): JoinRequest {
   const asked = new URLSearchParams(search);
   return { world: asked.get("world") ?? "", role: asked.get("role") === "viewer" ? Role.viewer : Role.actor, name: "" };
 }
 
-/** Controls of the script are fetched with the first of them: most worlds have none. */
+/** The panel of controls is loaded with the first control, as most worlds have none. */
 function panelWhenNeeded({ world, session, viewer }: Page): FramePart {
   const { widget, plot } = world.entities;
   let asked = false;
@@ -44,7 +45,7 @@ function panelWhenNeeded({ world, session, viewer }: Page): FramePart {
   };
 }
 
-/** Fetched when there is one. */
+/** Loaded when there is one. */
 function gamepadWhenThere({ navigation, commands, viewer }: Page): void {
   window.addEventListener("gamepadconnected", () => {
     void import("../interact/gamepad.ts").then(({ GamepadInput }) => {
@@ -58,19 +59,38 @@ function gamepadWhenThere({ navigation, commands, viewer }: Page): void {
   }, { once: true });
 }
 
+/** Fetched with the first step of a walk. */
+function wallsWhenWalking({ navigation, world }: Page): void {
+  navigation.walls = {
+    slide: () => {
+      navigation.walls = null;
+      void import("../scene/walls.ts").then(({ Walls }) => {
+        navigation.walls = new Walls(() => world.entities.staticShape.meshes());
+      });
+    },
+  };
+}
+
 function main(): void {
   const canvas = byId("view", HTMLCanvasElement);
   canvas.classList.add("waiting");
   const page = makePage(canvas, socketUrl(), requestOf(location.search));
   const { viewer, selection, events, navigation } = page;
   const overlay = new Overlay(page, canvas);
+  let band: Promise<Band> | null = null;
   const input = new ScreenInput(canvas, viewer.camera, page.gestures, navigation, {
     clickNothing: () => selection.select(-1),
     menu: (body, x, y) => overlay.openMenu(body, x, y),
     active: () => overlay.showBar(),
+    band: (left, top, right, bottom, done) => {
+      band ??= import("../ui/band.ts").then(({ Band }) => new Band(page));
+      void band.then((shown) => shown.draw(left, top, right, bottom, done));
+    },
+    toggle: (body) => selection.toggle(body),
   });
   events.add(overlay);
   gamepadWhenThere(page);
+  wallsWhenWalking(page);
   viewer.add(panelWhenNeeded(page));
   viewer.add(overlay, new Resolution(viewer), {
     aim: () => {
@@ -86,7 +106,7 @@ function main(): void {
 try {
   main();
 } catch (error) {
-  // No WebGL, most likely: say so where it can be read.
+  // Most likely WebGL is missing: show the error on the page.
   document.getElementById("loading")?.remove();
   const text = error instanceof Error ? error.message : String(error);
   const card = document.createElement("section");

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user can ask for. Each command is described once; the bar, the keys, the help and the wrist panel read the same list.
+// A command of a user. Each is described once; the bar, the keys, the help and the wrist panel read the same list.
 
-/** Where a command has a button, besides its keys and its line in the help. */
+/** Places of a command's button, besides its keys and its line in the help. */
 export type Place = "bar" | "panel" | "panel foot";
 
 interface Described {
-  /** Unique, in lower case. The element in the bar has it as its id, with dashes for spaces. */
+  /** Unique, in lower case. With dashes for spaces, it is the id of its element in the bar. */
   readonly name: string;
-  /** What it does, for the help; commands with the same text share one line. */
+  /** Description for the help; commands with the same text share one line. */
   readonly help?: string;
   /** As `KeyboardEvent.key` names them. */
   readonly keys?: readonly string[];
   readonly places?: readonly Place[];
-  /** Its name for a person, as it stands now: "Pause", then "Play". */
+  /** Its present name for users: "Pause", then "Play". */
   title(): string;
   /** Drawn on its button: lines of a 24 x 24 square, as the path of an SVG. Without it the button shows `label`. */
   sign?(): string;
-  /** Written on its button where there is no sign; by default its title. */
+  /** Text of its button without a sign; by default its title. */
   label?(): string;
   /** Whether its button is shown now; by default always. */
   offered?(): boolean;
@@ -29,17 +29,19 @@ interface Described {
 }
 
 export interface Command extends Described {
-  /** A key that is held down runs it again and again. */
+  /** Repeated while its key is held down. */
   readonly repeats?: boolean;
-  /** `key`: that was pressed; none where a button was. */
+  /** `key`: the pressed key; none for a button. */
   run(key?: string): void;
 }
 
 /** One of several values: a list in the bar, a reading on the wrist panel. */
 export interface Choice extends Described {
   readonly options: readonly string[];
-  /** Written after each value. */
+  /** Suffix of each value. */
   readonly unit: string;
+  /** Takes the room that its row on the wrist panel has left. */
+  readonly wide?: boolean;
   /** The current value; it need not be one of the options. */
   value(): string;
   choose(option: string): void;
@@ -50,7 +52,7 @@ export interface ScriptCommand extends Command {
   readonly onBody: boolean;
   /** Controller face button that runs it. */
   readonly button: "a" | "b" | null;
-  /** About another body than the usual one. */
+  /** Runs it on a given body. */
   runOn(body: number): void;
 }
 

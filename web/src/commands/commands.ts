@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one list of commands. The page, the overlay and the headset add theirs once; the script's change with the world.
+// The registry of commands. Those of the page, the overlay and the headset are added once; the script's change with the
+// world.
 
 import { isChoice, type Command, type Entry, type Place, type ScriptCommand } from "./command.ts";
 
@@ -28,7 +29,7 @@ export class Commands {
     this.listeners_.push(listener);
   }
 
-  /** Throws when a name or key is taken: two commands on one key would hide one of them. */
+  /** Throws if a name or key is in use: one of two commands on a key would be hidden. */
   add(...entries: readonly Entry[]): void {
     for (const entry of entries) {
       if (this.own_.some((other) => other.name === entry.name)) throw new Error(`there is a command "${entry.name}" already`);
@@ -51,12 +52,12 @@ export class Commands {
     command.run();
   }
 
-  /** What a key runs. The script's keys win over the page's; they are found in the other case too. */
+  /** The command of a key. The script's keys have priority over the page's; letter case is ignored for them. */
   ofKey(key: string): Command | undefined {
     return this.scriptOfKey(key) ?? this.ownOfKey_(key);
   }
 
-  /** The script's command on a key. */
+  /** The script's command of a key. */
   scriptOfKey(key: string): ScriptCommand | undefined {
     const lower = key.toLowerCase();
     return this.script_.find((command) => command.keys?.includes(key))

@@ -29,7 +29,7 @@ function makeCard({ name, text }: Study): HTMLAnchorElement {
 }
 
 async function main(): Promise<void> {
-  // Kept for this tab, so that the worlds' pages find it.
+  // Kept for this tab, so that the worlds' pages can read it.
   takeToken();
   const list = document.querySelector("main")!;
   try {
@@ -37,7 +37,7 @@ async function main(): Promise<void> {
     if (!answer.ok) throw new Error(`the server answered ${answer.status}`);
     list.append(...((await answer.json()) as Study[]).map(makeCard));
   } catch (error) {
-    list.append(element("p", `The list of studies did not come: ${error instanceof Error ? error.message : String(error)}. Reload the page.`));
+    list.append(element("p", `The list of studies was not received: ${error instanceof Error ? error.message : String(error)}. Reload the page.`));
   }
   list.removeAttribute("aria-busy");
 }

@@ -5,9 +5,9 @@
 import type { Commands } from "../commands/commands.ts";
 import type { Navigation } from "../navigate/navigation.ts";
 
-/** A stick that nobody touches is not quite at rest. */
+/** Dead zone: a stick at rest has small values. */
 const deadZone = 0.15;
-/** Looking around at full stick, in px of a mouse's drag in a second. */
+/** Speed of looking around at full stick, as px of a mouse's drag per second. */
 const lookPace = 500;
 
 export class GamepadInput {
@@ -27,7 +27,7 @@ export class GamepadInput {
     const [x, y, lookX, lookY] = [0, 1, 2, 3].map((axis) => bent(pad.axes[axis] ?? 0));
     const up = bent((pad.buttons[7]?.value ?? 0) - (pad.buttons[6]?.value ?? 0));
     const walks = x !== 0 || y !== 0 || up !== 0;
-    // Keys walk too: only what the stick has begun it ends.
+    // Keys walk too: the stick ends only a motion that it has begun.
     if (walks || this.walking_) this.navigation_.walk.set(x, up, -y);
     this.walking_ = walks;
     if (lookX !== 0 || lookY !== 0) this.navigation_.look(-lookX * lookPace * seconds, -lookY * lookPace * seconds);
@@ -40,7 +40,7 @@ export class GamepadInput {
   }
 }
 
-/** Nothing near rest, and finer near it than at the edge. */
+/** Zero in the dead zone, and finer near it than at the edge. */
 function bent(value: number): number {
   const beyond = Math.max(0, Math.abs(value) - deadZone) / (1 - deadZone);
   return Math.sign(value) * beyond * beyond;

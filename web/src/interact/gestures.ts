@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // One pipeline for mouse, touch, controller ray, near grab and pinch: hover, start, update, end.
-// A source fills in a Pointer and calls update(); this file decides what it means. It acts on presses
-// and releases only and needs no hover before a press, since a pinch may appear at the very moment of
-// its start.
+// A source writes a Pointer and calls update(); this file interprets it. It acts on presses and releases only and needs
+// no hover before a press, since a pinch may appear at the moment of its start.
 
 import type { Pickable } from "../scene/pickable.ts";
 import { Hit, pickPoint, pickRay, toWorld } from "./picking.ts";
 
 /**
- * How a held thing follows. plane: stays under the pointer in the plane that faces the viewer (mouse,
- * touch). ray: stays at its distance on the ray (controller).
+ * How a held body follows. plane: stays under the pointer in the plane that faces the viewer (mouse, touch). ray: stays
+ * at its distance on the ray (controller).
  */
 export type RayDrag = "plane" | "ray";
 
-/** What a source of input knows; its owner writes the fields, then calls Gestures.update(pointer). */
+/** State of a source of input; its owner writes the fields, then calls Gestures.update(pointer). */
 export class Pointer {
-  /** For people and tests: "mouse", "touch 1", "right". */
+  /** For users and tests: "mouse", "touch 1", "right". */
   readonly name: string;
-  /** Off: hovers nothing and lets go. */
+  /** Off: no hover, and its grab ends. */
   active = false;
   pressed = false;
   /** Ray in the world: origin in m, unit direction. */
@@ -25,11 +24,11 @@ export class Pointer {
   readonly direction = new Float32Array([0, 0, -1]);
   /** Half-angle of the cone in which a near miss still counts, as a tangent. */
   tolerance = 0.004;
-  /** Where a hand would close, world, m; used only when `nearReach` is above 0. */
+  /** Place of a near grab, world, m; used only if `nearReach` is above 0. */
   readonly tip = new Float32Array(3);
   /** Distance from the tip within which a near grab wins over the ray, m; 0: never. */
   nearReach = 0;
-  /** Whether the ray may pick at all (off for hands that only grab near). */
+  /** Whether the ray picks (off for hands that only grab near). */
   far = true;
   drag: RayDrag = "plane";
   /** Unit normal of the drag plane, pointing away from the viewer; for drag "plane". */
@@ -39,7 +38,7 @@ export class Pointer {
   /** A haptic pulse; strength 0..1. */
   pulse: (strength: number, milliseconds: number) => void = () => {};
 
-  /** Below: written by Gestures, for its owner to read. */
+  /** Below: written by Gestures for the owner. */
   hovered = -1;
   /** The body under the pointer is within near reach. */
   near = false;
@@ -53,14 +52,14 @@ export class Pointer {
 
 /** One hand on one body. */
 export class Grab {
-  /** This client's number for the hold, as told to the server. */
+  /** This client's number for the hold, as sent to the server. */
   readonly hold: number;
   readonly body: number;
   readonly pointer: Pointer;
   readonly near: boolean;
   /** In the body's frame, m. */
   readonly localPoint: Float32Array;
-  /** Where the hand is, world, m. */
+  /** Place of the hand, world, m. */
   readonly target: Float32Array;
   /** Grabbed point at the start, world, m. */
   readonly start: Float32Array;
@@ -90,11 +89,12 @@ export interface GestureListener {
   /** The target moved. */
   grabMoved(grab: Grab): void;
   grabEnded(grab: Grab): void;
-  /** A press that met no body: orbit, teleport, clear the selection, as the source likes. */
+  /** A press on no body: the source may orbit, teleport or clear the selection. */
   pressedNothing(pointer: Pointer): void;
 }
 
-/** In sizes of the scene: as far as a ray picks, as near as it holds, and moves of a target that are not sent again. */
+/** Relative to the size of the scene: range of a ray, least distance of a hold, smallest move of a target that is sent.
+ * */
 const farthest = 100;
 const nearest = 0.03;
 const still = 5e-6;
@@ -121,7 +121,7 @@ export class Gestures {
     if (!this.pointers_.includes(pointer)) this.pointers_.push(pointer);
   }
 
-  /** Lets go and forgets. */
+  /** Ends its grab and removes it. */
   remove(pointer: Pointer): void {
     pointer.active = false;
     pointer.pressed = false;
@@ -131,12 +131,12 @@ export class Gestures {
     this.wasPressed_.delete(pointer);
   }
 
-  /** Once a frame, after poses were sampled: things move under pointers that rest. */
+  /** Once a frame, after poses were sampled, since bodies move under resting pointers. */
   updateAll(): void {
     for (let index = 0; index < this.pointers_.length; index++) this.update(this.pointers_[index]);
   }
 
-  /** Now, for one pointer; sources call it at once on press and release. */
+  /** Updates one pointer now; sources call it on press and release. */
   update(pointer: Pointer): void {
     const pressed = pointer.active && pointer.pressed;
     const before = this.wasPressed_.has(pointer);
@@ -229,7 +229,7 @@ export class Gestures {
     let along = Math.max(grab.distance + depth, least);
     if (grab.pointer.drag === "plane") {
       const slope = direction[0] * facing[0] + direction[1] * facing[1] + direction[2] * facing[2];
-      // Nearly along the plane the point would run away to the horizon.
+      // For a ray nearly parallel to the plane, the point would move to the horizon.
       if (slope < 0.05) return false;
       const away = (grab.start[0] - origin[0]) * facing[0] + (grab.start[1] - origin[1]) * facing[1]
         + (grab.start[2] - origin[2]) * facing[2];
@@ -239,7 +239,7 @@ export class Gestures {
     return true;
   }
 
-  /** Where a grab's point is drawn now, world, m. */
+  /** Drawn place of a grab's point, world, m. */
   grabbedPoint(grab: Grab, out: Float32Array): void {
     toWorld(this.scene_, grab.body, grab.localPoint, out);
   }

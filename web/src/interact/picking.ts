@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the body that a ray or a hand points at. Packed bounding spheres first, then the exact distance
-// function of the few that remain. A cone of tolerance lets thin things be caught by a finger.
+// function of the few that remain. A cone of tolerance makes thin bodies pickable with a finger.
 
-import type { Pickable } from "../scene/pickable.ts";
+import type { CoverHit, Pickable } from "../scene/pickable.ts";
 import { bodyDistance } from "../scene/shapes/shape.ts";
 
-/** The answer of a pick; reused by its owner so that hovering allocates nothing. */
+/** The result of a pick; reused by its owner so that hovering allocates nothing. */
 export class Hit {
   body = -1;
   /** Along the ray, or from the hand to the surface, m. */
@@ -73,14 +73,23 @@ function pullToSurface(scene: Pickable, body: number, point: Float32Array): void
   point[2] -= (gz / norm) * distance;
 }
 
-/** Closer than this to a surface is on it: half a millimeter in a room, less in a smaller scene, m. */
+/** Distance below which a point is on a surface: half a millimeter in a room, less in a smaller scene, m. */
 function touching({ size }: Pickable): number {
   return 3e-4 * Math.min(size, 1.6);
 }
 
+const coverHit: CoverHit = { distance: 0, body: -1, localPoint: new Float32Array(3) };
+
+function takeCoverHit(scene: Pickable, out: Hit): void {
+  out.body = coverHit.body;
+  out.distance = coverHit.distance;
+  out.localPoint.set(coverHit.localPoint);
+  toWorld(scene, out.body, out.localPoint, out.point);
+}
+
 /**
- * Nearest body along a ray with unit direction. A true hit wins over one that only lies within
- * `tolerance` (tangent of the cone's half-angle) of the ray; among the latter the best aimed wins.
+ * Nearest body along a ray with unit direction. A hit has priority over a body that is only within `tolerance` (tangent
+ * of the cone's half-angle) of the ray; among the latter the one nearest to the ray is taken.
  */
 export function pickRay(
   scene: Pickable, origin: ArrayLike<number>, direction: ArrayLike<number>,
@@ -104,7 +113,7 @@ export function pickRay(
     const aside = cx * cx + cy * cy + cz * cz - middle * middle;
     const wide = reach + tolerance * Math.max(middle + reach, 0);
     if (aside > wide * wide) continue;
-    // March along the ray by the distance to the body: exact for every shape, no triangles.
+    // Sphere tracing by the distance to the body: exact for every shape, without triangles.
     let t = Math.max(0, middle - wide);
     const end = Math.min(middle + wide, farthest);
     for (let step = 0; step < 96 && t <= end; step++) {
@@ -125,6 +134,13 @@ export function pickRay(
       }
       t += distance;
     }
+  }
+  coverHit.body = -1;
+  coverHit.distance = Math.min(best, farthest);
+  for (const cover of scene.covers) cover.hitByRay(origin, direction, tolerance, coverHit);
+  if (coverHit.body >= 0) {
+    takeCoverHit(scene, out);
+    return true;
   }
   if (found < 0) return false;
   out.body = found;
@@ -151,6 +167,13 @@ export function pickPoint(scene: Pickable, point: ArrayLike<number>, reach: numb
       best = distance;
       found = body;
     }
+  }
+  coverHit.body = -1;
+  coverHit.distance = best;
+  for (const cover of scene.covers) cover.hitByPoint(point, coverHit);
+  if (coverHit.body >= 0) {
+    takeCoverHit(scene, out);
+    return true;
   }
   if (found < 0) return false;
   out.body = found;

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mouse, pen and fingers on the canvas: on a body they grab, on nothing they move the camera.
+// Mouse, pen and fingers on the canvas: they grab bodies; on empty space they move the camera.
 
 import { Vector3, type PerspectiveCamera } from "three";
 import type { Navigation } from "../navigate/navigation.ts";
 import { Pointer, type Gestures } from "./gestures.ts";
 
 export interface ScreenInputHost {
-  /** A click or tap on nothing, without a drag. */
+  /** A click or tap on empty space, without a drag. */
   clickNothing(): void;
-  /** Long press, double tap or right click on a body: what can be done with it? (css px) */
+  /** Long press, double tap or right click on a body: shows its actions. (css px) */
   menu(body: number, x: number, y: number): void;
-  /** The user did something: controls that have hidden come back. */
+  /** Any input of the user: hidden controls appear again. */
   active(): void;
+  /** A rectangle is being drawn, css px; `done`: and is finished. */
+  band?(left: number, top: number, right: number, bottom: number, done: boolean): void;
+  /** A click that adds a body to the selection or takes it out. */
+  toggle?(body: number): void;
 }
 
 const tapPixels = 8;
@@ -29,6 +33,8 @@ interface Finger {
   readonly startY: number;
   readonly startedAt: number;
   moved: boolean;
+  /** Draws a rectangle. */
+  readonly band: boolean;
   longPress: number | undefined;
 }
 
@@ -67,14 +73,14 @@ export class ScreenInput {
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   }
 
-  /** Aims all pointers anew from where the camera is now; once a frame, before the gestures. */
+  /** Aims all pointers from the camera's present place; once a frame, before the gestures. */
   aim(): void {
     if (this.mouse.active) this.aimAt_(this.mouse, this.lastMouse_.x, this.lastMouse_.y);
     for (const finger of this.fingers_.values()) if (finger.touch) this.aimAt_(finger.pointer, finger.x, finger.y);
   }
 
   private aimAt_(pointer: Pointer, x: number, y: number): void {
-    // The canvas fills the window; asking for its box would make an object each frame.
+    // The canvas fills the window; reading its box would allocate an object each frame.
     const ndcX = (x / innerWidth) * 2 - 1;
     const ndcY = 1 - (y / innerHeight) * 2;
     this.camera_.updateMatrixWorld();
@@ -82,7 +88,7 @@ export class ScreenInput {
     this.camera_.position.toArray(pointer.origin);
     this.ray_.toArray(pointer.direction);
     this.camera_.getWorldDirection(this.ray_).toArray(pointer.facing);
-    // A finger covers about 22 px; a mouse is steadier, but things swing.
+    // A finger covers about 22 px; a mouse is more precise, but bodies swing.
     const pixels = pointer === this.mouse ? 8 : 22;
     pointer.tolerance = (pixels * 2 * Math.tan((this.camera_.fov * Math.PI) / 360)) / innerHeight;
   }
@@ -93,7 +99,9 @@ export class ScreenInput {
     // Only the first button of a mouse grabs; the others steer the camera while a grab goes on.
     if (!touch && this.fingers_.has(event.pointerId)) return;
     const pointer = touch ? (this.freePointers_.pop() ?? new Pointer(`touch ${++this.touches_}`)) : this.mouse;
+    const adds = this.host_.band !== undefined && event.button === 0 && (event.ctrlKey || event.metaKey);
     const finger: Finger = {
+      band: adds || (event.button === 0 && this.navigation_.banding && !this.isOnBody_(pointer, event)),
       pointer, touch, button: event.button, x: event.clientX, y: event.clientY,
       startX: event.clientX, startY: event.clientY, startedAt: performance.now(), moved: false, longPress: undefined,
     };
@@ -108,7 +116,7 @@ export class ScreenInput {
     }
     pointer.active = true;
     this.aimAt_(pointer, event.clientX, event.clientY);
-    if (event.button === 0 && !event.shiftKey) {
+    if (event.button === 0 && !event.shiftKey && !finger.band) {
       pointer.pressed = true;
       this.gestures_.update(pointer);
     }
@@ -139,6 +147,10 @@ export class ScreenInput {
       finger.moved = true;
       window.clearTimeout(finger.longPress);
     }
+    if (finger.band) {
+      if (finger.moved) this.drawBand_(finger, false);
+      return;
+    }
     const grab = finger.pointer.grab;
     if (grab !== null) {
       if (event.shiftKey) {
@@ -151,7 +163,7 @@ export class ScreenInput {
     else this.steer_(finger, event, dx, dy);
   }
 
-  /** Another finger that holds nothing either. */
+  /** Another finger without a grab. */
   private partner_(finger: Finger): Finger | null {
     for (const other of this.fingers_.values()) {
       if (other !== finger && other.touch && other.pointer.grab === null) return other;
@@ -162,7 +174,7 @@ export class ScreenInput {
   private pinch_(finger: Finger, other: Finger, dx: number, dy: number, apart: number): void {
     const now = Math.hypot(finger.x - other.x, finger.y - other.y);
     if (apart > 1 && now > 1) this.zoomAt_(apart / now, (finger.x + other.x) / 2, (finger.y + other.y) / 2, false);
-    // Each finger moves the middle by half.
+    // Each finger moves the center by half.
     this.navigation_.pan(dx / 2, dy / 2, this.canvas_.clientHeight);
   }
 
@@ -184,6 +196,7 @@ export class ScreenInput {
     this.fingers_.delete(event.pointerId);
     window.clearTimeout(finger.longPress);
     const { pointer } = finger;
+    if (finger.band && finger.moved) this.drawBand_(finger, true);
     const body = pointer.grab?.body ?? (finger.button === 2 ? pointer.hovered : -1);
     pointer.pressed = false;
     if (finger.touch) {
@@ -196,12 +209,27 @@ export class ScreenInput {
     if (tap) this.tap_(finger, body);
   }
 
+  private isOnBody_(pointer: Pointer, event: PointerEvent): boolean {
+    pointer.active = true;
+    this.aimAt_(pointer, event.clientX, event.clientY);
+    this.gestures_.update(pointer);
+    return pointer.hovered >= 0;
+  }
+
+  private drawBand_({ x, y, startX, startY }: Finger, done: boolean): void {
+    this.host_.band?.(Math.min(x, startX), Math.min(y, startY), Math.max(x, startX), Math.max(y, startY), done);
+  }
+
   private tap_(finger: Finger, body: number): void {
     if (finger.button === 2) {
       if (body >= 0) this.host_.menu(body, finger.x, finger.y);
       return;
     }
     if (finger.button !== 0) return;
+    if (finger.band && finger.pointer.hovered >= 0) {
+      this.host_.toggle?.(finger.pointer.hovered);
+      return;
+    }
     if (body < 0) {
       this.host_.clickNothing();
       return;
@@ -213,7 +241,7 @@ export class ScreenInput {
     if (again) this.host_.menu(body, finger.x, finger.y);
   }
 
-  /** Zooms to what is under a place in css px, as far away as the body there or, without one, as what the camera turns about. */
+  /** Zooms about a place in css px, at the depth of the body there or, without one, of the camera's pivot. */
   private zoomAt_(factor: number, x: number, y: number, onBody: boolean): void {
     const at = [(x / innerWidth) * 2 - 1, 1 - (y / innerHeight) * 2] as const;
     if (!onBody) return this.navigation_.zoom(factor, ...at);

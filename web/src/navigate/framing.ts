@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a camera has to be, and where, so that given points fill the picture. Pure numbers; lengths in m.
+// The place of a camera from which given points fill the picture. Pure functions; lengths in m.
 
 import type { Points } from "../scene/points.ts";
 
-/** The part of the picture that is to be filled, as tangents of angles from the middle: to the side, up and down. */
+/** The part of the picture to fill, as tangents of angles from the center: to the side, up and down. */
 export interface Frame {
   readonly side: number;
   readonly up: number;
@@ -48,7 +48,7 @@ export function fitView({ xyz, count }: Points, yaw: number, pitch: number, fram
   }
   const depth = Math.max((toRight + toLeft) / (2 * frame.side), (over + under) / (frame.up + frame.down), front);
   const aside = (toRight - toLeft) / 2;
-  // Where the width decides there is room above and below, which is shared.
+  // If the width is decisive, the remaining height is divided equally above and below.
   const height = ((over - depth * frame.up) + (depth * frame.down - under)) / 2;
   const middle = (front - back) / 2;
   const distance = Math.max(depth - middle, 1e-12);
@@ -56,7 +56,38 @@ export function fitView({ xyz, count }: Points, yaw: number, pitch: number, fram
   return { pivot: [pivot[0], pivot[1], pivot[2]], distance, yaw, pitch };
 }
 
-/** How many of the points are outside the frame of a view, as a share; 0 without points. */
+/** The nearest distance at which a camera that looks at the pivot shows all points within the frame; 0 without points. */
+export function distanceToShow({ xyz, count }: Points, { pivot, yaw, pitch }: Omit<FittedView, "distance">, frame: Frame): number {
+  const [right, up, away] = viewAxes(yaw, pitch);
+  let least = 0;
+  for (let at = 0; at < 3 * count; at += 3) {
+    const p = [xyz[at] - pivot[0], xyz[at + 1] - pivot[1], xyz[at + 2] - pivot[2]];
+    const a = right[0] * p[0] + right[2] * p[2];
+    const b = up[0] * p[0] + up[1] * p[1] + up[2] * p[2];
+    const c = away[0] * p[0] + away[1] * p[1] + away[2] * p[2];
+    least = Math.max(least, c + Math.max(Math.abs(a) / frame.side, b / frame.up, -b / frame.down));
+  }
+  return least;
+}
+
+/**
+ * The view of a camera at `eye` that looks at `target`, from up to `farther` times as far away where not all points are within the frame.
+ * It goes back along its line of sight, or on the level where it looks up, so that it is never lower than it was.
+ */
+export function standBack(
+  points: Points, eye: readonly [number, number, number], target: readonly [number, number, number], frame: Frame, farther: number,
+): FittedView {
+  const away = [eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]];
+  const distance = Math.max(Math.hypot(...away), 1e-12);
+  const view = { pivot: target, distance, yaw: Math.atan2(away[0], away[2]), pitch: Math.asin(away[1] / distance) };
+  const times = Math.min(farther, distanceToShow(points, view, frame) / distance);
+  if (times <= 1.05) return view;
+  if (away[1] >= 0) return { ...view, distance: times * distance };
+  const back = Math.hypot(times * away[0], away[1], times * away[2]);
+  return { ...view, distance: back, pitch: Math.asin(away[1] / back) };
+}
+
+/** Share of the points outside the frame of a view; 0 without points. */
 export function shareOutside({ xyz, count }: Points, view: FittedView, frame: Frame): number {
   const [right, up, away] = viewAxes(view.yaw, view.pitch);
   let outside = 0;

@@ -1,21 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // The camera of a flat screen: orbit around a point, look around, walk through, all eased and
-// interruptible. One state serves all of them: a point, a distance and two angles.
+// interruptible. All modes use one state: a point, a distance and two angles.
 
 import { MathUtils, Vector3, type PerspectiveCamera } from "three";
 import type { FittedView } from "./framing.ts";
 
 const easeSeconds = 0.07;
-/** A returning view takes longer than a dragged one. */
+/** Returning to a view is slower than a drag. */
 const travelSeconds = 0.25;
 const steepest = 1.5;
-/** Of the size of the scene: how near and far the camera goes, how far what it looks at is from the scene's middle. */
+/** Relative to the size of the scene: limits of the camera's distance, and of the pivot's distance from the scene's
+ * center. */
 const nearest = 0.02;
 const farthest = 14;
 const widest = 4;
-/** Of the same: height that the camera keeps over the ground, and walking in a second. */
+/** Also relative: least height of the camera over the ground, and walking distance per second. */
 const headroom = 0.02;
 const pace = 0.75;
+/** And the distance that a walk keeps from walls. */
+const elbowroom = 0.03;
+
+export interface Walls {
+  /** Shortens and bends a way from a place to one that a ball of a radius can go, m. */
+  slide(from: Vector3, way: Vector3, radius: number): void;
+}
 
 interface View {
   readonly pivot: Vector3;
@@ -29,8 +37,10 @@ function makeView(): View {
 }
 
 export class Navigation {
-  /** Whether a drag on nothing looks around from the place instead of orbiting. */
+  /** Whether a drag on empty space looks around instead of orbiting. */
   flying = false;
+  /** Whether it selects what is within its rectangle. */
+  banding = false;
   /** Height of the ground, m, which the camera stays above; null: anywhere. */
   ground: number | null = null;
   /** Whether the user has moved the camera since it was last at its first view. */
@@ -39,8 +49,10 @@ export class Navigation {
   moves = 0;
   /** Right, up, forward in -1..1, from keys. */
   readonly walk = new Vector3();
-  /** Walking three times as fast. */
+  /** Walks three times as fast. */
   walkingFast = false;
+  /** Stop a walk; null: nothing does. */
+  walls: Walls | null = null;
 
   private readonly camera_: PerspectiveCamera;
   private readonly goal_ = makeView();
@@ -50,17 +62,22 @@ export class Navigation {
   private readonly direction_ = new Vector3();
   private readonly right_ = new Vector3();
   private readonly up_ = new Vector3();
+  private readonly way_ = new Vector3();
+  private readonly eye_ = new Vector3();
   private readonly middle_ = new Vector3(0, 1, 0);
   private size_ = 2;
+  /** Who walks through a room does not creep because the thing on its table is small. */
+  private walkSize_ = 2;
 
   constructor(camera: PerspectiveCamera) {
     this.camera_ = camera;
   }
 
-  /** Where the scene is and how large, m: paces and limits follow it. */
-  setScene(middle: readonly [number, number, number], size: number): void {
+  /** Center and size of the scene, m: speeds and limits depend on it. `reach`: from the center to the farthest of the surroundings. */
+  setScene(middle: readonly [number, number, number], size: number, reach = size): void {
     this.middle_.set(...middle);
     this.size_ = size;
+    this.walkSize_ = Math.max(size, reach / widest);
   }
 
   /** Distance from the camera to what it looks at, m. */
@@ -81,13 +98,13 @@ export class Navigation {
     return { pivot: [pivot.x, pivot.y, pivot.z], distance, yaw, pitch };
   }
 
-  /** The view that the camera is on its way to. */
+  /** The view to which the camera moves. */
   get goal(): FittedView {
     const { pivot, distance, yaw, pitch } = this.goal_;
     return { pivot: [pivot.x, pivot.y, pivot.z], distance, yaw, pitch };
   }
 
-  /** Goes to a view, which stays the user's. */
+  /** Moves to a view, which then counts as chosen by the user. */
   goTo({ pivot, distance, yaw, pitch }: FittedView): void {
     this.touched = true;
     this.goal_.pivot.set(...pivot);
@@ -97,26 +114,26 @@ export class Navigation {
     this.seconds_ = travelSeconds;
   }
 
-  /** Is at a view at once, which stays the user's. */
+  /** Jumps to a view, which then counts as chosen by the user. */
   jumpTo(view: FittedView): void {
     this.goTo(view);
     copyView(this.goal_, this.now_);
   }
 
-  /** Moves along with something, m. */
+  /** Moves by a vector, m. */
   shift(way: Vector3): void {
     this.touched = true;
     this.goal_.pivot.add(way);
     this.now_.pivot.add(way);
   }
 
-  /** Goes after a first view that moves. */
+  /** Follows a first view that moves. */
   follow(): void {
     copyView(this.home_, this.goal_);
     this.seconds_ = travelSeconds;
   }
 
-  /** Goes to the first view without a way there. */
+  /** Jumps to the first view. */
   jumpHome(): void {
     this.touched = false;
     copyView(this.home_, this.goal_);
@@ -127,19 +144,19 @@ export class Navigation {
     this.touched = false;
     this.moves++;
     copyView(this.home_, this.goal_);
-    // The short way round.
+    // The shorter direction.
     this.goal_.yaw += 2 * Math.PI * Math.round((this.now_.yaw - this.goal_.yaw) / (2 * Math.PI));
     this.seconds_ = travelSeconds;
   }
 
-  /** Drag by so many css pixels: turn about the pivot. */
+  /** A drag in css pixels: turns about the pivot. */
   orbit(dx: number, dy: number): void {
     this.touch_();
     this.goal_.yaw -= dx * 0.006;
     this.goal_.pitch = MathUtils.clamp(this.goal_.pitch + dy * 0.006, -steepest, steepest);
   }
 
-  /** Look around from where the camera is. */
+  /** Turns the camera at its place. */
   look(dx: number, dy: number): void {
     this.touch_();
     const eye = this.eyeOf_(this.goal_, new Vector3());
@@ -148,7 +165,7 @@ export class Navigation {
     this.goal_.pivot.copy(eye).sub(this.awayOf_(this.goal_, this.direction_).multiplyScalar(this.goal_.distance));
   }
 
-  /** Move sideways with the pointer: what lies at the pivot's depth stays under it. */
+  /** Moves sideways with the pointer: points at the pivot's depth stay under it. */
   pan(dx: number, dy: number, viewHeight: number): void {
     this.touch_();
     const meters = (2 * this.goal_.distance * Math.tan(MathUtils.degToRad(this.camera_.fov / 2))) / viewHeight;
@@ -158,8 +175,8 @@ export class Navigation {
   }
 
   /**
-   * Above 1: away. What is at x, y of the picture (-1 .. 1, right and up), `depth` m from the camera or as far as the pivot, stays
-   * there.
+   * Above 1: away. The point at x, y of the picture (-1 .. 1, right and up), at `depth` m from the camera or at the
+   * pivot's depth, stays there.
    */
   zoom(factor: number, x = 0, y = 0, depth = this.goal_.distance): void {
     this.touch_();
@@ -177,17 +194,7 @@ export class Navigation {
 
   /** Advances and places the camera; returns whether it moved. */
   update(seconds: number): boolean {
-    if (this.walk.lengthSq() > 0) {
-      this.touch_();
-      this.axes_(this.goal_);
-      const way = (this.walkingFast ? 3 : 1) * pace * this.size_ * seconds;
-      this.awayOf_(this.goal_, this.direction_);
-      this.goal_.pivot
-        .addScaledVector(this.right_, this.walk.x * way)
-        .addScaledVector(this.direction_, -this.walk.z * way);
-      this.goal_.pivot.y += this.walk.y * way;
-      this.keepNear_();
-    }
+    if (this.walk.lengthSq() > 0) this.step_(seconds);
     this.keepAbove_();
     const ease = 1 - Math.exp(-seconds / this.seconds_);
     const before = { turn: this.now_.yaw + this.now_.pitch, distance: this.now_.distance };
@@ -202,15 +209,26 @@ export class Navigation {
     return drift > least || Math.abs(this.now_.distance - before.distance) > least || Math.abs(this.now_.yaw + this.now_.pitch - before.turn) > 1e-6;
   }
 
+  private step_(seconds: number): void {
+    this.touch_();
+    this.axes_(this.goal_);
+    const length = (this.walkingFast ? 3 : 1) * pace * this.walkSize_ * seconds;
+    this.way_.copy(this.right_).multiplyScalar(this.walk.x * length).addScaledVector(this.direction_, -this.walk.z * length);
+    this.way_.y += this.walk.y * length;
+    this.walls?.slide(this.eyeOf_(this.goal_, this.eye_), this.way_, elbowroom * this.walkSize_);
+    this.goal_.pivot.add(this.way_);
+    this.keepNear_();
+  }
+
   private touch_(): void {
     this.touched = true;
     this.moves++;
     this.seconds_ = easeSeconds;
   }
 
-  /** What the camera looks at stays where there is something to see. */
+  /** Keeps the pivot near the scene. */
   private keepNear_(): void {
-    this.goal_.pivot.sub(this.middle_).clampLength(0, widest * this.size_).add(this.middle_);
+    this.goal_.pivot.sub(this.middle_).clampLength(0, widest * this.walkSize_).add(this.middle_);
   }
 
   /** Unit vector from the pivot to the camera. */

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // The socket to the world: hello, back-off reconnect, ping. Decoded messages go to one listener;
-// pose frames go into one buffer that is filled again and again.
+// pose frames are decoded into one reused buffer.
 
 import {
   decodePosesInto, decodeServerMessage, encodeClientMessage, MessageType, messageTypeOf, PosesBuffer,
   PROTOCOL_MAGIC, PROTOCOL_VERSION, type ClientMessage, type Role, type ServerMessage,
 } from "../protocol/generated.ts";
 
-/** connecting: first try; lost: was connected or never was, trying again; refused: the server said no. */
+/** connecting: first attempt; lost: not connected, trying again; refused: by the server. */
 export type LinkState = "connecting" | "connected" | "lost" | "refused";
 
-/** What a client asks for in its hello. */
+/** The contents of a client's hello. */
 export interface JoinRequest {
   /** Id of the world; empty: the server's first one. */
   readonly world: string;
   readonly role: Role;
-  /** What others see; may be empty. */
+  /** Name shown to others; may be empty. */
   readonly name: string;
 }
 
@@ -24,12 +24,12 @@ export interface ConnectionListener {
   message(message: ServerMessage): void;
   /** A pose frame; `poses` is only valid during the call. `now` in ms of performance.now(). */
   poses(poses: PosesBuffer, now: number): void;
-  /** `reason` is a sentence for a person, may be empty. */
+  /** `reason` is a sentence for the user, may be empty. */
   state(state: LinkState, reason: string): void;
 }
 
 const pingEveryMs = 2000;
-/** Pose frames come at least once a second, so a silent socket is a dead one. */
+/** Pose frames are sent at least once a second, so a silent socket is dead. */
 const silentForMs = 6000;
 const firstDelayMs = 250;
 const longestDelayMs = 4000;
@@ -91,14 +91,14 @@ export class Connection {
     this.ping_ = window.setInterval(() => this.checkAlive_(), pingEveryMs);
   }
 
-  /** Sends when connected; returns whether it was sent. Nothing is queued for later: old gestures are stale. */
+  /** Sends if connected; returns whether it was sent. Nothing is queued, since old gestures are stale. */
   send(message: ClientMessage): boolean {
     if (this.state !== "connected") return false;
     this.sendNow_(message);
     return true;
   }
 
-  /** Tries again at once instead of waiting for the back-off. */
+  /** Tries again immediately instead of waiting for the back-off. */
   retryNow(): void {
     if (this.retry_ === undefined) return;
     this.delayMs_ = firstDelayMs;
@@ -133,7 +133,7 @@ export class Connection {
       this.handle_(decodeServerMessage(data), now);
     } catch (error) {
       this.badFrames++;
-      // The first few are enough to see what is wrong; a stream of them must not fill the console.
+      // Only the first few are logged, so that a stream of errors does not fill the console.
       if (this.badFrames <= 5) console.warn("iota: a frame from the server was dropped:", error);
     }
   }
@@ -170,7 +170,7 @@ export class Connection {
     if (!opened) void this.explain_();
   }
 
-  /** A refused upgrade looks like a dead server to a page; the health address tells them apart. */
+  /** A page cannot distinguish a refused upgrade from a dead server; the health address can. */
   private async explain_(): Promise<void> {
     try {
       const answer = await fetch("healthz", { cache: "no-store" });
@@ -178,7 +178,7 @@ export class Connection {
         this.change_("refused", "The server is running but does not accept this address. Open the address that the terminal printed; it ends in a token.");
       }
     } catch {
-      // Not running at all: "lost" already says so.
+      // The server is not running: the state is already "lost".
     }
   }
 

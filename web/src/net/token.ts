@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The secret of the page's address. It is taken out of the address bar, where others may read it over a shoulder or on a shared
-// screen, and kept for this tab only, so that a reload still knows it.
+// The secret of the page's address. It is removed from the address bar, where others may read it on a shared screen,
+// and kept for this tab only, so that a reload still has it.
 
 const key = "iota token";
 
-/** The token that this page was opened with, or null where it never had one. */
+/** The token that this page was opened with, or null. */
 export function takeToken(): string | null {
   const url = new URL(location.href);
   const given = url.searchParams.get("token");
@@ -12,7 +12,7 @@ export function takeToken(): string | null {
     if (given === null) return sessionStorage.getItem(key);
     sessionStorage.setItem(key, given);
   } catch {
-    return given; // Without storage a reload needs the address as it is.
+    return given; // Without storage a reload needs it in the address.
   }
   url.searchParams.delete("token");
   history.replaceState(history.state, "", url);

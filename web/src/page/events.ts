@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells listeners what happens on the page. Listeners are the overlay, the headset, sounds and flashes.
+// Notifies listeners of events on the page. Listeners are the overlay, the headset, sounds and flashes.
 
 import type { Grab, Pointer } from "../interact/gestures.ts";
 import type { LinkState } from "../net/connection.ts";
 import type { NoticeLevel, Vec3 } from "../protocol/generated.ts";
 import type { Change } from "../world/world.ts";
 
-/** More breaks and joins than these in so much time are no events. */
+/** More breaks and joins than this in this time are not shown as events. */
 const mostEffects = 6;
 const calmMs = 2000;
 
-/** A card for a person. */
+/** A card for the user. */
 export interface PageNotice {
   readonly level: NoticeLevel;
   readonly title: string;
   readonly text: string;
-  /** What to try; may be empty. */
+  /** A suggestion; may be empty. */
   readonly hint: string;
-  /** Replaces the card with the same key; its title unless told. */
+  /** Replaces the card with the same key; default: its title. */
   readonly key?: string;
 }
 
-/** All methods are optional: a listener has those that it needs. */
+/** All methods are optional. */
 export interface PageListener {
   /** The first pictures are drawn: the page can be shown. */
   ready?(): void;
@@ -29,7 +29,7 @@ export interface PageListener {
   changed?(what: Change | "selection"): void;
   /** A body was destroyed. Its slot may hold another body from now on. */
   bodyGone?(body: number): void;
-  /** The connection to the server; `reason` is a sentence for a person, may be empty. */
+  /** The connection to the server; `reason` is a sentence for the user, may be empty. */
   link?(state: LinkState, reason: string): void;
   notice?(notice: PageNotice): void;
   /** break, join or grab at a place (world, m). */
@@ -39,10 +39,10 @@ export interface PageListener {
   pressNothing?(pointer: Pointer): void;
 }
 
-/** Tells all listeners, in the order in which they were added. */
+/** Notifies all listeners, in the order in which they were added. */
 export class Events implements Required<PageListener> {
   private readonly listeners_: PageListener[] = [];
-  /** When the last ones came, ms. */
+  /** Times of the last ones, ms. */
   private readonly effects_: number[] = [];
 
   add(...listeners: readonly PageListener[]): void {
@@ -69,7 +69,7 @@ export class Events implements Required<PageListener> {
     for (const listener of this.listeners_) listener.notice?.(notice);
   }
 
-  /** What breaks and joins all the time is the way a thing works, and no event: then nothing flashes or clicks. */
+  /** Frequent breaks and joins are normal in some worlds: then they have no flash or sound. */
   effect(kind: string, position: Readonly<Vec3>): void {
     const now = performance.now();
     while (this.effects_.length > 0 && now - this.effects_[0] > calmMs) this.effects_.shift();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames what is there: works out where the scene is and how large, and the first view of it, and does so again when another scene
-// comes or the window changes. Light, ground and fog follow. A camera that the user has moved is left alone.
+// Frames the scene: calculates its place and size and the first view of it, again for a new scene or a changed window.
+// Light, ground and fog depend on it. A camera that the user has moved is not changed.
 
 import { MathUtils } from "three";
-import { fitView, shareOutside, type FittedView, type Frame } from "../navigate/framing.ts";
+import { fitView, shareOutside, standBack, type FittedView, type Frame } from "../navigate/framing.ts";
 import type { Navigation } from "../navigate/navigation.ts";
 import { Points, type Bounds } from "../scene/points.ts";
 import type { EntityView } from "../scene/entities/entity.ts";
@@ -14,12 +14,14 @@ import type { FramePart, Viewer } from "./viewer.ts";
 /** The first view without a camera of the script: a little from the side and above. */
 const usualYaw = 0.4;
 const usualPitch = 0.24;
-/** Things that do not move count as far as they are near what does: up to this many times its size. */
+/** Fixed things count if they are near movable ones: up to this many times their size. */
 const settingSize = 2.6;
 const lookEverySeconds = 0.3;
-/** At most so many bodies are looked at. */
+/** Surroundings that are so many sizes of the scene away are not walked to. */
+const farthestWalk = 40;
+/** Largest number of sampled bodies. */
 const mostBodies = 1500;
-/** A scene that is so many times larger or smaller, or so many sizes away, is another one. */
+/** A change of size by this factor, or of place by this many sizes, is a new scene. */
 const otherSize = 2.5;
 const otherPlace = 3;
 /** Radius of the pins at nails, in sizes of the scene. */
@@ -28,7 +30,7 @@ const pinSize = 0.008;
 const barHeight = 84;
 const tallBarHeight = 150;
 const narrowWidth = 560;
-/** The usual screen, for which scripts choose their cameras. */
+/** The standard screen, for which scripts choose their cameras. */
 const usualSide = Math.tan(MathUtils.degToRad(21)) * (16 / 9);
 
 export class Framing implements FramePart, PageListener {
@@ -37,21 +39,22 @@ export class Framing implements FramePart, PageListener {
   private readonly navigation_: Navigation;
   private readonly points_ = new Points();
   private readonly setting_ = new Points();
-  /** What has left the view that is shown, and has been added to it. */
+  /** Points that have left the view and were added to it. */
   private readonly kept_ = new Points();
   private framed_: Bounds | null = null;
   private script_ = "";
   private wait_ = 0;
   private falling_ = false;
+  /** Of the window that the first view was worked out for. */
+  private aspect_ = 0;
 
   constructor(world: World, viewer: Viewer, navigation: Navigation) {
     this.world_ = world;
     this.viewer_ = viewer;
     this.navigation_ = navigation;
-    window.addEventListener("resize", () => this.frame_(false));
   }
 
-  /** Goes to the first view of what is there now. */
+  /** Moves to the first view of the present scene. */
   home(): void {
     this.kept_.clear();
     this.look_();
@@ -59,7 +62,7 @@ export class Framing implements FramePart, PageListener {
     this.navigation_.reset();
   }
 
-  /** Brings all that moves into view, from where the user looks now. */
+  /** Brings all moving bodies into view, in the present direction. */
   showAll(): void {
     this.look_();
     const { yaw, pitch } = this.navigation_.goal;
@@ -74,7 +77,7 @@ export class Framing implements FramePart, PageListener {
     if (what !== "settings") return;
     const { title, hasCamera, cameraPosition, cameraTarget } = this.world_.settings;
     const script = JSON.stringify([title, hasCamera, cameraPosition, cameraTarget]);
-    // Another script: the view of the one before means nothing.
+    // Another script: the previous view is meaningless.
     if (script !== this.script_) this.framed_ = null;
     this.script_ = script;
   }
@@ -86,6 +89,10 @@ export class Framing implements FramePart, PageListener {
     const { body } = this.world_.entities;
     camera.getWorldPosition(body.eye);
     body.pixels = (renderer.domElement.height * camera.projectionMatrix.elements[5]) / 2;
+    if (camera.aspect !== this.aspect_ && !this.viewer_.presenting) {
+      this.aspect_ = camera.aspect;
+      this.frame_(false);
+    }
     this.wait_ -= seconds;
     if (this.framed_ !== null && this.wait_ > 0 && !this.falling_) return;
     this.wait_ = lookEverySeconds;
@@ -101,7 +108,7 @@ export class Framing implements FramePart, PageListener {
     this.viewer_.stage.setScene(bounds.center, size);
     this.world_.entities.body.size = this.viewer_.size;
     this.world_.entities.nail.pinRadius = pinSize * this.viewer_.size;
-    this.navigation_.setScene(bounds.center, this.viewer_.size);
+    this.navigation_.setScene(bounds.center, this.viewer_.size, Math.min(this.calcReach_(bounds.center), farthestWalk * size));
     if (before === null) {
       this.frame_(true);
       this.navigation_.jumpHome();
@@ -114,14 +121,14 @@ export class Framing implements FramePart, PageListener {
 
   // --- inside
 
-  /** Without a camera of the script and while the user leaves it alone, the camera keeps all in view. */
+  /** Keeps everything in view unless the script or the user has set the camera. */
   private follow_(bounds: Bounds): void {
     const view = this.calcView_(this.points_);
     const shown = this.navigation_.home;
     const frame = this.calcFrame_(1.04);
     const middle = new Points();
     middle.add(...bounds.center);
-    // What falls out of the picture as a whole is followed; what swings out of it makes it larger.
+    // A scene that falls out of the picture is followed; parts that swing out of it widen the view.
     this.falling_ = shareOutside(middle, shown, this.calcFrame_(0.7)) > 0;
     if (this.falling_ && view !== null) {
       this.kept_.clear();
@@ -131,7 +138,7 @@ export class Framing implements FramePart, PageListener {
       return;
     }
     const share = shareOutside(this.points_, shown, frame);
-    // A few that fly off are pointed at from the edge instead.
+    // For a few that fly away, markers at the edge are shown instead.
     if (share === 0 || share > 0.5) return;
     this.kept_.addAll(this.points_);
     const reach = this.kept_.bounds();
@@ -146,7 +153,7 @@ export class Framing implements FramePart, PageListener {
     this.navigation_.reset();
   }
 
-  /** Works out the first view anew; goes there if the user has not chosen another one, or if `always`. */
+  /** Calculates the first view again; moves there if the user has not chosen another one, or if `always`. */
   private frame_(always: boolean): void {
     const view = this.calcHome_();
     if (view === null) return;
@@ -161,26 +168,22 @@ export class Framing implements FramePart, PageListener {
       this.points_.addAll(this.kept_);
       return this.calcView_(this.points_);
     }
-    const away = [eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]];
-    const distance = Math.max(Math.hypot(...away), 1e-12);
-    const yaw = Math.atan2(away[0], away[2]);
-    const pitch = Math.asin(away[1] / distance);
-    // A narrow window sees as much from side to side as the usual one, as far as there is something.
+    // A narrow window shows the same width as the standard one, up to that of the scene.
     const side = Math.tan(MathUtils.degToRad(this.viewer_.camera.fov / 2)) * this.viewer_.camera.aspect;
-    const fit = fitView(this.points_, yaw, pitch, this.calcFrame_(1));
-    const farther = Math.min((distance * usualSide) / side, fit?.distance ?? 0);
-    if (fit !== null && farther > distance * 1.05) return { ...fit, distance: farther };
-    return { pivot: [target[0], target[1], target[2]], distance, yaw, pitch };
+    this.setting_.clear();
+    this.setting_.addAll(this.points_);
+    this.addDrawn_(this.setting_);
+    return standBack(this.setting_, eye, target, this.calcFrame_(1), usualSide / side);
   }
 
   private calcView_(points: Points): FittedView | null {
     const view = fitView(points, usualYaw, usualPitch, this.calcFrame_(1));
     if (view === null) return null;
-    // A single point has no size of its own.
+    // A single point has no size.
     return { ...view, distance: Math.max(view.distance, 1.6 * this.viewer_.size) };
   }
 
-  /** The part of the picture that neither the bar nor the edges take; `larger` than that by a factor. */
+  /** The part of the picture without bar and edges, enlarged by the factor `larger`. */
   private calcFrame_(larger: number): Frame {
     const { camera } = this.viewer_;
     const up = Math.tan(MathUtils.degToRad(camera.fov / 2));
@@ -192,7 +195,7 @@ export class Framing implements FramePart, PageListener {
     };
   }
 
-  /** Gathers the corners of what is there and returns its bounds; null while there is nothing. */
+  /** Collects the corners of the scene and returns its bounds; null if it is empty. */
   private look_(): Bounds | null {
     const { points_: points, setting_: setting, world_: { entities, ground } } = this;
     const every = Math.ceil(entities.body.count / mostBodies);
@@ -219,7 +222,7 @@ export class Framing implements FramePart, PageListener {
     take(setting);
     entities.staticShape.forEachCorners(setting, take);
     bounds = points.bounds()!;
-    // The place below, where the shadow is.
+    // The place of the shadow below.
     if (ground !== null && ground < bounds.lowest && bounds.lowest - ground < 1.5 * bounds.radius) {
       points.add(bounds.center[0], ground, bounds.center[2]);
       bounds = points.bounds()!;
@@ -227,7 +230,16 @@ export class Framing implements FramePart, PageListener {
     return bounds;
   }
 
-  /** Adds what the script draws beside bodies. */
+  /** From a place to the farthest corner of what is fixed, m. */
+  private calcReach_([x, y, z]: readonly [number, number, number]): number {
+    let reach = 0;
+    this.world_.entities.staticShape.forEachCorners(this.setting_, ({ xyz, count }) => {
+      for (let at = 0; at < 3 * count; at += 3) reach = Math.max(reach, Math.hypot(xyz[at] - x, xyz[at + 1] - y, xyz[at + 2] - z));
+    });
+    return reach;
+  }
+
+  /** Adds things that the script draws besides bodies. */
   private addDrawn_(points: Points): void {
     for (const view of Object.values<EntityView<never>>(this.world_.entities)) view.addPlaces?.(points);
   }

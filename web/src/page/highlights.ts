@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marks the bodies that this user and others point at, select and hold: tints, outlines, and springs from hand to body.
+// Marks hovered, selected and held bodies of all users: tints, outlines, and springs from hand to body.
 
 import { Color, Vector3, type Group } from "three";
 import type { BodyView } from "../scene/entities/body.ts";
@@ -14,7 +14,9 @@ import type { FramePart, Viewer } from "./viewer.ts";
 /** Colors of other people, by client number. */
 const others = ["#8d6fd1", "#3f7fd0", "#c2863a", "#4c9a52", "#c0508e"].map((code) => new Color(code));
 const mostOthers = 6;
-/** A hold that the server has not confirmed by then was refused. */
+/** Several selected bodies are tinted: an outline for each would be drawn one by one. */
+const severalTint = 0.6;
+/** A hold that the server has not confirmed after this time was refused. */
 const confirmWithinMs = 1500;
 
 function makeOutline(bodies: BodyView, color: Color, thickness: number): Outline {
@@ -60,12 +62,14 @@ export class Highlights implements FramePart {
     const { hovered, selected, held } = this.selection_;
     this.viewer_.camera.getWorldPosition(this.eye_);
     this.bodies_.clearTints();
+    for (const body of this.selection_.several) this.bodies_.setTint(body, palette.selected, severalTint);
+    if (this.selection_.several.size > 0) this.bodies_.setTint(selected, palette.selected, severalTint);
     this.lines_.begin();
     this.markOthersHolds_();
     this.markOwnHolds_();
     this.outlineOthers_();
     this.hovered_.body = hovered;
-    // A held body is red all over: an outline would only dim it.
+    // A held body is tinted red, without an outline.
     this.selected_.body = selected === hovered || selected === held ? -1 : selected;
   }
 

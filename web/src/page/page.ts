@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page's parts, put together. All of it works without the overlay, so that a headset can use the same parts: see
+// Assembles the page's parts. They work without the overlay, so that a headset can use them too: see
 // README.md, "For XR". Overlay and headset name the parts that they need: `Pick<Page, "viewer" | "commands">`.
 
 import { Color, SRGBColorSpace } from "three";
@@ -64,7 +64,7 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
   viewer.lookDistance = () => navigation.distance;
   const themes = new Themes(parts, highlights);
   viewer.add(themes, { draw: () => void viewer.camera.getWorldPosition(world.eye) });
-  // Bodies are where they are drawn before the camera is placed.
+  // Bodies are updated before the camera is placed.
   viewer.add(new Reports(parts), selection, ...Object.values<EntityView<never>>(world.entities), framing, viewpoints, flatCamera(parts), highlights, flashes);
   return {
     ...parts,
@@ -77,7 +77,7 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
   };
 }
 
-/** Light and dark: by the system's setting, but for the surroundings that a script gives the world. */
+/** Light or dark by the system's setting, except for surroundings set by the script. */
 class Themes implements FramePart {
   private readonly parts_: PageParts;
   private readonly highlights_: Highlights;
@@ -115,7 +115,7 @@ class Themes implements FramePart {
   }
 }
 
-/** The ground, as the script wants it. */
+/** The ground at the script's height. */
 function applySettings({ world, viewer, navigation }: PageParts): PageListener {
   return {
     changed: (what) => {
@@ -126,7 +126,7 @@ function applySettings({ world, viewer, navigation }: PageParts): PageListener {
   };
 }
 
-/** Rings of light where something broke or joined, on the body that is there. */
+/** Rings of light at breaks and joins, which follow their body. */
 function flashesOf(flashes: Flashes, { world, viewer }: PageParts): PageListener {
   const bodies = world.entities.body;
   const hit = new Hit();

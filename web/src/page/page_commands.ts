@@ -15,13 +15,14 @@ const signs = {
   pause: "M8 5v14M16 5v14",
   step: "M6 5l9 7-9 7zM18 5v14",
   reset: "M5 5v5h5M5.6 10A7.5 7.5 0 1 1 4.6 14",
+  several: "M5 8V5h3M16 5h3v3M19 16v3h-3M8 19H5v-3M11 5h2M11 19h2M5 11v2M19 11v2",
   minus: "M6 12h12",
   plus: "M6 12h12M12 6v12",
 };
 
 export function pageCommands({ world, session, selection, viewer, navigation, framing, viewpoints, sound, events }: PageParts): Entry[] {
   const say = (key: string, title: string) => events.notice({ level: NoticeLevel.info, title, text: "", hint: "", key });
-  /** The next faster (1) or slower (-1) of the speeds on offer. */
+  /** The next faster (1) or slower (-1) of the offered speeds. */
   const changeSpeed = (direction: 1 | -1) => {
     const now = world.speed;
     const next = direction > 0 ? speeds.find((speed) => speed > now * 1.01) : speeds.findLast((speed) => speed < now * 0.99);
@@ -115,7 +116,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
     },
     {
       name: "fly",
-      help: "a drag on nothing looks around instead of orbiting",
+      help: "a drag on empty space looks around instead of orbiting",
       keys: ["f"],
       title: () => "Fly",
       active: () => navigation.flying,
@@ -150,7 +151,7 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
       run: () => {
         const body = viewpoints.followed >= 0 ? -1 : selection.actionBody;
         viewpoints.follow(body);
-        say("follow", body >= 0 ? "The view goes along" : "The view stays");
+        say("follow", body >= 0 ? "The view follows" : "The view stays");
       },
     },
     {
@@ -193,11 +194,26 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
     },
     {
       name: "select previous",
-      help: "selects the one before",
+      help: "selects the previous body",
       keys: ["ArrowLeft", "ArrowUp"],
       repeats: true,
       title: () => "Previous body",
       run: () => selection.selectNext(-1),
+    },
+    {
+      name: "select several",
+      help: "a drag on nothing selects all within; so does Ctrl and a drag, and Ctrl and a click adds one",
+      keys: ["o"],
+      places: ["bar"],
+      title: () => "Select several",
+      sign: () => signs.several,
+      // Without a keyboard there is no Ctrl.
+      offered: () => matchMedia("(pointer: coarse)").matches,
+      active: () => navigation.banding,
+      run: () => {
+        navigation.banding = !navigation.banding;
+        say("band", navigation.banding ? "A drag on nothing selects all within" : "Orbit: drag turns the view");
+      },
     },
     {
       name: "select nothing",
@@ -219,7 +235,7 @@ function lengthName(meters: number): string {
 
 const faceButtons = { [ControllerButton.none]: null, [ControllerButton.a]: "a", [ControllerButton.b]: "b" } as const;
 
-/** What the script offers, as commands. */
+/** The script's actions as commands. */
 export function scriptCommands(actions: readonly ActionEntry[], { session, selection }: PageParts): ScriptCommand[] {
   return actions.map((action): ScriptCommand => {
     const onBody = action.on === ActionTarget.body;
@@ -230,7 +246,10 @@ export function scriptCommands(actions: readonly ActionEntry[], { session, selec
       title: () => action.label,
       offered: () => !onBody || selection.selected >= 0,
       enabled: () => !onBody || selection.actionBody >= 0,
-      run: () => session.act(action.name, selection.actionBody),
+      run: () => {
+        if (!onBody) session.act(action.name, selection.actionBody);
+        else for (const body of selection.actionBodies) session.act(action.name, body);
+      },
     };
     return { ...command, onBody, button: faceButtons[action.button], runOn: (body) => session.act(action.name, body) };
   });

@@ -10,7 +10,7 @@ import type { Sound } from "./sound.ts";
 import type { Viewpoints } from "./viewpoints.ts";
 import type { Viewer } from "./viewer.ts";
 
-/** What the page is made of, but for its commands. */
+/** The parts of the page, except its commands. */
 export interface PageParts {
   readonly world: World;
   readonly session: Session;

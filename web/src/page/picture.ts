@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of what the page shows: for the script, in parts that fit a frame, and as a file for the user.
+// Pictures of the page: for the script, in parts that fit a frame, and as a file for the user.
 
 import type { ClientMessage } from "../protocol/generated.ts";
 import type { PageParts } from "./page_parts.ts";
@@ -8,34 +8,34 @@ import type { Viewer } from "./viewer.ts";
 const partBytes = 60_000;
 
 /**
- * A PNG of the world as it is drawn now, without the controls, as sharp as the screen where the page draws more coarsely to keep up; null
- * where the browser can make none.
+ * A PNG of the world as drawn now, without the controls, at full resolution even if the page draws at a lower one; null
+ * if the browser cannot make one.
  */
 export async function takePicture({ renderer, scene, camera, presenting }: Viewer): Promise<Blob | null> {
   const usual = renderer.getPixelRatio();
   const draw = (pixelRatio: number) => {
     if (!presenting && renderer.getPixelRatio() !== pixelRatio) renderer.setPixelRatio(pixelRatio);
-    // What was drawn before is gone once the browser has shown it.
+    // The browser clears a drawn frame once it has shown it.
     renderer.render(scene, camera);
   };
   draw(Math.max(usual, Math.min(devicePixelRatio, 2)));
   const picture = new Promise<Blob | null>((resolve) => {
     renderer.domElement.toBlob(resolve, "image/png");
   });
-  // The browser has copied the pixels when the call above is back.
+  // The browser has copied the pixels when the call above returns.
   draw(usual);
   return picture;
 }
 
-/** The next frame of a film as the address of a JPEG, without the controls. It takes the picture in the task that draws it: the
- * browser clears what it has shown. */
+/** The next frame of a film as the address of a JPEG, without the controls. The picture is read in the task that draws
+ * it, since the browser clears a shown frame. */
 export function takeFilmFrame({ viewer, world }: Pick<PageParts, "viewer" | "world">): string {
   world.poses.exact = true;
   viewer.drawFilmFrame();
   return viewer.renderer.domElement.toDataURL("image/jpeg", 0.95);
 }
 
-/** Answers the server's request; an empty part where there is no picture. */
+/** Answers the server's request; with an empty part if there is no picture. */
 export async function sendPicture(viewer: Viewer, request: number, send: (part: ClientMessage) => void): Promise<void> {
   const picture = await takePicture(viewer).catch(() => null);
   const bytes = picture === null ? new Uint8Array() : new Uint8Array(await picture.arrayBuffer());
@@ -45,7 +45,7 @@ export async function sendPicture(viewer: Viewer, request: number, send: (part: 
   }
 }
 
-/** Hands the user a file. */
+/** Downloads a file to the user. */
 export async function savePicture(viewer: Viewer, name: string): Promise<void> {
   const picture = await takePicture(viewer);
   if (picture === null) throw new Error("the browser could not make a picture");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells the script what it listens to: clicks, hovers, keys. Holds and selections are told anyway.
+// Sends the events that the script listens to: clicks, hovers, keys. Holds and selections are always sent.
 
 import type { Grab, Pointer } from "../interact/gestures.ts";
 import { PointerKind, type Vec3 } from "../protocol/generated.ts";
@@ -7,14 +7,14 @@ import type { PageListener } from "./events.ts";
 import type { PageParts } from "./page_parts.ts";
 import type { FramePart } from "./viewer.ts";
 
-/** A press that ends sooner, and whose ray has turned less, is a click. */
+/** A press that is shorter than this, and whose ray turns less, is a click. */
 const clickMs = 350;
 const clickTurn = 0.02;
 
 interface Press {
   readonly at: number;
   readonly direction: readonly number[];
-  /** Null: on nothing. */
+  /** Null: on empty space. */
   readonly grab: Grab | null;
 }
 
@@ -27,7 +27,7 @@ export class Reports implements PageListener, FramePart {
   constructor(parts: Pick<PageParts, "world" | "session" | "gestures" | "events">) {
     this.parts_ = parts;
     parts.events.add(this);
-    // Before the page's own keys: what the script listens to is the script's.
+    // Before the page's own keys, since the script's have priority.
     window.addEventListener("keydown", (event) => this.key_(event, true), true);
     window.addEventListener("keyup", (event) => this.key_(event, false), true);
     window.addEventListener("blur", () => {
@@ -57,7 +57,7 @@ export class Reports implements PageListener, FramePart {
 
   // --- FramePart
 
-  /** A press on nothing has no grab that would end. */
+  /** A press on empty space has no grab whose end could be seen. */
   interact(): void {
     for (const [pointer, { grab }] of this.presses_) if (grab === null && !(pointer.active && pointer.pressed)) this.release_(pointer);
   }
@@ -97,7 +97,7 @@ export class Reports implements PageListener, FramePart {
   }
 }
 
-/** A control that is typed into, or a dialog, keeps its keys. */
+/** A focused text field, or a dialog, keeps its keys. */
 function isForElement(target: EventTarget | null): boolean {
   return target instanceof HTMLElement && target.closest("input, select, textarea, button, summary, dialog[open]") !== null;
 }

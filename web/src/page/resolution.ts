@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits the drawing to the window, and lowers the resolution when drawing cannot keep up. It never flickers back and forth.
+// Fits the drawing to the window, and lowers the resolution if drawing is too slow. It does not alternate.
 
 import type { FramePart, Viewer } from "./viewer.ts";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies that the user points at, has selected and holds. Sends selections and holds to the server.
+// The hovered, selected and held bodies of the user. Sends selections and holds to the server.
 
 import { Gestures, type GestureListener, type Grab, type Pointer } from "../interact/gestures.ts";
 import type { LinkState } from "../net/connection.ts";
@@ -20,6 +20,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
   private readonly viewer_: Pick<Viewer, "invalidate">;
   private readonly events_: Events;
   private selected_ = -1;
+  /** Selected besides that one. */
+  private readonly more_ = new Set<number>();
 
   constructor(world: World, session: SelectionSession, viewer: Pick<Viewer, "invalidate">, events: Events) {
     this.world_ = world;
@@ -34,12 +36,12 @@ export class Selection implements GestureListener, FramePart, PageListener {
     return this.selected_;
   }
 
-  /** The body that a hand of this page holds, the newest if there are several; -1: none. */
+  /** The body held by a hand of this page, the newest of several; -1: none. */
   get held(): number {
     return this.gestures.grabs.at(-1)?.body ?? -1;
   }
 
-  /** The body that a pointer is over without holding it, -1: none. */
+  /** The hovered body, -1: none. */
   get hovered(): number {
     for (const pointer of this.gestures.pointers) {
       if (pointer.active && pointer.grab === null && pointer.hovered >= 0) return pointer.hovered;
@@ -47,22 +49,50 @@ export class Selection implements GestureListener, FramePart, PageListener {
     return -1;
   }
 
-  /** The body that an action is about: the held one; without it the selected, then the hovered one; -1: none. */
+  /** The body for an action: the held one, otherwise the selected, then the hovered one; -1: none. */
   get actionBody(): number {
     if (this.held >= 0) return this.held;
     return this.selected_ >= 0 ? this.selected_ : this.hovered;
   }
 
-  /** Selects a body, -1: none. */
+  /** The bodies for an action: as `actionBody`, with all that are selected together with it. */
+  get actionBodies(): readonly number[] {
+    const body = this.actionBody;
+    if (body < 0) return [];
+    return body === this.selected_ || this.more_.has(body) ? [this.selected_, ...this.more_] : [body];
+  }
+
+  /** The selected bodies if there are several. */
+  get several(): ReadonlySet<number> {
+    return this.more_;
+  }
+
+  /** Selects these bodies and no others; the server is told of the first one. */
+  selectMany(bodies: Iterable<number>): void {
+    const [first = -1, ...more] = new Set(bodies);
+    this.select(first);
+    for (const body of more) this.more_.add(body);
+    if (more.length > 0) this.events_.changed("selection");
+  }
+
+  /** Adds a body to the selection, or takes it out. */
+  toggle(body: number): void {
+    const all = this.selected_ < 0 ? [] : [this.selected_, ...this.more_];
+    this.selectMany(all.includes(body) ? all.filter((other) => other !== body) : [...all, body]);
+  }
+
+  /** Selects a body alone, -1: none. */
   select(body: number): void {
-    if (body === this.selected_) return;
+    if (body === this.selected_ && this.more_.size === 0) return;
     this.viewer_.invalidate();
+    this.more_.clear();
+    if (body === this.selected_) return this.events_.changed("selection");
     this.selected_ = body;
     this.session_.select(body);
     this.events_.changed("selection");
   }
 
-  /** Selects the next body that can be held, or the one before: for keyboards without a mouse. */
+  /** Selects the next or previous body that can be held: for use without a mouse. */
   selectNext(direction: 1 | -1): void {
     const { pickable, pickableCount } = this.world_.entities.body;
     if (pickableCount === 0) return;
@@ -71,7 +101,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
     this.select(pickable[next]);
   }
 
-  /** Force of a grab as the server last told, N; -1 while the server has not confirmed it. */
+  /** Force of a grab in the server's last message, N; -1 until the server has confirmed it. */
   confirmedForce(grab: Grab): number {
     const { holds, holdCount } = this.world_;
     for (let index = 0; index < holdCount; index++) {
@@ -81,7 +111,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
     return -1;
   }
 
-  /** Force of a grab as the server last told, N. */
+  /** Force of a grab in the server's last message, N. */
   forceOf(grab: Grab): number {
     return Math.max(this.confirmedForce(grab), 0);
   }
@@ -102,7 +132,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
   /** Drops everything about the body, so that nothing passes to the next body in its slot. */
   bodyGone(body: number): void {
     this.gestures.forget(body);
-    if (this.selected_ === body) this.select(-1);
+    this.more_.delete(body);
+    if (this.selected_ === body) this.selectMany([...this.more_]);
   }
 
   link(state: LinkState): void {
@@ -119,7 +150,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
   }
 
   grabStarted(grab: Grab): void {
-    this.select(grab.body);
+    // A hand on one of several keeps them all: an action is about them.
+    if (grab.body !== this.selected_ && !this.more_.has(grab.body)) this.select(grab.body);
     this.session_.send({
       type: "grabStart", hold: grab.hold, body: this.session_.idOf(grab.body), localPoint: vec3(grab.localPoint), target: vec3(grab.target),
     });
@@ -142,7 +174,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
 
   // --- inside
 
-  /** Draws held bodies and all bodies jointed to them without delay; a held body alone would tear off its neighbors. */
+  /** Draws held bodies and their articulates without delay; otherwise a held body would seem to leave its neighbors. */
   private drawHeldAtOnce_(): void {
     const { poses, entities: { membership } } = this.world_;
     const { goal } = poses.lateness;

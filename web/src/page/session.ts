@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// This page's membership in a world: passes the server's messages on, and sends the user's requests. A body is a slot on the
-// page and a whole id on the wire, so that a late request cannot reach another body in the same slot.
+// This page's connection to a world: passes the server's messages on, and sends the user's requests. A body is a slot
+// on the page and a full id on the wire, so that a late request cannot reach another body in the same slot.
 
 import { Connection, type ConnectionListener, type LinkState, type JoinRequest } from "../net/connection.ts";
 import type { ClientMessage, ControlCommand, Id, PosesBuffer, ServerMessage } from "../protocol/generated.ts";
@@ -29,7 +29,7 @@ export class Session implements ConnectionListener {
     return this.connection.clientId;
   }
 
-  /** Sends when connected; otherwise drops the message, because old gestures are stale. */
+  /** Sends if connected; otherwise drops the message, because old gestures are stale. */
   send(message: ClientMessage): void {
     this.connection.send(message);
   }
@@ -44,12 +44,12 @@ export class Session implements ConnectionListener {
     this.send({ type: "action", name, body: this.idOf(body) });
   }
 
-  /** Tells the server what this page has selected, -1: nothing. */
+  /** Sends this page's selection to the server, -1: nothing. */
   select(body: number): void {
     this.send({ type: "select", body: this.idOf(body) });
   }
 
-  /** The id of the body that is in a slot now; null for none. */
+  /** The id of the body in a slot; null for none. */
   idOf(body: number): Id {
     return this.world_.entities.body.idOf(body) ?? noId;
   }

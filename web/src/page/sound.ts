@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Short sounds made on the spot: a crack for a break, a soft click for a join. Silent until the first
-// gesture of the user, as browsers want it.
+// Short synthesized sounds: a crack for a break, a soft click for a join. Silent until the first gesture of the user,
+// as browsers require.
 
 type Kind = "break" | "join" | "grab";
 
@@ -9,7 +9,7 @@ export class Sound {
   private context_: AudioContext | null = null;
   private noise_: AudioBuffer | null = null;
 
-  /** To be called from a gesture of the user. */
+  /** Call it in a gesture of the user. */
   wake(): void {
     if (this.context_ === null && typeof AudioContext !== "undefined") this.context_ = new AudioContext();
     if (this.context_?.state === "suspended") void this.context_.resume();

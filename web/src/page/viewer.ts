@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws, flat or in a headset: renderer, camera, stage, and the frame that goes through all parts of the page.
+// Draws, flat or in a headset: renderer, camera, stage, and the frame that calls all parts of the page.
 
 import { ACESFilmicToneMapping, Group, PCFShadowMap, PerspectiveCamera, Scene, WebGLRenderer, type Object3D } from "three";
 import { Stage } from "../scene/stage.ts";
 import { allowAnisotropy } from "../scene/textures.ts";
 
 /**
- * A part of the page that does something each frame. A frame runs the stages below in this order, each of them for all
- * parts: poses are known before pointers are aimed, and pointers before gestures are worked out.
+ * A part of the page with work in each frame. A frame runs the stages below in this order, each of them for all parts:
+ * poses are updated before pointers are aimed, and pointers before gestures are processed.
  */
 export interface FramePart {
-  /** Works out the state to draw; `now` in ms of performance.now(). */
+  /** Updates the state to draw; `now` in ms of performance.now(). */
   update?(seconds: number, now: number): void;
   /** Aims pointers. */
   aim?(seconds: number, frame: XRFrame | null): void;
-  /** Works out gestures and marks bodies accordingly. */
+  /** Processes gestures and marks bodies. */
   interact?(seconds: number): void;
-  /** Shows one of everything that may appear later, so that its shader is compiled before the page is shown. */
+  /** Draws one of each thing that may appear later, so that its shader is compiled before the page is shown. */
   warmUp?(): void;
-  /** Writes what the renderer reads. */
+  /** Writes the data for the renderer. */
   draw?(seconds: number, frame: XRFrame | null): void;
 }
 
@@ -26,15 +26,15 @@ export interface FramePart {
 export interface Timing {
   /** From frame to frame. */
   frameMs: number;
-  /** Our own script in a frame, without drawing. */
+  /** Time of our script in a frame, without drawing. */
   scriptMs: number;
-  /** Handing the scene to the GPU. */
+  /** Time to submit the scene to the GPU. */
   renderMs: number;
-  /** Taking in one pose frame. */
+  /** Time to decode one pose frame. */
   decodeMs: number;
 }
 
-/** The page goes on drawing for this time after the last change, until all easing has ended. */
+/** The page continues to draw for this time after the last change, until all easing has ended. */
 const drawOnMs = 700;
 /** Number of warm-up frames before the page is shown. */
 const warmFrames = 3;
@@ -50,11 +50,13 @@ export class Viewer {
   readonly scene = new Scene();
   /** Where the viewer stands; identity on a flat screen, moved by locomotion in a headset. */
   readonly rig = new Group();
+  /** The user's own room in a headset: what is in it has the size that the user sees. Its scale is meters of the world in one of the user's. */
+  readonly room = new Group();
   readonly camera = new PerspectiveCamera(42, 1, 0.02, 200);
   readonly stage: Stage;
   readonly timing: Timing = { frameMs: 16.7, scriptMs: 0, renderMs: 0, decodeMs: 0 };
 
-  /** A film is being made: frames are drawn when they are asked for, none is left out, and nothing covers the picture. */
+  /** While a film is made, frames are drawn on request, none is skipped, and nothing covers the picture. */
   filming = false;
 
   /** Distance from the camera to what it looks at, m. */
@@ -75,21 +77,21 @@ export class Viewer {
     this.renderer.shadowMap.type = PCFShadowMap;
     allowAnisotropy(this.renderer);
     this.stage = new Stage(this.scene, this.renderer);
-    this.rig.add(this.camera);
+    this.rig.add(this.camera, this.room);
     this.scene.add(this.rig);
   }
 
-  /** Half the diagonal of the box around all that is there, m. */
+  /** Half the diagonal of the scene's box, m. */
   get size(): number {
     return this.stage.size;
   }
 
-  /** In a headset now. */
+  /** Whether a headset session is active. */
   get presenting(): boolean {
     return this.renderer.xr.isPresenting;
   }
 
-  /** Parts take their turns in the order in which they were added. A part's `root` is put into the scene. */
+  /** Parts are called in the order in which they were added. A part's `root` is added to the scene. */
   add(...parts: readonly (FramePart & { readonly root?: Object3D })[]): void {
     for (const part of parts) {
       this.parts_.push(part);
@@ -97,14 +99,14 @@ export class Viewer {
     }
   }
 
-  /** Draws from now on; `ready` is called once, after the first pictures of a world that is worth showing. */
+  /** Starts drawing; `ready` is called once, after the first pictures of a complete world. */
   start(worthShowing: () => boolean, ready: () => void): void {
     this.worthShowing_ = worthShowing;
     this.ready_ = ready;
     this.renderer.setAnimationLoop((now: number, frame?: XRFrame) => this.frame_(now, frame ?? null));
   }
 
-  /** One frame of a film, at once. */
+  /** Draws one frame of a film immediately. */
   drawFilmFrame(): void {
     this.filming = true;
     this.renderer.setAnimationLoop(null);
@@ -112,7 +114,7 @@ export class Viewer {
     this.frame_(performance.now(), null);
   }
 
-  /** The picture is out of date. A page on which nothing changes does not draw, which spares batteries. */
+  /** Requests a new picture. A page without changes does not draw, which saves battery power. */
   invalidate(): void {
     this.drawUntil_ = performance.now() + drawOnMs;
   }
@@ -124,7 +126,7 @@ export class Viewer {
     this.renderer.setPixelRatio(pixelRatio);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    // A tall screen sees the same height of the world at a wider angle, so that a hanging thing still fits.
+    // A tall screen has a wider vertical angle, so that hanging bodies still fit.
     this.camera.fov = width < height ? 52 : 42;
     this.camera.updateProjectionMatrix();
   }

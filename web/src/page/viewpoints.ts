@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goes to the script's viewpoints, along with those that are on bodies, and after a body that the user follows.
+// Moves the camera to the script's viewpoints, with moving viewpoints, and after a body that the user follows.
 
 import { MathUtils, Vector3 } from "three";
 import type { Navigation } from "../navigate/navigation.ts";
@@ -10,15 +10,15 @@ import type { World } from "../world/world.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
 
 export class Viewpoints implements FramePart {
-  /** Body that the camera goes after, -1: none. */
+  /** The followed body, -1: none. */
   followed = -1;
 
   private readonly world_: World;
   private readonly navigation_: Navigation;
   private readonly viewer_: Viewer;
-  /** Slot of the viewpoint that the camera is at, -1: none. */
+  /** Slot of the present viewpoint, -1: none. */
   private at_ = -1;
-  /** The user's moves of the camera when it went there: one more ends it. */
+  /** The count of the user's camera moves at that time: a further move ends it. */
   private moves_ = 0;
   private readonly eye_ = new Vector3();
   private readonly target_ = new Vector3();
@@ -34,12 +34,12 @@ export class Viewpoints implements FramePart {
     return this.world_.entities.viewpoint.size;
   }
 
-  /** Name of the viewpoint that the camera is at; empty at none. */
+  /** Name of the present viewpoint; empty for none. */
   get name(): string {
     return this.world_.entities.viewpoint.get(this.at_)?.name ?? "";
   }
 
-  /** Goes to the viewpoint with a number from 0, as far as there is one. */
+  /** Moves to the viewpoint with an index from 0, if there is one. */
   go(number: number): void {
     const viewpoint = this.world_.entities.viewpoint.all().at(number);
     const view = viewpoint && this.viewOf_(viewpoint);
@@ -51,13 +51,13 @@ export class Viewpoints implements FramePart {
     this.viewer_.invalidate();
   }
 
-  /** Goes to the one after that at which the camera is. */
+  /** Moves to the next viewpoint. */
   next(): void {
     const all = this.world_.entities.viewpoint.all();
     this.go((all.findIndex(({ id }) => id.slot === this.at_) + 1) % Math.max(all.length, 1));
   }
 
-  /** Goes after a body from now on, -1: after none. */
+  /** Follows a body from now on, -1: none. */
   follow(body: number): void {
     this.at_ = -1;
     this.followed = body;
@@ -100,7 +100,7 @@ export class Viewpoints implements FramePart {
     const away = this.eye_.sub(this.target_);
     const distance = away.length();
     if (!(distance > 0)) return null;
-    // The short way round.
+    // The shorter direction.
     const yaw = Math.atan2(away.x, away.z);
     const turns = Math.round((this.navigation_.goal.yaw - yaw) / (2 * Math.PI));
     const pitch = Math.asin(MathUtils.clamp(away.y / distance, -1, 1));

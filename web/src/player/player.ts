@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording played in a page of its own, without a server: `iota record NAME -o FILE.html`. One can look around, stop and go
-// to any time; nothing can be taken hold of.
+// Plays a recording without a server: `iota record NAME -o FILE.html`. Users can look around, stop and go to any time,
+// but not grab.
 
 import "./player.css";
 import { makeDebug } from "../app/debug.ts";
@@ -11,7 +11,7 @@ import { Role } from "../protocol/generated.ts";
 import { byId, make } from "../ui/dom.ts";
 import { Playback, readFrames } from "./recording.ts";
 
-/** In place of a connection: hears nothing, and is told what the playback says. */
+/** Replaces a connection: ignores messages of the page, and gets those of the playback. */
 class RecordedSocket {
   static readonly OPEN = 1;
   static current: RecordedSocket | null = null;
@@ -30,7 +30,7 @@ class RecordedSocket {
     queueMicrotask(() => this.onopen?.());
   }
 
-  /** The page says hello first; what it says later needs no answer but a sign of life. */
+  /** The page sends hello first; its later messages need no answer except to pings. */
   send(): void {
     queueMicrotask(this.greeted_ ? RecordedSocket.ping : RecordedSocket.begin);
     this.greeted_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a server once told a page, told again: frames by time, to a socket that has no server.
+// Replays a server's messages: frames by time, to a socket without a server.
 
 import { MessageType, messageTypeOf } from "../protocol/generated.ts";
 
@@ -11,23 +11,23 @@ export interface Frame {
 
 const magic = "iota stream 1\n";
 
-/** Throws where the bytes are no recording, or one that was cut off. See python/iota/film/stream.py. */
+/** Throws unless the bytes are a complete recording. See python/iota/film/stream.py. */
 export function readFrames(bytes: Uint8Array): Frame[] {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  if (new TextDecoder().decode(bytes.subarray(0, magic.length)) !== magic) throw new Error("this is no recording of Iota");
+  if (new TextDecoder().decode(bytes.subarray(0, magic.length)) !== magic) throw new Error("this is not a recording of Iota");
   const frames: Frame[] = [];
   for (let at = magic.length; at < bytes.length;) {
-    if (at + 12 > bytes.length) throw new Error("the recording is cut off");
+    if (at + 12 > bytes.length) throw new Error("the recording is truncated");
     const time = view.getFloat64(at, true);
     const end = at + 12 + view.getUint32(at + 8, true);
-    if (end > bytes.length) throw new Error("the recording is cut off");
+    if (end > bytes.length) throw new Error("the recording is truncated");
     frames.push({ time, data: bytes.slice(at + 12, end).buffer });
     at = end;
   }
   return frames;
 }
 
-/** Tells the frames as time goes by, from the start again after the last. */
+/** Sends the frames in time, and starts again after the last one. */
 export class Playback {
   playing = true;
   /** s */
@@ -44,7 +44,7 @@ export class Playback {
     this.duration = frames.at(-1)?.time ?? 0;
   }
 
-  /** Some time has passed, s. */
+  /** Advances the time, s. */
   pass(seconds: number): void {
     if (!this.playing) return;
     if (this.position >= this.duration) return this.seek(0);
@@ -54,7 +54,7 @@ export class Playback {
     }
   }
 
-  /** Goes to a time: tells all that holds then, but not what happened on the way. */
+  /** Goes to a time: sends the state at that time, but not the events before it. */
   seek(position: number): void {
     this.position = Math.min(Math.max(position, 0), this.duration);
     const past = this.frames_.findIndex((frame) => frame.time > this.position);
@@ -65,12 +65,12 @@ export class Playback {
     told.forEach((frame, index) => {
       const type = messageTypeOf(frame.data);
       if (type === MessageType.effect || type === MessageType.notice) return;
-      // The first poses complete the picture of what is there.
+      // The first poses complete the state.
       if (type !== MessageType.poses || index === first || index === last) this.tell_(frame.data);
     });
   }
 
-  /** The newest poses once more: the page hears that the line is alive. */
+  /** Sends the newest poses again, so that the page does not time out. */
   repeat(): void {
     const last = this.frames_.slice(0, this.next_).findLast(({ data }) => messageTypeOf(data) === MessageType.poses);
     if (last !== undefined) this.tell_(last.data);

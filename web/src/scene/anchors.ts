@@ -5,17 +5,17 @@ import { Quaternion, type Vector3 } from "three";
 import { FIRST_FRAME, NO_BODY, type Anchor, type FrameEntity } from "../protocol/generated.ts";
 import type { PoseBuffer } from "./pose_buffer.ts";
 
-/** Frames within frames; more are a circle. */
+/** Largest depth of nested frames; deeper ones are a cycle. */
 const deepest = 32;
 const turn = new Quaternion();
 
-/** World place of an anchor; false where its body or frame is not known yet. */
+/** World place of an anchor; false if its body or frame has no pose yet. */
 export function placeOf(poses: PoseBuffer, { body, point }: Anchor, out: Vector3): boolean {
   out.set(point[0], point[1], point[2]);
   return fromBody(poses, body, out);
 }
 
-/** Turns a place in the frame of a body (or a frame, or the world) into one of the world; false where that is not known yet. */
+/** Transforms a place from the frame of a body (or a frame, or the world) to the world; false if it has no pose yet. */
 export function fromBody(poses: PoseBuffer, body: number, place: Vector3): boolean {
   for (let depth = 0; body >= FIRST_FRAME && body !== NO_BODY; depth++) {
     const frame = frameOf(poses, body);
@@ -37,7 +37,7 @@ export function fromBody(poses: PoseBuffer, body: number, place: Vector3): boole
   return true;
 }
 
-/** Orientation of a body, a frame or the world; false where it is not known yet. */
+/** Orientation of a body, a frame or the world; false if it has no pose yet. */
 export function turnOf(poses: PoseBuffer, body: number, out: Quaternion): boolean {
   out.identity();
   for (let depth = 0; body >= FIRST_FRAME && body !== NO_BODY; depth++) {
@@ -52,7 +52,7 @@ export function turnOf(poses: PoseBuffer, body: number, out: Quaternion): boolea
   return true;
 }
 
-/** On a body, or on a frame, so that it may move. */
+/** Whether it is on a body or on a frame, so that it may move. */
 export function moves({ body }: Anchor): boolean {
   return body !== NO_BODY;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The soft dark patch under what stands on the ground or is near it: a small picture of the scene from below, brighter where a thing is
-// nearer, blurred, by which the ground is darkened. What is high above the ground does not show in it.
+// The soft shadow under bodies on the ground or near it: a small, blurred picture of the scene from below, brighter for
+// nearer bodies, darkens the ground. Bodies high above the ground have no such shadow.
 
 import {
   Color, Matrix4, Mesh, MeshDepthMaterial, NoBlending, OrthographicCamera, PlaneGeometry, Scene, ShaderMaterial, Vector2, WebGLRenderTarget,
@@ -11,7 +11,7 @@ import {
 export const casterLayer = 1;
 
 const pixels = 512;
-/** Of the height of the picture's box in its width. */
+/** Height of the picture's box relative to its width. */
 const flatness = 0.12;
 
 function makeBlur(): ShaderMaterial {
@@ -57,7 +57,7 @@ export class ContactShadow {
     this.screen_.add(sheet);
   }
 
-  /** What is within `reach` m of a place on the ground. */
+  /** Covers `reach` m about a place on the ground. */
   aim(x: number, ground: number, z: number, reach: number): void {
     const camera = this.camera_;
     camera.position.set(x, ground, z);
@@ -71,7 +71,7 @@ export class ContactShadow {
       .multiply(camera.projectionMatrix).multiply(camera.matrixWorldInverse);
   }
 
-  /** Takes the picture anew. */
+  /** Renders the picture again. */
   update(scene: Scene): void {
     const { renderer_: renderer } = this;
     const target = renderer.getRenderTarget();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A short ring of light where something broke, joined or was taken. It goes along with what it is about.
+// A short ring of light at a break, join or grab. It moves with its body.
 
 import { Color, DoubleSide, Group, Mesh, MeshBasicMaterial, RingGeometry, type Camera, type Vector3 } from "three";
 import { palette } from "./materials.ts";
@@ -11,11 +11,11 @@ interface Flash {
   readonly mesh: Mesh<RingGeometry, MeshBasicMaterial>;
   age: number;
   size: number;
-  /** Writes where it is now, world, m. */
+  /** Writes its present place, world, m. */
   follow: (out: Vector3) => void;
 }
 
-/** In sizes of the scene. */
+/** Relative to the size of the scene. */
 const grabSize = 0.025;
 const usualSize = 0.085;
 const noMove = (): void => {};
@@ -45,8 +45,8 @@ export class Flashes {
   }
 
   /**
-   * break, join or grab at a place (world, m) in a scene of some size; `follow` writes where that place has gone since, and may leave
-   * it where it is.
+   * break, join or grab at a place (world, m) in a scene of some size; `follow` writes the moved place, or leaves it
+   * unchanged.
    */
   show(kind: string, position: ArrayLike<number>, size: number, follow: (out: Vector3) => void = noMove): void {
     const flash = this.flashes_[this.next_];
@@ -58,7 +58,7 @@ export class Flashes {
     flash.mesh.position.set(position[0], position[1], position[2]);
   }
 
-  /** Shows nothing, but as a ring is shown: its shader is compiled then. */
+  /** Draws an invisible ring, so that its shader is compiled. */
   warmUp(): void {
     this.warming_ = true;
   }

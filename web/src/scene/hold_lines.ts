@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The spring between a held point and a hand: a thin line whose color tells its force, with a small
-// bead at both ends. Thickness grows with distance, so that it is as thin far away and in a headset.
+// The spring between a held point and a hand: a thin line whose color shows its force, with a small bead at both ends.
+// Its thickness is an angle, so that it is equally thin at a distance and in a headset.
 
 import {
   Color, CylinderGeometry, Group, InstancedMesh, Matrix4, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3,
@@ -42,7 +42,7 @@ export class HoldLines {
     this.count_ = 0;
   }
 
-  /** One spring from a point to a target (world, m) seen from `eye`; `strength` fades others' springs a little. */
+  /** One spring from a point to a target (world, m) seen from `eye`; `strength` fades springs of other users. */
   add(point: ArrayLike<number>, target: ArrayLike<number>, newtons: number, eye: Vector3, strength: number): void {
     if (this.count_ === most) return;
     const index = this.count_++;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One instanced mesh whose members come and go. It grows in place and is never made anew: what one member costs to add or to
-// remove does not depend on how many others there are.
+// One instanced mesh with a variable number of members. It grows in place: the cost of adding or removing a member does
+// not depend on the number of others.
 
 import { InstancedBufferAttribute, InstancedMesh, type BufferGeometry, type Color, type MeshStandardMaterial, type Object3D } from "three";
 import { casterLayer } from "./contact_shadow.ts";
@@ -10,24 +10,25 @@ export class InstancePool {
   /** Slots of the members, in the order of their instances. */
   members = new Uint32Array(0);
   count = 0;
-  /** Instances of one member. */
+  /** Number of instances of one member. */
   readonly pieces: number;
 
   private capacity_: number;
-  /** Colors plus 1, 0: none; there from the first one on. */
+  /** Colors plus 1, 0: none; made for the first color. */
   private hues_: InstancedBufferAttribute | null = null;
-  /** What of the arrays is in use, for the upload. */
+  /** The used part of the arrays, for the upload. */
   private readonly matrixRange_ = { start: 0, count: 0 };
   private readonly tintRange_ = { start: 0, count: 0 };
 
-  /** Room for `capacity` members of `pieces` instances each. The geometry is its own: it gets a `tint` for each instance. */
+  /** Capacity for `capacity` members of `pieces` instances each. It owns the geometry and adds a `tint` for each
+   * instance. */
   constructor(geometry: BufferGeometry, material: MeshStandardMaterial, capacity: number, pieces = 1) {
     this.pieces = pieces;
     this.capacity_ = Math.max(1, capacity);
     this.members = new Uint32Array(this.capacity_);
     this.mesh = new InstancedMesh(geometry, material, this.capacity_ * pieces);
     this.mesh.count = 0;
-    // Bodies move each frame: a bounding sphere kept right would cost more than it culls.
+    // Bodies move each frame: updating a bounding sphere would cost more than culling saves.
     this.mesh.frustumCulled = false;
     this.mesh.castShadow = this.mesh.receiveShadow = true;
     this.mesh.layers.enable(casterLayer);
@@ -54,7 +55,7 @@ export class InstancePool {
     return index;
   }
 
-  /** Removes a member; the last one takes its index. Returns that one's slot, or -1 where nothing moved. */
+  /** Removes a member; the last one takes its index. Returns the slot of the latter, or -1 if none moved. */
   remove(index: number): number {
     const last = --this.count;
     this.mesh.count = this.count * this.pieces;
@@ -67,7 +68,7 @@ export class InstancePool {
     return this.members[index];
   }
 
-  /** Draws a member in a color in place of its material's; null: in that again. */
+  /** Draws a member in a color; null: in that of its material. */
   setHue(index: number, color: Color | null): void {
     if (color === null && this.hues_ === null) return;
     this.hues_ ??= this.setHues_(new InstancedBufferAttribute(new Float32Array(3 * this.capacity_ * this.pieces), 3));
@@ -78,21 +79,21 @@ export class InstancePool {
     this.hues_.needsUpdate = true;
   }
 
-  /** Draws all in the color of the material again. */
+  /** Draws all members in the color of the material. */
   clearHues(): void {
     if (this.hues_ === null) return;
     (this.hues_.array as Float32Array).fill(0);
     this.hues_.needsUpdate = true;
   }
 
-  /** To be called after the arrays were written. */
+  /** Call it after the arrays were written. */
   upload(): void {
     const instances = this.count * this.pieces;
     uploadRange(this.mesh.instanceMatrix, this.matrixRange_, 16 * instances);
     uploadRange(this.mesh.geometry.getAttribute("tint") as InstancedBufferAttribute, this.tintRange_, 4 * instances);
   }
 
-  /** Draws another geometry in place of the one before, which is disposed of. */
+  /** Replaces the geometry and disposes of the old one. */
   setGeometry(geometry: BufferGeometry): void {
     const before = this.mesh.geometry;
     geometry.setAttribute("tint", before.getAttribute("tint"));
@@ -101,7 +102,7 @@ export class InstancePool {
     before.dispose();
   }
 
-  /** Puts the mesh away for good. */
+  /** Disposes of the mesh. */
   dispose(): void {
     this.mesh.removeFromParent();
     this.mesh.geometry.dispose();
@@ -130,7 +131,7 @@ export class InstancePool {
   }
 }
 
-/** The range is one object for all frames, which `addUpdateRange` would make anew each time. */
+/** The range is one reused object; `addUpdateRange` would allocate a new one each time. */
 function uploadRange(attribute: InstancedBufferAttribute, range: { start: number; count: number }, count: number): void {
   range.count = count;
   if (attribute.updateRanges.length === 0) attribute.updateRanges.push(range);

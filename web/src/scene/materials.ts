@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The small palette that all worlds share, and the shader patches for tinted instances and outlines.
+// The palette of all worlds, and the shader patches for tinted instances and outlines.
 
 import {
   BackSide, Color, FrontSide, MeshBasicMaterial, MeshStandardMaterial, type Material, type MeshStandardMaterialParameters, type Side, type Texture,
 } from "three";
 import { makeBrushedRoughness, makePlain, makeRopeColor, makeRopeNormals, makeWoodColor } from "./textures.ts";
 
-/** Colors that mean something, the same everywhere (page, headset, bar). */
+/** Colors with a meaning, the same in page, headset and bar. */
 export const palette = {
   held: new Color("#e8452c"),
   aboutToBreak: new Color("#f2a324"),
@@ -35,7 +35,8 @@ function texture(name: string, make: () => Texture): Texture {
   return found;
 }
 
-/** Every material has all three textures, plain ones if need be: so all share one program, compiled once at the start. */
+/** Every material has all three textures, plain ones if necessary, so that all share one program, compiled at the
+ * start. */
 function makeBase(name: string): MeshStandardMaterial {
   const material = new MeshStandardMaterial({
     dithering: true,
@@ -69,7 +70,7 @@ function makeBase(name: string): MeshStandardMaterial {
   return material;
 }
 
-/** Mean light of the texture that a material has its color from; of plain ones 1. */
+/** Mean brightness of the color texture of a material; 1 for plain ones. */
 const meanLight: Record<string, number> = { wood: 0.19, rope: 0.24 };
 
 function tint(material: MeshStandardMaterial, light: number): void {
@@ -83,7 +84,7 @@ function tint(material: MeshStandardMaterial, light: number): void {
       .replace(
         "#include <color_fragment>",
         `#include <color_fragment>
-// Between 0 and 1 there is nothing: half is far from rounding. The texture keeps its light and dark.
+// There are no values between 0 and 1, so 0.5 is safe from rounding. The brightness of the texture is kept.
 if (vHue.r > 0.5) diffuseColor.rgb = (vHue - 1.0) * dot(diffuseColor.rgb, luma) / (meanLight * max(dot(diffuse, luma), 0.02));
 float shade = 0.55 + 0.45 * min(1.0, 1.6 * max(diffuseColor.r, diffuseColor.g));
 diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * shade, vTint.a);`,
@@ -97,9 +98,9 @@ diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * shade, vTint.a);`,
 const materials = new Map<string, MeshStandardMaterial>();
 
 export interface MaterialOptions {
-  /** Its name; unknown ones are paint. */
+  /** Its name; paint for unknown ones. */
   readonly material: string;
-  /** "#rrggbb" in place of its own. */
+  /** "#rrggbb", replaces its own. */
   readonly color: string | null;
   readonly opacity?: number;
   readonly side?: Side;
@@ -107,7 +108,7 @@ export interface MaterialOptions {
 
 /**
  * For meshes with an attribute `tint` (rgb and amount), which also dulls metal and glows a little, and perhaps one `hue`: 0, or a color to
- * draw in place of the material's, plus 1. Shared: do not dispose of it.
+ * draw in place of the material's, plus 1. It is shared: do not dispose of it.
  */
 export function materialOf({ material: name, color, opacity = 1, side = FrontSide }: MaterialOptions): MeshStandardMaterial {
   const key = `${name} ${color ?? ""} ${opacity} ${side}`;
@@ -123,7 +124,7 @@ export function materialOf({ material: name, color, opacity = 1, side = FrontSid
   return material;
 }
 
-/** Thickness is an angle (m at 1 m), so that an outline is as wide far away and in a headset. */
+/** Thickness is an angle (m at 1 m), so that an outline is equally wide at a distance and in a headset. */
 export interface OutlineMaterial extends Material {
   readonly color: Color;
   readonly thickness: { value: number };

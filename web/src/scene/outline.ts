@@ -4,7 +4,7 @@
 import { Group, Mesh, type BufferGeometry, type Color, type InstancedMesh } from "three";
 import { makeOutlineMaterial, type OutlineMaterial } from "./materials.ts";
 
-/** Where a part of a body is drawn. */
+/** Drawn place of a part of a body. */
 export interface DrawnPart {
   readonly mesh: InstancedMesh;
   readonly index: number;
@@ -24,7 +24,7 @@ export class Outline {
     this.material.thickness.value = thickness;
   }
 
-  /** Follows the parts of its body, as they are drawn in this frame. */
+  /** Copies the drawn places of its body's parts in this frame. */
   follow(parts: readonly DrawnPart[]): void {
     while (this.copies_.length < parts.length) this.addCopy_(parts[this.copies_.length].mesh.geometry);
     for (let index = 0; index < this.copies_.length; index++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts as they come from the server, read into the shapes that the page draws and picks.
+// Converts the server's parts to the shapes that the page draws and picks.
 
 import { NO_COLOR, type Part } from "../protocol/generated.ts";
 import { parseShape, type Shape } from "./shapes/shape.ts";
@@ -9,12 +9,12 @@ export function textOf(color: number): string | null {
   return color === NO_COLOR ? null : `#${(color & 0xffffff).toString(16).padStart(6, "0")}`;
 }
 
-/** 1: nothing is seen through it. */
+/** 1: opaque. */
 export function opacityOf(color: number): number {
   return color === NO_COLOR ? 1 : 1 - (color >>> 24) / 255;
 }
 
-/** Throws an Error that says what is wrong. */
+/** Throws an Error that names the wrong field. */
 export function readPart({ shape, offset, rotation, turn, material, color }: Part): Shape {
   return parseShape({
     kind: shape.kind,

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places in the world that stand for what is drawn, for all that follows the size of a scene: camera, light, ground, fog.
+// Sample points of the drawn scene, for everything that depends on its size: camera, light, ground, fog.
 
-import type { BufferGeometry, Matrix4 } from "three";
+import { Vector3, type BufferGeometry, type Matrix4, type Quaternion } from "three";
+
+/** Largest number of points that stand for one thing. */
+const mostOfOne = 400;
+const place = new Vector3();
 
 /** Points x y z, one after the other; `count` of them are in use. */
 export class Points {
@@ -26,7 +30,18 @@ export class Points {
     for (let at = 0; at < 3 * count; at += 3) this.add(xyz[at], xyz[at + 1], xyz[at + 2]);
   }
 
-  /** Middle of their box, and half its diagonal; null without points. */
+  /** Adds a sample of places, three numbers each, turned and then moved. */
+  addSample(places: ArrayLike<number>, origin?: Vector3, turn?: Quaternion): void {
+    const step = 3 * Math.ceil(places.length / 3 / mostOfOne);
+    for (let at = 0; at < places.length; at += step) {
+      place.fromArray(places, at);
+      if (turn !== undefined) place.applyQuaternion(turn);
+      if (origin !== undefined) place.add(origin);
+      this.add(place.x, place.y, place.z);
+    }
+  }
+
+  /** Center of their box, and half its diagonal; null without points. */
   bounds(): Bounds | null {
     if (this.count === 0) return null;
     const low = [Infinity, Infinity, Infinity];
@@ -50,7 +65,7 @@ export interface Bounds {
   readonly lowest: number;
 }
 
-/** Adds the corners of a geometry's box, as it is placed. */
+/** Adds the transformed corners of a geometry's box. */
 export function addCorners(points: Points, geometry: BufferGeometry, { elements: m }: Matrix4): void {
   if (geometry.boundingBox === null) geometry.computeBoundingBox();
   const { min, max } = geometry.boundingBox!;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last few frames of all bodies, and what to draw between them. Frames only list what moved,
-// so each one is laid over a copy of the one before. Nothing is allocated once it is large enough.
+// The last few frames of all bodies, and the interpolation between them. Frames only list moved bodies, so each one is
+// applied to a copy of the previous one. Nothing is allocated once it is large enough.
 
 import { forEachPose, type FrameEntity, type PosesBuffer } from "../protocol/generated.ts";
 
 const frameCount = 8;
-/** Others are drawn this many frame intervals late, so that there is nearly always a later frame to go to. */
+/** Other bodies are drawn this many frame intervals late, so that there is nearly always a later frame to interpolate
+ * to. */
 export const usualLateness = 1.5;
 const easeSeconds = 0.08;
-/** A slot beyond this is a mistake, not a reason to take gigabytes. */
+/** A larger slot is an error, and must not allocate gigabytes. */
 export const mostSlots = 1 << 20;
 
 interface Frame {
@@ -18,13 +19,14 @@ interface Frame {
   rotation: Float32Array;
 }
 
-function grown(array: Float32Array, length: number): Float32Array<ArrayBuffer> {
+/** A longer copy. */
+export function grown(array: Float32Array, length: number): Float32Array<ArrayBuffer> {
   const larger = new Float32Array(length);
   larger.set(array);
   return larger;
 }
 
-/** a + (b - a) t for quaternions along the shorter way, normalized; exact enough between two frames. */
+/** a + (b - a) t for quaternions on the shorter arc, normalized; accurate enough between two frames. */
 export function mixRotation(
   a: Float32Array, b: Float32Array, at: number, t: number, out: Float32Array, outAt = at,
 ): void {
@@ -43,23 +45,23 @@ export function mixRotation(
 }
 
 export class PoseBuffer {
-  /** Frames of the script, by slot: anchors are on them as on bodies. */
+  /** Frames of the script, by slot: anchors can be on them, as on bodies. */
   readonly frames = new Map<number, FrameEntity>();
-  /** Slots that have room. */
+  /** Capacity in slots. */
   capacity = 0;
-  /** 1 where a pose has arrived, by slot. */
+  /** 1 if a pose has arrived, by slot. */
   known = new Uint8Array(0);
   /** Drawn position, three a slot, m. */
   position = new Float32Array(0);
   /** Drawn rotation, four a slot, x y z w. */
   rotation = new Float32Array(0);
-  /** How late a body is drawn now, in intervals, and where that is going; by slot. */
+  /** Present delay of a body, in intervals, and its target; by slot. */
   readonly lateness = { now: new Float32Array(0), goal: new Float32Array(0) };
   /** Smoothed gap between frames, ms. */
   intervalMs = 1000 / 60;
   /** Frames in the buffer. */
   count = 0;
-  /** Bodies are drawn where they were last told to be, as in a film, whose frames come when they are drawn. */
+  /** Whether bodies are drawn in their latest poses, as for a film. */
   exact = false;
 
   private readonly frames_: Frame[] = [];
@@ -81,18 +83,18 @@ export class PoseBuffer {
     }
   }
 
-  /** Forgets all frames (a new connection), but keeps the drawn poses until the next frame arrives. */
+  /** Drops all frames (a new connection), but keeps the drawn poses until the next frame arrives. */
   clear(): void {
     this.count = 0;
     this.known.fill(0);
   }
 
-  /** Forgets one body: the next body in its slot starts at its own first pose. */
+  /** Drops one body: the next body in its slot starts at its own first pose. */
   forget(slot: number): void {
     if (slot < this.capacity) this.known[slot] = 0;
   }
 
-  /** Makes room for slots up to `slots` - 1. */
+  /** Grows to slots up to `slots` - 1. */
   reserve(slots: number): void {
     if (slots <= this.capacity) return;
     this.capacity = Math.max(slots, 2 * this.capacity, 64);
@@ -123,7 +125,7 @@ export class PoseBuffer {
     forEachPose(poses, this.set_);
   }
 
-  /** Works out the drawn poses at `now` (ms); `seconds` since the previous call. */
+  /** Calculates the drawn poses at `now` (ms); `seconds` since the previous call. */
   sample(now: number, seconds: number): void {
     if (this.count === 0) return;
     const ease = 1 - Math.exp(-seconds / easeSeconds);
@@ -159,7 +161,7 @@ export class PoseBuffer {
     mixRotation(a.rotation, b.rotation, 4 * body, t, this.rotation);
   }
 
-  /** Arrival with most of the network's jitter taken out: mostly the expected time, pulled to the true one. */
+  /** Arrival time with reduced jitter: the expected time, corrected towards the true one. */
   private stampOf_(previous: number, now: number): number {
     const gap = now - this.arrived_;
     this.arrived_ = now;
@@ -170,7 +172,7 @@ export class PoseBuffer {
     return Math.max(previous, Math.min(stamp, now + this.intervalMs));
   }
 
-  /** The first pose of a body holds for all earlier frames too. */
+  /** The first pose of a body is used for all earlier frames too. */
   private begin_(body: number, source: Frame): void {
     this.known[body] = 1;
     const p = 3 * body;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quiet workshop: ground that goes to a horizon, warm key light with a soft shadow, cool fill,
-// and a small studio of soft boxes for reflections. All of it computed, nothing downloaded, and as large as the scene is.
+// The surroundings: a ground up to the horizon, warm key light with a soft shadow, cool fill, and a small studio of
+// soft boxes for reflections. All of it is computed, nothing is downloaded, and it scales with the scene.
 
 import {
   BackSide, BoxGeometry, CircleGeometry, Color, DirectionalLight, Fog, Group, HemisphereLight, Mesh, MeshBasicMaterial,
@@ -11,7 +11,7 @@ import { ContactShadow } from "./contact_shadow.ts";
 import { makeFloorColor } from "./textures.ts";
 
 interface Theme {
-  /** Where the ground ends, above it, and overhead. */
+  /** At the end of the ground, above it, and overhead. */
   readonly far: string;
   readonly horizon: string;
   readonly zenith: string;
@@ -21,12 +21,12 @@ interface Theme {
   readonly environment: number;
 }
 
-/** What a script says of them; null: what the theme has. */
+/** The script's colors and light; null: the theme's. */
 export interface Surroundings {
   readonly sky: string | null;
   readonly horizon: string | null;
   readonly ground: string | null;
-  /** Times the theme's. */
+  /** A factor of the theme's. */
   readonly light: number;
 }
 
@@ -35,11 +35,12 @@ const themes: Record<"light" | "dark", Theme> = {
   dark: { far: "#24272b", horizon: "#3a4148", zenith: "#0d1013", ground: "#5a5651", key: 2.4, fill: 0.22, environment: 0.6 },
 };
 
-/** In sizes of the scene (half the diagonal of its box): the ground, its texture, and where it begins and ends to fade. */
+/** Relative to the size of the scene (half the diagonal of its box): the ground, its texture, start and end of its
+ * fading. */
 const groundRadius = 120;
 const tileSize = 2;
 const contactStrength = 0.75;
-/** Light on the ground beside that of the lamps: what a shadow leaves. */
+/** Ambient light on the ground, also in shadows. */
 const groundAmbient = 1.15;
 const fogNear = 4;
 const fogFar = 26;
@@ -92,7 +93,7 @@ function makeStudio(renderer: WebGLRenderer): Texture {
   panel(1.4, 4.6, 7, "#dfeaff", new Vector3(-5.4, 1.8, 2.2));
   panel(5.0, 0.8, 8, "#ffffff", new Vector3(0, 4.6, -3.4));
   panel(0.6, 4.2, 6, "#fff6e8", new Vector3(4.6, 1.6, -4.2));
-  // Before the things: flat faces towards the user mirror these, with a dark gap between them.
+  // In front of the scene: flat faces towards the user mirror these, with a dark gap between them.
   panel(4.2, 3.0, 2.2, "#fff4e6", new Vector3(2.6, 1.8, 5.6));
   panel(0.9, 3.4, 3.6, "#e8f0ff", new Vector3(-2.6, 1.6, 5.4));
   const generator = new PMREMGenerator(renderer);
@@ -107,7 +108,7 @@ function makeStudio(renderer: WebGLRenderer): Texture {
   return target.texture;
 }
 
-/** Darkened by what is near. */
+/** Darkened near bodies. */
 function addContactShadow(material: MeshLambertMaterial, shadow: ContactShadow): void {
   const before = material.onBeforeCompile;
   material.onBeforeCompile = (shader, renderer) => {
@@ -125,7 +126,8 @@ diffuseColor.rgb *= 1.0 - contactStrength * (1.0 - exp(-5.0 * contact));`);
   };
 }
 
-/** The studio stands in a pool of light, which gives depth; its ground is flat and has one normal, so what comes from all sides is one number. */
+/** The studio is in a pool of light, which gives depth; its ground is flat with one normal, so ambient light is one
+ * number. */
 function addPool(material: MeshLambertMaterial, ambient: { value: number }): void {
   const before = material.onBeforeCompile;
   material.onBeforeCompile = (shader, renderer) => {
@@ -141,7 +143,7 @@ function addPool(material: MeshLambertMaterial, ambient: { value: number }): voi
   };
 }
 
-/** Fine lines each cell, stronger each ten, fading with distance; compiled in only while it is shown. */
+/** Fine lines for each cell, stronger ones for each ten, fading with distance; compiled only while it is shown. */
 function addGrid(material: MeshLambertMaterial, cell: { value: number }): void {
   material.defines = {};
   material.onBeforeCompile = (shader) => {
@@ -194,6 +196,8 @@ export class Stage {
   private readonly middle_ = new Vector3(0, 1, 0);
   private readonly lit_ = new Vector3();
   private size_ = 1;
+  private hasGround_ = true;
+  private passthrough_ = false;
   private reach_ = 0;
   private theme_: Theme = themes.light;
   private surroundings_: Surroundings = { sky: null, horizon: null, ground: null, light: 1 };
@@ -204,7 +208,7 @@ export class Stage {
     scene.fog = this.fog_;
     const material = new MeshLambertMaterial({ map: makeFloorColor(), dithering: true });
     material.map?.repeat.set((2 * groundRadius) / tileSize, (2 * groundRadius) / tileSize);
-    // Not a physical material: it fills most of the screen, and a matt floor needs no reflections.
+    // Not a physical material: it fills most of the screen, and a matte floor needs no reflections.
     addGrid(material, this.cell_);
     this.contact_ = new ContactShadow(renderer);
     addContactShadow(material, this.contact_);
@@ -254,9 +258,21 @@ export class Stage {
     this.ambient_.value = groundAmbient * light;
   }
 
+  /** Sky, ground and fog give way to what the cameras of a headset see. */
+  set passthrough(on: boolean) {
+    this.passthrough_ = on;
+    this.sky_.visible = !on;
+    this.ground.visible = !on && this.hasGround_;
+  }
+
+  get passthrough(): boolean {
+    return this.passthrough_;
+  }
+
   /** Height of the ground, m; null: none. */
   setGround(height: number | null): void {
-    this.ground.visible = height !== null;
+    this.hasGround_ = height !== null;
+    this.ground.visible = this.hasGround_ && !this.passthrough_;
     if (height !== null) this.ground.position.y = height;
     this.reach_ = 0;
   }
@@ -281,10 +297,11 @@ export class Stage {
     return this.size_;
   }
 
-  /** Middle of the scene and half its diagonal, m. Ground and fog follow; light only when the scene has left it, so that edges of shadows do not swim. */
+  /** Middle of the scene and half its diagonal, m. Ground and fog follow; the light only if the scene has left it, so
+   * that edges of shadows do not move. */
   setScene(middle: readonly [number, number, number], size: number): void {
     this.middle_.set(...middle);
-    // Ground, fog and grid keep their size while the scene breathes.
+    // Ground, fog and grid keep their size during small changes of the scene.
     if (size > 1.5 * this.size_ || size < 0.6 * this.size_) {
       this.size_ = size;
       this.cell_.value = 10 ** Math.round(Math.log10(size / 16));
@@ -300,7 +317,7 @@ export class Stage {
     this.light_(this.key_, 0.55, 1.35, 0.75);
   }
 
-  /** What depends on where the camera is: how far it sees, fog, sky. `distance` is that to what it looks at, m. */
+  /** Updates range of view, fog and sky for the camera. `distance`: to its pivot, m. */
   followCamera(camera: PerspectiveCamera, distance: number): void {
     const apart = camera.getWorldPosition(this.sky_.position).distanceTo(this.middle_);
     this.fog_.near = apart + fogNear * this.size_;
@@ -313,13 +330,25 @@ export class Stage {
     camera.updateProjectionMatrix();
   }
 
-  /** Takes the picture of what is near the ground; before each picture of the scene. */
+  /** Middle of the scene, m. */
+  get middle(): Vector3 {
+    return this.middle_;
+  }
+
+  /** The same for a headset, which sees as far as it likes. */
+  followHead(head: Vector3): void {
+    const apart = this.sky_.position.copy(head).distanceTo(this.middle_);
+    this.fog_.near = this.passthrough_ ? 1e6 * this.size_ : apart + fogNear * this.size_;
+    this.fog_.far = 2 * this.fog_.near + fogFar * this.size_;
+  }
+
+  /** Renders the contact shadow; call it before each picture of the scene. */
   drawContacts(): void {
     this.contact_.strength.value = this.ground.visible ? contactStrength : 0;
     if (this.ground.visible) this.contact_.update(this.scene_);
   }
 
-  /** In a headset there are none: they would cost a pass for each frame. */
+  /** None in a headset, where they would need a pass for each frame. */
   hideContacts(): void {
     this.contact_.strength.value = 0;
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Round strokes from point to point, drawn as quads that face the viewer and are shaded as tubes, cones and balls: two triangles
-// each, one call for thousands. A stroke of no length is a ball; one of radius 0 is as thin on the screen wherever it is.
+// each, one call for thousands. A stroke of length 0 is a ball; one of radius 0 has a constant thickness on the screen.
 
 import {
-  Color, DynamicDrawUsage, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Float32BufferAttribute, Mesh, ShaderMaterial,
+  Color, DoubleSide, DynamicDrawUsage, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Float32BufferAttribute, Mesh, ShaderMaterial,
 } from "three";
 
 const vertexShader = /* glsl */ `
@@ -23,7 +23,7 @@ void main() {
   vec3 a = (modelViewMatrix * vec4(from, 1.0)).xyz;
   vec3 b = (modelViewMatrix * vec4(to, 1.0)).xyz;
   thin = radii.x == 0.0 && radii.y == 0.0 ? 1.0 : 0.0;
-  // Behind the viewer an angle means nothing: a stroke that passes there keeps the thickness of its nearer end.
+  // Behind the viewer an angle is undefined: a stroke that passes there keeps the thickness of its nearer end.
   radius = thin > 0.5 ? vec2(0.0011) * max(vec2(-a.z, -b.z), vec2(0.02)) : radii;
   vec3 way = b - a;
   span = length(way);
@@ -38,7 +38,12 @@ void main() {
   at = vec2(position.x < 0.5 ? -most : span + most, (2.0 * position.y - 1.0) * most);
   place = a + along * at.x + across * at.y;
   shade = color;
-  gl_Position = radii.x < 0.0 ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * vec4(place, 1.0);
+  bool isHidden = radii.x < 0.0;
+#ifdef SHADOW
+  // What is as thin on the screen wherever it is has no thickness in the world.
+  isHidden = isHidden || thin > 0.5;
+#endif
+  gl_Position = isHidden ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * vec4(place, 1.0);
 }`;
 
 const fragmentShader = /* glsl */ `
@@ -60,7 +65,8 @@ void main() {
   if (away > 1.0) discard;
   float toward = sqrt(1.0 - away * away);
   vec3 front = normalize(cross(along, across));
-  if (dot(front, -place) < 0.0) front = -front;
+  bool fromBehind = projectionMatrix[3][3] == 1.0 ? front.z < 0.0 : dot(front, -place) < 0.0;
+  if (fromBehind) front = -front;
   vec3 normal = normalize((along * off.x + across * off.y) / r + front * toward);
   vec3 light = normalize((viewMatrix * vec4(0.35, 0.85, 0.4, 0.0)).xyz);
   vec3 up = (viewMatrix * vec4(0.0, 1.0, 0.0, 0.0)).xyz;
@@ -71,18 +77,24 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-/** A color that a script left to the page. */
+/** No color of the script: the page chooses. */
 const usualColor = 0x2f9d92;
 export const noColor = 0xffffffff;
 
-let material: ShaderMaterial | null = null;
+/** One program for all strokes, and one for their shadows. */
+const materials = new Map<string, ShaderMaterial>();
 
-/** One program for all strokes. */
-function strokeMaterial(): ShaderMaterial {
-  material ??= new ShaderMaterial({
-    vertexShader, fragmentShader: fragmentShader.replace("#include <colorspace_fragment>", "pixel = linearToOutputTexel(pixel);"),
-    glslVersion: GLSL3,
-  });
+function strokeMaterial(purpose: "PICTURE" | "SHADOW"): ShaderMaterial {
+  let material = materials.get(purpose);
+  if (material === undefined) {
+    material = new ShaderMaterial({
+      vertexShader, fragmentShader: fragmentShader.replace("#include <colorspace_fragment>", "pixel = linearToOutputTexel(pixel);"),
+      glslVersion: GLSL3, defines: { [purpose]: "" },
+      // Shadows are made of the backs of things unless told, and a quad that faces the light has none.
+      shadowSide: DoubleSide,
+    });
+    materials.set(purpose, material);
+  }
   return material;
 }
 
@@ -103,7 +115,9 @@ export class Strokes {
     this.geometry_.setAttribute("position", new Float32BufferAttribute(corners, 3));
     this.geometry_.setIndex([0, 1, 2, 0, 2, 3]);
     this.geometry_.instanceCount = 0;
-    this.mesh = new Mesh(this.geometry_, strokeMaterial());
+    this.mesh = new Mesh(this.geometry_, strokeMaterial("PICTURE"));
+    this.mesh.customDepthMaterial = strokeMaterial("SHADOW");
+    this.mesh.castShadow = true;
     this.mesh.frustumCulled = false;
     this.mesh.visible = false;
     this.reserve(16);
@@ -113,11 +127,11 @@ export class Strokes {
     return this.geometry_.instanceCount;
   }
 
-  /** Room for so many strokes; what was written stays. */
+  /** Grows to this many strokes and keeps written ones. */
   reserve(count: number): void {
     if (count <= this.capacity_) return;
     this.capacity_ = Math.max(count, 2 * this.capacity_);
-    // Else the renderer goes on drawing as many as there was room for when it saw the geometry first.
+    // Otherwise the renderer keeps drawing the number of the first capacity.
     this.geometry_.dispose();
     this.from_ = grown(this.from_, this.capacity_);
     this.to_ = grown(this.to_, this.capacity_);
@@ -129,7 +143,7 @@ export class Strokes {
     this.geometry_.setAttribute("color", this.colors_);
   }
 
-  /** Draws none of those before. */
+  /** Removes all strokes. */
   clear(): void {
     this.geometry_.instanceCount = 0;
   }
@@ -147,7 +161,7 @@ export class Strokes {
     this.colors_.setXYZ(index, r, g, b);
   }
 
-  /** To be called after strokes were added. */
+  /** Call it after strokes were added. */
   upload(): void {
     this.mesh.visible = this.count > 0;
     for (const each of [this.from_, this.to_, this.radii_, this.colors_]) each.needsUpdate = true;

@@ -4,7 +4,7 @@
 import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, RGBAFormat, SRGBColorSpace, type Texture, type WebGLRenderer } from "three";
 import { strandHeight } from "./shapes/rope.ts";
 
-/** A number in 0..1 that depends on two whole numbers only. */
+/** A number in 0..1 from a hash of two whole numbers. */
 function hash(x: number, y: number): number {
   let h = Math.imul(x, 374761393) ^ Math.imul(y, 668265263);
   h = Math.imul(h ^ (h >>> 13), 1274126177);
@@ -28,8 +28,8 @@ function noise(x: number, y: number, px: number, py: number): number {
 let finest = 1;
 
 /**
- * Sharper textures at grazing angles, for what is made from now on. Not on a renderer in software: besides being slow there,
- * Mesa's llvmpipe was seen to spend tens of seconds on one such texture lookup, and the page stood still meanwhile.
+ * Sharper textures at grazing angles, for textures made from now on. Not with a software renderer: Mesa's llvmpipe took
+ * tens of seconds for one such texture lookup, during which the page stopped.
  */
 export function allowAnisotropy(renderer: WebGLRenderer): void {
   const gl = renderer.getContext();
@@ -128,7 +128,7 @@ export function makeWoodColor(): Texture {
   });
 }
 
-/** A worn, even floor: barely more than nothing, so that the eye has something to measure by. */
+/** A worn, even floor: a faint structure, as a visual reference. */
 export function makeFloorColor(): Texture {
   return makeTexture(256, 256, true, (u, v, out) => {
     const broad = noise(u * 5, v * 5, 5, 5) - 0.5;

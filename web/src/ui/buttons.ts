@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands as buttons: those of the bar, and the script's in the strip and the menu.
+// Buttons of commands: those of the bar, and the script's in the strip and the menu.
 
 import { isChoice, type Choice, type Command, type Entry, type ScriptCommand } from "../commands/command.ts";
 import { keyName, make } from "./dom.ts";
 
 const svgNamespace = "http://www.w3.org/2000/svg";
 
-/** An element of the bar that shows an entry as it stands now. */
+/** An element of the bar that shows the present state of an entry. */
 export interface BarItem {
   readonly element: HTMLElement;
-  /** Touches the element only where something changed. */
+  /** Changes the element only where necessary. */
   refresh(): void;
 }
 
@@ -26,7 +26,7 @@ function tooltip(entry: Entry): string {
   return key === undefined ? entry.title() : `${entry.title()} (${keyName(key)})`;
 }
 
-/** Calls `write` with a value whenever it is another one than last time. */
+/** Calls `write` with a value whenever it has changed. */
 function onChange(read: () => string, write: (value: string) => void): () => void {
   let shown: string | null = null;
   return () => {
@@ -83,7 +83,7 @@ function makeSelect(choice: Choice, refocus: () => void): BarItem {
     refocus();
   });
   const value = onChange(() => choice.value(), (now) => {
-    // Another value than those on offer stands nowhere: the one before stays.
+    // A value that is not offered is not shown: the previous one stays.
     if (choice.options.includes(now)) select.value = now;
   });
   return {
@@ -94,7 +94,7 @@ function makeSelect(choice: Choice, refocus: () => void): BarItem {
   };
 }
 
-/** A button with the script's words and its key; `body` is what it is about, by default the usual one. */
+/** A button with the script's label and key, for `body`; default: the action's body. */
 export function makeActionButton(command: ScriptCommand, after?: () => void, body?: number): HTMLButtonElement {
   const button = make("button", "action", command.title());
   button.type = "button";

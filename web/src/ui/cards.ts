@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small cards at the top: what happened, where, and what to try. The world stays visible behind them.
+// Small cards at the top: event, place, and suggestion. The world stays visible behind them.
 
 import { make } from "./dom.ts";
 
@@ -13,7 +13,7 @@ export interface CardText {
 }
 
 const most = 4;
-/** Errors stay until they are closed. */
+/** Errors remain until they are closed. */
 const shownMs: Record<CardLevel, number> = { info: 5000, warning: 9000, error: Infinity };
 
 export class Cards {
@@ -28,7 +28,7 @@ export class Cards {
   show(card: CardText, key = card.title, lasting = false): void {
     const face = `${card.level}\n${card.title}\n${card.text}\n${card.hint}`;
     const before = this.shown_.get(key);
-    // Said again (each failed try to connect): it is there already, and must not flash.
+    // Repeated (each failed attempt to connect): it is shown already, and must not flash.
     if (lasting && before?.dataset["face"] === face) return;
     this.remove(key);
     const element = make("section", `card ${card.level}`);

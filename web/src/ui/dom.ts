@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small helpers for the overlay.
 
-/** The element of index.html with this id; throws when page and script do not fit. */
+/** The element of index.html with this id; throws if there is none. */
 export function byId<T extends HTMLElement>(id: string, type: new () => T): T {
   const found = document.getElementById(id);
   if (!(found instanceof type)) throw new Error(`index.html has no ${type.name} with the id ${id}`);
@@ -17,7 +17,7 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** How a key is written on the page. */
+/** The text of a key on the page. */
 export function keyName(key: string): string {
   const names: Record<string, string> = { " ": "space", Escape: "esc", ArrowUp: "↑", ArrowDown: "↓", ArrowLeft: "←", ArrowRight: "→", Enter: "enter" };
   return names[key] ?? key;

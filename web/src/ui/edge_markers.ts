@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points from the edge of the window at what has left it: one marker for each thing that hangs together by itself. Pressed, it brings
+// Markers at the edge of the window for bodies that have left it: one for each articulate. Pressing one brings
 // everything back into view.
 
 import { Vector3 } from "three";
@@ -44,7 +44,7 @@ export class EdgeMarkers implements FramePart {
     }
   }
 
-  /** What of the world is out of view as a whole. Nothing where all or most of it is: then the user looks elsewhere. */
+  /** The articulates that are completely out of view. None if all or most are: then the user looks elsewhere. */
   private findAway_(): readonly Part[] {
     const { world: { entities, poses } } = this.page_;
     const { body, membership } = entities;
@@ -77,7 +77,7 @@ export class EdgeMarkers implements FramePart {
     const depth = Math.max(Math.abs(seen.z), 1e-9);
     let x = (seen.x * camera.projectionMatrix.elements[0]) / depth;
     let y = (seen.y * camera.projectionMatrix.elements[5]) / depth;
-    // What is behind is pointed at sideways or down.
+    // Markers for bodies behind the camera are at the sides or below.
     const size = Math.max(Math.abs(x), Math.abs(y), 1e-6);
     if (seen.z > 0 || size > 1) {
       x /= size;

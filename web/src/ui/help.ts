@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The help: what the script offers, then what the page offers, both from the list of commands.
+// The help: commands of the script, then those of the page, both from the list of commands.
 
 import type { Entry } from "../commands/command.ts";
 import type { Commands } from "../commands/commands.ts";
@@ -8,16 +8,16 @@ import { walkKeyNames } from "./keys.ts";
 
 const mouse: readonly (readonly [string, string])[] = [
   ["drag a body", "pulls it by a spring; the wheel, or shift and drag, moves it nearer or away"],
-  ["click a body", "selects it: actions are about it until esc or a click on nothing"],
+  ["click a body", "selects it for actions, until esc or a click on empty space"],
   ["double click", "or right click on a body: its actions"],
-  ["drag nothing", "orbits; with shift, or with the middle button, moves sideways"],
+  ["drag empty space", "orbits; with shift, or with the middle button, moves sideways"],
   ["right drag", "looks around"],
   ["wheel", "nearer, farther"],
 ];
 
 const touch: readonly (readonly [string, string])[] = [
-  ["one finger", "on a body pulls it, on nothing orbits; several fingers can hold several bodies"],
-  ["two fingers", "on nothing: move sideways, pinch to come nearer"],
+  ["one finger", "on a body pulls it, on empty space orbits; several fingers can hold several bodies"],
+  ["two fingers", "on empty space: move sideways, pinch to come nearer"],
   ["long press", "or double tap on a body: its actions"],
 ];
 
@@ -47,7 +47,7 @@ function addSection(root: HTMLElement, title: string, rows: readonly (readonly [
   root.append(section);
 }
 
-/** Lines of the help for commands; those with the same text share one. Keys that `hidden` says yes to are left out. */
+/** Lines of the help for commands; those with the same text share one. Keys for which `hidden` is true are left out. */
 function rowsOf(entries: readonly Entry[], hidden: (key: string) => boolean): (readonly [Node | string, string])[] {
   const keysOf = new Map<string, string[]>();
   for (const { help, keys } of entries) {
@@ -59,7 +59,7 @@ function rowsOf(entries: readonly Entry[], hidden: (key: string) => boolean): (r
   return [...keysOf].filter(([, keys]) => keys.length > 0).map(([help, keys]) => [keyCaps(keys), help] as const);
 }
 
-/** What the page does by a key that is the script's here: it says where else to find that. */
+/** Page commands whose key belongs to the script here: names their buttons. */
 function displaced(commands: Commands, taken: (key: string) => boolean): (readonly [Node | string, string])[] {
   return commands.own
     .filter(({ keys, offered }) => keys?.some(taken) === true && keys.every((key) => taken(key)) && offered?.() !== false)

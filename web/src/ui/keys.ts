@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keyboard: runs commands, and walks while a key is held down. Keys of the script win over our own.
+// The keyboard: runs commands, and walks while a key is held down. Keys of the script have priority over the page's.
 
 import type { Page } from "../page/page.ts";
 
@@ -15,7 +15,7 @@ export class Keys {
   private readonly page_: Pick<Page, "commands" | "navigation">;
   private readonly down_ = new Set<string>();
 
-  /** `pressed` is called at each key, whatever it is. */
+  /** `pressed` is called at every key. */
   constructor(page: Pick<Page, "commands" | "navigation">, pressed: () => void) {
     this.page_ = page;
     window.addEventListener("keydown", (event) => {

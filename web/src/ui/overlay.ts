@@ -13,6 +13,7 @@ import { EdgeMarkers } from "./edge_markers.ts";
 import { Cards, type CardLevel } from "./cards.ts";
 import { byId, keyName, make, placeNear } from "./dom.ts";
 import { Keys } from "./keys.ts";
+import type { Profile } from "./profile.ts";
 
 const idleAfterMs = 7000;
 const welcomeMs = 15000;
@@ -37,6 +38,8 @@ export class Overlay implements PageListener, FramePart {
   private readonly meter_ = byId("meter", HTMLElement);
   private readonly welcome_ = byId("welcome", HTMLElement);
   private readonly help_ = byId("help", HTMLDialogElement);
+  private profile_: Profile | null = null;
+  private profiles_ = false;
   private barItems_: readonly BarItem[] = [];
   private pointerAt_ = { x: 0, y: 0, touch: false };
   private idle_: number | undefined;
@@ -50,7 +53,7 @@ export class Overlay implements PageListener, FramePart {
     this.canvas_ = canvas;
     const showBar = () => this.showBar();
     page.viewer.add(new EdgeMarkers(page, byId("away", HTMLElement)));
-    page.commands.add(this.helpCommand_());
+    page.commands.add(this.helpCommand_(), this.profileCommand_());
     page.commands.onChange(() => this.takeCommands_());
     this.takeCommands_();
     window.addEventListener("keydown", (event) => this.closeMenuByKey_(event), true);
@@ -58,7 +61,7 @@ export class Overlay implements PageListener, FramePart {
       page.sound.wake();
       showBar();
     });
-    // After a click the keys go to the world again: space must not press the same button once more.
+    // After a click the keys go to the world again: space must not press the same button again.
     byId("foot", HTMLElement).addEventListener("click", (event) => {
       if (event.detail > 0 && event.target instanceof Element && event.target.closest("button") !== null) {
         canvas.focus({ preventScroll: true });
@@ -134,7 +137,7 @@ export class Overlay implements PageListener, FramePart {
     this.canvas_.classList.toggle("away", state !== "connected" && this.everConnected_);
     switch (state) {
       case "connected":
-        // A world without bodies is shown too, if late.
+        // A world without bodies is shown too, after a delay.
         if (!this.everConnected_) window.setTimeout(() => this.ready(), 3000);
         this.everConnected_ = true;
         this.cards.remove(linkCard);
@@ -144,13 +147,13 @@ export class Overlay implements PageListener, FramePart {
         this.cards.show({
           level: "warning",
           title: this.everConnected_ ? "The world is not answering" : "No world here yet",
-          text: "Trying again; the page comes back by itself.",
+          text: "Trying again; the page reconnects automatically.",
           hint: this.everConnected_ ? "If the script was stopped, start it again." : "Is the script running?",
         }, linkCard, true);
         break;
       case "refused":
         this.loading_.hidden = true;
-        this.cards.show({ level: "error", title: "The world does not let this page in", text: reason, hint: "" }, linkCard, true);
+        this.cards.show({ level: "error", title: "The world refuses this page", text: reason, hint: "" }, linkCard, true);
         break;
       case "connecting":
         break;
@@ -184,6 +187,23 @@ export class Overlay implements PageListener, FramePart {
 
   // --- inside
 
+  private profileCommand_(): Command {
+    return {
+      name: "profile",
+      help: "where the time of a frame goes",
+      keys: ["i"],
+      title: () => "Profile",
+      active: () => this.profiles_,
+      run: () => {
+        this.profiles_ = !this.profiles_;
+        void import("./profile.ts").then(({ Profile }) => {
+          this.profile_ ??= new Profile(this.page_);
+          this.refreshMeter_();
+        });
+      },
+    };
+  }
+
   private helpCommand_(): Command {
     return {
       name: "open help",
@@ -196,7 +216,7 @@ export class Overlay implements PageListener, FramePart {
     };
   }
 
-  /** Puts the buttons of all commands in their places. */
+  /** Places the buttons of all commands. */
   private takeCommands_(): void {
     const { commands } = this.page_;
     const refocus = () => this.canvas_.focus({ preventScroll: true });
@@ -226,14 +246,14 @@ export class Overlay implements PageListener, FramePart {
     this.canvas_.focus({ preventScroll: true });
   }
 
-  /** Escape closes an open menu and does nothing else. */
+  /** Escape only closes an open menu. */
   private closeMenuByKey_(event: KeyboardEvent): void {
     if (event.key !== "Escape" || this.menu_.hidden) return;
     event.stopImmediatePropagation();
     this.closeMenu_();
   }
 
-  /** Buttons of the script: those about the world always, those about a body while one is selected. */
+  /** Buttons of the script: those for the world always, those for a body while one is selected. */
   private refreshStrip_(): void {
     const shown = this.page_.commands.script.filter((action) => action.offered?.() !== false);
     this.strip_.replaceChildren(...shown.map((action) => makeActionButton(action)));
@@ -261,7 +281,7 @@ export class Overlay implements PageListener, FramePart {
     const grab = this.page_.gestures.grabs.at(-1);
     if (grab !== undefined) {
       const force = this.page_.selection.forceOf(grab);
-      // A click that only selects pulls at nothing.
+      // A click that only selects has no force.
       if (force < leastForce) return "";
       return `${force < 10 ? force.toFixed(1) : force.toFixed(0)} N`;
     }
@@ -277,5 +297,8 @@ export class Overlay implements PageListener, FramePart {
     const frame = make("b", "", timing.frameMs.toFixed(1));
     this.meter_.replaceChildren("step ", step, " ms\nframe ", frame, " ms");
     this.meter_.title = `script ${timing.scriptMs.toFixed(2)} ms a frame · step ${world.step} · ${world.time.toFixed(1)} s · gap ${world.gap.toExponential(1)} m`;
+    if (!this.profiles_ || this.profile_ === null) return;
+    this.profile_.refresh();
+    this.meter_.append(this.profile_.element);
   }
 }

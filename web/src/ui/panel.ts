@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The script's controls and plots, at the right edge; nothing is there where the script has none.
+// The script's controls and plots, at the right edge; absent if the script has none.
 
 import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
@@ -9,10 +9,10 @@ import { drawPlot } from "./plot.ts";
 
 type PanelPage = Pick<Page, "world" | "session" | "viewer">;
 
-/** A control as it is shown. */
+/** A shown control. */
 interface Shown {
   readonly element: HTMLElement;
-  /** Of the record that it was made for: what cannot change without another element. */
+  /** Those values of its record that need another element when they change. */
   readonly face: string;
   show(widget: WidgetEntity): void;
 }
@@ -23,8 +23,8 @@ interface ShownPlot {
   readonly legend: HTMLElement;
 }
 
-/** Space on a phone is for the world: there the panel opens at a touch. */
-const roomy = "(min-width: 700px)";
+/** Where the panel would cover much of the world it is folded, and opens at a touch. */
+const roomy = "(min-width: 900px)";
 
 export class Panel implements FramePart {
   private readonly page_: PanelPage;
@@ -38,7 +38,11 @@ export class Panel implements FramePart {
   constructor(page: PanelPage) {
     this.page_ = page;
     this.root_.id = "panel";
-    this.root_.open = matchMedia(roomy).matches;
+    const room = matchMedia(roomy);
+    this.root_.open = room.matches;
+    room.addEventListener("change", () => {
+      this.root_.open = room.matches;
+    });
     this.root_.hidden = true;
     this.root_.setAttribute("aria-label", "Controls of the world");
     this.root_.append(make("summary", "", "Controls"), this.list_);
@@ -140,7 +144,7 @@ function makePress(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
   } };
 }
 
-/** As few digits as tell it apart on the slider. */
+/** The least number of digits that distinguishes the slider's values. */
 export function written(value: number, span: number): string {
   const digits = span > 0 ? Math.min(Math.max(3 - Math.floor(Math.log10(span)), 0), 9) : 3;
   return String(Number(value.toFixed(digits)));
@@ -149,7 +153,7 @@ export function written(value: number, span: number): string {
 function makeSlider(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
   const input = make("input");
   input.type = "range";
-  // No <output>: that would be what the label names, in place of the slider.
+  // Not <output>, which the label would name instead of the slider.
   const value = make("span", "value");
   let shown = widget;
   const write = (now: number) => {
@@ -168,7 +172,7 @@ function makeSlider(widget: WidgetEntity, send: Send): Omit<Shown, "face"> {
     input.max = String(now.maximum);
     input.step = now.step > 0 ? String(now.step) : "any";
     input.disabled = !now.enabled;
-    // What is in the user's hand is the user's.
+    // A control that the user is changing is not updated.
     if (input.matches(":active")) return;
     input.value = String(now.value);
     write(now.value);

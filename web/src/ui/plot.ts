@@ -8,7 +8,7 @@ import { make } from "./dom.ts";
 const size = { width: 252, height: 96 };
 const edge = 4;
 
-/** Least and greatest value, a little apart where they are the same; null without samples. */
+/** Least and greatest value, slightly widened if they are equal; null without samples. */
 export function rangeOf(values: ArrayLike<number>): readonly [number, number] | null {
   let low = Infinity;
   let high = -Infinity;
@@ -36,17 +36,23 @@ export function drawPlot(canvas: HTMLCanvasElement, legend: HTMLElement, plot: P
   const context = canvas.getContext("2d");
   if (context === null) return;
   context.scale(density, density);
-  const { times, values, curves, colors, seconds } = plot;
+  drawCurves(context, plot, getComputedStyle(canvas).color);
+  legend.replaceChildren(...plot.curves.map((name, curve) => entry(name, plot.colors[curve], newest(plot, curve))));
+}
+
+/** The last value of a curve; null without samples. */
+function newest({ times, values }: PlotEntity, curve: number): number | null {
+  return times.length === 0 ? null : values[(curve + 1) * times.length - 1];
+}
+
+/** Draws the curves from the origin on, as large as on the panel. */
+function drawCurves(context: CanvasRenderingContext2D, { times, values, curves, colors, seconds }: PlotEntity, ink: string): void {
   const range = rangeOf(values);
-  if (range === null) {
-    legend.replaceChildren(...curves.map((name, curve) => entry(name, colors[curve], null)));
-    return;
-  }
+  if (range === null) return;
   const [low, high] = range;
   const end = times[times.length - 1];
   const x = (time: number) => edge + (1 - (end - time) / seconds) * (size.width - 2 * edge);
   const y = (value: number) => size.height - edge - ((value - low) / (high - low)) * (size.height - 2 * edge);
-  const ink = getComputedStyle(canvas).color;
   context.strokeStyle = context.fillStyle = ink;
   context.globalAlpha = 0.25;
   context.lineWidth = 1;
@@ -73,9 +79,54 @@ export function drawPlot(canvas: HTMLCanvasElement, legend: HTMLElement, plot: P
   context.font = "10px system-ui, sans-serif";
   context.fillText(briefly(high), edge, edge + 8);
   context.fillText(briefly(low), edge, size.height - edge);
-  legend.replaceChildren(
-    ...curves.map((name, curve) => entry(name, colors[curve], values[(curve + 1) * times.length - 1])),
-  );
+  context.globalAlpha = 1;
+}
+
+/** Space between plots and around them, and height of a line of text, css px. */
+const margin = 12;
+const line = 18;
+const paper = "rgb(250 249 247 / 88%)";
+const ink = "#22262a";
+
+/** Draws plots over a picture of a size in px, one below the other at its right edge, a third of its width at most. */
+export function drawPlots(context: CanvasRenderingContext2D, plots: readonly PlotEntity[], width: number, height: number): void {
+  if (plots.length === 0) return;
+  const tall = plots.length * (size.height + 2 * line + margin) + margin;
+  const wide = size.width + 2 * margin;
+  const scale = Math.min(width / 3 / wide, (height - 2 * margin) / tall, height / 480);
+  context.save();
+  context.translate(width - scale * (wide + margin), scale * margin);
+  context.scale(scale, scale);
+  context.fillStyle = paper;
+  context.beginPath();
+  context.roundRect(0, 0, wide, tall, 12);
+  context.fill();
+  context.translate(margin, margin);
+  for (const plot of plots) {
+    context.fillStyle = ink;
+    context.font = "600 13px system-ui, sans-serif";
+    context.fillText(plot.unit === "" ? plot.label : `${plot.label}, ${plot.unit}`, 0, 12, size.width);
+    context.translate(0, line);
+    drawCurves(context, plot, ink);
+    context.translate(0, size.height);
+    writeLegend(context, plot);
+    context.translate(0, line + margin);
+  }
+  context.restore();
+}
+
+function writeLegend(context: CanvasRenderingContext2D, plot: PlotEntity): void {
+  let x = 0;
+  context.font = "12px system-ui, sans-serif";
+  plot.curves.forEach((name, curve) => {
+    const value = newest(plot, curve);
+    const text = value === null ? name : `${name} ${briefly(value)}`;
+    context.fillStyle = css(plot.colors[curve]);
+    context.fillRect(x, 5, 9, 9);
+    context.fillStyle = ink;
+    context.fillText(text, x + 14, 14);
+    x += 26 + context.measureText(text).width;
+  });
 }
 
 function css(color: number): string {

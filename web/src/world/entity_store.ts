@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Knows which entities exist, by kind and id, and turns messages of the server into calls of views: create, change, destroy.
+// Tracks existing entities, by kind and id, and converts messages of the server to calls of views: create, change,
+// destroy.
 
 import { decodeEntities, entityKindOf, type EntitiesDestroyed, type EntitiesSet, type EntityKind, type Id } from "../protocol/generated.ts";
 
-/** A view as the store sees it. The store calls its methods only with records of the view's kind. */
+/** A view, for the store. The store calls its methods only with records of the view's kind. */
 export interface StoredView {
   create(entity: never): void;
   change(entity: never): void;
@@ -12,7 +13,7 @@ export interface StoredView {
 
 interface Stored {
   generation: number;
-  /** Number of the whole picture that it was named in or after. */
+  /** Number of the last complete description that includes it, or that preceded it. */
   picture: number;
 }
 
@@ -23,13 +24,13 @@ export class EntityStore {
   private readonly unknown_ = new Set<string>();
   private picture_ = 0;
 
-  /** `warn` is called once for each kind that this page does not know, and for what a view refuses. */
+  /** `warn` is called once for each unknown kind, and for records that a view refuses. */
   constructor(views: { readonly [K in EntityKind]: StoredView }, warn: (title: string, text: string) => void) {
     this.views_ = views;
     this.warn_ = warn;
   }
 
-  /** The server begins to describe the whole world: an entity that it does not name before `endPicture` no longer exists. */
+  /** The server starts a complete description: an entity that is not in it before `endPicture` no longer exists. */
   beginPicture(): void {
     this.picture_++;
   }
@@ -50,7 +51,7 @@ export class EntityStore {
     const kind = this.kindOf_(message.kind);
     if (kind === undefined) return;
     for (const { slot, generation } of message.ids) {
-      // Another generation is in the slot now: this one was destroyed before.
+      // The slot has another generation now: this one was destroyed before.
       if (this.stored_.get(kind)?.get(slot)?.generation === generation) this.destroy_(kind, slot);
     }
   }
@@ -65,7 +66,7 @@ export class EntityStore {
     entities.set(slot, { generation, picture: this.picture_ });
     const view = this.views_[kind];
     try {
-      // The kind says which record this is; the compiler does not follow that far.
+      // The kind determines the type of the record, which the compiler cannot infer.
       if (same) view.change(entity as never);
       else view.create(entity as never);
     } catch (error) {
@@ -82,7 +83,7 @@ export class EntityStore {
     const kind = entityKindOf(name);
     if (kind === undefined && !this.unknown_.has(name)) {
       this.unknown_.add(name);
-      this.warn_(`This page cannot show "${name}"`, "The server is newer than the page; all else is shown.");
+      this.warn_(`This page cannot show "${name}"`, "The server is newer than the page; everything else is shown.");
     }
     return kind;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The world as the server described it: settings, state, entities and poses. It knows nothing of the rest of the page.
+// The world in the server's description: settings, state, entities and poses. Independent of the rest of the page.
 
 import { Vector3 } from "three";
 import {
@@ -9,7 +9,7 @@ import { makeEntityViews, type Entities } from "../scene/entities/entity_list.ts
 import { PoseBuffer } from "../scene/pose_buffer.ts";
 import { EntityStore } from "./entity_store.ts";
 
-/** One hand on one body as the server last told. */
+/** One hand on one body, from the server's last message. */
 export interface Hold {
   client: number;
   hold: number;
@@ -20,15 +20,15 @@ export interface Hold {
   force: number;
 }
 
-/** Which part of the world changed; listeners redraw only that. */
+/** The part of the world that changed; listeners redraw only that. */
 export type Change = "settings" | "actions" | "clients" | "look";
 
-/** Told of what happens in the world. */
+/** Listens to events of the world. */
 export interface WorldListener {
   changed(what: Change): void;
-  /** A body is gone; called before its slot can be used again. */
+  /** A body was destroyed; called before its slot can be used again. */
   bodyGone(body: number): void;
-  /** Something cannot be shown: `title` says what, `text` why. */
+  /** Something cannot be shown: `title` names it, `text` the reason. */
   warn(title: string, text: string): void;
 }
 
@@ -54,9 +54,9 @@ export class World {
   readonly holds: Hold[] = [];
   holdCount = 0;
   readonly poses = new PoseBuffer();
-  /** Where the viewer is, world, m; written by the page. */
+  /** Place of the viewer, world, m; written by the page. */
   readonly eye = new Vector3();
-  /** What the script wants to be told of, beside holds and selections. */
+  /** The events that the script listens to, besides holds and selections. */
   listens: Pick<Listens, "clicks" | "hovers" | "keys"> = { clicks: false, hovers: false, keys: [] };
   readonly entities: Entities;
 
@@ -85,13 +85,13 @@ export class World {
     return this.look_;
   }
 
-  /** Draws the world in another of its looks, on this page only. */
+  /** Switches to another look, on this page only. */
   setLook(look: string): void {
     this.lookChosen_ = true;
     this.showLook_(look);
   }
 
-  /** Takes any message but poses; ignores messages that are not about the world. */
+  /** Handles all messages except poses; ignores messages that are not about the world. */
   take(message: ServerMessage): void {
     switch (message.type) {
       case "welcome":
@@ -133,7 +133,7 @@ export class World {
   /** A pose frame, which is only valid during the call; allocates nothing. `now` in ms of performance.now(). */
   takePoses(poses: PosesBuffer, now: number): void {
     if (this.joined_) {
-      // The first frame of a connection comes after the whole picture, and what was drawn before may be of another time.
+      // The first frame of a connection follows the complete description; earlier poses may be of another time.
       this.joined_ = false;
       this.store_.endPicture();
       this.poses.clear();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path of a teleport: where a thrown stone would land. Pure numbers, no three.js.
+// The path of a teleport: a ballistic curve. Pure functions, no three.js.
 
-/** Points of a path, ends included. */
+/** Number of points of a path, with both ends. */
 export const arcPoints = 33;
 
 export class Arc {
@@ -9,26 +9,28 @@ export class Arc {
   readonly points = new Float32Array(3 * arcPoints);
   /** World, m; meaningful when `valid`. */
   readonly landing = new Float32Array(3);
-  /** Whether one may go there. */
+  /** Whether the landing is allowed. */
   valid = false;
 }
 
-/** Speed of the stone, m/s: reaches about 6 m from a hand at rest. */
+/** Initial speed, m/s: reaches about 6 m from a hand at rest. */
 const speed = 7;
-const gravity = 9.81;
+const earthGravity = 9.81;
 /** Farthest landing along the ground, m. */
 export const farthestLanding = 8;
-/** An arc that never lands is drawn for so long, s. */
+/** An arc without landing is drawn for this time, s. */
 const lostAfter = 1.2;
 
 /**
- * Throws from `origin` along unit `direction` onto the plane y = `floor` and writes the path.
- * Invalid when the hand is below the floor or the landing too far away.
+ * Throws from `origin` along unit `direction` onto the plane y = `floor` and writes the path; a user's meter is `scale` of the world.
+ * Invalid if the hand is below the floor or the landing too far away.
  */
-export function throwArc(origin: ArrayLike<number>, direction: ArrayLike<number>, floor: number, arc: Arc): void {
-  const vx = speed * direction[0], vy = speed * direction[1], vz = speed * direction[2];
+export function throwArc(origin: ArrayLike<number>, direction: ArrayLike<number>, floor: number, arc: Arc, scale = 1): void {
+  const thrown = scale * speed;
+  const gravity = scale * earthGravity;
+  const vx = thrown * direction[0], vy = thrown * direction[1], vz = thrown * direction[2];
   const drop = origin[1] - floor;
-  // 1/2 g t^2 - vy t - drop = 0; the later root is the way down.
+  // 1/2 g t^2 - vy t - drop = 0; the later root is the landing.
   const root = vy * vy + 2 * gravity * drop;
   const lands = drop > 0 && root >= 0;
   const time = lands ? (vy + Math.sqrt(root)) / gravity : lostAfter;
@@ -41,5 +43,5 @@ export function throwArc(origin: ArrayLike<number>, direction: ArrayLike<number>
   arc.landing[0] = origin[0] + vx * time;
   arc.landing[1] = floor;
   arc.landing[2] = origin[2] + vz * time;
-  arc.valid = lands && Math.hypot(vx * time, vz * time) <= farthestLanding;
+  arc.valid = lands && Math.hypot(vx * time, vz * time) <= scale * farthestLanding;
 }

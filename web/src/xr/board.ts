@@ -39,13 +39,13 @@ export class Board implements Plate {
   height = 0;
   readonly density: number;
   buttons: readonly Rect[] = [];
-  /** Index of the button that is pointed at, -1: none. */
+  /** Index of the hovered button, -1: none. */
   hovered = -1;
-  /** Index of the button that was pressed just now, -1: none. */
+  /** Index of the button pressed last, -1: none. */
   flashed = -1;
-  /** Whether it should be there; it fades in and out. */
+  /** Whether it should be visible; it fades in and out. */
   shown = false;
-  /** What a press of a button does. */
+  /** Called at a press of a button. */
   press: (button: number) => void = () => {};
   paint: Painter = () => {};
 
@@ -73,7 +73,7 @@ export class Board implements Plate {
     return this.mesh.matrixWorld.elements;
   }
 
-  /** Can be pressed: there, and no longer fading. */
+  /** Whether it can be pressed: visible, and not fading. */
   get ready(): boolean {
     return this.shown && this.fade_ > 0.6;
   }
@@ -103,14 +103,14 @@ export class Board implements Plate {
     this.dirty_ = true;
   }
 
-  /** Hides it without fading: a session ends. */
+  /** Hides it without fading, at the end of a session. */
   hide(): void {
     this.shown = false;
     this.fade_ = 0;
     this.mesh.visible = false;
   }
 
-  /** Once a frame before the inputs say what they point at. */
+  /** Once a frame before the inputs are aimed. */
   begin(): void {
     this.next_ = -1;
   }
@@ -127,7 +127,7 @@ export class Board implements Plate {
     this.press(button);
   }
 
-  /** Once a frame after the inputs; paints only what changed. */
+  /** Once a frame after the inputs; paints only changes. */
   end(seconds: number): void {
     if (this.next_ !== this.hovered) {
       this.hovered = this.next_;
@@ -151,7 +151,7 @@ export class Board implements Plate {
     this.mesh.material.map.needsUpdate = true;
   }
 
-  /** Clears the picture, but leaves a trace of paper: corners filtered against transparent black would get dark rims. */
+  /** Clears the picture to nearly transparent paper: corners filtered against transparent black would get dark rims. */
   private wipe_(colors: Colors): void {
     const { context_: context } = this;
     context.clearRect(0, 0, this.canvas_.width, this.canvas_.height);
@@ -169,7 +169,7 @@ export function roundedBox(context: CanvasRenderingContext2D, rect: Rect, radius
   context.fill();
 }
 
-/** Text shortened with three dots until it is at most so wide, px. */
+/** Text shortened with three dots to at most a width, px. */
 export function fitText(context: CanvasRenderingContext2D, text: string, width: number): string {
   if (context.measureText(text).width <= width) return text;
   let end = text.length;

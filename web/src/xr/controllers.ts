@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A plain controller of our own: handle, head with stick and two buttons, trigger that moves.
+// A simple model of a controller: handle, head with stick and two buttons, trigger that moves.
 
 import {
   CapsuleGeometry, CylinderGeometry, Group, Mesh, MeshStandardMaterial, SphereGeometry, Vector3, type BufferGeometry, type Material,
@@ -11,7 +11,7 @@ import type { FaceButton, Input } from "./input.ts";
 const shell = new MeshStandardMaterial({ color: "#3b4046", roughness: 0.55 });
 const face = new MeshStandardMaterial({ color: "#23262a", roughness: 0.7 });
 const knob = new MeshStandardMaterial({ color: "#d9d4ca", roughness: 0.5 });
-/** Buttons that do something in this world carry its color. */
+/** Buttons with an action in this world have this color. */
 const joins = new MeshStandardMaterial({ color: palette.calm, roughness: 0.45, emissive: palette.calm, emissiveIntensity: 0.25 });
 const breaks = new MeshStandardMaterial({ color: palette.aboutToBreak, roughness: 0.45, emissive: palette.aboutToBreak, emissiveIntensity: 0.25 });
 
@@ -65,7 +65,7 @@ export class ControllerView {
     part(this.root, new SphereGeometry(0.0125, 20, 14), shell, 0, -0.009, 0.013);
   }
 
-  /** Colors the face buttons by whether an action of the script is on them. */
+  /** Colors the face buttons that have an action of the script. */
   mark(onA: boolean, onB: boolean): void {
     this.buttons_.a.material = onA ? joins : knob;
     this.buttons_.b.material = onB ? breaks : knob;

@@ -12,19 +12,19 @@ export interface IotaXR {
   readonly presenting: boolean;
   enter(): Promise<void>;
   leave(): Promise<void>;
-  /** Where the user's space lies in the world: m and rad about y. */
-  rig(): { position: [number, number, number]; yaw: number };
+  /** Where the user's space lies in the world: m, rad about y, and meters of the world in one of the user's. */
+  rig(): { position: [number, number, number]; yaw: number; scale: number };
   /** World, m. */
   head(): [number, number, number];
-  /** What each hand does; bodies are -1 for none. */
+  /** State of each hand; bodies are -1 for none. */
   inputs(): { name: string; hand: boolean; hovered: number; held: number; near: boolean; panelButton: string }[];
   /** Names of the wrist panel's buttons. */
   panelButtons(): string[];
   /** Middle of a button in the reference space, m, and the direction it faces; null while the panel is hidden. */
   panelButton(name: string): { at: [number, number, number]; facing: [number, number, number] } | null;
-  /** Titles of the cards that are shown. */
+  /** Titles of the shown cards. */
   cards(): string[];
-  /** Where a teleport would go, world, m; null: nowhere. */
+  /** Target of a teleport, world, m; null: none. */
   landing(): [number, number, number] | null;
   /** A point of the world in the reference space, m. */
   toSpace(point: readonly number[]): [number, number, number];
@@ -38,7 +38,7 @@ declare global {
 }
 
 export function makeXrDebug({ viewer }: Pick<Page, "viewer">, headset: Headset, device: XRDevice | null): IotaXR {
-  const { rig } = viewer;
+  const { rig, room } = viewer;
   const { panel, locomotion } = headset;
   return {
     device,
@@ -46,7 +46,7 @@ export function makeXrDebug({ viewer }: Pick<Page, "viewer">, headset: Headset, 
     get presenting() { return headset.presenting; },
     enter: () => headset.enter(),
     leave: () => headset.leave(),
-    rig: () => ({ position: rig.position.toArray(), yaw: rig.rotation.y }),
+    rig: () => ({ position: rig.position.toArray(), yaw: rig.rotation.y, scale: room.scale.x }),
     head: () => headset.head.toArray(),
     inputs: () => headset.inputs.map((input) => ({
       name: input.pointer.name,
@@ -70,7 +70,7 @@ export function makeXrDebug({ viewer }: Pick<Page, "viewer">, headset: Headset, 
     landing: () => (locomotion.aiming !== null && locomotion.arc.valid ? [locomotion.arc.landing[0], locomotion.arc.landing[1], locomotion.arc.landing[2]] : null),
     toSpace: (point) => {
       rig.updateMatrixWorld();
-      return rig.worldToLocal(new Vector3(point[0], point[1], point[2])).toArray();
+      return room.worldToLocal(new Vector3(point[0], point[1], point[2])).toArray();
     },
   };
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The emulated headset in the hands of a person with a mouse. Only while it presents; README.md lists
-// the keys. Positions are in the device's own space: the floor at 0, m.
+// Controls an emulated headset by mouse and keys. Only while it presents; README.md lists the keys. Positions are in
+// the device's own space: the floor at 0, m.
 
 import { Euler, Quaternion, Vector3 } from "three";
 import type { XRDevice } from "iwer";
@@ -13,9 +13,9 @@ type Side = "left" | "right";
 
 const walkSpeed = 1.2;
 const handAt = { left: new Vector3(-0.2, -0.26, -0.4), right: new Vector3(0.2, -0.24, -0.4) } as const;
-/** Distance at which the ray of a hand meets the line of sight under the mouse where there is no body or panel, m. */
+/** Distance at which the ray of a hand meets the line of sight under the mouse if there is no body or panel, m. */
 const meetsAt = 1.6;
-/** A mouse is about so exact, as a tangent. */
+/** Precision of a mouse, as a tangent. */
 const tolerance = 0.012;
 const forward = new Vector3(0, 0, -1);
 const upward = new Vector3(0, 1, 0);
@@ -29,7 +29,7 @@ const stickKeys: Record<string, readonly [number, number]> = {
 type DeskPage = Pick<Page, "viewer" | "world" | "commands">;
 
 export class DeskControls implements FramePart {
-  /** Panels that the mouse may point at; set once they exist. */
+  /** Panels for the mouse; set once they exist. */
   plates: readonly (Plate & { readonly ready: boolean })[] = [];
 
   private readonly page_: DeskPage;
@@ -39,7 +39,7 @@ export class DeskControls implements FramePart {
   private side_: Side = "right";
   private pressed_ = false;
   private distance_ = meetsAt;
-  /** Of the head, as the device has it. */
+  /** Pose of the head in the device. */
   private readonly turn_ = new Quaternion();
   private readonly angles_ = new Euler(0, 0, 0, "YXZ");
   private readonly ray_ = new Vector3();
@@ -55,7 +55,7 @@ export class DeskControls implements FramePart {
   constructor(page: DeskPage, canvas: HTMLCanvasElement, device: XRDevice) {
     this.page_ = page;
     this.device_ = device;
-    // Before the page's own listeners: while the headset is on, the mouse is a hand.
+    // Before the page's own listeners, since the mouse is a hand in a session.
     const take = (type: string, act: (event: Event) => void) => window.addEventListener(type, (event) => {
       if (this.on_ && (event.target === canvas || event instanceof KeyboardEvent)) act(event);
     }, { capture: true, passive: false });
@@ -92,7 +92,7 @@ export class DeskControls implements FramePart {
   private move_(event: PointerEvent): void {
     event.stopImmediatePropagation();
     const { mouse_ } = this;
-    // A browser tells of moves when things move under a mouse that rests.
+    // Browsers send move events for a resting mouse when elements move under it.
     if (mouse_.known && event.clientX === mouse_.x && event.clientY === mouse_.y) return;
     const dx = event.clientX - mouse_.x;
     const dy = event.clientY - mouse_.y;
@@ -133,7 +133,7 @@ export class DeskControls implements FramePart {
   private key_(event: KeyboardEvent, down: boolean): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const { key } = event;
-    // Keys of the script win over ours, as on the page.
+    // Keys of the script have priority, as on the page.
     if (this.page_.commands.script.some((command) => command.keys?.includes(key)) || !this.own_(key, down, event.repeat)) return;
     event.preventDefault();
     event.stopImmediatePropagation();
@@ -179,14 +179,14 @@ export class DeskControls implements FramePart {
     }
   }
 
-  /** Hands go with the head. */
+  /** Hands move with the head. */
   private moveHands_(): void {
     this.placeHand_("left", this.turn_);
     this.placeHand_("right", this.turn_);
     this.aimHand_();
   }
 
-  /** Points the hand at what the mouse is over, in whichever eye's picture that is. */
+  /** Points the hand at the target under the mouse, in either eye's picture. */
   private aimHand_(): void {
     const { stereoEnabled, fovy, ipd } = this.device_;
     this.readHead_();
@@ -204,15 +204,16 @@ export class DeskControls implements FramePart {
     this.placeHand_(this.side_, this.aim_.setFromUnitVectors(forward, this.ray_));
   }
 
-  /** How far away the thing is that an eye sees along the ray, m. */
+  /** Distance of the target along an eye's ray, m. */
   private look_(eye: number): number {
     const camera = this.page_.viewer.renderer.xr.getCamera().cameras.at(eye);
     if (camera === undefined) return meetsAt;
+    const scale = this.page_.viewer.room.scale.x;
     this.sight_.setFromMatrixPosition(camera.matrixWorld).toArray(this.origin_);
     this.sight_.copy(this.ray_).transformDirection(camera.matrixWorld).toArray(this.direction_);
     for (const plate of this.plates) {
-      if (plate.ready && rayOnPlate(plate, this.origin_, this.direction_, this.spot_)) return this.spot_.distance;
+      if (plate.ready && rayOnPlate(plate, this.origin_, this.direction_, this.spot_)) return this.spot_.distance / scale;
     }
-    return pickRay(this.page_.world.entities.body, this.origin_, this.direction_, tolerance, 50, this.hit_) ? this.hit_.distance : meetsAt;
+    return pickRay(this.page_.world.entities.body, this.origin_, this.direction_, tolerance, 50 * scale, this.hit_) ? this.hit_.distance / scale : meetsAt;
   }
 }

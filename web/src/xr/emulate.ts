@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ?emulate=quest3: a headset made of software (IWER), for tests and for people without one.
+// ?emulate=quest3: an emulated headset (IWER), for tests and for users without one.
 
 import { metaQuest3, XRDevice } from "iwer";
 import type { Page } from "../page/page.ts";
@@ -7,7 +7,7 @@ import type { Viewer } from "../page/viewer.ts";
 import { DeskControls } from "./desk_controls.ts";
 
 const eyeHeight = 1.6;
-/** rad. Narrower than in a headset: on a flat picture the edges of a wide view look stretched. */
+/** rad. Narrower than in a headset, as the edges of a wide view look stretched on a flat screen. */
 const fovy = 1.35;
 
 export interface Emulation {
@@ -15,12 +15,12 @@ export interface Emulation {
   readonly desk: DeskControls;
 }
 
-/** Installs the emulated headset as navigator.xr. Throws on a model it does not know. */
+/** Installs the emulated headset as navigator.xr. Throws for an unknown model. */
 export function emulate(page: Pick<Page, "viewer" | "world" | "commands">, canvas: HTMLCanvasElement, model: string): Emulation {
-  if (model !== "quest3") throw new Error(`?emulate= knows quest3, not ${model}`);
+  if (model !== "quest3") throw new Error(`?emulate= supports quest3, not ${model}`);
   shadowClears(page.viewer.renderer.getContext() as WebGL2RenderingContext);
   const device = new XRDevice(metaQuest3, { stereoEnabled: true, fovy });
-  // Browsers have a navigator.xr of their own even where no headset is.
+  // Browsers have their own navigator.xr even without a headset.
   device.installRuntime({ forceInstall: true });
   device.position.set(0, eyeHeight, 0);
   restHands(device);
@@ -30,7 +30,7 @@ export function emulate(page: Pick<Page, "viewer" | "world" | "commands">, canva
   return { device, desk };
 }
 
-/** Hands where a standing person holds them. */
+/** Hands at their places for a standing user. */
 function restHands(device: XRDevice): void {
   for (const [side, x] of [["left", -0.2], ["right", 0.2]] as const) {
     device.controllers[side]?.position.set(x, eyeHeight - 0.28, -0.38);
@@ -39,9 +39,9 @@ function restHands(device: XRDevice): void {
 }
 
 /**
- * The emulator asks for the clear values each frame, which makes a software renderer wait for all that
- * is drawn (46 ms a frame, measured). They are remembered here and answered from memory, as copies: it
- * keeps the answer while it sets others.
+ * The emulator reads the clear values each frame, for which a software renderer waits until all drawing is finished (46
+ * ms a frame, measured). They are cached here and returned as copies, as the emulator keeps the result while it sets
+ * other values.
  */
 function shadowClears(gl: WebGL2RenderingContext): void {
   const color = Float32Array.from(gl.getParameter(gl.COLOR_CLEAR_VALUE) as Float32Array);
@@ -77,7 +77,7 @@ function shadowClears(gl: WebGL2RenderingContext): void {
 function keepCanvasPlace(viewer: Viewer, canvas: HTMLCanvasElement): void {
   const { parentElement: parent, nextSibling: next } = canvas;
   viewer.renderer.xr.addEventListener("sessionend", () => {
-    // After the emulator's own handler, whichever comes first.
+    // After the emulator's own handler, in any order of registration.
     setTimeout(() => {
       parent?.insertBefore(canvas, next);
       window.dispatchEvent(new Event("resize"));

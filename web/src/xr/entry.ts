@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Offers to enter VR where a headset is, or an emulated one was asked for. Everything else of this
-// folder is fetched only then, so that a page without a headset stays small.
+// Adds the command to enter VR if there is a headset, or an emulated one was requested. The rest of this folder is
+// loaded only then, so that a page without a headset stays small.
 
 import type { Page } from "../page/page.ts";
 import type { Headset } from "./headset.ts";
 
-/** Adds the command when immersive VR is possible. Never rejects. */
+/** Adds the command if immersive VR is possible. Never rejects. */
 export async function offerHeadset(page: Page, canvas: HTMLCanvasElement): Promise<void> {
   try {
     const wanted = new URLSearchParams(location.search).get("emulate");
@@ -24,9 +24,18 @@ export async function offerHeadset(page: Page, canvas: HTMLCanvasElement): Promi
         places: ["bar"],
         title: () => "Enter VR",
         label: () => "VR",
-        run: () => void found.enter().catch((error: unknown) => say(page, "The headset did not let this page in", error)),
+        run: () => void found.enter().catch((error: unknown) => say(page, "The headset refused this page", error)),
       });
       if (emulation !== null) emulation.desk.plates = found.boards;
+      if (await system.isSessionSupported("immersive-ar").catch(() => false)) {
+        page.commands.add({
+          name: "enter ar",
+          places: ["bar"],
+          title: () => "Enter, and see your surroundings behind the world",
+          label: () => "AR",
+          run: () => void found.enter("immersive-ar").catch((error: unknown) => say(page, "The headset did not let this page in", error)),
+        });
+      }
       window.iotaXR = (await import("./debug.ts")).makeXrDebug(page, found, emulation?.device ?? null);
     };
     system.addEventListener?.("devicechange", () => void look());

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tracked hand as a soft glove: a ball at each joint and a rod along each bone, as the headset
-// measures them. Thumb and index finger show a pinch.
+// Draws a tracked hand: a ball at each measured joint and a rod along each bone. Thumb and index finger show a pinch.
 
 import {
   Color, CylinderGeometry, DynamicDrawUsage, Group, InstancedMesh, Matrix4, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
@@ -9,7 +8,7 @@ import { palette } from "../scene/materials.ts";
 import { indexTip, jointNames, thumbTip, wrist } from "./hand_joints.ts";
 import type { Input } from "./input.ts";
 
-/** Joint numbers at both ends of a rod: along the fingers, then across the palm to close it. */
+/** Joint numbers at both ends of a rod: along the fingers, then across the palm. */
 function makeBones(): [number, number][] {
   const bones: [number, number][] = [[wrist, 1], [1, 2], [2, 3], [3, 4]];
   for (const first of [5, 10, 15, 20]) {
@@ -75,7 +74,7 @@ export class HandView {
     this.tint_(input.pointer.grab !== null ? 2 : input.selecting ? 1 : 0);
   }
 
-  /** Fingertips: 0 open, 1 pinched, 2 holding something. */
+  /** Color of fingertips: 0 open, 1 pinched, 2 holding a body. */
   private tint_(state: number): void {
     if (state === this.pinched_) return;
     this.pinched_ = state;

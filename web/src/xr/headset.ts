@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A session in a headset: enters and leaves, places the user, and each frame hands the state of hands
-// and controllers to pointers, panels and locomotion.
+// A session in a headset: enters and leaves, places the user, and each frame passes the state of hands and controllers
+// to pointers, panels and locomotion.
 
-import { Matrix4, Vector3 } from "three";
+import { Matrix4, Vector3, type Camera } from "three";
 import type { LinkState } from "../net/connection.ts";
 import type { PageListener, PageNotice } from "../page/events.ts";
 import type { Page } from "../page/page.ts";
@@ -14,11 +14,13 @@ import { ControllerView } from "./controllers.ts";
 import { HandView } from "./hands.ts";
 import { headsetCommands } from "./headset_commands.ts";
 import { Input, type FaceButton } from "./input.ts";
-import { Locomotion, snapDegrees } from "./locomotion.ts";
+import { Locomotion, turns } from "./locomotion.ts";
 import { Notices } from "./notices.ts";
 import { buttonAt, pointOnPlate, rayOnPlate, Spot } from "./plate.ts";
 import { RayView } from "./rays.ts";
-import { standBefore } from "./standing.ts";
+import { fitScale, standBefore, tableScale } from "./standing.ts";
+import { Vignette } from "./vignette.ts";
+import { WayHome } from "./way_home.ts";
 import { WristPanel } from "./wrist_panel.ts";
 
 interface View {
@@ -30,12 +32,18 @@ const linkCard = "link";
 const helpCard = "help";
 const faceButtons: readonly FaceButton[] = ["a", "b"];
 const fingerSlack = 7;
+/** How near and far a headset sees, m of the user's; farther where the scene is. */
+const nearest = 0.03;
+const farthest = 60;
+/** Height of a standing person's eyes, m. */
+const standingEyes = 1.6;
 
 export class Headset implements PageListener, FramePart {
   readonly inputs: Input[] = [];
   readonly panel: WristPanel;
   readonly notices: Notices;
   readonly locomotion: Locomotion;
+  readonly vignette = new Vignette();
   /** All panels that can be pressed. */
   readonly boards: readonly Board[];
   /** Head in the world, m. */
@@ -44,25 +52,41 @@ export class Headset implements PageListener, FramePart {
   private readonly page_: Page;
   private session_: XRSession | null = null;
   private space_: XRReferenceSpace | null = null;
+  private readonly wayHome_ = new WayHome();
   private toPlace_ = false;
   private pressedBy_: Input | null = null;
   private everConnected_ = false;
   private helped_ = false;
-  /** By pointer name; kept, since hands and controllers come and go. */
+  /** By pointer name; kept, since hands and controllers may disappear and return. */
   private readonly views_ = new Map<string, View>();
   private readonly headLocal_ = new Matrix4();
   private readonly eye_ = new Vector3();
+  private readonly goal_ = new Vector3();
   private readonly spot_ = new Spot();
 
   constructor(page: Page) {
     this.page_ = page;
-    this.locomotion = new Locomotion(page.viewer.rig);
-    this.notices = new Notices(page.viewer.rig);
+    this.locomotion = new Locomotion(page.viewer.rig, page.viewer.room);
+    const { locomotion } = this;
+    this.notices = new Notices(page.viewer.room);
+    page.viewer.room.add(this.vignette.mesh, this.wayHome_.mesh);
     page.commands.add(...headsetCommands({
       turn: (direction) => {
-        this.locomotion.turn(direction * snapDegrees, this.head);
+        locomotion.turn(direction * (locomotion.turnBy || turns[0]), this.head);
         this.moved_();
       },
+      turnBy: () => locomotion.turnBy,
+      nextTurn: () => {
+        locomotion.turnBy = turns[(turns.indexOf(locomotion.turnBy) + 1) % turns.length];
+      },
+      seated: () => locomotion.lift !== 0,
+      sit: () => this.sit_(),
+      isRealSize: () => page.viewer.room.scale.x === 1,
+      changeSize: () => {
+        const { room, size } = page.viewer;
+        this.place_(room.scale.x === 1 ? tableScale(size) : 1);
+      },
+      home: () => this.place_(fitScale(page.viewer.size)),
       aimTeleport: () => {
         if (this.pressedBy_ !== null) this.locomotion.arm(this.pressedBy_);
       },
@@ -83,12 +107,15 @@ export class Headset implements PageListener, FramePart {
     return this.page_.viewer.presenting;
   }
 
-  /** Asks for a session; to be called from a gesture of the user. Rejects when the headset refuses. */
-  async enter(): Promise<void> {
+  /**
+   * Asks for a session, in which the user's surroundings are seen behind the world with "immersive-ar"; to be called from a gesture of the
+   * user. Rejects when the headset refuses.
+   */
+  async enter(mode: "immersive-vr" | "immersive-ar" = "immersive-vr"): Promise<void> {
     if (this.session_ !== null) return;
     const system = navigator.xr;
     if (system === undefined) throw new Error("this browser has no WebXR");
-    const session = await system.requestSession("immersive-vr", {
+    const session = await system.requestSession(mode, {
       requiredFeatures: ["local-floor"], optionalFeatures: ["hand-tracking"],
     });
     this.session_ = session;
@@ -112,6 +139,7 @@ export class Headset implements PageListener, FramePart {
       this.toPlace_ = true;
     });
     this.toPlace_ = true;
+    this.page_.viewer.stage.passthrough = mode === "immersive-ar";
     this.page_.gestures.releaseAll();
     this.page_.sound.wake();
     for (const source of session.inputSources) this.add_(source);
@@ -127,13 +155,19 @@ export class Headset implements PageListener, FramePart {
 
   aim(seconds: number, frame: XRFrame | null): void {
     if (frame === null || this.space_ === null || !this.presenting) return;
-    this.readHead_();
-    if (this.toPlace_) this.place_();
+    const { viewer } = this.page_;
+    const isNew = frame.getViewerPose(this.space_) !== null;
+    if (isNew) this.readHead_();
+    if (this.toPlace_) this.place_(fitScale(viewer.size));
     for (const input of this.inputs) {
       input.read(frame, this.space_);
-      input.lift(this.page_.viewer.rig.matrixWorld);
+      input.lift(viewer.room.matrixWorld, viewer.room.scale.x);
     }
-    if (this.locomotion.steer(this.inputs, this.head, seconds)) this.moved_();
+    if (this.locomotion.steer(this.inputs, this.head, viewer.size, seconds)) this.moved_();
+    // Eyes that were not tracked anew have their scale.
+    if (isNew) this.scaleEyes_();
+    this.vignette.update(this.headLocal_, this.locomotion.gliding, seconds);
+    this.showWayHome_(seconds);
     this.panel.update(this.wearer_(), this.headLocal_, seconds);
     this.notices.update(this.headLocal_, seconds);
     for (const board of this.boards) board.begin();
@@ -144,12 +178,12 @@ export class Headset implements PageListener, FramePart {
 
   draw(seconds: number, frame: XRFrame | null): void {
     if (frame === null || !this.presenting) return;
-    this.locomotion.draw(this.floor_());
+    this.locomotion.draw(this.floor_(), this.headYaw_());
     for (const input of this.inputs) {
       const view = this.views_.get(input.pointer.name);
       if (view === undefined) continue;
       view.ray.root.visible = true;
-      view.ray.update(input, this.eye_, this.locomotion.aiming !== input, seconds);
+      view.ray.update(input, this.eye_, this.locomotion.aiming !== input, this.page_.viewer.room.scale.x, seconds);
       if (view.body !== null) {
         view.body.root.visible = input.tracked;
         if (input.tracked) view.body.update(input);
@@ -180,14 +214,14 @@ export class Headset implements PageListener, FramePart {
       this.notices.remove(linkCard);
     } else if (state === "lost") {
       this.notices.show(1, this.everConnected_ ? "The world is not answering" : "No world here yet",
-        "Trying again; it comes back by itself.", "If the script was stopped, start it again.", linkCard, true);
+        "Trying again; it reconnects automatically.", "If the script was stopped, start it again.", linkCard, true);
     } else if (state === "refused") {
-      this.notices.show(2, "The world does not let this page in", reason, "", linkCard, true);
+      this.notices.show(2, "The world refuses this page", reason, "", linkCard, true);
     }
   }
 
   pressNothing(pointer: Pointer): void {
-    // A bare hand pinches by chance now and then: only a trigger clears the selection.
+    // A bare hand pinches by accident: only a trigger clears the selection.
     const input = this.inputs.find((each) => each.pointer === pointer);
     if (input !== undefined && !input.isHand) this.page_.selection.select(-1);
   }
@@ -222,7 +256,7 @@ export class Headset implements PageListener, FramePart {
     const ray = new RayView();
     this.page_.viewer.scene.add(ray.root);
     const body = !input.hasBody ? null : input.isHand ? new HandView() : new ControllerView(input.source.handedness);
-    if (body !== null) this.page_.viewer.rig.add(body.root);
+    if (body !== null) this.page_.viewer.room.add(body.root);
     return { ray, body };
   }
 
@@ -241,19 +275,22 @@ export class Headset implements PageListener, FramePart {
     this.panel.board.hide();
     this.notices.clear();
     this.helped_ = false;
-    const { rig } = this.page_.viewer;
+    const { rig, room } = this.page_.viewer;
     rig.position.set(0, 0, 0);
     rig.rotation.set(0, 0, 0);
+    room.scale.setScalar(1);
+    this.page_.viewer.stage.passthrough = false;
+    this.vignette.mesh.visible = this.wayHome_.mesh.visible = false;
     rig.updateMatrixWorld();
     this.page_.viewer.invalidate();
   }
 
-  /** Explains once a session how to take hold, with hands or with controllers. */
+  /** Explains once a session how to grab, with hands or with controllers. */
   private greet_(hands: boolean): void {
     if (this.helped_) return;
     this.helped_ = true;
-    this.notices.show(0, hands ? "Pinch to take hold" : "Pull the trigger to take hold",
-      hands ? "Close to a part, or from afar along the ray. All else is on the panel at your left hand." : "Close to a part, or from afar along the ray. A stick to the side turns you, forward takes you elsewhere. All else is on the panel at your left hand.",
+    this.notices.show(0, hands ? "Pinch to grab" : "Pull the trigger to grab",
+      hands ? "A near body, or a far one along the ray. Everything else is on the panel at your left hand." : "A near body, or a far one along the ray. A stick to the side turns you, forward teleports. Everything else is on the panel at your left hand.",
       "", helpCard);
   }
 
@@ -261,7 +298,7 @@ export class Headset implements PageListener, FramePart {
 
   /** The middle between the eyes, with the left eye's direction, in the reference space; and in the world. */
   private readHead_(): void {
-    const { rig, renderer } = this.page_.viewer;
+    const { room, renderer } = this.page_.viewer;
     const camera = renderer.xr.getCamera();
     this.headLocal_.copy(camera.matrix);
     const eyes = camera.cameras;
@@ -269,31 +306,72 @@ export class Headset implements PageListener, FramePart {
       const e = this.headLocal_.elements;
       for (let axis = 12; axis < 15; axis++) e[axis] = (eyes[0].matrix.elements[axis] + eyes[1].matrix.elements[axis]) / 2;
     }
-    this.head.setFromMatrixPosition(this.headLocal_).applyMatrix4(rig.matrixWorld);
+    this.head.setFromMatrixPosition(this.headLocal_).applyMatrix4(room.matrixWorld);
     this.eye_.copy(this.head);
   }
 
-  private place_(): void {
+  /**
+   * A headset tells its eyes in the user's meters. Their places and depths are turned into those of the world here, so that all that is
+   * drawn at a size, lit and fogged need not know of the scale. Once for each pose: three.js keeps the matrices until the next one.
+   */
+  private scaleEyes_(): void {
+    const { renderer, room: { scale: { x: scale } }, camera, size, stage } = this.page_.viewer;
+    camera.near = nearest;
+    camera.far = Math.max(farthest, (this.head.distanceTo(stage.middle) + 40 * size) / scale);
+    stage.followHead(this.head);
+    const eyes = renderer.xr.getCamera();
+    for (const eye of [eyes, ...eyes.cameras] as Camera[]) {
+      const { elements } = eye.matrix;
+      for (let axis = 12; axis < 15; axis++) elements[axis] *= scale;
+      if (eye !== eyes) eye.projectionMatrix.elements[14] *= scale;
+      eye.projectionMatrixInverse.copy(eye.projectionMatrix).invert();
+    }
+  }
+
+  /** Rad about the vertical, in the world. */
+  private headYaw_(): number {
+    const { elements } = this.headLocal_;
+    return this.page_.viewer.rig.rotation.y + Math.atan2(elements[8], elements[10]);
+  }
+
+  private showWayHome_(seconds: number): void {
+    const { room, stage, size } = this.page_.viewer;
+    this.wayHome_.update(this.headLocal_, room.worldToLocal(this.goal_.copy(stage.middle)), size / room.scale.x, seconds);
+  }
+
+  /** Who sits sees from the height of who stands; or back. */
+  private sit_(): void {
+    const { rig, room } = this.page_.viewer;
+    const { locomotion } = this;
+    const before = locomotion.lift;
+    locomotion.lift = before === 0 ? standingEyes - this.headLocal_.elements[13] : 0;
+    rig.position.y += room.scale.x * (locomotion.lift - before);
+    this.moved_();
+  }
+
+  private place_(scale: number): void {
     this.toPlace_ = false;
-    const { world, navigation, viewer: { rig } } = this.page_;
+    const { world, navigation, viewer: { rig, room } } = this.page_;
+    room.scale.setScalar(scale);
     const { pivot, distance, yaw, pitch } = navigation.home;
     const flat = distance * Math.cos(pitch);
     const eye = [pivot[0] + flat * Math.sin(yaw), pivot[1] + distance * Math.sin(pitch), pivot[2] + flat * Math.cos(yaw)] as const;
-    standBefore({ eye: [...eye], target: [...pivot], ground: world.ground }, this.headLocal_.elements, rig);
-    rig.updateMatrixWorld();
+    standBefore({ scale, eye: [...eye], target: [...pivot], ground: world.ground }, this.headLocal_.elements, rig);
+    rig.position.y += scale * this.locomotion.lift;
     this.panel.snap();
-    this.readHead_();
+    this.moved_();
   }
 
-  /** After the rig jumped: everything that hangs on it is worked out again within the frame. */
+  /** After a jump of the rig: updates everything that depends on it within the frame. */
   private moved_(): void {
-    const { rig } = this.page_.viewer;
-    this.head.setFromMatrixPosition(this.headLocal_).applyMatrix4(rig.matrixWorld);
+    const { rig, room } = this.page_.viewer;
+    rig.updateMatrixWorld();
+    this.head.setFromMatrixPosition(this.headLocal_).applyMatrix4(room.matrixWorld);
     this.eye_.copy(this.head);
-    for (const input of this.inputs) input.lift(rig.matrixWorld);
+    for (const input of this.inputs) input.lift(room.matrixWorld, room.scale.x);
   }
 
-  /** The hand that wears the panel. A user with one hand needs it to press the panel, so the panel floats. */
+  /** The hand that carries the panel. With one hand only, the panel floats, as that hand presses it. */
   private wearer_(): Input | null {
     if (this.inputs.length < 2) return null;
     for (const input of this.inputs) if (input.hasBody && input.source.handedness === "left") return input;
@@ -304,7 +382,7 @@ export class Headset implements PageListener, FramePart {
     return this.page_.world.ground ?? this.page_.viewer.rig.position.y;
   }
 
-  /** Finds the panel that a hand points at or touches; presses it when a fingertip goes through. */
+  /** Finds the panel that a hand points at or touches; presses it when a fingertip passes through. */
   private aim_(input: Input): void {
     input.clearPanel();
     if (input.pointer.grab === null && input.tracked) {
@@ -348,7 +426,7 @@ export class Headset implements PageListener, FramePart {
     input.board.push(input.button);
   }
 
-  /** Face buttons run the script's actions on what that hand holds or points at, else on what is selected. */
+  /** Face buttons run the script's actions on the body that this hand holds or points at, else on the selected one. */
   private actByButtons_(): void {
     for (const input of this.inputs) {
       for (const button of faceButtons) {
@@ -371,11 +449,11 @@ export class Headset implements PageListener, FramePart {
     for (const view of this.views_.values()) if (view.body instanceof ControllerView) view.body.mark(onA, onB);
   }
 
-  // --- presses; only starts and ends count: an emulated headset tells `select` too early
+  // --- presses; only starts and ends count: an emulated headset sends `select` too early
 
-  /** `select`: trigger or pinch; else the grip button, which takes hold of things but presses no panel. */
+  /** `select`: trigger or pinch; else the grip button, which grabs bodies but does not press panels. */
   private press_(event: XRInputSourceEvent, select: boolean): void {
-    // An input may appear at the very moment of its press.
+    // An input may appear at the moment of its press.
     this.add_(event.inputSource);
     const input = this.inputs.find((each) => each.source === event.inputSource);
     if (input === undefined || this.space_ === null) return;
@@ -383,7 +461,7 @@ export class Headset implements PageListener, FramePart {
     if (select) input.selecting = true;
     else input.squeezing = true;
     if (input.board !== null) {
-      // A bare hand whose fingertip is at the panel presses with that.
+      // A bare hand with its fingertip at the panel presses with that.
       if (select && !(input.touching && input.isHand)) this.push_(input);
       return;
     }
@@ -407,7 +485,7 @@ export class Headset implements PageListener, FramePart {
   private aimNow_(input: Input, frame: XRFrame): void {
     if (this.space_ === null) return;
     input.read(frame, this.space_);
-    input.lift(this.page_.viewer.rig.matrixWorld);
+    input.lift(this.page_.viewer.room.matrixWorld, this.page_.viewer.room.scale.x);
     this.aim_(input);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user can ask for in a headset only: getting about, and leaving.
+// Commands for the headset only: moving, and leaving.
 
 import type { Entry } from "../commands/command.ts";
 
@@ -14,6 +14,16 @@ export interface HeadsetActs {
   /** Aims a teleport with the hand that pressed. */
   aimTeleport(): void;
   teleportArmed(): boolean;
+  /** Degrees of a turn by the stick; 0: smooth. */
+  turnBy(): number;
+  nextTurn(): void;
+  seated(): boolean;
+  sit(): void;
+  /** A meter of the world is one of the user's. */
+  isRealSize(): boolean;
+  /** To that, or from it to the size of a table. */
+  changeSize(): void;
+  home(): void;
   leave(): void;
 }
 
@@ -22,6 +32,12 @@ export function headsetCommands(acts: HeadsetActs): Entry[] {
     { name: "turn left", places: ["panel foot"], title: () => "Turn left", sign: () => signs.left, run: () => acts.turn(1) },
     { name: "turn right", places: ["panel foot"], title: () => "Turn right", sign: () => signs.right, run: () => acts.turn(-1) },
     { name: "go", places: ["panel foot"], title: () => "Go to ...", active: () => acts.teleportArmed(), run: () => acts.aimTeleport() },
-    { name: "leave", places: ["panel foot"], title: () => "Leave VR", run: () => acts.leave() },
+    { name: "home in vr", places: ["panel foot"], title: () => "Home", run: () => acts.home() },
+    {
+      name: "turn by", places: ["panel foot"], title: () => (acts.turnBy() === 0 ? "Smooth" : `${acts.turnBy()}°`), run: () => acts.nextTurn(),
+    },
+    { name: "seated", places: ["panel foot"], title: () => "Seated", active: () => acts.seated(), run: () => acts.sit() },
+    { name: "size", places: ["panel foot"], title: () => "1 : 1", active: () => acts.isRealSize(), run: () => acts.changeSize() },
+    { name: "leave", places: ["panel foot"], title: () => "Leave", run: () => acts.leave() },
   ];
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One hand of the user, with a controller or bare: where it is, what it presses, and its pointer.
+// One hand of the user, with a controller or bare: its pose, its buttons, and its pointer.
 
 import { Matrix4, Vector3 } from "three";
 import { Pointer } from "../interact/gestures.ts";
@@ -10,9 +10,9 @@ import { Poke, Spot } from "./plate.ts";
 /** A near grab wins within this distance of a controller's tip and of a pinch, m. */
 const controllerReach = 0.1;
 const handReach = 0.06;
-/** A hand trembles by about half a degree. */
+/** Tremor of a hand: about half a degree. */
 const tremble = 0.011;
-/** The tip lies this far before the origin of a controller's ray, m. */
+/** Distance of the tip in front of the origin of a controller's ray, m. */
 const tipAhead = 0.03;
 /** Indices of the "xr-standard" mapping. */
 const stickAxes = 2;
@@ -23,7 +23,7 @@ export type FaceButton = keyof typeof faceButtons;
 export class Input {
   readonly source: XRInputSource;
   readonly pointer: Pointer;
-  /** null: a controller, or a pinch that is only a ray. */
+  /** null: a controller, or a pinch with only a ray. */
   readonly joints: HandJoints | null;
   /** Of the target ray: -z ahead; in the reference space. */
   readonly rayLocal = new Matrix4();
@@ -32,18 +32,18 @@ export class Input {
   tracked = false;
   /** Some headsets give bare hands joints but no ray. */
   hasRay = false;
-  /** Trigger or pinch; and the grip button, which holds but presses nothing on a panel. */
+  /** Trigger or pinch; and the grip button, which grabs but does not press panels. */
   selecting = false;
   squeezing = false;
   /** Thumbstick, right and away positive, -1..1. */
   readonly stick = { x: 0, y: 0 };
-  /** The stick has been at rest since it last did something. */
+  /** Whether the stick has been at rest since its last use. */
   stickFree = false;
-  /** Panel that this hand points at or touches. */
+  /** The panel that this hand points at or touches. */
   board: Board | null = null;
   button = -1;
   readonly spot = new Spot();
-  /** By the fingertip and not by the ray. */
+  /** By the fingertip, not by the ray. */
   touching = false;
   /** Fingertip or front of the controller, world, m. */
   readonly finger = new Float32Array(3);
@@ -51,6 +51,7 @@ export class Input {
   private readonly pokes_ = new Map<Board, Poke>();
   private readonly wasDown_: Record<FaceButton, boolean> = { a: false, b: false };
   private readonly reach_: number;
+  private scale_ = 1;
   private readonly at_ = new Vector3();
   private readonly other_ = new Vector3();
 
@@ -63,7 +64,7 @@ export class Input {
     this.pointer.drag = "ray";
     this.pointer.tolerance = tremble;
     this.pointer.pulse = (strength, milliseconds) => this.pulse(strength, milliseconds);
-    // A pinch that comes from nowhere is aimed by the eyes: it has a ray and no hand near the things.
+    // A pinch without a hand is aimed by the eyes: it has a ray and no near grab.
     this.reach_ = transient ? 0 : this.joints !== null ? handReach : controllerReach;
   }
 
@@ -71,14 +72,14 @@ export class Input {
     return this.joints !== null;
   }
 
-  /** Has a body that can be drawn: a hand or a controller. */
+  /** Whether it can be drawn: a hand or a controller. */
   get hasBody(): boolean {
     return this.source.targetRayMode === "tracked-pointer";
   }
 
   pulse(strength: number, milliseconds: number): void {
     const actuator = this.source.gamepad?.hapticActuators?.[0] as { pulse?(value: number, duration: number): Promise<unknown> } | undefined;
-    // A headset without motors may refuse; the page cannot help that.
+    // A headset without motors may refuse, which is ignored.
     actuator?.pulse?.(strength, milliseconds)?.catch(() => {});
   }
 
@@ -95,24 +96,25 @@ export class Input {
     this.stick.y = has ? -axes[stickAxes + 1] : 0;
   }
 
-  /** Puts ray and tips into the world, from a rig that may just have moved. */
-  lift(rig: Matrix4): void {
+  /** Puts ray and tips into the world, from the user's room, which may just have moved; its meters are `scale` of the world. */
+  lift(room: Matrix4, scale: number): void {
     const { pointer, at_ } = this;
-    this.ray.multiplyMatrices(rig, this.rayLocal);
+    this.ray.multiplyMatrices(room, this.rayLocal);
+    this.scale_ = scale;
     const m = this.ray.elements;
     for (let axis = 0; axis < 3; axis++) {
       pointer.origin[axis] = m[12 + axis];
-      pointer.direction[axis] = -m[8 + axis];
+      pointer.direction[axis] = -m[8 + axis] / scale;
       pointer.tip[axis] = m[12 + axis] - tipAhead * m[8 + axis];
       this.finger[axis] = pointer.tip[axis];
     }
     pointer.active = this.tracked;
     if (this.joints === null || !this.joints.tracked) return;
-    this.jointAt_(indexTip, at_).applyMatrix4(rig).toArray(this.finger);
-    at_.add(this.jointAt_(thumbTip, this.other_).applyMatrix4(rig)).multiplyScalar(0.5).toArray(pointer.tip);
+    this.jointAt_(indexTip, at_).applyMatrix4(room).toArray(this.finger);
+    at_.add(this.jointAt_(thumbTip, this.other_).applyMatrix4(room)).multiplyScalar(0.5).toArray(pointer.tip);
   }
 
-  /** Points at no panel until `aim` finds one. */
+  /** Clears the panel until `aim` finds one. */
   clearPanel(): void {
     this.board = null;
     this.button = -1;
@@ -129,10 +131,10 @@ export class Input {
     return poke;
   }
 
-  /** Lets the pointer pick among the bodies, or not: a panel is in the way, or a teleport is being aimed. */
+  /** Enables picking of bodies; off if a panel is in the way, or a teleport is being aimed. */
   pick(free: boolean): void {
     this.pointer.far = free && this.hasRay;
-    this.pointer.nearReach = free ? this.reach_ : 0;
+    this.pointer.nearReach = free ? this.scale_ * this.reach_ : 0;
   }
 
   /** Whether a face button went down since the last call. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Getting about: snap turns about the head, and teleports along an arc. Nothing here moves the view by
-// itself or continuously, so there is nothing to narrow the view for.
+// Getting about: turns about the head, teleports along an arc, and both hands on nothing, which take hold of the world to move,
+// turn and scale it. Only a smooth turn moves the view continuously by itself: the vignette closes meanwhile.
 
 import {
   BufferAttribute, BufferGeometry, CircleGeometry, DoubleSide, DynamicDrawUsage, Group, Mesh, MeshBasicMaterial, RingGeometry, Vector3,
@@ -9,11 +9,17 @@ import {
 import { palette } from "../scene/materials.ts";
 import { Arc, arcPoints, throwArc } from "./arc.ts";
 import type { Input } from "./input.ts";
+import { WorldGrab } from "./world_grab.ts";
 
-export const snapDegrees = 30;
+/** Degrees of a turn by the stick; 0: it turns smoothly. */
+export const turns = [30, 45, 0] as const;
+/** In a second, of a smooth turn. */
+const smoothDegrees = 90;
+/** The stick has to be so far from straight ahead to choose where to face at the end of a teleport, rad. */
+const facingFrom = 0.45;
 const stickFull = 0.65;
 const stickRest = 0.3;
-/** A held thing is pushed away with the stick at so many times its distance a second. */
+/** Rate at which the stick pushes a held body away, relative to its distance, 1/s. */
 const pushRate = 0.9;
 const nearestHold = 0.15;
 const farthestHold = 20;
@@ -25,9 +31,20 @@ export class Locomotion {
   readonly arc = new Arc();
   /** The hand whose arc is shown, if any. */
   aiming: Input | null = null;
+  /** Degrees of a turn by the stick; 0: smooth. */
+  turnBy: (typeof turns)[number] = 30;
+  /** The view is turning by itself. */
+  gliding = false;
+  /** Raises the eyes of who sits, m of the user's. */
+  lift = 0;
+  /** Where to face at the end of a teleport, rad to the left of the head's direction. */
+  facing = 0;
 
   private readonly rig_: Object3D;
-  /** aim: by a panel's button, waits for a pinch; pinch: goes when it opens; stick: goes when it is let go. */
+  private readonly room_: Object3D;
+  private readonly grab_: WorldGrab;
+  /** aim: by a panel's button, waits for a pinch; pinch: teleports when it opens; stick: teleports when it is released.
+   * */
   private mode_: "aim" | "pinch" | "stick" = "stick";
   private readonly ribbon_: Mesh<BufferGeometry, MeshBasicMaterial>;
   private readonly ring_ = new Group();
@@ -35,14 +52,17 @@ export class Locomotion {
   private readonly discMaterial_ = new MeshBasicMaterial({ transparent: true, opacity: 0.28, depthWrite: false, toneMapped: false, fog: false });
   private readonly ribbonPoints_ = new BufferAttribute(new Float32Array(6 * arcPoints), 3);
 
-  constructor(rig: Object3D) {
+  /** `rig`: the user's place in the world; `room`: in it, scaled. */
+  constructor(rig: Object3D, room: Object3D) {
     this.rig_ = rig;
+    this.room_ = room;
+    this.grab_ = new WorldGrab(rig, room);
     this.ribbonPoints_.setUsage(DynamicDrawUsage);
     const geometry = new BufferGeometry();
     const colors = new Float32Array(8 * arcPoints);
     const indices: number[] = [];
     for (let index = 0; index < arcPoints; index++) {
-      // Faint at the hand, so that it does not hide it.
+      // Faint at the hand, in order not to hide it.
       const alpha = Math.min(1, 0.08 + index / 8);
       colors.set([1, 1, 1, alpha, 1, 1, 1, alpha], 8 * index);
       if (index > 0) indices.push(2 * index - 2, 2 * index - 1, 2 * index, 2 * index, 2 * index - 1, 2 * index + 1);
@@ -63,11 +83,24 @@ export class Locomotion {
     flat(new RingGeometry(0.21, 0.245, 64), this.ringMaterial_);
     flat(new CircleGeometry(0.21, 64), this.discMaterial_);
     flat(new CircleGeometry(0.025, 32), this.ringMaterial_);
+    // A triangle outside of the ring: there the user will look.
+    const pointer = new CircleGeometry(0.07, 3, Math.PI / 2);
+    pointer.translate(0, 0.3, 0);
+    flat(pointer, this.ringMaterial_);
     this.root.add(this.ribbon_, this.ring_);
     this.root.visible = false;
   }
 
-  /** Whether the arc waits for a pinch, as a panel's button wished. */
+  private get scale_(): number {
+    return this.room_.scale.x;
+  }
+
+  /** Both hands have hold of the world. */
+  get grabbing(): boolean {
+    return this.grab_.active;
+  }
+
+  /** Whether the arc waits for a pinch, after a panel's button. */
   get armed(): boolean {
     return this.aiming !== null && this.mode_ !== "stick";
   }
@@ -76,21 +109,22 @@ export class Locomotion {
   arm(input: Input): void {
     this.aiming = this.armed ? null : input;
     this.mode_ = "aim";
+    this.facing = 0;
   }
 
-  /** Takes a press of a hand whose arc is armed. */
+  /** Handles a press of a hand with an armed arc. */
   press(input: Input): boolean {
     if (this.aiming !== input || this.mode_ !== "aim") return false;
     this.mode_ = "pinch";
     return true;
   }
 
-  /** Takes the end of that press; returns whether the rig moved. */
+  /** Handles the end of that press; returns whether the rig moved. */
   release(input: Input, head: Vector3): boolean {
     return this.aiming === input && this.mode_ === "pinch" && this.go_(head);
   }
 
-  /** A hand is gone, or the session. */
+  /** A hand disappeared, or the session ended. */
   drop(input: Input | null): void {
     if (input === null || this.aiming === input) this.aiming = null;
     if (this.aiming === null) this.root.visible = false;
@@ -108,17 +142,19 @@ export class Locomotion {
     this.rig_.updateMatrixWorld();
   }
 
-  /** Thumbsticks of this frame; returns whether the rig moved. `head` in the world, m. */
-  steer(inputs: readonly Input[], head: Vector3, seconds: number): boolean {
-    let moved = false;
+  /** Thumbsticks and empty hands of this frame; returns whether the rig moved. `head` in the world, m; `size` of the scene, m. */
+  steer(inputs: readonly Input[], head: Vector3, size: number, seconds: number): boolean {
+    this.gliding = false;
+    let moved = this.grab_.update(inputs, size);
     for (const input of inputs) {
       const { x, y } = input.stick;
       const grab = input.pointer.grab;
       if (grab !== null) {
-        // The stick moves the held body. It must come to rest before it moves the user again.
+        // The stick moves the held body. It must return to rest before it moves the user again.
         input.stickFree = false;
-        const push = Math.abs(y) < stickRest / 2 ? 0 : y * pushRate * Math.max(grab.distance + input.pointer.depth, 0.3) * seconds;
-        input.pointer.depth = Math.min(Math.max(input.pointer.depth + push, nearestHold - grab.distance), farthestHold);
+        const push = Math.abs(y) < stickRest / 2 ? 0 : y * pushRate * Math.max(grab.distance + input.pointer.depth, 0.3 * this.scale_) * seconds;
+        const nearest = Math.min(nearestHold * this.scale_ - grab.distance, 0);
+        input.pointer.depth = Math.min(Math.max(input.pointer.depth + push, nearest), farthestHold * this.scale_);
         continue;
       }
       if (Math.abs(x) < stickRest && Math.abs(y) < stickRest) {
@@ -126,30 +162,41 @@ export class Locomotion {
         if (this.aiming === input && this.mode_ === "stick") moved = this.go_(head) || moved;
         continue;
       }
+      if (this.aiming === input && this.mode_ === "stick" && Math.hypot(x, y) > stickFull) {
+        const turn = Math.atan2(-x, y);
+        this.facing = Math.abs(turn) < facingFrom ? 0 : turn;
+      }
       if (!input.stickFree) continue;
+      if (this.turnBy === 0 && this.aiming === null && Math.abs(x) > stickRest && Math.abs(x) > Math.abs(y)) {
+        this.turn(-Math.sign(x) * smoothDegrees * ((Math.abs(x) - stickRest) / (1 - stickRest)) * seconds, head);
+        this.gliding = moved = true;
+        continue;
+      }
       if (Math.abs(x) > stickFull && Math.abs(x) > Math.abs(y)) {
         input.stickFree = false;
-        this.turn(x > 0 ? -snapDegrees : snapDegrees, head);
+        this.turn(x > 0 ? -this.turnBy : this.turnBy, head);
         input.pulse(0.2, 15);
         moved = true;
       } else if (y > stickFull && this.aiming === null) {
         input.stickFree = false;
         this.aiming = input;
         this.mode_ = "stick";
+        this.facing = 0;
       }
     }
     return moved;
   }
 
-  /** Draws the arc of the aiming hand over a floor at this height, m. */
-  draw(floor: number): void {
+  /** Draws the arc of the aiming hand over a floor at this height, m. `yaw`: of the head in the world, rad. */
+  draw(floor: number, yaw: number): void {
     this.root.visible = this.aiming !== null && this.aiming.tracked;
     if (this.aiming === null || !this.root.visible) return;
     const { origin, direction } = this.aiming.pointer;
-    throwArc(origin, direction, floor, this.arc);
+    const scale = this.scale_;
+    throwArc(origin, direction, floor, this.arc, scale);
     const flat = Math.hypot(direction[0], direction[2]);
-    const sideX = flat > 1e-6 ? (-direction[2] / flat) * halfWidth : halfWidth;
-    const sideZ = flat > 1e-6 ? (direction[0] / flat) * halfWidth : 0;
+    const sideX = scale * halfWidth * (flat > 1e-6 ? -direction[2] / flat : 1);
+    const sideZ = scale * halfWidth * (flat > 1e-6 ? direction[0] / flat : 0);
     const { points, landing, valid } = this.arc;
     for (let index = 0; index < arcPoints; index++) {
       const px = points[3 * index];
@@ -164,7 +211,9 @@ export class Locomotion {
     this.ringMaterial_.color.copy(color);
     this.discMaterial_.color.copy(color);
     this.ring_.visible = valid;
-    this.ring_.position.set(landing[0], landing[1] + 0.006, landing[2]);
+    this.ring_.position.set(landing[0], landing[1] + 0.006 * scale, landing[2]);
+    this.ring_.scale.setScalar(scale);
+    this.ring_.rotation.y = yaw + this.facing;
   }
 
   private go_(head: Vector3): boolean {
@@ -173,7 +222,10 @@ export class Locomotion {
     this.root.visible = false;
     if (input === null || !this.arc.valid) return false;
     const { position } = this.rig_;
-    position.set(position.x + this.arc.landing[0] - head.x, this.arc.landing[1], position.z + this.arc.landing[2] - head.z);
+    this.turn((this.facing * 180) / Math.PI, head);
+    position.set(
+      position.x + this.arc.landing[0] - head.x, this.arc.landing[1] + this.scale_ * this.lift, position.z + this.arc.landing[2] - head.z,
+    );
     this.rig_.updateMatrixWorld();
     input.pulse(0.35, 25);
     return true;

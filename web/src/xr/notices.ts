@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page says on cards, said in the headset: a card in front of the user, a little below the
-// gaze, that stays where it is and comes along only when the user has turned away from it.
+// The page's cards in the headset: a card in front of the user, a little below the gaze, which keeps its place and
+// follows only when the user has turned away from it.
 
 import { Vector3, type Matrix4, type Object3D } from "three";
 import { Board, font, roundedBox, wrapText, type Colors } from "./board.ts";
@@ -14,7 +14,7 @@ interface Card {
   readonly title: string;
   readonly text: string;
   readonly hint: string;
-  /** Seconds left; Infinity: until it is pressed or taken away. */
+  /** Seconds left; Infinity: until it is pressed or removed. */
   left: number;
   readonly lasting: boolean;
 }
@@ -28,7 +28,7 @@ const away = 0.95;
 const below = 0.3;
 /** To the right: the wrist panel is at the left. */
 const aside = 0.24;
-/** Cosine of the angle at which it comes along: 38 degrees. */
+/** Cosine of the angle from which on it follows: 38 degrees. */
 const lostFromView = 0.79;
 const easeSeconds = 0.18;
 

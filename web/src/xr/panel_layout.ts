@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the commands are on the wrist panel: the page's in a row, the script's actions below, and getting about at the foot.
+// Where the commands are on the wrist panel: the page's in a row, the script's actions and controls below, and getting about at the foot.
 
 import { isChoice, type Entry, type ScriptCommand } from "../commands/command.ts";
 import type { Commands } from "../commands/commands.ts";
@@ -7,7 +7,7 @@ import type { Rect } from "./plate.ts";
 
 export interface PanelButton extends Rect {
   readonly command: Entry;
-  /** Small, beside the label: the controller's face button that does the same; may be empty. */
+  /** Small, beside the label: the controller's face button for the same action; may be empty. */
   readonly badge: string;
 }
 
@@ -28,10 +28,11 @@ const row = 124;
 const narrow = 96;
 const reading = 112;
 const actionsInRow = 3;
+const footInRow = 4;
 
-/** Width of a command's button, px; 0 takes an equal part of what the others in its row leave. */
+/** Width of a command's button, px; 0: an equal share of the remaining width of its row. */
 function widthOf(command: Entry): number {
-  if (isChoice(command)) return reading;
+  if (isChoice(command)) return command.wide === true ? 0 : reading;
   if (command.sign === undefined) return 0;
   return command.narrow === true ? narrow : row;
 }
@@ -55,7 +56,8 @@ function badgeOf(command: Entry): string {
   return (command as Partial<ScriptCommand>).button?.toUpperCase() ?? "";
 }
 
-export function layoutPanel(commands: Commands): Layout {
+/** `controls`: rows of those of the script. */
+export function layoutPanel(commands: Commands, controls: readonly (readonly Entry[])[] = []): Layout {
   let top = headHeight;
   const buttons: PanelButton[] = [];
   const add = (entries: readonly Entry[]) => {
@@ -65,7 +67,9 @@ export function layoutPanel(commands: Commands): Layout {
   add(commands.at("panel"));
   const { script } = commands;
   for (let from = 0; from < script.length; from += actionsInRow) add(script.slice(from, from + actionsInRow));
-  add(commands.at("panel foot"));
+  for (const row of controls) add(row);
+  const foot = commands.at("panel foot");
+  for (let from = 0; from < foot.length; from += footInRow) add(foot.slice(from, from + footInRow));
   return {
     buttons: buttons.filter(({ command }) => !isChoice(command) && (commands.script.includes(command as ScriptCommand) || command.offered?.() !== false)),
     readings: buttons.filter(({ command }) => isChoice(command)),

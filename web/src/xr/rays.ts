@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ray of a hand and the dot where it ends. A ray fades while a near grab is possible.
+// The ray of a hand and the dot at its end. A ray fades while a near grab is possible.
 
 import { BufferAttribute, Color, CylinderGeometry, Group, Mesh, MeshBasicMaterial, SphereGeometry, Vector3, type Matrix4 } from "three";
 import { palette } from "../scene/materials.ts";
 import type { Input } from "./input.ts";
 
-/** Of a ray that meets nothing, m. */
+/** Length of a ray without a hit, m. */
 const idleLength = 0.9;
 const startAhead = 0.035;
 const fadeSeconds = 0.08;
@@ -48,8 +48,8 @@ export class RayView {
     this.root.add(this.ray_, this.dot_);
   }
 
-  /** `eye` in the world; `wanted`: false while an arc takes the ray's place. */
-  update(input: Input, eye: Vector3, wanted: boolean, seconds: number): void {
+  /** `eye` in the world; `wanted`: false while an arc takes the ray's place; `scale`: meters of the world in one of the user's. */
+  update(input: Input, eye: Vector3, wanted: boolean, scale: number, seconds: number): void {
     const { pointer } = input;
     const grab = pointer.grab;
     const near = grab !== null ? grab.near : pointer.near && pointer.hovered >= 0;
@@ -57,7 +57,8 @@ export class RayView {
     this.shown_ = Math.min(Math.max(this.shown_ + (show ? seconds : -seconds) / fadeSeconds, 0), 1);
     const length = this.lengthOf_(input);
     const meets = length > 0;
-    const along = Math.max((meets ? length : idleLength) - startAhead, 0.01);
+    // In the user's meters, as the ray's own frame has it.
+    const along = Math.max((meets ? length / scale : idleLength) - startAhead, 0.01);
     this.ray_.visible = this.shown_ > 0;
     this.ray_.material.opacity = this.shown_ * (meets ? 1 : 0.55);
     this.ray_.material.color.copy(grab !== null ? palette.held : palette.selected);
@@ -67,7 +68,7 @@ export class RayView {
     this.at_.fromArray(pointer.origin);
     this.dot_.position.fromArray(pointer.direction).multiplyScalar(length).add(this.at_);
     if (near) this.dot_.position.fromArray(pointer.hit.point);
-    this.dot_.scale.setScalar((input.board === null ? 0.0042 : 0.0065) * Math.max(this.dot_.position.distanceTo(eye), 0.25));
+    this.dot_.scale.setScalar((input.board === null ? 0.0042 : 0.0065) * Math.max(this.dot_.position.distanceTo(eye), 0.25 * scale));
     this.dot_.material.color.copy(input.board !== null ? palette.selected : white);
   }
 
@@ -75,8 +76,8 @@ export class RayView {
   private lengthOf_(input: Input): number {
     const { pointer } = input;
     if (input.board !== null) return input.spot.distance;
-    if (pointer.grab !== null) return Math.max(this.at_.fromArray(pointer.grab.target).distanceTo(reuse.fromArray(pointer.origin)), startAhead);
-    return pointer.hovered >= 0 ? Math.max(pointer.hit.distance, startAhead) : 0;
+    if (pointer.grab !== null) return this.at_.fromArray(pointer.grab.target).distanceTo(reuse.fromArray(pointer.origin));
+    return pointer.hovered >= 0 ? pointer.hit.distance : 0;
   }
 }
 

@@ -8,6 +8,7 @@ import type { Page } from "../page/page.ts";
 import { Board, fitText, font, roundedBox, type Colors } from "./board.ts";
 import { middleKnuckle } from "./hand_joints.ts";
 import type { Input } from "./input.ts";
+import { controlRows } from "./controls.ts";
 import { headHeight, layoutPanel, panelWidth, type Layout, type PanelButton } from "./panel_layout.ts";
 
 /** px a meter: the panel is 25 cm wide. */
@@ -15,7 +16,7 @@ const density = panelWidth / 0.25;
 const easeSeconds = 0.05;
 const readEverySeconds = 0.25;
 
-type PanelPage = Pick<Page, "world" | "selection" | "gestures" | "viewer" | "commands">;
+type PanelPage = Pick<Page, "world" | "session" | "selection" | "gestures" | "viewer" | "commands">;
 
 export class WristPanel {
   readonly board = new Board(density);
@@ -29,6 +30,7 @@ export class WristPanel {
   private active_ = 0;
   private newton_ = -1;
   private sinceRead_ = 0;
+  private controlsSeen_ = 0;
   private placed_ = false;
   private readonly at_ = new Vector3();
   private readonly goal_ = new Vector3();
@@ -43,21 +45,23 @@ export class WristPanel {
     page.commands.onChange(() => this.arrange());
     this.board.paint = (context, colors) => this.paint_(context, colors);
     this.board.press = (button) => this.press_(this.layout_.buttons[button]);
-    page.viewer.rig.add(this.board.mesh);
+    page.viewer.room.add(this.board.mesh);
   }
 
   get layout(): Layout {
     return this.layout_;
   }
 
-  /** The input that wears the panel and therefore cannot press it, if any. */
+  /** The input that carries the panel and therefore cannot press it, if any. */
   get wearer(): Input | null {
     return this.mounted_;
   }
 
-  /** Lays it out anew: other commands or looks. */
+  /** Lays it out again for other commands or looks. */
   arrange(): Layout {
-    this.layout_ = layoutPanel(this.page_.commands);
+    const { commands, world: { entities: { widget } }, session } = this.page_;
+    this.controlsSeen_ = widget.version;
+    this.layout_ = layoutPanel(commands, controlRows(widget.all(), ({ id }, value) => session.send({ type: "change", widget: id, value, text: "" })));
     this.board.buttons = this.layout_.buttons;
     this.board.resize(panelWidth, Math.ceil(this.layout_.height));
     return this.layout_;
@@ -68,7 +72,7 @@ export class WristPanel {
     this.placed_ = false;
   }
 
-  /** `head`: viewer in the reference space. `left`: the hand that wears it, or null. */
+  /** `head`: viewer in the reference space. `left`: the hand that carries it, or null. */
   update(left: Input | null, head: Matrix4, seconds: number): void {
     this.mounted_ = left;
     this.board.shown = left === null || (left.tracked && left.pointer.grab === null);
@@ -88,10 +92,10 @@ export class WristPanel {
     } else if (left.joints !== null && left.joints.tracked) {
       this.goal_.fromArray(left.joints.matrices, 16 * middleKnuckle + 12).addScaledVector(this.right_, 0.02)
         .addScaledVector(this.back_, -0.06);
-      this.goal_.y += 0.13;
+      this.goal_.y += 0.05 + this.board.height / 2;
     } else {
       this.goal_.setFromMatrixPosition(left.rayLocal).addScaledVector(this.right_, -0.01);
-      this.goal_.y += 0.1;
+      this.goal_.y += 0.02 + this.board.height / 2;
     }
     if (this.placed_) this.at_.lerp(this.goal_, 1 - Math.exp(-seconds / easeSeconds));
     else this.at_.copy(this.goal_);
@@ -100,9 +104,10 @@ export class WristPanel {
     this.board.mesh.updateMatrixWorld(true);
   }
 
-  /** What it shows changes with what the server says; looked at without allocating, force a few times a second. */
+  /** Checks the shown values without allocating, the force a few times a second. */
   private read_(seconds: number): void {
     const { world, selection } = this.page_;
+    if (world.entities.widget.version !== this.controlsSeen_) this.arrange();
     const body = selection.actionBody;
     let active = 0;
     for (const { command } of this.layout_.buttons) if (command.active?.() === true) active++;
@@ -139,7 +144,7 @@ export class WristPanel {
     context.textAlign = "center";
     context.textBaseline = "middle";
     for (const { command, x, y, width: across, height: tall } of readings) {
-      if (isChoice(command)) context.fillText(command.value() + command.unit, x + across / 2, y + tall / 2);
+      if (isChoice(command)) context.fillText(fitText(context, command.value() + command.unit, across), x + across / 2, y + tall / 2);
     }
   }
 
@@ -154,7 +159,7 @@ export class WristPanel {
     const body = world.entities.body.nameOf(this.body_);
     const grab = gestures.grabs.at(-1);
     const text = grab === undefined
-      ? (body === "" ? "point at a part and take hold" : body)
+      ? (body === "" ? "point at a body and grab it" : body)
       : `${body} · ${this.newton_ < 0 ? "…" : (this.newton_ / 10).toFixed(this.newton_ < 100 ? 1 : 0)} N`;
     context.textAlign = "right";
     context.font = `36px ${font}`;

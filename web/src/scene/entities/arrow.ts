@@ -8,10 +8,10 @@ import type { Points } from "../points.ts";
 import type { Strokes } from "../strokes.ts";
 import { Stroked } from "./stroked.ts";
 
-/** Radius of a shaft, as a part of the arrow's length. */
+/** Radius of a shaft, relative to the arrow's length. */
 const usualRadius = 0.018;
 
-/** Adds an arrow; `radius` of its shaft, m; 0: in proportion to its length. One without a length is not drawn. */
+/** Adds an arrow; `radius` of its shaft, m; 0: in proportion to its length. An arrow of length 0 is not drawn. */
 export function addArrow(strokes: Strokes, from: Vector3, to: Vector3, radius: number, color: number): void {
   const length = from.distanceTo(to);
   if (!(length > 1e-12)) return;
@@ -28,7 +28,7 @@ export class ArrowView extends Stroked<ArrowEntity> {
   private readonly from_ = new Vector3();
   private readonly to_ = new Vector3();
 
-  /** Those of the world alone: what hangs on bodies, as forces do, shall not move the camera. */
+  /** Only those in the world: arrows on bodies, such as forces, do not affect the camera. */
   addPlaces(points: Points): void {
     for (const { a, b, vector } of this.records_.values()) {
       if (moves(a) || moves(b)) continue;

@@ -16,7 +16,7 @@ export class AxesView extends Stroked<AxesEntity> {
   private readonly turn_ = new Quaternion();
   private readonly own_ = new Quaternion();
 
-  /** Those of the world alone, as of arrows. */
+  /** Only those in the world, as for arrows. */
   addPlaces(points: Points): void {
     for (const axes of this.records_.values()) {
       if (moves(axes.at)) continue;
@@ -35,7 +35,7 @@ export class AxesView extends Stroked<AxesEntity> {
     });
   }
 
-  /** Works out where one of the arrows begins and ends; false where the body is not known yet. */
+  /** Calculates start and end of one of the arrows; false if the body has no pose yet. */
   private aim_({ at, rotation, length }: AxesEntity, axis: number): boolean {
     if (!placeOf(this.poses_, at, this.origin_) || !turnOf(this.poses_, at.body, this.turn_)) return false;
     this.turn_.multiply(this.own_.set(...rotation).normalize());

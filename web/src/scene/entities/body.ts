@@ -1,38 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws all bodies: one instanced mesh for each part of each style, tints that ease, outlines. It also holds the packed data for
-// picking, so that a pick agrees with the picture. An edit touches only the instances of the bodies that it names.
+// Draws all bodies: one instanced mesh for each part of each style, tints that ease, outlines. It also has the packed
+// data for picking, so that a pick agrees with the picture. An edit touches only the instances of its bodies.
 
 import { Group, Matrix4, Vector3, type Color } from "three";
 import { BodyKind, type BodyEntity, type Id } from "../../protocol/generated.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
 import type { DrawnPart, Outline } from "../outline.ts";
-import type { Pickable } from "../pickable.ts";
+import type { Cover, Pickable } from "../pickable.ts";
 import { addCorners, type Points } from "../points.ts";
-import { mostSlots, type PoseBuffer } from "../pose_buffer.ts";
+import { grown, mostSlots, type PoseBuffer } from "../pose_buffer.ts";
 import type { Detail } from "../shapes/kind.ts";
 import { bodyReach, makeGeometry, placeShape, shapeReach, sizeOf, type PlacedShape, type Shape } from "../shapes/shape.ts";
 import type { EntityView } from "./entity.ts";
 import type { Styles, StyleUser } from "./style.ts";
 
-/** Up to here bodies are few enough for round outlines; above, vertices cost too much. */
+/** Up to this number of bodies, outlines are round; above, they have too many vertices. */
 const fineUpTo = 160;
 /** Radius on the screen, px, from which bodies are drawn fine, and coarse; finer than before only when clearly larger. */
 const finePixels = 22;
-/** Where there are more, they have to be larger to be drawn fine, and coarse: triangles are to stay few. */
+/** With more bodies these radii are larger, to limit the number of triangles. */
 const fineCount = 24;
 const coarseCount = 160;
 const coarsePixels = 5;
 const clearly = 1.25;
-/** Half the length of a rod in radii, from which on its thickness counts. */
+/** For rods of at least this half length in radii, the thickness counts. */
 const thinness = 6;
-/** Frames between two looks at how large a batch is on the screen, and how many of its members are looked at. */
+/** Frames between two measurements of a batch's size on the screen, and the number of measured members. */
 const lookEvery = 6;
 const mostLookedAt = 64;
 const growSeconds = 0.15;
-/** Among more new bodies than these nobody sees which came off which. */
+/** For more new bodies than this, their origins are not searched. */
 const mostPieces = 64;
-/** A new look starts from this size. */
+/** A new look grows from this size. */
 const regrownSize = 0.6;
 const tintSeconds = 0.07;
 /** Numbers of a placement: offset xyz, rotation xyzw, scale along x. */
@@ -43,10 +43,10 @@ class Batch {
   readonly pool: InstancePool;
   private readonly shape_: Shape;
   private detail_: Detail = "coarse";
-  /** Of each instance in its body's frame. */
+  /** Placement of each instance in its body's frame. */
   private placements_ = new Float32Array(placementSize);
 
-  /** Made for the first body's length: where all are alike, round ends and the lay of ropes stay unscaled. */
+  /** Made for the first body's length, so that round ends and rope strands of equal bodies are not scaled. */
   constructor(shape: Shape, root: Group) {
     this.shape_ = shape;
     this.pool = new InstancePool(makeGeometry(shape, this.detail_), materialOf(shape), 16).addTo(root);
@@ -67,10 +67,10 @@ class Batch {
     return index;
   }
 
-  /** Draws in the detail that a radius on the screen asks for, px. */
+  /** Draws in the detail for a radius on the screen, px. */
   fit(pixels: number): void {
     const { detail_: now, shape_: shape } = this;
-    // Of what is long and thin the thickness counts.
+    // For long, thin bodies the thickness counts.
     const radius = sizeOf(shape, "radius");
     const length = sizeOf(shape, "length");
     if (length > 0) pixels *= Math.min(1, (thinness * radius) / shapeReach(shape));
@@ -90,14 +90,14 @@ class Batch {
     return this.pool.remove(index);
   }
 
-  /** How much longer a shape is than the one that the geometry was made for; 1 for shapes without a length. */
+  /** Length of a shape relative to that of the geometry; 1 for shapes without a length. */
   private stretchOf_(shape: Shape): number {
     const madeFor = sizeOf(this.shape_, "length");
     return madeFor > 0 ? sizeOf(shape, "length") / madeFor : 1;
   }
 }
 
-/** Where a part of a body is drawn. */
+/** Drawn place of a part of a body. */
 class Instance implements DrawnPart {
   readonly batch: Batch;
   index: number;
@@ -129,7 +129,8 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   pickableCount = 0;
   reach = new Float32Array(0);
   size = 1;
-  /** Where pictures are taken from, world, m; and how many px a length has at a distance of the same length. */
+  readonly covers: Cover[] = [];
+  /** Place of the camera, world, m; and px of a length at a distance of the same length. */
   readonly eye = new Vector3();
   pixels = 800;
 
@@ -142,14 +143,14 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   private painted_: ReadonlyMap<number, Color> = new Map();
   private readonly matrix_ = new Matrix4();
   private frame_ = 0;
-  /** Slots that are drawn, in order, and those of them that can be held: worked out anew after a change. */
+  /** Drawn slots, in order, and those of them that can be held: updated after a change. */
   private drawn_ = new Uint32Array(0);
   private drawnCount_ = 0;
   private dynamic_ = new Uint32Array(0);
   private dynamicCount_ = 0;
   private listed_ = true;
   private grown_ = new Float32Array(0);
-  /** Bodies that are new in this frame. */
+  /** New bodies of this frame. */
   private readonly pieces_: number[] = [];
   private tintGoal_ = new Float32Array(0);
   private tintNow_ = new Float32Array(0);
@@ -168,6 +169,11 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
 
   get rotation(): Float32Array {
     return this.poses.rotation;
+  }
+
+  /** Users may take hold of it, drawn or not. */
+  canHold(slot: number): boolean {
+    return this.poses.known[slot] === 1 && this.bodies_.get(slot)?.entity.kind === BodyKind.dynamic;
   }
 
   // --- EntityView
@@ -225,9 +231,9 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
       const body = this.drawn_[index];
       if (known[body] === 1 && this.grown_[body] === 0 && this.pieces_.length <= mostPieces) this.pieces_.push(body);
     }
-    // What comes off another body has been there before: it does not grow.
+    // A body that was split off another one existed before, so it does not grow.
     for (let found = this.pieces_.length <= mostPieces; found;) {
-      found = false;  // one piece may hang on another one
+      found = false;  // one piece may come from another one
       for (const body of this.pieces_) {
         if (this.grown_[body] === 1 || !this.touchesGrown_(body)) continue;
         this.grown_[body] = 1;
@@ -280,7 +286,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     return this.bodies_.keys();
   }
 
-  /** Adds the corners of all bodies where they are drawn now, or of every so manieth one: of those that move, or of the others. */
+  /** Adds the corners of all drawn bodies, or of every n-th one: of the movable ones, or of the others. */
   addPoints(points: Points, moving: boolean, every = 1): void {
     for (const batches of this.batches_.values()) {
       for (const { pool, placements } of batches) {
@@ -295,7 +301,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     }
   }
 
-  /** How many bodies are drawn. */
+  /** Number of drawn bodies. */
   get count(): number {
     return this.bodies_.size;
   }
@@ -305,17 +311,17 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     return this.shapesOf(body).length > 0;
   }
 
-  /** The whole id of a body, for the server; undefined when there is none in the slot. */
+  /** The full id of a body, for the server; undefined if the slot is empty. */
   idOf(body: number): Id | undefined {
     return this.bodies_.get(body)?.entity.id;
   }
 
-  /** The slot of a body of this very generation, -1: it is not there. */
+  /** The slot of a body of this generation; -1 if it does not exist. */
   slotOf(id: Id): number {
     return this.idOf(id.slot)?.generation === id.generation ? id.slot : -1;
   }
 
-  /** "link 12"; empty when there is no such body. */
+  /** "link 12"; empty if there is no such body. */
   nameOf(body: number): string {
     const entity = this.bodies_.get(body)?.entity;
     return entity === undefined ? "" : `${this.styles_.nameOf(entity.style)} ${body}`;
@@ -335,7 +341,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     this.tintGoal_[4 * body + 3] = amount;
   }
 
-  /** Draws bodies in these colors, by slot, in place of those of their materials; all others in the latter. */
+  /** Draws bodies in these colors, by slot; all others in those of their materials. */
   paint(colors: ReadonlyMap<number, Color>): void {
     const before = this.painted_;
     this.painted_ = colors;
@@ -350,7 +356,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
 
   // --- inside
 
-  /** Puts a body's parts into the batches of its style. */
+  /** Adds a body's parts to the batches of its style. */
   private addInstances_(body: Body): void {
     const { id: { slot }, style, kind, odd, length } = body.entity;
     this.listed_ = false;
@@ -380,7 +386,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     body.instances = noInstances;
   }
 
-  /** Bodies that have, or wait for, a style. */
+  /** Bodies with a style, also one that has not arrived. */
   private bodiesOf_(style: number): readonly Body[] {
     const drawn = this.batches_.get(style)?.at(0)?.pool;
     if (drawn === undefined) return [...this.bodies_.values()].filter((body) => body.entity.style === style);
@@ -439,7 +445,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     pool.upload();
   }
 
-  /** Whether a body that is drawn in full reaches as far as this one. */
+  /** Whether a fully drawn body reaches as far as this one. */
   private touchesGrown_(body: number): boolean {
     const { position, known } = this.poses;
     for (let index = 0; index < this.drawnCount_; index++) {
@@ -458,7 +464,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     const at = 4 * body;
     const goal = this.tintGoal_;
     const now = this.tintNow_;
-    // A tint that fades out keeps its color; one that comes from nothing starts in its own.
+    // A tint that fades out keeps its color; a new one starts in its own.
     if (goal[at + 3] > 0) {
       const jump = now[at + 3] < 0.02 ? 1 : ease;
       for (let channel = 0; channel < 3; channel++) now[at + channel] += (goal[at + channel] - now[at + channel]) * jump;
@@ -474,12 +480,6 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     this.tintGoal_ = grown(this.tintGoal_, 4 * capacity);
     this.tintNow_ = grown(this.tintNow_, 4 * capacity);
   }
-}
-
-function grown(array: Float32Array, length: number): Float32Array<ArrayBuffer> {
-  const larger = new Float32Array(length);
-  larger.set(array);
-  return larger;
 }
 
 /** Matrix of an instance from body pose and placement, written to out[at .. at + 15]. */

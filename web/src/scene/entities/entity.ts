@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page does with entities of one kind. One file here for each kind, and one line in entity_list.ts.
+// The view of entities of one kind. One file here for each kind, and one line in entity_list.ts.
 
 import type { Object3D } from "three";
 import type { Id } from "../../protocol/generated.ts";
@@ -11,25 +11,25 @@ export interface Entity {
 }
 
 /**
- * Shows entities of one kind. Slots are unique among those that are alive: before a slot is used again, what was in it is
- * destroyed. All else is optional.
+ * Shows entities of one kind. Slots are unique among existing entities: an entity is destroyed before its slot is used
+ * again. All other methods are optional.
  */
 export interface EntityView<Record extends Entity> {
   /** The drawn objects, if there are any. */
   readonly root?: Object3D;
   create(entity: Record): void;
-  /** The same entity is described anew. */
+  /** A new record of an existing entity. */
   change(entity: Record): void;
   destroy(slot: number): void;
   /** Once a frame, before pointers are aimed; `now` in ms of performance.now(). */
   update?(seconds: number, now: number): void;
-  /** Once a frame: writes what the renderer reads. */
+  /** Once a frame: writes the data for the renderer. */
   draw?(seconds: number): void;
-  /** Adds places of what it draws beside bodies, world, m: the camera frames them. */
+  /** Adds places of its drawings besides bodies, world, m, for the camera's framing. */
   addPlaces?(points: Points): void;
 }
 
-/** Keeps the records of a kind that is not drawn by itself. */
+/** Keeps the records of a kind that is not drawn. */
 export class EntityRecords<Record extends Entity> implements EntityView<Record> {
   protected readonly records_ = new Map<number, Record>();
 

@@ -29,26 +29,30 @@ import { TraceView } from "./trace.ts";
 import { TubeView } from "./tube.ts";
 import { WatchedRecords } from "./widget.ts";
 
-/** What views ask of the page. */
+/** The data and functions of the page for views. */
 export interface EntityHost {
   readonly poses: PoseBuffer;
-  /** Where the viewer is, world, m; kept up to date. */
+  /** Place of the viewer, world, m; kept up to date. */
   readonly eye: Vector3;
   /** Simulated, s. */
   time(): number;
-  /** A body is gone; called before its slot can be used again. */
+  /** A body was destroyed; called before its slot can be used again. */
   bodyGone(body: number): void;
   /** Something cannot be drawn: `title` says what, `text` why. */
   warn(title: string, text: string): void;
 }
 
-/** A view for each kind of the schema: where one is missing, this file does not compile. */
+/** A view for each kind of the schema: if one is missing, this file does not compile. */
 export type EntityViews = { readonly [K in EntityKind]: EntityView<EntityRecords[K]> };
 
-/** In the order in which their frames go: bodies are interpolated before what hangs on them is drawn. */
+/** In the order of their frames: bodies are interpolated before things on them are drawn. */
 export function makeEntityViews({ poses, eye, time, bodyGone, warn }: EntityHost) {
   const style = new Styles(warn);
   const body = new BodyView(poses, style, bodyGone);
+  const canHold = (slot: number) => body.canHold(slot);
+  const surface = new SurfaceView(poses, canHold);
+  const tube = new TubeView(poses, canHold);
+  body.covers.push(surface, tube);
   return {
     frame: new FrameView(poses),
     style,
@@ -68,11 +72,11 @@ export function makeEntityViews({ poses, eye, time, bodyGone, warn }: EntityHost
     marker: new MarkerView(poses, warn),
     widget: new WatchedRecords<WidgetEntity>(),
     plot: new WatchedRecords<PlotEntity>(),
-    surface: new SurfaceView(poses),
+    surface,
     paint: new PaintView(body),
     shapeSet: new ShapeSetView(poses, warn),
     strut: new StrutView(poses, warn),
-    tube: new TubeView(poses),
+    tube,
     viewpoint: new WatchedRecords<ViewpointEntity>(),
     stage: new WatchedRecords<StageEntity>(),
   } satisfies EntityViews;

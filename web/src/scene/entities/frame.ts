@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames that the script moves: nothing is drawn of them but what is on them.
+// Frames that the script moves: not drawn, but things can be on them.
 
 import type { FrameEntity } from "../../protocol/generated.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joints are known, and not drawn: the bodies that they connect show where they are.
+// Joints are not drawn: their bodies show their places.
 
 import type { JointEntity } from "../../protocol/generated.ts";
 import { EntityRecords } from "./entity.ts";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Labels: text on a small plate that faces the viewer. Those without a height are as large on the screen wherever they are, and
-// in front of all else.
+// Labels: text on a small plate that faces the viewer. Those without a height have a constant size on the screen and
+// are in front of everything else.
 
 import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector3 } from "three";
 import type { LabelEntity } from "../../protocol/generated.ts";
@@ -14,7 +14,7 @@ const fontSize = 44;
 const padding = { x: 22, y: 12 };
 const plateHeight = fontSize + 2 * padding.y;
 const mostWidth = 2048;
-/** Height of a capital, as a part of the plate's. */
+/** Height of a capital, relative to that of the plate. */
 const capital = (0.72 * fontSize) / plateHeight;
 /** Height of the plate at a distance of 1 m, m. */
 const usualHeight = 0.036;
@@ -35,13 +35,13 @@ export class LabelView implements EntityView<LabelEntity> {
   private readonly labels_ = new Map<number, Label>();
   private readonly b_ = new Vector3();
 
-  /** `eye`: where the viewer is, world, m; kept up to date by its owner. */
+  /** `eye`: place of the viewer, world, m; kept up to date by its owner. */
   constructor(poses: PoseBuffer, eye: Vector3) {
     this.poses_ = poses;
     this.eye_ = eye;
   }
 
-  /** Text of a label; undefined where there is none. */
+  /** Text of a label; undefined if there is none. */
   textOf(slot: number): string | undefined {
     return this.labels_.get(slot)?.entity.text;
   }

@@ -15,7 +15,7 @@ export class LineView extends Stroked<LineEntity> {
   private readonly to_ = new Vector3();
   private readonly first_ = new Vector3();
 
-  /** Adds its points, world, m, to what the camera frames. */
+  /** Adds its points, world, m, for the camera's framing. */
   addPlaces(points: Points): void {
     for (const line of this.records_.values()) {
       const count = line.points.length / 3;
@@ -33,7 +33,7 @@ export class LineView extends Stroked<LineEntity> {
     const count = line.points.length / 3;
     if (count === 0 || !this.place_(line, 0, this.first_)) return;
     this.from_.copy(this.first_);
-    // A single point is a dot.
+    // A single point is drawn as a dot.
     if (count === 1) this.add_(line, this.from_);
     for (let index = 1; index < count; index++) {
       if (!this.place_(line, index, this.to_)) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which bodies hang together through hinges. Not drawn: what one of them does without delay, the others do too.
+// The articulates of bodies. Not drawn; used to draw all bodies of an articulate without delay.
 
 import type { MembershipEntity } from "../../protocol/generated.ts";
 import type { EntityView } from "./entity.ts";
@@ -32,7 +32,7 @@ export class Memberships implements EntityView<MembershipEntity> {
     return body < this.articulates_.length ? this.articulates_[body] : none;
   }
 
-  /** Sets `values[slot]` for a body and all that hang together with it. */
+  /** Sets `values[slot]` for all bodies of a body's articulate. */
   fillAlong(body: number, values: Float32Array, value: number): void {
     if (body < values.length) values[body] = value;
     const articulate = this.articulateOf(body);

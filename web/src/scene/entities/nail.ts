@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nails: a small pin at each, so that what hangs in the air is seen to hang on something. A nail of the world stays where it is told to
-// be; one that is described by a point of a body goes along with it.
+// Nails: a small pin at each, which shows what holds a hanging body. A nail in the world has a fixed place; a nail
+// given by a point of a body moves with it.
 
 import { Group, Matrix4, SphereGeometry, Vector3 } from "three";
 import type { NailEntity } from "../../protocol/generated.ts";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Particles of emitters, by the thousand. Each pose frame lists all of them, without ids, so they are drawn where the newest frame
-// has them: glowing points, two triangles each, without shadows, and not to be picked.
+// Thousands of particles of emitters. Each pose frame lists all of them, without ids, so they are drawn at their places
+// in the newest frame: glowing points, two triangles each, without shadows or picking.
 
 import {
   Color, CustomBlending, DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, Matrix4, OneFactor, OneMinusSrcAlphaFactor,
@@ -12,10 +12,10 @@ import { EntityRecords } from "./entity.ts";
 
 /** Radius of sparks without one, m. */
 const usualRadius = 0.01;
-/** At most so many instances are reserved for one set in advance: a world may have many sets and few sparks. */
+/** Largest number of instances reserved for a set in advance: a world may have many sets and few sparks. */
 const mostReserved = 4096;
 
-/** A bright ball with a halo around it: what is in the middle covers, the halo only adds light. */
+/** A bright ball with a halo: the ball covers the background, the halo only adds light. */
 function makeGlow(): ShaderMaterial {
   return new ShaderMaterial({
     transparent: true, depthWrite: false, fog: false, toneMapped: false,
@@ -64,12 +64,12 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
     this.reserve_(64);
   }
 
-  /** A bright ground shows less of a halo. */
+  /** On a bright ground the halo is weaker. */
   setTheme(theme: "light" | "dark"): void {
     this.mesh_.material.uniforms["glow"].value = theme === "dark" ? 0.32 : 0.07;
   }
 
-  /** How many sparks are shown. */
+  /** Number of shown sparks. */
   get count(): number {
     return this.mesh_.count;
   }
@@ -79,14 +79,14 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
     this.reserve_(Math.min(entity.capacity, mostReserved));
   }
 
-  /** Adds the places of sparks, of some of them where there are many. */
+  /** Adds the places of sparks, only some of them if there are many. */
   addPoints(points: Points): void {
     const { array } = this.mesh_.instanceMatrix;
     const every = Math.ceil(this.count / 500);
     for (let index = 0; index < this.count; index += every) points.add(array[16 * index + 12], array[16 * index + 13], array[16 * index + 14]);
   }
 
-  /** Shows these in place of those before. */
+  /** Replaces the shown sparks. */
   takeSparks(sparks: PoseSparkColumns): void {
     if (sparks.count === 0 && this.count === 0) return;
     this.reserve_(sparks.count);
@@ -105,7 +105,7 @@ export class ParticleSetView extends EntityRecords<ParticleSetEntity> {
     if (mesh.instanceColor !== null) mesh.instanceColor.needsUpdate = true;
   }
 
-  /** Makes room in place: the mesh is never made anew. */
+  /** Grows in place, with the same mesh. */
   private reserve_(count: number): void {
     if (count <= this.mesh_.instanceMatrix.count) return;
     const capacity = Math.max(count, 2 * this.mesh_.instanceMatrix.count);

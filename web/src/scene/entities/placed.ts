@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes of the script that are only drawn, each at a place of its own: one pool of instances for all that look alike.
+// Shapes without physics, each at a place of its own: one pool of instances for all with equal looks.
 
 import { Group, Matrix4 } from "three";
 import type { Part } from "../../protocol/generated.ts";
@@ -76,10 +76,10 @@ export abstract class Placed<Record extends Entity & { readonly part: Part }> im
     }
   }
 
-  /** Where it is drawn now; false where it is not. */
+  /** Its drawn place; false if it is not drawn. */
   protected abstract place_(entity: Record, out: Matrix4): boolean;
 
-  /** Whether it may move by itself. */
+  /** Whether it may move without a new record. */
   protected abstract isAttached_(entity: Record): boolean;
 
   private remove_(slot: number): void {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Point clouds: balls by the thousand, one call for each cloud.
+// Point clouds: thousands of balls, one draw call for each cloud.
 
 import { Group, Quaternion, Vector3 } from "three";
 import type { PointCloudEntity } from "../../protocol/generated.ts";
@@ -8,9 +8,6 @@ import type { PoseBuffer } from "../pose_buffer.ts";
 import type { Points } from "../points.ts";
 import { Strokes } from "../strokes.ts";
 import type { EntityView } from "./entity.ts";
-
-/** Of one cloud, for the camera. */
-const mostFramed = 400;
 
 interface Cloud {
   entity: PointCloudEntity;
@@ -23,7 +20,6 @@ export class PointCloudView implements EntityView<PointCloudEntity> {
   private readonly poses_: PoseBuffer;
   private readonly clouds_ = new Map<number, Cloud>();
   private readonly place_ = new Vector3();
-  private readonly origin_ = new Vector3();
   private readonly turn_ = new Quaternion();
 
   constructor(poses: PoseBuffer) {
@@ -56,17 +52,10 @@ export class PointCloudView implements EntityView<PointCloudEntity> {
     }
   }
 
-  /** Adds some of all points, world, m, to what the camera frames. */
+  /** Adds a sample of the points, world, m, for the camera's framing. */
   addPlaces(points: Points): void {
     for (const { entity: { at, points: own } } of this.clouds_.values()) {
-      const every = Math.ceil(own.length / 3 / mostFramed);
-      for (let index = 0; 3 * index < own.length; index += every) {
-        this.place_.fromArray(own, 3 * index);
-        if (turnOf(this.poses_, at.body, this.turn_) && placeOf(this.poses_, at, this.origin_)) {
-          const { x, y, z } = this.place_.applyQuaternion(this.turn_).add(this.origin_);
-          points.add(x, y, z);
-        }
-      }
+      if (turnOf(this.poses_, at.body, this.turn_) && placeOf(this.poses_, at, this.place_)) points.addSample(own, this.place_, this.turn_);
     }
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same shape thousands of times, set by arrays: one call for each set, and nothing to do while only its body moves.
+// Thousands of copies of a shape, set by arrays: one draw call for each set, and no work while only its body moves.
 
 import { Color, Group, Matrix4, Quaternion, Vector3 } from "three";
 import type { ShapeSetEntity } from "../../protocol/generated.ts";
@@ -12,11 +12,9 @@ import type { PoseBuffer } from "../pose_buffer.ts";
 import { makeGeometry } from "../shapes/shape.ts";
 import type { EntityView } from "./entity.ts";
 
-/** Above, shapes are drawn coarsely: vertices are what costs. */
+/** Above this number shapes are drawn coarsely, to limit the vertices. */
 const mostFine = 100;
 const mostCoarse = 3000;
-/** Of one set, for the camera. */
-const mostFramed = 400;
 
 interface ShapeSet {
   entity: ShapeSetEntity;
@@ -79,12 +77,7 @@ export class ShapeSetView implements EntityView<ShapeSetEntity> {
 
   addPlaces(points: Points): void {
     for (const { entity: { at, places }, pool: { mesh } } of this.sets_.values()) {
-      if (!placeOf(this.poses_, at, mesh.position) || !turnOf(this.poses_, at.body, mesh.quaternion)) continue;
-      const every = Math.ceil(places.length / 3 / mostFramed);
-      for (let index = 0; 3 * index < places.length; index += every) {
-        const { x, y, z } = this.place_.fromArray(places, 3 * index).applyQuaternion(mesh.quaternion).add(mesh.position);
-        points.add(x, y, z);
-      }
+      if (placeOf(this.poses_, at, mesh.position) && turnOf(this.poses_, at.body, mesh.quaternion)) points.addSample(places, mesh.position, mesh.quaternion);
     }
   }
 

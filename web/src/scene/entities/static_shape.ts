@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes that belong to no body, are only drawn, and stay where they are: a beam, a stand.
+// Fixed shapes without physics: a beam, a stand.
 
-import { Group, Matrix4 } from "three";
+import { Group, Matrix4, type Mesh } from "three";
 import type { StaticShapeEntity } from "../../protocol/generated.ts";
 import { InstancePool } from "../instance_pool.ts";
 import { materialOf } from "../materials.ts";
@@ -24,7 +24,7 @@ export class StaticShapeView implements EntityView<StaticShapeEntity> {
   create({ id: { slot }, part }: StaticShapeEntity): void {
     try {
       const shape = readPart(part);
-      // An instance of one, so that static shapes and bodies share a program.
+      // One instance, so that static shapes and bodies share a program.
       const pool = new InstancePool(makeGeometry(shape, "fine"), materialOf(shape), 1).addTo(this.root);
       pool.mesh.setMatrixAt(pool.add(slot), new Matrix4());
       pool.mesh.position.set(...shape.offset);
@@ -41,7 +41,7 @@ export class StaticShapeView implements EntityView<StaticShapeEntity> {
     this.create(entity);
   }
 
-  /** Calls `take` with the corners of each that has an end; the points are only valid during the call. */
+  /** Calls `take` with the corners of each finite shape; the points are only valid during the call. */
   forEachCorners(points: Points, take: (points: Points) => void): void {
     for (const { mesh } of this.shown_.values()) {
       mesh.updateMatrixWorld();
@@ -49,6 +49,11 @@ export class StaticShapeView implements EntityView<StaticShapeEntity> {
       addCorners(points, mesh.geometry, mesh.matrixWorld);
       take(points);
     }
+  }
+
+  /** Each with its own place and turn. */
+  *meshes(): Iterable<Mesh> {
+    for (const { mesh } of this.shown_.values()) yield mesh;
   }
 
   destroy(slot: number): void {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn with strokes: all entities of a kind in one mesh, written anew in a frame in which one of them may have moved.
+// Entities drawn with strokes: all of a kind in one mesh, which is rewritten in frames in which one of them may have
+// moved.
 
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { Strokes } from "../strokes.ts";

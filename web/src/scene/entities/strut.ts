@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes from one point to another. They turn by the shortest way when the line turns, so that they never roll about it at once.
+// Shapes from one point to another. They turn with the line by the smallest rotation, so that their roll changes
+// smoothly.
 
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { StrutEntity } from "../../protocol/generated.ts";
@@ -11,12 +12,12 @@ interface Aim {
   readonly turn: Quaternion;
 }
 
-/** Shorter ones have no direction: they are not drawn, m. */
+/** Shorter ones have no direction and are not drawn, m. */
 const shortest = 1e-15;
 const along = new Vector3(1, 0, 0);
 
 export class StrutView extends Placed<StrutEntity> {
-  /** How each was turned last. */
+  /** Last rotation of each. */
   private readonly aims_ = new Map<number, Aim>();
   private readonly from_ = new Vector3();
   private readonly to_ = new Vector3();
@@ -40,7 +41,7 @@ export class StrutView extends Placed<StrutEntity> {
     const span = to.distanceTo(from);
     if (!(span > shortest)) return false;
     const middle = from.add(to).multiplyScalar(0.5);
-    // `to` is one end: from the middle to it.
+    // `to` is one end, relative to the center.
     const turn = this.aim_(id.slot, to.sub(middle).divideScalar(span / 2));
     const own = this.own_.compose(size.set(...offset), this.ownTurn_.set(...rotation).normalize(), unit);
     out.compose(middle, turn, size.set(span / length, 1, 1)).multiply(own);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Styles: the shapes of a class of bodies or ties, in each look that the page can show. Bodies and ties draw themselves by them.
+// Styles: the shapes of a class of bodies or ties, in each look that the page can show. Bodies and ties are drawn with
+// them.
 
 import type { Part, StyleEntity } from "../../protocol/generated.ts";
 import { readPart } from "../parts.ts";
@@ -11,16 +12,16 @@ const anyLook = "*";
 
 /** Draws by styles. */
 export interface StyleUser {
-  /** A style has other parts now, or none. */
+  /** The parts of a style have changed. */
   restyle(style: number): void;
-  /** All styles have other parts: the page shows another look. */
+  /** The parts of all styles have changed: the page shows another look. */
   restyleAll(): void;
 }
 
 export class Styles implements EntityView<StyleEntity> {
   private readonly users_: StyleUser[] = [];
   private readonly entities_ = new Map<number, StyleEntity>();
-  /** Parts in the look that is shown, read when they are first asked for. */
+  /** Parts in the shown look, read when first needed. */
   private readonly shapes_ = new Map<number, readonly Shape[]>();
   private readonly warn_: (title: string, text: string) => void;
   private look_ = "";
@@ -39,7 +40,7 @@ export class Styles implements EntityView<StyleEntity> {
     this.forget_(entity.id.slot);
   }
 
-  /** An unchanged style, sent again after a lost connection, leaves the meshes as they are. */
+  /** An unchanged style, sent again after a lost connection, does not change the meshes. */
   change(entity: StyleEntity): void {
     const before = this.entities_.get(entity.id.slot);
     this.entities_.set(entity.id.slot, entity);
@@ -62,7 +63,8 @@ export class Styles implements EntityView<StyleEntity> {
     return this.entities_.get(style)?.name ?? "";
   }
 
-  /** Shapes in the current look; without any, those for every look; without any, those of the first look that has some. */
+  /** Shapes in the current look; if there are none, those for every look; if there are none, those of the first look
+   * with shapes. */
   shapesOf(style: number): readonly Shape[] {
     let shapes = this.shapes_.get(style);
     if (shapes === undefined) {

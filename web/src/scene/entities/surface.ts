@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces between points: cloth, nets, sails, skins. Seen from both sides, smooth, with shadows; those on bodies move with them.
+// Surfaces between points: cloth, nets, sails, skins. Visible from both sides, smooth, with shadows; those on bodies
+// move with them.
 
-import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Group, Mesh, Vector3, type MeshStandardMaterial } from "three";
+import {
+  BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Group, Mesh, Quaternion, Ray, Triangle, Vector3, type MeshStandardMaterial,
+} from "three";
 import type { SurfaceEntity } from "../../protocol/generated.ts";
 import { fromBody, moves, placeOf, turnOf } from "../anchors.ts";
 import { casterLayer } from "../contact_shadow.ts";
 import { materialOf } from "../materials.ts";
 import { opacityOf, textOf } from "../parts.ts";
+import type { Cover, CoverHit } from "../pickable.ts";
 import type { Points } from "../points.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { drawTriangles } from "../shapes/mesh.ts";
@@ -15,22 +19,26 @@ import type { EntityView } from "./entity.ts";
 interface Surface {
   entity: SurfaceEntity;
   readonly mesh: Mesh<BufferGeometry, MeshStandardMaterial>;
-  /** Its points are on several bodies; else it is rigid. */
+  /** Whether its points are on several bodies; otherwise it is rigid. */
   readonly bends: boolean;
+  /** Of a rigid one, about its origin, m. */
+  readonly reach: number;
 }
 
-/** Of one surface, for the camera. */
-const mostFramed = 400;
-
-export class SurfaceView implements EntityView<SurfaceEntity> {
+export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
   readonly root = new Group();
 
   private readonly poses_: PoseBuffer;
   private readonly surfaces_ = new Map<number, Surface>();
+  private readonly canHold_: (body: number) => boolean;
   private readonly point_ = new Vector3();
+  private readonly turn_ = new Quaternion();
+  private readonly ray_ = new Ray();
+  private readonly triangle_ = new Triangle();
 
-  constructor(poses: PoseBuffer) {
+  constructor(poses: PoseBuffer, canHold: (body: number) => boolean) {
     this.poses_ = poses;
+    this.canHold_ = canHold;
   }
 
   create(entity: SurfaceEntity): void {
@@ -45,7 +53,9 @@ export class SurfaceView implements EntityView<SurfaceEntity> {
     mesh.castShadow = mesh.receiveShadow = true;
     mesh.layers.enable(casterLayer);
     this.root.add(mesh);
-    const surface = { entity, mesh, bends };
+    let reach = 0;
+    for (let index = 0; index < points.length; index += 3) reach = Math.max(reach, Math.hypot(points[index], points[index + 1], points[index + 2]));
+    const surface = { entity, mesh, bends, reach };
     this.surfaces_.set(entity.id.slot, surface);
   }
 
@@ -73,9 +83,77 @@ export class SurfaceView implements EntityView<SurfaceEntity> {
   addPlaces(points: Points): void {
     for (const { entity: { at, points: own }, bends } of this.surfaces_.values()) {
       if (bends || moves(at)) continue;
-      const [x, y, z] = at.point;
-      for (let from = 0; from < own.length; from += 3 * Math.ceil(own.length / 3 / mostFramed)) points.add(x + own[from], y + own[from + 1], z + own[from + 2]);
+      points.addSample(own, this.point_.fromArray(at.point));
     }
+  }
+
+  // --- Cover
+
+  hitByRay(origin: ArrayLike<number>, direction: ArrayLike<number>, _tolerance: number, hit: CoverHit): void {
+    const { ray_: ray, point_: place } = this;
+    for (const surface of this.surfaces_.values()) {
+      ray.origin.fromArray(origin);
+      ray.direction.fromArray(direction);
+      if (!this.intoFrame_(surface, ray.origin, ray.direction)) continue;
+      if (!surface.bends && ray.distanceSqToPoint(place.set(0, 0, 0)) > surface.reach ** 2) continue;
+      for (let corner = 0; corner < surface.entity.triangles.length; corner += 3) {
+        const { a, b, c } = this.cornersOf_(surface, corner);
+        if (ray.intersectTriangle(a, b, c, false, place) !== null) this.take_(surface, corner, place.distanceTo(ray.origin), hit);
+      }
+    }
+  }
+
+  hitByPoint(point: ArrayLike<number>, hit: CoverHit): void {
+    const from = this.ray_.origin;
+    for (const surface of this.surfaces_.values()) {
+      if (!this.intoFrame_(surface, from.fromArray(point), this.ray_.direction)) continue;
+      if (!surface.bends && from.length() - surface.reach > hit.distance) continue;
+      for (let corner = 0; corner < surface.entity.triangles.length; corner += 3) {
+        this.cornersOf_(surface, corner).closestPointToPoint(from, this.point_);
+        this.take_(surface, corner, this.point_.distanceTo(from), hit);
+      }
+    }
+  }
+
+  /** Turns a place and a direction of the world into the frame of a rigid surface; false for one that is not drawn. */
+  private intoFrame_({ mesh, bends }: Surface, place: Vector3, direction: Vector3): boolean {
+    if (bends || !mesh.visible) return mesh.visible;
+    this.turn_.copy(mesh.quaternion).invert();
+    place.sub(mesh.position).applyQuaternion(this.turn_);
+    direction.applyQuaternion(this.turn_);
+    return true;
+  }
+
+  /** The triangle that begins at a corner: in the world, or of a rigid one in its frame. */
+  private cornersOf_({ entity: { triangles, points }, mesh: { geometry }, bends }: Surface, corner: number): Triangle {
+    const places = bends ? geometry.getAttribute("position").array : points;
+    this.triangle_.a.fromArray(places, 3 * triangles[corner]);
+    this.triangle_.b.fromArray(places, 3 * triangles[corner + 1]);
+    this.triangle_.c.fromArray(places, 3 * triangles[corner + 2]);
+    return this.triangle_;
+  }
+
+  /** A hit at `point_`, on a triangle: of the body of the nearest corner that can be held. */
+  private take_({ entity: { at, bodies, points, triangles }, bends }: Surface, corner: number, distance: number, hit: CoverHit): void {
+    if (distance >= hit.distance) return;
+    if (!bends) {
+      if (!this.canHold_(at.body)) return;
+      hit.body = at.body;
+      hit.distance = distance;
+      for (let axis = 0; axis < 3; axis++) hit.localPoint[axis] = at.point[axis] + this.point_.getComponent(axis);
+      return;
+    }
+    const { a, b, c } = this.triangle_;
+    let nearest = Infinity;
+    [a, b, c].forEach((place, index) => {
+      const point = triangles[corner + index];
+      const apart = place.distanceTo(this.point_);
+      if (apart >= nearest || !this.canHold_(bodies[point])) return;
+      nearest = apart;
+      hit.body = bodies[point];
+      hit.distance = distance;
+      for (let axis = 0; axis < 3; axis++) hit.localPoint[axis] = points[3 * point + axis];
+    });
   }
 
   private place_({ entity: { at }, mesh }: Surface): void {
@@ -101,7 +179,7 @@ export class SurfaceView implements EntityView<SurfaceEntity> {
   }
 }
 
-/** Room for points that are written each frame. */
+/** Buffer for points that are written each frame. */
 function makeBending(count: number, triangles: ArrayLike<number>): BufferGeometry {
   const geometry = new BufferGeometry();
   for (const [name, size] of [["position", 3], ["normal", 3], ["uv", 2]] as const) {
@@ -110,7 +188,7 @@ function makeBending(count: number, triangles: ArrayLike<number>): BufferGeometr
   return geometry.setIndex(new BufferAttribute(Uint32Array.from(triangles), 1));
 }
 
-/** Adds the normal of a triangle, as long as it is large, to those of its corners. */
+/** Adds the normal of a triangle, weighted by its area, to those of its corners. */
 function addNormal(places: Float32Array, normals: Float32Array, a: number, b: number, c: number): void {
   const ux = places[b] - places[a], uy = places[b + 1] - places[a + 1], uz = places[b + 2] - places[a + 2];
   const vx = places[c] - places[a], vy = places[c + 1] - places[a + 1], vz = places[c + 2] - places[a + 2];

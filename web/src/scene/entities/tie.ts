@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws what ties bodies together: springs as coils that stretch, ropes that sag when they are slack, rods.
-// A tie moves with its two ends, so nothing is sent for it but once.
+// Draws springs as coils that stretch, ropes that sag when slack, and rods. A tie moves with its two ends, so it is
+// sent only once.
 
 import { Group, Matrix4, Quaternion, Vector3 } from "three";
 import { TieKind, type TieEntity } from "../../protocol/generated.ts";
@@ -14,14 +14,14 @@ import { shapeKind } from "../shapes/shape_list.ts";
 import type { EntityView } from "./entity.ts";
 import type { Styles, StyleUser } from "./style.ts";
 
-/** Pieces of a rope: straight ones, that lie along a parabola when it is slack. */
+/** Straight pieces of a rope, along a parabola when it is slack. */
 const ropePieces = 12;
 
 /** All ties of one kind and style. */
 interface Batch {
   readonly style: number;
   readonly pool: InstancePool;
-  /** That the geometry was made for, m. */
+  /** Length of the geometry, m. */
   readonly length: number;
 }
 
@@ -121,7 +121,7 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
     const pieces = rope ? ropePieces : 1;
     const radius = sizeOf(shape, "radius");
     const length = Math.max(atRest / pieces, 2 * radius);
-    // A spring's shape is one turn of it, a ring with its wire; with any other shape it is a thread.
+    // A torus is one turn of a spring's coil; with any other shape the spring is a thread.
     const geometry = kind === TieKind.spring && shape.kind.name === "torus"
       ? makeCoil(radius, sizeOf(shape, "tube") || 0.15 * radius, length)
       : makeGeometry({ ...shape, kind: shapeKind(rope ? "capsule" : "cylinder"), sizes: rope ? [radius, length] : [radius, length, 0] }, rope ? "coarse" : "tiny");
@@ -137,7 +137,7 @@ export class TieView implements EntityView<TieEntity>, StyleUser {
   private placePieces_({ entity, index }: Tie, { pool: { mesh, pieces }, length: madeFor }: Batch): void {
     const shown = placeOf(this.poses_, entity.a, this.from_) && placeOf(this.poses_, entity.b, this.to_);
     const slack = entity.kind === TieKind.rope ? Math.max(0, entity.length - this.from_.distanceTo(this.to_)) : 0;
-    // Depth of the parabola of that length over a level span. Steep spans hang a little too deep, which does not show.
+    // Depth of the parabola of that length over a level span. Steep spans sag a little too much, which is not visible.
     const sag = Math.sqrt(0.375 * slack * entity.length);
     this.start_.copy(this.from_);
     for (let piece = 1; piece <= pieces; piece++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces: the paths of points, as this page has drawn them. Nothing is sent for them but once.
+// Traces: the past paths of points, recorded by this page. A trace is sent only once.
 
 import { Vector3 } from "three";
 import type { TraceEntity } from "../../protocol/generated.ts";
@@ -8,7 +8,7 @@ import type { PoseBuffer } from "../pose_buffer.ts";
 import { Strokes } from "../strokes.ts";
 import type { EntityView } from "./entity.ts";
 
-/** A point that has moved less is not drawn anew, m. */
+/** A point that has moved less is not added, m. */
 const still = 1e-6;
 
 interface Trace {
@@ -19,7 +19,7 @@ interface Trace {
   count: number;
 }
 
-/** Pieces for a bulge as high as they are long, and at most: a bulge of 0.2 % is left straight. */
+/** Number of pieces for a bulge as high as long, and the maximum: a bulge of 0.2 % is drawn straight. */
 const straightEnough = 500;
 const mostPieces = 8;
 
@@ -35,7 +35,7 @@ export class TraceView implements EntityView<TraceEntity> {
   private readonly traces_ = new Map<number, Trace>();
   private readonly place_ = new Vector3();
   private readonly next_ = new Vector3();
-  /** Of the piece that is drawn: way in its time at the velocity of its first end, and of its second, m. */
+  /** For the drawn piece: its duration times the velocity of its first and of its second end, m. */
   private readonly slopes_ = new Float64Array(6);
   private lastTime_ = 0;
   private changed_ = false;
@@ -60,7 +60,7 @@ export class TraceView implements EntityView<TraceEntity> {
     this.changed_ = true;
   }
 
-  /** What it has drawn stays: an edit may only have given its point to another body. */
+  /** Keeps its points: an edit may only have moved its point to another body. */
   change(entity: TraceEntity): void {
     const trace = this.traces_.get(entity.id.slot);
     if (trace === undefined || trace.entity.capacity !== entity.capacity) return this.create(entity);
@@ -128,8 +128,8 @@ export class TraceView implements EntityView<TraceEntity> {
   }
 
   /**
-   * Works out the velocities at both ends of a piece, by the points around them, and returns how many straight lines show the curve
-   * between: a page that draws slowly sees few points of a path.
+   * Calculates the velocities at both ends of a piece from the points around them, and returns the number of straight
+   * lines for the curve between: a page that draws slowly has few points of a path.
    */
   private fitCurve_(trace: Trace, index: number, start: Vector3): number {
     const { points, count } = trace;

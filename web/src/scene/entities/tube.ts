@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tubes along smooth curves through points: ropes, cables, hoses. Rings are carried along the curve without twist about it, and the
-// texture runs on along its length, so that the lay of a rope has no seams.
+// Tubes along smooth curves through points: ropes, cables, hoses. Rings are transported along the curve without twist,
+// and the texture is continuous along its length, so that rope strands have no seams.
 
-import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh, Vector3, type MeshStandardMaterial } from "three";
+import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Mesh, Ray, Vector3, type MeshStandardMaterial } from "three";
 import { NO_BODY, type TubeEntity } from "../../protocol/generated.ts";
 import { fromBody } from "../anchors.ts";
 import { casterLayer } from "../contact_shadow.ts";
 import { materialOf } from "../materials.ts";
 import { opacityOf, textOf } from "../parts.ts";
+import type { Cover, CoverHit } from "../pickable.ts";
 import type { Points } from "../points.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { tilePerRadius } from "../shapes/sweep.ts";
@@ -16,7 +17,6 @@ import type { EntityView } from "./entity.ts";
 const sides = 12;
 /** Rings from one point to the next. */
 const ringsPerSpan = 6;
-const mostFramed = 100;
 
 interface Tube {
   entity: TubeEntity;
@@ -27,7 +27,7 @@ interface Tube {
   written: boolean;
 }
 
-export class TubeView implements EntityView<TubeEntity> {
+export class TubeView implements EntityView<TubeEntity>, Cover {
   readonly root = new Group();
 
   private readonly poses_: PoseBuffer;
@@ -38,9 +38,12 @@ export class TubeView implements EntityView<TubeEntity> {
   private readonly tangent_ = new Vector3();
   private readonly normal_ = new Vector3();
   private readonly across_ = new Vector3();
+  private readonly ray_ = new Ray();
+  private readonly canHold_: (body: number) => boolean;
 
-  constructor(poses: PoseBuffer) {
+  constructor(poses: PoseBuffer, canHold: (body: number) => boolean) {
     this.poses_ = poses;
+    this.canHold_ = canHold;
   }
 
   create(entity: TubeEntity): void {
@@ -82,8 +85,66 @@ export class TubeView implements EntityView<TubeEntity> {
   /** Points of those in the world. */
   addPlaces(points: Points): void {
     for (const { entity: { points: own }, moves } of this.tubes_.values()) {
-      if (moves) continue;
-      for (let at = 0; at < own.length; at += 3 * Math.ceil(own.length / 3 / mostFramed)) points.add(own[at], own[at + 1], own[at + 2]);
+      if (!moves) points.addSample(own);
+    }
+  }
+
+  // --- Cover
+
+  hitByRay(origin: ArrayLike<number>, direction: ArrayLike<number>, tolerance: number, hit: CoverHit): void {
+    const { ray_: ray, place_: onRay, across_: onTube } = this;
+    ray.origin.fromArray(origin);
+    ray.direction.fromArray(direction);
+    for (const tube of this.tubes_.values()) {
+      const pieces = this.firstPiece_(tube);
+      for (let piece = 0; piece < pieces; piece++) {
+        this.nextPiece_(tube, piece);
+        const apart = Math.sqrt(ray.distanceSqToSegment(this.before_, this.center_, onRay, onTube));
+        const along = onRay.distanceTo(ray.origin);
+        if (along < hit.distance && apart < tube.entity.radius + tolerance * along) this.take_(tube, piece, along, hit);
+      }
+    }
+  }
+
+  hitByPoint(point: ArrayLike<number>, hit: CoverHit): void {
+    const { ray_: { origin: from }, across_: way, tangent_: place } = this;
+    from.fromArray(point);
+    for (const tube of this.tubes_.values()) {
+      const pieces = this.firstPiece_(tube);
+      for (let piece = 0; piece < pieces; piece++) {
+        this.nextPiece_(tube, piece);
+        way.subVectors(this.center_, this.before_);
+        const share = Math.min(Math.max(place.subVectors(from, this.before_).dot(way) / Math.max(way.lengthSq(), 1e-30), 0), 1);
+        const apart = Math.max(place.addScaledVector(way, -share).length() - tube.entity.radius, 0);
+        if (apart < hit.distance) this.take_(tube, piece, apart, hit);
+      }
+    }
+  }
+
+  /** Goes to the beginning of a tube; returns its number of straight pieces, 0 for one that is on no body or not drawn. */
+  private firstPiece_({ entity: { closed }, places, moves, mesh: { visible } }: Tube): number {
+    if (!moves || !visible) return 0;
+    onCurve(places, closed, 0, this.center_, this.tangent_);
+    return ringsPerSpan * (places.length / 3 - (closed ? 0 : 1));
+  }
+
+  /** Puts the ends of a piece into `before_` and `center_`. */
+  private nextPiece_({ entity: { closed }, places }: Tube, piece: number): void {
+    this.before_.copy(this.center_);
+    onCurve(places, closed, (piece + 1) / ringsPerSpan, this.center_, this.tangent_);
+  }
+
+  /** A hit on a piece: of the nearer one of the two bodies that it is between, or of the other where that cannot be held. */
+  private take_({ entity: { bodies, points } }: Tube, piece: number, distance: number, hit: CoverHit): void {
+    const t = (piece + 0.5) / ringsPerSpan;
+    const nearest = Math.round(t);
+    for (const index of [nearest, nearest > t ? nearest - 1 : nearest + 1]) {
+      const point = index % bodies.length;
+      if (!this.canHold_(bodies[point])) continue;
+      hit.body = bodies[point];
+      hit.distance = distance;
+      for (let axis = 0; axis < 3; axis++) hit.localPoint[axis] = points[3 * point + axis];
+      return;
     }
   }
 
@@ -109,7 +170,7 @@ export class TubeView implements EntityView<TubeEntity> {
       } else {
         length += center.distanceTo(before);
       }
-      // What is left of the ring before, square to the curve here.
+      // The previous ring's direction, projected normal to the curve.
       turned.addScaledVector(tangent, -turned.dot(tangent)).normalize();
       across.crossVectors(tangent, turned);
       for (let side = 0; side <= sides; side++) {

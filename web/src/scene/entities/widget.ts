@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Controls and plots of the script: kept here, shown by the panel of the page.
+// Controls and plots of the script: stored here, shown by the panel of the page.
 
 import type { Id } from "../../protocol/generated.ts";
 import { EntityRecords } from "./entity.ts";
@@ -23,7 +23,7 @@ export class WatchedRecords<Record extends { readonly id: Id }> extends EntityRe
     this.version++;
   }
 
-  /** In the order in which the script made them. */
+  /** In the order of creation. */
   all(): Record[] {
     return [...this.records_.values()].sort((a, b) => a.id.slot - b.id.slot);
   }

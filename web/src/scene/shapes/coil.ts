@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The coil that a spring between two bodies is drawn as: no shape of a body.
+// The coil of a spring between two bodies; not a shape of bodies.
 
 import type { BufferGeometry } from "three";
 import { sweep } from "./sweep.ts";
@@ -11,7 +11,7 @@ export function makeCoil(radius: number, tube: number, length: number): BufferGe
   const rows = 12 * turns;
   const center = (t: number): [number, number, number] => {
     const wound = Math.min(1, Math.max(0, (t - straight) / (1 - 2 * straight)));
-    // The wire comes in from the axis and leaves to it.
+    // The wire starts and ends at the axis.
     const grown = Math.min(1, 6 * Math.min(t, 1 - t));
     const angle = 2 * Math.PI * turns * wound;
     return [(t - 0.5) * length, grown * radius * Math.cos(angle), grown * radius * Math.sin(angle)];
@@ -23,7 +23,7 @@ export function makeCoil(radius: number, tube: number, length: number): BufferGe
     const behind = center(Math.max(0, t - 0.25 / rows));
     const tangent = [ahead[0] - behind[0], ahead[1] - behind[1], ahead[2] - behind[2]];
     const size = Math.hypot(tangent[0], tangent[1], tangent[2]);
-    // Away from the axis, made square to the wire.
+    // Away from the axis, projected normal to the wire.
     const away = Math.hypot(here[1], here[2]) > 1e-9 * radius ? [0, here[1], here[2]] : [0, 1, 0];
     const part = (away[1] * tangent[1] + away[2] * tangent[2]) / (size * size);
     const u = [away[0] - part * tangent[0], away[1] - part * tangent[1], away[2] - part * tangent[2]];

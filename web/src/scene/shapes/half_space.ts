@@ -2,7 +2,7 @@
 import { PlaneGeometry, Quaternion, Vector3 } from "three";
 import type { Kind } from "./kind.ts";
 
-/** Edge of the square that is drawn of the plane, m: beyond it is haze. */
+/** Edge of the drawn square of the plane, m: its end is hidden by fog. */
 const drawn = 1000;
 
 /** All on one side of a plane through the origin: the ground, a wall. */

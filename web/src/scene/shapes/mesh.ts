@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A closed surface of triangles: the one shape whose numbers are tables.
+// A closed surface of triangles: the only shape with tables.
 
 import { BufferAttribute, BufferGeometry } from "three";
 import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import type { Kind } from "./kind.ts";
 
-/** A closed surface; from outside each triangle runs counter-clockwise. */
+/** A closed surface; from outside each triangle is counter-clockwise. */
 export interface MeshData {
   /** Three numbers a vertex, m. */
   readonly positions: Float32Array;
@@ -15,9 +15,9 @@ export interface MeshData {
   readonly high: readonly number[];
 }
 
-/** A mesh of more triangles is a scan, too dear to draw many times; looks.py has the same limit. */
+/** Limit of triangles, as meshes may be drawn many times; looks.py has the same limit. */
 export const mostTriangles = 50_000;
-/** Up to here a hand feels the triangles, above it their box: picking asks a hundred times a frame. */
+/** Up to this number picking uses the triangles, above it their box: there may be a hundred picks a frame. */
 const mostFelt = 1_000;
 
 function list(value: unknown, name: string): number[] {
@@ -47,7 +47,7 @@ export function parseMesh(vertices: unknown, triangles: unknown): MeshData {
   return { positions, triangles: Uint32Array.from(numbers), low, high };
 }
 
-/** Radius in meters of the sphere about the mesh's origin that holds it. */
+/** Radius in meters of the enclosing sphere about the mesh's origin. */
 function meshReach(mesh: MeshData): number {
   let reach = 0;
   for (let at = 0; at < mesh.positions.length; at += 3) {
@@ -65,7 +65,7 @@ function boxDistance(mesh: MeshData, x: number, y: number, z: number): number {
 
 type Triangle = readonly [number, number, number, number, number, number, number, number, number];
 
-/** Squared distance of the origin from a triangle: the foot in its plane, or on the nearest of its edges. */
+/** Squared distance of the origin from a triangle: to its plane, or to the nearest of its edges. */
 function squaredDistance([ax, ay, az, bx, by, bz, cx, cy, cz]: Triangle): number {
   const ux = bx - ax, uy = by - ay, uz = bz - az;
   const vx = cx - ax, vy = cy - ay, vz = cz - az;
@@ -96,7 +96,7 @@ function solidAngle([ax, ay, az, bx, by, bz, cx, cy, cz]: Triangle): number {
   return 2 * Math.atan2(volume, a * b * c + ab * c + bc * a + ca * b);
 }
 
-/** Distance in meters to the surface, negative inside; of a mesh of many triangles to its box. */
+/** Distance in meters to the surface, negative inside; for a mesh of many triangles to its box. */
 function meshDistance(mesh: MeshData, x: number, y: number, z: number): number {
   const toBox = boxDistance(mesh, x, y, z);
   if (mesh.triangles.length > 3 * mostFelt) return toBox;
@@ -114,10 +114,10 @@ function meshDistance(mesh: MeshData, x: number, y: number, z: number): number {
   return Math.abs(angle) > 2 * Math.PI ? -Math.sqrt(nearest) : Math.sqrt(nearest);
 }
 
-/** Edges sharper than this are seen as edges, others as a smooth surface, rad. */
+/** Edges sharper than this are shaded as edges, others as a smooth surface, rad. */
 const creaseAngle = 0.6;
 
-/** Faces as they are given; texture coordinates by meters on the side that a face looks to. */
+/** The given faces; texture coordinates in meters, projected along the axis nearest to a face's normal. */
 export function drawTriangles(positions: Float32Array, triangles: Uint32Array): BufferGeometry {
   const indexed = new BufferGeometry();
   indexed.setAttribute("position", new BufferAttribute(positions, 3));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rods of rope: strands that are laid into the outline, so that a rope near the eye is not a smooth pipe.
+// Rods of rope: strands in the geometry, so that a near rope is not a smooth pipe.
 
 import type { BufferGeometry } from "three";
 import { sweep, tilesAlong, type ProfilePoint } from "./sweep.ts";
 
-/** Rope strands on the surface; the bump texture lays the same number. */
+/** Number of strands on the surface; the bump texture has the same number. */
 export const strandCount = 3;
 
 /** Height 0..1 of a laid rope's surface at u tiles along and v turns around. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes as the script describes them, and their place on a body. Drawing and picking both rest on the list of kinds, so
-// that what is seen is what is touched.
+// Shapes as the script describes them, and their place on a body. Drawing and picking both use the list of kinds, so
+// that they agree.
 
 import type { BufferGeometry } from "three";
 import { parseMesh } from "./mesh.ts";
@@ -11,11 +11,11 @@ export type Vec3 = readonly [number, number, number];
 /** x, y, z, w. */
 export type Quat = readonly [number, number, number, number];
 
-/** A solid, what it is made of, and where it is on its body. */
+/** A solid, its material, and its place on its body. */
 export interface Shape extends Solid {
   readonly material: string;
   readonly color: string | null;
-  /** 1: nothing is seen through it. */
+  /** 1: opaque. */
   readonly opacity: number;
   readonly offset: Vec3;
   readonly rotation: Quat;
@@ -48,7 +48,7 @@ export function parseRotation(value: unknown): Quat {
   return unit(numbers(value, 4, "rotation", [0, 0, 0, 1]));
 }
 
-/** Sizes of a kind, checked: all finite, and as many as the kind has. Those that are left out at the end are 0. */
+/** Sizes of a kind, checked: all finite, and as many as the kind has. Missing ones at the end are 0. */
 function parseSizes(value: unknown, count: number): number[] {
   if (value === undefined) return Array<number>(count).fill(0);
   if (!Array.isArray(value) || value.length > count) throw new Error(`sizes must be at most ${count} numbers`);
@@ -74,13 +74,13 @@ export function parseShape(value: unknown): Shape {
   };
 }
 
-/** One of its sizes by name; 0 where it has none of that name. */
+/** One of its sizes by name; 0 if there is none of that name. */
 export function sizeOf({ kind, sizes }: Solid, name: string): number {
   const index = kind.sizes.indexOf(name);
   return index < 0 ? 0 : sizes[index];
 }
 
-/** The same with one size changed, where it has that. */
+/** A copy with one size changed, if it has that. */
 export function withSize<S extends Solid>(solid: S, name: string, value: number): S {
   const index = solid.kind.sizes.indexOf(name);
   return index < 0 ? solid : { ...solid, sizes: solid.sizes.with(index, value) };
@@ -91,7 +91,7 @@ export function shapeDistance(solid: Solid, x: number, y: number, z: number): nu
   return solid.kind.distance(solid, x, y, z);
 }
 
-/** Radius in meters of the smallest sphere about the shape's own origin that holds it. */
+/** Radius in meters of the smallest enclosing sphere about the shape's origin. */
 export function shapeReach(solid: Solid): number {
   return solid.kind.reach(solid);
 }
@@ -134,7 +134,7 @@ export function placeShape(shape: Shape, odd: boolean, length: number | null): P
   };
 }
 
-/** Radius in meters of the sphere about the body's origin that holds all its shapes. */
+/** Radius in meters of the sphere about the body's origin that encloses all its shapes. */
 export function bodyReach(shapes: readonly PlacedShape[]): number {
   let reach = 0;
   for (const placed of shapes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every shape, by name. One more: a file here and a line below (and a header in src/shape of the engine).
+// Every shape, by name. A new shape needs a file here and a line below (and a header in src/shape of the engine).
 
 import { box } from "./box.ts";
 import { capsule } from "./capsule.ts";
@@ -16,7 +16,7 @@ export const shapeList: readonly Kind[] = [sphere, box, cylinder, capsule, torus
 
 const byName = new Map(shapeList.map((kind) => [kind.name, kind]));
 
-/** Throws an Error that lists the shapes for a name that is none of theirs. */
+/** Throws an Error that lists the shapes for an unknown name. */
 export function shapeKind(name: string): Kind {
   const kind = byName.get(name);
   if (kind === undefined) throw new Error(`unknown shape ${JSON.stringify(name)}; known: ${[...byName.keys()].join(", ")}`);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces that are swept out: by a profile that turns about the x axis, by a circle along a line.
+// Swept surfaces: of a profile about the x axis, of a circle along a line.
 
 import { BufferAttribute, BufferGeometry } from "three";
 
@@ -42,7 +42,7 @@ export interface ProfilePoint {
   readonly nr: number;
 }
 
-/** Adds an arc about (cx, cr) to a profile; angle 0 looks to -x, a quarter turn away from the axis. */
+/** Adds an arc about (cx, cr) to a profile; angle 0 is the direction -x, a quarter turn points away from the axis. */
 export function arc(profile: ProfilePoint[], cx: number, cr: number, radius: number, from: number, to: number, steps: number): void {
   for (let step = 0; step <= steps; step++) {
     const angle = from + ((to - from) * step) / steps;
@@ -56,7 +56,7 @@ export function arc(profile: ProfilePoint[], cx: number, cr: number, radius: num
 export function revolve(profile: readonly ProfilePoint[], columns: number, length: number, tiles: number): BufferGeometry {
   return sweep(profile.length - 1, columns, (i, j, point, normal, uv) => {
     const { x, r, nx, nr } = profile[i];
-    const angle = (-2 * Math.PI * j) / columns; // this way round the faces look outward
+    const angle = (-2 * Math.PI * j) / columns; // in this direction the faces are outward
     point[0] = x;
     point[1] = r * Math.cos(angle);
     point[2] = r * Math.sin(angle);
@@ -76,7 +76,7 @@ export function tilesAlong(radius: number, length: number): number {
 export const tilePerRadius = 4.7;
 
 /**
- * Sharp edges are drawn with a bevel of this part of the least size, so that they catch light: less than a coarse ball
- * differs from a round one.
+ * Sharp edges are drawn with a bevel of this share of the least size, so that they reflect light: less than the error
+ * of a coarse ball.
  */
 export const bevel = 0.01;

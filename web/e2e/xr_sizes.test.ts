@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// A headset in scenes from a molecule to a valley: the user stands before each as before a table, and holds its parts as well; and the
+// controls of a script on its panel.
+
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import { Browser } from "./browser.ts";
+import { HeadsetTab } from "./headset.ts";
+import { freePort, WorldServer } from "./server.ts";
+
+let server: WorldServer;
+let browser: Browser;
+
+beforeAll(async () => {
+  server = await WorldServer.start(["web/e2e/sizes_probe.py"], await freePort());
+  browser = await Browser.start({ width: 640, height: 320, density: 1 });
+});
+
+afterAll(async () => {
+  await browser?.stop();
+  await server?.stop();
+});
+
+describe("a headset", () => {
+  it.each([["1e-09", true], ["0.001", true], ["1", false], ["1000", true]])("in a world of %s m sees it whole and takes hold of it", async (size, isScaled) => {
+    const me = await HeadsetTab.open(browser, `${server.url}&world=${size}`);
+    await me.tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+    await me.enter();
+    await me.tab.until("the rods hang still", () => iota.step > 200);
+    await me.tab.page.evaluate(() => iota.page.commands.run("home in vr"));
+    await me.frames(3);
+    const scene = await me.tab.page.evaluate(() => {
+      const { stage, room } = iota.page.viewer;
+      const middle = iotaXR!.toSpace(stage.middle.toArray());
+      const head = iotaXR!.toSpace(iotaXR!.head());
+      return { scale: room.scale.x, size: stage.size / room.scale.x, away: Math.hypot(...middle.map((value, axis) => value - head[axis])) };
+    });
+    expect(scene.scale === 1, JSON.stringify(scene)).toBe(!isScaled);
+    if (isScaled) expect(scene.size).toBeCloseTo(0.7, 1);
+    expect(scene.away).toBeGreaterThan(0.6);
+    expect(scene.away).toBeLessThan(6);
+
+    const body = 4;
+    await me.pointAtBody("right", [0.2, 1.3, -0.3], body);
+    await me.tab.until("the ray is on a rod", () => iotaXR!.inputs().some((input) => input.hovered >= 0));
+    await me.picture(`xr-size-${size}`);
+    await me.button("right", "trigger", 1);
+    await me.tab.until("a rod is held", () => iota.held >= 0 && iota.holds().length === 1);
+    const before = await me.tab.page.evaluate(() => iotaXR!.toSpace(iota.holds()[0].target));
+    const target = await me.tab.page.evaluate(() => iotaXR!.toSpace(iota.bodyPosition(4)));
+    await me.point("right", [0.2, 1.5, -0.3], [target[0], target[1] + 0.2, target[2]]);
+    await me.tab.until("the hand has moved by 20 cm of the user's", (was) => {
+      const now = iotaXR!.toSpace(iota.holds()[0].target);
+      return Math.abs(Math.hypot(...now.map((value, axis) => value - was[axis])) - 0.2) < 0.06;
+    }, before);
+    await me.button("right", "trigger", 0);
+    await me.tab.until("it is let go", () => iota.held === -1 && iota.holds().length === 0);
+    expect(me.tab.complaints).toEqual([]);
+    await me.tab.page.close();
+  });
+
+  it("has the controls of the script at the wrist", async () => {
+    const entities = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
+    try {
+      const me = await HeadsetTab.open(browser, entities.url);
+      await me.enter();
+      await me.point("left", [-0.2, 1.32, -0.38], [-0.2, 1.32, -2]);
+      await me.look(0.3, -0.25);
+      await me.pointAtPanel("right", [0.12, 1.38, -0.2], "less gravity");
+      await me.click("right", "trigger");
+      await expect.poll(() => entities.output).toContain('{"slider": 8.8');
+      await me.pointAtPanel("right", [0.12, 1.38, -0.2], "control wind");
+      await me.click("right", "trigger");
+      await expect.poll(() => entities.output).toContain('{"checkbox": false}');
+      await me.picture("xr-controls");
+      await me.tab.page.close();
+    } finally {
+      await entities.stop();
+    }
+  });
+});
