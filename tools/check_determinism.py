@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the engine with gcc and clang at -O1 and -O3 and checks that all end in the same bits, on 1, 2 and 4 threads.
+"""Builds the engine with gcc and clang at -O1 and -O3 and checks that all give the same bits, on 1, 2 and 4 threads.
 
     tools/check_determinism.py [--compilers g++ clang++] [--levels 1 3]
 
-Runs tests/determinism/state_hashes.cpp of each build; exit code 1 names the first scene and tenth that differ. A
-compiler that is not installed is left out, and said so.
+Runs tests/determinism/state_hashes.cpp of each build; exit code 1 with the first scene and tenth that differ. A
+compiler that is not installed is skipped with a message.
 """
 
 from __future__ import annotations

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Counts, for each ingredient, shape, joint, message, entity and page command, the source files that know it.
+"""Counts, for each ingredient, shape, joint, message, entity and page command, the source files that name it.
 
     python3 tools/count_knowers.py                  this checkout
     python3 tools/count_knowers.py --tree DIR       another checkout
     python3 tools/count_knowers.py --against DIR    both side by side, DIR first
-    python3 tools/count_knowers.py --list grip      the files behind a number
+    python3 tools/count_knowers.py --list grip      the counted files
 
 A file knows a thing when it names it: in an identifier (also in TypeScript's camelCase), in an included path, in a quoted
 name such as "revolute", or in its own name. Comments and sentences in strings do not count, and neither do tests, documents and
 generated files. Each thing has several spellings, so that a renaming does not look like an improvement.
 
-The fewer files know a shape, the fewer a new shape has to be told to. Files that are named after the thing (`grips.cpp` for a
-grip) are its own: one more of its kind would bring such files along. `strangers` counts the others, which one would have to
-edit.
+The number is an estimate of the files to edit for one more thing of its kind. Files that are named after the thing
+(`grips.cpp` for a grip) are its own; a new thing would have such files, too. `strangers` counts the others, which would
+have to be edited.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ INGREDIENTS = [
     Thing("point masses", ("virtual mass", "damped masses", "add masses", "mass couplings", "point mass", "=masses",
                            "=Masses"), ENGINE),
     Thing("rigid rows", ("rigid row", "pinned row", "rigid rows", "body row"), ENGINE),
-    # What is drawn between two points is a tie, too, and bonds and joints tie bodies together: other things.
+    # The page's ties (drawn between two points), and bonds and joints that tie bodies, are other things.
     Thing("tied particles", ("=Tie", "=Ties", "=ties", "=ties_", "tied particle", "=tied_", "affine"), ENGINE),
     Thing("nails", ("nail", "nailed", "is nailed"), ENGINE),
     Thing("closings", ("closing", "closings", "close over"), ENGINE),
@@ -77,7 +77,7 @@ SHAPES = [
     Thing("capsule", ("capsule",)),
     Thing("torus", ("torus",)),
     Thing("mesh", ("=Mesh", "=mesh", "mesh shape", "shape mesh"),
-          # Elsewhere on the page a mesh is three.js's word for anything that is drawn.
+          # Elsewhere on the page a mesh is a drawn object of three.js.
           ("include", "src", "bindings", "python", "protocol", "web/src/scene/shape.ts", "web/src/scene/geometry.ts",
            "web/src/scene/mesh.ts", "web/src/scene/shapes")),
     Thing("cone", ("cone",)),
@@ -85,14 +85,14 @@ SHAPES = [
     Thing("half-space", ("half space", "=Plane", "=plane")),
 ]  # fmt: skip
 
-# Their names are common words (inside, path, apart): a file knows the kind when it names the enumerator or quotes it.
+# Their names are common words (inside, path, apart): a file names the kind if it has the enumerator or quotes it.
 JOINTS = [Thing(name, (f"ConstraintKind::{name}", f'"{name}"'),
                 ("include", "src/geometry", "src/shape", "src/model", "src/ingredient", "src/solver", "src/island",
                  "src/edit", "src/read", "src/step", "bindings", "python/iota/__init__.py"))
           for name in ("ball", "universal", "revolute", "cylindrical", "prismatic", "weld", "rod", "rope", "path",
                        "inside", "outside", "touching", "apart")]  # fmt: skip
 
-# Those that the schema names. This list only keeps the rows where a schema is spelled in another way.
+# Those of the schema. This list only keeps rows for older spellings of the schema.
 MESSAGES = ["hello", "select", "grab_start", "grab_move", "grab_end", "action", "control", "welcome", "poses", "notice",
             "clients", "pong", "ping", "scene", "effect"]  # fmt: skip
 
@@ -126,7 +126,7 @@ PAGE_COMMANDS = [
     }.items()
 ]
 
-# --- what a file names ------------------------------------------------------------------------------------------------
+# --- names in a file ------------------------------------------------------------------------------------------------
 
 # A comment, a string, or an identifier, whichever comes first.
 C_TOKEN = re.compile(
@@ -162,7 +162,7 @@ def names_in(text: str, pattern: re.Pattern[str]) -> Iterator[str]:
 
 
 class File:
-    """What one source names: whole names, and the words of each with blanks around them."""
+    """The names in a source: whole names, and the words of each with blanks around them."""
 
     def __init__(self, path: Path) -> None:
         self.stem = path.stem
@@ -171,7 +171,7 @@ class File:
         self.words = "\n".join(f" {' '.join(word.lower() for word in WORD.findall(name))} " for name in self.names)
 
     def is_of(self, thing: Thing) -> bool:
-        """Whether it is named after it."""
+        """Whether the file is named after the thing."""
         words = f" {' '.join(word.lower() for word in WORD.findall(self.stem))} "
         names = [thing.name, *(spelling.removeprefix("=").lower() for spelling in thing.spellings)]
         return any(f" {name} " in words or f" {name}s " in words for name in names)
@@ -208,7 +208,7 @@ def message(name: str) -> Thing:
     pascal = "".join(word.title() for word in words)
     camel = pascal[0].lower() + pascal[1:]
     spellings = (f"={name}", f"={pascal}", f"={camel}", f"encode {' '.join(words)}", f"decode {' '.join(words)}")
-    # A single word such as `action` names many things: only its type and its encoders are this message.
+    # A single word such as `action` has many meanings: only its type and its encoders are this message.
     here = spellings if len(words) > 1 else (f"={pascal}", *spellings[3:])
     return Thing(name, here, ("src/net", "bindings", "python/iota/world", "protocol", "web"))
 
@@ -253,7 +253,7 @@ def print_one(tree: Path, table: dict[str, list[Thing]]) -> None:
 
 
 def print_both(before: Path, after: Path, table: dict[str, list[Thing]]) -> None:
-    """Files of the engine's own sources (src) and of everything; a thing that is new has no number before."""
+    """Numbers of files in src and in total; a new thing has no earlier number."""
     old, new = files_of(before), files_of(after)
     print(f"{'':34}{'src':>8}{'':>8}{'all':>8}{'':>8}{'strangers in src':>16}")
     print(f"{'':34}{'before':>8}{'after':>8}{'before':>8}{'after':>8}{'before':>8}{'after':>8}")

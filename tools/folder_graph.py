@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints which folders use which, in C++, TypeScript and Python, and fails when two of them use each other.
+"""Prints the dependencies of folders in C++, TypeScript and Python, and fails if two folders depend on each other.
 
     python3 tools/folder_graph.py [TREE ...]
 
 Without arguments: src, web/src and python/iota. A folder is a path below its tree that holds sources, such as
-`solver/sparse`; public C++ headers count as `iota`. In Python a module beside the sub-packages counts as a folder by
-itself, and `__init__.py`, which users import and which is made of all the others, has the package's name. Imports for
-types alone count as well. Exit code 1 when a graph has a cycle, direct or through others, or when an arrow of FORBIDDEN
-is drawn.
+`solver/sparse`; public C++ headers count as `iota`. In Python a module beside the sub-packages counts as a folder, and
+`__init__.py`, which imports all others, has the package's name. Imports only for types count as well. Exit code 1 if a
+graph has a cycle, direct or indirect, or an arrow of FORBIDDEN.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TREES = [ROOT / "src", ROOT / "web" / "src", ROOT / "python" / "iota"]
-# Rules of the architecture that a graph without cycles could still break: (who, must not see).
+# Rules of the architecture that an acyclic graph could violate: (folder, must not use).
 FORBIDDEN = [
     *[("solver", "model"), ("net", "model"), ("net", "solver"), ("net", "edit"), ("net", "system")],
     *[("held", "read"), ("read", "edit"), ("island", "edit"), ("edit", "step"), ("edit", "system"), ("step", "system")],
@@ -47,7 +46,7 @@ def includes_of(path: Path, tree: Path) -> Iterator[str]:
 
 def ts_imports_of(path: Path, tree: Path) -> Iterator[str]:
     for name in TS_IMPORT.findall(path.read_text()):
-        # Not asked whether it is there: generated files count too.
+        # Its existence is not checked: generated files count too.
         yield folder_of(path.parent / name, tree)
 
 
@@ -66,7 +65,7 @@ def python_imports_of(path: Path, tree: Path) -> Iterator[str]:
 
 
 def module_folder(tree: Path, parts: list[str]) -> str:
-    """The folder of the longest part of a dotted name that is a module; the rest are names in it."""
+    """The folder of the longest prefix of a dotted name that is a module; the rest are names in it."""
     for count in range(len(parts), 0, -1):
         module = tree.joinpath(*parts[:count])
         for file in (module.with_suffix(".py"), module / "__init__.py"):
@@ -101,7 +100,7 @@ def read_graph(tree: Path) -> Graph:
 
 
 def find_cycles(graph: Graph) -> list[list[str]]:
-    """One cycle for each folder from which it can be entered first, in order of names."""
+    """One cycle for each first folder in order of names."""
     cycles: list[list[str]] = []
     done: set[str] = set()
 

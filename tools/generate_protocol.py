@@ -4,9 +4,8 @@
 
     python3 tools/generate_protocol.py --cpp FILE --ts FILE --python FILE
 
-Needs the standard library only. A file is replaced atomically, and only when its
-contents change, so that build tools do not rebuild for nothing. A wrong schema ends
-with one line on stderr and exit code 1.
+Needs the standard library only. A file is replaced atomically, and only if its contents change, to avoid needless
+rebuilds. An invalid schema gives one line on stderr and exit code 1.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ LANGUAGES = {"cpp": cpp.make, "ts": typescript.make, "python": python.make}
 
 
 def write_if_changed(path: Path, text: str) -> None:
-    """Replace `path` atomically unless it already holds `text`."""
+    """Replaces `path` atomically unless it already contains `text`."""
     data = text.encode("utf-8")
     if path.is_file() and path.read_bytes() == data:
         return

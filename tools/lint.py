@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Formatters and linters of every language.
 
-.venv/bin/python tools/lint.py            checks, changes nothing; exit code 1 when one complains
+.venv/bin/python tools/lint.py            checks, changes nothing; exit code 1 for any error
 .venv/bin/python tools/lint.py --format   formats C++ and Python in place
 .venv/bin/python tools/lint.py --tidy     clang-tidy too (minutes; needs `make build` and `make test` before)
 """
@@ -28,7 +28,7 @@ def cpp_files(*suffixes: str) -> list[str]:
 
 
 def run(title: str, *command: str | Path, folder: Path = ROOT) -> bool:
-    """Runs one tool; prints its output only when it complains."""
+    """Runs one tool; prints its output only on failure."""
     environment = dict(os.environ, PATH=f"{BIN}{os.pathsep}{os.environ.get('PATH', '')}")
     done = subprocess.run(
         [str(word) for word in command], cwd=folder, env=environment, text=True,

@@ -4,7 +4,7 @@
 
     tools/make_films.py [NAME ...] [--no-films]
 
-The sheets and thumbnails are kept in the repository: look at them before they are committed.
+The sheets and thumbnails are kept in the repository: check them before a commit.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ IOTA = [sys.executable, "-m", "iota"]
 FILMS = ROOT / "build" / "films"
 THUMBNAILS = ROOT / "python" / "iota" / "studies" / "pictures"
 SHEETS = ROOT / "docs" / "pictures" / "studies"
-# How long a film is, s, and when its thumbnail is taken, where the usual times miss the point.
+# Duration of a film, s, and time of its thumbnail, if they differ from the defaults.
 SECONDS = {"molecule": 12.0, "undersea": 28.0}
 USUAL = 10.0
 MOMENT = {"chain": 0.6, "fireworks": 2.2, "physics-class": 3.5, "playground": 0.6, "undersea": 6.4}
@@ -33,7 +33,7 @@ def record(name: str, *arguments: str | Path) -> None:
 
 
 def make(name: str, with_film: bool) -> None:
-    """A sheet of twelve pictures from the film, or, without it, from as many frames."""
+    """A sheet of twelve pictures from the film, or, without a film, from twelve frames."""
     seconds = SECONDS.get(name, USUAL)
     film = ["-o", FILMS / f"{name}.mp4"] if with_film else ["--rate", "2"]
     record(name, "--seconds", str(seconds), "--sheet", SHEETS / f"{name}.jpg", *film)

@@ -4,9 +4,9 @@
 
     tools/run_tests.py [SUITE ...]
 
-Counts come from each runner's machine-readable results in build/test-results, never from its words. A suite that
-crashes, runs out of time or runs no test counts as one failure. Everything a suite printed is in
-build/logs/test-SUITE.log; of a failed one the end is shown. Exit code 0 only when nothing failed.
+Counts come from each runner's machine-readable results in build/test-results. A suite that crashes, runs out of time or
+runs no test counts as one failure. The output of a suite is in build/logs/test-SUITE.log; the end of a failed one is
+shown. Exit code 0 only if nothing failed.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SHOWN_LINES = 60
 
 @dataclass
 class Count:
-    """How many tests passed, failed and were skipped, and the names of the failed ones."""
+    """Numbers of passed, failed and skipped tests, and the names of the failed ones."""
 
     passed: int = 0
     failed: int = 0
@@ -86,7 +86,7 @@ def read_vitest(result: Path) -> Count:
                 count.passed += 1
             else:
                 count.skipped += 1
-        # A file that cannot be loaded, or whose set-up fails, has no failed test of its own.
+        # A file that cannot be loaded, or whose set-up fails, has no failed test.
         if file["status"] == "failed" and not any(state == "failed" for state, _ in states):
             count.fail(f"{name}: {file.get('message', '').strip().splitlines()[:1]}")
     return count
@@ -94,7 +94,7 @@ def read_vitest(result: Path) -> Count:
 
 @dataclass(frozen=True)
 class Suite:
-    """One runner: `{result}` in its command is where it writes what `read` understands.
+    """One runner: `{result}` in its command is the path of its results for `read`.
 
     Without `read` the suite is one test that passes with exit code 0.
     """
@@ -111,7 +111,7 @@ def pytest(folder: str) -> list[str]:
 
 
 def vitest(*arguments: str) -> list[str]:
-    # Time limits are there to end what hangs. On a small machine that does other work too, slow is not wrong.
+    # Time limits end hanging tests only, as tests may be slow on a small, busy machine.
     limits = ["--testTimeout=180000", "--hookTimeout=180000"]
     reporters = ["--reporter=default", "--reporter=json", "--outputFile.json={result}"]
     return [str(BIN / "npx"), "--no-install", "vitest", "run", *arguments, *limits, *reporters]
@@ -150,7 +150,7 @@ def run(suite: Suite) -> Count:
         except subprocess.TimeoutExpired:
             code = None
         finally:
-            end_group(process.pid)  # also the browsers and servers that a broken test left behind
+            end_group(process.pid)  # also browsers and servers left by a failed test
     if suite.read and result.is_file():
         try:
             count.add(suite.read(result))
@@ -168,7 +168,7 @@ def run(suite: Suite) -> Count:
 
 
 def end_group(leader: int) -> None:
-    """Ends what is left of a suite's process group."""
+    """Ends the remaining processes of a suite's group."""
     for how, wait_s in ((signal.SIGTERM, 1.0), (signal.SIGKILL, 0.0)):
         try:
             os.killpg(leader, how)
@@ -191,7 +191,7 @@ def main(names: list[str]) -> int:
         if name not in known:
             print(f"no suite is called {name!r}; there are: {' '.join(known)}", file=sys.stderr)
             return 2
-    # A shell that starts us in the background lets us, and all that we start, ignore Ctrl-C. Tests that send one need it.
+    # In the background of a shell, Ctrl-C is ignored by us and our children. Tests that send it need it.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     RESULTS.mkdir(parents=True, exist_ok=True)
     LOGS.mkdir(parents=True, exist_ok=True)

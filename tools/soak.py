@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The long runs, one after the other; the build makes what they need.
+"""The long runs, one after the other; the build makes their programs.
 
     tools/soak.py [NAME ...]      scenes edits verify ladder; all without a name
 
-Exit code 0 only when none failed. A random scene that fails is printed as the shortest script that still does.
+Exit code 0 only if none failed. A failing random scene is printed as the shortest script that still fails.
 """
 
 from __future__ import annotations

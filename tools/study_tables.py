@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes docs/study_figures.md: lines of each study in the thesis' three categories, and what a step of each costs.
+"""Writes docs/study_figures.md: lines of each study in the thesis' three categories, and the cost of a step.
 
-tools/study_tables.py [--check]     --check: only whether the lines in the page are those of the scripts
+tools/study_tables.py [--check]     --check: only checks whether the lines in the page are those of the scripts
 """
 
 from __future__ import annotations
@@ -13,18 +13,26 @@ import re
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import iota
 
 ROOT = Path(__file__).resolve().parent.parent
 STUDIES = ROOT / "python" / "iota" / "studies"
 PAGE = ROOT / "docs" / "study_figures.md"
 CATEGORIES = ("scene setup", "presentation", "behavior")
-# Lines in the thesis, chapter 5: the interactive version where there are two.
+# Lines in the thesis, chapter 5: of two versions the interactive one.
 THESIS = {
     "molecule": (10, 20, 10), "chain": (20, 20, 130), "ladder": (120, 100, 160), "cradle": (30, 60, 300),
     "shoal": (30, 40, 15), "soft-molecule": (10, 30, 10), "bucky": (10, 30, 20), "undersea": (50, 60, 150),
     "lab": (150, 160, 490),
 }  # fmt: skip
+PAGE_SECONDS = 8.0
+ASK = "(({ calls, triangles }) => ({ calls, triangles }))(iota.page.viewer.renderer.info.render)"
 # Helpers that one study uses are counted with it.
 HELPERS = {"lab": ["_laboratory"], "playground": ["_scene"]}
 SHOWS = re.compile(
@@ -37,7 +45,7 @@ MAKES = re.compile(
 
 
 def categories(path: Path) -> Counter[str]:
-    """Statements by what they mostly do; their lines, without blank ones, comments and docstrings."""
+    """Statements by their main purpose; their lines, without blank ones, comments and docstrings."""
     source = path.read_text()
     lines = source.splitlines()
     found: Counter[str] = Counter()
@@ -116,13 +124,47 @@ def step_costs(build: object, seconds: float = 3.0) -> tuple[float, float, float
     return 1000 * whole / steps, 1000 * engine / steps, whole / seconds
 
 
-def time_table() -> str:
-    from iota import studies
+@dataclass
+class PageCost:
+    """Of a frame of the page: draw calls, and triangles with shadows."""
 
-    rows = ["| study | step, ms | simulator alone, ms | share of real time |", "|---|---|---|---|"]
-    for name in names():
-        whole, engine, share = step_costs(studies.module(name).build)
-        rows.append(f"| {name} | {whole:.2f} | {min(engine, whole):.2f} | {100 * share:.0f} % |")
+    calls: int
+    triangles: int
+
+
+def page_costs(browser: Any, build: Callable[[], iota.World]) -> PageCost:
+    """Of a page of 1280x720 some seconds after it was opened, while the world runs."""
+    world = build()
+    page = browser.new_page(viewport={"width": 1280, "height": 720})
+    try:
+        page.goto(world.start(port=0))
+        time.sleep(PAGE_SECONDS)
+        return PageCost(**page.evaluate(ASK))
+    finally:
+        page.close()
+        world.stop()
+
+
+def time_table() -> str:
+    from playwright.sync_api import sync_playwright
+
+    from iota import studies
+    from iota.film.browser import FLAGS, find_browser
+
+    rows = [
+        "| study | step, ms | simulator alone, ms | share of real time | draw calls | triangles |",
+        "|---|---|---|---|---|---|",
+    ]
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=find_browser(), args=list(FLAGS))
+        for name in names():
+            build = studies.module(name).build
+            whole, engine, share = step_costs(build)
+            page = page_costs(browser, build)
+            rows.append(
+                f"| {name} | {whole:.2f} | {min(engine, whole):.2f} | {100 * share:.0f} % | {page.calls} | {page.triangles} |"
+            )
+        browser.close()
     return "\n".join(rows)
 
 
@@ -164,7 +206,8 @@ counted with it. Chapter 5 of the thesis gives the last column in the same order
 ## What a step costs
 
 Processor time on one core of a shared machine, so compare rows rather than take them for what you will see. The simulator alone: every eighth step
-taken once more without the script. What pages draw is no part of it.
+taken once more without the script. Draw calls and triangles, shadows counted, are those
+of a frame of the page in a window of 1280x720; `iota profile` tells where the time of a frame goes on a machine of yours.
 
 {times}
 

@@ -2,12 +2,14 @@
 from __future__ import annotations
 
 import importlib.util
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 spec = importlib.util.spec_from_file_location("study_tables", ROOT / "tools" / "study_tables.py")
 assert spec is not None and spec.loader is not None
 study_tables = importlib.util.module_from_spec(spec)
+sys.modules[spec.name] = study_tables  # dataclasses look their module up
 spec.loader.exec_module(study_tables)
 
 

@@ -101,7 +101,7 @@ def write(type: Type, value: str, label: str) -> list[str]:
 
 
 def read(type: Type, value: str, label: str, schema: Schema) -> list[str]:
-    """Statements that take a value from `in`."""
+    """Statements that read a value from `in`."""
     if type.enum:
         return [f"in.enumerator({value}, {len(schema.enums[type.enum].values)}, {label});"]
     if type.kind in INTEGERS:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python side: constants, enums, and what the records of entities consist of, for those that scripts make."""
+"""The Python side: constants, enums, and the fields of the entities that scripts make."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ NUMBERS = INTEGERS + REALS
 
 
 class SchemaError(Exception):
-    """The schema says something that cannot be generated."""
+    """The schema has an error."""
 
 
 @dataclass(frozen=True)
@@ -99,11 +99,11 @@ class Schema:
 
     @property
     def coded(self) -> tuple[Struct, ...]:
-        """Everything that is written and read, what is used before what uses it."""
+        """All encoded types, in order of dependency."""
         return (*self.structs.values(), *self.entities, *self.messages)
 
     def smallest(self, type: Type) -> int:
-        """Fewest bytes that a value can take on the wire."""
+        """Least number of bytes of a value on the wire."""
         if type.kind == "struct":
             return sum(self.smallest(field.type) for field in self.structs[type.struct].fields)
         return SCALARS.get(type.kind, 4)
@@ -119,7 +119,7 @@ def camel(name: str) -> str:
 
 
 def read_schema(path: Path) -> Schema:
-    """Raises SchemaError, OSError, ValueError or KeyError for a schema that is wrong."""
+    """Raises SchemaError, OSError, ValueError or KeyError for an invalid schema."""
     data = json.loads(path.read_text(encoding="utf-8"))
     constants = tuple(
         Constant(checked_name(c["name"], "constant"), c["type"], int(c["value"]), c.get("doc", ""))
@@ -198,7 +198,7 @@ def read_struct(entry: dict[str, Any], enums: dict[str, Enum]) -> Struct:
 
 
 def read_entity(path: Path, enums: dict[str, Enum]) -> Struct:
-    """A kind of entities. Its records begin with the id."""
+    """A kind of entities. Its records start with the id."""
     entry = json.loads(path.read_text(encoding="utf-8"))
     kind = checked_name(entry.get("name"), path.name)
     if kind != path.stem:
@@ -224,7 +224,7 @@ def check_names(schema: Schema) -> None:
 
 
 def structs_in(struct: Struct) -> Iterator[tuple[Field, str]]:
-    """The structs that fields are made of."""
+    """The structs of fields."""
     for field in struct.fields:
         type = field.type.element if field.type.kind == "array" else field.type
         if type.kind == "struct":
