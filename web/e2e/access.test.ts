@@ -23,9 +23,9 @@ const controls = () => [...document.querySelectorAll<HTMLElement>("button, selec
 async function open(options: Parameters<typeof Browser.start>[0]): Promise<{ browser: Browser; tab: Tab }> {
   const browser = await Browser.start(options);
   const tab = await browser.open(server.url);
-  // The panel is in the page from the start, but hidden until the script's controls have come.
+  // The panel comes with the page, but is hidden until the script's controls have come.
   await tab.until("world and controls are shown", () => !document.getElementById("view")!.classList.contains("waiting")
-    && !document.getElementById("panel")!.hidden && [...document.querySelectorAll("#panel button")].some(({ textContent }) => textContent === "throw"));
+    && [...document.querySelectorAll("#panel:not([hidden]) button")].some(({ textContent }) => textContent === "throw"));
   await tab.page.evaluate(() => iota.page.events.notice({ level: 1, title: "A card", text: "with some text", hint: "and what to try" }));
   return { browser, tab };
 }

@@ -89,7 +89,7 @@ export class Tab {
   }
 
   /** Waits until a function of the page is true; the error says what it waited for. */
-  async until<T>(what: string, condition: (argument: T) => unknown, argument?: T, timeout = 25_000): Promise<void> {
+  async until<T>(what: string, condition: (argument: T) => unknown, argument?: T, timeout = 60_000): Promise<void> {
     try {
       await this.page.waitForFunction(condition as (argument: unknown) => unknown, argument, { timeout, polling: 50 });
     } catch (error) {
