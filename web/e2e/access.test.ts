@@ -20,14 +20,19 @@ const controls = () => [...document.querySelectorAll<HTMLElement>("button, selec
   .filter((element) => element.checkVisibility() && !(element as HTMLButtonElement).disabled)
   .map((element) => element.id || `${element.tagName} ${element.getAttribute("aria-label") ?? element.closest("label")?.textContent ?? element.textContent}`);
 
-async function open(options: Parameters<typeof Browser.start>[0]): Promise<{ browser: Browser; tab: Tab }> {
+/** Visits the page in a browser of its own, with the script's controls and a card shown. */
+async function visit(options: Parameters<typeof Browser.start>[0], look: (tab: Tab) => Promise<void>): Promise<void> {
   const browser = await Browser.start(options);
-  const tab = await browser.open(server.url);
-  // The panel comes with the page, but is hidden until the script's controls have come.
-  await tab.until("world and controls are shown", () => !document.getElementById("view")!.classList.contains("waiting")
-    && [...document.querySelectorAll("#panel:not([hidden]) button")].some(({ textContent }) => textContent === "throw"));
-  await tab.page.evaluate(() => iota.page.events.notice({ level: 1, title: "A card", text: "with some text", hint: "and what to try" }));
-  return { browser, tab };
+  try {
+    const tab = await browser.open(server.url);
+    // The panel comes with the page, but is hidden until the script's controls have come.
+    await tab.until("world and controls are shown", () => !document.getElementById("view")!.classList.contains("waiting")
+      && [...document.querySelectorAll("#panel:not([hidden]) button")].some(({ textContent }) => textContent === "throw"));
+    await tab.page.evaluate(() => iota.page.events.notice({ level: 1, title: "A card", text: "with some text", hint: "and what to try" }));
+    await look(tab);
+  } finally {
+    await browser.stop();
+  }
 }
 
 /** Controls that are not wholly in the window or a part that scrolls, lie over each other, or are smaller than a finger. */
@@ -78,8 +83,7 @@ const faint = () => {
 
 describe("the page", () => {
   it("is reached by the keyboard alone, with a ring around what has the focus", async () => {
-    const { browser, tab } = await open({ width: 1000, height: 640 });
-    try {
+    await visit({ width: 1000, height: 640 }, async (tab) => {
       const wanted = new Set(await tab.page.evaluate(controls));
       expect(wanted.size).toBeGreaterThan(10);
       const unmarked: string[] = [];
@@ -96,31 +100,23 @@ describe("the page", () => {
       }
       expect([...wanted]).toEqual([]);
       expect(unmarked).toEqual([]);
-    } finally {
-      await browser.stop();
-    }
+    });
   });
 
   it.each([false, true])("can be read before any world (dark: %s)", async (dark) => {
-    const { browser, tab } = await open({ width: 1000, height: 640, dark });
-    try {
+    await visit({ width: 1000, height: 640, dark }, async (tab) => {
       await tab.page.keyboard.press("?");
       await tab.page.locator("#help[open]").waitFor();
       await tab.page.waitForTimeout(400);
       expect(await tab.page.evaluate(faint)).toEqual([]);
-    } finally {
-      await browser.stop();
-    }
+    });
   });
 
   it.each([["at 200 % zoom", { width: 640, height: 360 }, 24], ["on a phone", { width: 390, height: 844, touch: true }, 40], ["on a phone that lies", { width: 844, height: 390, touch: true }, 40]])("has all its controls %s", async (name, options, least) => {
-    const { browser, tab } = await open(options);
-    try {
+    await visit(options, async (tab) => {
       await tab.page.waitForTimeout(500);
       await tab.picture(`page_access_${name.replaceAll(/\W+/g, "_")}`);
       expect(await tab.page.evaluate(misplaced, least)).toEqual([]);
-    } finally {
-      await browser.stop();
-    }
+    });
   });
 });
