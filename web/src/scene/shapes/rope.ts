@@ -2,7 +2,7 @@
 // Rods of rope: strands in the geometry, so that a near rope is not a smooth pipe.
 
 import type { BufferGeometry } from "three";
-import { sweep, tilesAlong, type ProfilePoint } from "./sweep.ts";
+import { revolve, tilesAlong, type ProfilePoint } from "./sweep.ts";
 
 /** Number of strands on the surface; the bump texture has the same number. */
 export const strandCount = 3;
@@ -22,19 +22,5 @@ export function layRope(profile: readonly ProfilePoint[], half: number, radius: 
   const middle = profile.findIndex((point) => point.x > 0);
   const straight = Array.from({ length: rows - 1 }, (_, row) => ({ x: -half + (2 * half * (row + 1)) / rows, r: radius, nx: 0, nr: 1 }));
   const whole = [...profile.slice(0, middle), ...straight, ...profile.slice(middle)];
-  return sweep(whole.length - 1, columns, (i, j, point, normal, uv) => {
-    const { x, r, nx, nr } = whole[i];
-    const v = j / columns;
-    const u = (x / length + 0.5) * tiles;
-    const laid = r * (0.9 + 0.1 * strandHeight(u, v));
-    const angle = -2 * Math.PI * v;
-    point[0] = x;
-    point[1] = laid * Math.cos(angle);
-    point[2] = laid * Math.sin(angle);
-    normal[0] = nx;
-    normal[1] = nr * Math.cos(angle);
-    normal[2] = nr * Math.sin(angle);
-    uv[0] = u;
-    uv[1] = v;
-  });
+  return revolve(whole, columns, length, tiles, (u, v) => 0.9 + 0.1 * strandHeight(u, v));
 }

@@ -52,19 +52,25 @@ export function arc(profile: ProfilePoint[], cx: number, cr: number, radius: num
   }
 }
 
-/** Turns a profile, from -x to +x, about the x axis. Texture: u in `tiles` over `length`, v once around. */
-export function revolve(profile: readonly ProfilePoint[], columns: number, length: number, tiles: number): BufferGeometry {
+/** Turns a profile, from -x to +x, about the x axis. Texture: u in `tiles` over `length`, v once around. `relief`: a factor
+ * of the radius there, which leaves the normals. */
+export function revolve(
+  profile: readonly ProfilePoint[], columns: number, length: number, tiles: number, relief = (_u: number, _v: number) => 1,
+): BufferGeometry {
   return sweep(profile.length - 1, columns, (i, j, point, normal, uv) => {
     const { x, r, nx, nr } = profile[i];
-    const angle = (-2 * Math.PI * j) / columns; // in this direction the faces are outward
+    const u = (x / length + 0.5) * tiles;
+    const v = j / columns;
+    const angle = -2 * Math.PI * v; // in this direction the faces are outward
+    const out = r * relief(u, v);
     point[0] = x;
-    point[1] = r * Math.cos(angle);
-    point[2] = r * Math.sin(angle);
+    point[1] = out * Math.cos(angle);
+    point[2] = out * Math.sin(angle);
     normal[0] = nx;
     normal[1] = nr * Math.cos(angle);
     normal[2] = nr * Math.sin(angle);
-    uv[0] = (x / length + 0.5) * tiles;
-    uv[1] = j / columns;
+    uv[0] = u;
+    uv[1] = v;
   });
 }
 
