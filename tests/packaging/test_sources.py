@@ -88,3 +88,12 @@ def test_folders_of_cpp_tests_are_those_of_the_sources() -> None:
 
     others = {".", "soak"}  # what tests share, and what tests the folder soak
     assert folders(ROOT / "tests" / "cpp", "*.cpp") - others <= folders(ROOT / "src", "*.h")
+
+
+def test_the_protocol_is_told_whole() -> None:
+    told = (ROOT / "protocol" / "README.md").read_text()
+    schema = json.loads((ROOT / "protocol" / "schema.json").read_text())
+    messages = [message["name"] for side in ("client_messages", "server_messages") for message in schema[side]]
+    kinds = [path.stem for path in (ROOT / "protocol" / "entities").glob("*.json")]
+    assert len(messages) > 20 and len(kinds) > 20
+    assert not [name for name in messages + kinds if f"`{name}`" not in told]
