@@ -317,10 +317,7 @@ void bind_pair_force(nb::module_& module) {
       .def_prop_ro(
           "cutoff", [](const PairsHandle& self) { return self.use().pairs().cutoff(self.id); }, "m")
       .def_prop_ro(
-          "energy",
-          [](const PairsHandle& self) {
-            return self.use(), self.system->use_between_steps("energy").pairs().energy(self.id);
-          },
+          "energy", [](const PairsHandle& self) { return self.use().pairs().energy(self.id); },
           "Of all pairs within the cut-off at present, J; part of `System.energy.potential`.")
       .def(
           "set", [](const PairsHandle& self, const nb::kwargs& keywords) { set_all(self, to_parameters(keywords)); },

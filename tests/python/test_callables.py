@@ -194,8 +194,9 @@ def test_what_is_asked_for_during_a_step_is_done_right_after_it(caller: str, edi
 def test_all_that_can_be_read_can_be_read_during_a_step(caller: str) -> None:
     marble = Marble()
     system, own = marble.system, marble.corners[0]
+    pairs = system.pair_force("lennard_jones", cutoff=0.5, depth=1.0, size=0.1)
     things = [
-        system, own.body, own, marble.hinge, marble.hinge.angle, marble.rope, marble.floor, marble.spring,
+        system, own.body, own, marble.hinge, marble.hinge.angle, marble.rope, marble.floor, marble.spring, pairs,
         system.grip(own.body), system.emitter(), system.group("all"),
         system.articulates[0], system.array(system.particles), system.array(system.bodies), system.array(system.bonds),
         system.cosmetic_bond(marble.corners[1], marble.corners[2]), system.field("uniform", acceleration=(0, 0.1, 0)), marble.spring.law,
