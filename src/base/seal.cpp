@@ -4,6 +4,7 @@
 #include "base/archive.h"
 
 #include <bit>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -13,10 +14,22 @@ static_assert(std::endian::native == std::endian::little, "sealed bytes are in t
 
 namespace {
 
+// By words of eight bytes, the last one filled up with zeros; byte by byte it took a third of a save. Each step maps the
+// state one to one, so any change of a single word changes the result; the shift spreads the top bits, which a product
+// would not.
 std::uint64_t checksum(std::span<const std::byte> bytes) {
-  Hasher hasher;
-  hasher.bytes(bytes.data(), bytes.size());
-  return hasher.result();
+  constexpr std::size_t width = sizeof(std::uint64_t);
+  std::uint64_t state = 0;
+  const auto add = [&](const std::byte* from, std::size_t size) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, from, size);
+    state = (state ^ word) * 0x9E3779B97F4A7C15u;
+    state ^= state >> 32;
+  };
+  const std::size_t whole = bytes.size() / width * width;
+  for (std::size_t i = 0; i < whole; i += width) add(bytes.data() + i, width);
+  add(bytes.data() + whole, bytes.size() - whole);
+  return state;
 }
 
 [[noreturn]] void refuse(const Seal& seal, const char* why) {

@@ -16,7 +16,7 @@ struct Seal {
   std::string_view name;
 };
 
-/// The mark, the length of the content, the content, and FNV-1a (64 bits) of these; in the machine's byte order.
+/// The mark, the length of the content, the content, and a checksum of these (64 bits); in the machine's byte order.
 std::vector<std::byte> seal(const Seal&, std::span<const std::byte> content);
 
 /// The content. Throws std::invalid_argument for bytes that are not from `seal`, are truncated or damaged.
