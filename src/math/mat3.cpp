@@ -34,7 +34,26 @@ SymmetricEigen symmetric_eigen(const Mat3& a) {
           {{v[0][0], v[1][0], v[2][0]}, {v[0][1], v[1][1], v[2][1]}, {v[0][2], v[1][2], v[2][2]}}};
 }
 
+namespace {
+
+/// By elimination, where no pivot is small beside the largest entry: then no eigenvalue is within a tolerance of zero.
+std::optional<Vec3> eliminate(const Mat3& a, const Vec3& b) {
+  constexpr double smallest = 1e-2;
+  const auto& m = a.m;
+  const double least = smallest * std::max({m[0][0], m[1][1], m[2][2]});
+  const double l1 = m[1][0] / m[0][0], l2 = m[2][0] / m[0][0];
+  const double pivot1 = m[1][1] - l1 * m[1][0], below = m[2][1] - l2 * m[1][0];
+  const double l = below / pivot1, pivot2 = m[2][2] - l2 * m[2][0] - l * below;
+  if (!(m[0][0] > least && pivot1 > least && pivot2 > least)) return {};
+  const double forward = b.y - l1 * b.x;
+  const double z = (b.z - l2 * b.x - l * forward) / pivot2, y = forward / pivot1 - l * z;
+  return Vec3{b.x / m[0][0] - l1 * y - l2 * z, y, z};
+}
+
+}  // namespace
+
 Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance) {
+  if (const std::optional<Vec3> x = eliminate(a, b)) return *x;
   return solve_semidefinite(symmetric_eigen(a), b, tolerance);
 }
 

@@ -51,7 +51,7 @@ struct SymmetricEigen {
 SymmetricEigen symmetric_eigen(const Mat3& a);
 
 /// Least-squares solution of A x = b for symmetric positive semi-definite A: x has no component in directions in which
-/// A is (nearly) zero, below `tolerance` times its largest pivot. Diagonal pivoting.
+/// A is (nearly) zero: eigenvalues below `tolerance` (1e-6 at most) times the largest.
 Vec3 solve_semidefinite(const Mat3& a, const Vec3& b, double tolerance = 1e-10);
 /// The same with known eigenvectors: for many right-hand sides.
 Vec3 solve_semidefinite(const SymmetricEigen& a, const Vec3& b, double tolerance);

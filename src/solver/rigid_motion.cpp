@@ -7,12 +7,19 @@ namespace iota::solver {
 
 namespace {
 
+/// The sums over a motion, in registers: in the record each addition would wait for the last one's memory.
 template <class Counts>
 void add_turning(const Problem& problem, Counts counts, RigidMotion& motion) {
+  const Vec3 center = motion.center, velocity = motion.velocity;
+  Vec3 momentum = motion.angular_momentum;
+  double xx = 0, yy = 0, zz = 0, xy = 0, yx = 0, xz = 0, zx = 0, yz = 0, zy = 0;
   const auto add = [&](double mass, std::uint32_t a, std::uint32_t b) {
-    const Vec3 ra = problem.position[a] - motion.center, rb = problem.position[b] - motion.center;
-    motion.angular_momentum += mass * cross(ra, problem.velocity[b] - motion.velocity);
-    motion.inertia += mass * (Mat3::diagonal(dot(ra, rb)) + -1.0 * Mat3::outer(rb, ra));
+    const Vec3 ra = problem.position[a] - center, rb = problem.position[b] - center;
+    momentum += mass * cross(ra, problem.velocity[b] - velocity);
+    const double across = dot(ra, rb);
+    xx += mass * (across - rb.x * ra.x), yy += mass * (across - rb.y * ra.y), zz += mass * (across - rb.z * ra.z);
+    xy -= mass * (rb.x * ra.y), xz -= mass * (rb.x * ra.z), yz -= mass * (rb.y * ra.z);
+    yx -= mass * (rb.y * ra.x), zx -= mass * (rb.z * ra.x), zy -= mass * (rb.z * ra.y);
   };
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const auto node = static_cast<std::uint32_t>(i);
@@ -20,6 +27,8 @@ void add_turning(const Problem& problem, Counts counts, RigidMotion& motion) {
   }
   for (const auto& c : problem.mass_couplings)
     if (counts(c.a)) add(c.mass, c.a, c.b), add(c.mass, c.b, c.a);
+  motion.inertia = {{{xx, xy, xz}, {yx, yy, yz}, {zx, zy, zz}}};
+  motion.angular_momentum = momentum;
   motion.turning = solve_semidefinite(motion.inertia, motion.angular_momentum, 1e-12);
 }
 
