@@ -239,6 +239,7 @@ concept IslandIngredient =
 /// visit(index, key) for the items of one type that an owner has added.
 template <class Item, class Visit>
 void for_each_item_of(std::uint8_t owner, const Problem& problem, Visit visit) {
+  if (!problem.has_used<Item>()) return;
   const std::vector<solver::ItemKey>& keys = problem.pool_of<Item>().keys;
   for (std::size_t i = 0; i < keys.size(); ++i)
     if (keys[i].owner == owner) visit(i, keys[i]);

@@ -103,7 +103,7 @@ class Near {
 double mean_reference_length(const Problem& problem) {
   double sum = 0;
   std::size_t count = 0;
-  for (const auto& c : problem.pool_of<DistanceConstraint>().items) sum += c.reference_length(), ++count;
+  for (const auto& c : problem.items_of<DistanceConstraint>()) sum += c.reference_length(), ++count;
   if (count == 0)
     problem.for_each_force_pool([&](const auto& pool) {
       for (const auto& f : pool.items)

@@ -109,7 +109,7 @@ void Integrator::sweep_lengths(const Problem& problem, const Stage& stage) {
   constexpr int sweeps = 2;
   const std::span<Vec3> x = newton_.room(), guess = newton_.displacement();
   for (std::size_t i = 0; i < problem.size(); ++i) x[i] = problem.position[i] + stage.h * problem.velocity[i];
-  const auto& pool = std::get<ConstraintPool<DistanceConstraint>>(problem.constraints);
+  const auto& pool = problem.pool_of<DistanceConstraint>();
   for (int sweep = 0; sweep < sweeps; ++sweep)
     for (std::size_t k = 0; k < pool.items.size(); ++k) {
       const DistanceConstraint& c = pool.items[k];
@@ -156,17 +156,17 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
   const Dissipation taken = calc_dissipation(problem, stage);
   double work = 0;
   const ForceStage force_stage{stage.h, stage.midpoint, false};
-  for (const auto& f : std::get<ForcePool<GripForce>>(problem.forces).items) {
+  for (const auto& f : problem.items_of<GripForce>()) {
     const Vec3 e0 = f.arm.value(x0), e1 = f.arm.value(x1);
     work += dot(f.force(e0, e1, force_stage), e1 - e0);
   }
-  for (const auto& f : std::get<ForcePool<RadialForce>>(problem.forces).items)
+  for (const auto& f : problem.items_of<RadialForce>())
     work += f.push_work(f.arm.value(x0), f.arm.value(x1), force_stage);
-  const auto& affines = std::get<ConstraintPool<AffineConstraint>>(problem.constraints);
-  for (std::size_t k = 0; k < affines.items.size(); ++k) {
-    const AffineConstraint& c = affines.items[k];
+  const std::span<const AffineConstraint> affines = problem.items_of<AffineConstraint>();
+  for (std::size_t k = 0; k < affines.size(); ++k) {
+    const AffineConstraint& c = affines[k];
     if (c.target == c.target_start) continue;
-    const double* const l = affines.multiplier(k);
+    const double* const l = problem.pool_of<AffineConstraint>().multiplier(k);
     Vec3 moved;
     for (std::uint32_t i = 0; i < c.count; ++i) moved += c.weights[i] * (x1[c.nodes[i]] - x0[c.nodes[i]]);
     work -= dot(Vec3{l[0], l[1], l[2]}, moved);
@@ -314,7 +314,7 @@ void Integrator::measure_energy(const Problem& problem, double fraction) {
 }
 
 bool Integrator::will_turn_too_far(const Problem& problem, double h) const {
-  for (const auto& c : std::get<ConstraintPool<DistanceConstraint>>(problem.constraints).items) {
+  for (const auto& c : problem.items_of<DistanceConstraint>()) {
     const Vec3 d = problem.position[c.nodes[1]] - problem.position[c.nodes[0]];
     const Vec3 moved = h * (problem.velocity[c.nodes[1]] - problem.velocity[c.nodes[0]]);
     if (dot(moved, moved) > care_.max_turn * care_.max_turn * dot(d, d)) return true;
@@ -324,7 +324,7 @@ bool Integrator::will_turn_too_far(const Problem& problem, double h) const {
 
 bool Integrator::turns_too_far(const Problem& problem) const {
   const auto x1 = newton_.solution();
-  for (const auto& c : std::get<ConstraintPool<DistanceConstraint>>(problem.constraints).items) {
+  for (const auto& c : problem.items_of<DistanceConstraint>()) {
     const Vec3 d0 = problem.position[c.nodes[1]] - problem.position[c.nodes[0]];
     const Vec3 d1 = x1[c.nodes[1]] - x1[c.nodes[0]];
     const double d = dot(d0, d1);
@@ -611,8 +611,7 @@ bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double t
     return true;
   }
   const std::optional<RigidMotion> rigid = rigid_motion(problem);
-  if (rigid && std::get<ForcePool<GripForce>>(problem.forces).items.empty() &&
-      std::get<ForcePool<GyroscopicForce>>(problem.forces).items.empty()) {
+  if (rigid && problem.items_of<GripForce>().empty() && problem.items_of<GyroscopicForce>().empty()) {
     if (!(kinetic_ - rigid->kinetic_energy() > std::abs(missing))) {
       std::copy(problem.position.begin(), problem.position.end(), newton_.room().begin());
       turn_for_energy(problem, missing, holds_.pivot());
@@ -744,10 +743,10 @@ namespace {
 /// Two to four points, each at a fixed distance from each other, and nothing else that holds them or turns them.
 bool is_free_body(const Problem& problem) {
   const std::size_t n = problem.size();
-  if (n < 2 || n > 4 || !std::get<ForcePool<GyroscopicForce>>(problem.forces).items.empty()) return false;
+  if (n < 2 || n > 4 || !problem.items_of<GyroscopicForce>().empty()) return false;
   std::size_t rows = 0;
   problem.for_each_constraint_pool([&](const auto& pool) { rows += pool.items.size(); });
-  const std::size_t rods = std::get<ConstraintPool<DistanceConstraint>>(problem.constraints).items.size();
+  const std::size_t rods = problem.items_of<DistanceConstraint>().size();
   return rods == rows && rods == n * (n - 1) / 2;
 }
 
@@ -756,11 +755,10 @@ bool is_free_body(const Problem& problem) {
 AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) {
   AdvanceReport report;
   care_ = care;
-  conservative_ = std::get<ForcePool<GripForce>>(problem.forces).items.empty();
+  conservative_ = problem.items_of<GripForce>().empty();
   for (const Vec3& f : problem.force) conservative_ = conservative_ && f == Vec3{};
   // The push of a law has no energy: its work is not a gain.
-  for (const auto& f : std::get<ForcePool<RadialForce>>(problem.forces).items)
-    conservative_ = conservative_ && !f.law->has_push();
+  for (const auto& f : problem.items_of<RadialForce>()) conservative_ = conservative_ && !f.law->has_push();
   step_length_ = h;
   has_curved_rows_ = drives_rows_ = has_corrected_ = false;
   holds_ = {};

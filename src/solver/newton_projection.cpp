@@ -26,9 +26,10 @@ void Newton::project_velocities(Problem& problem, double h, std::span<const Vec3
 }
 
 std::optional<double> Newton::project_velocities_after(Problem& problem, const Stage& stage, const AfterStep& known) {
+  if (!problem.has_used_constraints()) return {};
   const double whole_step = stage.h / (stage.fraction - stage.fraction_start);
   const Wanted wanted{.h = known.drives_rows ? whole_step : 0, .is_after_step = true};
-  if (has_laws_ || !std::get<ConstraintPool<CouplingConstraint>>(problem.constraints).items.empty()) {
+  if (has_laws_ || !problem.items_of<CouplingConstraint>().empty()) {
     mean_place_.resize(problem.size()), mean_velocity_.resize(problem.size());
     for (std::size_t i = 0; i < problem.size(); ++i) {
       mean_velocity_[i] = problem.velocity[i] - (1 / stage.h) * u_[i];

@@ -13,6 +13,9 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace iota::solver {
@@ -131,8 +134,6 @@ struct Problem {
   std::vector<double> mass;              ///< diagonal of the mass matrix, kg
   std::vector<double> damping;           ///< of velocities, 1/s, for the caller of the integrator; or empty: none
   std::vector<MassCoupling> mass_couplings;
-  ConstraintPools<ConstraintPool> constraints;
-  ForcePools<ForcePool> forces;
   Vec3 gravity;
   /// Origin of positions and targets, m. It keeps their precision far from the world's origin.
   Vec3 origin;
@@ -177,15 +178,27 @@ struct Problem {
   template <class Item>
   auto& pool_of() {
     if constexpr (requires { Item::rows; })
-      return std::get<ConstraintPool<Item>>(constraints);
+      return std::get<ConstraintPool<Item>>(constraints_);
     else
-      return std::get<ForcePool<Item>>(forces);
+      return std::get<ForcePool<Item>>(forces_);
   }
   template <class Item>
   const auto& pool_of() const {
     return const_cast<Problem*>(this)->pool_of<Item>();
   }
-  /// Of an item in the constraint pool with this place in the list of types.
+  /// The items of a type; unlike those of its pool without a look at that if there never was one.
+  template <class Item>
+  std::span<const Item> items_of() const {
+    if (!has_used<Item>()) return {};
+    return pool_of<Item>().items;
+  }
+  /// Whether there ever was an item of a type.
+  template <class Item>
+  bool has_used() const {
+    return used_ >> place_of<Item>() & 1u;
+  }
+  bool has_used_constraints() const { return (used_ & ((std::uint32_t{1} << constraint_types) - 1)) != 0; }
+  /// Of an item in a constraint pool, by the pool's place among those that the folds visit.
   ItemKey key_of(std::size_t pool, std::size_t item) const {
     ItemKey key;
     for_each_constraint_pool([&](const auto& p) {
@@ -193,22 +206,26 @@ struct Problem {
     });
     return key;
   }
+  /// @name Folds over the pools, in the order of the lists
+  /// Only over those that ever had an item: of thousands of small problems a look at each empty pool waits for memory.
+  ///@{
   template <class Visit>
   void for_each_constraint_pool(Visit visit) {
-    std::apply([&](auto&... pool) { (visit(pool), ...); }, constraints);
+    visit_used(constraints_, used_, visit);
   }
   template <class Visit>
   void for_each_constraint_pool(Visit visit) const {
-    std::apply([&](const auto&... pool) { (visit(pool), ...); }, constraints);
+    visit_used(constraints_, used_, visit);
   }
   template <class Visit>
   void for_each_force_pool(Visit visit) {
-    std::apply([&](auto&... pool) { (visit(pool), ...); }, forces);
+    visit_used(forces_, used_ >> constraint_types, visit);
   }
   template <class Visit>
   void for_each_force_pool(Visit visit) const {
-    std::apply([&](const auto&... pool) { (visit(pool), ...); }, forces);
+    visit_used(forces_, used_ >> constraint_types, visit);
   }
+  ///@}
 
   bool has_laws() const {
     bool any = false;
@@ -276,8 +293,30 @@ struct Problem {
     changes_.touched.insert(changes_.touched.end(), nodes.begin(), nodes.end());
   }
 
+  static constexpr std::size_t constraint_types = std::tuple_size_v<ConstraintPools<ConstraintPool>>;
+
+  /// The place of a type in the lists, constraints first.
+  template <class Item>
+  static constexpr std::size_t place_of() {
+    std::size_t place = 0;
+    const auto find = [&]<class... Pool>(std::type_identity<std::tuple<Pool...>>) {
+      return ((std::is_same_v<decltype(Pool::items), std::vector<Item>> || (++place, false)) || ...);
+    };
+    if (!find(std::type_identity<ConstraintPools<ConstraintPool>>{})) find(std::type_identity<ForcePools<ForcePool>>{});
+    return place;
+  }
+  template <class Pools, class Visit>
+  static void visit_used(Pools& pools, std::uint32_t used, Visit& visit) {
+    [&]<std::size_t... i>(std::index_sequence<i...>) {
+      ((used >> i & 1u ? static_cast<void>(visit(std::get<i>(pools))) : void()), ...);
+    }(std::make_index_sequence<std::tuple_size_v<Pools>>{});
+  }
+
+  std::uint32_t used_ = 0;  // a bit for each pool that ever had an item
   GraphChange changes_;
   std::vector<std::uint8_t> is_open_;  // of each node, while the structure changes; else empty
+  ConstraintPools<ConstraintPool> constraints_;
+  ForcePools<ForcePool> forces_;
 };
 
 template <class Item>
@@ -290,6 +329,7 @@ void Problem::add(const Item& item, ItemKey key) {
     reserve_with_slack(pool.items, pool.items.size() + 1);
     reserve_with_slack(pool.keys, pool.items.size() + 1);
   }
+  used_ |= std::uint32_t{1} << place_of<Item>();
   pool.items.push_back(item);
   pool.keys.push_back(key);
 }

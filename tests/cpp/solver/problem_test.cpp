@@ -25,5 +25,31 @@ TEST(Problem, a_gap_that_is_not_a_number_is_the_largest) {
   }
 }
 
+TEST(Problem, folds_visit_only_pools_that_were_used_in_the_order_of_the_lists_whatever_came_first) {
+  Problem problem;
+  const auto count_pools = [&] {
+    int count = 0;
+    problem.for_each_constraint_pool([&](const auto&) { ++count; });
+    problem.for_each_force_pool([&](const auto&) { ++count; });
+    return count;
+  };
+  EXPECT_EQ(count_pools(), 0);
+  EXPECT_FALSE(problem.has_used_constraints());
+  const std::uint32_t a = add_point(problem, {}), b = add_point(problem, {1, 0, 0});
+  add_spring(problem, a, b, 1, 1);
+  EXPECT_EQ(count_pools(), 1);
+  EXPECT_FALSE(problem.has_used_constraints());
+  const ItemKey of_row{1, {}, 7}, of_nail{2, {}, 8};
+  problem.add(distance(a, b, 1), of_row);
+  problem.add(AffineConstraint{.nodes = {a}, .weights = {1}, .count = 1}, of_nail);
+  EXPECT_EQ(count_pools(), 3);
+  EXPECT_EQ(problem.key_of(0, 0), of_nail) << "nails come first in the list";
+  EXPECT_EQ(problem.key_of(1, 0), of_row);
+  EXPECT_EQ(problem.items_of<AffineConstraint>().size(), 1u);
+  EXPECT_EQ(problem.items_of<SpringForce>().size(), 1u);
+  EXPECT_TRUE(problem.items_of<AngleConstraint>().empty());
+  EXPECT_TRUE(problem.items_of<GripForce>().empty());
+}
+
 }  // namespace
 }  // namespace iota::solver

@@ -10,11 +10,11 @@ namespace iota::solver {
 
 template <class C>
 ConstraintPool<C>& pool(Problem& problem) {
-  return std::get<ConstraintPool<C>>(problem.constraints);
+  return problem.pool_of<C>();
 }
 template <class C>
 std::size_t add(Problem& problem, const C& c) {
-  pool<C>(problem).items.push_back(c);
+  problem.add(c, {});
   return pool<C>(problem).items.size() - 1;
 }
 inline std::uint32_t add_point(Problem& problem, const Vec3& x, double mass = 1, const Vec3& v = {}) {
@@ -36,7 +36,7 @@ inline void add_spring(Problem& problem, std::uint32_t a, std::uint32_t b, doubl
   SpringForce spring;
   spring.arm.nodes = {a, b}, spring.arm.weights = {-1, 1}, spring.arm.count = 2;
   spring.stiffness = stiffness, spring.length = length;
-  std::get<ForcePool<SpringForce>>(problem.forces).items.push_back(spring);
+  problem.add(spring, {});
 }
 /// x . direction = c for a point, or for the difference of two.
 inline BilinearConstraint along(std::uint32_t node, const Vec3& direction, double c) {
