@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from "vitest";
-import { distanceToShow, fitView, shareOutside, standBack, viewAxes, type Frame } from "../src/navigate/framing.ts";
+import { addOutermost, fitView, shareOutside, standBack, viewAxes, type Frame } from "../src/navigate/framing.ts";
 import { Points } from "../src/scene/points.ts";
 
 const frame: Frame = { side: 0.62, up: 0.34, down: 0.29 };
@@ -80,18 +80,44 @@ describe("a script's camera in a narrow window", () => {
     expect(view.pivot).toEqual(target);
   });
 
-  it("goes back no farther than it has to or may, looks at the same place, and is never lower", () => {
+  it("goes back no farther than it has to or may, with the scene in its middle, in the same direction, and is never lower", () => {
     for (const height of [-3, -1.2, -1, 0, 3]) {
       const eye = [6.5, height, 1.5] as const;
       const points = cloud(1, 7);
-      const near = standBack(points, eye, target, frame, 2);
-      const all = standBack(points, eye, target, frame, 1e3);
       const distance = Math.hypot(...eye.map((value, axis) => value - target[axis]));
-      expect(near.distance).toBeLessThan(2.001 * distance);
-      expect(near.pivot).toEqual(target);
-      for (const view of [near, all]) expect(eyeOf(view)[1]).toBeGreaterThan(height - 1e-9);
-      if (height >= target[1] && all.distance > 1.06 * distance) expect(fullness(points, all)).toBeCloseTo(1, 6);
-      expect(distanceToShow(points, all, frame)).toBeLessThan(1.4 * all.distance);
+      const near = standBack(points, eye, target, frame, 1.2);
+      const all = standBack(points, eye, target, frame, 1e3);
+      expect(near.distance).toBeLessThan(1.2001 * distance);
+      expect(fullness(points, all)).toBeLessThan(1 + 1e-6);
+      if (all.distance > 1.001 * distance) expect(fullness(points, all)).toBeCloseTo(1, 6);
+      for (const view of [near, all]) {
+        expect(eyeOf(view)[1]).toBeGreaterThan(height - 1e-9);
+        expect(view.yaw).toBeCloseTo(Math.atan2(eye[0] - target[0], eye[2] - target[2]), 12);
+        if (height >= target[1]) expect(view.pitch).toBeCloseTo(Math.asin((height - target[1]) / distance), 12);
+      }
     }
+  });
+
+  it("keeps the horizon above the frame's lower edge when it looks up", () => {
+    for (const height of [-3, -2, -1.2]) {
+      const view = standBack(cloud(1, 7), [6.5, height, 1.5], target, frame, 1e3);
+      expect(view.pitch).toBeLessThan(0);
+      expect(Math.tan(-view.pitch)).toBeLessThan(frame.down);
+    }
+  });
+
+  it("shows all points of a motion if it is told only the outermost ones at each time", () => {
+    const eye = [6.5, 0, 1.5] as const;
+    const kept = new Points();
+    const all = new Points();
+    let view = standBack(cloud(1, 1), eye, target, frame, 1e3);
+    for (let seed = 1; seed < 20; seed++) {
+      const now = cloud(1, seed);
+      all.addAll(now);
+      addOutermost(kept, now, view, frame);
+      view = standBack(kept, eye, target, frame, 1e3);
+    }
+    expect(kept.count).toBe(19 * 4);
+    expect(fullness(all, view)).toBeCloseTo(1, 6);
   });
 });

@@ -11,9 +11,9 @@ from iota.world.widgets import Slider
 
 PIVOT, SUN, BEAM = iota.Vec3(-1.3, 2.0, 0), iota.Vec3(0, 1.6, 0), iota.Vec3(1.3, 2.0, 0)
 ORBIT, PULL = 0.4, 0.4  # m, where the planet starts; m^3/s^2
-TEXT = 0.045  # m
+TEXT = 0.07  # m
 LAUNCH = 1.1  # times the speed of a circle
-START = 0.5  # rad, of the pendulum
+START = -0.5  # rad, of the pendulum: outwards
 
 
 def build() -> iota.World:
@@ -53,7 +53,7 @@ class Period:
 
 def say(title: str, period: Period, expected: float) -> str:
     measured = "... s" if math.isnan(period.seconds) else f"{period.seconds:.2f} s"
-    return f"{title} {measured}, ideal {expected:.2f} s"
+    return f"{title} {measured}\nideal {expected:.2f} s"
 
 
 def pendulum(world: iota.World, heavy: iota.Group, gravity: Slider) -> None:
@@ -67,7 +67,7 @@ def pendulum(world: iota.World, heavy: iota.Group, gravity: Slider) -> None:
     bob.radius, bob.color = 0.08, (0.85, 0.25, 0.15)
     stand(world, PIVOT)
     length = world.slider("length", 0.3, 1.4, 1.0, step=0.05, unit="m", help="of the pendulum")
-    label = world.label("", at=PIVOT + (0, 0.18, 0), height=TEXT)
+    label = world.label("", at=PIVOT + (0, 0.22, 0), height=TEXT)
 
     @length.on_change
     def hang() -> None:
@@ -137,7 +137,7 @@ def spring(world: iota.World, heavy: iota.Group) -> None:
     stand(world, BEAM)
     stiffness = world.slider("stiffness", 15, 150, 40, unit="N/m", help="of the spring")
     damping = world.slider("damping", 0, 2, 0, unit="N s/m", help="of the spring")
-    label = world.label("", at=BEAM + (0, 0.18, 0), height=TEXT)
+    label = world.label("", at=BEAM + (0, 0.22, 0), height=TEXT)
 
     @stiffness.on_change
     @damping.on_change

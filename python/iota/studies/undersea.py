@@ -70,7 +70,7 @@ class Meal:
         # What is carried is as heavy as water, and drags.
         self._load = world.system.group("load")
         world.system.field("wind", group=self._load, drag=0.12)
-        self._label = world.label("", offset=(0, 0.3, 0), height=0.13)
+        self._label = world.label("", offset=(0, 0.3, 0))
         self._start()
         world.on_reset(self._start)
         world.every(1.0)(self._clear)

@@ -76,8 +76,8 @@ class Drawing:
         height: float = 0.0,
         color: Color = None,
     ) -> Label:
-        """Text at a place (for a bond its middle). offset: world, m. height: of a capital, m; 0: a constant size on the
-        screen."""
+        """Text at a place (for a bond its middle); "\\n" begins a new line. offset: world, m. height: of a capital, m; 0: a
+        constant size on the screen."""
         return Label(self._state.things, text=text, at=at, offset=offset, height=height, color=color)
 
     def line(self, *points: Any, radius: float = 0.0, color: Color = None, closed: bool = False) -> Line:

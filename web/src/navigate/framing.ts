@@ -70,21 +70,59 @@ export function distanceToShow({ xyz, count }: Points, { pivot, yaw, pitch }: Om
   return least;
 }
 
+/** Place of the horizon for a camera that looks up, as a share of the frame below its center. */
+const lowHorizon = 0.55;
+
 /**
- * The view of a camera at `eye` that looks at `target`, from up to `farther` times as far away where not all points are within the frame.
- * It goes back along its line of sight, or on the level where it looks up, so that it is never lower than it was.
+ * The view of a camera at `eye` that looks at `target`; if not all points are within the frame, moved sideways until they are in the
+ * middle, and back as far as needed, to at most `farther` times the distance. It goes back along its line of sight. One that looks up
+ * goes back on the level, so that it is never lower than it was, with the horizon in the lower third: half of a tall picture would be
+ * ground otherwise.
  */
 export function standBack(
   points: Points, eye: readonly [number, number, number], target: readonly [number, number, number], frame: Frame, farther: number,
 ): FittedView {
-  const away = [eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]];
-  const distance = Math.max(Math.hypot(...away), 1e-12);
-  const view = { pivot: target, distance, yaw: Math.atan2(away[0], away[2]), pitch: Math.asin(away[1] / distance) };
-  const times = Math.min(farther, distanceToShow(points, view, frame) / distance);
-  if (times <= 1.05) return view;
-  if (away[1] >= 0) return { ...view, distance: times * distance };
-  const back = Math.hypot(times * away[0], away[1], times * away[2]);
-  return { ...view, distance: back, pitch: Math.asin(away[1] / back) };
+  const from = [eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]];
+  const distance = Math.max(Math.hypot(...from), 1e-12);
+  const yaw = Math.atan2(from[0], from[2]);
+  const view = { pivot: target, distance, yaw, pitch: Math.asin(from[1] / distance) };
+  if (Math.min(farther, distanceToShow(points, view, frame) / distance) <= 1.05) return view;
+  const pitch = view.pitch < 0 ? -Math.atan(lowHorizon * frame.down) : view.pitch;
+  const [right, up, away] = viewAxes(yaw, pitch);
+  const back = pitch < 0 ? [Math.sin(yaw), 0, Math.cos(yaw)] : away;
+  const rises = dot(up, back);
+  const recedes = dot(away, back);
+  let [toRight, toLeft, way] = [-Infinity, -Infinity, 0];
+  for (let at = 0; at < 3 * points.count; at += 3) {
+    const p = [points.xyz[at] - eye[0], points.xyz[at + 1] - eye[1], points.xyz[at + 2] - eye[2]];
+    const [a, b, c] = [dot(right, p), dot(up, p), dot(away, p)];
+    toRight = Math.max(toRight, c * frame.side + a);
+    toLeft = Math.max(toLeft, c * frame.side - a);
+    way = Math.max(way, (c * frame.up + b) / (frame.up * recedes + rises), (c * frame.down - b) / (frame.down * recedes - rises));
+  }
+  way = Math.min(Math.max(way, (toRight + toLeft) / (2 * frame.side * recedes)), (farther - 1) * distance);
+  const aside = (toRight - toLeft) / 2;
+  const depth = distance + way * recedes;
+  const pivot = [0, 1, 2].map((axis) => eye[axis] + way * back[axis] + aside * right[axis] - depth * away[axis]);
+  return { pivot: [pivot[0], pivot[1], pivot[2]], distance: depth, yaw, pitch };
+}
+
+/** Adds to `found` the points that are farthest out of the frame of a view, to each side. */
+export function addOutermost(found: Points, points: Points, view: FittedView, frame: Frame): void {
+  const [right, up, away] = viewAxes(view.yaw, view.pitch);
+  const most = Array<number>(4).fill(-Infinity);
+  const outermost = Array<number>(4).fill(-1);
+  for (let at = 0; at < 3 * points.count; at += 3) {
+    const p = [points.xyz[at] - view.pivot[0], points.xyz[at + 1] - view.pivot[1], points.xyz[at + 2] - view.pivot[2]];
+    const [a, b, c] = [dot(right, p), dot(up, p), dot(away, p)];
+    const out = [c * frame.side + a, c * frame.side - a, c * frame.up + b, c * frame.down - b];
+    for (let side = 0; side < 4; side++) {
+      if (out[side] <= most[side]) continue;
+      most[side] = out[side];
+      outermost[side] = at;
+    }
+  }
+  for (const at of outermost) if (at >= 0) found.add(points.xyz[at], points.xyz[at + 1], points.xyz[at + 2]);
 }
 
 /** Share of the points outside the frame of a view; 0 without points. */
@@ -99,4 +137,8 @@ export function shareOutside({ xyz, count }: Points, view: FittedView, frame: Fr
     if (depth <= 0 || Math.abs(a) > frame.side * depth || b > frame.up * depth || -b > frame.down * depth) outside++;
   }
   return count === 0 ? 0 : outside / count;
+}
+
+function dot(a: readonly number[], b: readonly number[]): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

@@ -3,7 +3,7 @@
 // Light, ground and fog depend on it. A camera that the user has moved is not changed.
 
 import { MathUtils } from "three";
-import { fitView, shareOutside, standBack, type FittedView, type Frame } from "../navigate/framing.ts";
+import { addOutermost, fitView, shareOutside, standBack, type FittedView, type Frame } from "../navigate/framing.ts";
 import type { Navigation } from "../navigate/navigation.ts";
 import { Points, type Bounds } from "../scene/points.ts";
 import type { EntityView } from "../scene/entities/entity.ts";
@@ -26,6 +26,8 @@ const otherSize = 2.5;
 const otherPlace = 3;
 /** Radius of the pins at nails, in sizes of the scene. */
 const pinSize = 0.008;
+/** Places that widened the view of a narrow window; enough for a motion's reach. */
+const mostKept = 200;
 /** In css px. */
 const barHeight = 84;
 const tallBarHeight = 150;
@@ -114,8 +116,9 @@ export class Framing implements FramePart, PageListener {
       this.navigation_.jumpHome();
     } else if (isOther) {
       this.frame_(false);
-    } else if (!this.navigation_.touched && !this.world_.settings.hasCamera && !this.viewer_.presenting) {
-      this.follow_(bounds);
+    } else if (!this.navigation_.touched && !this.viewer_.presenting) {
+      if (this.world_.settings.hasCamera) this.widen_();
+      else this.follow_(bounds);
     }
   }
 
@@ -153,6 +156,21 @@ export class Framing implements FramePart, PageListener {
     this.navigation_.reset();
   }
 
+  /** Brings what moves out of a narrow window into view, as far as the standard one would show it. */
+  private widen_(): void {
+    if (this.narrowness_ <= 1 || this.kept_.count >= mostKept) return;
+    const { home } = this.navigation_;
+    if (shareOutside(this.points_, home, this.calcFrame_(1.04)) === 0) return;
+    addOutermost(this.kept_, this.points_, home, this.calcFrame_(1));
+    this.frame_(false);
+  }
+
+  /** Width of the standard screen in widths of this one. */
+  private get narrowness_(): number {
+    const { camera } = this.viewer_;
+    return usualSide / (Math.tan(MathUtils.degToRad(camera.fov / 2)) * camera.aspect);
+  }
+
   /** Calculates the first view again; moves there if the user has not chosen another one, or if `always`. */
   private frame_(always: boolean): void {
     const view = this.calcHome_();
@@ -169,11 +187,11 @@ export class Framing implements FramePart, PageListener {
       return this.calcView_(this.points_);
     }
     // A narrow window shows the same width as the standard one, up to that of the scene.
-    const side = Math.tan(MathUtils.degToRad(this.viewer_.camera.fov / 2)) * this.viewer_.camera.aspect;
     this.setting_.clear();
     this.setting_.addAll(this.points_);
+    this.setting_.addAll(this.kept_);
     this.addDrawn_(this.setting_);
-    return standBack(this.setting_, eye, target, this.calcFrame_(1), usualSide / side);
+    return standBack(this.setting_, eye, target, this.calcFrame_(1), this.narrowness_);
   }
 
   private calcView_(points: Points): FittedView | null {

@@ -67,6 +67,8 @@ export class Viewer {
   private ready_: () => void = () => {};
   private last_ = 0;
   private drawUntil_ = 0;
+  /** A picture was requested since the last one: where a frame takes longer than `drawOnMs` it is drawn all the same. */
+  private wanted_ = true;
   private warmed_ = 0;
 
   constructor(canvas: HTMLCanvasElement) {
@@ -117,6 +119,7 @@ export class Viewer {
   /** Requests a new picture. A page without changes does not draw, which saves battery power. */
   invalidate(): void {
     this.drawUntil_ = performance.now() + drawOnMs;
+    this.wanted_ = true;
   }
 
   /** Fits the drawing to a size in css px. */
@@ -147,7 +150,8 @@ export class Viewer {
     for (const part of parts) part.draw?.(seconds, frame);
     if (!this.presenting) this.stage.followCamera(this.camera, this.lookDistance());
     const scripted = performance.now();
-    if (scripted < this.drawUntil_) {
+    if (this.wanted_ || scripted < this.drawUntil_) {
+      this.wanted_ = false;
       if (this.presenting) this.stage.hideContacts();
       else this.stage.drawContacts();
       this.renderer.render(this.scene, this.camera);

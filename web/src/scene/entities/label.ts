@@ -5,6 +5,7 @@
 import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector3 } from "three";
 import type { LabelEntity } from "../../protocol/generated.ts";
 import { placeOf } from "../anchors.ts";
+import type { Points } from "../points.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { noColor } from "../strokes.ts";
 import type { EntityView } from "./entity.ts";
@@ -12,11 +13,13 @@ import type { EntityView } from "./entity.ts";
 /** px of the drawn text. */
 const fontSize = 44;
 const padding = { x: 22, y: 12 };
+/** Of one line; each further one adds `lineHeight`. */
 const plateHeight = fontSize + 2 * padding.y;
+const lineHeight = 1.15 * fontSize;
 const mostWidth = 2048;
 /** Height of a capital, relative to that of the plate. */
 const capital = (0.72 * fontSize) / plateHeight;
-/** Height of the plate at a distance of 1 m, m. */
+/** Height of a line's plate at a distance of 1 m, m; less in a narrow window. */
 const usualHeight = 0.036;
 const font = `600 ${fontSize}px system-ui, sans-serif`;
 
@@ -71,7 +74,21 @@ export class LabelView implements EntityView<LabelEntity> {
     label.texture?.dispose();
   }
 
+  /** Corners of those with a height. */
+  addPlaces(points: Points): void {
+    for (const { entity: { height }, sprite: { position, scale, visible } } of this.labels_.values()) {
+      if (height <= 0 || !visible) continue;
+      const away = this.b_.subVectors(this.eye_, position);
+      const level = Math.hypot(away.x, away.z) || 1;
+      const [x, z] = [(away.z / level) * scale.x / 2, (-away.x / level) * scale.x / 2];
+      for (const side of [-1, 1]) {
+        for (const y of [-scale.y / 2, scale.y / 2]) points.add(position.x + side * x, position.y + y, position.z + side * z);
+      }
+    }
+  }
+
   draw(): void {
+    const usual = usualHeight * Math.min(1, (1.2 * innerWidth) / innerHeight);
     for (const { entity: { a, b, offset, height }, sprite, canvas } of this.labels_.values()) {
       const { position } = sprite;
       sprite.visible = canvas.width > 0 && placeOf(this.poses_, a, position) && placeOf(this.poses_, b, this.b_);
@@ -80,8 +97,8 @@ export class LabelView implements EntityView<LabelEntity> {
       position.x += offset[0];
       position.y += offset[1];
       position.z += offset[2];
-      const tall = height > 0 ? height / capital : usualHeight * position.distanceTo(this.eye_);
-      sprite.scale.set((tall * canvas.width) / canvas.height, tall, 1);
+      const line = height > 0 ? height / capital : usual * position.distanceTo(this.eye_);
+      sprite.scale.set((line * canvas.width) / plateHeight, (line * canvas.height) / plateHeight, 1);
       sprite.material.depthTest = height > 0;
       sprite.renderOrder = height > 0 ? 0 : 10;
     }
@@ -93,10 +110,13 @@ function paint(label: Label): void {
   const context = canvas.getContext("2d");
   if (context === null) return;
   context.font = font;
-  const width = Math.min(Math.ceil(context.measureText(text).width) + 2 * padding.x, mostWidth);
-  if (canvas.width !== width || canvas.height !== plateHeight || label.texture === null) {
+  const lines = text.split("\n");
+  const widest = Math.max(...lines.map((line) => context.measureText(line).width));
+  const width = Math.min(Math.ceil(widest) + 2 * padding.x, mostWidth);
+  const height = Math.ceil(plateHeight + lineHeight * (lines.length - 1));
+  if (canvas.width !== width || canvas.height !== height || label.texture === null) {
     canvas.width = width;
-    canvas.height = plateHeight;
+    canvas.height = height;
     // A texture cannot change its size.
     label.texture?.dispose();
     label.texture = new CanvasTexture(canvas);
@@ -104,16 +124,17 @@ function paint(label: Label): void {
     sprite.material.map = label.texture;
     sprite.material.needsUpdate = true;
   }
-  context.clearRect(0, 0, width, plateHeight);
+  context.clearRect(0, 0, width, height);
   if (text !== "") {
     context.fillStyle = "rgba(250, 248, 243, 0.86)";
     context.beginPath();
-    context.roundRect(1, 1, width - 2, plateHeight - 2, plateHeight / 2);
+    context.roundRect(1, 1, width - 2, height - 2, plateHeight / 2);
     context.fill();
     context.fillStyle = color === noColor ? "#23272b" : `#${color.toString(16).padStart(6, "0")}`;
     context.font = font;
+    context.textAlign = "center";
     context.textBaseline = "middle";
-    context.fillText(text, padding.x, plateHeight / 2 + 2, width - 2 * padding.x);
+    lines.forEach((line, index) => context.fillText(line, width / 2, plateHeight / 2 + 2 + lineHeight * index, width - 2 * padding.x));
   }
   label.texture.needsUpdate = true;
 }
