@@ -34,9 +34,12 @@ class Furniture:
         self._pieces.setdefault(key, []).append((np.asarray(vertices, float), np.asarray(triangles, int)))
         self.triangles += len(triangles)
 
-    def box(self, key: Key, center: Sequence[float], size: Sequence[float], turn: float = 0.0) -> None:
-        """turn: about the vertical, rad."""
+    def box(
+        self, key: Key, center: Sequence[float], size: Sequence[float], turn: float = 0.0, taper: float = 1.0
+    ) -> None:
+        """turn: about the vertical, rad. taper: of its upper face."""
         corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
+        corners[corners[:, 1] > 0] *= (taper, 1, taper)
         c, s = math.cos(turn), math.sin(turn)
         quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
         triangles = [t for a, b, d, e in quads for t in ((a, b, d), (a, d, e))]
@@ -167,8 +170,8 @@ def keyboard(room: Furniture, x: float, z: float) -> None:
     for row, count in enumerate(KEYS[::-1]):
         for key in range(count):
             width = 0.42 / count
-            at = (x - 0.21 + width * (key + 0.5), TOP + 0.012, z + 0.06 - 0.024 * row)
-            room.turned(WHITE, at, [(0.011, 0), (0.0105, 0.004), (0.009, 0.008)], 12)
+            at = (x - 0.21 + width * (key + 0.5), TOP + 0.016, z + 0.06 - 0.024 * row)
+            room.box(WHITE, at, (width - 0.003, 0.008, 0.021), taper=0.8)
 
 
 def chair(room: Furniture, x: float, z: float, turn: float) -> None:
@@ -177,11 +180,11 @@ def chair(room: Furniture, x: float, z: float, turn: float) -> None:
         angle = turn + 2 * math.pi * spoke / 5
         cx, cz = math.cos(angle), -math.sin(angle)
         room.box(DARK, (x + 0.15 * cx, 0.09, z + 0.15 * cz), (0.3, 0.03, 0.04), angle)
-        room.ball(DARK, (x + 0.29 * cx, 0.03, z + 0.29 * cz), (0.03, 0.03, 0.03))
+        room.ball(DARK, (x + 0.29 * cx, 0.03, z + 0.29 * cz), (0.03, 0.03, 0.03), 6, 10)
     room.turned(METAL, (x, 0.08, z), [(0.03, 0), (0.03, 0.2), (0.018, 0.2), (0.018, 0.36)], 32)
-    room.ball(("rubber", "#38506b"), (x, 0.47, z), (0.25, 0.045, 0.24), 16, 32)
+    room.ball(("rubber", "#38506b"), (x, 0.47, z), (0.25, 0.045, 0.24), 10, 28)
     room.ball(
-        ("rubber", "#38506b"), (x - 0.24 * math.sin(turn), 0.82, z + 0.24 * math.cos(turn)), (0.22, 0.25, 0.05), 16, 32
+        ("rubber", "#38506b"), (x - 0.24 * math.sin(turn), 0.82, z + 0.24 * math.cos(turn)), (0.22, 0.25, 0.05), 12, 28
     )
     room.box(DARK, (x - 0.25 * math.sin(turn), 0.58, z + 0.25 * math.cos(turn)), (0.05, 0.3, 0.02), turn)
 
@@ -223,7 +226,7 @@ def plant(room: Furniture, foot: Sequence[float], random: np.random.Generator) -
         angle, rise = 2.4 * leaf, random.uniform(0.1, 0.9)
         reach = 0.08 + 0.35 * math.sin(math.pi * min(rise + 0.15, 1))
         at = (x + reach * math.cos(angle), y + 0.4 + rise, z - reach * math.sin(angle))
-        room.ball(GREEN, at, (0.05 + 0.07 * abs(math.cos(angle)), 0.02, 0.05 + 0.07 * abs(math.sin(angle))), 8, 14)
+        room.ball(GREEN, at, (0.05 + 0.07 * abs(math.cos(angle)), 0.02, 0.05 + 0.07 * abs(math.sin(angle))), 4, 10)
     room.turned(GREEN, (x, y + 0.28, z), [(0.02, 0), (0.012, 0.9)], 16)
 
 

@@ -17,7 +17,7 @@ import type { Styles, StyleUser } from "./style.ts";
 
 /** Up to this number of bodies, outlines are round; above, they have too many vertices. */
 const fineUpTo = 160;
-/** Radius on the screen, px, from which bodies are drawn fine, and coarse; finer than before only when clearly larger. */
+/** Radius on the screen, px, from which parts of bodies are drawn fine, and coarse; finer than before only when clearly larger. */
 const finePixels = 22;
 /** With more bodies these radii are larger, to limit the number of triangles. */
 const fineCount = 24;
@@ -50,6 +50,11 @@ class Batch {
   constructor(shape: Shape, root: Group) {
     this.shape_ = shape;
     this.pool = new InstancePool(makeGeometry(shape, this.detail_), materialOf(shape), 16).addTo(root);
+  }
+
+  /** Radius about the part's own middle, m. */
+  get reach(): number {
+    return shapeReach(this.shape_);
   }
 
   get placements(): Float32Array {
@@ -418,8 +423,8 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     }
   }
 
-  /** Radius on the screen of the largest of some members, px. */
-  private calcPixels_({ pool: { members, count } }: Batch): number {
+  /** Radius on the screen of the nearest of some members, px: of this part of the body, which may be a small one. */
+  private calcPixels_({ pool: { members, count }, reach }: Batch): number {
     const { position, known } = this.poses;
     let most = 0;
     for (let index = 0; index < count; index += Math.ceil(count / mostLookedAt)) {
@@ -428,7 +433,7 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
       const apart = Math.hypot(
         position[3 * body] - this.eye.x, position[3 * body + 1] - this.eye.y, position[3 * body + 2] - this.eye.z,
       );
-      most = Math.max(most, (this.pixels * this.reach[body]) / Math.max(apart - this.reach[body], 0.01 * this.reach[body]));
+      most = Math.max(most, (this.pixels * reach) / Math.max(apart - this.reach[body], 0.01 * this.reach[body]));
     }
     return most;
   }

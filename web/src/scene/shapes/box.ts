@@ -20,6 +20,9 @@ function layAlong(geometry: BufferGeometry, size: readonly number[]): void {
   }
 }
 
+/** Roundings below this share of the longest edge are a pixel or two, and get one facet. */
+const leastSeen = 0.002;
+
 /** Edges along x, y, z, rounded by arcs of `rounding`: all points within that of a smaller box. */
 export const box: Kind = {
   name: "box",
@@ -38,7 +41,8 @@ export const box: Kind = {
   draw({ sizes: [x, y, z, rounding] }, detail) {
     const least = Math.min(x, y, z);
     const round = Math.max(rounding, bevel * least);
-    const segments = detail !== "fine" ? 1 : Math.round(3 + 12 * (round / least));
+    const isSeen = round > leastSeen * Math.max(x, y, z);
+    const segments = detail !== "fine" || !isSeen ? 1 : Math.round(3 + 12 * (round / least));
     const geometry = new RoundedBoxGeometry(x, y, z, segments, round);
     layAlong(geometry, [x, y, z]);
     return geometry;
