@@ -12,6 +12,7 @@ from typing import Any
 from iota._core import System
 from iota.cli import run
 from iota.cli.failure import Failure
+from iota.saving import replacing
 from iota.world import World
 from iota.world.options import RunOptions, use
 
@@ -41,15 +42,15 @@ def profile(arguments: argparse.Namespace) -> None:
         run.find(arguments.what)(None)
     if not rows:
         raise Failure(f"{arguments.what} made no World run: call world.run(), or define build() that returns a World")
-    if arguments.plot is not None:
-        plot(rows, arguments.what, arguments.plot)
     if arguments.json:
         print(json.dumps(rows))
-        return
-    print(f"{'part':44} {'ms a step':>10} {'share':>7}")
-    for row in rows:
-        print(f"{row['part'][:44]:44} {row['ms']:10.4f} {100 * row['share']:6.1f} %")
-    print(f"{'all of a step':44} {sum(row['ms'] for row in rows):10.4f}", *forces, sep="\n\n")
+    else:
+        print(f"{'part':44} {'ms a step':>10} {'share':>7}")
+        for row in rows:
+            print(f"{row['part'][:44]:44} {row['ms']:10.4f} {100 * row['share']:6.1f} %")
+        print(f"{'all of a step':44} {sum(row['ms'] for row in rows):10.4f}", *forces, sep="\n\n")
+    if arguments.plot is not None:
+        plot(rows, arguments.what, arguments.plot)
 
 
 def rows_of(costs: dict[str, float], wall: float, steps: int) -> list[dict[str, Any]]:
@@ -74,4 +75,8 @@ def plot(rows: list[dict[str, Any]], title: str, file: Path) -> None:
     )
     axes.legend(labels, loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
     axes.set_title(f"{title}: {sum(row['ms'] for row in rows):.2f} ms a step")
-    figure.savefig(file, dpi=150)
+    try:
+        with replacing(file) as fresh:
+            figure.savefig(fresh, dpi=150)
+    except OSError as error:
+        raise Failure(str(error)) from None

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from iota._core import Body, Grip, InputEvent, System
+from iota.saving import replacing
 from iota.simulator import SimulatedGrip
 
 TakePicture = Callable[[int, float], bytes]  # client, time limit in s
@@ -35,12 +36,13 @@ class Client:
     def screenshot(self, file: str | Path | None = None, seconds: float = 20.0) -> bytes:
         """The page's current picture, as a PNG file; also written to `file`. The world waits for it, at most `seconds`.
         Raises TimeoutError if it does not arrive (the page is in the background), RuntimeError if the world is not
-        served."""
+        served, OSError if the file cannot be written; an older one is then unchanged."""
         if self.take_picture is None:
             raise RuntimeError("this client is on no page")
         picture = self.take_picture(self.id, seconds)
         if file is not None:
-            Path(file).write_bytes(picture)
+            with replacing(Path(file)) as fresh:
+                fresh.write_bytes(picture)
         return picture
 
 
