@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "binders.h"
-#include "names.h"
+#include "ingredient/constraint.h"
 #include "shape_argument.h"
 #include "typed_argument.h"
 
@@ -25,6 +25,8 @@ constexpr const char* coordinate_doc =
     "its limits, motor, friction and spring. Torques in N m for an angle, forces in N for a slide.";
 
 constexpr std::array coordinate_names{"angle", "slide", "second_angle"};  // as JointCoordinate counts them
+
+std::string word_of(ConstraintKind kind) { return ingredient::info(kind).name; }
 
 using Pair = std::pair<double, double>;
 
@@ -338,8 +340,7 @@ CoordinateView coordinate_of(const ConstraintHandle& self, JointCoordinate which
   (void)self.use();
   const ConstraintKind kind = self.system->engine.joints().state(self.id).kind;
   if (!has_coordinate(kind, which)) {
-    const std::string text =
-        "a " + to_word(constraint_words, kind) + " has no " + coordinate_names[static_cast<std::size_t>(which)];
+    const std::string text = "a " + word_of(kind) + " has no " + coordinate_names[static_cast<std::size_t>(which)];
     PyErr_SetString(PyExc_AttributeError, text.c_str());
     throw nb::python_error();
   }
@@ -362,7 +363,7 @@ CoupledCoordinate to_coupled(SystemObject& self, nb::handle value, double ratio)
       if (has_coordinate(kind, which)) found.push_back(which);
     if (found.size() != 1)
       throw nb::type_error(
-          ("a " + to_word(constraint_words, kind) + " has " +
+          ("a " + word_of(kind) + " has " +
            (found.empty() ? "no coordinate to couple" : "several coordinates: name one, as in joint.angle"))
               .c_str());
     term.coordinate = found.front();
@@ -394,7 +395,7 @@ System& between_steps(const ConstraintHandle& self, const char* what) {
 std::string repr(const ConstraintHandle& self) {
   if (!self.is_alive()) return stale_repr("Constraint", self);
   const ConstraintState state = self.system->engine.joints().state(self.id);
-  return "<Constraint " + std::to_string(self.id.slot) + ": " + to_word(constraint_words, state.kind) + " of body " +
+  return "<Constraint " + std::to_string(self.id.slot) + ": " + word_of(state.kind) + " of body " +
          std::to_string(state.a.slot) + " and " + (state.b ? "body " + std::to_string(state.b.slot) : "the world") +
          (state.broken   ? ", broken>"
           : state.active ? ">"
@@ -409,10 +410,7 @@ void bind_handle(nb::module_& module) {
           "alive", [](const ConstraintHandle& self) { return self.is_alive(); },
           "False once it or one of the things it connects was destroyed.")
       .def_prop_ro(
-          "kind",
-          [](const ConstraintHandle& self) {
-            return to_word(constraint_words, self.use().joints().state(self.id).kind);
-          },
+          "kind", [](const ConstraintHandle& self) { return word_of(self.use().joints().state(self.id).kind); },
           "'revolute', 'rope' ...")
       .def_prop_ro(
           "a", [](const ConstraintHandle& self) { return body_or_none(self, self.use().joints().state(self.id).a); },

@@ -28,18 +28,6 @@ inline constexpr Words<BodyKind, 5> kind_words{{{"dynamic", BodyKind::dynamic},
                                                 {"inactive", BodyKind::inactive},
                                                 {"resting", BodyKind::resting}}};
 
-inline constexpr Words<ConstraintKind, 20> constraint_words{
-    {{"ball", ConstraintKind::ball},           {"universal", ConstraintKind::universal},
-     {"revolute", ConstraintKind::revolute},   {"cylindrical", ConstraintKind::cylindrical},
-     {"prismatic", ConstraintKind::prismatic}, {"orientation", ConstraintKind::orientation},
-     {"weld", ConstraintKind::weld},           {"rod", ConstraintKind::rod},
-     {"rope", ConstraintKind::rope},           {"path", ConstraintKind::path},
-     {"surface", ConstraintKind::surface},     {"inside", ConstraintKind::inside},
-     {"outside", ConstraintKind::outside},     {"touching", ConstraintKind::touching},
-     {"apart", ConstraintKind::apart},         {"span", ConstraintKind::span},
-     {"coupling", ConstraintKind::coupling},   {"tackle", ConstraintKind::tackle},
-     {"screw", ConstraintKind::screw},         {"planar", ConstraintKind::planar}}};
-
 /// The value of a word; ValueError that lists the words for any other.
 template <class Value, std::size_t count>
 Value from_word(const Words<Value, count>& words, std::string_view word, const char* what) {
