@@ -142,6 +142,14 @@ void def_common(nb::class_<S>& type) {
           },
           nb::sig("def numbers(self) -> tuple[float, ...]"), "All sizes in one list, as sent to pages.")
       .def_prop_ro(
+          "bounds",
+          [](const S& s) {
+            const shape::Bounds b = shape::bounds(s);
+            return nb::make_tuple(b.low, b.high);
+          },
+          nb::sig("def bounds(self) -> tuple[Vec3, Vec3]"),
+          "Lowest and highest corner of the least box along the axes, m; those of a half-space are infinite.")
+      .def_prop_ro(
           "mass_properties", [](const S& s) { return mass_properties(s); },
           "Volume, center and second moments. Raises ValueError for a shape without a volume.")
       .def(

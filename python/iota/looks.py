@@ -55,16 +55,11 @@ class Look:
     @property
     def length(self) -> float:
         """Length of the shape along its x axis, m; for a capsule that of its cylinder."""
-        shape = self.shape
-        if isinstance(shape, Cylinder | Capsule | Cone):
-            return shape.length
-        if isinstance(shape, Box | Ellipsoid):
-            return shape.size[0]
-        if isinstance(shape, Torus):
-            return 2 * (shape.radius + shape.tube) + shape.stretch
-        if isinstance(shape, Mesh):
-            return float(np.ptp(np.asarray(shape.vertices)[:, 0]))
-        return 2 * shape.radius if isinstance(shape, Sphere) else 1.0
+        if self.shape is None:
+            return 1.0
+        low, high = self.shape.bounds
+        length: float = getattr(self.shape, "length", high.x - low.x)
+        return length if math.isfinite(length) else 1.0
 
     def of_length(self, length: float) -> Look:
         """The same look with a length (m), if it fits its body."""

@@ -2,6 +2,7 @@
 #include "net/presenter.h"
 
 #include "shape/shape.h"
+#include "shape/shape_list.h"
 
 #include <iota/system.h>
 
@@ -45,6 +46,20 @@ protocol::Shape to_wire(const Shape& shape) {
   for (const auto& triangle : mesh->triangles)
     wire.triangles.insert(wire.triangles.end(), triangle.begin(), triangle.end());
   return wire;
+}
+
+/// Of the wire of a ring, or of a round shape, m: its size of that name. 0 for any other shape.
+double radius_of(const protocol::Shape& wire) {
+  double radius = 0;
+  shape::for_each_shape([&](const Shape& shape) {
+    if (shape::name(shape) != wire.kind) return;
+    const std::vector<std::string> names = shape::size_names(shape);
+    auto found = std::ranges::find(names, "tube");
+    if (found == names.end()) found = std::ranges::find(names, "radius");
+    const auto index = static_cast<std::size_t>(found - names.begin());
+    if (index < std::min(names.size(), wire.sizes.size())) radius = wire.sizes[index];
+  });
+  return radius;
 }
 
 /// A zero length for any size of the scene.
@@ -313,12 +328,7 @@ std::vector<protocol::Part> Presenter::parts_along_lines(const DrawnBody& body, 
   std::vector<protocol::Part> parts;
   for (const auto& [look, first] :
        like ? first_parts(like->parts) : std::vector{std::pair{std::string(every_look), &plain}}) {
-    const std::vector<float>& sizes = first->shape.sizes;
-    // A torus is as thick as its tube, its second size.
-    const std::size_t thick = first->shape.kind == "torus" ? 1 : 0;
-    constexpr std::array round{"sphere", "cylinder", "capsule", "torus", "cone"};
-    const bool is_round = std::ranges::find(round, first->shape.kind) != round.end() && sizes.size() > thick;
-    const double radius = is_round && sizes[thick] > 0 ? sizes[thick] : thickness_;
+    const double drawn = radius_of(first->shape), radius = drawn > 0 ? drawn : thickness_;
     const std::size_t before = parts.size();
     const auto add = [&, first = first](protocol::Shape shape) -> protocol::Part& {
       protocol::Part& part = parts.emplace_back(make_part(look, std::move(shape), first->material));

@@ -2,7 +2,8 @@
 #pragma once
 
 // A new shape needs a struct and its name in the variant of iota/shapes.h, a header here, a line below, a line in
-// protocol/shapes.json and a file in web/src/scene/shapes. No other code names it.
+// protocol/shapes.json, its name in python/iota/__init__.py, a file and a line in web/src/scene/shapes. No other code has
+// to name it.
 #include "shape/box.h"
 #include "shape/capsule.h"
 #include "shape/cone.h"

@@ -38,9 +38,19 @@ def test_bodies_of_a_class_take_turns_to_be_odd(system: iota.System, chain: list
         assert style["name"] == "link" and [part["look"] for part in style["parts"]] == ["rope", "chain"]
 
 
-def test_welded_bodies_get_a_compound_of_their_own(system: iota.System, chain: list[iota.Body]) -> None:
+@pytest.mark.parametrize(
+    "shape",
+    [
+        iota.Sphere(0.01), iota.Cylinder(0.01, 0.1), iota.Capsule(0.01, 0.1), iota.Cone(0.01, 0.1),
+        iota.Torus(0.05, 0.01),  # as thick as its wire
+    ],
+    ids=lambda shape: shape.kind,
+)  # fmt: skip
+def test_welded_bodies_get_a_compound_as_thick_as_their_looks(
+    system: iota.System, chain: list[iota.Body], shape: iota.Shape
+) -> None:
     scene = Scene()
-    scene.classes["link"] = {"*": looks.cylinder(0.01, "brass")}
+    scene.classes["link"] = {"*": looks.Look(shape, "brass")}
     scene.assign(chain, "link")
     with show(system, scene) as shown:
         chain[0].combine(chain[1])

@@ -90,6 +90,22 @@ def test_a_half_space_has_no_mass() -> None:
         ground.kind = "dynamic"
 
 
+def test_bounds_are_the_least_box_and_a_look_is_as_long_as_its_shape() -> None:
+    corners = [(0, 0, 0), (0.7, 0, 0), (0, 1, 0), (0, 0, 1)]
+    for shape, low, high, length in [
+        (iota.Sphere(0.5), (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5), 1.0),
+        (iota.Box((1, 2, 3), rounding=0.1), (-0.5, -1, -1.5), (0.5, 1, 1.5), 1.0),
+        (iota.Cylinder(0.1, 2), (-1, -0.1, -0.1), (1, 0.1, 0.1), 2.0),
+        (iota.Capsule(0.1, 2), (-1.1, -0.1, -0.1), (1.1, 0.1, 0.1), 2.0),  # of its cylinder
+        (iota.Torus(1, 0.1, stretch=0.4), (-1.3, -1.1, -0.1), (1.3, 1.1, 0.1), 2.6),
+        (iota.Ellipsoid((1, 2, 3)), (-0.5, -1, -1.5), (0.5, 1, 1.5), 1.0),
+        (iota.Mesh.convex_hull(corners), (0, 0, 0), (0.7, 1, 1), 0.7),
+    ]:
+        assert tuple(shape.bounds[0]) == pytest.approx(low) and tuple(shape.bounds[1]) == pytest.approx(high), shape
+        assert looks.Look(shape).length == pytest.approx(length), shape
+    assert iota.HalfSpace().bounds[0].y == -math.inf and looks.Look(iota.HalfSpace()).length == 1
+
+
 def test_any_shape_is_a_look() -> None:
     look = looks.Look(iota.Cone(0.1, 0.3), "wood", color="#aa3311")
     assert look.describe() | {"kind": "cone", "sizes": [0.1, 0.3], "material": "wood"} == look.describe()
