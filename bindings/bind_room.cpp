@@ -85,15 +85,16 @@ void publish_changes(RoomObject& self, const PoseSnapshot& snapshot, const Scene
   net::EntityChanges out = self.presenter.present(changes);
   out.append(std::exchange(self.own, {}));
   self.use().publish(snapshot, std::move(out));
-  for (const ViewEvent& event : changes.events)
-    self.use().effect(event.kind == ViewEvent::Kind::join ? "join" : "break", narrow(event.position));
 }
 
-void publish(RoomObject& self, SystemObject& system) {
+void publish(RoomObject& self, SystemObject& system, bool effects) {
   System& engine = system.use();
   const SceneChanges changes =
       engine.viewer().take_scene_changes(self.presenter.needs_all(), self.presenter.assigned());
   publish_changes(self, engine.viewer().poses(), changes);
+  if (!effects) return;
+  for (const ViewEvent& event : changes.events)
+    self.use().effect(event.kind == ViewEvent::Kind::join ? "join" : "break", narrow(event.position));
 }
 
 // ---------------------------------------------------------------------------------------- a simulator of the script's
@@ -278,7 +279,8 @@ void bind_room(nb::module_& module) {
           "ask_picture",
           [](RoomObject& self, std::uint32_t client, std::uint32_t number) { self.use().ask_picture(client, number); },
           "client"_a, "number"_a, "Asks one client for a picture; its parts come as input with this number.")
-      .def("publish", &publish, "system"_a, "Sends the newest poses of a system, and its changes.")
+      .def("publish", &publish, "system"_a, "effects"_a = true,
+           "Sends the newest poses of a system, and its changes; effects: with the joins and breaks of its edits.")
       .def("publish_simulated", &publish_simulated, "bodies"_a.none(), "slots"_a, "places"_a, "holds"_a, nb::kw_only(),
            "step"_a, "time"_a, "structure_version"_a, "energy"_a, "gap"_a, "extent"_a,
            "The same for a simulator of the script, see iota.Simulator; bodies: None if none has changed. Raises\n"

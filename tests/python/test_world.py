@@ -65,6 +65,19 @@ def test_b_breaks_and_c_rejoins_in_python_and_on_the_page(world: iota.World, run
         assert page.notices == []
 
 
+def test_edits_that_are_a_mechanism_show_no_rings_and_those_that_the_script_chooses_do(
+    world: iota.World, run_world: Runner
+) -> None:
+    world.shows_edits = False
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.parts() == 1)
+        page.send("action", name="break", body=page.body(11))
+        page.wait_for(lambda: page.parts() == 2)
+        world.call(lambda: world.effect("join", (0, 1, 0)))
+        page.wait_for(lambda: page.effects)
+        assert [effect["kind"] for effect in page.effects] == ["join"]
+
+
 def test_a_dragged_link_follows_and_swings_back(world: iota.World, run_world: Runner) -> None:
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: 23 in page.places)

@@ -174,6 +174,7 @@ class Ladder:
         self.begun = [(block.body, list(block.corners)) for block in self.blocks]
         self.aim = 0.0  # of the top block, rad
         self.rest()
+        world.shows_edits = False
         world.on_step(self.step)
         world.on_reset(self.begin_anew)
 

@@ -59,7 +59,7 @@ class Publisher:
         clock = state.clock
         self.room.set_state(paused=clock.paused, speed=clock.speed, step_ms=state.step_ms, dt=clock.dt)
         state.things.tell(self.room, state.system.structure_version, state.notices.warn_once)
-        self._source.publish(self.room)
+        self._source.publish(self.room, state.shows_edits)
         for text in self.room.take_warnings():
             state.notices.warn_once(text)
 

@@ -15,8 +15,8 @@ class Source(ABC):
     """Sends the state of a simulator."""
 
     @abstractmethod
-    def publish(self, room: Room) -> None:
-        """Sends present poses and changes."""
+    def publish(self, room: Room, shows_edits: bool) -> None:
+        """Sends present poses and changes, and the effects of edits if they are shown."""
 
     @abstractmethod
     def body_of(self, room: Room, event: InputEvent) -> Any:
@@ -29,8 +29,8 @@ class EngineSource(Source):
     def __init__(self, system: System) -> None:
         self._system = system
 
-    def publish(self, room: Room) -> None:
-        room.publish(self._system)
+    def publish(self, room: Room, shows_edits: bool) -> None:
+        room.publish(self._system, effects=shows_edits)
 
     def body_of(self, room: Room, event: InputEvent) -> Any:
         return room.body_of(event, self._system)
@@ -43,10 +43,11 @@ class SimulatorSource(Source):
         self._simulator = simulator
         self._scene_version = -1
 
-    def publish(self, room: Room) -> None:
+    def publish(self, room: Room, shows_edits: bool) -> None:
         simulator = self._simulator
         for kind, place in simulator.take_edits():
-            room.effect(kind, place)
+            if shows_edits:
+                room.effect(kind, place)
         is_changed = room.needs_all or simulator.scene_version != self._scene_version
         self._scene_version = simulator.scene_version
         slots, places = simulator.poses()

@@ -40,6 +40,7 @@ class State:
     pictures: Pictures = field(default_factory=Pictures)
     notices: Notices = field(default_factory=Notices)
     costs: Costs = field(default_factory=Costs)
+    shows_edits: bool = True  # by effects
     step_ms: float = 0.0  # of a step, smoothed
     is_changed: bool = True  # pages need more than new poses
 

@@ -118,6 +118,16 @@ class World(Interacting):
         self._state.camera = camera
         self._state.is_changed = True
 
+    @property
+    def shows_edits(self) -> bool:
+        """Whether joins and breaks show a ring of light, with a sound, by themselves. False where a script's mechanism makes
+        them all the time, as that of the study ladder; `effect` still shows what users should see."""
+        return self._state.shows_edits
+
+    @shows_edits.setter
+    def shows_edits(self, shows: bool) -> None:
+        self._state.shows_edits = shows
+
     # --- callbacks and drawing ---------------------------------------------------------------------------------
 
     def at(self, time: float) -> Callable[[Callback], Callback]:
