@@ -46,8 +46,9 @@ void Integrator::make_room(const Problem& problem) {
   multipliers_saved_.resize(problem.multiplier_count());
 }
 
-// Summed on first use, as the mid-point scheme does not need them.
+// Summed on first use, as the mid-point scheme does not need them, and only where masses are coupled.
 std::span<const double> Integrator::lumped_masses(const Problem& problem) {
+  if (problem.mass_couplings.empty()) return problem.mass;
   if (lumped_mass_.empty()) {
     lumped_mass_.assign(problem.mass.begin(), problem.mass.end());
     for (const auto& c : problem.mass_couplings) lumped_mass_[c.a] += c.mass, lumped_mass_[c.b] += c.mass;
