@@ -86,5 +86,6 @@ export default defineConfig({
     rolldownOptions: { input: ["index.html", "gallery.html"] },
     license: { fileName: "licenses.txt" },
   },
-  test: { include: ["test/**/*.test.ts"] },
+  // A busy machine may need longer than the usual 5 s.
+  test: { include: ["test/**/*.test.ts"], testTimeout: 60_000 },
 });

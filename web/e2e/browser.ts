@@ -101,6 +101,42 @@ export class Tab {
     }
   }
 
+  /** Waits until all that fades in or slides on the page has done so. */
+  async untilShown(): Promise<void> {
+    await this.until("nothing fades or slides", () => document.getAnimations().every(({ playState }) => playState !== "running"));
+  }
+
+  /** Waits until the camera of the flat page stands still, and returns its place. */
+  async eyeAtRest(): Promise<number[]> {
+    const eye = () => this.page.evaluate(async () => {
+      const place = () => iota.page.viewer.camera.position.toArray();
+      const before = place();
+      for (let frame = 0; frame < 3; frame++) await new Promise(requestAnimationFrame);
+      const { goal, distance: now } = iota.page.navigation;
+      const still = Math.hypot(...place().map((value, axis) => value - before[axis])) < 1e-4 * now && Math.abs(goal.distance - now) < 1e-3 * now;
+      return still ? place() : null;
+    });
+    for (let trial = 0; trial < 200; trial++) {
+      const at = await eye();
+      if (at !== null) return at;
+    }
+    throw new Error("the camera goes on moving");
+  }
+
+  /** Clicks a button of the bar, which hides itself after a while and comes back with the mouse. */
+  async press(selector: string): Promise<void> {
+    await this.page.mouse.move(300, 40);
+    await this.page.mouse.move(310, 40);
+    await this.page.click(selector);
+  }
+
+  /** Waits until the world has gone on by s of its own time. */
+  async goOn(seconds: number): Promise<void> {
+    const from = await this.page.evaluate(() => iota.time);
+    // A reset begins at 0 again.
+    await this.until(`${seconds} s have passed in the world`, ([began, span]) => iota.time > began + span || iota.time < began, [from, seconds] as const);
+  }
+
   async articulates(): Promise<number> {
     return this.page.evaluate(() => new Set(iota.articulates().values()).size);
   }
@@ -121,7 +157,7 @@ export class Tab {
       if ((await this.page.evaluate(() => iota.paused)) === paused) return;
       await this.page.bringToFront();
       await this.page.keyboard.press(" ");
-      const done = this.until(paused ? "the world is paused" : "the world runs", (wanted) => iota.paused === wanted, paused, 8000);
+      const done = this.until(paused ? "the world is paused" : "the world runs", (wanted) => iota.paused === wanted, paused, 15_000);
       if (await done.then(() => true, () => false)) return;
     }
     throw new Error(`the world will not ${paused ? "pause" : "run"}`);
@@ -133,16 +169,17 @@ export class Tab {
     await this.pause(true);
     const rested = await this.page.evaluate(async () => {
       const began = performance.now();
+      const longest = 30_000;
       const drawn = () => iota.bodies().flatMap((body) => iota.bodyPosition(body).map((value) => value.toFixed(4))).join();
       let before = "";
-      for (let still = 0; still < 3 && performance.now() - began < 15_000;) {
+      for (let still = 0; still < 3 && performance.now() - began < longest;) {
         // A frame, or half a second if drawing stalls, so that the wait ends.
         await Promise.race([new Promise(requestAnimationFrame), new Promise((resolve) => setTimeout(resolve, 500))]);
         const now = drawn();
         still = now === before ? still + 1 : 0;
         before = now;
       }
-      return performance.now() - began < 15_000;
+      return performance.now() - began < longest;
     });
     if (!rested) throw new Error("the paused world goes on moving");
   }
@@ -151,9 +188,9 @@ export class Tab {
     await this.page.keyboard.press("Escape");
     // A second reset within a second is refused.
     const isWhole = () => new Set(iota.articulates().values()).size === 1 && iota.time < 1.5;
-    for (let trial = 0; trial < 5; trial++) {
+    for (let trial = 0; trial < 8; trial++) {
       await this.page.keyboard.press("r");
-      if (await this.page.waitForFunction(isWhole, undefined, { timeout: 3000, polling: 50 }).then(() => true, () => false)) return;
+      if (await this.page.waitForFunction(isWhole, undefined, { timeout: 4000, polling: 20 }).then(() => true, () => false)) return;
     }
     await this.until("the chain is whole again", isWhole);
   }
@@ -169,7 +206,7 @@ export class Tab {
       ), at);
       if (free) return at;
       await this.pause(false);
-      await this.page.waitForTimeout(250);
+      await this.goOn(0.2);
     }
     throw new Error(`body ${body} never came into view`);
   }

@@ -136,7 +136,7 @@ describe("what a script draws", () => {
 
 describe("the script hears", () => {
   const told = async (text: string) => {
-    await expect.poll(() => server.output, { timeout: 15_000, message: `"${text}" is told to the script` }).toContain(text);
+    await expect.poll(() => server.output, { message: `"${text}" is told to the script` }).toContain(text);
   };
 
   it("of a slider, a check box, a choice, a text and a button, each by mouse or keyboard", async () => {
@@ -183,10 +183,10 @@ describe("the script hears", () => {
     await tab.page.keyboard.press("n");
     await tab.until("it is night", () => iota.page.world.entities.stage.size === 1);
     await tab.picture("page_night");
-    await expect.poll(light, { timeout: 10_000 }).toBeLessThan(70);
+    await expect.poll(light).toBeLessThan(70);
     await tab.page.keyboard.press("n");
     await tab.until("it is day", () => iota.page.world.entities.stage.size === 0);
-    await expect.poll(async () => Math.abs((await light()) - day), { timeout: 10_000 }).toBeLessThan(3);
+    await expect.poll(async () => Math.abs((await light()) - day)).toBeLessThan(3);
   });
 
   it("of a picture that it asks for, and a user takes one by a key", async () => {

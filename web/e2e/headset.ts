@@ -118,9 +118,13 @@ export class HeadsetTab {
   /** Points a ray at a button of the wrist panel. */
   async pointAtPanel(side: Side, at: Point, name: string): Promise<void> {
     await this.tab.until(`the panel has a button ${name}`, (wanted) => iotaXR!.panelButton(wanted), name);
-    await this.frames(6);
-    const button = await this.tab.page.evaluate((wanted) => iotaXR!.panelButton(wanted)!, name);
-    await this.point(side, at, button.at);
+    // The panel eases to its place: point again where it has gone on.
+    for (let trial = 0; trial < 50; trial++) {
+      await this.frames(3);
+      const button = await this.tab.page.evaluate((wanted) => iotaXR!.panelButton(wanted), name);
+      if (button !== null) await this.point(side, at, button.at);
+      if (await this.tab.page.evaluate((wanted) => iotaXR!.inputs().some((input) => input.panelButton === wanted), name)) return;
+    }
     await this.tab.until(`the ray is on ${name}`, (wanted) => iotaXR!.inputs().some((input) => input.panelButton === wanted), name);
   }
 }

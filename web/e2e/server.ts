@@ -9,7 +9,7 @@ import path from "node:path";
 
 const root = path.resolve(import.meta.dirname, "..", "..");
 const iota = path.join(root, ".venv", "bin", "iota");
-const startsWithinMs = 20_000;
+const startsWithinMs = 60_000;
 
 export const artifacts = path.join(root, "build", "artifacts");
 export const probe = path.join(import.meta.dirname, "chain_probe.py");

@@ -47,7 +47,7 @@ beforeEach(async () => {
 
 async function untilParts(count: number): Promise<void> {
   await me.tab.until(`there are ${count} parts`, (wanted) => new Set(iota.articulates().values()).size === wanted, count);
-  await expect.poll(() => server.report?.articulates, { timeout: 5000 }).toBe(count);
+  await expect.poll(() => server.report?.articulates).toBe(count);
 }
 
 /** Points the right ray at a link of a world that stands still. */
@@ -170,10 +170,7 @@ describe("an emulated headset", () => {
     const yaw = () => me.tab.page.evaluate(() => (iotaXR!.rig().yaw * 180) / Math.PI);
     const before = await yaw();
     await me.stick("right", 1, 0);
-    await me.frames(3);
-    const turned = before - (await yaw());
-    expect(turned).toBeGreaterThan(0.5);
-    expect(await me.tab.page.evaluate(() => iotaXR!.headset.vignette.mesh.visible)).toBe(true);
+    await me.tab.until("it turns, with a narrowed view", (was) => was - (iotaXR!.rig().yaw * 180) / Math.PI > 0.5 && iotaXR!.headset.vignette.mesh.visible, before);
     await me.stick("right", 0, 0);
     await me.tab.until("the view is wide again", () => !iotaXR!.headset.vignette.mesh.visible);
     const rest = await yaw();
@@ -247,9 +244,8 @@ describe("an emulated headset", () => {
   it("teleports along the arc when the stick is let go", async () => {
     await me.point("left", leftRest, [-0.2, 1.0, -1.5]);
     await me.stick("left", 0, -1);
-    await me.frames(2);
+    await me.tab.until("the arc lands", () => iotaXR!.landing() !== null);
     const landing = await me.tab.page.evaluate(() => iotaXR!.landing());
-    expect(landing).not.toBeNull();
     const before = await me.tab.page.evaluate(() => iotaXR!.head());
     await me.stick("left", 0, 0);
     const after = await me.tab.page.evaluate(() => iotaXR!.head());
@@ -364,7 +360,7 @@ describe("leaving and coming back", () => {
     }, link);
     await me.tab.page.mouse.move(x + 20, y);
     await me.tab.page.mouse.move(x, y);
-    await me.frames(3);
+    await me.tab.until("the mouse's hand points at something", () => iotaXR!.inputs().some((input) => input.name === "right" && input.hovered >= 0));
     await me.tab.page.mouse.down();
     await me.tab.until("the mouse's hand holds something", () => iotaXR!.inputs().some((input) => input.name === "right" && input.held >= 0));
     await me.tab.page.mouse.up();
@@ -379,8 +375,7 @@ describe("the user's own surroundings", () => {
     await me.tab.page.mouse.move(200, 120);
     await me.tab.page.mouse.move(210, 120);
     await me.tab.page.click("#enter-ar");
-    await me.tab.until("the session runs", () => iotaXR!.presenting && iota.page.viewer.stage.passthrough);
-    await me.frames(3);
+    await me.tab.until("the session runs", () => iotaXR!.presenting && iota.page.viewer.stage.passthrough && !iota.page.viewer.stage.ground.visible);
     const seen = await me.tab.page.evaluate(() => {
       const { viewer } = iota.page;
       return { mode: viewer.renderer.xr.getEnvironmentBlendMode(), ground: viewer.stage.ground.visible };
