@@ -101,6 +101,24 @@ describe("the wrist panel's layout", () => {
     expect(play(1).x).toBe(play(2).x);
   });
 
+  it("turns over where there are more rows than fit, and shows each of them once", () => {
+    const actions = Array.from({ length: 50 }, (_, index) => action(`act${index}`, null));
+    let leaf = 0;
+    const turn = (to: number) => { leaf = to; };
+    const seen: string[] = [];
+    const first = layoutPanel(commandsOf(1, ...actions), [], 0, turn);
+    do {
+      const { buttons, height } = layoutPanel(commandsOf(1, ...actions), [], leaf, turn);
+      expect(height).toBeLessThanOrEqual(first.height);
+      seen.push(...buttons.map(({ command }) => command.name).filter((name) => name.startsWith("action")));
+      const { command } = buttons.find((button) => button.command.name === "next leaf")!;
+      if ("run" in command) command.run();
+    } while (leaf !== 0);
+    expect(seen).toEqual(actions.map(({ name }) => name));
+    expect(first.readings.map(({ command }) => command.title())).toContain("1 of 3");
+    expect(layoutPanel(commandsOf(1, ...actions.slice(0, 21))).buttons.map(({ command }) => command.name)).not.toContain("next leaf");
+  });
+
   it("has the script's controls, which do what their presses say", () => {
     const changes: [string, number][] = [];
     const made = (kind: WidgetKind, label: string, extra: Partial<WidgetEntity> = {}): WidgetEntity => ({

@@ -7,8 +7,6 @@ import { WidgetKind, type WidgetEntity } from "../protocol/generated.ts";
 /** Presses that take a slider from one end to the other. */
 const sliderPresses = 20;
 const inRow = 3;
-/** More would be taller than an arm can hold; the page has them all. */
-const mostRows = 7;
 const signs = { minus: "M6 12h12", plus: "M6 12h12M12 6v12" };
 
 type Change = (widget: WidgetEntity, value: number) => void;
@@ -28,7 +26,7 @@ export function controlRows(widgets: readonly WidgetEntity[], change: Change): E
     else if (widget.kind === WidgetKind.choice) rows.push(makeChoice(widget, change));
     else rows.push([makeReading(`name ${widget.label}`, () => `${widget.label}: ${widget.text}`)]);
   }
-  return rows.slice(0, mostRows);
+  return rows;
 }
 
 function makeButton(widget: WidgetEntity, change: Change): Command {
@@ -72,6 +70,6 @@ function makeChoice(widget: WidgetEntity, change: Change): Entry[] {
   ];
 }
 
-function makeReading(name: string, value: () => string): Choice {
+export function makeReading(name: string, value: () => string): Choice {
   return { name, title: value, options: [], unit: "", wide: true, value, choose: () => {} };
 }

@@ -3,6 +3,7 @@
 
 import { isChoice, type Entry, type ScriptCommand } from "../commands/command.ts";
 import type { Commands } from "../commands/commands.ts";
+import { makeReading } from "./controls.ts";
 import type { Rect } from "./plate.ts";
 
 export interface PanelButton extends Rect {
@@ -56,8 +57,25 @@ function badgeOf(command: Entry): string {
   return (command as Partial<ScriptCommand>).button?.toUpperCase() ?? "";
 }
 
-/** `controls`: rows of those of the script. */
-export function layoutPanel(commands: Commands, controls: readonly (readonly Entry[])[] = []): Layout {
+/** More would be taller than an arm can hold. */
+export const mostRows = 7;
+const signs = { back: "M14 6l-6 6 6 6", on: "M10 6l6 6-6 6" };
+
+/** The rows of one leaf where there are more than fit; the last row turns over. `turn` is called with the leaf to show. */
+export function leafOf(rows: readonly (readonly Entry[])[], leaf: number, turn: (leaf: number) => void): readonly (readonly Entry[])[] {
+  if (rows.length <= mostRows) return rows;
+  const onLeaf = mostRows - 1;
+  const leaves = Math.ceil(rows.length / onLeaf);
+  const shown = Math.min(leaf, leaves - 1);
+  const turner = (name: string, sign: string, by: number): Entry => ({
+    name, title: () => name, sign: () => sign, narrow: true, run: () => turn((shown + by + leaves) % leaves),
+  });
+  const place = makeReading("name leaf", () => `${shown + 1} of ${leaves}`);
+  return [...rows.slice(shown * onLeaf, (shown + 1) * onLeaf), [turner("previous leaf", signs.back, -1), place, turner("next leaf", signs.on, 1)]];
+}
+
+/** `controls`: rows of those of the script; `leaf`: the one that is shown of its actions and controls. */
+export function layoutPanel(commands: Commands, controls: readonly (readonly Entry[])[] = [], leaf = 0, turn: (leaf: number) => void = () => {}): Layout {
   let top = headHeight;
   const buttons: PanelButton[] = [];
   const add = (entries: readonly Entry[]) => {
@@ -66,8 +84,8 @@ export function layoutPanel(commands: Commands, controls: readonly (readonly Ent
   };
   add(commands.at("panel"));
   const { script } = commands;
-  for (let from = 0; from < script.length; from += actionsInRow) add(script.slice(from, from + actionsInRow));
-  for (const row of controls) add(row);
+  const actions = Array.from({ length: Math.ceil(script.length / actionsInRow) }, (_, row) => script.slice(actionsInRow * row, actionsInRow * (row + 1)));
+  for (const entries of leafOf([...actions, ...controls], leaf, turn)) add(entries);
   const foot = commands.at("panel foot");
   for (let from = 0; from < foot.length; from += footInRow) add(foot.slice(from, from + footInRow));
   return {

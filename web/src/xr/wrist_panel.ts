@@ -31,6 +31,7 @@ export class WristPanel {
   private newton_ = -1;
   private sinceRead_ = 0;
   private controlsSeen_ = 0;
+  private leaf_ = 0;
   private placed_ = false;
   private readonly at_ = new Vector3();
   private readonly goal_ = new Vector3();
@@ -61,7 +62,11 @@ export class WristPanel {
   arrange(): Layout {
     const { commands, world: { entities: { widget } }, session } = this.page_;
     this.controlsSeen_ = widget.version;
-    this.layout_ = layoutPanel(commands, controlRows(widget.all(), ({ id }, value) => session.send({ type: "change", widget: id, value, text: "" })));
+    const controls = controlRows(widget.all(), ({ id }, value) => session.send({ type: "change", widget: id, value, text: "" }));
+    this.layout_ = layoutPanel(commands, controls, this.leaf_, (leaf) => {
+      this.leaf_ = leaf;
+      this.arrange();
+    });
     this.board.buttons = this.layout_.buttons;
     this.board.resize(panelWidth, Math.ceil(this.layout_.height));
     return this.layout_;
