@@ -37,22 +37,36 @@ struct CoordinateArguments {
   nb::object spring = nb::none();
 };
 
+/// One number, or up to three; those left out are 0. `form`: what the argument must be, for errors.
+std::array<double, 3> to_three(nb::handle argument, const char* form) {
+  std::vector<double> numbers;
+  if (double first = 0; nb::try_cast(argument, first)) numbers = {first};
+  if ((numbers.empty() && !nb::try_cast(argument, numbers)) || numbers.empty() || numbers.size() > 3)
+    throw nb::type_error((std::string(form) + ", not " + describe(argument)).c_str());
+  numbers.resize(3, 0.0);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
 /// (stiffness, damping=0, rest=0), or a number: the stiffness.
 void read_spring(nb::handle spring, CoordinateOptions& options) {
   if (spring.is_none()) {
     options.stiffness = options.damping = options.rest = 0;
     return;
   }
-  std::vector<double> numbers;
-  if (double stiffness = 0; nb::try_cast(spring, stiffness)) numbers = {stiffness};
-  if ((numbers.empty() && !nb::try_cast(spring, numbers)) || numbers.empty() || numbers.size() > 3)
-    throw nb::type_error(("spring must be a stiffness or (stiffness, damping, rest), not " + describe(spring)).c_str());
-  numbers.resize(3, 0.0);
+  const auto numbers = to_three(spring, "spring must be a stiffness or (stiffness, damping, rest)");
   options.stiffness = finite_not_negative(numbers[0], "spring stiffness", "N/m or N m/rad");
   options.damping = finite_not_negative(numbers[1], "spring damping", "N s/m or N m s/rad");
   options.rest = finite(numbers[2], "spring rest");
   if (options.stiffness == 0 && options.rest != 0)
     throw nb::value_error("a spring with a rest needs a stiffness: give one, or a rest of 0");
+}
+
+/// (linear, angular=0, time=0), or a number: the linear compliance.
+Compliance to_compliance(nb::handle compliance) {
+  const auto numbers = to_three(compliance, "compliance must be m/N or (m/N, rad/(N m), relaxation time)");
+  return {finite_not_negative(numbers[0], "compliance", "m/N"),
+          finite_not_negative(numbers[1], "angular compliance", "rad/(N m)"),
+          finite_not_negative(numbers[2], "the relaxation time of a compliance", "s")};
 }
 
 void read_limits(const std::optional<Pair>& limits, CoordinateOptions& options) {
@@ -457,6 +471,21 @@ void bind_handle(nb::module_& module) {
           "second_angle",
           [](const ConstraintHandle& self) { return coordinate_of(self, JointCoordinate::second_angle); },
           "Of a universal joint, about b's axis.")
+      .def_prop_rw(
+          "compliance",
+          [](const ConstraintHandle& self) {
+            const Compliance c = self.use().joints().compliance(self.id);
+            return nb::make_tuple(c.linear, c.angular, c.time);
+          },
+          [](const ConstraintHandle& self, nb::handle compliance) {
+            self.use().joints().set_compliance(self.id, to_compliance(compliance));
+          },
+          nb::for_getter(nb::sig("def compliance(self) -> tuple[float, float, float]")),
+          nb::for_setter(nb::sig("def compliance(self, compliance: float | Sequence[float]) -> None")),
+          "How far it yields in the directions that it holds: (m/N, rad/(N m), relaxation time in s); 0: exact. A load F\n"
+          "moves its bodies apart by F times the first, a torque turns them by the second; once the load is gone they\n"
+          "return within about the relaxation time. Of joints, rods and ropes. One number is m/N.\n\n"
+          "    shoulder.compliance = (1e-6, 1e-3, 0.02)")
       .def_prop_rw(
           "break_force", [](const ConstraintHandle& self) { return self.use().joints().break_limits(self.id).force; },
           [](const ConstraintHandle& self, double force) {

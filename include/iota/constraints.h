@@ -71,6 +71,16 @@ struct BreakLimits {
   double torque = std::numeric_limits<double>::infinity();  ///< N m, about the constraint's place
 };
 
+/// Makes a joint, rod or rope yield in the directions that it holds, like a spring. Zero: exact.
+struct Compliance {
+  double linear = 0;   ///< m/N
+  double angular = 0;  ///< rad/(N m)
+  double time = 0;     ///< relaxation time: damping over stiffness, s
+
+  friend bool operator==(const Compliance&, const Compliance&) = default;
+  bool is_exact() const { return linear == 0 && angular == 0; }
+};
+
 /// A joint between bodies a and b, or between a and the world where b is null. Relative position and orientation are
 /// the present ones of the bodies.
 struct JointSpec {

@@ -126,7 +126,8 @@ using Command = std::variant<
     AssignBonds,
     CreateSpan,
     CreateCoupling,
-    CreateTackle>;
+    CreateTackle,
+    SetCompliance>;
 // clang-format on
 
 /// Whether a command may be requested during a step; it is then applied right after it. Such a command has its name for

@@ -289,6 +289,20 @@ void apply(Editor& e, const SetBreakLimits& c) {
   e.model.constraints[slot].breaks = c.limits;
 }
 
+void apply(Editor& e, const SetCompliance& c) {
+  const std::uint32_t slot = e.require(c.constraint);
+  ingredient::Constraint& constraint = e.model.constraints[slot];
+  const ingredient::ConstraintKindInfo& kind = ingredient::info(constraint.kind);
+  require_not_negative("linear compliance", c.compliance.linear);
+  require_not_negative("angular compliance", c.compliance.angular);
+  require_not_negative("relaxation time", c.compliance.time);
+  if (!c.compliance.is_exact() && !kind.may_yield())
+    throw std::invalid_argument(text("a ", kind.name, " is always exact; joints, rods and ropes may have a compliance"));
+  const bool same_rows = constraint.compliance.is_exact() == c.compliance.is_exact();
+  constraint.compliance = c.compliance;
+  same_rows ? wake(e, slot) : constraint_changed(e, slot);
+}
+
 void apply(Editor& e, const Destroy<ConstraintId>& c) {
   model::Model& model = e.model;
   const std::uint32_t slot = e.require(c.id);

@@ -49,6 +49,11 @@ struct SetBreakLimits {
   ConstraintId constraint;
   BreakLimits limits;
 };
+struct SetCompliance {
+  static constexpr std::string_view queued_as = "set_compliance";
+  ConstraintId constraint;
+  Compliance compliance;
+};
 
 ConstraintId apply(Editor&, const CreateJoint&);
 ConstraintId apply(Editor&, const CreateDistance&);
@@ -62,6 +67,7 @@ void apply(Editor&, const SetConstraintActive&);
 void apply(Editor&, const SetCoordinate&);
 void apply(Editor&, const SetLength&);
 void apply(Editor&, const SetBreakLimits&);
+void apply(Editor&, const SetCompliance&);
 void apply(Editor&, const Destroy<ConstraintId>&);
 
 /// Updates the coordinates of a body's joints after places were assigned.

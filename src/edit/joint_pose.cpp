@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace iota::edit {
@@ -122,6 +123,7 @@ class CoordinateSetter {
     const double start = now();
     const int steps = std::clamp(static_cast<int>(std::ceil(std::abs(value - start) / (0.1 * scale()))), 1, 10000);
     const auto options = joint().options;
+    const auto compliances = take_compliances();  // what yields moves along as if it were exact
     bool good = true;
     for (int i = 1; i <= steps && good; ++i) {
       const double aim = start + (value - start) * i / steps;
@@ -134,8 +136,22 @@ class CoordinateSetter {
       joint().coordinate[index_] = now();
     }
     joint().options = options;
+    for (const auto& [slot, compliance] : compliances) model_.constraints[slot].compliance = compliance;
     touch();
     return good && finish(bodies_, value);
+  }
+
+  /// Makes all joints of the bodies that may move exact. Returns what they had.
+  std::vector<std::pair<std::uint32_t, Compliance>> take_compliances() {
+    std::vector<std::pair<std::uint32_t, Compliance>> before;
+    for (const std::uint32_t body : bodies_)
+      model_.for_each_particle_of(body, [&](std::uint32_t p) {
+        model_.for_each_constraint_of(p, [&](std::uint32_t slot, int) {
+          auto& c = model_.constraints[slot];
+          if (!c.compliance.is_exact()) before.push_back({slot, std::exchange(c.compliance, {})});
+        });
+      });
+    return before;
   }
 
   void touch() {

@@ -43,6 +43,9 @@ struct ConstraintKindInfo {
   bool second_angle = false;
   /// One-sided: the multiplier of its row is never negative (1, pulls), never positive (-1, pushes).
   int sign = 0;
+
+  /// Whether it may have a compliance: its rows have fixed directions and are its own.
+  bool may_yield() const { return form == Form::joint || (form == Form::distance && !slide); }
 };
 
 inline constexpr std::array<ConstraintKindInfo, 20> constraint_kinds{{
@@ -131,6 +134,7 @@ struct Constraint {
   /// After the last step, rad (counted through full turns) and m.
   std::array<double, joint_coordinates.size()> coordinate{};
   BreakLimits breaks;
+  Compliance compliance;
   std::array<double, 8> multipliers{};  ///< of the rows that hold it, N; warm start and reaction
   /// Multipliers of limit, motor, friction and spring.
   std::array<std::array<double, 4>, joint_coordinates.size()> efforts{};

@@ -96,6 +96,27 @@ Reaction calc_reaction(const Model& model, std::uint32_t slot) {
   return reaction;
 }
 
+namespace {
+
+/// visit(row, law, value): of the rows that hold a constraint which is no coupling, where its particles are now.
+template <class Visit>
+void for_each_held_value(const Model& model, std::uint32_t slot, Visit visit) {
+  const Constraint& c = model.constraints[slot];
+  const JointPlaces places(model, c);
+  auto sink = [&]<class Row>(const Row& row, RowUse use) {
+    if (use.role != Role::hold) return;
+    Row loaded = row;
+    double multipliers[Row::rows], g[Row::rows];
+    load_held(loaded, c, use, multipliers);
+    if (info(c.kind).form == ConstraintKindInfo::Form::distance) set_length(loaded, c.length);
+    loaded.value(places.position.data(), 1, g);
+    for (const double value : g) visit(loaded, law_of_hold(c, use, loaded), value);
+  };
+  JointRowBuilder<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
+}
+
+}  // namespace
+
 Violation calc_violation(const Model& model, std::uint32_t slot) {
   const Constraint& c = model.constraints[slot];
   const ConstraintKindInfo& kind = info(c.kind);
@@ -112,22 +133,19 @@ Violation calc_violation(const Model& model, std::uint32_t slot) {
     worst.relative = worst.absolute / size;
     return worst;
   }
-  const JointPlaces places(model, c);
-  auto sink = [&]<class Row>(const Row& row, RowUse use) {
-    if (use.role != Role::hold) return;
-    Row loaded = row;
-    double multipliers[Row::rows], g[Row::rows];
-    load_held(loaded, c, use, multipliers);
-    if (kind.form == ConstraintKindInfo::Form::distance) set_length(loaded, c.length);
-    loaded.value(places.position.data(), 1, g);
-    for (const double value : g) {
-      const double off = kind.sign == 0 ? std::abs(value) : std::max(0.0, kind.sign * value);
-      worst.absolute = std::max(worst.absolute, off);
-      worst.relative = std::max(worst.relative, off / loaded.reference_length());
-    }
-  };
-  JointRowBuilder<decltype(sink)>(c, model.geometry(slot), places.arms, sink).run();
+  for_each_held_value(model, slot, [&](const auto& row, const solver::RowLaw& law, double value) {
+    const double off = law.violation(value);
+    worst.absolute = std::max(worst.absolute, off);
+    worst.relative = std::max(worst.relative, off / row.reference_length());
+  });
   return worst;
+}
+
+double calc_energy_of_holds(const Model& model, std::uint32_t slot) {
+  double energy = 0;
+  for_each_held_value(model, slot,
+                      [&](const auto&, const solver::RowLaw& law, double value) { energy += law.energy(value); });
+  return energy;
 }
 
 std::pair<double, double> calc_coordinate(const Model& model, std::uint32_t slot, JointCoordinate which) {

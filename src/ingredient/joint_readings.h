@@ -31,6 +31,9 @@ struct Violation {
 };
 Violation calc_violation(const model::Model&, std::uint32_t joint);
 
+/// Energy of a joint's compliance at the present places, J.
+double calc_energy_of_holds(const model::Model&, std::uint32_t joint);
+
 /// False if its bodies are too thin for a coordinate of its kind.
 bool has_coordinate_row(const model::Model&, std::uint32_t joint, JointCoordinate);
 

@@ -25,7 +25,7 @@ using PlaceArms = std::array<PlaceArm, place_count>;
 /// The role of a solver's row in its joint.
 struct RowUse {
   enum class Role : std::uint8_t { hold, limit, motor, friction, spring } role = Role::hold;
-  std::uint8_t coordinate = 0;  ///< of all but `hold`
+  std::uint8_t coordinate = 0;  ///< of `hold`: slide or angle, the one whose unit its value has
   std::uint8_t first = 0;       ///< of `hold`: which of the joint's multipliers
 };
 
@@ -203,8 +203,8 @@ class JointRowBuilder {
   }
 
   template <class Row>
-  void hold(const Row& row) {
-    sink_(row, RowUse{Role::hold, 0, next_});
+  void hold(const Row& row, int unit = slide) {
+    sink_(row, RowUse{Role::hold, static_cast<std::uint8_t>(unit), next_});
     next_ += Row::rows;
   }
 
@@ -282,7 +282,8 @@ class JointRowBuilder {
       hold(sum_of({{a_axis, 1 / c_.scale[0]},
                    {a_origin, -1 / c_.scale[0]},
                    {b_axis, -1 / c_.scale[1]},
-                   {b_origin, 1 / c_.scale[1]}}));
+                   {b_origin, 1 / c_.scale[1]}}),
+           angle);
     } else if (c_.alignment != Alignment::none) {
       const bool of_a = c_.alignment == Alignment::axis_of_a;
       const int axis = of_a ? a_axis : b_axis, side = of_a ? b_side : a_side;
@@ -299,7 +300,7 @@ class JointRowBuilder {
     row.product = cosine * c_.scale[0] * c_.scale[1];
     row.scale = std::max(c_.scale[0], c_.scale[1]);
     row.reference = std::min(c_.scale[0], c_.scale[1]);
-    hold(row);
+    hold(row, angle);
   }
 
   /// (|d|^2 - L^2) / 2L: the multiplier is the tension.
@@ -307,7 +308,7 @@ class JointRowBuilder {
     const auto single = [&](int place) {
       return places_[place].nodes[0].second == 1 && places_[place].constant == Vec3{};
     };
-    if (c_.kind == ConstraintKind::rod && single(a_origin) && single(b_origin)) {
+    if (c_.kind == ConstraintKind::rod && c_.compliance.is_exact() && single(a_origin) && single(b_origin)) {
       hold(solver::DistanceConstraint{
           {places_[a_origin].nodes[0].first, places_[b_origin].nodes[0].first}, c_.length, c_.length});
       return;
@@ -408,6 +409,26 @@ void save_held(const Row& row, Constraint& c, RowUse use, const double* multipli
     const Vec3 force = row.force(multipliers);
     c.multipliers[0] = force.x, c.multipliers[1] = force.y, c.multipliers[2] = force.z;
   }
+}
+
+/// The value of a row that holds an angle, over that angle, m.
+inline double lever_of(const solver::BilinearConstraint& row) { return row.reference; }
+template <class Row>
+double lever_of(const Row&) {
+  return 1;
+}
+
+/// The law of a row that holds: of a rope's bound, and of its compliance.
+template <class Row>
+solver::RowLaw law_of_hold(const Constraint& c, RowUse use, const Row& row) {
+  solver::RowLaw law;
+  const int sign = info(c.kind).sign;
+  if (sign > 0) law.lower = 0;
+  if (sign < 0) law.upper = 0;
+  const double lever = use.coordinate == angle ? lever_of(row) : 1;
+  law.compliance = use.coordinate == angle ? c.compliance.angular * lever * lever : c.compliance.linear;
+  if (law.is_compliant()) law.damping = c.compliance.time / law.compliance;
+  return law;
 }
 
 inline void set_length(solver::DistanceConstraint& row, double length) { row.length = length; }

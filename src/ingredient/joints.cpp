@@ -162,7 +162,9 @@ void Joints::add_row(const IslandMap& map, std::uint32_t slot, const Row& row, R
     return;
   }
   problem.add(row, key_of(owner, slot, use));
-  if (use.role != Role::hold || info(map.model.constraints[slot].kind).sign != 0) (void)problem.pool_of<Row>().law(0);
+  const Constraint& c = map.model.constraints[slot];
+  if (use.role != Role::hold || info(c.kind).sign != 0 || !c.compliance.is_exact())
+    (void)problem.pool_of<Row>().law(0);
 }
 
 namespace {
@@ -191,8 +193,7 @@ void Joints::load(const Model& model, const IslandNodes&, double h, Problem& pro
         if (kind.form == Form::distance || kind.form == Form::coupling) set_length(row, c.length);
         if constexpr (std::is_same_v<C, solver::CouplingConstraint>)
           if (kind.form == Form::coupling) follow_coordinates(model, c, row);
-        if (kind.sign > 0) *pool.law(item) = {.lower = 0};
-        if (kind.sign < 0) *pool.law(item) = {.upper = 0};
+        if (pool.has_laws()) std::fill_n(pool.law(item), C::rows, law_of_hold(c, use, row));
         return;
       }
       const CoordinateOptions& o = c.options[use.coordinate];
@@ -359,21 +360,23 @@ void Joints::validate(const Model& model, model::Audit& audit) {
   audit.require(listed == places, "the particles list ", listed, " of ", places, " places of constraints");
 }
 
-// Energy of its springs, at the coordinates of the last step.
+// Energy of its springs, at the coordinates of the last step, and of compliant rows.
 void Joints::add_energy(const Scope& scope, Energies& sum) {
   const Model& model = scope.model;
-  const auto add = [&](const Constraint& c) {
+  const auto add = [&](std::uint32_t slot) {
+    const Constraint& c = model.constraints[slot];
     for (std::size_t i = 0; i < c.options.size() && c.active; ++i) {
       const double stretch = c.coordinate[i] - c.options[i].rest;
       sum.potential += 0.5 * c.options[i].stiffness * stretch * stretch;
     }
+    if (!c.compliance.is_exact() && is_in_force(model, c)) sum.potential += calc_energy_of_holds(model, slot);
   };
   if (scope.is_whole())
-    model.constraints.for_each([&](std::uint32_t, const Constraint& c) { add(c); });
+    model.constraints.for_each([&](std::uint32_t slot, const Constraint&) { add(slot); });
   else if (model.constraints.size() > 0)
     scope.for_each_particle([&](std::uint32_t p, const model::Particle&) {
       model.for_each_constraint_of(p, [&](std::uint32_t slot, int place) {
-        if (place == a_origin) add(model.constraints[slot]);
+        if (place == a_origin) add(slot);
       });
     });
 }

@@ -81,6 +81,12 @@ void Joints::set_break_limits(ConstraintId id, const BreakLimits& limits) {
   core_.execute(edit::SetBreakLimits{id, limits});
 }
 
+Compliance Joints::compliance(ConstraintId id) const { return core_.model.constraints[core_.slot(id)].compliance; }
+
+void Joints::set_compliance(ConstraintId id, const Compliance& compliance) {
+  core_.execute(edit::SetCompliance{id, compliance});
+}
+
 CoordinateOptions Joints::coordinate(ConstraintId id, JointCoordinate coordinate) const {
   const ingredient::Constraint& c = core_.model.constraints[core_.slot(id)];
   return c.options[static_cast<std::size_t>(coordinate)];

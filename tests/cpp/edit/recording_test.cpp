@@ -164,6 +164,7 @@ void record_constraints(System& system) {
   system.joints().set_length(rope, 3);
   system.joints().set_active(joint, false), system.joints().set_break_limits(rope, {1, 1}),
       system.particles().set_break_force(p, 1);
+  system.joints().set_compliance(rope, {.linear = 1e-3, .time = 0.1});
   (void)system.step(0.01);
   system.joints().destroy(rope);
 }
