@@ -90,7 +90,7 @@ template <bool Midpoint, bool Laws, class C>
 void Assembly::add_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x) {
   const Vec3* const x0 = problem.position.data();
   const double start = stage.fraction_start, end = stage.fraction;
-  const double give = row_compliance_ * stage.compliance / stage.inertia;
+  const double give = row_compliance(stage);
   const bool gives = stage.compliance != 0;
   double largest_multiplier = largest_multiplier_;
   Largest worst{worst_}, violation{violation_};
@@ -128,8 +128,7 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
         if (state.side != 0)
           value = gap = 0;
         else
-          value = equation.value -
-                  (equation.softness + compliances[r] * row_compliance_ * stage.compliance / stage.inertia) * lambda[r];
+          value = equation.value - (equation.softness + compliances[r] * give) * lambda[r];
         if (equation.softness > 0) gap = 0;
         if (pool.law(k)[r].hold && state.side == 0) gap = equation.value;
       } else {
@@ -160,6 +159,31 @@ void Assembly::add_resistance(const Stage& stage, const ConstraintPool<C>& pool,
             std::abs(pool.multiplier(k)[r]) * norm(Midpoint ? directions[r] : rows[r]) * inverse_scale(stage);
     }
   }
+}
+
+double Assembly::strain_released(const Problem& problem, const Stage& stage, const Vec3* x) const {
+  const double give = row_compliance(stage);
+  double released = 0;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      const C& c = pool.items[k];
+      double before[C::rows], after[C::rows], mobility[C::rows] = {};
+      pool.value(k, problem.position.data(), stage.fraction_start, before);
+      pool.value(k, x, stage.fraction, after);
+      const Gradients<C> gradients(c, x, stage.fraction);
+      for (int i = 0; i < c.node_count(); ++i) {
+        Vec3 rows[C::rows];
+        gradients.of_node(i, rows);
+        for (int r = 0; r < C::rows; ++r) mobility[r] += dot(rows[r], rows[r]) / problem.mass[c.nodes[i]];
+      }
+      for (int r = 0; r < C::rows; ++r) {
+        const bool is_soft = pool.has_laws() && (pool.law(k)[r].is_compliant() || pool.law(k)[r].hold ||
+                                                 pool.states[k * C::rows + r].side != 0);
+        if (!is_soft) released += (before[r] * before[r] - after[r] * after[r]) / (2 * give * mobility[r] + 1e-300);
+      }
+    }
+  });
+  return released;
 }
 
 inline void Assembly::add_to_node(std::uint32_t node,
@@ -249,6 +273,7 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
                              Hessian hessian) {
   const Vec3* const x0 = problem.position.data();
   const bool clamp = hessian == Hessian::clamped;
+  const double give = row_compliance(stage);
   double *const diagonals = factor_.diagonals(), *const lower = factor_.lower();
   [[maybe_unused]] double* const upper = factor_.upper();
   const double start = stage.fraction_start, end = stage.fraction;
@@ -292,11 +317,10 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
       double& diagonal = diagonals[slots.diagonal + r * (slots.stride + 1)];
       if constexpr (Laws) {
         const RowState& state = pool.states[k * C::rows + r];
-        diagonal = state.side != 0 ? -1
-                                   : -compliances[r] * row_compliance_ * stage.compliance / stage.inertia -
-                                         equation_of(pool.law(k)[r], state, 0, stage).softness;
+        diagonal =
+            state.side != 0 ? -1 : -compliances[r] * give - equation_of(pool.law(k)[r], state, 0, stage).softness;
       } else {
-        diagonal = -compliance * row_compliance_ * stage.compliance / stage.inertia;
+        diagonal = -compliance * give;
       }
     }
     if constexpr (C::has_curvature) {

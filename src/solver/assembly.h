@@ -38,6 +38,12 @@ class Assembly {
   /// At positions x = x0 + h v0 + u and the pools' multipliers; by unknown in `residuals()`.
   template <bool Midpoint>
   Residual residual(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
+  /// Of that residual, whether all forces that do not balance are round-off of the forces of stiff laws: their stiffness
+  /// times the round-off of the places.
+  template <bool Midpoint>
+  bool is_round_off_of_laws(const Problem&, const Stage&, const Vec3* x);
+  /// The elastic energy that compliant rows have released on the way to a solution at x, J.
+  double strain_released(const Problem&, const Stage&, const Vec3* x) const;
   /// The derivative of the residual.
   template <bool Midpoint>
   void assemble(const Problem&, const Stage&, const Vec3* x, Hessian);
@@ -73,6 +79,10 @@ class Assembly {
   void place_nodes(const Problem&);
   void weigh(const Problem&);
   bool has_extreme_masses() const { return row_compliance_ < 1; }
+  /// Of extreme masses a sub-step has its own: their tensions would open joints in what the whole step allows.
+  double row_compliance(const Stage& stage) const {
+    return row_compliance_ * (has_extreme_masses() ? stage.compliance / stage.inertia : stage.row_compliance());
+  }
 
   template <bool Midpoint>
   void add_momentum(const Problem&, const Stage&, const Vec3* x, const Vec3* u);
@@ -104,7 +114,8 @@ class Assembly {
   double reference_length_ = 1;
   /// Only for extreme masses: of each node its mass plus the equivalent mass of its rows, kg.
   std::vector<double> resistance_;
-  double row_compliance_ = 1;                                  ///< a factor of the stage's, below 1 for extreme masses
+  std::vector<double> blur_;   ///< of each node: round-off of the laws' forces, N; only if Newton's method stalls
+  double row_compliance_ = 1;  ///< a factor of the stage's, below 1 for extreme masses
   double worst_ = 0, violation_ = 0, largest_multiplier_ = 0;  // of the rows, during the sum of a residual
 };
 

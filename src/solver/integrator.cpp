@@ -200,7 +200,9 @@ void Integrator::book_solution(const Problem& problem, const Stage& stage, doubl
   const double little = of_motion * std::max(kinetic_before, kinetic_) +
                         round_off * (std::abs(energy_before) + std::abs(energy_) + std::abs(gain));
   slack_ += little;
-  if (missing < -little) slack_ += work_of_gaps(problem, stage) + work_of_imbalance(problem, stage);
+  if (missing < -little)
+    slack_ += work_of_gaps(problem, stage) + work_of_imbalance(problem, stage) +
+              std::max(0.0, newton_.strain_released(problem, stage));
 }
 
 // Books the unexplained energy of a (sub-)step and its corrections. A surplus within the tolerance of the solve is
@@ -472,6 +474,7 @@ void Integrator::advance_end_point(Problem& problem, double h, double from, doub
   problem.copy_multipliers_to(multipliers_saved_);
   Stage stage = Stage::end_point(h, from, to);
   stage.tolerance *= care_.tolerance;
+  if (care_.scheme == Scheme::mid_point) stage.compliance /= 2;  // that of rows is then the same
   const bool solved = try_step(problem, stage, report);
   if (solved) {
     double gained = calc_energy_gain(problem, stage);

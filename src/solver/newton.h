@@ -40,6 +40,9 @@ class Newton {
   /// the pools' multipliers are the answer; on failure both hold the best iterate. The problem's own state is not touched.
   NewtonReport solve(Problem& problem, const Stage& stage);
   std::span<const Vec3> solution() const { return x_; }
+  double strain_released(const Problem& problem, const Stage& stage) const {  ///< see Assembly
+    return assembly_.strain_released(problem, stage, x_.data());
+  }
   /// The array of the next solution: scratch until then.
   std::span<Vec3> room() { return x_; }
   /// From free flight: x - x0 - h v0, m. This is the unknown itself with its own relative precision: velocities

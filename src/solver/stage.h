@@ -18,6 +18,14 @@ struct Stage {
   int max_iterations = 60;
 
   bool is_projection() const { return h == 0; }
+  /// Of rows: multiplies sum |G|^2 / m. Sub-steps have that of the whole step: a taut net stores energy in it.
+  double row_compliance() const {
+    constexpr double usual = 1e-12, smallest_part = 1.0 / 64;
+    const double part = is_projection() || compliance > usual       ? 1
+                        : fraction - fraction_start > smallest_part ? fraction - fraction_start
+                                                                    : smallest_part;
+    return compliance / (inertia * part * part);
+  }
   static Stage end_point(double h, double from, double to) {
     return {.h = h, .inertia = 1 / (h * h), .fraction = to, .fraction_start = from};
   }
