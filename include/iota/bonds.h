@@ -27,7 +27,7 @@ class Bonds : public View {
   bool is_active(BondId) const;
   void set_active(BondId, bool);  ///< true repairs a broken one
   /// On the first particle, N (the second gets the opposite): of an implicit bond at the present state, of a held one
-  /// in the last step.
+  /// or a very stiff spring in the last step.
   Vec3 force(BondId) const;
   void set_break_force(BondId, double newtons);  ///< beyond it the bond is switched off at the end of a step
   double break_force(BondId) const;              ///< N; infinite: never

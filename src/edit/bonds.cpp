@@ -53,6 +53,7 @@ void apply(Editor& e, const SetBondParameter& c) {
   ingredient::Bond& bond = model.bonds[e.require(c.bond)];
   model.changed_bonds.note(c.bond.slot);
   set_parameter(model.laws[bond.law], bond.parameters, c.index, c.value);
+  ingredient::Bonds::parameter_changed(model, c.bond.slot);
 }
 
 void apply(Editor& e, const SetBondActive& c) { ingredient::Bonds::set_active(e.model, e.require(c.bond), c.active); }

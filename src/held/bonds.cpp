@@ -182,7 +182,7 @@ void HeldForces::take_scripts(StepReport& report) {
 Vec3 HeldForces::force(std::uint32_t slot) const {
   const ingredient::Bond& bond = model_.bonds[slot];
   if (!bond.acts()) return {};
-  return bond.implicit ? -ingredient::Bonds::force(model_, slot) : bond.held_force;
+  return bond.implicit == ingredient::Bond::as_force ? -ingredient::Bonds::force(model_, slot) : bond.held_force;
 }
 
 // --- cost of forces -------------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 #include "ingredient/bonds.h"
 
 #include "ingredient/model.h"
+#include "ingredient/row_loads.h"
 #include "laws/pair_laws.h"
 
 #include <algorithm>
@@ -12,9 +13,15 @@ namespace iota::ingredient {
 
 namespace {
 
+struct SpringParameters {
+  double stiffness, damping, length;
+};
+SpringParameters spring_of(const Bond& bond) { return {bond.parameters[0], bond.parameters[1], bond.parameters[2]}; }
+
 /// `time`: at the end of the step, for laws that depend on time.
 void set_parameters(solver::SpringForce& spring, const Bond& bond, double /*time*/) {
-  spring.stiffness = bond.parameters[0], spring.damping = bond.parameters[1], spring.length = bond.parameters[2];
+  const auto& [stiffness, damping, length] = spring_of(bond);
+  spring.stiffness = stiffness, spring.damping = damping, spring.length = length;
 }
 void set_parameters(solver::DragForce& drag, const Bond& bond, double /*time*/) { drag.damping = bond.parameters[0]; }
 void set_parameters(solver::RadialForce& radial, const Bond& bond, double time) {
@@ -32,6 +39,32 @@ void visit_force_of(const Model& model, const Bond& bond, Visit visit) {
   force.m_p = model.particles[bond.p].mass, force.m_q = model.particles[bond.q].mass;
   visit(force);
 }
+
+/// The length of a spring is known to 1e-16 m. Above this its stiffness, in a step of 0.01 s, times that, moves the
+/// bodies by more than the tolerance of the solver.
+bool is_stiff(const Model& model, const Bond& bond) {
+  constexpr double step = 0.01, limit = 1e6;
+  const auto& [stiffness, damping, length] = spring_of(bond);
+  if (bond.law != spring_law || !(length > 0)) return false;
+  const double mobility =
+      1 / model.body_mass(model.particles[bond.p].body) + 1 / model.body_mass(model.particles[bond.q].body);
+  return (stiffness + damping / step) * step * step * mobility > limit;
+}
+
+solver::SpanConstraint row_of(const Bond& bond, std::uint32_t p, std::uint32_t q) {
+  solver::SpanConstraint row;
+  row.add(0, p, -1), row.add(0, q, 1);
+  row.first_side = 1;
+  row.target = row.reference = spring_of(bond).length;
+  return row;
+}
+
+solver::RowLaw law_of(const Bond& bond) {
+  return {.compliance = 1 / spring_of(bond).stiffness, .damping = spring_of(bond).damping};
+}
+
+/// Of the row in the last step, from p to q at its end. N.
+double tension(const Bond& bond, const Vec3& d) { return dot(bond.held_force, solver::SpringForce::direction(d)); }
 
 }  // namespace
 
@@ -53,6 +86,12 @@ void Bonds::build(const IslandMap& map, Problem& problem) {
     arm.weights = {-1, 1};
     arm.count = 2;
     if (arm.nodes[0] == none || arm.nodes[1] == none || arm.nodes[0] == arm.nodes[1]) continue;
+    if (b.implicit == Bond::as_row) {
+      if (map.is_pinned(arm.nodes[0]) && map.is_pinned(arm.nodes[1])) continue;
+      problem.add(row_of(b, arm.nodes[0], arm.nodes[1]), {owner, {}, slot});
+      (void)problem.pool_of<solver::SpanConstraint>().law(0);
+      continue;
+    }
     visit_force_of(model, b, [&](auto force) {
       force.arm = arm;
       problem.add(force, {owner, {}, slot});
@@ -70,6 +109,22 @@ void Bonds::load(const Model& model, const IslandNodes&, double h, Problem& prob
   load_all.operator()<solver::SpringForce>();
   load_all.operator()<solver::DragForce>();
   load_all.operator()<solver::RadialForce>();
+  auto& rows = problem.pool_of<solver::SpanConstraint>();
+  for_each_item_of<solver::SpanConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    const Bond& bond = model.bonds[key.slot];
+    rows.items[i].target = rows.items[i].reference = spring_of(bond).length;
+    *rows.law(i) = law_of(bond);
+    rows.multipliers[i] = tension(bond, rows.items[i].arm(0, problem.position.data(), 0));
+  });
+}
+
+void Bonds::store(Model& model, const IslandNodes&, double, const Problem& problem) const {
+  if (model.bonds.size() == 0) return;
+  const auto& rows = problem.pool_of<solver::SpanConstraint>();
+  for_each_item_of<solver::SpanConstraint>(owner, problem, [&](std::size_t i, solver::ItemKey key) {
+    const Vec3 d = rows.items[i].arm(0, problem.position.data(), 1);
+    model.bonds[key.slot].held_force = rows.multipliers[i] * solver::SpringForce::direction(d);
+  });
 }
 
 void Bonds::check_links(const Model& model, model::Audit& audit) {
@@ -89,6 +144,7 @@ void Bonds::validate(const Model& model, model::Audit& audit) {
     audit.use("law", b.law);
     audit.require(!b.implicit || model.laws[b.law].has_derivative(), "bond ", slot,
                   " is implicit without a derivative");
+    audit.require(b.implicit != Bond::as_row || b.law == spring_law, "bond ", slot, " is a row, but not of a spring");
     for (const double v : b.parameters)
       audit.require(std::isfinite(v), "bond ", slot, " has a parameter that is not finite");
   });
@@ -142,6 +198,15 @@ void Bonds::add_loads(const LastStep& step, std::uint32_t body, LoadReader& read
     model.bonds.for_each_of(p, [&](std::uint32_t slot) {
       const Bond& bond = model.bonds[slot];
       if (!bond.ties()) return;  // held forces are applied as pushes
+      if (bond.implicit == Bond::as_row) {
+        const double multiplier = tension(bond, step.end(bond.q) - step.end(bond.p));
+        for_each_row_force(step, row_of(bond, 0, 1), &multiplier, std::array{bond.p, bond.q},
+                           [&](std::uint32_t particle, const Vec3& force) {
+                             if (particle == p)
+                               reader.take({.particle = p, .force = force, .part = model.particles[p].part});
+                           });
+        return;
+      }
       Vec3 on_q;
       visit_force_of(model, bond, [&](auto force) {
         set_parameters(force, bond, model.time);
@@ -168,7 +233,17 @@ std::uint32_t Bonds::add(Model& model, const Bond& bond) {
     model.touch_particle(particle);
   }
   model.bonds[slot].muted = !model.acts(bond.p) || !model.acts(bond.q);
+  parameter_changed(model, slot);
   return slot;
+}
+
+void Bonds::parameter_changed(Model& model, std::uint32_t slot) {
+  Bond& bond = model.bonds[slot];
+  if (!bond.implicit) return;
+  const std::uint8_t form = is_stiff(model, bond) ? Bond::as_row : Bond::as_force;
+  if (form == bond.implicit) return;
+  bond.implicit = form;
+  for (const std::uint32_t end : {bond.p, bond.q}) model.touch_particle(end);
 }
 
 void Bonds::remove(Model& model, std::uint32_t slot) {

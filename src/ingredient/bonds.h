@@ -13,13 +13,14 @@ namespace iota::ingredient {
 /// A force between two particles, by a law.
 struct Bond : model::Ends {
   std::uint32_t law = spring_law;
+  static constexpr std::uint8_t as_force = 1, as_row = 2;
   std::uint8_t active = 1;
-  std::uint8_t implicit = 1;
-  std::uint8_t muted = 0;   ///< one of its ends is inactive
-  std::uint8_t broken = 0;  ///< by a force above `break_force`
+  std::uint8_t implicit = as_force;  ///< 0: held; how it is solved otherwise
+  std::uint8_t muted = 0;            ///< one of its ends is inactive
+  std::uint8_t broken = 0;           ///< by a force above `break_force`
   std::array<double, laws::max_parameters> parameters{};
   double break_force = std::numeric_limits<double>::infinity();  ///< N
-  Vec3 held_force;           ///< on p in the last step, N; of bonds that are not implicit
+  Vec3 held_force;           ///< on p in the last step, N; of held bonds and of rows
   std::uint64_t script = 0;  ///< key of its own function, which is outside of the tables
 
   /// Whether it is solved implicitly, so that its two ends belong to one problem.
@@ -28,7 +29,8 @@ struct Bond : model::Ends {
 };
 
 /// Forces between two particles. Implicit ones, of the positions at the end of the step, are in the problem of an
-/// island; the others are evaluated once a step and held, see `held_forces`.
+/// island; the others are evaluated once a step and held, see `held_forces`. A spring so stiff that the round-off of its
+/// length would be a considerable force is a row with a compliance: its tension is an unknown.
 class Bonds : public NoAnswers {
  public:
   struct Tables {
@@ -58,6 +60,7 @@ class Bonds : public NoAnswers {
   static std::uint32_t add(Model&, const Bond&);  ///< returns the slot
   static void remove(Model&, std::uint32_t bond);
   static void set_active(Model&, std::uint32_t bond, bool active);  ///< true repairs a broken one
+  static void parameter_changed(Model&, std::uint32_t bond);
 
   /// The state of a bond for its law: distance and its rate (positions extrapolated by `ahead` seconds), time, masses.
   static laws::PairState state(const Model&, const Bond& bond, double ahead = 0);
@@ -67,6 +70,7 @@ class Bonds : public NoAnswers {
 
   void build(const IslandMap&, Problem&);
   void load(const Model&, const IslandNodes&, double h, Problem&);
+  void store(Model&, const IslandNodes&, double h, const Problem&) const;
 };
 
 }  // namespace iota::ingredient

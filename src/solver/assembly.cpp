@@ -85,6 +85,33 @@ Residual Assembly::residual(const Problem& problem, const Stage& stage, const Ve
   return found;
 }
 
+// A drag of 1e12 N s/m between places of about 1 m pulls with an uncertainty of 1e-2 N, far above what moves a gram by the
+// tolerance. No step reduces that, and none is needed: the places are right to the last bit.
+template <bool Midpoint>
+bool Assembly::is_round_off_of_laws(const Problem& problem, const Stage& stage, const Vec3* x) {
+  constexpr double round_off_of_sums = 8 * std::numeric_limits<double>::epsilon();
+  if (stage.is_projection() || !(worst_ <= stage.tolerance)) return false;
+  blur_.assign(problem.size(), 0);
+  const ForceStage force_stage{stage.h, Midpoint, false};
+  const Vec3* const x0 = problem.position.data();
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items) {
+      const Mat3 stiffness = f.stiffness_matrix(f.arm.value(x0), f.arm.value(x), force_stage);
+      double size = 0, place = norm(f.arm.origin);
+      for (const auto& row : stiffness.m) size += dot({row[0], row[1], row[2]}, {row[0], row[1], row[2]});
+      for (std::uint32_t i = 0; i < f.arm.count; ++i) place += std::abs(f.arm.weights[i]) * norm(x[f.arm.nodes[i]]);
+      for (std::uint32_t i = 0; i < f.arm.count; ++i)
+        blur_[f.arm.nodes[i]] += std::abs(f.arm.weights[i]) * std::sqrt(size) * place;
+    }
+  });
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    const double* const r = unknowns_.data() + node_unknown_[i];
+    const double allowed = stage.tolerance * problem.mass[i] / inverse_scale(stage) + round_off_of_sums * blur_[i];
+    if (!(largest_component({r[0], r[1], r[2]}) <= allowed)) return false;
+  }
+  return true;
+}
+
 // The constraint forces of a pool, and the residuals of its equations.
 template <bool Midpoint, bool Laws, class C>
 void Assembly::add_rows(const Problem& problem, const Stage& stage, const ConstraintPool<C>& pool, const Vec3* x) {
@@ -352,6 +379,8 @@ bool Assembly::factor_and_solve(const Problem& problem, const Stage& stage, cons
 
 template Residual Assembly::residual<false>(const Problem&, const Stage&, const Vec3*, const Vec3*);
 template Residual Assembly::residual<true>(const Problem&, const Stage&, const Vec3*, const Vec3*);
+template bool Assembly::is_round_off_of_laws<false>(const Problem&, const Stage&, const Vec3*);
+template bool Assembly::is_round_off_of_laws<true>(const Problem&, const Stage&, const Vec3*);
 template bool Assembly::factor_and_solve<false>(const Problem&, const Stage&, const Vec3*, Hessian);
 template bool Assembly::factor_and_solve<true>(const Problem&, const Stage&, const Vec3*, Hessian);
 template void Assembly::assemble<false>(const Problem&, const Stage&, const Vec3*, Hessian);

@@ -118,6 +118,11 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     measure<Midpoint>(problem, stage);
     const bool own_direction = std::exchange(hessian, Hessian::exact) == Hessian::exact && !served_on;
     if (!(residual_.worst <= 0.5 * before)) {
+      if (assembly_.is_round_off_of_laws<Midpoint>(problem, stage, x_.data())) {
+        residual_.worst = residual_.rows;
+        stuck = true;
+        break;
+      }
       // If an exact Newton step does not reduce a residual below 10x the estimated round-off, treat it as converged: heavy
       // loads on small links leave ten times the estimate.
       stuck = own_direction && before <= std::min(10 * blur * residual_.noise, round_off_floor);
