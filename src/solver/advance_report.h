@@ -18,6 +18,7 @@ struct [[nodiscard]] AdvanceReport {
   double dissipated = 0;      ///< work of dampers, friction, dashpots and impacts, J
   double lost = 0, made = 0;  ///< by the scheme, J: what a (sub-)step leaves unexplained
   double closing_energy = 0;  ///< by moving violated constraints together before the step, J
+  double spin_lost = 0;       ///< angular momentum that the points cannot carry after that, kg m^2/s
 };
 
 }  // namespace iota::solver

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "solver/advance_report.h"
+#include "solver/holds.h"
 #include "solver/local_projection.h"
 #include "solver/newton.h"
 #include "solver/rigid_motion.h"
+#include "solver/spin.h"
 
 #include <memory>
 
@@ -119,7 +121,7 @@ class Integrator {
   bool scale_motion(Problem&, double excess, const std::optional<RigidMotion>& shared);
   bool give_energy_back(Problem&, const Stage&, double taken, AdvanceReport&);
   void give_energy_back_by_piece(Problem&);
-  void keep_spin(Problem&, const Stage&);
+  void give_spin_back(Problem&, const Stage&);
   void keep_correction(const Problem&);
   void find_pieces(const Problem&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
@@ -151,18 +153,8 @@ class Integrator {
   int iterations_left_ = std::numeric_limits<int>::max();
   bool cut_short_ = false;
   bool has_corrected_ = false;  ///< velocities after the latest (sub-)step; Newton has the correction
-  /// What outside holds on to the problem, or to a piece of it.
-  struct Holds {
-    int count = 0;                ///< of rows that are not between points of the problem
-    std::optional<Vec3> place;    ///< of the latest, where that is a point at rest
-    bool are_directions = false;  ///< a row refers to a direction in the world
-    bool are_none() const { return count == 0 && !are_directions; }
-    /// All hangs on that point, and may turn about it.
-    std::optional<Vec3> pivot() const { return count == 1 && !are_directions ? place : std::nullopt; }
-    template <class C>
-    void add(const C&);
-  };
   Holds holds_;
+  Spin spin_;
   bool is_free_body_ = false;  ///< one rigid thing that nothing holds
   bool may_be_in_pieces_ = false;
   struct Piece {

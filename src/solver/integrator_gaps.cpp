@@ -40,6 +40,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   }
   measure_energy(problem, 0);
   const double before = energy_;
+  if (is_open) spin_.note(problem, holds_);
   problem.standing_gap = 0;
   if (!project_locally(problem, is_open)) {
     if (is_open && !project_positions(problem)) {
@@ -48,6 +49,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     }
     project_velocities(problem);
   }
+  if (is_open) report.spin_lost = spin_.restore(problem);
   measure_energy(problem, 0);
   const double added = energy_ - before;
   report.closing_energy += added;

@@ -61,6 +61,7 @@ void Stepper::advance_islands(StepReport& report) {
   editor_.parallel.for_each(all.size(), islands.grain(editor_.parallel),
                             [&](std::size_t i) { advanced_[i] = all[i]->advance(model, report.dt, model.mode); });
   int solves = 0, iterations = 0, handed_back = 0;
+  double spin_lost = 0;
   for (const auto* island : all)
     if (island->is_asleep(model)) report.resting += static_cast<std::uint32_t>(island->body_count());
   advanced_.push_back(islands.free_particles().advance(model, report.dt, editor_.parallel));
@@ -76,7 +77,11 @@ void Stepper::advance_islands(StepReport& report) {
     model.made += r.made;
     model.external_work += r.external_work;
     model.edit_energy += r.closing_energy;
+    spin_lost = std::max(spin_lost, r.spin_lost);
   }
+  if (spin_lost > 0)
+    report.warnings.push_back(text("bodies that were moved together, almost into one place, cannot carry ", spin_lost,
+                                   " kg m^2/s of their angular momentum"));
   if (handed_back > 0)
     report.warnings.push_back(text("the solver ", model.solver.data(), " found no root in ", handed_back, " of ",
                                    solves, " solves; the built-in one took over"));

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// Angular momentum of what nothing outside holds, or only one nail.
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace iota {
+namespace {
+
+constexpr IntegrationMode all_modes[] = {IntegrationMode::plausible, IntegrationMode::robust,
+                                         IntegrationMode::energy_keeping, IntegrationMode::accurate};
+constexpr IntegrationMode end_point_modes[] = {IntegrationMode::plausible, IntegrationMode::robust};
+
+BodyId add_bar(System& system, const Vec3& from, const Vec3& to) {
+  const BodyId body = system.bodies().create();
+  system.particles().create(body, from);
+  system.particles().create(body, to);
+  return body;
+}
+BodyId add_box(System& system, const Vec3& position, const Vec3& spin, const std::vector<Vec3>& attachments) {
+  return system.bodies().create(Box{{0.3, 0.2, 0.1}},
+                                {.mass = 1, .position = position, .spin = spin, .attachments = attachments});
+}
+void turn_all(System& system, const Vec3& spin, const Vec3& center) {
+  for (const ParticleId p : system.particles().ids())
+    system.particles().set_velocity(p, cross(spin, system.particles().position(p) - center));
+}
+Vec3 spin_about(const System& system, const Vec3& place) {
+  return system.angular_momentum() - cross(place, system.momentum());
+}
+
+/// In empty space, 2 s at 60 and 240 Hz: angular momentum about `center` to `tolerance`, and energy that never rises.
+template <class Make>
+void expect_kept(Make make, const Vec3& center, double tolerance, const std::string& what) {
+  for (const IntegrationMode mode : end_point_modes)
+    for (const int hertz : {60, 240})
+      for (const Vec3& spin : {Vec3{0, 0, 30}, Vec3{10, 20, 20}}) {
+        System system{SystemOptions{.gravity = {}, .mode = mode}};
+        make(system, spin);
+        const Vec3 start = spin_about(system, center);
+        double energy = system.energy().total();
+        for (int i = 0; i < 2 * hertz; ++i) {
+          const double now = system.step(1.0 / hertz).energy.total();
+          ASSERT_LE(now, energy * (1 + 1e-9)) << what << " at " << hertz << " Hz, step " << i;
+          energy = now;
+        }
+        EXPECT_LT(norm(spin_about(system, center) - start), tolerance * norm(start))
+            << what << " at " << hertz << " Hz";
+        EXPECT_EQ(system.energy().made, 0) << what;
+      }
+}
+
+TEST(Spin, of_two_hinged_boxes_stays_in_the_end_point_modes) {
+  const auto make = [](System& system, const Vec3& spin) {
+    const Vec3 hinge{0.15, 0.1, 0.05};
+    const BodyId a = add_box(system, {}, {}, {hinge}), b = add_box(system, {0.3, 0.2, 0.1}, {}, {-hinge});
+    (void)system.edits().combine(system.bodies().particles(a)[4], system.bodies().particles(b)[4]);
+    turn_all(system, spin, {0.15, 0.1, 0.05});
+  };
+  expect_kept(make, {}, 1e-5, "two boxes");
+}
+
+TEST(Spin, of_a_chain_of_eight_bars_stays_in_the_end_point_modes) {
+  for (const double bend : {0.0, 0.06}) {
+    const auto make = [bend](System& system, const Vec3& spin) {
+      ParticleId last{};
+      for (int i = 0; i < 8; ++i) {
+        const auto place = [bend](int k) { return Vec3{0.1 * k, bend * (k % 2), 0.3 * bend * (k % 3)}; };
+        const std::vector<ParticleId> ends = system.bodies().particles(add_bar(system, place(i), place(i + 1)));
+        if (i > 0) (void)system.edits().combine(last, ends[0]);
+        last = ends[1];
+      }
+      turn_all(system, spin, {0.4, 0, 0});
+    };
+    expect_kept(make, {}, 1e-4, bend == 0 ? "a straight chain" : "a zigzag chain");
+  }
+}
+
+TEST(Spin, of_a_box_on_a_nail_without_gravity_stays_about_the_nail) {
+  const auto make = [](System& system, const Vec3& spin) {
+    const Vec3 corner{0.15, 0.1, 0.05};
+    system.particles().nail(system.bodies().particles(add_box(system, {}, {}, {corner}))[4]);
+    turn_all(system, spin, corner);
+  };
+  expect_kept(make, {0.15, 0.1, 0.05}, 1e-4, "a box on a nail");
+}
+
+/// Its axis is only right to first order, and so is the direction of the spin along it.
+TEST(Spin, of_a_rod_about_its_axis_stays_while_it_tumbles) {
+  const auto make = [](System& system, const Vec3& spin) {
+    const BodyId rod = add_bar(system, {0, 0, 0}, {0.4, 0, 0});
+    system.bodies().set_rod(rod, 1, 0.05);
+    system.bodies().set_angular_velocity(rod, 0.1 * spin + Vec3{30, 0, 0});
+  };
+  expect_kept(make, {}, 0.1, "a rod");
+}
+
+/// As far as the energy suffices that the step has lost.
+TEST(Spin, about_the_vertical_through_a_nail_nearly_stays_in_gravity) {
+  for (const IntegrationMode mode : end_point_modes) {
+    System system{SystemOptions{.mode = mode}};
+    const Vec3 corner{0.15, 0.1, 0.05};
+    system.particles().nail(system.bodies().particles(add_box(system, {}, {}, {corner}))[4]);
+    turn_all(system, {0, 10, 0}, corner);
+    const double start = spin_about(system, corner).y;
+    for (int i = 0; i < 240; ++i) (void)system.step(1.0 / 120);
+    EXPECT_NEAR(spin_about(system, corner).y, start, 0.01 * std::abs(start));
+    EXPECT_EQ(system.energy().made, 0);
+  }
+}
+
+/// A wheel loses nothing to a distant weight on a spring.
+TEST(Spin, of_a_ball_on_a_spring_stays_its_own) {
+  for (const IntegrationMode mode : end_point_modes) {
+    System system{SystemOptions{.gravity = {}, .mode = mode}};
+    const BodyId ball =
+        system.bodies().create(Sphere{0.1}, {.mass = 1, .spin = {0, 0, 30}, .attachments = {{0, 0, 0.05}}});
+    const ParticleId weight = system.particles().create(system.bodies().create(), {3, 0, 0.05});
+    system.bonds().create(system.bodies().particles(ball)[4], weight, SpringLaw{.stiffness = 1, .length = 3});
+    for (int i = 0; i < 120; ++i) (void)system.step(1.0 / 60);
+    EXPECT_NEAR(system.bodies().angular_velocity(ball).z, 30, 0.03);
+  }
+}
+
+/// Bodies of two to five particles in random places, hinged in a random order by slow combinations.
+TEST(Spin, and_momentum_stay_while_random_bodies_are_brought_together) {
+  int closings = 0;
+  for (const IntegrationMode mode : all_modes) {
+    const bool is_end_point = mode == IntegrationMode::plausible || mode == IntegrationMode::robust;
+    const double tolerance = is_end_point ? 1e-5 : 1e-9;  // that of the solve
+    for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+      std::mt19937 random(seed);
+      const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+      };
+      const auto point = [&](double size) {
+        return Vec3{uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+      };
+      System system{SystemOptions{.gravity = {}, .mode = mode}};
+      std::vector<BodyId> bodies;
+      double scale = 0;  // sum of masses times speeds times places
+      const auto count = 2 + random() % 4;
+      for (std::size_t i = 0; i < count; ++i) {
+        const BodyId body = system.bodies().create();
+        const Vec3 center = point(1), velocity = point(1);
+        for (std::size_t k = 2 + random() % 4; k > 0; --k) {
+          const double mass = uniform(0.5, 2);
+          system.particles().create(body, center + point(0.3), mass, velocity + point(0.5));
+          scale += mass;
+        }
+        bodies.push_back(body);
+      }
+      const Vec3 linear = system.momentum(), angular = system.angular_momentum();
+      std::shuffle(bodies.begin() + 1, bodies.end(), random);
+      const auto any_of = [&](BodyId body) {
+        const auto all = system.bodies().particles(body);
+        return all[random() % all.size()];
+      };
+      for (std::size_t i = 1; i < bodies.size(); ++i)
+        (void)system.edits().combine(any_of(bodies[random() % i]), any_of(bodies[i]), uniform(0.05, 0.3)), ++closings;
+      bool is_told = false;
+      for (int i = 0; i < 40 && !is_told; ++i) {
+        const StepReport report = system.step(1.0 / 120);
+        for (const std::string& warning : report.warnings)
+          is_told = is_told || warning.find("angular momentum") != warning.npos;
+        if (is_told) break;
+        ASSERT_LT(norm(system.momentum() - linear), 1e-9 * scale) << "seed " << seed << ", step " << i;
+        ASSERT_LT(norm(system.angular_momentum() - angular), tolerance * scale) << "seed " << seed << ", step " << i;
+      }
+      EXPECT_FALSE(is_told) << "seed " << seed;
+      EXPECT_EQ(system.edits().closing_count(), 0u);
+    }
+  }
+  EXPECT_GT(closings, 100);
+}
+
+/// Two balls that pass each other 10 m apart, pulled together: what they cannot carry is told, the rest kept.
+TEST(Spin, that_bodies_in_one_place_cannot_carry_is_told) {
+  System system{SystemOptions{.gravity = {}}};
+  const ParticleId p = system.particles().create(system.bodies().create(), {0, 0, 0}, 1, {0, 1, 0});
+  const ParticleId q = system.particles().create(system.bodies().create(), {10, 0, 0}, 1, {0, -1, 0});
+  (void)system.edits().combine(p, q, 0.05);
+  bool is_told = false;
+  for (int i = 0; i < 10; ++i)
+    for (const std::string& warning : system.step(1.0 / 60).warnings)
+      is_told = is_told || warning.find("angular momentum") != warning.npos;
+  EXPECT_TRUE(is_told);
+  EXPECT_LT(norm(system.momentum()), 1e-12);
+}
+
+}  // namespace
+}  // namespace iota
