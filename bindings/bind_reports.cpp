@@ -70,6 +70,8 @@ void bind_step_report(nb::module_& module) {
                         &StepReport::substeps_max,
                         &StepReport::fallbacks,
                         &StepReport::unconverged,
+                        &StepReport::cut_short,
+                        &StepReport::error,
                         &StepReport::worst_gap,
                         &StepReport::energy,
                         &StepReport::articulates,
@@ -109,6 +111,12 @@ void bind_step_report(nb::module_& module) {
       .def_ro("fallbacks", &StepReport::fallbacks,
               "(Sub-)steps that the robust scheme took in place of the energy-keeping one.")
       .def_ro("unconverged", &StepReport::unconverged, "Articulates left with a least violation instead of a solution.")
+      .def_ro("cut_short", &StepReport::cut_short,
+              "Islands whose budget ended before their solution: see `System.budget_iterations` and `System.islands`.")
+      .def_ro(
+          "error", &StepReport::error,
+          "Of mode 'accurate': the largest estimate of an island, in mean lengths of its links per second; at most\n"
+          "`System.tolerance`, unless sub-steps became too short or fell back.")
       .def_ro("worst_gap", &StepReport::worst_gap, "Largest hinge separation or rigidity error, m.")
       .def_ro("energy", &StepReport::energy)
       .def_ro("articulates", &StepReport::articulates)

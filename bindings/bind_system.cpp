@@ -58,6 +58,46 @@ void assign_rows(System& engine, nb::handle values, const char* name,
     (engine.particles().*assign)(particles[i], Vec3{numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]});
 }
 
+/// Keeps the system, for its bodies.
+struct IslandView {
+  IslandReport report;
+  nb::object system_object;
+  SystemObject* system;
+};
+
+void bind_islands(nb::module_& module) {
+  const auto field = [](auto member) { return [member](const IslandView& self) { return self.report.*member; }; };
+  using R = IslandReport;
+  nb::class_<IslandView>(module, "IslandReport",
+                         "Cost and quality of the last step of bodies that were solved together; see `System.islands`.")
+      .def_prop_ro(
+          "bodies",
+          [](const IslandView& self) {
+            return wrap_all<BodyHandle>(self.system_object, self.system, self.report.bodies);
+          },
+          "Those that still exist.")
+      .def_prop_ro("points", field(&R::points), "Unknown ones.")
+      .def_prop_ro("resting", field(&R::resting), "Asleep: nothing was solved.")
+      .def_prop_ro("iterations", field(&R::iterations),
+                   "Of Newton's method, each with one linear solve; in mode 'accurate' linear solves.")
+      .def_prop_ro("substeps", field(&R::substeps))
+      .def_prop_ro("fallbacks", field(&R::fallbacks), "See `StepReport.fallbacks`.")
+      .def_prop_ro("converged", field(&R::converged), "False: left with a least violation instead of a solution.")
+      .def_prop_ro("cut_short", field(&R::cut_short), "The budget ended before the solution.")
+      .def_prop_ro("gap", field(&R::gap), "Largest violation of a constraint at the end, m.")
+      .def_prop_ro("error", field(&R::error), "See `StepReport.error`.")
+      .def_prop_ro("lost", field(&R::lost), "Energy, by the integration scheme, J.")
+      .def_prop_ro("made", field(&R::made), "Energy, by the integration scheme, J: a defect.")
+      .def("__repr__", [](const IslandView& self) {
+        const IslandReport& r = self.report;
+        char text[160];
+        std::snprintf(text, sizeof text, "<IslandReport: %d bodies, %d iterations, %d sub-steps, gap %.3g m%s%s>",
+                      static_cast<int>(r.bodies.size()), r.iterations, r.substeps, r.gap,
+                      r.converged ? "" : ", not converged", r.cut_short ? ", cut short" : "");
+        return std::string(text);
+      });
+}
+
 void bind_settings(nb::class_<SystemObject>& type) {
   type.def_prop_rw(
           "gravity", [](SystemObject& self) { return self.use().gravity(); },
@@ -71,6 +111,28 @@ void bind_settings(nb::class_<SystemObject>& type) {
             self.use_between_steps("mode = ...").set_mode(to_mode(mode));
           },
           "'plausible', 'robust', 'energy_keeping' or 'accurate'; can be changed at any time")
+      .def_prop_rw(
+          "tolerance", [](SystemObject& self) { return self.use().tolerance(); },
+          [](SystemObject& self, double value) { self.use_between_steps("tolerance = ...").set_tolerance(value); },
+          "Of mode 'accurate', 1e-12 to 1: the estimated error of positions that a second of simulated time may add, in\n"
+          "mean lengths of the links (and springs) that are solved together. See `StepReport.error`.")
+      .def_prop_rw(
+          "budget_iterations", [](SystemObject& self) { return self.use().budget().iterations; },
+          [](SystemObject& self, int value) {
+            System& engine = self.use_between_steps("budget_iterations = ...");
+            engine.set_budget({value, engine.budget().seconds});
+          },
+          "Most iterations of Newton's method in a step for bodies that are solved together; 0: unlimited. Results are\n"
+          "repeatable. If it ends before the solution, the points move on and stay together as well as possible:\n"
+          "`StepReport.cut_short` counts that, and `islands` tells where and how wide the gaps are.")
+      .def_prop_rw(
+          "budget_seconds", [](SystemObject& self) { return self.use().budget().seconds; },
+          [](SystemObject& self, double value) {
+            System& engine = self.use_between_steps("budget_seconds = ...");
+            engine.set_budget({engine.budget().iterations, finite_not_negative(value, "budget_seconds", "s")});
+          },
+          "s of real time that a step may search for solutions, 0: unlimited; otherwise as `budget_iterations`. Results\n"
+          "depend on the machine.")
       .def_prop_rw(
           "solver", [](SystemObject& self) { return self.use().solver(); },
           [](SystemObject& self, const std::string& name) { self.use_between_steps("solver = ...").set_solver(name); },
@@ -227,6 +289,17 @@ void bind_time(nb::class_<SystemObject>& type) {
           "Restores the recording's start and repeats its commands. Returns the number of the first step with another\n"
           "hash, None if all are equal.")
       .def(
+          "islands",
+          [](nb::handle_t<SystemObject> self) {
+            std::vector<IslandView> out;
+            SystemObject* const system = nb::inst_ptr<SystemObject>(self);
+            for (IslandReport& report : system->use().islands())
+              out.push_back({std::move(report), nb::borrow(self), system});
+            return out;
+          },
+          "Cost and quality of the last step of each island (bodies that were solved together; no free particles).\n"
+          "Empty before the first step and after `restore`.")
+      .def(
           "diagnose",
           [](SystemObject& self, const BodyHandle& body) {
             if (body.system != &self) throw nb::value_error("diagnose: the body belongs to another system");
@@ -246,6 +319,7 @@ void bind_time(nb::class_<SystemObject>& type) {
 }  // namespace
 
 void bind_system(nb::module_& module) {
+  bind_islands(module);
   nb::class_<SystemObject> type(module, "System", doc, nb::type_slots(system_slots), nb::is_weak_referenceable());
   type.def(
       "__init__",

@@ -90,6 +90,8 @@ struct [[nodiscard]] StepReport {
   int substeps_max = 1;  ///< largest number of sub-steps of an articulate
   int fallbacks = 0;     ///< (sub-)steps that the robust scheme took in place of the energy-keeping one
   int unconverged = 0;   ///< articulates left with a least violation instead of a solution
+  int cut_short = 0;     ///< islands whose budget ended before their solution: see StepBudget, System::islands
+  double error = 0;      ///< largest estimate of an island, see IslandReport::error; only of mode accurate
   double worst_gap = 0;  ///< largest hinge separation or rigidity error, m
   Energy energy;
   std::uint32_t articulates = 0;
@@ -102,6 +104,23 @@ struct [[nodiscard]] StepReport {
   std::vector<ParticleId> born, died;      ///< of emitters, and of those with a lifetime
   std::optional<RestructureReport> edits;  ///< requested during the step and made right after it, as one
   std::vector<std::string> warnings;       ///< plain sentences: a quarantined bond, a conflict ...
+};
+
+/// Cost and quality of the last step of one island: bodies that were solved together.
+struct IslandReport {
+  std::vector<BodyId> bodies;  ///< that still exist
+  std::uint32_t points = 0;    ///< unknown ones
+  bool resting = false;        ///< asleep: nothing was solved
+  int iterations = 0;          ///< of Newton's method, each with one linear solve; in mode accurate linear solves
+  int substeps = 0;
+  int fallbacks = 0;       ///< see StepReport
+  bool converged = true;   ///< false: left with a least violation instead of a solution
+  bool cut_short = false;  ///< the budget ended before the solution
+  double gap = 0;          ///< largest violation of a constraint at the end, m
+  /// Estimated error of positions, in mean lengths of links per second: the sum over the sub-steps, divided by dt. Only of
+  /// mode accurate; without sub-steps that fell back to the robust scheme.
+  double error = 0;
+  double lost = 0, made = 0;  ///< energy, by the integration scheme, J
 };
 
 /// Combines the reports of consecutive steps: last values of time and energy, sums of counts, maxima of largest values,

@@ -36,7 +36,7 @@ enum class IntegrationMode : std::uint8_t {
   plausible,       ///< `robust` with gaps up to 1e-7 of a link: for distant things
   robust,          ///< backward Euler: never fails, never gains energy, dissipates
   energy_keeping,  ///< mid-point discrete gradient with bisection; falls back to `robust` if a step fails
-  accurate,        ///< `energy_keeping` in sub-steps whose estimated errors add up to 1e-4 of a link a second
+  accurate,        ///< fifth order, in sub-steps whose estimated errors stay below the tolerance
 };
 
 /// Articulates tied by bonds and constraints fall asleep together when no particle of them has been faster than `speed`
@@ -47,12 +47,22 @@ struct RestOptions {
   double speed = 0.01;  ///< m/s
 };
 
+/// A limit of the work of a step, for worlds that must keep their pace. An island whose budget ends before its solution
+/// takes the last resort (docs/solver.md): its points move on and stay together as well as possible; the next step closes
+/// the gaps. StepReport::cut_short counts such islands, and `islands` names them.
+struct StepBudget {
+  int iterations = 0;  ///< of Newton's method, of each island: repeatable; 0: unlimited
+  double seconds = 0;  ///< of real time, of the whole step: not repeatable; 0: unlimited. Looked at between solves
+};
+
 struct SystemOptions {
   Vec3 gravity{0, -9.81, 0};  ///< m/s^2
   IntegrationMode mode = IntegrationMode::energy_keeping;
   double damping = 0;  ///< 1/s, all bodies: velocities fall by exp(-damping t)
   int threads = 0;     ///< used by a step, 0: one per core. Results are the same bits for any number
   RestOptions rest;
+  double tolerance = 1e-4;  ///< see System::tolerance
+  StepBudget budget;
 };
 
 /// A world, sorted by noun: `system.bodies().mass(id)`. Functions throw std::invalid_argument for bad numbers and
@@ -128,6 +138,12 @@ class System {
   /// which gets dense arrays and is far slower. If it fails, the built-in one takes over, with a warning.
   std::string solver() const;
   void set_solver(std::string_view name);
+  /// Of mode accurate: the estimated error of positions that one second of simulated time may add, in mean lengths of
+  /// links (and springs) of an island. 1e-12 to 1.
+  double tolerance() const;
+  void set_tolerance(double);
+  StepBudget budget() const;
+  void set_budget(const StepBudget&);
   double damping() const;
   void set_damping(double per_second);
   RestOptions rest() const;
@@ -140,6 +156,8 @@ class System {
   Vec3 momentum() const;
   Vec3 angular_momentum() const;  ///< about the origin
   double worst_gap() const;       ///< m
+  /// Of the last step: one for each island, without free particles. Empty before the first step and after `restore`.
+  std::vector<IslandReport> islands() const;
   std::uint32_t structure_version() const;
   Snapshot snapshot() const;
   /// Keeps the functions and meshes of this system. Throws std::invalid_argument for bytes that are not a snapshot or

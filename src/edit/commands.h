@@ -127,7 +127,9 @@ using Command = std::variant<
     CreateSpan,
     CreateCoupling,
     CreateTackle,
-    SetCompliance>;
+    SetCompliance,
+    SetTolerance,
+    SetBudget>;
 // clang-format on
 
 /// Whether a command may be requested during a step; it is then applied right after it. Such a command has its name for

@@ -10,7 +10,7 @@ namespace iota::edit {
 namespace {
 
 /// how: what `Ring::nailed` becomes; a nail stays one.
-void hold(Editor& e, std::uint32_t particle, const Vec3& position, std::uint32_t how) {
+void hold(Editor& e, std::uint32_t particle, const Vec3& position, std::uint16_t how) {
   model::Model& model = e.model;
   require_finite("position", position);
   const std::uint32_t slot = model.particles[particle].ring;

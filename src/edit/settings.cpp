@@ -17,6 +17,19 @@ void apply(Editor& e, const SetGravity& c) {
 
 void apply(Editor& e, const SetMode& c) { e.model.mode = c.mode; }
 
+void apply(Editor& e, const SetTolerance& c) {
+  if (!(c.value >= 1e-12 && c.value <= 1))
+    throw std::invalid_argument(text("tolerance must be between 1e-12 and 1 link lengths per second, got ", c.value));
+  e.model.tolerance = c.value;
+}
+
+void apply(Editor& e, const SetBudget& c) {
+  if (c.budget.iterations < 0)
+    throw std::invalid_argument(text("budget.iterations must be zero or more, got ", c.budget.iterations));
+  require_not_negative("budget.seconds", c.budget.seconds);
+  e.model.budget = c.budget;
+}
+
 void apply(Editor& e, const SetSolver& c) {
   if (c.name.empty() || c.name.size() > max_solver_name)
     throw std::invalid_argument(

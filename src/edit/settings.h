@@ -12,6 +12,12 @@ struct SetGravity {
 struct SetMode {
   IntegrationMode mode;
 };
+struct SetTolerance {
+  double value;
+};
+struct SetBudget {
+  StepBudget budget;
+};
 struct SetSolver {
   std::string name;
 };
@@ -24,6 +30,8 @@ struct SetRest {
 
 void apply(Editor&, const SetGravity&);
 void apply(Editor&, const SetMode&);
+void apply(Editor&, const SetTolerance&);
+void apply(Editor&, const SetBudget&);
 void apply(Editor&, const SetSolver&);
 void apply(Editor&, const SetDamping&);
 void apply(Editor&, const SetRest&);

@@ -80,9 +80,11 @@ Vec3 calc_force_at(const LastStep& step, std::uint32_t slot, int place) {
 
 Reaction calc_reaction(const Model& model, std::uint32_t slot) {
   const Constraint& c = model.constraints[slot];
-  const LastStep step(model);
   const bool is_coupling = c.first_term != none;
   const std::uint32_t joint = is_coupling ? model.coupled_terms[c.first_term].joint : slot;
+  const auto& particles = model.constraints[joint].particles;
+  const auto first = std::find_if(particles.begin(), particles.end(), [](std::uint32_t p) { return p != none; });
+  const LastStep step(model, first == particles.end() ? none : *first);
   const JointPlaces places(model, model.constraints[joint]);
   const std::array<Vec3, place_count> forces =
       is_coupling ? coupled_forces_at(step, joint, places, [&](std::uint32_t coupling) { return coupling == slot; })

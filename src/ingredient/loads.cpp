@@ -74,10 +74,16 @@ class PartLoads final : public LoadReader {
   Wrench sum_;
 };
 
+solver::ForceStage stage_of(const model::Model& model, std::uint32_t particle) {
+  if (particle != none && model.rings[model.particles[particle].ring].is_instant)
+    return {.h = model.last_dt, .instant = true};
+  return {.h = model.last_dt, .midpoint = !model.steps_to_end_point()};
+}
+
 }  // namespace
 
-LastStep::LastStep(const model::Model& model)
-    : model(model), stage{.h = model.last_dt, .midpoint = !model.steps_to_end_point()}, structure_(model) {}
+LastStep::LastStep(const model::Model& model, std::uint32_t particle)
+    : model(model), stage(stage_of(model, particle)), structure_(model) {}
 
 Vec3 LastStep::damping(std::uint32_t particle) const {
   if (!(h() > 0)) return {};
@@ -108,7 +114,7 @@ Vec3 calc_hinge_force(const Model& model, std::uint32_t particle, ReadLoads read
   const Ring& ring = model.rings[slot];
   const bool free = moves_freely(model, particle);
   if (ring.count == 1) return ring.nailed && free ? -model.nails[slot].multiplier : Vec3{};
-  const LastStep step(model);
+  const LastStep step(model, particle);
   Vec3 own, all;
   int count = 0;
   model.for_each_in_ring(slot, [&](std::uint32_t p) {
@@ -122,7 +128,7 @@ Vec3 calc_hinge_force(const Model& model, std::uint32_t particle, ReadLoads read
 }
 
 Wrench calc_outside_load(const Model& model, std::uint32_t body, BodyId part, ReadLoads read) {
-  const LastStep step(model);
+  const LastStep step(model, model.bodies[body].first);
   PartLoads loads(step, body, part, Load::Kind::outside);
   read(step, body, loads);
   model.for_each_particle_of(body, [&](std::uint32_t p) {
@@ -133,7 +139,7 @@ Wrench calc_outside_load(const Model& model, std::uint32_t body, BodyId part, Re
 }
 
 Wrench calc_net_load(const Model& model, std::uint32_t body, BodyId part, ReadLoads read) {
-  const LastStep step(model);
+  const LastStep step(model, model.bodies[body].first);
   PartLoads loads(step, body, part, Load::Kind::inertia);
   read(step, body, loads);
   return {-loads.sum().force, -loads.sum().torque};

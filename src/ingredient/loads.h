@@ -11,10 +11,12 @@ namespace iota::ingredient {
 /// The solver's last step of a model, from x0, v0 to x1, v1: x1 - x0 is h v1, or h (v0 + v1) / 2 by the mid-point
 /// rule. Then follow the correction that projects velocities on the constraints, and damping: the model has
 /// (v1 + correction) exp(-c h).
-/// Exact for a single step: for sub-steps, multipliers and corrections are those of the last one.
+/// Exact for a single step: for sub-steps, multipliers and corrections are those of the last one. After explicit steps (in
+/// mode accurate) all are of the instant at the end.
 class LastStep {
  public:
-  explicit LastStep(const model::Model& model);
+  /// Of the island that has a particle.
+  LastStep(const model::Model& model, std::uint32_t particle);
 
   const model::Model& model;
   const solver::ForceStage stage;  ///< time at which the solver's forces were evaluated

@@ -34,6 +34,8 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
   IntegrationMode mode = IntegrationMode::energy_keeping;
   /// Whether forces are those at the end of a step (backward Euler), not in its middle.
   bool steps_to_end_point() const { return mode == IntegrationMode::plausible || mode == IntegrationMode::robust; }
+  double tolerance = 1e-4;  ///< of mode accurate, see System::tolerance
+  StepBudget budget;
   double damping = 0;
   /// Name of the solver of the equations of steps, ended by zeros; empty: the built-in one.
   std::array<char, 32> solver{};
@@ -85,7 +87,8 @@ class Model final : public Structure, public ingredient::AllTables<ingredient::I
 template <class Archive>
 void Model::archive(Archive& ar) {
   Structure::archive(ar);
-  ar.value(gravity), ar.value(mode), ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
+  ar.value(gravity), ar.value(mode), ar.value(tolerance), ar.value(budget.iterations), ar.value(budget.seconds);
+  ar.value(damping), ar.value(solver), ar.value(rest_after), ar.value(rest_speed);
   ar.value(time), ar.value(last_dt), ar.value(step);
   ar.value(dissipated), ar.value(lost), ar.value(made), ar.value(external_work), ar.value(edit_energy),
       ar.value(booked_energy), ar.value(has_edits);

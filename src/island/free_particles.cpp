@@ -106,7 +106,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
         ring.velocity *= left;
       }
       ring.acceleration = (1 / h) * (ring.velocity - before);
-      ring.correction = {};
+      ring.correction = {}, ring.is_instant = 0;
       if (model.rest_after > 0) {
         const double speed2 = dot(ring.velocity, ring.velocity);
         double& slow_time = model.articulates[place.articulate].slow_time;

@@ -16,12 +16,12 @@ using model::Ring;
 
 namespace {
 
-solver::Care care_of(IntegrationMode mode) {
-  switch (mode) {
+solver::Care care_of(const Model& model) {
+  switch (model.mode) {
     case IntegrationMode::plausible: return solver::Care::plausible();
     case IntegrationMode::robust: return solver::Care::robust();
     case IntegrationMode::energy_keeping: return solver::Care::energy_keeping();
-    case IntegrationMode::accurate: return solver::Care::accurate();
+    case IntegrationMode::accurate: return solver::Care::accurate(model.tolerance);
   }
   return {};
 }
@@ -120,22 +120,29 @@ void Island::store_carried(Model& model, MovedRings& moved) const {
   }
 }
 
-void Island::store_step(Model& model, double h) const {
-  const auto put = [&](std::uint32_t ring, const Vec3& position, const Vec3& velocity, const Vec3& correction) {
+void Island::store_step(Model& model, double h, bool is_instant) const {
+  const auto put = [&](std::uint32_t ring, const Vec3& position, const Vec3& velocity, const Vec3& correction,
+                       const Vec3& start) {
     Ring& r = model.rings[ring];
-    r.acceleration = (1 / h) * (velocity - correction - r.velocity);
-    r.position = position, r.velocity = velocity, r.correction = correction;
+    r.acceleration = (1 / h) * (velocity - correction - start);
+    r.position = position, r.velocity = velocity, r.correction = correction, r.is_instant = is_instant;
   };
   const std::span<const Vec3> corrections = integrator_->velocity_corrections();
   const auto correction_of = [&](std::size_t node) { return corrections.empty() ? Vec3{} : corrections[node]; };
+  // With the accelerations at an instant: the velocity from which these would lead to the end's.
+  const auto start_of = [&](std::size_t node) { return integrator_->instant_start(node, h); };
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    put(nodes_.rings[i], problem_.origin + problem_.position[i], problem_.velocity[i], correction_of(i));
+    put(nodes_.rings[i], problem_.origin + problem_.position[i], problem_.velocity[i], correction_of(i),
+        is_instant ? start_of(i) : model.rings[nodes_.rings[i]].velocity);
   for (std::size_t i = 0; i < nodes_.carried.size(); ++i) {
-    const std::uint32_t p = nodes_.carried[i];
+    const std::uint32_t p = nodes_.carried[i], ring = model.particles[p].ring;
     const auto [position, velocity] = model.carried(p);
-    Vec3 correction;
-    for (const auto& [node, weight] : nodes_.carriers[i]) correction += weight * correction_of(node);
-    put(model.particles[p].ring, position, velocity, correction);
+    Vec3 correction, start;
+    for (const auto& [node, weight] : nodes_.carriers[i]) {
+      correction += weight * correction_of(node);
+      if (is_instant) start += weight * start_of(node);
+    }
+    put(ring, position, velocity, correction, is_instant ? start : model.rings[ring].velocity);
   }
   for_each_ingredient([&](const auto& i) { i.store(model, nodes_, h, problem_); });
 }
@@ -209,13 +216,19 @@ solver::AdvanceReport Island::advance_idle(Model& model, double h) {
   impose_velocities(h);
   for_each_ingredient([&](const auto& i) { i.impose_positions(problem_); });
   report.external_work += energy();
-  store_step(model, h);
+  store_step(model, h, false);
   return report;
 }
 
-solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mode) {
-  if (idle_) return advance_idle(model, h);
-  if (skip_if_asleep(model)) return {};
+solver::AdvanceReport Island::advance(Model& model, double h, Clock::time_point deadline) {
+  last_ = idle_                   ? advance_idle(model, h)
+          : skip_if_asleep(model) ? solver::AdvanceReport{}
+                                  : advance_awake(model, h, deadline);
+  has_stepped_ = true;
+  return last_;
+}
+
+solver::AdvanceReport Island::advance_awake(Model& model, double h, Clock::time_point deadline) {
   load(model, h);
   use_solver(model.solver);
   const double virtual_before = virtual_energy(model);
@@ -229,7 +242,9 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
   }
   model::Articulate& memory = articulate(model);
   problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
-  auto report = integrator_->advance(problem_, h, care_of(mode));
+  solver::Care care = care_of(model);
+  care.max_iterations = model.budget.iterations, care.deadline = deadline;
+  auto report = integrator_->advance(problem_, h, care);
   memory.standing_gap = problem_.standing_gap, memory.standing_steps = problem_.standing_steps;
   if (velocity_jump(h) > 0) {  // if there was no solution
     given -= problem_.kinetic_energy();
@@ -246,16 +261,33 @@ solver::AdvanceReport Island::advance(Model& model, double h, IntegrationMode mo
     report.converged = false;
     report.lost = problem_.kinetic_energy() + virtual_energy(model);
     std::fill(problem_.velocity.begin(), problem_.velocity.end(), Vec3{});
-    store_step(model, h);
+    store_step(model, h, false);
     return report;
   }
   double dissipated = 0;
   for_each_ingredient([&](auto& i) { dissipated += i.after_step(model, h, problem_); });
   report.dissipated += dissipated;
-  store_step(model, h);
+  store_step(model, h, integrator_->is_instant());
   report.lost += virtual_energy(model) - virtual_before;
   report.converged = report.converged && meets_pinned(model);
   update_sleep_timer(model, h, report);
+  return report;
+}
+
+IslandReport Island::report(const Model& model) const {
+  IslandReport report{.points = static_cast<std::uint32_t>(nodes_.size()),
+                      .resting = is_asleep(model),
+                      .iterations = last_.iterations,
+                      .substeps = last_.substeps,
+                      .fallbacks = last_.fallbacks,
+                      .converged = last_.converged,
+                      .cut_short = last_.cut_short,
+                      .gap = problem_.worst_gap(problem_.position.data()),
+                      .error = last_.error,
+                      .lost = last_.lost,
+                      .made = last_.made};
+  for (const std::uint32_t body : nodes_.bodies)
+    if (model.bodies.is_alive(body)) report.bodies.push_back(model.bodies.id(body));
   return report;
 }
 

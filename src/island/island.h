@@ -7,6 +7,7 @@
 
 #include <iota/solver.h>
 
+#include <chrono>
 #include <memory>
 #include <span>
 #include <string>
@@ -64,7 +65,13 @@ class Island {
   /// Loads the state of the model into the problem, for a step of h seconds (h = 0: for projections).
   void load(const model::Model&, double h);
 
-  solver::AdvanceReport advance(model::Model&, double h, IntegrationMode);
+  using Clock = std::chrono::steady_clock;
+  /// By the model's settings. `deadline`: when to stop looking for a solution, see StepBudget.
+  solver::AdvanceReport advance(model::Model&, double h, Clock::time_point deadline = Clock::time_point::max());
+
+  /// Of its last step.
+  IslandReport report(const model::Model&) const;
+  bool has_stepped() const { return has_stepped_; }
 
   /// See System::diagnose; after `load(model, 0)`.
   Diagnosis diagnose(const model::Model&) const;
@@ -110,7 +117,8 @@ class Island {
   double velocity_jump(double h) const;       ///< see ingredient::NoAnswers
   void impose_velocities(double h);
   double virtual_energy(const model::Model&) const;
-  void store_step(model::Model&, double h) const;
+  solver::AdvanceReport advance_awake(model::Model&, double h, Clock::time_point deadline);
+  void store_step(model::Model&, double h, bool is_instant) const;
   bool project_all(model::Model&, bool positions);
   std::vector<std::uint32_t> nodes_of(const model::Model&, std::span<const std::uint32_t> bodies) const;
   void store_projection(model::Model&, bool moved, MovedRings&, std::span<const std::uint32_t> only = {}) const;
@@ -133,6 +141,8 @@ class Island {
   std::unique_ptr<Solver> solver_;  // replaces the integrator's own solver
   bool idle_ = false;               // no body of it can move by itself: there is nothing to solve
   bool to_wake_ = false;
+  bool has_stepped_ = false;
+  solver::AdvanceReport last_;  // of the last step
 };
 
 }  // namespace iota::island

@@ -62,7 +62,9 @@ struct Tie {
 /// ring of points.)
 struct Ring {
   std::uint32_t first = none, last = none, count = 0;
-  std::uint32_t nailed = 0;
+  std::uint16_t nailed = 0;
+  /// Whether forces and multipliers of the last step are those at its end, and not means: see LastStep.
+  std::uint16_t is_instant = 0;
   Vec3 position, velocity;
   Vec3 acceleration;  ///< change of velocity in the last step without the correction, divided by h, m/s^2
   Vec3 correction;    ///< of the velocity at the end of the last step, to satisfy the constraints, m/s

@@ -213,6 +213,60 @@ double Assembly::strain_released(const Problem& problem, const Stage& stage, con
   return released;
 }
 
+namespace {
+
+/// v' H v of each row, H its Hessian: the second derivative of g along the velocities, m/s^2.
+template <class C>
+void calc_bends(const C& c, const Vec3* x, const Vec3* v, double* bends) {
+  std::fill(bends, bends + C::rows, 0.0);
+  if constexpr (C::has_curvature)
+    for (int r = 0; r < C::rows; ++r) {
+      double only[C::rows] = {};
+      only[r] = 1;
+      if constexpr (GeneralConstraint<C>) {
+        Mat3 blocks[C::max_nodes * (C::max_nodes + 1) / 2];
+        c.curvature(x, 1, only, false, blocks);
+        const Mat3* block = blocks;
+        for (int i = 0; i < c.node_count(); ++i)
+          for (int j = i; j < c.node_count(); ++j, ++block)
+            bends[r] += (i == j ? 1 : 2) * dot(v[c.nodes[i]], *block * v[c.nodes[j]]);
+      } else {
+        for (int i = 0; i < c.node_count(); ++i)
+          for (int j = i; j < c.node_count(); ++j)
+            bends[r] += (i == j ? 1 : 2) * c.curvature(only, i, j) * dot(v[c.nodes[i]], v[c.nodes[j]]);
+      }
+    }
+}
+
+}  // namespace
+
+void Assembly::load_rates(const Problem& problem) {
+  const Vec3 *const x = problem.position.data(), *const v = problem.velocity.data();
+  for (std::size_t i = 0; i < problem.size(); ++i) {
+    double* const r = unknowns_.data() + node_unknown_[i];
+    r[0] = r[1] = r[2] = 0;
+    add_force(static_cast<std::uint32_t>(i), -problem.mass[i] * problem.gravity);
+  }
+  for (const auto& c : problem.mass_couplings)
+    add_force(c.a, -c.mass * problem.gravity), add_force(c.b, -c.mass * problem.gravity);
+  for (std::size_t i = 0; i < problem.force.size(); ++i) add_force(static_cast<std::uint32_t>(i), -problem.force[i]);
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items) {
+      const Vec3 e = f.arm.value(x), force = f.force(e - f.arm.rate(v), e, ForceStage::at_an_instant());
+      for (std::uint32_t i = 0; i < f.arm.count; ++i) add_force(f.arm.nodes[i], -f.arm.weights[i] * force);
+    }
+  });
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      double* const row = unknowns_.data() + pool.slots[k].unknown;
+      calc_bends(pool.items[k], x, v, row);
+      if (pool.has_laws())
+        for (int r = 0; r < C::rows; ++r)
+          if (pool.states[k * C::rows + r].side != 0) row[r] = 0;
+    }
+  });
+}
+
 inline void Assembly::add_to_node(std::uint32_t node,
                                   double value) {  // said again: as an exported function it is not inlined
   double* const d = factor_.diagonals() + node_diagonal_[node];

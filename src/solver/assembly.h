@@ -44,6 +44,9 @@ class Assembly {
   bool is_round_off_of_laws(const Problem&, const Stage&, const Vec3* x);
   /// The elastic energy that compliant rows have released on the way to a solution at x, J.
   double strain_released(const Problem&, const Stage&, const Vec3* x) const;
+  /// Of the equations M a + G' lambda = f, G a + v' G' v = 0 at a = 0, lambda = 0, at the problem's positions and
+  /// velocities: their solution is minus the step of a projection's matrix, without Hessian. Rows at a bound are left out.
+  void load_rates(const Problem&);
   /// The derivative of the residual.
   template <bool Midpoint>
   void assemble(const Problem&, const Stage&, const Vec3* x, Hessian);

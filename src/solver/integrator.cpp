@@ -133,8 +133,16 @@ bool Integrator::try_step(Problem& problem, const Stage& stage, AdvanceReport& r
   return solve(problem, stage, report);
 }
 
+// The last resort has no deadline.
+bool Integrator::is_out_of_budget() {
+  using Clock = std::chrono::steady_clock;
+  if (care_.deadline != Clock::time_point::max() && Clock::now() > care_.deadline) iterations_left_ = 0;
+  if (iterations_left_ <= 0) care_.patience = 0;  // no more halving
+  return iterations_left_ <= 0;
+}
+
 bool Integrator::solve(Problem& problem, const Stage& stage, AdvanceReport& report) {
-  if (iterations_left_ <= 0) {
+  if (is_out_of_budget()) {
     cut_short_ = true;
     return false;
   }
@@ -183,11 +191,16 @@ void Integrator::commit(Problem& problem, const Stage& stage, AdvanceReport& rep
     problem.velocity[i] += ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[i];
     problem.position[i] = x1[i];
   }
+  track(problem, stage.fraction);
+  is_instant_ = false;
+  ++report.substeps;
+}
+
+void Integrator::track(Problem& problem, double fraction) {
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     if constexpr (TrackingConstraint<C>)
-      for (C& c : pool.items) c.track(problem.position.data(), stage.fraction);
+      for (C& c : pool.items) c.track(problem.position.data(), fraction);
   });
-  ++report.substeps;
 }
 
 // The energy of the solved step, and the missing part: `gain` is the external work minus the dissipation.
@@ -408,33 +421,6 @@ void Integrator::advance_mid_point(Problem& problem, double h, double from, doub
     return advance_end_point(problem, h, from, to, depth, report);
   }
   halve();
-}
-
-// Compares the solved step with one of half its length from the same start. With their accelerations a and a', the
-// third derivative is about 4 (a - a') / h, and the error of the mid-point rule h^3 / 12 of that. The half step ends (a
-// - a') h^2 / 8 away from the parabola of the whole one. Afterwards the whole step is solved again.
-bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport& report) {
-  const int met = met_;
-  candidate_.assign(newton_.displacement().begin(), newton_.displacement().end());
-  candidate_multipliers_.resize(problem.multiplier_count());
-  problem.copy_multipliers_to(candidate_multipliers_);
-
-  Stage half = Stage::mid_point(stage.h / 2, stage.fraction_start, (stage.fraction_start + stage.fraction) / 2);
-  half.tolerance = stage.tolerance;
-  const bool solved = try_step(problem, half, report);
-  double worst = 0;
-  for (std::size_t i = 0; i < problem.size(); ++i) {  // displacements from the same free flight
-    const Vec3 off = newton_.displacement()[i] - 0.25 * candidate_[i];
-    worst = std::max(worst, dot(off, off));
-  }
-  const double limit = care_.max_error * stage.h * newton_.reference_length() * 3 / 8;
-  if (!solved || !(worst <= limit * limit)) return false;
-
-  std::copy(candidate_.begin(), candidate_.end(), newton_.displacement().begin());
-  problem.set_multipliers(candidate_multipliers_);
-  const bool again = solve(problem, stage, report);  // starts at the solution: no iterations
-  met_ = met;
-  return again;
 }
 
 // The mid-point rule satisfies the rows by the mean velocity, not by the velocity at the end: the residual of a row
@@ -662,10 +648,11 @@ void Integrator::find_pieces(const Problem& problem) {
 // velocities on the constraints after each. If a projection fails, the points stay and lose half of their speed. First
 // order and without energy balance, but plausible, finite and reported.
 void Integrator::last_resort_step(Problem& problem, double h, AdvanceReport& report) {
-  constexpr int pieces = 8, own_iterations = 24;  // allowed beyond a budget
-  iterations_left_ = std::max(iterations_left_, own_iterations);
+  constexpr int pieces = 8;
+  iterations_left_ = std::max(iterations_left_, resort_left_);
+  care_.deadline = std::chrono::steady_clock::time_point::max();
   problem.set_multipliers(multipliers_saved_);
-  has_corrected_ = false;
+  has_corrected_ = is_instant_ = false;
   const double before = energy_;
   bool whole = true;
   for (int piece = 0; piece < pieces && whole; ++piece) {
@@ -687,6 +674,7 @@ void Integrator::last_resort_step(Problem& problem, double h, AdvanceReport& rep
     measure_energy(problem, 1);
   }
   missing_ += before - energy_;
+  resort_left_ = std::min(resort_left_, iterations_left_);
   ++report.substeps;
 }
 
@@ -745,6 +733,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
   is_free_body_ = is_free_body(problem);
   constexpr int unlimited = std::numeric_limits<int>::max();
   iterations_left_ = care.max_iterations > 0 ? care.max_iterations : unlimited;
+  resort_left_ = 24;
   close_gaps(problem, report);
   keeps_start_ = false;
   if (!conservative_ || !report.converged) keep_start(problem);
@@ -752,9 +741,11 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const Care& care) 
   const double start_kinetic = kinetic_, start_energy = energy_;
   const AdvanceReport start = report;
   // If moving nails have left a conflict, the mid-point rule would double the speed at which bodies catch up.
-  if (care.scheme == Scheme::mid_point && (conservative_ || !holds_offsets_))
-    advance_mid_point(problem, h, 0, 1, 0, report);
-  else
+  is_instant_ = false;
+  if (care.scheme == Scheme::mid_point && (conservative_ || !holds_offsets_)) {
+    const double taken = care.max_error > 0 ? advance_explicitly(problem, h, report) : 0;
+    if (taken < 1) advance_mid_point(problem, (1 - taken) * h, taken, 1, 0, report);
+  } else
     advance_end_point(problem, h, 0, 1, 0, report);
   // If Newton failed, check the energy balance; an increase means that the iterate is unphysical: discard it.
   const bool found = report.converged && report.fallbacks == 0;

@@ -6,8 +6,10 @@
 #include "solver/local_projection.h"
 #include "solver/newton.h"
 #include "solver/rigid_motion.h"
+#include "solver/runge_kutta.h"
 #include "solver/spin.h"
 
+#include <chrono>
 #include <memory>
 
 namespace iota::solver {
@@ -25,18 +27,20 @@ struct Care {
   int max_depth = 6;                                ///< sub-steps down to a 64th: a whip needs them, for a few steps
   int patience = 400;                               ///< Newton iterations after which sub-steps are no longer halved
   int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited
-  double max_error = 0;    ///< estimated, of mid-point (sub-)steps, in link lengths per second; 0: no limit
+  /// When all solves of a step have to end, but the last resort's.
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+  double max_error = 0;  ///< estimated, of (sub-)steps, in link lengths per second; 0: no limit
 
   static Care plausible() { return {.scheme = Scheme::end_point, .tolerance = 100, .max_depth = 4}; }
   static Care robust() { return {.scheme = Scheme::end_point}; }
   static Care energy_keeping() { return {}; }
-  static Care accurate() {
+  static Care accurate(double max_error = 1e-4) {
     return {.tolerance = 0.1,
             .max_turn = 0.35,
             .max_turn_cosine = 0.9394,
             .max_depth = 10,
             .patience = 10000,
-            .max_error = 1e-4};
+            .max_error = max_error};
   }
 };
 
@@ -69,6 +73,13 @@ class Integrator {
   /// The correction of velocities at the end of the latest step to satisfy the rows, m/s; empty: none.
   std::span<const Vec3> velocity_corrections() const {
     return has_corrected_ ? newton_.velocities_before() : std::span<const Vec3>{};
+  }
+
+  /// Whether the end of the step is a state of the equations of motion at that instant, and not of means over it.
+  bool is_instant() const { return is_instant_; }
+  /// The velocity from which the acceleration of a node there would lead to its velocity there, m/s.
+  Vec3 instant_start(std::size_t node, double h) const {
+    return runge_kutta_->velocities()[node] - h * runge_kutta_->accelerations()[node];
   }
 
   double reference_length() const { return newton_.reference_length(); }  ///< of what is compiled, m
@@ -125,9 +136,16 @@ class Integrator {
   void keep_correction(const Problem&);
   void find_pieces(const Problem&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
+  bool is_smooth(Problem&) const;
+  static bool has_closed_row(const Problem&);
+  double advance_explicitly(Problem&, double h, AdvanceReport&);
+  void keep_momenta(Problem&, const RigidMotion& start, double time) const;
+  void keep_energy(Problem&, const RungeKutta&, AdvanceReport&);
+  static void track(Problem&, double fraction);
   void hold_offsets(Problem&, AdvanceReport&);
   void restore_bounds(Problem&);
   bool share_gaps(Problem&, double fraction, AdvanceReport&);
+  bool is_out_of_budget();
   void keep_start(const Problem&);
   bool least_violation(Problem&, Stage, AdvanceReport&);
   void last_resort_step(Problem&, double h, AdvanceReport&);
@@ -136,8 +154,9 @@ class Integrator {
   void close_gaps(Problem&, AdvanceReport&);
 
   Newton newton_;
-  std::unique_ptr<LocalProjection> local_;  // if it was needed
-  std::vector<std::uint32_t> center_;       // of the latest
+  std::unique_ptr<LocalProjection> local_;   // if it was needed
+  std::vector<std::uint32_t> center_;        // of the latest
+  std::unique_ptr<RungeKutta> runge_kutta_;  // if it was needed
   Care care_;
   std::vector<Vec3> start_position_, start_velocity_;
   std::vector<Vec3> candidate_;  // only for error estimates and the last resort
@@ -151,7 +170,9 @@ class Integrator {
   bool conservative_ = true;         ///< no external work during this step
   bool holds_offsets_ = false;
   int iterations_left_ = std::numeric_limits<int>::max();
+  int resort_left_ = 0;  ///< iterations of the last resort beyond a budget
   bool cut_short_ = false;
+  bool is_instant_ = false;     ///< see is_instant
   bool has_corrected_ = false;  ///< velocities after the latest (sub-)step; Newton has the correction
   Holds holds_;
   Spin spin_;

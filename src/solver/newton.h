@@ -53,6 +53,7 @@ class Newton {
   /// Passes the equations of steps, not of projections, to another solver; null: solves them itself. If the other one
   /// finds no root, they are solved here.
   void set_external(Solver* solver) { external_ = solver; }
+  bool has_external() const { return external_ != nullptr; }
 
   /// The velocity nearest to `velocity` in the mass norm with G(position) v = rate, in place; rate is that of targets and
   /// lengths that move during the next h seconds (h = 0: nothing moves). Keeps momentum and angular momentum, except what
@@ -77,6 +78,12 @@ class Newton {
   /// The least change of velocities, in the mass norm, that removes the given rates (of the rows, in the order of the
   /// pools).
   void find_velocity_change(const Problem& problem, std::span<const double> rates, std::span<Vec3> change);
+
+  /// The accelerations of all nodes, and the pools' multipliers, at the problem's positions and velocities.
+  void find_accelerations(Problem& problem, std::span<Vec3> accelerations);
+  /// Moves the problem's positions and velocities, which nearly satisfy the constraints, by the least changes in the
+  /// mass norm onto them. False if gaps of more than 1e-10 of a length remain.
+  bool project_state(Problem& problem);
 
   double reference_length() const { return assembly_.reference_length(); }  ///< mean of the constraints', m
 
@@ -116,6 +123,7 @@ class Newton {
   };
   std::optional<double> project_onto_sides(Problem&, const Wanted&, double energy);
   double find_rates(const Problem&, const Wanted&);
+  double find_gaps(const Problem&);
   template <class C>
   void add_mean_rates(const C&, double* row) const;
   void add_step_to_velocities(Problem&);

@@ -17,6 +17,11 @@ StepReport Stepper::step(double dt) {
   if (!(dt > 0 && dt <= 1)) throw std::invalid_argument(text("step: dt must be above 0 and at most 1 s, got ", dt));
   StepReport report;
   report.dt = dt;
+  using Clock = island::Island::Clock;
+  const double seconds = editor_.model.budget.seconds;
+  deadline_ = seconds > 0 && seconds < 1e6
+                  ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
+                  : Clock::time_point::max();
   door_.begin_step();
   take_held_forces(report);
   update_islands();
@@ -52,6 +57,24 @@ void Stepper::update_islands() {
   if (model.has_edits) ingredient::book_edits(model, ingredient::calc_energies(model).total());
 }
 
+namespace {
+
+/// Which islands the budget left undone.
+void tell_cut_short(const model::Model& model, std::span<island::Island* const> islands,
+                    std::span<const solver::AdvanceReport> advanced, StepReport& report) {
+  constexpr int most = 3;
+  int count = 0;
+  for (std::size_t i = 0; i < islands.size(); ++i) {
+    if (!advanced[i].cut_short || ++count > most) continue;
+    report.warnings.push_back(text("the budget of a step ended before the solution of the island of body ",
+                                   model.bodies.id(islands[i]->bodies().front()).slot, ": its worst gap is ",
+                                   advanced[i].gap, " m"));
+  }
+  if (count > most) report.warnings.push_back(text("the budget of a step ended too early for ", count, " islands"));
+}
+
+}  // namespace
+
 // 3. Every island separately, on several threads if that is faster; reports are added up in a fixed order.
 void Stepper::advance_islands(StepReport& report) {
   model::Model& model = editor_.model;
@@ -59,7 +82,8 @@ void Stepper::advance_islands(StepReport& report) {
   const auto all = islands.all();
   advanced_.resize(all.size());
   editor_.parallel.for_each(all.size(), islands.grain(editor_.parallel),
-                            [&](std::size_t i) { advanced_[i] = all[i]->advance(model, report.dt, model.mode); });
+                            [&](std::size_t i) { advanced_[i] = all[i]->advance(model, report.dt, deadline_); });
+  tell_cut_short(model, all, advanced_, report);
   int solves = 0, iterations = 0, handed_back = 0;
   double spin_lost = 0;
   for (const auto* island : all)
@@ -72,6 +96,8 @@ void Stepper::advance_islands(StepReport& report) {
     report.substeps_max = std::max(report.substeps_max, r.substeps);
     report.fallbacks += r.fallbacks;
     report.unconverged += !r.converged;
+    report.cut_short += r.cut_short;
+    report.error = std::max(report.error, r.error);
     model.dissipated += r.dissipated;
     model.lost += r.lost;
     model.made += r.made;

@@ -34,6 +34,8 @@ System::System(const SystemOptions& options) : core_(std::make_unique<Core>()) {
   set_damping(options.damping);
   set_rest(options.rest);
   set_mode(options.mode);
+  set_tolerance(options.tolerance);
+  set_budget(options.budget);
 }
 
 System::~System() = default;
@@ -45,6 +47,10 @@ System& System::operator=(System&&) noexcept = default;
 void System::set_gravity(const Vec3& value) { core_->execute(edit::SetGravity{value}); }
 
 void System::set_mode(IntegrationMode mode) { core_->execute(edit::SetMode{mode}); }
+
+void System::set_tolerance(double tolerance) { core_->execute(edit::SetTolerance{tolerance}); }
+
+void System::set_budget(const StepBudget& budget) { core_->execute(edit::SetBudget{budget}); }
 
 void System::set_solver(std::string_view name) { core_->execute(edit::SetSolver{std::string(name)}); }
 
@@ -72,6 +78,7 @@ void add_step(StepReport& sum, const StepReport& next) {
   sum.dt += next.dt;
   sum.iterations_max = std::max(sum.iterations_max, next.iterations_max);
   sum.substeps_max = std::max(sum.substeps_max, next.substeps_max);
+  sum.cut_short += next.cut_short, sum.error = std::max(sum.error, next.error);
   sum.fallbacks += next.fallbacks, sum.unconverged += next.unconverged;
   sum.step = next.step, sum.time = next.time, sum.energy = next.energy;
   sum.worst_gap = std::max(sum.worst_gap, next.worst_gap);
@@ -94,6 +101,17 @@ std::string System::solver() const {
 }
 
 IntegrationMode System::mode() const { return core_->model.mode; }
+
+double System::tolerance() const { return core_->model.tolerance; }
+
+StepBudget System::budget() const { return core_->model.budget; }
+
+std::vector<IslandReport> System::islands() const {
+  std::vector<IslandReport> reports;
+  for (const island::Island* island : core_->islands.all())
+    if (island->has_stepped()) reports.push_back(island->report(core_->model));
+  return reports;
+}
 
 double System::damping() const { return core_->model.damping; }
 

@@ -29,13 +29,22 @@ struct ForceArm {
     for (std::uint32_t i = 0; i < count; ++i) e += weights[i] * x[nodes[i]];
     return e;
   }
+  /// Its rate for velocities v of the points.
+  Vec3 rate(const Vec3* v) const {
+    Vec3 sum;
+    for (std::uint32_t i = 0; i < count; ++i) sum += weights[i] * v[nodes[i]];
+    return sum;
+  }
 };
 
 /// The evaluation of a force in a step: backward Euler at its end, the mid-point rule by a discrete gradient.
 struct ForceStage {
   double h = 0;  ///< s
   bool midpoint = false;
-  bool clamp = false;  ///< make stiffness blocks positive semi-definite
+  bool clamp = false;    ///< make stiffness blocks positive semi-definite
+  bool instant = false;  ///< at the place e1 with the rate (e1 - e0)/h, not between e0 and e1
+  /// With e0 = e1 minus the rate; work and dissipation are then powers.
+  static ForceStage at_an_instant() { return {.h = 1, .instant = true}; }
 };
 
 }  // namespace iota::solver

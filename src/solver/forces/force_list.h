@@ -28,11 +28,11 @@ struct SpringForce {
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r = s.midpoint ? (norm(e0) + norm(e1)) / 2 : norm(e1);
     const Vec3 e = s.midpoint ? 0.5 * (e0 + e1) : e1;
-    const Vec3 n = direction(e0);
+    const Vec3 n = direction(s.instant ? e1 : e0);
     return (-stiffness * factor(r)) * e - (damping / s.h * dot(n, e1 - e0)) * n;
   }
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
-    const double along = dot(direction(e0), e1 - e0);
+    const double along = dot(direction(s.instant ? e1 : e0), e1 - e0);
     return damping / s.h * along * along;
   }
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {

@@ -19,7 +19,7 @@ struct GyroscopicForce {
 
   double energy(const Vec3&) const { return 0; }
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
-    const Vec3 em = 0.5 * (e0 + e1);
+    const Vec3 em = s.instant ? e1 : 0.5 * (e0 + e1);
     return (spin / (s.h * (dot(em, em) + 1e-300))) * cross(e0, e1);  // em x (e1 - e0) = e0 x e1
   }
   double dissipation(const Vec3&, const Vec3&, const ForceStage&) const { return 0; }

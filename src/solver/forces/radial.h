@@ -24,14 +24,14 @@ struct RadialForce {
   double energy(const Vec3& e) const { return law->elastic(at(norm(e)), parameters.data()).energy; }
 
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
-    const double r0 = norm(e0), r1 = norm(e1);
+    const double r1 = norm(e1), r0 = s.instant ? r1 : norm(e0);
     Vec3 f;
     if (s.midpoint)
       f = (-pull_between(r0, r1).value / (r0 + r1 + tiny)) * (e0 + e1);
     else
       f = (-pull(r1).value / (r1 + tiny)) * e1;
     if (law->has_damping()) {
-      const Vec3 n0 = (1 / (r0 + tiny)) * e0;
+      const Vec3 n0 = (1 / (r0 + tiny)) * (s.instant ? e1 : e0);
       f += law->damping(at(r0, dot(n0, e1 - e0) / s.h), parameters.data()).value * n0;
     }
     if (law->has_drag()) f -= (law->drag(at(r0), parameters.data()) / s.h) * (e1 - e0);
@@ -40,7 +40,8 @@ struct RadialForce {
 
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     if (!law->has_damping() && !law->has_drag()) return 0;
-    const double r0 = norm(e0), along = dot((1 / (r0 + tiny)) * e0, e1 - e0);
+    const Vec3& now = s.instant ? e1 : e0;
+    const double r0 = norm(now), along = dot((1 / (r0 + tiny)) * now, e1 - e0);
     double taken = 0;
     if (law->has_damping()) taken -= law->damping(at(r0, along / s.h), parameters.data()).value * along;
     if (law->has_drag()) taken += law->drag(at(r0), parameters.data()) / s.h * dot(e1 - e0, e1 - e0);

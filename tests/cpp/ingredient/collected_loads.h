@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ingredient/loads.h"
+#include "ingredient/model.h"
 
 #include <vector>
 
@@ -10,7 +11,9 @@ namespace iota::ingredient {
 /// The loads that one ingredient tells of a body.
 template <class I>
 struct CollectedLoads final : LoadReader {
-  CollectedLoads(const model::Model& model, std::uint32_t body) { I::add_loads(LastStep(model), body, *this); }
+  CollectedLoads(const model::Model& model, std::uint32_t body) {
+    I::add_loads(LastStep(model, model.bodies[body].first), body, *this);
+  }
   void take(const Load& load) override { list.push_back(load); }
 
   Vec3 on(std::uint32_t particle, Load::Kind kind) const {

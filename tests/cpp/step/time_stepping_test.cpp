@@ -76,10 +76,9 @@ TEST(Report, adds_up_the_fall_backs_of_all_islands) {
 
 TEST(Mode, accurate_follows_a_double_pendulum_at_any_frame_rate) {
   for (const double hz : {30.0, 60.0, 240.0}) {
-    const auto [accurate, substeps] = pendulum_error(IntegrationMode::accurate, 1 / hz, 2);
+    const double accurate = pendulum_error(IntegrationMode::accurate, 1 / hz, 2).first;
     EXPECT_LT(accurate, 1e-4) << "chaotic, two seconds, links of 1 m";
-    EXPECT_GT(substeps, 1);
-    const auto [keeping, once] = pendulum_error(IntegrationMode::energy_keeping, 1 / hz, 2);
+    const double keeping = pendulum_error(IntegrationMode::energy_keeping, 1 / hz, 2).first;
     EXPECT_GT(keeping, 3 * accurate) << "else there is nothing to gain";
   }
 }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """All verifications, in the order of the report. A new one is a function that takes a Run, and a line here."""
 
-from iota.verify.cases import chains, classical, conservation, linkages, newton, sizes, tops
+from iota.verify.cases import accuracy, chains, classical, conservation, linkages, newton, sizes, tops
 from iota.verify.run import Case
 
 CASES = [
@@ -14,6 +14,7 @@ CASES = [
         newton.failure_rate,
         classical.pendulum,
         classical.double_pendulum,
+        accuracy.accurate,
         tops.asymmetric_top,
         tops.heavy_top,
         classical.catenary,
@@ -23,6 +24,7 @@ CASES = [
         classical.orbit,
         classical.oscillator,
         conservation.momenta,
+        accuracy.angular_momentum,
         conservation.energy,
         conservation.heavy_end,
         sizes.scales,

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// The accurate mode: explicit steps of fifth order where no row changes, estimated mid-point steps elsewhere.
+#include "solver/integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iota::solver {
+
+// Explicit steps need rows that are equations at rest in time, or open rows that stay open.
+bool Integrator::is_smooth(Problem& problem) const {
+  if (drives_rows_ || holds_offsets_ || may_be_in_pieces_ || !pieces_.empty() || newton_.has_external()) return false;
+  if (!std::get<ForcePool<GripForce>>(problem.forces).items.empty()) return false;
+  if (!problem.has_laws()) return true;
+  ActiveSet::begin_impulses(problem);
+  bool smooth = true;
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    for (std::size_t row = 0; row < pool.laws.size(); ++row) {
+      const RowLaw& law = pool.laws[row];
+      if (law == RowLaw{} || law.is_off()) continue;
+      smooth = smooth && !law.hold && !law.is_compliant() && pool.states[row].side != 0;
+    }
+  });
+  return smooth;
+}
+
+bool Integrator::has_closed_row(const Problem& problem) {
+  bool closed = false;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    if (!pool.has_laws()) return;
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      double g[C::rows];
+      pool.value(k, problem.position.data(), 1, g);
+      for (int r = 0; r < C::rows; ++r)
+        closed = closed || (pool.states[k * C::rows + r].side != 0 && pool.law(k)[r].violation(g[r]) > 0);
+    }
+  });
+  return closed;
+}
+
+namespace {
+
+bool is_internal(const Problem& problem) {
+  bool internal = std::get<ForcePool<GyroscopicForce>>(problem.forces).items.empty();
+  for (const Vec3& force : problem.force) internal = internal && force == Vec3{};
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items) internal = internal && f.arm.is_internal();
+  });
+  return internal;
+}
+
+/// Time in which the motion may change its direction, s: of the links by their rates and accelerations.
+double time_scale(const Problem& problem, std::span<const Vec3> accelerations) {
+  double fastest = 0;  // squared, 1/s^2
+  for (const auto& c : std::get<ConstraintPool<DistanceConstraint>>(problem.constraints).items) {
+    const auto [a, b] = c.nodes;
+    const double per_length = 1 / (c.length * c.length + 1e-300);
+    const Vec3 v = problem.velocity[b] - problem.velocity[a], acceleration = accelerations[b] - accelerations[a];
+    fastest = std::max(fastest, dot(v, v) * per_length);
+    fastest = std::max(fastest, std::sqrt(dot(acceleration, acceleration) * per_length));
+  }
+  return 1 / std::sqrt(fastest + 1e-300);
+}
+
+}  // namespace
+
+// Returns the fraction of the step that was taken: less than all if a row closes, or if steps become too short, as they
+// do for stiff springs.
+double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport& report) {
+  constexpr double shortest = 1.0 / 4096, safety = 0.9, least = 0.2, most = 5, first = 0.5;
+  if (!is_smooth(problem)) return 0;
+  keep_start(problem);
+  if (!runge_kutta_) runge_kutta_ = std::make_unique<RungeKutta>();
+  RungeKutta& steps = *runge_kutta_;
+  steps.begin(newton_, problem);
+  const std::optional<RigidMotion> free =
+      holds_.are_none() && is_internal(problem) ? std::optional(rigid_motion_of(problem)) : std::nullopt;
+  double time = 0, part = first * time_scale(problem, steps.accelerations());
+  while (time < h) {
+    part = (h - time) / std::ceil((h - time) / part * (1 - 1e-9));
+    if (!(part >= shortest * h) || is_out_of_budget()) break;
+    const AdvanceReport before = report;
+    const double energy = energy_, kinetic = kinetic_, missing = missing_, slack = slack_;
+    const bool is_last = part == h - time;
+    report.iterations += RungeKutta::solves, ++report.solves, iterations_left_ -= RungeKutta::solves;
+    bool good = steps.step(newton_, problem, part);
+    if (free) keep_momenta(problem, *free, time + part);
+    keep_energy(problem, steps, report);
+    steps.end(newton_, problem);
+    const double error = steps.estimate_error(part).position / newton_.reference_length();
+    const double ratio = error / (care_.max_error * part);
+    good = good && ratio <= 1 && !has_closed_row(problem);
+    if (good) {
+      time = is_last ? h : time + part;
+      steps.accept(problem);
+      track(problem, 1);
+      ++report.substeps, report.error += error / h;
+    } else {
+      const int iterations = report.iterations, solves = report.solves;
+      steps.reject(problem);
+      report = before, report.iterations = iterations, report.solves = solves;
+      energy_ = energy, kinetic_ = kinetic, missing_ = missing, slack_ = slack;
+      if (ratio <= 1) break;  // a row closes, or the constraints cannot be met
+    }
+    part *= std::clamp(safety * std::pow(ratio, -0.25), least, most);
+  }
+  if (time > 0) book_rest(problem, time, report), is_instant_ = true;
+  return time < h ? time / h : 1;
+}
+
+// Of a problem that nothing outside acts on but gravity: `start` is its motion `time` seconds before.
+void Integrator::keep_momenta(Problem& problem, const RigidMotion& start, double time) const {
+  const RigidMotion now = rigid_motion_of(problem);
+  const Vec3 drift = start.velocity + time * problem.gravity - now.velocity;
+  const Vec3 turning = solve_semidefinite(now.inertia, start.angular_momentum - now.angular_momentum, 1e-12);
+  for (std::size_t i = 0; i < problem.size(); ++i)
+    problem.velocity[i] += drift + cross(turning, problem.position[i] - now.center);
+}
+
+// The work of a step is integrated with its weights, so its energy is known: the rest is its error, and is returned.
+void Integrator::keep_energy(Problem& problem, const RungeKutta& steps, AdvanceReport& report) {
+  constexpr double of_motion = 1e-9, round_off = 1e-14;
+  constexpr double most = 1e-2;  // of the kinetic energy: the rest waits for the next step
+  report.external_work += steps.external_work(), report.dissipated += steps.dissipated();
+  const double expected = energy_ + steps.external_work() - steps.dissipated();
+  measure_energy(problem, 1);
+  missing_ += expected - energy_;
+  slack_ += of_motion * kinetic_ + round_off * (std::abs(expected) + std::abs(energy_));
+  if (std::abs(missing_) <= most * kinetic_) (void)give_energy_back(problem, Stage::projection(), missing_, report);
+}
+
+// Compares the solved step with one of half its length from the same start. With their accelerations a and a', the
+// third derivative is about 4 (a - a') / h, and the error of the mid-point rule h^3 / 12 of that. The half step ends (a
+// - a') h^2 / 8 away from the parabola of the whole one. Afterwards the whole step is solved again.
+bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport& report) {
+  const int met = met_;
+  candidate_.assign(newton_.displacement().begin(), newton_.displacement().end());
+  candidate_multipliers_.resize(problem.multiplier_count());
+  problem.copy_multipliers_to(candidate_multipliers_);
+
+  Stage half = Stage::mid_point(stage.h / 2, stage.fraction_start, (stage.fraction_start + stage.fraction) / 2);
+  half.tolerance = stage.tolerance;
+  const bool solved = try_step(problem, half, report);
+  double worst = 0;
+  for (std::size_t i = 0; i < problem.size(); ++i) {  // displacements from the same free flight
+    const Vec3 off = newton_.displacement()[i] - 0.25 * candidate_[i];
+    worst = std::max(worst, dot(off, off));
+  }
+  const double limit = care_.max_error * stage.h * newton_.reference_length() * 3 / 8;
+  if (!solved || !(worst <= limit * limit)) return false;
+  report.error += 8.0 / 3 * std::sqrt(worst) / (step_length_ * newton_.reference_length());
+
+  std::copy(candidate_.begin(), candidate_.end(), newton_.displacement().begin());
+  problem.set_multipliers(candidate_multipliers_);
+  const bool again = solve(problem, stage, report);  // starts at the solution: no iterations
+  met_ = met;
+  return again;
+}
+
+}  // namespace iota::solver
