@@ -118,6 +118,7 @@ class Integrator {
   Vec3 velocity_after(const Problem& problem, const Stage& stage, std::size_t node) const {
     return problem.velocity[node] + ((stage.midpoint ? 2 : 1) / stage.h) * newton_.displacement()[node];
   }
+  double compliance_part(double from, double to) const;
   void advance_mid_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   void advance_end_point(Problem&, double h, double from, double to, int depth, AdvanceReport&);
   bool will_turn_too_far(const Problem&, double h) const;
@@ -136,7 +137,7 @@ class Integrator {
   void keep_correction(const Problem&);
   void find_pieces(const Problem&);
   bool is_accurate(Problem&, const Stage&, AdvanceReport&);
-  bool is_smooth(Problem&) const;
+  bool is_smooth(Problem&, double h) const;
   static bool has_closed_row(const Problem&);
   double advance_explicitly(Problem&, double h, AdvanceReport&);
   void keep_momenta(Problem&, const RigidMotion& start, double time) const;

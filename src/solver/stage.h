@@ -16,16 +16,11 @@ struct Stage {
 
   double tolerance = 1e-9;  ///< of the scaled residual; remaining gaps are about this fraction of a link
   int max_iterations = 60;
+  double part = 1;  ///< of the whole step whose row compliance the stage has: a taut net stores energy in it
 
   bool is_projection() const { return h == 0; }
-  /// Of rows: multiplies sum |G|^2 / m. Sub-steps have that of the whole step: a taut net stores energy in it.
-  double row_compliance() const {
-    constexpr double usual = 1e-12, smallest_part = 1.0 / 64;
-    const double part = is_projection() || compliance > usual       ? 1
-                        : fraction - fraction_start > smallest_part ? fraction - fraction_start
-                                                                    : smallest_part;
-    return compliance / (inertia * part * part);
-  }
+  /// Of rows: multiplies sum |G|^2 / m.
+  double row_compliance() const { return compliance / (inertia * part * part); }
   static Stage end_point(double h, double from, double to) {
     return {.h = h, .inertia = 1 / (h * h), .fraction = to, .fraction_start = from};
   }
