@@ -430,6 +430,10 @@ class HttpSession final : public std::enable_shared_from_this<HttpSession>, publ
     auto contents = read_static_file(*file);
     if (!contents) return send_text(http::status::internal_server_error, "the file cannot be read");
     response.set(http::field::content_type, beast::string_view(file->mime_type.data(), file->mime_type.size()));
+    // Only documents obey these, and they are longer than some scripts.
+    if (file->mime_type.starts_with("text/javascript") || file->mime_type.starts_with("text/css"))
+      for (const char* const name : {"Content-Security-Policy", "Cross-Origin-Opener-Policy", "Permissions-Policy"})
+        response.erase(name);
     response.body() = std::move(*contents);
     send(std::move(response));
   }

@@ -219,6 +219,10 @@ TEST_F(ServerTest, serves_the_page_with_safe_headers) {
     EXPECT_NE(to_strangers.headers.at("Content-Security-Policy").find("frame-ancestors 'self'"), std::string::npos);
   }
   EXPECT_EQ(answer.headers.at("Cross-Origin-Resource-Policy"), "same-origin");
+  const HttpAnswer script = test::http_request(server_->port(), "GET", "/assets/main-1a2b.js");
+  EXPECT_FALSE(script.headers.contains("Content-Security-Policy")) << "only documents obey it";
+  EXPECT_EQ(script.headers.at("X-Content-Type-Options"), "nosniff");
+  EXPECT_EQ(script.headers.at("Cross-Origin-Resource-Policy"), "same-origin");
 }
 
 TEST_F(ServerTest, serves_assets_for_ever_and_others_by_their_tag) {
