@@ -297,7 +297,8 @@ void apply(Editor& e, const SetCompliance& c) {
   require_not_negative("angular compliance", c.compliance.angular);
   require_not_negative("relaxation time", c.compliance.time);
   if (!c.compliance.is_exact() && !kind.may_yield())
-    throw std::invalid_argument(text("a ", kind.name, " is always exact; joints, rods and ropes may have a compliance"));
+    throw std::invalid_argument(
+        text("a ", kind.name, " is always exact; joints, rods and ropes may have a compliance"));
   const bool same_rows = constraint.compliance.is_exact() == c.compliance.is_exact();
   constraint.compliance = c.compliance;
   same_rows ? wake(e, slot) : constraint_changed(e, slot);

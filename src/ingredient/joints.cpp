@@ -163,8 +163,7 @@ void Joints::add_row(const IslandMap& map, std::uint32_t slot, const Row& row, R
   }
   problem.add(row, key_of(owner, slot, use));
   const Constraint& c = map.model.constraints[slot];
-  if (use.role != Role::hold || info(c.kind).sign != 0 || !c.compliance.is_exact())
-    (void)problem.pool_of<Row>().law(0);
+  if (use.role != Role::hold || info(c.kind).sign != 0 || !c.compliance.is_exact()) (void)problem.pool_of<Row>().law(0);
 }
 
 namespace {

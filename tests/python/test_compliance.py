@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -111,7 +112,7 @@ def test_an_angle_can_be_set_in_a_loop_with_a_compliant_joint() -> None:
     places = [(0, 0, 0), (0, 1, 0), (2, 1.5, 0), (2, 0, 0)]
     links = [
         system.body(shape=iota.Box((0.1, 0.1, 0.1)), mass=1.0, position=np.mean([p, q], axis=0))
-        for p, q in zip(places[:-1], places[1:], strict=True)
+        for p, q in pairwise(places)
     ]
     ends = [None, *links, None]
     joints = [
