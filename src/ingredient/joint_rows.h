@@ -308,7 +308,8 @@ class JointRowBuilder {
     const auto single = [&](int place) {
       return places_[place].nodes[0].second == 1 && places_[place].constant == Vec3{};
     };
-    if (c_.kind == ConstraintKind::rod && c_.compliance.is_exact() && single(a_origin) && single(b_origin)) {
+    if (!c_.compliance.is_exact()) return hold(span_row());  // its stretch is not only nearly the distance
+    if (c_.kind == ConstraintKind::rod && single(a_origin) && single(b_origin)) {
       hold(solver::DistanceConstraint{
           {places_[a_origin].nodes[0].first, places_[b_origin].nodes[0].first}, c_.length, c_.length});
       return;
@@ -433,6 +434,7 @@ solver::RowLaw law_of_hold(const Constraint& c, RowUse use, const Row& row) {
 
 inline void set_length(solver::DistanceConstraint& row, double length) { row.length = length; }
 inline void set_length(solver::BilinearConstraint& row, double length) { row.product = length * length; }
+inline void set_length(solver::SpanConstraint& row, double length) { row.target = length; }
 inline void set_length(solver::CouplingConstraint& row, double length) { row.target_start = row.target = length; }
 template <class Row>
 void set_length(Row&, double) {}
