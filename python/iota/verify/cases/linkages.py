@@ -124,7 +124,7 @@ def four_bar(run: Run) -> None:
     run.at_most("worst gap, m", gap, 1e-9)
     run.at_most("farthest a joint or the coupler's point is from geometry, m", off, 1e-8)
     run.at_most("farthest out of the plane, m", linkage.out_of_plane(), 1e-8)
-    run.at_most("energy, relative deviation", drift, run.size(1e-8, 1e-8, 1e-7))
+    run.at_most("energy, relative deviation", drift, run.size(2e-8, 2e-8, 1e-7))
     run.at_most("steps without a solution", unconverged, 0)
 
     def draw(figure: Any) -> None:
