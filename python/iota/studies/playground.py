@@ -12,10 +12,11 @@ from pathlib import Path
 import iota
 from iota import looks
 from iota.saving import replacing
-from iota.studies._scene import ROD, Scene
+from iota.studies._scene import BEAM, CAMERA, FRAME, TIES, Scene
 
 COLORS = ((0.85, 0.3, 0.2), (0.2, 0.5, 0.6), (0.9, 0.65, 0.15), (0.35, 0.55, 0.3))
 BALL, BOX = iota.Sphere(0.1), iota.Box((0.24, 0.16, 0.2), 0.015)
+ROD = 0.018  # m, radius of rods
 WOOD = 600.0  # kg/m^3
 MOST = 400  # bodies
 NAME = re.compile(r"[\w-]+")  # of a file, without its ending
@@ -24,7 +25,7 @@ NAME = re.compile(r"[\w-]+")  # of a file, without its ending
 def build(folder: Path | None = None) -> iota.World:
     """The world of the study. folder: where files go, None: the current one."""
     system = iota.System(damping=0.1)
-    world = iota.World(system, title="playground", camera=iota.Camera((0.6, 1.5, 4.0), (0, 1.1, 0)))
+    world = iota.World(system, title="playground", camera=CAMERA)
     start(world)
     world.offer()
     placing(world)
@@ -70,20 +71,20 @@ PLACE: dict[str, Callable[[iota.World, iota.Vec3], iota.Body]] = {
 
 def start(world: iota.World) -> None:
     """Something to begin with: below a frame a chain with a box on its end, and a ball on a spring."""
-    for x in (-1.3, 1.2):
-        world.add_strut((x, 0, 0), (x, 2.05, 0), looks.cylinder(0.025, "wood"))
-    world.add_strut((-1.4, 2.05, 0), (1.3, 2.05, 0), looks.cylinder(0.025, "wood"))
+    for foot, top in FRAME:
+        world.add_strut(foot, top, BEAM)
+    for kind, look in TIES.items():
+        world.draw_ties(kind, look)
     with world.system.edit():
-        top = chain(world, iota.Vec3(-0.7, 2.0, 0), links=7)
+        top_link = chain(world, iota.Vec3(-0.7, 2.0, 0), links=7)
         box = PLACE["box"](world, iota.Vec3(-0.7, 2.0 - 0.8 - 0.08, 0))
-        end = min((p for body in top.articulate for p in body.particles), key=lambda p: p.position.y)
+        end = min((p for body in top_link.articulate for p in body.particles), key=lambda p: p.position.y)
         end.combine(box.attachment(end.position))
         hook = particle(world, iota.Vec3(0.6, 2.0, 0)).particles[0]
         hook.nail()
         ball = PLACE["ball"](world, iota.Vec3(0.75, 1.3, 0))
         world.system.bond(hook, ball.attachment((0.75, 1.4, 0)), "spring", stiffness=60, damping=0.3)
         box.velocity = (0.8, 0, 0.3)
-    world.draw_ties("spring", looks.spring(0.03, 0.004, "steel"))
 
 
 def placing(world: iota.World) -> None:
@@ -142,9 +143,9 @@ def connecting(world: iota.World) -> None:
             return body.attachment(place)
         return near
 
-    def two(event: iota.Event, what: str) -> iota.Body | None:
-        """The body that was named before this one; None: this is the first."""
-        if first and first[0].alive and first[0] != event.body:
+    def two(event: iota.Event, what: str, or_one: bool = False) -> iota.Body | None:
+        """The body that was named before this one; None: this is the first. or_one: it may be the same."""
+        if first and first[0].alive and (or_one or first[0] != event.body):
             return first.pop()
         first[:] = [event.body]
         event.notice(f"{what}: with what?", "Select another one and press the key again.")
@@ -159,12 +160,35 @@ def connecting(world: iota.World) -> None:
             if not nailed:
                 point_of(event.body).nail()
 
-    @world.action("spring", key="t", help="a spring between two bodies: press it on one, then on the other")
-    def spring(event: iota.Event) -> None:
-        other = two(event, "Spring")
-        if other is not None:
+    tied_by = world.choice("tie", list(TIES), help="what the key t ties two bodies by")
+
+    @world.action("tie", key="t", help="a spring, rope or rod between two bodies: press it on one, then on the other")
+    def tie(event: iota.Event) -> None:
+        other = two(event, "Tie")
+        if other is None:
+            return
+        with system.edit():
+            p, q = point_of(other), point_of(event.body)
+            if tied_by.value == "spring":
+                system.bond(p, q, "spring", stiffness=80, damping=0.5)
+            else:
+                make = system.rope if tied_by.value == "rope" else system.rod
+                make(p, q)
+
+    @world.action(
+        "axle", key="h", help="an axle through two bodies: press it on one, then on the other, or twice on one"
+    )
+    def axle(event: iota.Event) -> None:
+        other = two(event, "Axle", or_one=True)
+        if other is None:
+            return
+        # A rod reaches only places on its line.
+        at = point_of(other if event.body.solids else event.body).position
+        try:
             with system.edit():
-                system.bond(point_of(other), point_of(event.body), "spring", stiffness=80, damping=0.5)
+                system.revolute(event.body, None if other == event.body else other, at=at, axis=(0, 0, 1))
+        except ValueError as error:
+            event.notice("That cannot be done", str(error))
 
     @world.action("combine", key="u", help="makes two bodies one: press it on one, then on the other")
     def combine(event: iota.Event) -> None:
@@ -215,12 +239,12 @@ def files(world: iota.World, folder: Path) -> None:
     @world.button("save", help="as FILE.json")
     @told
     def save() -> None:
-        write(".json", json.dumps(Scene.of(world.system).to_json(), indent=1))
+        write(".json", json.dumps(Scene.of(world).to_json(), indent=1))
 
     @world.button("export script", help="as FILE.py, which makes this world")
     @told
     def export() -> None:
-        write(".py", Scene.of(world.system).script(world.system))
+        write(".py", Scene.of(world).script(world.system))
 
     @world.button("load", help="FILE.json in place of what is here; z takes it back")
     @told

@@ -54,6 +54,9 @@ class Scene:
         for index, body in enumerate(bodies):
             self._class_of[body] = self._untold[body] = (name, index % 2)
 
+    def looks_of(self, body: Body) -> Looks | None:
+        return self.classes[self._class_of[body][0]] if body in self._class_of else None
+
     def dress_alike(self, body: Body, like: Body) -> None:
         """Gives a body the look of another one."""
         if like in self._class_of:

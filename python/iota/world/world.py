@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Literal, TypeVar, cast
 
 from iota._core import Body, StepReport, System, Vec3
-from iota.looks import Drawn, Look, by_style
+from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import Simulator
 from iota.world import options as run_options
 from iota.world.callbacks import Guard, Hook
@@ -163,6 +163,11 @@ class World(Interacting):
         name = self._state.class_of(by_style(look))
         self._state.scene.assign(bodies if isinstance(bodies, Iterable) else [bodies], name)
         self._state.is_changed = True
+
+    def look_of(self, body: Body) -> Looks | None:
+        """The looks that `draw` gave to a body, for each style; None without one. A body that another one absorbed keeps
+        its own."""
+        return self._state.scene.looks_of(body)
 
     def draw_ties(self, kind: Literal["spring", "rope", "rod"], look: Drawn) -> None:
         """Sets the looks of springs, ropes or rods between bodies, as `draw`; an empty list hides them."""
