@@ -18,11 +18,19 @@ Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
   return length > 1e-12 ? (1 / length) * v : otherwise;
 }
 
+/// Whether a vector has the direction of a unit vector to round-off; also if it is zero.
+bool is_along(const Vec3& v, const Vec3& unit) {
+  constexpr double round_off = 1e-14;
+  const Vec3 across = cross(unit, v);
+  return dot(across, across) <= round_off * round_off * dot(v, v) && dot(unit, v) >= 0;
+}
+
 }  // namespace
 
 void Orientations::refresh(model::Model& model) {
   const std::uint64_t now = model.step << 32 | model.structure_version;
   if (now == made_for_) return;
+  const bool has_stepped = made_for_ >> 32 != now >> 32;
   made_for_ = now;
 
   model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
@@ -35,9 +43,11 @@ void Orientations::refresh(model::Model& model) {
       if (a != none && model.attributes[a].oriented) b.orientation = model.attributes[a].orientation;
       return;
     }
-    const Vec3 x0 = model.position(b.basis[0]);
+    const Vec3 x0 = model.position(b.basis[0]), along = model.position(b.basis[1]) - x0;
     const Vec3 old_x = rotate(b.orientation, {1, 0, 0});
-    const Vec3 x = unit_or(model.position(b.basis[1]) - x0, old_x);
+    // Most rods have not turned since an edit between two steps.
+    if (b.rank == 2 && is_along(along, old_x) && !model.spins.has(slot)) return;
+    const Vec3 x = unit_or(along, old_x);
     if (b.rank == 2) {  // turn the frame by the smallest rotation, and about its axis by the spin
       b.orientation = normalized(multiply(shortest_turn(old_x, x), b.orientation));
       if (ingredient::RodSpin* const spin = model.spins.find(slot)) {
@@ -53,7 +63,8 @@ void Orientations::refresh(model::Model& model) {
   });
 
   // Smallest rotations accumulate a twist between neighbors on closed paths. Frames of rods are turned back towards
-  // that of the rod above, a little each time and not near a fold, so that chain links neither drift nor flip.
+  // that of the rod above, a little in each step and not near a fold, so that chain links neither drift nor flip.
+  if (!has_stepped) return;
   constexpr double share = 0.15, largest_turn = 0.15;
   model.bodies.for_each([&](std::uint32_t slot, model::Body& b) {
     if (b.rank != 2 || model.spins.has(slot)) return;
