@@ -55,6 +55,19 @@ def run_headless(world: iota.World, seconds: float) -> iota.types.RunSummary:
         return world.run(seconds)
 
 
+def test_an_event_may_reset_the_world_again_and_again() -> None:
+    world = iota.World(iota.System(), dt=0.01)
+    seen: list[str] = []
+    for moment, name in ((0.0, "first"), (0.02, "second")):
+        world.at(moment)(lambda name=name: seen.append(name))
+    world.at(0.05)(world.reset)
+    for _ in range(18):
+        world.step()
+    # The step in which it resets is the first one of the next round; what is planned for its beginning comes with the second.
+    assert seen == ["first", "second"] * 4
+    assert world.system.time == pytest.approx(0.03)
+
+
 def test_a_world_calls_its_timed_events_at_their_steps() -> None:
     system = iota.System()
     world = iota.World(system, dt=0.01)

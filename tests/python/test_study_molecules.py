@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 import iota
 from iota.studies import bucky, molecule, soft_molecule
@@ -91,6 +92,14 @@ def test_two_bonds_break_on_time_and_the_freed_half_falls() -> None:
     settle(system)
     expected = period_about_nail(system, held)
     assert abs(swing_about(system, held) - expected) < 0.03 * expected
+
+
+def test_it_begins_anew_four_seconds_after_the_second_bond_broke() -> None:
+    world = molecule.build()
+    for _ in range(round((molecule.TIMES[1] + 4.5) / world.dt)):
+        world.step()
+    assert world.system.time == pytest.approx(0.5, abs=2 * world.dt)
+    assert len(world.system.cosmetic_bonds) == 24 and len(world.system.bodies) == 1
 
 
 def test_the_soft_molecule_settles_longer_than_the_rigid_one() -> None:

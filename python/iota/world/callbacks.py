@@ -20,6 +20,7 @@ from iota.world.costs import Costs
 SLOW = 0.5  # s
 GO_ON = "The world continues. Correct the script and run it again."
 _PACKAGE = str(Path(__file__).parent.parent)  # as in frames, without resolving symbolic links
+_STUDIES = str(Path(_PACKAGE, "studies"))
 
 Tell = Callable[[str, str, str], None]  # title, text, hint
 
@@ -65,7 +66,7 @@ def script_frames(trace: TracebackType | None) -> list[traceback.FrameSummary]:
     return [
         frame
         for frame in traceback.extract_tb(trace)
-        if not frame.filename.startswith((_PACKAGE, "<frozen ")) or "studies" in Path(frame.filename).parts
+        if not frame.filename.startswith((_PACKAGE, "<frozen ")) or frame.filename.startswith(_STUDIES)
     ]
 
 

@@ -29,6 +29,7 @@ class Schedule:
         self._plan: list[Task] = []
         self._order = 0
         self._begun = False
+        self._run = 0
 
     def add(self, time: float, hook: Hook, period: float | None = None) -> None:
         if not math.isfinite(time):
@@ -45,13 +46,16 @@ class Schedule:
         self._begun = True
 
     def rewind(self) -> None:
-        """Restores the tasks at `begin`."""
+        """Restores the tasks at `begin`; a call of `due` that is under way ends."""
+        self._run += 1
         self._waiting = list(self._plan)
         heapq.heapify(self._waiting)
 
     def due(self, time: float) -> Iterator[Task]:
-        """Removes the due tasks; a periodic task is scheduled again before its call, so that it may raise."""
-        while self._waiting and self._waiting[0].time <= time:
+        """Removes the due tasks; a periodic task is scheduled again before its call, so that it may raise. After a task
+        that has rewound the schedule, `time` is no longer the time of the world."""
+        run = self._run
+        while run == self._run and self._waiting and self._waiting[0].time <= time:
             task = heapq.heappop(self._waiting)
             if task.period is not None:
                 # Relative to the task's own time, so without drift.
