@@ -459,14 +459,16 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
         + array("I", [12, 0xFFFFFFFF, 0x80000001])
         + array("f", [0, 0, 0, 1, 0, 0, 0, 1, 0])
         + array("I", [0, 1, 2])
-        + text("paint")
+        + array("f", [0, 0, 1, 0, 0, 1])
+        + text("paint#0a1b")
         + pack("<I", 0x40FF8000),
         {
             "at": B,
             "bodies": [12, 0xFFFFFFFF, 0x80000001],
             "points": [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
             "triangles": [0, 1, 2],
-            "material": "paint",
+            "coordinates": [0.0, 0.0, 1.0, 0.0, 0.0, 1.0],
+            "material": "paint#0a1b",
             "color": 0x40FF8000,
         },
     ),
@@ -507,6 +509,11 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
         {"sky": 0x0B1020, "horizon": 0x203040, "ground": NO_COLOR, "light": 0.5},
     ),
     ("viewpoint", text("driver") + anchor(A) + anchor(B), {"name": "driver", "eye": A, "target": B}),
+    (
+        "texture",
+        text("0a1b") + pack("<I", 3) + b"\x89PN" + pack("<2f", 2, 0.5),
+        {"name": "0a1b", "image": [0x89, 0x50, 0x4E], "repeat_u": 2.0, "repeat_v": 0.5},
+    ),
     ("frame", anchor(A) + quat([0.5, 0.5, 0.5, 0.5]), {"at": A, "rotation": [0.5, 0.5, 0.5, 0.5]}),
 ]
 

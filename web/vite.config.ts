@@ -83,7 +83,11 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1200,
     // The minifier drops notices: the license texts of all bundled packages are in a separate file.
-    rolldownOptions: { input: ["index.html", "gallery.html"] },
+    rolldownOptions: {
+      input: ["index.html", "gallery.html"],
+      // Parts that are loaded later share three.js and picking with the page: one file, as each costs a header of its own.
+      output: { codeSplitting: { groups: [{ name: "shared", test: /node_modules\/three\/|src\/interact\/picking/ }] } },
+    },
     license: { fileName: "licenses.txt" },
   },
   // A busy machine may need longer than the usual 5 s.

@@ -10,10 +10,17 @@ the page while it runs. The style "*" is used for every style:
 Any shape of iota will do: `Look(iota.Cone(0.1, 0.3), "wood")`. The page draws exactly the engine's shape. The functions
 below are shortcuts. Lengths in m, colors as "#rrggbb", materials one of `MATERIALS`. The body's frame has its origin at
 the center of mass and +x from its first particle to its last.
+
+A `texture` is a PNG or JPEG file or an array: on each face of a box, around a ball, a cylinder or a cone, and on a mesh as
+on the box around it. `repeat` says how often it is beside itself:
+
+    looks.box((2, 0.1, 1), texture="bricks.png", repeat=(4, 2))
+    looks.sphere(0.1, "paint", texture=pixels)  # an array (rows, columns, 3)
 """
 
 from __future__ import annotations
 
+import base64
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -23,6 +30,7 @@ import numpy as np
 
 from iota import shapes
 from iota._core import Box, Capsule, Cone, Cylinder, Ellipsoid, Mesh, Shape, Sphere, Torus
+from iota.textures import Texture, check_image, material_name, texture_of
 
 MATERIALS = ("steel", "brass", "rubber", "wood", "rope", "glass", "paint")
 MOST_TRIANGLES = 50_000
@@ -30,7 +38,8 @@ MOST_TRIANGLES = 50_000
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """A drawn shape. Raises ValueError for an unknown material and for a mesh of too many triangles."""
+    """A drawn shape. Raises ValueError for an unknown material, for a mesh of too many triangles and for an image that
+    cannot be used."""
 
     shape: Shape | None  #: None: the body's own shape, see `solid`
     material: str = "paint"
@@ -39,8 +48,12 @@ class Look:
     rotation: Sequence[float] = (0.0, 0.0, 0.0, 1.0)  #: of the shape's frame, quaternion x y z w
     turn: float = 0.0  #: of every other body with this look, about the body's x axis, rad
     fits: bool = False  #: has the length of its body or strut
+    texture: Any = None  #: path of a PNG or JPEG file, or an array, see `texture_of`; None: that of the material
+    repeat: float | Sequence[float] = 1.0  #: how often it is beside itself, in both directions or in each
 
     def __post_init__(self) -> None:
+        if self.texture is not None:
+            object.__setattr__(self, "texture", texture_of(self.texture, self.repeat))
         object.__setattr__(self, "offset", tuple(float(v) for v in self.offset))
         object.__setattr__(self, "rotation", tuple(float(v) for v in self.rotation))
         if self.color is not None:
@@ -69,7 +82,7 @@ class Look:
 
     def describe(self) -> dict[str, Any]:
         """Plain data for the page."""
-        described: dict[str, Any] = {"material": self.material}
+        described: dict[str, Any] = {"material": material_name(self.material, self.texture)}
         if self.shape is not None:
             described |= {"kind": self.shape.kind, "sizes": list(self.shape.numbers)}
         if isinstance(self.shape, Mesh):
@@ -112,7 +125,7 @@ def by_style(look: Drawn) -> Looks:
 
 
 def sphere(radius: float, material: str = "brass", **more: Any) -> Look:
-    """A ball of `radius` m. `more`, here and below: color, offset, rotation and turn, see `Look`."""
+    """A ball of `radius` m. `more`, here and below: color, offset, rotation, turn, texture and repeat, see `Look`."""
     return Look(Sphere(radius), material, **more)
 
 
@@ -245,9 +258,9 @@ def spring(radius: float, wire: float, material: str = "steel", color: str | Non
     return Look(Torus(radius, wire), material, color)
 
 
-def solid(material: str, color: str | None = None) -> Look:
-    """For bodies given by shape: that shape, of a material."""
-    return Look(None, material, color)
+def solid(material: str, color: str | None = None, **more: Any) -> Look:
+    """For bodies given by shape: that shape, of a material. more: texture and repeat, see `Look`."""
+    return Look(None, material, color, **more)
 
 
 def to_json(look: Drawn) -> dict[str, Any]:
@@ -271,14 +284,19 @@ def _listed(looks: Look | list[Look]) -> list[Look]:
 def _to_json(look: Look) -> dict[str, Any]:
     """Without the fields that have their default value."""
     entry = {f.name: value for f in fields(look) if (value := getattr(look, f.name)) != f.default}
+    if look.texture is not None:
+        entry |= {"texture": base64.b64encode(look.texture.image).decode(), "repeat": list(look.texture.repeat)}
     return entry | {"shape": look.shape and shapes.to_json(look.shape)}
 
 
 def _from_json(entry: dict[str, Any]) -> Look:
-    shape = entry.get("shape")
+    shape, image = entry.get("shape"), entry.get("texture")
     try:
-        return Look(**{**entry, "shape": shape and shapes.from_json(shape)})
-    except TypeError as error:
+        if image is not None:
+            image = Texture(base64.b64decode(image, validate=True), tuple(entry["repeat"]))
+            check_image(image.image)
+        return Look(**{**entry, "shape": shape and shapes.from_json(shape), "texture": image})
+    except (TypeError, KeyError) as error:
         raise ValueError(f"a look is described wrongly: {error}") from None
 
 

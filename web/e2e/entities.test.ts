@@ -19,6 +19,14 @@ beforeAll(async () => {
   browser = await Browser.start({ width: 960, height: 540, density: 1 });
   tab = await browser.open(server.url);
   await tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+  await tab.until("its images are decoded", () => {
+    let images = 0;
+    iota.page.viewer.scene.traverse((item) => {
+      const { map } = ((item as { material?: { map?: { image?: { width: number } } } }).material ?? {});
+      if (map?.image?.width === 2) images++;
+    });
+    return images === 2;
+  });
   const drawn = await tab.page.evaluate((runner) => ({ place: iota.bodyPosition(runner), time: iota.time }), runner);
   passed = drawn.place;
   await tab.until("the runner has gone on", (time) => iota.time > time + 0.8, drawn.time);
@@ -96,6 +104,10 @@ describe("what a script draws", () => {
     ["the first of a set of shapes", "shapeSet", [0.2, 1.65, 0.05], [138, 79, 176]],
     ["the second, after the set was moved", "shapeSet", [0.35, 1.65, 0.06], [242, 163, 36]],
     ["what is on a frame, after that was moved", "marker", [0.6, 1.45, 0.05], [47, 157, 146]],
+    ["the upper left of an image on a box", "marker", [1.03, 1.57, 0.15], [76, 153, 82]],
+    ["its lower right", "marker", [1.17, 1.43, 0.15], [204, 178, 0]],
+    ["the lower left of an image that is four times on a surface", "surface", [1.4375, 1.3875, 0], [0, 0, 204]],
+    ["its upper right", "surface", [1.6625, 1.6125, 0], [204, 0, 0]],
     ["a painted body of wood", "body", [-1.0, 0.2, 1.0], [138, 79, 176]],
   ])("%s is where it belongs, in its color", async (_, kind, place, color) => {
     const { shown, hidden } = await colorAt(kind, place, color);

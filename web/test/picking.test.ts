@@ -102,7 +102,7 @@ describe("what covers bodies", () => {
     return told.world.entities;
   };
   const down = [0, -1, 0];
-  const cloth = { id: id(0), at: { body: NO_BODY, point: [0, 0, 0] as [number, number, number] }, material: "paint", color: NO_COLOR };
+  const cloth = { id: id(0), at: { body: NO_BODY, point: [0, 0, 0] as [number, number, number] }, coordinates: new Float32Array(0), material: "paint", color: NO_COLOR };
 
   it("is taken by a ray and by a hand at the nearest body that can be held", () => {
     const entities = made();

@@ -10,6 +10,7 @@ from typing import Any
 
 from iota.looks import Look, material_of
 from iota.simulator import SimulatedBody
+from iota.textures import texture_of
 from iota.world.shown import (
     Arrow,
     Axes,
@@ -178,13 +179,19 @@ class Drawing:
         color: Color = None,
         material: str = "paint",
         threads: Sequence[Any] = (),
+        texture: Any = None,
+        repeat: float | Sequence[float] = 1.0,
+        coordinates: Any = None,
     ) -> Surface:
         """Triangles, visible from both sides. points: an array (n, 3) in the frame of `at`, m; or particles, bodies and
         places, with which it bends; or a result of `iota.shapelib.read_surface` (then without triangles). triangles:
-        (k, 3) indices of points. threads: springs or ropes; the triangles along a thread are removed with it.
+        (k, 3) indices of points. threads: springs or ropes; the triangles along a thread are removed with it. texture:
+        a PNG or JPEG file or an array, laid once over the points, or as `coordinates` say, (n, 2) from the lower left
+        corner (0, 0) to (1, 1). repeat: how often it is beside itself, one number or one for each direction.
 
         world.surface(iota.shapelib.read_surface("teapot.obj"), at=body, color="#4c9a52")
         world.surface(knots, triangles, threads=springs, color="#b0303a")
+        world.surface(knots, triangles, texture="flag.png")
         """
         if triangles is None:
             points, triangles = _triangles_of(points)
@@ -196,6 +203,8 @@ class Drawing:
             color=color,
             material=material_of(material),
             threads=threads,
+            texture=None if texture is None else texture_of(texture, repeat),
+            coordinates=coordinates,
         )
 
     def paint(self, bodies: Any, color: Any) -> Paint:

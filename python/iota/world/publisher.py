@@ -83,3 +83,5 @@ class Publisher:
         self.room.set_listens(clicks=clicks, hovers=hovers, keys=listeners.keys)
         self.room.set_actions([action.describe() for action in state.actions])
         state.scene.tell(self.room, state.statics)
+        for texture in state.scene.textures():
+            state.things.images.use(texture.name, texture)

@@ -39,6 +39,8 @@ def _writer(name: str, word: str, most: int, most_each: int) -> Write:
         return lambda value: b"".join(write(value[field]) for field, write in fields)
     if word == "string":
         return lambda value: _with_size(name, value.encode(), most)
+    if word == "bytes":
+        return lambda value: _with_size(name, value, most)
     if word in GROUPS:
         packer = struct.Struct("<" + GROUPS[word])
         return lambda value: packer.pack(*value)

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from iota._core import Body, Capsule, Cylinder, DrawnPart, Room, Sphere, Torus
 from iota.looks import Look, Looks, color_number
 from iota.simulator import SimulatedBody
+from iota.textures import Texture
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,12 @@ class Scene:
                 elif isinstance(look.shape, Torus):
                     radii.append(look.shape.radius + look.shape.tube)
         return min(radii, default=None)
+
+    def textures(self) -> Iterator[Texture]:
+        """The images on them."""
+        for looks in self.classes.values():
+            for drawn in looks.values():
+                yield from (look.texture for look in listed(drawn) if look.texture is not None)
 
     def tell_anew(self) -> None:
         """Forgets what was sent: the next room is empty."""

@@ -13,6 +13,7 @@ from iota._core import Body, Vec3
 from iota._protocol import NO_BODY, NO_COLOR
 from iota.looks import Look
 from iota.simulator import SimulatedBody
+from iota.textures import Texture, lay_flat, material_name, texture_of
 from iota.world.things import (
     FARTHEST,
     Attachable,
@@ -195,6 +196,9 @@ class Marker(Thing):
 
     look, on = Field(_look), Field(_on)
 
+    def _texture(self) -> Texture | None:
+        return self.look.texture  # type: ignore[no-any-return]
+
     def _record(self) -> dict[str, Any] | None:
         at = anchor(self.on)
         if at is None:
@@ -211,6 +215,9 @@ class Strut(Thing):
     kind = "strut"
     look, at, to, color = Field(_look), Field(place), Field(place), Field(color)
 
+    def _texture(self) -> Texture | None:
+        return self.look.texture  # type: ignore[no-any-return]
+
     def _record(self) -> dict[str, Any] | None:
         a, b = anchor(self.at), anchor(self.to)
         if a is None or b is None:
@@ -220,9 +227,14 @@ class Strut(Thing):
         return {"a": a, "b": b, "part": _part(look, self.color), "length": look.length}
 
 
+def _present(at: Any) -> Any:
+    """A place of the world, m, or something else if it is unknown."""
+    return getattr(at, "position", getattr(at, "center_of_mass", at))
+
+
 def _apart(at: Any, to: Any) -> float:
     """Present distance of two places, m; 0 if one is unknown."""
-    places = [getattr(place, "position", getattr(place, "center_of_mass", place)) for place in (at, to)]
+    places = [_present(at), _present(to)]
     return abs(Vec3(*places[0]) - Vec3(*places[1])) if all(isinstance(place, Vec3) for place in places) else 0.0
 
 
@@ -250,6 +262,9 @@ class Shapes(Thing):
 
     rotations, sizes, color = Field(_rotations), Field(_sizes), Field(_colors)
 
+    def _texture(self) -> Texture | None:
+        return self.look.texture  # type: ignore[no-any-return]
+
     def _record(self) -> dict[str, Any] | None:
         at, count = anchor(self.at), len(self.positions)
         if at is None:
@@ -273,7 +288,9 @@ class Shapes(Thing):
 class Surface(Thing):
     """Triangles, visible from both sides. points: an array (n, 3) in the frame of `at`, m, or particles, bodies and
     places, with which it bends. triangles: (k, 3) indices of points. threads: springs or ropes: a triangle is removed
-    with a thread along one of its edges."""
+    with a thread along one of its edges. texture: an image, see `iota.looks`. coordinates: its place at each point,
+    (n, 2), from the lower left corner (0, 0) to (1, 1); None: it is laid once over the points, along their shortest axis,
+    where they are when it is assigned."""
 
     kind = "surface"
     at, points, color, material = Field(place), Field(_points), Field(color), Field(text)
@@ -291,7 +308,18 @@ class Surface(Thing):
     def _threads(value: Any) -> list[Any]:
         return list(value)
 
-    triangles, threads = Field(_triangles), Field(_threads)
+    @staticmethod
+    def _coordinates(value: Any) -> NDArray[np.float32] | None:
+        rows = None if value is None else np.array(value, np.float32)
+        if rows is not None and (rows.ndim != 2 or rows.shape[1] != 2 or not np.isfinite(rows).all()):
+            raise ValueError("must have the shape (n, 2), all finite")
+        return rows
+
+    triangles, threads, coordinates = Field(_triangles), Field(_threads), Field(_coordinates)
+    texture = Field(lambda value: None if value is None else texture_of(value))
+
+    def _texture(self) -> Texture | None:
+        return self.texture
 
     def _record(self) -> dict[str, Any] | None:
         at, count = anchor(self.at), len(self.points)
@@ -300,7 +328,24 @@ class Surface(Thing):
         placed = _on_bodies(self.points)
         if at is None or placed is None:
             return None
-        return {"at": at, "material": self.material, "color": self.color, "triangles": self._whole()} | placed
+        shown = {"at": at, "material": material_name(self.material, self.texture), "color": self.color}
+        return shown | {"coordinates": self._laid(), "triangles": self._whole()} | placed
+
+    def _laid(self) -> Any:
+        """The place of the image at each point."""
+        if self.texture is None:
+            return ()
+        count, given = len(self.points), self.coordinates
+        if given is not None and len(given) != count:
+            raise ValueError(f"coordinates: must be one for each of the {count} points, not {len(given)}")
+        if given is not None:
+            return given
+        # Once for moving points: otherwise the image would slip over a cloth.
+        if self._flat is None or len(self._flat) != count:
+            self._flat = lay_flat(np.array([_present(at) for at in self.points], float).reshape(-1, 3))
+        return self._flat
+
+    _flat: NDArray[np.float64] | None = None
 
     def _is_attached(self) -> bool:
         return super()._is_attached() or not isinstance(self.points, np.ndarray)

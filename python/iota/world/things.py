@@ -15,7 +15,9 @@ from iota._core import Body, Bond, Particle, Room, Vec3
 from iota._protocol import FIRST_FRAME, NO_BODY, NO_COLOR
 from iota.looks import color_number
 from iota.simulator import SimulatedBody, SimulatedParticle
+from iota.textures import Texture
 from iota.world.frames import into_frame
+from iota.world.images import Images
 from iota.world.records import encode
 
 Value = TypeVar("Value")
@@ -79,6 +81,10 @@ class Thing:
         """Its fields with the names of the protocol; None if it is on something that no longer exists."""
         raise NotImplementedError
 
+    def _texture(self) -> Texture | None:
+        """The image that its record names."""
+        return None
+
     def _is_attached(self) -> bool:
         """Whether it is on something of the system, so that an edit may move it to another body."""
         return any(isinstance(value, Attachable) for value in self._values.values())
@@ -141,6 +147,7 @@ class Things:
     """All things of a world. Only those that differ from the last sent state are sent to pages."""
 
     def __init__(self) -> None:
+        self.images = Images()
         self._ids: dict[Thing, tuple[int, int]] = {}
         self._free: dict[str, list[tuple[int, int]]] = {}
         self._counts: dict[str, int] = {}
@@ -165,6 +172,7 @@ class Things:
     def remove(self, thing: Thing) -> None:
         slot, generation = self._ids.pop(thing)
         self._dirty.pop(thing, None)
+        self.images.use(thing, None)
         if self._told.pop(thing, None) is not None:
             self._gone.append((thing.kind, slot, generation))
         self._free.setdefault(thing.kind, []).append((slot, generation))
@@ -189,6 +197,7 @@ class Things:
 
     def tell_anew(self) -> None:
         """Forgets what was sent: the next room is empty."""
+        self.images.tell_anew()
         self._told.clear()
         self._gone.clear()
         self._dirty = dict.fromkeys(self._ids)
@@ -208,6 +217,7 @@ class Things:
                 self._tell(room, thing)
             except ValueError as error:
                 warn(f"{type(thing).__name__}: {error}")
+        self.images.tell(room)
 
     def _tell(self, room: Room, thing: Thing) -> None:
         record = thing._record() if thing.visible else None
@@ -218,6 +228,7 @@ class Things:
                 self._ids[thing] = (slot, generation + 1)
             return
         fields = encode(thing.kind, record)
+        self.images.use(thing, thing._texture())
         if self._told.get(thing) != fields:
             room.set_entity(thing.kind, slot, generation, fields)
             self._told[thing] = fields

@@ -181,6 +181,8 @@ class World(Interacting):
         self._state.statics.append(
             {"shape": look.describe(), "position": list(Vec3(*position)), "rotation": list(rotation)}
         )
+        if look.texture is not None:
+            self._state.things.images.use(look.texture.name, look.texture)
         self._state.is_changed = True
 
     def add_strut(self, start: Sequence[float], end: Sequence[float], look: Look) -> None:

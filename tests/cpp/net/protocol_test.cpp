@@ -84,7 +84,7 @@ const Part mesh{"chain", {"mesh", {}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}}, {
 const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEntity, NailEntity, ParticleSetEntity,
                  StaticShapeEntity, LabelEntity, LineEntity, ArrowEntity, AxesEntity, TraceEntity, PointCloudEntity,
                  MarkerEntity, WidgetEntity, PlotEntity, SurfaceEntity, PaintEntity, ShapeSetEntity, StrutEntity,
-                 FrameEntity, TubeEntity, ViewpointEntity, StageEntity>
+                 FrameEntity, TubeEntity, ViewpointEntity, StageEntity, TextureEntity>
     entity_vectors{{entity_id, "link", {torus, mesh}},
                    {entity_id, BodyKind::scripted, 9, true, 0.125F},
                    {entity_id, 40000},
@@ -107,7 +107,8 @@ const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEnti
                     {12, no_body, first_frame + 1},
                     {0, 0, 0, 1, 0, 0, 0, 1, 0},
                     {0, 1, 2},
-                    "paint",
+                    {0, 0, 1, 0, 0, 1},
+                    "paint#0a1b",
                     0x40FF8000},
                    {entity_id, {12, 13}, {0xFF8000}},
                    {entity_id, on_body, torus, {0, 1, 2}, {0.5F, 0.5F, 0.5F, 0.5F}, {2}, {0x80FF}},
@@ -115,7 +116,8 @@ const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEnti
                    {entity_id, on_body, {0.5F, 0.5F, 0.5F, 0.5F}},
                    {entity_id, {}, {0, 1, 2, 3, 4, 5}, 0.25F, true, "rope", no_color},
                    {entity_id, "driver", on_body, in_world},
-                   {entity_id, 0x0B1020, 0x203040, no_color, 0.5F}};
+                   {entity_id, 0x0B1020, 0x203040, no_color, 0.5F},
+                   {entity_id, "0a1b", {0x89, 'P', 'N'}, 2, 0.5F}};
 
 template <class Variant>
 std::vector<std::uint8_t> encode_any(const Variant& message) {

@@ -35,13 +35,15 @@ function texture(name: string, make: () => Texture): Texture {
   return found;
 }
 
+const white = () => texture("white", () => makePlain(255, 255, 255));
+
 /** Every material has all three textures, plain ones if necessary, so that all share one program, compiled at the
  * start. */
 function makeBase(name: string): MeshStandardMaterial {
   const material = new MeshStandardMaterial({
     dithering: true,
-    map: texture("white", () => makePlain(255, 255, 255)),
-    roughnessMap: texture("white", () => makePlain(255, 255, 255)),
+    map: white(),
+    roughnessMap: white(),
     normalMap: texture("flat", () => makePlain(128, 128, 255)),
   });
   const set = (values: MeshStandardMaterialParameters) => material.setValues(values);
@@ -96,9 +98,21 @@ diffuseColor.rgb = mix(diffuseColor.rgb, vTint.rgb * shade, vTint.a);`,
 }
 
 const materials = new Map<string, MeshStandardMaterial>();
+const images = new Map<string, Texture>();
+
+/** Shows an image on the materials with its name behind a #; undefined: it is gone. */
+export function setImage(name: string, image: Texture | undefined): void {
+  if (image !== undefined) images.set(name, image);
+  else images.delete(name);
+  for (const [key, material] of materials) {
+    if (!key.includes(`#${name} `)) continue;
+    if (image !== undefined) material.map = image;
+    else materials.delete(key);
+  }
+}
 
 export interface MaterialOptions {
-  /** Its name; paint for unknown ones. */
+  /** Its name; paint for unknown ones. May have a # and the name of an image behind it. */
   readonly material: string;
   /** "#rrggbb", replaces its own. */
   readonly color: string | null;
@@ -114,8 +128,11 @@ export function materialOf({ material: name, color, opacity = 1, side = FrontSid
   const key = `${name} ${color ?? ""} ${opacity} ${side}`;
   let material = materials.get(key);
   if (material === undefined) {
-    material = makeBase(name);
+    const [base, image] = name.split("#");
+    material = makeBase(base);
     material.side = side;
+    // The image has the colors.
+    if (image !== undefined) material.setValues({ color: "#fff", map: images.get(image) ?? white() });
     if (color !== null && /^#[0-9a-fA-F]{6}$/.test(color)) material.color.set(color);
     if (opacity < 1) material.setValues({ transparent: true, opacity: opacity * material.opacity });
     tint(material, meanLight[name] ?? 1);

@@ -38,6 +38,8 @@ export function allowAnisotropy(renderer: WebGLRenderer): void {
   finest = /llvmpipe|swiftshader|software/i.test(name) ? 1 : Math.min(4, renderer.capabilities.getMaxAnisotropy());
 }
 
+export const finestAnisotropy = () => finest;
+
 type Pixel = (u: number, v: number, out: number[]) => void;
 
 function makeTexture(width: number, height: number, color: boolean, pixel: Pixel, anisotropy = finest): Texture {

@@ -71,6 +71,7 @@ export class World {
     const warn = (title: string, text: string) => listener.warn(title, text);
     this.entities = makeEntityViews({
       poses: this.poses, eye: this.eye, time: () => this.time, bodyGone: (body) => listener.bodyGone(body), warn,
+      changed: () => listener.changed("look"),
     });
     this.store_ = new EntityStore(this.entities, warn);
   }

@@ -3,7 +3,7 @@
 
 import type { Vector3 } from "three";
 import type { EntityKind, EntityRecords } from "../../protocol/generated.ts";
-import type { PlotEntity, StageEntity, ViewpointEntity, WidgetEntity } from "../../protocol/generated.ts";
+import type { PlotEntity, StageEntity, TextureEntity, ViewpointEntity, WidgetEntity } from "../../protocol/generated.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { ArrowView } from "./arrow.ts";
 import { AxesView } from "./axes.ts";
@@ -12,6 +12,7 @@ import type { EntityView } from "./entity.ts";
 import { FrameView } from "./frame.ts";
 import { JointView } from "./joint.ts";
 import { LabelView } from "./label.ts";
+import { Later } from "./later.ts";
 import { LineView } from "./line.ts";
 import { MarkerView } from "./marker.ts";
 import { Memberships } from "./membership.ts";
@@ -40,13 +41,15 @@ export interface EntityHost {
   bodyGone(body: number): void;
   /** Something cannot be drawn: `title` says what, `text` why. */
   warn(title: string, text: string): void;
+  /** Something looks different without a message of the server. */
+  changed(): void;
 }
 
 /** A view for each kind of the schema: if one is missing, this file does not compile. */
 export type EntityViews = { readonly [K in EntityKind]: EntityView<EntityRecords[K]> };
 
 /** In the order of their frames: bodies are interpolated before things on them are drawn. */
-export function makeEntityViews({ poses, eye, time, bodyGone, warn }: EntityHost) {
+export function makeEntityViews({ poses, eye, time, bodyGone, warn, changed }: EntityHost) {
   const style = new Styles(warn);
   const body = new BodyView(poses, style, bodyGone);
   const canHold = (slot: number) => body.canHold(slot);
@@ -79,6 +82,7 @@ export function makeEntityViews({ poses, eye, time, bodyGone, warn }: EntityHost
     tube,
     viewpoint: new WatchedRecords<ViewpointEntity>(),
     stage: new WatchedRecords<StageEntity>(),
+    texture: new Later<TextureEntity>(() => import("./texture.ts").then(({ TextureView }) => new TextureView(changed, warn))),
   } satisfies EntityViews;
 }
 

@@ -44,7 +44,10 @@ export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
   create(entity: SurfaceEntity): void {
     const { material, color, bodies, points, triangles } = entity;
     const bends = bodies.length > 0;
-    const geometry = bends ? makeBending(points.length / 3, triangles) : drawTriangles(Float32Array.from(points), Uint32Array.from(triangles));
+    const coordinates = entity.coordinates.length > 0 ? Float32Array.from(entity.coordinates) : undefined;
+    const geometry = bends
+      ? makeBending(points.length / 3, triangles, coordinates)
+      : drawTriangles(Float32Array.from(points), Uint32Array.from(triangles), coordinates);
     // Untinted; without the attribute, graphics cards take another value.
     geometry.setAttribute("tint", new BufferAttribute(new Float32Array(4 * geometry.getAttribute("position").count), 4));
     const own = materialOf({ material, color: textOf(color), opacity: opacityOf(color), side: DoubleSide });
@@ -180,11 +183,12 @@ export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
 }
 
 /** Buffer for points that are written each frame. */
-function makeBending(count: number, triangles: ArrayLike<number>): BufferGeometry {
+function makeBending(count: number, triangles: ArrayLike<number>, coordinates = new Float32Array(2 * count)): BufferGeometry {
   const geometry = new BufferGeometry();
-  for (const [name, size] of [["position", 3], ["normal", 3], ["uv", 2]] as const) {
-    geometry.setAttribute(name, new BufferAttribute(new Float32Array(size * count), size).setUsage(DynamicDrawUsage));
+  for (const name of ["position", "normal"]) {
+    geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * count), 3).setUsage(DynamicDrawUsage));
   }
+  geometry.setAttribute("uv", new BufferAttribute(coordinates, 2));
   return geometry.setIndex(new BufferAttribute(Uint32Array.from(triangles), 1));
 }
 

@@ -117,13 +117,15 @@ function meshDistance(mesh: MeshData, x: number, y: number, z: number): number {
 /** Edges sharper than this are shaded as edges, others as a smooth surface, rad. */
 const creaseAngle = 0.6;
 
-/** The given faces; texture coordinates in meters, projected along the axis nearest to a face's normal. */
-export function drawTriangles(positions: Float32Array, triangles: Uint32Array): BufferGeometry {
+/** The given faces; texture coordinates as given, two a vertex, or in meters, projected along the axis nearest to a face's normal. */
+export function drawTriangles(positions: Float32Array, triangles: Uint32Array, coordinates?: Float32Array): BufferGeometry {
   const indexed = new BufferGeometry();
   indexed.setAttribute("position", new BufferAttribute(positions, 3));
   indexed.setIndex(new BufferAttribute(triangles, 1));
+  if (coordinates) indexed.setAttribute("uv", new BufferAttribute(coordinates, 2));
   const geometry = toCreasedNormals(indexed, creaseAngle);
   indexed.dispose();
+  if (coordinates) return geometry;
   const position = geometry.getAttribute("position");
   const normal = geometry.getAttribute("normal");
   const uvs = new Float32Array(2 * position.count);

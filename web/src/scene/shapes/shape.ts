@@ -96,9 +96,26 @@ export function shapeReach(solid: Solid): number {
   return solid.kind.reach(solid);
 }
 
+/** Lays an image once over a geometry of a kind of shape. */
+export type Lay = (geometry: BufferGeometry, kind: string) => void;
+
+let layImage: Lay | null = null;
+/** Geometries for images, made before the code that lays these was fetched. */
+const unlaid: Parameters<Lay>[] = [];
+
+export function setLay(lay: Lay): void {
+  layImage = lay;
+  for (const made of unlaid.splice(0)) lay(...made);
+}
+
 /** Triangles of a shape in its own frame; the caller disposes of them. */
 export function makeGeometry(shape: Shape, detail: Detail): BufferGeometry {
-  return shape.kind.draw(shape, detail, shape.material);
+  const geometry = shape.kind.draw(shape, detail, shape.material);
+  if (shape.material.includes("#")) {
+    if (layImage === null) unlaid.push([geometry, shape.kind.name]);
+    else layImage(geometry, shape.kind.name);
+  }
+  return geometry;
 }
 
 /** A shape at its place in the body's frame. */
