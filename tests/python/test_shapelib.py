@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import struct
 from collections.abc import Callable
 from itertools import combinations
@@ -15,6 +16,7 @@ import pytest
 
 import iota
 from iota import shapelib
+from iota.shapelib import cif
 from iota.shapelib.convex import dual
 from iota.shapelib.johnson import johnson
 from iota.shapelib.named import named_polyhedron
@@ -49,6 +51,24 @@ carbon monoxide
     0.0000    0.0000    0.0000 C   0  0
     1.1300    0.0000    0.5000 O   0  0
   1  2  3  0
+M  END
+"""
+
+V3000_MOL = """\
+ethane without hydrogens
+  iota
+
+  0  0  0     0  0            999 V3000
+M  V30 BEGIN CTAB
+M  V30 COUNTS 2 1 0 0 0
+M  V30 BEGIN ATOM
+M  V30 1 C 0 0 0 0
+M  V30 2 C 1.5 0 0.1 0
+M  V30 END ATOM
+M  V30 BEGIN BOND
+M  V30 1 1 1 2
+M  V30 END BOND
+M  V30 END CTAB
 M  END
 """
 
@@ -268,9 +288,54 @@ def test_damaged_molecules_are_refused_with_file_and_line(write: Write) -> None:
     fails(write("t.docx", "x"), "files that end in '.docx' are not read")
 
 
-def test_a_file_of_a_million_atoms_is_refused_before_it_is_read_through(write: Write) -> None:
+def test_a_file_of_a_million_atoms_is_refused_before_it_is_read_through(
+    write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
     rows = "".join(f"C {i % 100} {i // 100 % 100} {i // 10000}\n" for i in range(100_001))
     fails(write("big.xyz", f"100001\n\n{rows}"), "more than 100000 atoms")
+    fails(write("big.mol", V3000_MOL.replace("COUNTS 2", "COUNTS 1000000")), "line 6", "more than 100000 atoms")
+    monkeypatch.setattr(cif, "MOST_ROWS", 100)
+    fails(write("big.cif", "data_x\nloop_\n_other.a\n" + "1\n" * 101), "line 104", "more than 100 rows")
+
+
+def test_bonds_that_a_molfile_cannot_have_are_refused_with_their_line(write: Write) -> None:
+    assert shapelib.molecule(write("a.mol", V3000_MOL)).counts["bonds"] == 1
+    fails(write("b.mol", V3000_MOL.replace("1 1 1 2", "1 1 1 9")), "line 12", "atom 9; there are 1..2")
+    fails(write("c.mol", V3000_MOL.replace("C 1.5", "C one")), "line 9", "x must be a number")
+    fails(write("d.mol", V3000_MOL.replace("2 C", "2 Zz")), "line 9", "'Zz' is not an element")
+    fails(write("e.mol", V3000_MOL.replace("M  V30 1 1 1 2", "M  V30 1 1 1")), "line 12", "ends before its atoms")
+    fails(write("f.mol", CARBON_MONOXIDE_MOL.replace("  1  2  3", "  2  2  3")), "line 7", "atom 2 at both ends")
+    twice = CARBON_MONOXIDE_MOL.replace("  2  1  0", "  2  2  0", 1).replace("M  END", "  2  1  1\nM  END")
+    fails(write("g.mol", twice), "line 8", "a bond already, in line 7")
+
+
+def test_atoms_on_top_of_each_other_and_far_away_are_refused_at_once(write: Write) -> None:
+    fails(write("heap.xyz", "60000\n\n" + "C 0 0 0\n" * 60_000), "within 0.4 angstrom")
+    fails(write("far.xyz", "2\n\nC 0 0 0\nC 1e15 0 0\n"), "point 1 (of 2)", "smaller scale")
+    fails(write("python.xyz", WATER_XYZ.replace("0.96", "1_0")), "line 4", "'1_0'")
+
+
+def test_what_a_molecule_leaves_out_is_noted(write: Write) -> None:
+    symmetry = "loop_\n_symmetry_equiv_pos_as_xyz\n'x,y,z'\n'-x,-y,z'\n"
+    for more, words in (
+        (symmetry, "2 operations of symmetry"),
+        ("_symmetry_space_group_name_H-M 'F m -3 m'\n", "F m -3 m"),
+        ("_symmetry_space_group_name_H-M 'P 1'\n", ""),
+    ):
+        notes = shapelib.molecule(write("a.cif", SALT_CIF.replace("loop_\n", more + "loop_\n"))).notes
+        assert [note for note in notes if "images in the crystal" in note] == [
+            f"only the listed atoms are read, not their images in the crystal ({found})"
+            for found in [words if "oper" in words else f"space group {words}"] if words
+        ]  # fmt: skip
+    second = GLYCINE_CIF + GLYCINE_CIF.partition("\n")[2]
+    fails(write("b.cif", second), "line 18", "this is the second")
+    lost = shapelib.molecule(write("c.pdb", ETHANOL_PDB.replace("END\n", "CONECT    1    2\nCONECT    1   77\nEND\n")))
+    assert "1 CONECT lines name atoms that the file does not have" in lost.notes
+
+
+def test_a_pipe_is_not_read(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "water.xyz")
+    fails(tmp_path / "water.xyz", "a pipe or device")
 
 
 def test_near_pairs_are_those_of_a_search_through_all() -> None:
@@ -514,6 +579,21 @@ def test_damaged_surfaces_are_refused_with_file_and_line(write: Write) -> None:
     fails(write("s.gltf", "{"), "not glTF")
     fails(write("t.glb", b"glTF" + bytes(20)), "truncated")
     fails(write("u.off", CUBE_OFF.replace("1 1 1 #", "inf 1 1 #")), "line 9", "finite")
+    fails(write("v.ply", PLY[: PLY.index("element face")] + "end_header\n" + "0 0 0\n" * 4), "points without faces")
+    packed = {"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]}
+    fails(write("w.gltf", json.dumps(packed)), "compressed (KHR_draco_mesh_compression)")
+
+
+def test_surfaces_of_impossible_size_are_refused_with_what_to_give(write: Write) -> None:
+    fails(write("a.off", CUBE_OFF.replace("1 1 1 #", "1 1e12 1 #")), "point 7 (of 8)", "smaller scale")
+    with pytest.raises(shapelib.FileError, match=r"b.off: a body of it has 1e-42 kg; give scale"):
+        shapelib.polyhedron(write("b.off", CUBE_OFF), scale=1e-15)
+    assert len(shapelib.polyhedron(write("c.off", CUBE_OFF), scale=1e-15, mass=1.0).bodies) == 1
+
+
+def test_an_obj_line_may_go_on_in_the_next_one(write: Write) -> None:
+    broken = OBJ.replace("f 1 3 2", "f 1 3 \\\n2")
+    assert shapelib.polyhedron(write("a.obj", broken)).counts == shapelib.polyhedron(write("b.obj", OBJ)).counts
 
 
 def test_a_frame_of_rods_keeps_their_lengths_and_a_soft_one_bounces() -> None:
@@ -577,7 +657,7 @@ def test_what_a_urdf_has_that_we_have_not_is_listed(write: Write) -> None:
     found = shapelib.mechanism(write("more.urdf", PENDULUM_URDF.replace("</robot>", more)))
     assert found.counts["moving joints"] == 3 and found.counts["independent joints"] == 2
     text = " ".join(found.notes)
-    for part in ("copy mimics slide", "1 meshes are missing", "package://x/lid.stl", "1 <transmission>"):
+    for part in ("copy mimics slide", "1 mesh is missing", "package://x/lid.stl", "1 <transmission>"):
         assert part in text
     slide = next(joint for joint in found.joints if joint.name == "slide")
     assert slide.kind == "prismatic" and slide.options["limits"] == (-1, 2)
@@ -617,6 +697,20 @@ def test_damaged_mechanisms_are_refused_with_file_and_line(write: Write) -> None
     fails(write("k.urdf", "<robot>" * 300 + "</robot>" * 300), "deep")
     fails(write("l.mjcf", "<mujoco>\n<oops/></mujoco>"), "line 2", "MuJoCo cannot read it")
     fails(write("m.urdf", PENDULUM_URDF.replace('radius="0.05"', 'radius="-1"')), "line 5", "radius")
+    mimic = '<mimic joint="elbow"/></joint>'
+    fails(
+        write("n.urdf", PENDULUM_URDF.replace("</joint>", mimic)), "shoulder mimics elbow, which is not another joint"
+    )
+    fails(write("o.urdf", PENDULUM_URDF.replace('link name="arm"', 'link name="${arm}"')), "line 3", "xacro")
+
+
+def test_an_mjcf_file_that_would_fill_the_memory_is_refused_before_mujoco_builds_it(write: Write) -> None:
+    copies = (
+        '<mujoco><worldbody>\n<replicate count="1000"><replicate count="1000"><geom size="1"/></replicate></replicate>'
+    )
+    fails(write("a.xml", copies + "</worldbody></mujoco>"), "line 2", "makes 1000000 copies, more than 10000")
+    field = '<mujoco><asset><hfield name="h" nrow="100000" ncol="100000" size="1 1 1 1"/></asset></mujoco>'
+    fails(write("b.xml", field), "line 1", "<hfield> has 1e+10 cells")
 
 
 MJCF = """\

@@ -7,10 +7,12 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from iota.shapelib.files import FileError, PathLike
+from iota.shapelib.files import FileError, PathLike, with_progress
 
 # A quoted text ends at a quote that a space follows: 'O5'' is O5'.
 TOKEN = re.compile(r"""\s+|\#.*|'(.*?)'(?=\s|$)|"(.*?)"(?=\s|$)|([^\s'"\#]\S*)""")
+
+MOST_ROWS = 500_000  # of a loop
 
 Token = tuple[str, bool, int]  # text, whether it was quoted, line
 
@@ -74,7 +76,10 @@ def _read_loop(tokens: Iterator[Token], tables: dict[str, Table], path: PathLike
     if not names:
         raise FileError(path, "loop_ is followed by no names", line)
     split = [_split(name) for name in names]
-    table = tables[split[0][0]] = Table([name for _, name in split])
+    category = split[0][0]
+    if category == "_atom_site" and category in tables:
+        raise FileError(path, "a block has one loop of atoms, this is the second", line)
+    table = tables[category] = Table([name for _, name in split])
     row: list[str] = []
     while token is not None and (token[1] or not _is_keyword(token[0])):
         if not row:
@@ -83,6 +88,8 @@ def _read_loop(tokens: Iterator[Token], tables: dict[str, Table], path: PathLike
         if len(row) == len(names):
             table.rows.append(row)
             row = []
+            if len(table.rows) > MOST_ROWS:
+                raise FileError(path, f"a loop has more than {MOST_ROWS} rows; cut out what you need", token[2])
         token = next(tokens, None)
     if row:
         raise FileError(path, f"the last row of a loop has {len(row)} values for {len(names)} names", table.lines[-1])
@@ -108,21 +115,18 @@ def _split(name: str) -> tuple[str, str]:
 
 
 def _tokens(text: str, path: PathLike) -> Iterator[Token]:
-    lines = text.splitlines()
-    at = 0
-    while at < len(lines):
-        line = lines[at]
-        at += 1
+    lines = enumerate(with_progress(text.splitlines(), "reading"), 1)
+    for at, line in lines:
         if line.startswith(";"):  # a text field, up to the next line that begins with ;
-            began, parts = at, [line[1:]]
-            while at < len(lines) and not lines[at].startswith(";"):
-                parts.append(lines[at])
-                at += 1
-            if at == len(lines):
-                raise FileError(path, "the text that begins here has no end", began)
-            yield "\n".join(parts), True, began
-            line = lines[at][1:]
-            at += 1
+            parts, last = [line[1:]], ""
+            for _, last in lines:
+                if last.startswith(";"):
+                    break
+                parts.append(last)
+            else:
+                raise FileError(path, "the text that begins here has no end", at)
+            yield "\n".join(parts), True, at
+            at, line = at + len(parts), last[1:]
         place = 0
         while place < len(line):
             found = TOKEN.match(line, place)

@@ -8,12 +8,18 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TypeAlias, TypeVar
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 PathLike: TypeAlias = str | os.PathLike[str]
 Item = TypeVar("Item")
 
 MOST_BYTES = 1 << 28
+FARTHEST = 1e9  # m
 QUIET_S = 1.0  # shorter tasks show no progress
 
 
@@ -32,6 +38,8 @@ def read_bytes(path: PathLike) -> bytes:
     try:
         if file.is_dir():
             raise FileError(path, "is a folder, not a file")
+        if file.exists() and not file.is_file():
+            raise FileError(path, "is a pipe or device, not a file")
         size = file.stat().st_size
         if size > MOST_BYTES:
             raise FileError(path, f"has {size / 2**20:.0f} MiB, more than {MOST_BYTES >> 20}")
@@ -57,7 +65,7 @@ def read_text(path: PathLike) -> str:
 def number(text: str, path: PathLike, line: int, what: str) -> float:
     """A finite number. Raises FileError that names the expected value."""
     try:
-        value = float(text)
+        value = float(_plain(text))
     except ValueError:
         raise FileError(path, f"{what} must be a number, not {text.strip()[:40]!r}", line) from None
     if not abs(value) < 1e300:
@@ -68,9 +76,25 @@ def number(text: str, path: PathLike, line: int, what: str) -> float:
 def whole(text: str, path: PathLike, line: int, what: str) -> int:
     """A whole number. Raises FileError that names the expected value."""
     try:
-        return int(text)
+        return int(_plain(text))
     except ValueError:
         raise FileError(path, f"{what} must be a whole number, not {text.strip()[:40]!r}", line) from None
+
+
+def check_reach(places: NDArray[np.float64], path: PathLike) -> None:
+    """Raises FileError for a place, (n, 3), m, that no body can have."""
+    far = np.flatnonzero(~(np.abs(places) <= FARTHEST).all(axis=1))
+    if len(far):
+        raise FileError(
+            path, f"point {far[0] + 1} (of {len(places)}) is more than {FARTHEST:g} m away; give a smaller scale"
+        )
+
+
+def _plain(text: str) -> str:
+    """Raises ValueError for what only Python takes for a number: 1_000, digits of other scripts."""
+    if not text.isascii() or "_" in text:
+        raise ValueError
+    return text
 
 
 def with_progress(items: Sequence[Item], what: str) -> Iterator[Item]:

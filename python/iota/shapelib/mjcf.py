@@ -12,15 +12,16 @@ import numpy as np
 
 from iota import looks
 from iota._core import Box, Capsule, Cylinder, Ellipsoid, Mesh, Shape, Sphere
-from iota.shapelib.files import FileError, PathLike
+from iota.shapelib.files import FileError, PathLike, whole
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
 from iota.shapelib.mechanism_data import Link, LinkJoint, Mechanism
-from iota.shapelib.trees import read_tree
+from iota.shapelib.trees import Element, read_tree
 from iota.shapelib.urdf import LIGHTEST, X_TO_Z
 
 FREE, BALL, SLIDE, HINGE = range(4)  # mjtJoint
 CONNECT, WELD = 0, 1  # mjtEq
 SITE = 6  # mjtObj
+MOST_COPIES, MOST_CELLS = 10_000, 1 << 24
 CARDAN = 1e-3  # share of a link's mass in each light ring between two joints of one link
 
 
@@ -29,6 +30,7 @@ def read_mjcf(path: PathLike) -> Mechanism:
     root = read_tree(path)
     if root.tag != "mujoco":
         raise root.wrong(f"an MJCF file has <mujoco> at its top, not <{root.tag}>")
+    check_sizes(root)
     try:
         import mujoco
     except ImportError:
@@ -44,6 +46,22 @@ def read_mjcf(path: PathLike) -> Mechanism:
     reader = _Reader(model, state, root.text("model", "") or Path(path).name.split(".")[0])
     reader.read()
     return reader.mechanism
+
+
+def check_sizes(element: Element, copies: int = 1) -> None:
+    """Raises FileError for what MuJoCo would take minutes or all memory to build: it cannot be interrupted."""
+    if element.tag in ("replicate", "flexcomp", "composite"):
+        for word in element.text("count", "1").split():
+            copies *= max(1, whole(word, element.path, element.line, "count"))
+        if copies > MOST_COPIES:
+            raise element.wrong(f"makes {copies} copies, more than {MOST_COPIES}")
+    for tag, (rows, columns) in {"hfield": ("nrow", "ncol"), "texture": ("width", "height")}.items():
+        if element.tag == tag:
+            size = element.number(rows, 0.0) * element.number(columns, 0.0)
+            if size > MOST_CELLS:
+                raise element.wrong(f"<{tag}> has {size:.3g} cells, more than {MOST_CELLS}")
+    for child in element.children:
+        check_sizes(child, copies)
 
 
 class _Reader:

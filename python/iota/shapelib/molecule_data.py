@@ -11,7 +11,7 @@ import numpy as np
 
 from iota.shapelib.chemistry import Element
 from iota.shapelib.files import FileError, PathLike
-from iota.shapelib.nearest import near_pairs
+from iota.shapelib.nearest import TooManyPairsError, near_pairs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,7 +53,12 @@ def check_places(molecule: Molecule, path: PathLike) -> None:
     """Raises FileError if two atoms coincide."""
     if not len(molecule.elements):
         raise FileError(path, "has no atoms")
-    pairs, distances = near_pairs(molecule.position, COLLIDING)
+    try:
+        pairs, distances = near_pairs(molecule.position, COLLIDING)
+    except TooManyPairsError:
+        raise FileError(path, f"nearly all of its atoms are within {COLLIDING} angstrom of many others") from None
+    except ValueError as error:
+        raise FileError(path, str(error)) from None
     if len(pairs):
         (p, q), distance = pairs[0].tolist(), distances[0]
         more = f", and {len(pairs) - 1} more such pairs" if len(pairs) > 1 else ""

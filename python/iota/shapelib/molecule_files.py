@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 
@@ -139,6 +139,14 @@ def _read_pdb(text: str, path: PathLike) -> Molecule:
         molecule.notes.append(f"{others} alternate places of atoms are left out")
     if models > 1:
         molecule.notes.append(f"only the first of {models} models is read")
+    serials = {line[6:11] for line in kept if line.startswith(("ATOM", "HETATM"))}
+    dangling = sum(
+        any(end.strip() and end not in serials for end in (line[place : place + 5] for place in range(6, 31, 5)))
+        for line in kept
+        if line.startswith("CONECT")
+    )
+    if dangling and not others and models <= 1:
+        molecule.notes.append(f"{dangling} CONECT lines name atoms that the file does not have")
     if not any(line.startswith("END") for line in kept):
         molecule.notes.append("the file has no END line: it may be truncated")
     return molecule
@@ -155,7 +163,9 @@ def _read_sdf(text: str, path: PathLike) -> Molecule:
     counts = lines[3]
     if "V3000" not in counts and "V2000" not in counts:
         raise FileError(path, "the counts line must name V2000 or V3000: this is not a molfile", 4)
-    if "V2000" in counts:
+    if "V3000" in counts:
+        _check_v3000(lines, path)
+    else:
         atoms, bonds = whole(counts[:3], path, 4, "the number of atoms"), whole(counts[3:6], path, 4, "that of bonds")
         check_count(atoms, path, 4)
         if atoms < 1:
@@ -167,11 +177,11 @@ def _read_sdf(text: str, path: PathLike) -> Molecule:
             for begin, what in ((0, "x"), (10, "y"), (20, "z")):
                 number(row[begin : begin + 10], path, at, what)
             _element_at(row[31:34], path, at)
-        for at in range(5 + atoms, 5 + atoms + bonds):
-            for begin in (0, 3):
-                end = whole(lines[at - 1][begin : begin + 3], path, at, "an end of a bond")
-                if not 1 <= end <= atoms:
-                    raise FileError(path, f"this bond names atom {end}; there are 1..{atoms}", at)
+        _check_bonds(
+            [(at, lines[at - 1][:3], lines[at - 1][3:6]) for at in range(5 + atoms, 5 + atoms + bonds)],
+            range(1, atoms + 1),
+            path,
+        )
     end_at = next((at for at, line in enumerate(lines) if line.startswith("M  END")), None)
     if end_at is None:
         raise FileError(path, "has no 'M  END': it is truncated", len(lines))
@@ -190,6 +200,49 @@ def _read_sdf(text: str, path: PathLike) -> Molecule:
     if not found.GetConformer().Is3D():
         molecule.notes.append("the file has plane coordinates of a drawing, not a shape in space")
     return molecule
+
+
+def _check_bonds(rows: list[tuple[int, str, str]], atoms: Collection[int], path: PathLike) -> None:
+    """rows: the line of each bond, and its ends. atoms: their numbers. Raises FileError, because RDKit does not say which bond is wrong."""
+    first: dict[tuple[int, int], int] = {}
+    for at, *ends in rows:
+        p, q = sorted(whole(end, path, at, "an end of a bond") for end in ends)
+        for end in (p, q):
+            if end not in atoms:
+                raise FileError(path, f"this bond names atom {end}; there are {min(atoms)}..{max(atoms)}", at)
+        if p == q:
+            raise FileError(path, f"this bond has atom {p} at both ends", at)
+        if first.setdefault((p, q), at) != at:
+            raise FileError(path, f"the atoms {p} and {q} have a bond already, in line {first[p, q]}", at)
+
+
+def _check_v3000(lines: list[str], path: PathLike) -> None:
+    """Raises FileError for what RDKit refuses without a line. Lines that go on in the next one are left to it."""
+    block, atoms, bonds = "", set[int](), []
+    for at, line in enumerate(with_progress(lines, "reading atoms"), 1):
+        if line.startswith("M  END"):
+            break
+        words = line.split()
+        if words[:2] != ["M", "V30"] or line.endswith("-"):
+            continue
+        if words[2:3] == ["COUNTS"]:
+            check_count(whole(" ".join(words[3:4]), path, at, "the number of atoms"), path, at)
+        elif words[2:3] in (["BEGIN"], ["END"]):
+            block = " ".join(words[3:4]) if words[2] == "BEGIN" else ""
+        elif block == "ATOM":
+            if len(words) < 7:
+                raise FileError(path, "the line of this atom ends before its coordinates", at)
+            atoms.add(whole(words[2], path, at, "the number of an atom"))
+            _element_at(words[3], path, at)
+            for word, what in zip(words[4:7], "xyz", strict=True):
+                number(word, path, at, what)
+        elif block == "BOND":
+            if len(words) < 6:
+                raise FileError(path, "the line of this bond ends before its atoms", at)
+            bonds.append((at, words[4], words[5]))
+    if not atoms:
+        raise FileError(path, "has no atoms")
+    _check_bonds(bonds, atoms, path)
 
 
 # --- XYZ --------------------------------------------------------------------------------------------------------------
@@ -278,12 +331,26 @@ def _read_cif(text: str, path: PathLike) -> Molecule:
         places.append(cell @ place)
         names.append(f"{name} of {kind} {residue}" if is_protein else f"{atoms[-1].symbol}{len(atoms)}")
     molecule = _perceived("", atoms, np.array(places), path, names)
+    if repeated := _symmetry(tables):
+        molecule.notes.append(f"only the listed atoms are read, not their images in the crystal ({repeated})")
     molecule.residues = len(kind_of_residue) if is_protein else 0
     if others:
         molecule.notes.append(f"{others} alternate places of atoms are left out")
     if other_models:
         molecule.notes.append("only the first model is read")
     return molecule
+
+
+def _symmetry(tables: dict[str, cif.Table]) -> str:
+    """The symmetry of a crystal in words, "" without one, and for proteins, whose symmetry is in other tables."""
+    for category, name in (("_symmetry_equiv", "pos_as_xyz"), ("_space_group_symop", "operation_xyz")):
+        operations = tables[category].column(name) if category in tables else None
+        if operations is not None:
+            return f"{len(operations)} operations of symmetry" if len(operations) > 1 else ""
+    for item in ("_symmetry_space_group_name_h-m", "_space_group_name_h-m_alt"):
+        if item in tables and (group := tables[item].rows[0][0]).replace(" ", "").upper() not in ("P1", "?", "."):
+            return f"space group {group}"
+    return ""
 
 
 def _cell(table: cif.Table | None, path: PathLike) -> Any:

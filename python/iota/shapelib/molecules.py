@@ -14,7 +14,7 @@ import numpy as np
 from iota import looks
 from iota.builder.parts import RigidBody
 from iota.builder.points import Vector
-from iota.shapelib.files import PathLike
+from iota.shapelib.files import PathLike, check_reach
 from iota.shapelib.graphs import bridges, pieces
 from iota.shapelib.imported import Imported
 from iota.shapelib.molecule_data import Molecule
@@ -70,6 +70,7 @@ def molecule(
     mass = np.array([element.mass for element in data.elements]) * mass_scale
     place = data.position * scale
     place += np.asarray(at, float) - mass @ place / mass.sum()
+    check_reach(place, source)
     structure.points.add(place, mass)
     look = atom_look or (lambda symbol: ball_of(symbol, scale))
     drawn = {element.symbol: look(element.symbol) for element in set(data.elements)}

@@ -12,9 +12,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+MOST_PAIRS = 10_000_000  # candidates of one direction to a neighboring cell
+
+
+class TooManyPairsError(ValueError):
+    """The points are much denser than `reach`."""
+
+
 def near_pairs(places: NDArray[np.float64], reach: float) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """All pairs i < j of points nearer than `reach`: (k, 2), sorted, and their distances, (k,). places: (n, 3). Points are
-    sorted into cells of that size; each cell is compared with its 13 neighbors ahead and with itself."""
+    sorted into cells of that size; each cell is compared with its 13 neighbors ahead and with itself. Raises ValueError for
+    points too far apart, TooManyPairsError."""
     if len(places) < 2:
         return np.empty((0, 2), int), np.empty(0)
     cells = np.floor((places - places.min(axis=0)) / reach).astype(np.int64) + 1
@@ -35,8 +43,8 @@ def near_pairs(places: NDArray[np.float64], reach: float) -> tuple[NDArray[np.in
         if offset == 0:
             first = np.arange(len(keys)) + 1
         counts = np.maximum(last - first, 0)
-        if counts.sum() > 50_000_000:
-            raise ValueError("more than 50 million pairs of points are near each other")
+        if counts.sum() > MOST_PAIRS:
+            raise TooManyPairsError(f"more than {MOST_PAIRS} pairs of points are near each other")
         i = np.repeat(np.arange(len(keys)), counts)
         j = np.arange(len(i)) - np.repeat(np.cumsum(counts) - counts, counts) + np.repeat(first, counts)
         p, q = order[i], order[j]

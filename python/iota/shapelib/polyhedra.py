@@ -14,7 +14,7 @@ from iota._core import Mesh
 from iota.builder.parts import RigidBody
 from iota.builder.points import Vector
 from iota.looks import MOST_TRIANGLES, Drawn
-from iota.shapelib.files import FileError, PathLike
+from iota.shapelib.files import FileError, PathLike, check_reach
 from iota.shapelib.imported import Imported
 from iota.shapelib.molecules import KINDS, Kind, add_springs
 from iota.shapelib.named import named_polyhedron
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MOST_EDGES = 100_000
+LIGHTEST, HEAVIEST = 1e-30, 1e15  # kg, of a body
 
 
 def polyhedron(
@@ -67,6 +68,7 @@ def polyhedron(
     is_file = not isinstance(source, str) or path.suffix.lower() in READERS
     surface = read_surface(source) if is_file else named_polyhedron(str(source))
     count = len(surface.vertices)
+    check_reach(scale * surface.vertices, source)
     surface.weld()
     if not surface.faces:
         raise FileError(source, "has no faces with an area")
@@ -112,6 +114,10 @@ def _make_solid(
     elif min(volumes) < 0:  # a cavity has to stay with its enclosing surface
         parts, volumes = [surface], [sum(volumes)]
     structure.counts |= {"pieces": len(parts), "volume": sum(volumes)}
+    for volume in volumes:
+        weight = density * volume if mass is None else mass * volume / sum(volumes)
+        if not LIGHTEST <= weight <= HEAVIEST:
+            raise FileError(source, f"a body of it has {weight:.3g} kg; give scale, density or mass")
     structure.looks["solid"] = look if look is not None else looks.solid("paint")
     for number, (part, volume) in enumerate(zip(parts, volumes, strict=True), 1):
         triangles, _ = part.triangles()

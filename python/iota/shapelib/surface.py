@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -64,19 +65,32 @@ class Surface:
 
     def edges(self) -> Numbers:
         """(k, 2), each once, smaller number first, sorted."""
-        return np.unique(np.sort(self._sides(), axis=1), axis=0)
+        return self._pairs(np.unique(self._keys(self._sides())))
 
     def _sides(self) -> Numbers:
         """Every side of every face, in the direction of the face: (k, 2)."""
-        return np.array([(v, face[(i + 1) % len(face)]) for face in self.faces for i, v in enumerate(face)], np.int64)
+        sizes = np.fromiter(map(len, self.faces), np.int64, len(self.faces))
+        corners = np.fromiter(chain.from_iterable(self.faces), np.int64)
+        ends = np.cumsum(sizes)
+        following = np.arange(1, len(corners) + 1)
+        following[ends - 1] = ends - sizes
+        return np.stack([corners, corners[following]], axis=1)
+
+    def _keys(self, sides: Numbers) -> Numbers:
+        """A number for each unordered pair of vertices, many times faster to sort than the pairs."""
+        low, high = sides.min(axis=1), sides.max(axis=1)
+        return np.asarray(low * len(self.vertices) + high, np.int64)
+
+    def _pairs(self, keys: Numbers) -> Numbers:
+        return np.stack(np.divmod(keys, len(self.vertices)), axis=1)
 
     def check(self, path: PathLike) -> None:
         """Raises FileError if the surface does not enclose a volume; names the first edge that is open, is in three
         faces or more, or has the same direction in both faces."""
         sides = self._sides()
         owner = np.repeat(np.arange(len(self.faces)), [len(face) for face in self.faces])
-        pairs, number, uses = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True, return_counts=True)
-        number = number.ravel()
+        keys, number, uses = np.unique(self._keys(sides), return_inverse=True, return_counts=True)
+        pairs = self._pairs(keys)
         way = np.bincount(number, np.where(sides[:, 0] < sides[:, 1], 1.0, -1.0), len(pairs))
         for wrong, what in (
             (uses > 2, "is in {n} faces, so the surface is not that of a solid"),
@@ -97,6 +111,8 @@ class Surface:
 
     def triangles(self) -> tuple[Numbers, Numbers]:
         """Three vertices each, (k, 3), and the face of each, (k,)."""
+        if all(len(face) == 3 for face in self.faces):
+            return np.array(self.faces, np.int64).reshape(-1, 3), np.arange(len(self.faces))
         found, owner = [], []
         for at, face in enumerate(self.faces):
             parts = [face] if len(face) == 3 else _cut(self.vertices[face], face)

@@ -85,11 +85,14 @@ def _read_off(path: PathLike) -> Surface:
     return surface
 
 
-def _lines_of(text: str) -> Iterator[tuple[int, list[str]]]:
-    """The words of each line that has some, and its number; without comments."""
+def _lines_of(text: str, goes_on: str = "") -> Iterator[tuple[int, list[str]]]:
+    """The words of each line that has some, and its number; without comments. A line whose last word is `goes_on` goes on
+    in the next one."""
+    before: list[str] = []
     for at, line in enumerate(text.splitlines(), 1):
-        words = line.split("#", 1)[0].split()
-        if words:
+        words = before + line.split("#", 1)[0].split()
+        before = words[:-1] if goes_on and words[-1:] == [goes_on] else []
+        if words and not before:
             yield at, words
 
 
@@ -102,7 +105,7 @@ def _read_obj(path: PathLike) -> Surface:
     surface = Surface(np.empty((0, 3)), [])
     group, passed_over = "", set()
     corners: list[tuple[int, int, list[int]]] = []  # checked when all vertices are known
-    for at, words in with_progress(list(_lines_of(read_text(path))), "reading faces"):
+    for at, words in with_progress(list(_lines_of(read_text(path), goes_on="\\")), "reading faces"):
         if words[0] == "v":
             if len(words) < 4:
                 raise FileError(path, f"vertex {len(places) + 1} has {len(words) - 1} numbers instead of three", at)
@@ -241,7 +244,11 @@ def _read_ply(path: PathLike) -> Surface:
         if words[:1] == ["element"] and len(words) == 3:
             counts[words[1]] = whole(words[2], path, at, f"the number of {words[1]}")
             _check_count(counts[words[1]], words[1], path, at)
+    if not counts.get("face"):
+        raise FileError(path, "has points without faces")
     mesh = _load(path)
+    if not hasattr(mesh, "faces"):
+        raise FileError(path, "has no faces that trimesh can read")
     if len(mesh.vertices) != counts.get("vertex", 0) or len(mesh.faces) < counts.get("face", 0):
         raise FileError(
             path, f"promises {counts.get('vertex', 0)} vertices and {counts.get('face', 0)} faces, but has "
@@ -253,13 +260,19 @@ def _read_ply(path: PathLike) -> Surface:
 def _read_gltf(path: PathLike) -> Surface:
     """All meshes of the scene, transformed by its nodes."""
     data = read_bytes(path)
-    if Path(path).suffix.lower() == ".gltf":
-        try:
-            json.loads(data)
-        except (ValueError, RecursionError) as error:
-            raise FileError(path, f"is not glTF: {error}", getattr(error, "lineno", None)) from None
-    elif len(data) < 12 or data[:4] != b"glTF" or struct.unpack("<I", data[8:12])[0] != len(data):
-        raise FileError(path, "is not a binary glTF file, or is truncated")
+    if Path(path).suffix.lower() == ".glb":
+        if len(data) < 20 or data[:4] != b"glTF" or struct.unpack("<I", data[8:12])[0] != len(data):
+            raise FileError(path, "is not a binary glTF file, or is truncated")
+        data = data[20 : 20 + struct.unpack("<I", data[12:16])[0]]
+    try:
+        head = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise FileError(path, f"is not glTF: {error}", getattr(error, "lineno", None)) from None
+    needed = head.get("extensionsRequired", []) if isinstance(head, dict) else None
+    if not isinstance(needed, list):
+        raise FileError(path, "is not glTF: an object with a list of required extensions must stand here")
+    if packed := [name for name in needed if "compression" in str(name)]:
+        raise FileError(path, f"its meshes are compressed ({', '.join(packed)}), which is not read; export it without")
     scene = _load(path, force="scene")
     if not scene.geometry:
         raise FileError(path, "has no meshes")
@@ -282,7 +295,8 @@ def _load(path: PathLike, **options: Any) -> Any:
     try:
         return library.load(Path(path), process=False, **options)
     except Exception as error:  # trimesh raises any exception for a damaged file
-        raise FileError(path, f"trimesh cannot read it: {type(error).__name__}: {error}") from None
+        reason = f"{type(error).__name__}: {error}".split(" — ")[0].removesuffix(": ")
+        raise FileError(path, f"trimesh cannot read it: {reason}") from None
 
 
 def _from_trimesh(mesh: Any, path: PathLike) -> Surface:

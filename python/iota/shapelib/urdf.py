@@ -39,6 +39,9 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
         raise robot.wrong("the robot has no links")
     if len(links) > MOST_LINKS:
         raise robot.wrong(f"has {len(links)} links, more than {MOST_LINKS}")
+    for name, element in links.items():
+        if "${" in name:
+            raise element.wrong("this is a xacro file, a template of URDF: run it through xacro")
     joint_of, order, world = _tree(robot, links)
     mechanism = Mechanism(robot.text("name", "") or Path(path).stem)
     colors = _materials(robot)
@@ -53,22 +56,27 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
         if name != "world":
             mechanism.links.append(_link(links[name], frames[name], colors, path, missing, mechanism.notes))
     moving = mimics = 0
+    joints = {joint.text("name") for joint in joint_of.values()}
     for name in order:
         joint = joint_of.get(name)
         if joint is not None:
             made = _joint(joint, frames[name], mechanism.notes)
             moving += joint.text("type") != "fixed"
-            mimics += joint.first("mimic") is not None
+            if (mimic := joint.first("mimic")) is not None:
+                mimics += 1
+                if mimic.text("joint") not in joints - {joint.text("name")}:
+                    raise mimic.wrong(f"{joint.text('name')} mimics {mimic.text('joint')}, which is not another joint")
             if made is not None:
                 mechanism.joints.append(made)
         elif name != "world" and base != "free":
             mechanism.joints.append(LinkJoint("weld", f"{name} to the world", name, None, frames[name].place))
     if missing:
         listed = ", ".join(sorted(set(missing))[:3]) + (" ..." if len(set(missing)) > 3 else "")
-        mechanism.notes.append(f"{len(missing)} meshes are missing, and are not drawn: {listed}")
+        what = "1 mesh is missing, and is" if len(missing) == 1 else f"{len(missing)} meshes are missing, and are"
+        mechanism.notes.append(f"{what} not drawn: {listed}")
     for tag in ("transmission", "gazebo", "sensor"):
         if count := sum(1 for _ in robot.all(tag)):
-            mechanism.notes.append(f"{count} <{tag}> are left out")
+            mechanism.notes.append(f"{count} <{tag}> {'is' if count == 1 else 'are'} left out")
     mechanism.counts = {
         "links": len(links) - ("world" in links), "joints": len(joint_of), "moving joints": moving,
         "independent joints": moving - mimics,
