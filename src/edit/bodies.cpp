@@ -176,9 +176,9 @@ void apply(Editor& e, const SetKind& c) {
     if (c.kind == BodyKind::dynamic && before != BodyKind::inactive) model.rebuild_basis(slot);  // rigid here
     model.for_each_particle_of(slot, [&](std::uint32_t p) {
       model.acting_changed(p);
-      model::Ring& ring = model.rings[model.particles[p].ring];
-      if (c.kind != BodyKind::dynamic && (c.kind != BodyKind::inactive || ring.count == 1))
-        ring.velocity = ring.acceleration = ring.correction = {};
+      const std::uint32_t ring = model.particles[p].ring;
+      if (c.kind != BodyKind::dynamic && (c.kind != BodyKind::inactive || model.rings[ring].count == 1))
+        model.stop_ring(ring);
     });
     model.touch_body(slot);
     model.articulates[body.articulate].velocity_dirty = 1;
@@ -201,7 +201,7 @@ void apply(Editor& e, const SetBodyDamping& c) {
   model::Model& model = e.model;
   require_not_negative("damping", c.per_second);
   const std::uint32_t body = e.require(c.body);
-  model.bodies[body].damping = c.per_second;
+  model.set_damping(body, c.per_second);
   model.touch_locally(body);
 }
 

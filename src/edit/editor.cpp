@@ -9,7 +9,7 @@ namespace iota::edit {
 
 namespace {
 
-constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '7'}, "snapshot"};
+constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '8'}, "snapshot"};
 
 /// `survivor()`: the object that absorbed it, called only for a stale id.
 template <class Table, class IdType, class Survivor>

@@ -98,7 +98,7 @@ Vec3 LastStep::damping(std::uint32_t particle) const {
 }
 
 Vec3 LastStep::moved(std::uint32_t particle) const {
-  const Vec3 undamped = ring(particle).velocity - ring(particle).correction,
+  const Vec3 undamped = ring(particle).velocity - structure_.corrections[structure_.particles[particle].ring],
              at_end = undamped + h() * damping(particle);
   if (!stage.midpoint) return h() * at_end;
   const Vec3 at_start = undamped - h() * acceleration(particle);

@@ -93,7 +93,7 @@ void Masses::build(const IslandMap& map, Problem& problem) {
     model.for_each_particle_of(body, [&](std::uint32_t p) {
       if (has_virtual_mass(model, p)) virtual_.push_back(p);
     });
-    const double own = model.bodies[body].damping;
+    const double own = model.body_damping[body];
     if (own > 0) damping.resize(problem.size());
     for_each_mass(
         model, body, [&](std::uint32_t p) { return map.nodes_of(p); },
@@ -112,8 +112,8 @@ double Masses::damping_rate(const Model& model, std::uint32_t ring) {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   const auto for_each_body = [&](auto visit) {
     model.for_each_in_ring(ring, [&](std::uint32_t p) {
-      const model::Body& body = model.bodies[model.particles[p].body];
-      if (body.kind != BodyKind::inactive) visit(model.particles[p].body, body.damping);
+      const std::uint32_t body = model.particles[p].body;
+      if (model.bodies[body].kind != BodyKind::inactive) visit(body, model.body_damping[body]);
     });
   };
   for_each_body([&](std::uint32_t, double own) { least = std::min(least, own), most = std::max(most, own); });

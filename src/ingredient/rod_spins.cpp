@@ -13,7 +13,7 @@ namespace {
 double spin_of(const Model& model, std::uint32_t body) {
   return model.spins.at(body).momentum / model.bodies[body].first_row.length;
 }
-double damping_rate(const Model& model, std::uint32_t body) { return model.damping + model.bodies[body].damping; }
+double damping_rate(const Model& model, std::uint32_t body) { return model.damping + model.body_damping[body]; }
 
 }  // namespace
 

@@ -46,9 +46,8 @@ void FreeParticles::refresh(const Model& model) {
 
 void FreeParticles::put_to_rest(Model& model, std::uint32_t articulate) {
   model::Body& body = model.bodies[model.articulates[articulate].first];
-  model::Ring& ring = model.rings[model.particles[body.first].ring];
   body.kind = BodyKind::resting;
-  ring.velocity = ring.acceleration = ring.correction = {};
+  model.stop_ring(model.particles[body.first].ring);
 }
 
 void FreeParticles::wake(Model& model, std::uint32_t articulate) {
@@ -85,7 +84,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
         wake(model, place.articulate);
       }
       const double mass = model.particles[place.particle].mass;
-      const double damping = model.damping + model.bodies[place.body].damping;
+      const double damping = model.damping + model.body_damping[place.body];
       const Vec3 before = ring.velocity;
       const Vec3 gained = h * ((1 / mass) * force + gravity);
       const Vec3 after = before + gained, moved = h * (robust ? after : 0.5 * (before + after));
@@ -106,7 +105,7 @@ solver::AdvanceReport FreeParticles::advance(Model& model, double h, const Paral
         ring.velocity *= left;
       }
       ring.acceleration = (1 / h) * (ring.velocity - before);
-      ring.correction = {}, ring.is_instant = 0;
+      model.corrections.set(place.ring, {}), ring.is_instant = 0;
       if (model.rest_after > 0) {
         const double speed2 = dot(ring.velocity, ring.velocity);
         double& slow_time = model.articulates[place.articulate].slow_time;

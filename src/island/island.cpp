@@ -120,12 +120,24 @@ void Island::store_carried(Model& model, MovedRings& moved) const {
   }
 }
 
+namespace {
+
+/// The sum over the nodes that carry a particle, by their weights: of(node).
+template <class Of>
+Vec3 sum_over(const ingredient::WeightedNodes& carriers, Of of) {
+  Vec3 sum;
+  for (const auto& [node, weight] : carriers) sum += weight * of(node);
+  return sum;
+}
+
+}  // namespace
+
 void Island::store_step(Model& model, double h, bool is_instant) const {
   const auto put = [&](std::uint32_t ring, const Vec3& position, const Vec3& velocity, const Vec3& correction,
                        const Vec3& start) {
     Ring& r = model.rings[ring];
     r.acceleration = (1 / h) * (velocity - correction - start);
-    r.position = position, r.velocity = velocity, r.correction = correction, r.is_instant = is_instant;
+    r.position = position, r.velocity = velocity, r.is_instant = is_instant;
   };
   const std::span<const Vec3> corrections = integrator_->velocity_corrections();
   const auto correction_of = [&](std::size_t node) { return corrections.empty() ? Vec3{} : corrections[node]; };
@@ -137,14 +149,20 @@ void Island::store_step(Model& model, double h, bool is_instant) const {
   for (std::size_t i = 0; i < nodes_.carried.size(); ++i) {
     const std::uint32_t p = nodes_.carried[i], ring = model.particles[p].ring;
     const auto [position, velocity] = model.carried(p);
-    Vec3 correction, start;
-    for (const auto& [node, weight] : nodes_.carriers[i]) {
-      correction += weight * correction_of(node);
-      if (is_instant) start += weight * start_of(node);
-    }
-    put(ring, position, velocity, correction, is_instant ? start : model.rings[ring].velocity);
+    put(ring, position, velocity, sum_over(nodes_.carriers[i], correction_of),
+        is_instant ? sum_over(nodes_.carriers[i], start_of) : model.rings[ring].velocity);
   }
+  store_corrections(model);
   for_each_ingredient([&](const auto& i) { i.store(model, nodes_, h, problem_); });
+}
+
+void Island::store_corrections(Model& model) const {
+  const std::span<const Vec3> corrections = integrator_->velocity_corrections();
+  if (corrections.empty() && model.corrections.are_none()) return;
+  const auto correction_of = [&](std::size_t node) { return corrections.empty() ? Vec3{} : corrections[node]; };
+  for (std::size_t i = 0; i < nodes_.size(); ++i) model.corrections.set(nodes_.rings[i], correction_of(i));
+  for (std::size_t i = 0; i < nodes_.carried.size(); ++i)
+    model.corrections.set(model.particles[nodes_.carried[i]].ring, sum_over(nodes_.carriers[i], correction_of));
 }
 
 // Of all nodes, or of some.

@@ -69,6 +69,10 @@ class Island {
   /// By the model's settings. `deadline`: when to stop looking for a solution, see StepBudget.
   solver::AdvanceReport advance(model::Model&, double h, Clock::time_point deadline = Clock::time_point::max());
 
+  /// Stores the corrections of the step that it has just made, if the model had no room for them: see
+  /// model::Corrections.
+  void store_corrections(model::Model&) const;
+
   /// Of its last step.
   IslandReport report(const model::Model&) const;
   bool has_stepped() const { return has_stepped_; }

@@ -45,9 +45,7 @@ void Island::put_to_rest(Model& model) const {
   for (const std::uint32_t b : nodes_.bodies)
     if (is_free(model.bodies[b].kind)) model.bodies[b].kind = BodyKind::resting;
   for_each_ingredient([&](const auto& i) { i.put_to_rest(model, problem_); });
-  nodes_.for_each_ring(model, [&](std::uint32_t ring) {
-    model.rings[ring].velocity = model.rings[ring].acceleration = model.rings[ring].correction = {};
-  });
+  nodes_.for_each_ring(model, [&](std::uint32_t ring) { model.stop_ring(ring); });
 }
 
 }  // namespace iota::island

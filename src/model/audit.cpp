@@ -51,7 +51,10 @@ void Audit::check_links() {
             " rows has a wrong table of them");
     for (int i = 0; i < std::min<int>(b.rank, 4); ++i)
       require(is_point(b.basis[i]), "body ", slot, " has a wrong basis point ", i);
-    require(std::isfinite(b.damping) && b.damping >= 0, "body ", slot, " has damping ", b.damping);
+  });
+  model_.body_damping.for_each([&](std::uint32_t slot, double damping) {
+    require(model_.bodies.is_alive(slot), "dead body ", slot, " has a damping");
+    require(std::isfinite(damping) && damping >= 0, "body ", slot, " has damping ", damping);
   });
   model_.attributes.for_each([&](std::uint32_t slot, const Attributes& a) {
     require(is_point(a.particle), "attributes ", slot, " are of no living particle");

@@ -91,7 +91,7 @@ BodyKind kind_of_union(BodyKind a, BodyKind b) {
 
 /// Damping is averaged by mass.
 double damping_of_union(const Structure& model, std::uint32_t a, std::uint32_t b) {
-  const double of_a = model.bodies[a].damping, of_b = model.bodies[b].damping;
+  const double of_a = model.body_damping[a], of_b = model.body_damping[b];
   if (of_a == of_b) return of_a;
   const double mass_a = model.body_mass(a), mass_b = model.body_mass(b);
   return (mass_a * of_a + mass_b * of_b) / (mass_a + mass_b);
@@ -181,7 +181,7 @@ Edit absorb_body(Structure& model, std::uint32_t a, std::uint32_t b, Restructure
   model.record_survivor(retired, survivor);
   report.absorbed_bodies.push_back({retired, survivor});
   model.remove_body(b);
-  model.bodies[a].damping = damping;
+  model.set_damping(a, damping);
   model.bodies[a].kind_before = kind_before;
   unite_kinds(model, a, kind_a, kind_b, report);
   if (!carry_by_basis(model, a, count_before, moved)) model.rebuild_basis(a);
@@ -329,7 +329,7 @@ Edit separate_particles(Structure& model, std::uint32_t p, std::uint32_t q, Rest
     model.take_from_body(q);
     model.rebuild_basis(body);
     const std::vector<ParticleId> strays = stray_markers(model, body);
-    const std::uint32_t own = model.make_body(model.bodies[body].kind, model.bodies[body].damping);
+    const std::uint32_t own = model.make_body(model.bodies[body].kind, model.body_damping[body]);
     model.particles[q].part = model.bodies.id(own);
     Ring ring;
     ring.position = position, ring.velocity = velocity;

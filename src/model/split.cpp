@@ -42,7 +42,7 @@ int hand_over(Table& items, std::uint32_t& from, std::uint32_t& to, std::uint32_
 std::uint32_t split_off(Structure& model, std::uint32_t body, std::vector<std::uint32_t> leaving,
                         RestructureReport& report, bool& torn) {
   std::sort(leaving.begin(), leaving.end());
-  const std::uint32_t own = model.make_body(model.bodies[body].kind, model.bodies[body].damping);
+  const std::uint32_t own = model.make_body(model.bodies[body].kind, model.body_damping[body]);
   Body &from = model.bodies[body], &to = model.bodies[own];
   hand_over(model.solids, from.first_solid, to.first_solid, own, [&](const Solid& s) {
     return std::pair{

@@ -42,10 +42,11 @@ std::uint32_t Structure::make_particle(std::uint32_t body, const Vec3& position,
   return particle;
 }
 
-std::uint32_t Structure::make_body(BodyKind kind, double body_damping) {
+std::uint32_t Structure::make_body(BodyKind kind, double damping) {
   Body b;
-  b.kind = kind, b.damping = body_damping;
+  b.kind = kind;
   const std::uint32_t body = bodies.create(b).slot;
+  set_damping(body, damping);
   scene.bodies.note(body, true);
   add_to_articulate(body, articulates.create({}).slot);
   return body;
@@ -86,7 +87,14 @@ void Structure::take_from_ring(std::uint32_t particle) {
   unlink(particles, rings[ring], particle, &Particle::next_in_ring, &Particle::previous_in_ring);
   particles[particle].ring = none;
   ring_changed(ring);
-  if (rings[ring].count == 0) rings.destroy(ring);
+  if (rings[ring].count > 0) return;
+  corrections.set(ring, {});
+  rings.destroy(ring);
+}
+
+void Structure::stop_ring(std::uint32_t ring) {
+  rings[ring].velocity = rings[ring].acceleration = {};
+  corrections.set(ring, {});
 }
 
 void Structure::enter_articulate(std::uint32_t body, std::uint32_t articulate) {
@@ -116,7 +124,7 @@ void Structure::remove_body(std::uint32_t body) {
   remove_solids_of(body, none);
   take_from_articulate(body);
   forget_body(body);
-  more_rows.erase(body);
+  more_rows.erase(body), body_damping.erase(body);
   bodies.destroy(body);
 }
 
@@ -209,6 +217,13 @@ void Structure::set_fuse(std::uint32_t particle, double force) {
     fuses.erase(particle);
   else
     fuses.make(particle) = force;
+}
+
+void Structure::set_damping(std::uint32_t body, double per_second) {
+  if (per_second == 0)
+    body_damping.erase(body);
+  else
+    body_damping.make(body) = per_second;
 }
 
 }  // namespace iota::model

@@ -6,6 +6,7 @@
 #include "base/side_table.h"
 #include "base/slot_table.h"
 #include "model/attributes.h"
+#include "model/corrections.h"
 #include "model/end_table.h"
 #include "model/scene_log.h"
 #include "shape/shape.h"
@@ -67,7 +68,6 @@ struct Ring {
   std::uint16_t is_instant = 0;
   Vec3 position, velocity;
   Vec3 acceleration;  ///< change of velocity in the last step without the correction, divided by h, m/s^2
-  Vec3 correction;    ///< of the velocity at the end of the last step, to satisfy the constraints, m/s
 };
 
 /// The distance of two basis points of a body.
@@ -89,7 +89,6 @@ struct Body {
   std::uint32_t first_solid = none;    ///< list of its solids
   std::uint32_t basis_needs = 0;       ///< number of particles that were unknowns when the basis was chosen
   std::array<std::uint32_t, 4> basis{none, none, none, none};
-  double damping = 0;      ///< 1/s
   RigidRow first_row;      ///< of the basis pairs; see Structure::row
   Quaternion orientation;  ///< of the drawn frame
 };
@@ -154,7 +153,9 @@ class Structure {
   SideTable<double> fuses;  ///< breaking load of the hinge or nail of a particle, N
   SlotTable<Ring, Id<Ring>> rings;
   SlotTable<Body, BodyId> bodies;
-  SideTable<MoreRows> more_rows;  ///< of bodies
+  SideTable<MoreRows> more_rows;   ///< of bodies
+  SideTable<double> body_damping;  ///< of bodies, 1/s
+  Corrections corrections;         ///< of rings
   SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
   SlotTable<Solid, Id<Solid>> solids;
   SlotTable<Twin, Id<Twin>> twins;
@@ -176,6 +177,7 @@ class Structure {
   void take_from_body(std::uint32_t particle);
   void add_to_ring(std::uint32_t particle, std::uint32_t ring);
   void take_from_ring(std::uint32_t particle);  ///< an empty ring is destroyed
+  void stop_ring(std::uint32_t ring);           ///< its velocity, and the change of that in the last step, become zero
   void add_to_articulate(std::uint32_t body, std::uint32_t articulate);
   void take_from_articulate(std::uint32_t body);                       ///< an empty articulate is destroyed
   void remove_body(std::uint32_t body);                                ///< must have no particles
@@ -221,7 +223,8 @@ class Structure {
   void take_touched(Touched&);
   ///@}
 
-  void set_fuse(std::uint32_t particle, double force);  ///< infinite: none
+  void set_fuse(std::uint32_t particle, double force);      ///< infinite: none
+  void set_damping(std::uint32_t body, double per_second);  ///< 0: none
 
   /// Drops inertia pairs of a body that could make its mass matrix indefinite; its point masses remain.
   void keep_inertia_positive(std::uint32_t body);
@@ -417,7 +420,8 @@ void Structure::archive(Archive& ar) {
   particles.archive(ar), rings.archive(ar), bodies.archive(ar), solids.archive(ar), twins.archive(ar);
   articulates.archive(ar), groups.archive(ar), inertia_pairs.archive(ar), attributes.archive(ar);
   ties.archive(ar, particles.slot_count()), fuses.archive(ar, particles.slot_count());
-  more_rows.archive(ar, bodies.slot_count());
+  more_rows.archive(ar, bodies.slot_count()), body_damping.archive(ar, bodies.slot_count());
+  corrections.archive(ar, rings.slot_count());
   ar.value(structure_version), ar.value(spark_changes);
   particle_survivors_.archive(ar), body_survivors_.archive(ar);
 }

@@ -80,14 +80,20 @@ void Stepper::advance_islands(StepReport& report) {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
   const auto all = islands.all();
-  advanced_.resize(all.size());
-  editor_.parallel.for_each(all.size(), islands.grain(editor_.parallel),
-                            [&](std::size_t i) { advanced_[i] = all[i]->advance(model, report.dt, deadline_); });
+  advanced_.resize(all.size()), resting_.resize(all.size());
+  editor_.parallel.for_each(all.size(), islands.grain(editor_.parallel), [&](std::size_t i) {
+    advanced_[i] = all[i]->advance(model, report.dt, deadline_);
+    resting_[i] = all[i]->is_asleep(model) ? all[i]->body_count() : 0;
+  });
+  if (model.corrections.lacks_room()) {
+    model.corrections.make_room(model.rings.slot_count());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (resting_[i] == 0) all[i]->store_corrections(model);
+  }
   tell_cut_short(model, all, advanced_, report);
   int solves = 0, iterations = 0, handed_back = 0;
   double spin_lost = 0;
-  for (const auto* island : all)
-    if (island->is_asleep(model)) report.resting += static_cast<std::uint32_t>(island->body_count());
+  for (const std::size_t bodies : resting_) report.resting += static_cast<std::uint32_t>(bodies);
   advanced_.push_back(islands.free_particles().advance(model, report.dt, editor_.parallel));
   report.resting += islands.free_particles().resting();
   for (const solver::AdvanceReport& r : advanced_) {

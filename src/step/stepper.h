@@ -25,6 +25,7 @@ class Stepper {
   edit::Door& door_;
   // Scratch of the present step, kept for its capacity.
   std::vector<solver::AdvanceReport> advanced_;  // of each island
+  std::vector<std::size_t> resting_;             // bodies of each island that are at rest
   island::Island::Clock::time_point deadline_;
   std::vector<std::uint32_t> dirty_, woken_;  // articulates: velocities to project, sleepers to wake
 };

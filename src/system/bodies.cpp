@@ -181,7 +181,7 @@ std::uint32_t Bodies::articulate(BodyId id) const { return core_.model.bodies[co
 
 BodyKind Bodies::kind(BodyId id) const { return core_.model.bodies[core_.slot(id)].kind; }
 
-double Bodies::damping(BodyId id) const { return core_.model.bodies[core_.slot(id)].damping; }
+double Bodies::damping(BodyId id) const { return core_.model.body_damping[core_.slot(id)]; }
 
 double Bodies::mass(BodyId id) const { return core_.model.body_mass(core_.slot(id)); }
 

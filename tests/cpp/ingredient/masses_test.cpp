@@ -25,7 +25,7 @@ TEST(Masses, are_damped_by_what_the_exponential_took) {
   m.model.gravity = {};
   m.model.last_dt = 0.1, m.model.damping = 2;
   const std::uint32_t body = m.body({{0, 0, 0}}, 3), p = m.particle(body, 0);
-  m.model.bodies[body].damping = 1;
+  m.model.set_damping(body, 1);
   model::Ring& ring = m.model.rings[m.model.particles[p].ring];
   ring.velocity = {std::exp(-0.3), 0, 0};  // was 1
   ring.acceleration = {(std::exp(-0.3) - 1) / 0.1, 0, 0};
