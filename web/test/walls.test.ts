@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import { BoxGeometry, Mesh, SphereGeometry, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { Walls } from "../src/scene/walls.ts";
+import { wallsOf } from "../src/page/walking.ts";
+import { BodyKind } from "../src/protocol/generated.ts";
+import { Walls, type Obstacle } from "../src/scene/walls.ts";
+import { body, bodyEntity, part, style, TestWorld } from "./test_world.ts";
 
 /** A room of 4 x 3 x 6 m about the origin, times `size`, of walls of 5 cm, turned; with a ball in the middle. */
 function room(size: number): { walls: Walls; turned: (x: number, y: number, z: number) => Vector3 } {
@@ -50,5 +53,98 @@ describe("walls", () => {
     const free = turned(0, 0, 0.7);
     walls.slide(turned(1.2, 0, 0), free, 0.2);
     expect(free.distanceTo(turned(0, 0, 0.7))).toBeLessThan(1e-12);
+  });
+});
+
+/** Ten steps of 0.3 m, each `rise` m higher than the last, up along x from x = 1; and a ground. */
+function stairs(rise: number): Walls {
+  const meshes = Array.from({ length: 10 }, (_, step) => {
+    const mesh = new Mesh(new BoxGeometry(0.3, rise * (step + 1), 2));
+    mesh.position.set(1.15 + 0.3 * step, (rise * (step + 1)) / 2, 0);
+    return mesh;
+  });
+  return new Walls(() => meshes, () => [], () => 0);
+}
+
+function walk(walls: Walls, at: Vector3, x: number, steps: number): void {
+  for (let step = 0; step < steps; step++) {
+    const way = new Vector3(x, 0, 0);
+    walls.slide(at, way, 0.12);
+    at.add(way);
+  }
+}
+
+describe("stairs", () => {
+  it.each([0.15, 0.4])("of %s m are climbed and descended at the same height of the eyes above them", (rise) => {
+    const walls = stairs(rise);
+    const at = new Vector3(0, 1.6, 0);
+    walk(walls, at, 0.05, 78);
+    expect(at.x).toBeCloseTo(3.9, 5);
+    expect(at.y).toBeCloseTo(1.6 + 10 * rise, 3);
+    walk(walls, at, -0.05, 78);
+    expect(at.y).toBeCloseTo(1.6, 3);
+  });
+
+  it("of half a meter are not", () => {
+    const at = new Vector3(0, 1.6, 0);
+    walk(stairs(0.5), at, 0.05, 28);
+    expect(at.toArray()).toEqual([expect.closeTo(1.4, 5), expect.closeTo(1.6, 5), expect.closeTo(0, 5)]);
+  });
+
+  it("are no matter to who flies up and down in the open", () => {
+    const at = new Vector3(0, 1.6, 0);
+    const way = new Vector3(0, 0.1, 0);
+    stairs(0.2).slide(at, way, 0.12);
+    expect(way.distanceTo(new Vector3(0, 0.1, 0))).toBeLessThan(1e-12);
+  });
+});
+
+describe("static bodies", () => {
+  /** A static box of 1 x 2 x 4 m about (4, 0, 0), turned by 45 degrees about y, and a movable ball at (8, 0, 0). */
+  function made(): Walls {
+    const tested = new TestWorld();
+    const eighth = Math.PI / 8;
+    tested.set("style", style(0, "wall", part("box", [1, 2, 4, 0])), style(1, "ball", part("sphere", [1])));
+    tested.set("body", bodyEntity(0, { kind: BodyKind.static }), bodyEntity(1, { style: 1 }));
+    tested.poses([body(0, 4, [0, Math.sin(eighth), 0, Math.cos(eighth)]), body(1, 8)]);
+    return wallsOf(tested.world);
+  }
+
+  it("stop a walk, movable ones do not", () => {
+    const walls = made();
+    const at = new Vector3(2, 0, 0);
+    walk(walls, at, 0.05, 60);
+    // Its face is 0.5 m from its middle; the walker slides along it.
+    expect((4 - at.x + at.z) * Math.SQRT1_2).toBeGreaterThan(0.5 + 0.11);
+    const beyond = new Vector3(6, 0, 0);
+    walk(walls, beyond, 0.05, 60);
+    expect(beyond.x).toBeCloseTo(9, 5);
+  });
+
+  it("are met by a straight way at their surface, with its normal", () => {
+    const met: Obstacle = { share: 0, normal: new Vector3() };
+    made().meet(new Vector3(0, 0, 0), new Vector3(8, 0, 0), met);
+    expect(8 * met.share).toBeCloseTo(4 - 0.5 * Math.SQRT2, 2);
+    expect(met.normal.x).toBeCloseTo(-Math.SQRT1_2, 2);
+    made().meet(new Vector3(0, 3, 0), new Vector3(8, 3, 0), met);
+    expect(met.share).toBe(1);
+  });
+
+  it("are floors", () => {
+    const walls = made();
+    expect(walls.floorBelow(new Vector3(4, 5, 0))).toBeCloseTo(1, 2);
+    expect(walls.floorBelow(new Vector3(1, 5, 0))).toBe(-Infinity);
+  });
+});
+
+describe("a straight way", () => {
+  it.each([1e-6, 1, 1e3])("meets the first wall of several at its face, in a world of %s m", (size) => {
+    const { walls, turned } = room(size);
+    const met: Obstacle = { share: 0, normal: new Vector3() };
+    walls.meet(turned(1, 0, 0), turned(9, 0, 0), met);
+    expect(8 * met.share).toBeCloseTo(0.975, 4);
+    expect(met.normal.distanceTo(turned(-1 / size, 0, 0))).toBeLessThan(1e-3);
+    walls.meet(turned(1, 0, 0), turned(1.5, 0, 0), met);
+    expect(met.share).toBe(1);
   });
 });

@@ -7,7 +7,8 @@ import {
   type Object3D,
 } from "three";
 import { palette } from "../scene/materials.ts";
-import { Arc, arcPoints, throwArc } from "./arc.ts";
+import type { Obstacle, Walls } from "../scene/walls.ts";
+import { Arc, arcPoints, farthestLanding, throwArc } from "./arc.ts";
 import type { Input } from "./input.ts";
 import { WorldGrab } from "./world_grab.ts";
 
@@ -24,6 +25,8 @@ const pushRate = 0.9;
 const nearestHold = 0.15;
 const farthestHold = 20;
 const halfWidth = 0.009;
+/** Upward part of the normal of what is level enough to stand on: 30 degrees. */
+const levelFloor = 0.866;
 
 export class Locomotion {
   /** In the world. */
@@ -40,6 +43,9 @@ export class Locomotion {
   /** Where to face at the end of a teleport, rad to the left of the head's direction. */
   facing = 0;
 
+  /** Stop a teleport, and are landed on; null: nothing does. */
+  walls: Walls | null = null;
+
   private readonly rig_: Object3D;
   private readonly room_: Object3D;
   private readonly grab_: WorldGrab;
@@ -50,6 +56,9 @@ export class Locomotion {
   private readonly ring_ = new Group();
   private readonly ringMaterial_ = new MeshBasicMaterial({ transparent: true, depthWrite: false, toneMapped: false, fog: false });
   private readonly discMaterial_ = new MeshBasicMaterial({ transparent: true, opacity: 0.28, depthWrite: false, toneMapped: false, fog: false });
+  private readonly from_ = new Vector3();
+  private readonly to_ = new Vector3();
+  private readonly met_: Obstacle = { share: 1, normal: new Vector3() };
   private readonly ribbonPoints_ = new BufferAttribute(new Float32Array(6 * arcPoints), 3);
 
   /** `rig`: the user's place in the world; `room`: in it, scaled. */
@@ -194,6 +203,7 @@ export class Locomotion {
     const { origin, direction } = this.aiming.pointer;
     const scale = this.scale_;
     throwArc(origin, direction, floor, this.arc, scale);
+    this.meetWalls_();
     const flat = Math.hypot(direction[0], direction[2]);
     const sideX = scale * halfWidth * (flat > 1e-6 ? -direction[2] / flat : 1);
     const sideZ = scale * halfWidth * (flat > 1e-6 ? direction[0] / flat : 0);
@@ -214,6 +224,22 @@ export class Locomotion {
     this.ring_.position.set(landing[0], landing[1] + 0.006 * scale, landing[2]);
     this.ring_.scale.setScalar(scale);
     this.ring_.rotation.y = yaw + this.facing;
+  }
+
+  /** Ends the arc at the first thing that it meets: it lands on what is level, and nowhere behind a wall. */
+  private meetWalls_(): void {
+    const { walls, arc: { points, landing }, arc, from_: from, to_: to, met_: met } = this;
+    if (walls === null) return;
+    for (let index = 1; index < arcPoints; index++) {
+      from.fromArray(points, 3 * index - 3);
+      to.fromArray(points, 3 * index);
+      // Its end on the ground is no obstacle.
+      if (walls.meet(from, to, met).share >= 1 || (index === arcPoints - 1 && arc.valid && met.share > 0.999)) continue;
+      from.lerp(to, met.share).toArray(landing);
+      for (let rest = index; rest < arcPoints; rest++) from.toArray(points, 3 * rest);
+      arc.valid = met.normal.y > levelFloor && Math.hypot(from.x - points[0], from.z - points[2]) <= this.scale_ * farthestLanding;
+      return;
+    }
   }
 
   private go_(head: Vector3): boolean {

@@ -306,6 +306,11 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
     }
   }
 
+  /** Neither the simulator nor the script moves it. */
+  isFixed(slot: number): boolean {
+    return this.bodies_.get(slot)?.entity.kind === BodyKind.static;
+  }
+
   /** Number of drawn bodies. */
   get count(): number {
     return this.bodies_.size;
