@@ -314,6 +314,13 @@ void bind_room(nb::module_& module) {
           },
           "kind"_a, "position"_a, "Flash, sound and haptic pulse: 'break', 'join' or 'grab' at a place (m).")
       .def(
+          "pulse",
+          [](RoomObject& self, std::uint32_t client, const std::string& hand, double strength, double seconds) {
+            self.use().pulse(client, {hand, static_cast<float>(strength), static_cast<float>(seconds)});
+          },
+          "client"_a, "hand"_a, "strength"_a, "seconds"_a,
+          "A haptic pulse for one client. hand: 'left', 'right' or '', both. strength: from 0 to 1.")
+      .def(
           "take_input", [](RoomObject& self) { return self.use().take_input(); },
           "Events since the last call, in order of arrival.");
 }

@@ -45,6 +45,9 @@ NOTHING = {"slot": 0, "generation": 0}
 NO_COLOR = 0xFFFFFFFF
 
 
+STANCE = {"head": [0.5, 1.5, 2.0], "rotation": [0.5, 0.5, 0.5, 0.5], "scale": 0.25, "hands": [1.0, 2.0, 3.0]}
+STANCE_BYTES = vec3([0.5, 1.5, 2.0]) + quat([0.5, 0.5, 0.5, 0.5]) + pack("<f", 0.25) + array("f", [1, 2, 3])
+
 # name, message, bytes, values
 Vector = tuple[str, str, bytes, dict[str, Any]]
 
@@ -116,6 +119,7 @@ CLIENT: list[Vector] = [
         b"\x0c" + pack("<I", 7) + b"\x01" + pack("<I", 3) + b"PNG",
         {"request": 7, "is_last": True, "data": [80, 78, 71]},
     ),
+    ("presence", "presence", b"\x0d" + STANCE_BYTES, {"stance": STANCE}),
 ]
 
 BODIES = [
@@ -293,6 +297,18 @@ SERVER: list[Vector] = [
         {"clicks": True, "hovers": False, "keys": ["k", " "]},
     ),
     ("ask_picture", "ask_picture", b"\x4f" + pack("<I", 7), {"request": 7}),
+    (
+        "people",
+        "people",
+        b"\x50" + pack("<II", 1, 2) + STANCE_BYTES,
+        {"people": [{"client": 2, "stance": STANCE}]},
+    ),
+    (
+        "pulse",
+        "pulse",
+        b"\x51" + text("left") + pack("<2f", 0.5, 0.125),
+        {"hand": "left", "strength": 0.5, "seconds": 0.125},
+    ),
 ]
 
 PART = {
@@ -418,7 +434,8 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
         + text("")
         + pack("<I", 1)
         + text("one")
-        + b"\x01",
+        + b"\x01"
+        + pack("<I", 3),
         {
             "kind": 1,
             "label": "gravity",
@@ -431,6 +448,7 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
             "text": "",
             "options": ["one"],
             "enabled": True,
+            "client": 3,
         },
     ),
     (
@@ -513,6 +531,20 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
         "texture",
         text("0a1b") + pack("<I", 3) + b"\x89PN" + pack("<2f", 2, 0.5),
         {"name": "0a1b", "image": [0x89, 0x50, 0x4E], "repeat_u": 2.0, "repeat_v": 0.5},
+    ),
+    (
+        "light",
+        b"\x01" + anchor(A) + anchor(B) + pack("<IfffB", 0xFF8000, 2, 0.5, 0.25, 1),
+        {
+            "kind": 1,
+            "at": A,
+            "to": B,
+            "color": 0xFF8000,
+            "intensity": 2.0,
+            "reach": 0.5,
+            "angle": 0.25,
+            "shadow": True,
+        },
     ),
     ("frame", anchor(A) + quat([0.5, 0.5, 0.5, 0.5]), {"at": A, "rotation": [0.5, 0.5, 0.5, 0.5]}),
 ]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A smooth surface around particles, wherever they go."""
+"""Implicit surfaces around points."""
 
 from __future__ import annotations
 
@@ -21,11 +21,9 @@ def skin(positions: Any, radius: float, cell: float | None = None) -> tuple[NDAr
     grid of samples, m; None: a third of the radius. Returns points (m, 3) and triangles (k, 3), closed
     and turned outwards. Raises ValueError where the grid would be too large.
 
-        surface = world.surface(*effects.skin(places(), 0.1))
+    `World.skin` draws it.
 
-        @world.on_frame
-        def follow():
-            surface.points, surface.triangles = effects.skin(places(), 0.1)
+        points, triangles = effects.skin(system.positions, 0.1)
     """
     places = np.asarray(positions, float).reshape(-1, 3)
     cell = radius / 3 if cell is None else cell

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t max_waiting_input = 4096;
 constexpr std::size_t max_holds = 32;
 constexpr std::string_view clients_key = "clients";
+constexpr std::string_view people_key = "people";
 constexpr std::size_t max_picture_bytes = 64 << 20;
 constexpr std::size_t max_kept_notices = 8;
 constexpr auto reset_pause = std::chrono::seconds(1);  // for one client
@@ -131,6 +132,12 @@ bool Hub::effect(std::string_view kind, const Vec3f& position) {
   return post([this, frame = make_frame(protocol::Effect{std::string(kind), position})] { broadcast(frame); });
 }
 
+bool Hub::pulse(std::uint32_t client, const protocol::Pulse& pulse) {
+  return post([this, client, frame = make_frame(pulse)] {
+    if (const auto found = clients_.find(client); found != clients_.end()) found->second.link->send(frame, {});
+  });
+}
+
 std::vector<InputEvent> Hub::take_input() {
   const std::lock_guard lock(in_mutex_);
   input_counts_.clear();
@@ -192,7 +199,10 @@ std::pair<std::uint32_t, std::string> Hub::join(ClientLink& link, const protocol
 }
 
 void Hub::leave(std::uint32_t client) {
-  if (clients_.erase(client) == 0) return;
+  const auto found = clients_.find(client);
+  if (found == clients_.end()) return;
+  if (found->second.stance) tell_people();
+  clients_.erase(found);
   --counters_.clients;
   tell_clients();
   InputEvent event{.kind = InputEvent::Kind::leave, .client = client};
@@ -249,8 +259,20 @@ void Hub::tell_clients() {
   if (std::exchange(are_clients_told_, false)) call_frame_();
 }
 
+void Hub::tell_people() {
+  if (std::exchange(are_people_told_, false)) call_frame_();
+}
+
+protocol::People Hub::all_people() const {
+  protocol::People message;
+  for (const auto& [number, client] : clients_)
+    if (client.stance) message.people.push_back({number, *client.stance});
+  return message;
+}
+
 void Hub::frame() {
   if (!std::exchange(are_clients_told_, true)) broadcast(make_frame(all_clients()), clients_key);
+  if (!std::exchange(are_people_told_, true)) broadcast(make_frame(all_people()), people_key);
 }
 
 void Hub::push_input(InputEvent event) {
@@ -392,6 +414,15 @@ void Hub::handle(std::uint32_t client, const protocol::Picture& message) {
   event.is_final = message.is_last;
   event.data = message.data;
   push_input(std::move(event));
+}
+
+void Hub::handle(std::uint32_t client, const protocol::Presence& message) {
+  const protocol::Stance& stance = message.stance;
+  const bool are_hands_near = std::ranges::all_of(stance.hands, [](float x) { return std::abs(x) <= farthest; });
+  if (!is_near(stance.head) || !are_hands_near) return refuse_frame(client, "presence: it is beyond 1e9 m");
+  if (stance.hands.size() % 3 != 0) return refuse_frame(client, "presence: a hand has three coordinates");
+  clients_.at(client).stance = stance;
+  tell_people();
 }
 
 void Hub::handle(std::uint32_t client, const protocol::Ping& message) {

@@ -17,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -67,6 +68,7 @@ class Hub {
   [[nodiscard]] bool forget_notice(std::string_view title);
   [[nodiscard]] bool ask_picture(std::uint32_t client, std::uint32_t number);
   [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position);
+  [[nodiscard]] bool pulse(std::uint32_t client, const protocol::Pulse& pulse);
   std::vector<InputEvent> take_input();
 
   // --- on the server's thread
@@ -99,6 +101,7 @@ class Hub {
     bool is_told_to_wait = false;                           ///< of too frequent resets
     std::uint32_t picture = 0;                              ///< number of the requested one; 0: none
     std::size_t picture_bytes = 0;                          ///< received bytes
+    std::optional<protocol::Stance> stance;                 ///< where its user is
   };
   using Edit = std::function<void()>;
 
@@ -107,6 +110,9 @@ class Hub {
   protocol::Clients all_clients() const;
   /// Sends the list of clients with the next frame, as many may join, leave and select at once.
   void tell_clients();
+  /// The same for the places of users.
+  void tell_people();
+  protocol::People all_people() const;
   [[nodiscard]] bool set_latest(std::string key, Frame frame);
   void push_input(InputEvent event);
   void tell(std::uint32_t client, const protocol::Notice& notice);
@@ -127,6 +133,7 @@ class Hub {
   void handle(std::uint32_t client, const protocol::Pointer& message);
   void handle(std::uint32_t client, const protocol::Key& message);
   void handle(std::uint32_t client, const protocol::Picture& message);
+  void handle(std::uint32_t client, const protocol::Presence& message);
 
   const std::string world_;
   const std::size_t max_clients_;
@@ -151,6 +158,7 @@ class Hub {
   std::vector<std::pair<std::string, Frame>> latest_;  ///< in the order in which keys were first set
   std::vector<std::pair<std::string, Frame>> kept_notices_;
   bool are_clients_told_ = true;
+  bool are_people_told_ = true;
   EntityStore entities_;
   std::vector<Edit> delivering_;
   std::vector<EntityChanges> delivered_changes_;

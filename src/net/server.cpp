@@ -315,6 +315,8 @@ void Room::forget_notice(std::string_view title) { deliver_if(hub_->forget_notic
 
 void Room::effect(std::string_view kind, const Vec3f& position) { deliver_if(hub_->effect(kind, position)); }
 
+void Room::pulse(std::uint32_t client, const protocol::Pulse& pulse) { deliver_if(hub_->pulse(client, pulse)); }
+
 std::vector<InputEvent> Room::take_input() { return hub_->take_input(); }
 
 }  // namespace iota::net

@@ -110,6 +110,9 @@ class Room {
   /// Flash, sound and haptic pulse: "break", "join" or "grab" at a place in the world. Throws std::invalid_argument
   /// for a place that is not finite, std::length_error for a kind above 32 bytes.
   void effect(std::string_view kind, const Vec3f& position);
+  /// A haptic pulse in the hands of one user. Throws std::invalid_argument for numbers that are not finite,
+  /// std::length_error for a hand above 32 bytes.
+  void pulse(std::uint32_t client, const protocol::Pulse& pulse);
 
   /// Events since the last call, in order of arrival. Successive moves of one grip are merged.
   /// A `leave` ends the client's holds and selection: no grab_end precedes it.

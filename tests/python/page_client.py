@@ -33,10 +33,19 @@ NOTHING = (0, 0)  # in place of an id: slot and generation
 def encode(name: str, /, **values: Any) -> bytes:
     """One message to the server."""
     message = TO_SERVER[name]
-    out = bytes([message["type"]])
-    for field in message["fields"]:
+    return bytes([message["type"]]) + fields(name, message["fields"], dict(values))
+
+
+def fields(name: str, described: list[dict[str, Any]], values: dict[str, Any]) -> bytes:
+    """Those of a message or of a struct."""
+    out = b""
+    for field in described:
         value, kind = values.pop(field["name"]), field["type"]
-        if kind in ("string", "bytes"):
+        if isinstance(kind, dict) and "struct" in kind:
+            out += fields(kind["struct"], STRUCTS[kind["struct"]], dict(value))
+        elif isinstance(kind, dict):
+            out += struct.pack(f"<I{len(value)}{NUMBERS[kind['array']]}", len(value), *value)
+        elif kind in ("string", "bytes"):
             text = value.encode() if kind == "string" else value
             out += struct.pack("<I", len(text)) + text
         else:

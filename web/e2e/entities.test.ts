@@ -201,6 +201,26 @@ describe("the script hears", () => {
     await expect.poll(async () => Math.abs((await light()) - day)).toBeLessThan(3);
   });
 
+  it("of a lamp that it switches on: its light is on the ground below it, and nowhere else", async () => {
+    const red = (x: number, z: number) => tab.page.evaluate(([px, pz]) => {
+      const { viewer: { renderer, scene, camera } } = iota.page;
+      const gl = renderer.getContext();
+      renderer.render(scene, camera);
+      const clip = camera.position.clone().set(px, 0, pz).project(camera);
+      const pixels = new Uint8Array(4);
+      const at = [clip.x * gl.drawingBufferWidth, clip.y * gl.drawingBufferHeight].map((value, axis) => Math.round((value + [gl.drawingBufferWidth, gl.drawingBufferHeight][axis]) / 2));
+      gl.readPixels(at[0], at[1], 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      return pixels[0] / pixels[2];
+    }, [x, z] as const);
+    const before = [await red(-0.4, 1.2), await red(0.6, 1.2)];
+    await tab.page.keyboard.press("l");
+    await expect.poll(() => red(-0.4, 1.2), { timeout: 30_000 }).toBeGreaterThan(1.1 * before[0]);
+    expect(await red(0.6, 1.2)).toBeLessThan(1.04 * before[1]);
+    await tab.picture("page_lamp");
+    await tab.page.keyboard.press("l");
+    await expect.poll(() => red(-0.4, 1.2), { timeout: 30_000 }).toBeLessThan(1.04 * before[0]);
+  });
+
   it("of a picture that it asks for, and a user takes one by a key", async () => {
     await tab.page.keyboard.press("i");
     // Independent of the page's resolution.

@@ -38,6 +38,13 @@ def build() -> iota.World:
     def dusk() -> None:
         night.visible = not night.visible
 
+    lamp = world.light("spot", at=(-0.4, 1.5, 1.2), color="#ff4020", intensity=3, reach=1.5, angle=0.3, shadow=True)
+    lamp.visible = False
+
+    @world.on_key("l")
+    def light() -> None:
+        lamp.visible = not lamp.visible
+
     return world
 
 

@@ -122,7 +122,7 @@ describe("the wrist panel's layout", () => {
   it("has the script's controls, which do what their presses say", () => {
     const changes: [string, number][] = [];
     const made = (kind: WidgetKind, label: string, extra: Partial<WidgetEntity> = {}): WidgetEntity => ({
-      id: { slot: 0, generation: 1 }, kind, label, help: "", unit: "", value: 0, minimum: 0, maximum: 0, step: 0, text: "", options: [], enabled: true, ...extra,
+      id: { slot: 0, generation: 1 }, kind, label, help: "", unit: "", value: 0, minimum: 0, maximum: 0, step: 0, text: "", options: [], enabled: true, client: 0, ...extra,
     });
     const rows = controlRows([
       made(WidgetKind.slider, "gravity", { minimum: 0, maximum: 20, value: 9.5, unit: "m/s²" }),

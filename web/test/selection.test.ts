@@ -52,6 +52,20 @@ describe("the selection", () => {
     expect(bench.sent).toMatchObject([{ type: "select", body: id(1, 5) }, { type: "grabStart", body: id(1, 5) }]);
   });
 
+  it("passes a pulse of the script to the hand that it names", () => {
+    const bench = new Bench();
+    const felt: [string, number, number][] = [];
+    for (const name of ["left", "right"]) {
+      const hand = new Pointer(name);
+      hand.pulse = (strength, milliseconds) => felt.push([name, strength, milliseconds]);
+      bench.selection.gestures.add(hand);
+    }
+    bench.selection.pulse("left", 0.75, 0.25);
+    expect(felt).toEqual([["left", 0.75, 250]]);
+    bench.selection.pulse("", 0.5, 0.1);
+    expect(felt.map(([name]) => name)).toEqual(["left", "left", "right"]);
+  });
+
   it("does not pass to another body that gets the slot of a selected one", () => {
     const bench = new Bench();
     bench.selection.select(1);

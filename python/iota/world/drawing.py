@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 from iota.looks import Look, material_of
 from iota.simulator import SimulatedBody
@@ -15,6 +15,7 @@ from iota.world.shown import (
     Arrow,
     Axes,
     Label,
+    Light,
     Line,
     Marker,
     Paint,
@@ -27,6 +28,7 @@ from iota.world.shown import (
     Tube,
     Viewpoint,
 )
+from iota.world.skins import Skin
 from iota.world.state import State
 from iota.world.things import Attachable, Frame, Place, Thing
 from iota.world.widgets import Button, Callback, Checkbox, Choice, Plot, Slider, TextField
@@ -49,7 +51,7 @@ def _triangles_of(surface: Any) -> tuple[Any, Any]:
 
 
 class Drawing:
-    """Labels, lines, tubes, arrows, axes, traces, points, shapes, struts, surfaces, colors of bodies, frames; buttons, sliders,
+    """Labels, lines, tubes, arrows, axes, traces, points, shapes, struts, surfaces, skins, lights, colors of bodies, frames; buttons, sliders,
     check boxes, choices, texts and plots.
 
     A place is a particle, a body, a bond, a frame or a point of the world (m). A thing on one of these moves with it,
@@ -207,6 +209,22 @@ class Drawing:
             coordinates=coordinates,
         )
 
+    def skin(
+        self,
+        particles: Any,
+        radius: float,
+        cell: float | None = None,
+        color: Color = None,
+        material: str = "paint",
+    ) -> Skin:
+        """A smooth closed surface around particles or bodies, or around the places (n, 3) that a function returns: it moves,
+        splits and merges with them. radius: around a single one, m. cell: of its grid of samples, m; None: a third of
+        the radius; a smaller one is smoother and slower. Raises ValueError where the grid would be too large.
+
+        world.skin(block.points, 0.1, color="#4c9a52cc")
+        """
+        return Skin(self._state.things, particles=particles, radius=radius, cell=cell, color=color, material=material)
+
     def paint(self, bodies: Any, color: Any) -> Paint:
         """Colors of bodies, instead of those of their materials. color: one, one for each body, or an array (n, 3) from
         0 to 1.
@@ -240,6 +258,38 @@ class Drawing:
         world.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.5)  # a night
         """
         return Stage(self._state.things, sky=sky, horizon=horizon, ground=ground, light=light)
+
+    def light(
+        self,
+        kind: Literal["point", "spot", "sun"] = "point",
+        at: Place = (0, 1, 0),
+        to: Place = None,
+        color: Color = None,
+        intensity: float = 1.0,
+        reach: float = 0.0,
+        angle: float = 0.5,
+        shadow: bool = False,
+    ) -> Light:
+        """A lamp besides the page's own, at a place or on what moves. A spot and the sun shine from `at` to `to`; without
+        `to` a spot shines straight down, the sun on the origin. intensity: 1 is as bright at the distance `reach` (m; 0:
+        half the diagonal of the scene) as the page's own lamp; the sun is so everywhere. angle: of a spot, from its axis
+        to its edge, rad. shadow: of a spot or the sun. Raises ValueError for a ninth light, and a third with shadows.
+
+        world.stage(sky="#05070d", horizon="#141b29", ground="#2a2d33", light=0.1)
+        world.light("spot", at=(0, 3, 0), color="#ffd9a0", reach=3, shadow=True)
+        world.light("point", at=firefly, color="#b8ff60", reach=0.3)
+        """
+        return Light(
+            self._state.things,
+            kind,
+            shadow,
+            at=at,
+            to=to,
+            color=color,
+            intensity=intensity,
+            reach=reach,
+            angle=angle,
+        )
 
     # --- controls for users -----------------------------------------------------------------------------------
 

@@ -6,13 +6,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from iota._core import Body, Grip, InputEvent, System
 from iota.saving import replacing
 from iota.simulator import SimulatedGrip
 
 TakePicture = Callable[[int, float], bytes]  # client, time limit in s
+SendPulse = Callable[[int, str, float, float], None]  # client, hand, strength, s
+LONGEST_PULSE = 5.0  # s
 
 
 @dataclass
@@ -32,6 +34,28 @@ class Client:
     selected: Body | None = None
     holds: dict[int, Hold] = field(default_factory=dict)
     take_picture: TakePicture | None = field(default=None, repr=False, compare=False)
+    send_pulse: SendPulse | None = field(default=None, repr=False, compare=False)
+
+    def pulse(
+        self, hand: Literal["left", "right", "both"] = "both", strength: float = 0.5, seconds: float = 0.05
+    ) -> None:
+        """A haptic pulse in the user's hands, for this client alone; a phone vibrates on "both". strength: from 0 to 1.
+        seconds: at most 5.
+
+            @world.on_contact(hammer)
+            def struck(event):
+                for client in world.clients:
+                    if world.held(client.id) == hammer:
+                        client.pulse("right", 0.8)
+        """
+        if hand not in ("left", "right", "both"):
+            raise ValueError(f"hand must be left, right or both, not {hand!r}")
+        if not (0 <= strength <= 1 and 0 <= seconds <= LONGEST_PULSE):
+            raise ValueError(
+                f"a pulse has a strength from 0 to 1 and lasts up to {LONGEST_PULSE:g} s, not {strength}, {seconds}"
+            )
+        if self.send_pulse is not None:
+            self.send_pulse(self.id, "" if hand == "both" else hand, strength, seconds)
 
     def screenshot(self, file: str | Path | None = None, seconds: float = 20.0) -> bytes:
         """The page's current picture, as a PNG file; also written to `file`. The world waits for it, at most `seconds`.
@@ -58,11 +82,14 @@ class Hands:
         self._system = system
         self.clients: dict[int, Client] = {}
         self.take_picture: TakePicture | None = None
+        self.send_pulse: SendPulse | None = None
 
     def take(self, event: InputEvent, body: Any) -> None:
         """Handles an event of kind join, leave, select or grab_*. body: of the event, if any."""
         if event.kind == "join":
-            self.clients[event.client] = Client(event.client, event.name, take_picture=self.take_picture)
+            self.clients[event.client] = Client(
+                event.client, event.name, take_picture=self.take_picture, send_pulse=self.send_pulse
+            )
             return
         client = self.clients.get(event.client)
         if client is None:

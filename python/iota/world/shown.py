@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Vec3
-from iota._protocol import NO_BODY, NO_COLOR
+from iota._protocol import NO_BODY, NO_COLOR, LightKind
 from iota.looks import Look
 from iota.simulator import SimulatedBody
 from iota.textures import Texture, lay_flat, material_name, texture_of
@@ -19,6 +19,7 @@ from iota.world.things import (
     Attachable,
     Field,
     Thing,
+    Things,
     anchor,
     color,
     ends,
@@ -33,6 +34,9 @@ from iota.world.things import (
 from iota.world.things import color as any_color
 
 MOST_TRACE = 16384
+LAMPS = {"point": LightKind.POINT, "spot": LightKind.SPOT, "sun": LightKind.SUN}
+MOST_LIGHTS = 8
+MOST_SHADOWS = 2  # each is one more picture of the scene in every frame
 
 
 class Label(Thing):
@@ -425,3 +429,36 @@ class Stage(Thing):
 
     def _record(self) -> dict[str, Any] | None:
         return self._values
+
+
+class Light(Thing):
+    """A lamp besides the page's own. lamp: "point", "spot" or "sun". at, to: places; a spot and the sun shine from one
+    to the other, a spot without `to` straight down, the sun without `to` on the origin. intensity: 1 is as bright at the
+    distance `reach` (m; 0: half the diagonal of the scene) as the page's own lamp; the sun is so everywhere. angle: of a
+    spot, from its axis to its edge, rad. shadow: things cast shadows in it, not for a point."""
+
+    kind = "light"
+    shadow: bool
+    at, color, angle = Field(place), Field(color), Field(number(0.01, 1.5))
+    to = Field(lambda value: None if value is None else place(value))
+    intensity, reach = Field(number(0, 1000)), Field(length)
+
+    def __init__(self, things: Things, lamp: str, shadow: bool, **values: Any) -> None:
+        if lamp not in LAMPS:
+            raise ValueError(f"kind: must be one of {', '.join(LAMPS)}, not {lamp!r}")
+        if shadow and lamp == "point":
+            raise ValueError("shadow: a point casts none, as it would take six pictures of the scene; use a spot")
+        others = [thing for thing in things if isinstance(thing, Light)]
+        if len(others) >= MOST_LIGHTS:
+            raise ValueError(f"a world has at most {MOST_LIGHTS} lights; destroy another one first")
+        if shadow and sum(light.shadow for light in others) >= MOST_SHADOWS:
+            raise ValueError(f"shadow: at most {MOST_SHADOWS} lights of a world cast shadows")
+        self.lamp, self.shadow = lamp, bool(shadow)
+        super().__init__(things, **values)
+
+    def _record(self) -> dict[str, Any] | None:
+        at = anchor(self.at)
+        to = anchor(self.to) if self.to is not None or self.lamp == "sun" else at
+        if at is None or to is None:
+            return None
+        return self._values | {"kind": LAMPS[self.lamp], "at": at, "to": to, "shadow": self.shadow}

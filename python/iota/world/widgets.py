@@ -19,15 +19,17 @@ MOST_SAMPLES = 400  # of a plot
 
 
 class Widget(Thing):
-    """A control. value: assigning it updates all pages and calls no function. enabled: users may change it."""
+    """A control. value: assigning it updates all pages and calls no function. enabled: users may change it. client: the number
+    of the only client that has it, as in `Event.client`; 0: all have."""
 
     kind = "widget"
     form: WidgetKind
     label, help, enabled = Field(text), Field(text), Field(bool)
+    client = Field(lambda value: int(number(0, 2**32 - 1)(value)))
 
     def __init__(self, things: Things, label: str, **values: Any) -> None:
         self._hooks: list[Hook] = []
-        super().__init__(things, label=label, **{"help": "", "enabled": True} | values)
+        super().__init__(things, label=label, **{"help": "", "enabled": True, "client": 0} | values)
 
     def on_change(self, function: Callback) -> Callback:
         """Decorator: calls a function after a user has changed it (pressed it, for a button); it gets one Event, or nothing."""
@@ -36,7 +38,7 @@ class Widget(Thing):
 
     def take(self, value: float, typed: str, event: Event, guard: Guard) -> None:
         """Applies a user's change. Values out of range are corrected."""
-        if not self.enabled:
+        if not self.enabled or self.client not in (0, event.client):
             return
         self._set(value, typed)
         for hook in list(self._hooks):

@@ -29,6 +29,7 @@ from iota.world.lan import Lan
 from iota.world.publisher import Publisher
 from iota.world.scene import Camera
 from iota.world.server import Server
+from iota.world.skins import Skin
 from iota.world.state import TIES, State
 from iota.world.stepper import Stepper
 from iota.world.summary import RunSummary
@@ -531,7 +532,7 @@ class World(Interacting):
         assert self._publisher is not None
         self._inputs.frame()
         for thing in self.things:
-            if isinstance(thing, Plot):
+            if isinstance(thing, Plot | Skin):
                 thing.sample(self.system.time, self._guard)
         with self._state.costs.of("pages"):
             self._publisher.frame()

@@ -122,6 +122,49 @@ TEST_F(HubTest, tells_a_client_of_its_own_and_all_of_what_is_for_all) {
   EXPECT_EQ(two.all<protocol::Effect>().at(0).kind, "break");
 }
 
+TEST_F(HubTest, sends_a_pulse_to_one_client) {
+  Link one, two;
+  const std::uint32_t first = join(one);
+  join(two);
+  (void)hub.pulse(first, {"left", 0.5F, 0.1F});
+  (void)hub.pulse(99, {"left", 0.5F, 0.1F});
+  hub.deliver();
+  EXPECT_EQ(one.all<protocol::Pulse>().at(0).hand, "left");
+  EXPECT_TRUE(two.all<protocol::Pulse>().empty());
+}
+
+TEST_F(HubTest, tells_all_where_users_are_once_a_frame) {
+  Link one, two;
+  const std::uint32_t first = join(one);
+  const std::uint32_t second = join(two);
+  hub.frame();
+  for (const float x : {1.0F, 2.0F, 3.0F}) receive(first, protocol::Presence{{{x, 0, 0}, {0, 0, 0, 1}, 1, {}}});
+  receive(second, protocol::Presence{{{7, 0, 0}, {0, 0, 0, 1}, 1, {1, 2, 3}}});
+  EXPECT_TRUE(two.all<protocol::People>().empty());
+  hub.frame();
+  hub.frame();
+  const auto told = two.all<protocol::People>();
+  ASSERT_EQ(told.size(), 1u);
+  ASSERT_EQ(told[0].people.size(), 2u);
+  EXPECT_EQ(told[0].people[0].client, first);
+  EXPECT_EQ(told[0].people[0].stance.head[0], 3.0F) << "the newest";
+  EXPECT_EQ(told[0].people[1].stance.hands.size(), 3u);
+  hub.leave(second);
+  hub.frame();
+  EXPECT_EQ(one.all<protocol::People>().back().people.size(), 1u);
+}
+
+TEST_F(HubTest, refuses_a_place_of_a_user_that_is_far_or_not_whole) {
+  Link link;
+  const std::uint32_t client = join(link);
+  receive(client, protocol::Presence{{{3e9F, 0, 0}, {0, 0, 0, 1}, 1, {}}});
+  EXPECT_NE(link.last_notice().find("beyond 1e9 m"), std::string::npos);
+  receive(client, protocol::Presence{{{0, 0, 0}, {0, 0, 0, 1}, 1, {1, 2}}});
+  EXPECT_NE(link.last_notice().find("three coordinates"), std::string::npos);
+  hub.frame();
+  EXPECT_TRUE(link.all<protocol::People>().empty());
+}
+
 TEST_F(HubTest, gives_the_latest_of_each_message_and_kept_notices_to_late_joiners) {
   (void)hub.set(protocol::WorldSettings{.title = "old"});
   (void)hub.set(protocol::WorldSettings{.title = "new"});

@@ -18,6 +18,8 @@ namespace {
 
 using test::golden;
 
+const Stance stance{{0.5F, 1.5F, 2}, {0.5F, 0.5F, 0.5F, 0.5F}, 0.25F, {1, 2, 3}};
+
 /// The values of protocol/golden/vectors.json, by name.
 const std::map<std::string, ClientMessage>& client_vectors() {
   static const std::map<std::string, ClientMessage> vectors{
@@ -36,6 +38,7 @@ const std::map<std::string, ClientMessage>& client_vectors() {
       {"pointer", Pointer{PointerKind::hover, {12, 1}, "mouse", {0.5F, 1, 2}, {0, 1.5F, 4}, {0, 0, -1}}},
       {"key", Key{"ArrowUp", true}},
       {"picture", Picture{7, true, {'P', 'N', 'G'}}},
+      {"presence", Presence{stance}},
   };
   return vectors;
 }
@@ -70,6 +73,8 @@ const std::map<std::string, ServerMessage>& server_vectors() {
       {"actions", Actions{{{"push", "p", "push it", "", ActionTarget::body, ControllerButton::b}}}},
       {"listens", Listens{true, false, {"k", " "}}},
       {"ask_picture", AskPicture{7}},
+      {"people", People{{{2, stance}}}},
+      {"pulse", Pulse{"left", 0.5F, 0.125F}},
   };
   return vectors;
 }
@@ -84,7 +89,7 @@ const Part mesh{"chain", {"mesh", {}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}}, {
 const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEntity, NailEntity, ParticleSetEntity,
                  StaticShapeEntity, LabelEntity, LineEntity, ArrowEntity, AxesEntity, TraceEntity, PointCloudEntity,
                  MarkerEntity, WidgetEntity, PlotEntity, SurfaceEntity, PaintEntity, ShapeSetEntity, StrutEntity,
-                 FrameEntity, TubeEntity, ViewpointEntity, StageEntity, TextureEntity>
+                 FrameEntity, TubeEntity, ViewpointEntity, StageEntity, TextureEntity, LightEntity>
     entity_vectors{{entity_id, "link", {torus, mesh}},
                    {entity_id, BodyKind::scripted, 9, true, 0.125F},
                    {entity_id, 40000},
@@ -100,7 +105,7 @@ const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEnti
                    {entity_id, on_body, 2.5F, 1000, 0, no_color},
                    {entity_id, in_world, {0, 1, 2, 3, 4, 5}, {0.5F}, {0xFF8000, 0x80FF}},
                    {entity_id, 12, torus},
-                   {entity_id, WidgetKind::slider, "gravity", "", "m/s\u00b2", 9.81, 0, 20, 0.5, "", {"one"}, true},
+                   {entity_id, WidgetKind::slider, "gravity", "", "m/s\u00b2", 9.81, 0, 20, 0.5, "", {"one"}, true, 3},
                    {entity_id, "energy", "J", 10, {"kinetic", "potential"}, {1, 2}, {0.5F, 1}, {1, 2, 3, 4}},
                    {entity_id,
                     in_world,
@@ -117,7 +122,8 @@ const std::tuple<StyleEntity, BodyEntity, MembershipEntity, TieEntity, JointEnti
                    {entity_id, {}, {0, 1, 2, 3, 4, 5}, 0.25F, true, "rope", no_color},
                    {entity_id, "driver", on_body, in_world},
                    {entity_id, 0x0B1020, 0x203040, no_color, 0.5F},
-                   {entity_id, "0a1b", {0x89, 'P', 'N'}, 2, 0.5F}};
+                   {entity_id, "0a1b", {0x89, 'P', 'N'}, 2, 0.5F},
+                   {entity_id, LightKind::spot, on_body, in_world, 0xFF8000, 2, 0.5F, 0.25F, true}};
 
 template <class Variant>
 std::vector<std::uint8_t> encode_any(const Variant& message) {

@@ -23,10 +23,10 @@ function socketUrl(): string {
   return url.href;
 }
 
-/** The world and the role in the page's address. */
+/** The world, the role and the user's name in the page's address. */
 function requestOf(search: string): JoinRequest {
   const asked = new URLSearchParams(search);
-  return { world: asked.get("world") ?? "", role: asked.get("role") === "viewer" ? Role.viewer : Role.actor, name: "" };
+  return { world: asked.get("world") ?? "", role: asked.get("role") === "viewer" ? Role.viewer : Role.actor, name: (asked.get("name") ?? "").slice(0, 40) };
 }
 
 /** The panel of controls is loaded with the first control, as most worlds have none. */
@@ -64,8 +64,8 @@ function wallsWhenWalking({ navigation, world }: Page): void {
   navigation.walls = {
     slide: () => {
       navigation.walls = null;
-      void import("../scene/walls.ts").then(({ Walls }) => {
-        navigation.walls = new Walls(() => world.entities.staticShape.meshes());
+      void import("../page/walking.ts").then(({ wallsOf }) => {
+        navigation.walls = wallsOf(world);
       });
     },
   };

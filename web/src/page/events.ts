@@ -34,6 +34,8 @@ export interface PageListener {
   notice?(notice: PageNotice): void;
   /** break, join or grab at a place (world, m). */
   effect?(kind: string, position: Readonly<Vec3>): void;
+  /** The script's: in the left or right hand, or with an empty name in both; strength from 0 to 1. */
+  pulse?(hand: string, strength: number, seconds: number): void;
   hover?(pointer: Pointer, body: number): void;
   grab?(grab: Grab, phase: "start" | "end"): void;
   pressNothing?(pointer: Pointer): void;
@@ -75,6 +77,10 @@ export class Events implements Required<PageListener> {
     while (this.effects_.length > 0 && now - this.effects_[0] > calmMs) this.effects_.shift();
     if (this.effects_.push(now) > mostEffects) return;
     for (const listener of this.listeners_) listener.effect?.(kind, position);
+  }
+
+  pulse(hand: string, strength: number, seconds: number): void {
+    for (const listener of this.listeners_) listener.pulse?.(hand, strength, seconds);
   }
 
   hover(pointer: Pointer, body: number): void {

@@ -12,7 +12,7 @@ import type { Session } from "./session.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
 
 /** Colors of other people, by client number. */
-const others = ["#8d6fd1", "#3f7fd0", "#c2863a", "#4c9a52", "#c0508e"].map((code) => new Color(code));
+export const others = ["#8d6fd1", "#3f7fd0", "#c2863a", "#4c9a52", "#c0508e"].map((code) => new Color(code));
 const mostOthers = 6;
 /** Several selected bodies are tinted: an outline for each would be drawn one by one. */
 const severalTint = 0.6;

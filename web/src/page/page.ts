@@ -60,7 +60,7 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
       if (what === "actions") commands.script = scriptCommands(world.actions, parts);
     },
   };
-  events.add(actions, selection, flashesOf(flashes, parts), sound, applySettings(parts), framing);
+  events.add(actions, selection, flashesOf(flashes, parts), sound, applySettings(parts), framing, othersOf(parts));
   viewer.lookDistance = () => navigation.distance;
   const themes = new Themes(parts, highlights);
   viewer.add(themes, { draw: () => void viewer.camera.getWorldPosition(world.eye) });
@@ -113,6 +113,18 @@ class Themes implements FramePart {
     this.highlights_.setTheme(theme);
     particleSet.setTheme(theme);
   }
+}
+
+/** Other users, fetched with the second one. */
+function othersOf({ world, session, viewer }: PageParts): PageListener {
+  let asked = false;
+  return {
+    changed: (what) => {
+      if (asked || what !== "clients" || world.clients.length < 2) return;
+      asked = true;
+      void import("./people.ts").then(({ People }) => viewer.add(new People(world, session, viewer)));
+    },
+  };
 }
 
 /** The ground at the script's height. */

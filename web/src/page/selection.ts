@@ -136,6 +136,10 @@ export class Selection implements GestureListener, FramePart, PageListener {
     if (this.selected_ === body) this.selectMany([...this.more_]);
   }
 
+  pulse(hand: string, strength: number, seconds: number): void {
+    for (const pointer of this.gestures.pointers) if (hand === "" || pointer.name === hand) pointer.pulse(strength, 1000 * seconds);
+  }
+
   link(state: LinkState): void {
     if (state !== "connected") this.gestures.releaseAll();
     else if (this.selected_ >= 0) this.session_.select(this.selected_);

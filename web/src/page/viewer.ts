@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws, flat or in a headset: renderer, camera, stage, and the frame that calls all parts of the page.
 
-import { ACESFilmicToneMapping, Group, PCFShadowMap, PerspectiveCamera, Scene, WebGLRenderer, type Object3D } from "three";
+import { ACESFilmicToneMapping, Group, PCFShadowMap, PerspectiveCamera, Scene, WebGLRenderer, type Object3D, type Vector3 } from "three";
 import { Stage } from "../scene/stage.ts";
 import { allowAnisotropy } from "../scene/textures.ts";
 
@@ -58,6 +58,9 @@ export class Viewer {
 
   /** While a film is made, frames are drawn on request, none is skipped, and nothing covers the picture. */
   filming = false;
+
+  /** Where the user of a headset is, world, m: the head, and three numbers for each hand; null and none before a flat screen. */
+  readonly user = { head: null as Vector3 | null, hands: [] as number[] };
 
   /** Distance from the camera to what it looks at, m. */
   lookDistance: () => number = () => this.stage.size;

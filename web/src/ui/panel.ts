@@ -56,13 +56,13 @@ export class Panel implements FramePart {
     const { widget, plot } = this.page_.world.entities;
     if (widget.version !== this.widgetsSeen_) {
       this.widgetsSeen_ = widget.version;
-      this.showWidgets_(widget.all());
+      this.showWidgets_(widget.of(this.page_.session.clientId));
     }
     if (plot.version !== this.plotsSeen_) {
       this.plotsSeen_ = plot.version;
       this.showPlots_(plot.all());
     }
-    this.root_.hidden = widget.size + plot.size === 0;
+    this.root_.hidden = this.shown_.size + plot.size === 0;
   }
 
   private showWidgets_(widgets: readonly WidgetEntity[]): void {

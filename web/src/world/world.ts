@@ -3,7 +3,7 @@
 
 import { Vector3 } from "three";
 import {
-  NO_BODY, type ActionEntry, type ClientEntry, type Listens, type PosesBuffer, type ServerMessage, type WorldSettings,
+  NO_BODY, type ActionEntry, type ClientEntry, type Listens, type Person, type PosesBuffer, type ServerMessage, type WorldSettings,
 } from "../protocol/generated.ts";
 import { makeEntityViews, type Entities } from "../scene/entities/entity_list.ts";
 import { PoseBuffer } from "../scene/pose_buffer.ts";
@@ -40,6 +40,8 @@ export class World {
   settings: Readonly<WorldSettings> = noSettings;
   actions: readonly ActionEntry[] = [];
   clients: readonly ClientEntry[] = [];
+  /** Where users are that have said so; another array after a change. */
+  people: readonly Person[] = [];
   paused = false;
   /** Times real time. */
   speed = 1;
@@ -119,6 +121,9 @@ export class World {
       case "clients":
         this.clients = message.clients;
         this.listener_.changed("clients");
+        break;
+      case "people":
+        this.people = message.people;
         break;
       case "entitiesSet":
         this.store_.set(message);

@@ -68,6 +68,9 @@ export class Headset implements PageListener, FramePart {
     this.page_ = page;
     this.locomotion = new Locomotion(page.viewer.rig, page.viewer.room);
     const { locomotion } = this;
+    void import("../page/walking.ts").then(({ wallsOf }) => {
+      locomotion.walls = wallsOf(page.world);
+    });
     this.notices = new Notices(page.viewer.room);
     page.viewer.room.add(this.vignette.mesh, this.wayHome_.mesh);
     page.commands.add(...headsetCommands({
@@ -164,6 +167,8 @@ export class Headset implements PageListener, FramePart {
       input.lift(viewer.room.matrixWorld, viewer.room.scale.x);
     }
     if (this.locomotion.steer(this.inputs, this.head, viewer.size, seconds)) this.moved_();
+    viewer.user.head = this.head;
+    viewer.user.hands = this.inputs.filter(({ tracked }) => tracked).slice(0, 2).flatMap(({ pointer }) => [...pointer.tip]);
     // Eyes that were not tracked anew have their scale.
     if (isNew) this.scaleEyes_();
     this.vignette.update(this.headLocal_, this.locomotion.gliding, seconds);
@@ -275,7 +280,9 @@ export class Headset implements PageListener, FramePart {
     this.panel.board.hide();
     this.notices.clear();
     this.helped_ = false;
-    const { rig, room } = this.page_.viewer;
+    const { rig, room, user } = this.page_.viewer;
+    user.head = null;
+    user.hands = [];
     rig.position.set(0, 0, 0);
     rig.rotation.set(0, 0, 0);
     room.scale.setScalar(1);

@@ -62,7 +62,7 @@ export class WristPanel {
   arrange(): Layout {
     const { commands, world: { entities: { widget } }, session } = this.page_;
     this.controlsSeen_ = widget.version;
-    const controls = controlRows(widget.all(), ({ id }, value) => session.send({ type: "change", widget: id, value, text: "" }));
+    const controls = controlRows(widget.of(session.clientId), ({ id }, value) => session.send({ type: "change", widget: id, value, text: "" }));
     this.layout_ = layoutPanel(commands, controls, this.leaf_, (leaf) => {
       this.leaf_ = leaf;
       this.arrange();

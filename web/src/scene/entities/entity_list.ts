@@ -3,7 +3,7 @@
 
 import type { Vector3 } from "three";
 import type { EntityKind, EntityRecords } from "../../protocol/generated.ts";
-import type { PlotEntity, StageEntity, TextureEntity, ViewpointEntity, WidgetEntity } from "../../protocol/generated.ts";
+import type { LightEntity, PlotEntity, StageEntity, TextureEntity, ViewpointEntity } from "../../protocol/generated.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { ArrowView } from "./arrow.ts";
 import { AxesView } from "./axes.ts";
@@ -28,7 +28,7 @@ import { Styles } from "./style.ts";
 import { TieView } from "./tie.ts";
 import { TraceView } from "./trace.ts";
 import { TubeView } from "./tube.ts";
-import { WatchedRecords } from "./widget.ts";
+import { WatchedRecords, Widgets } from "./widget.ts";
 
 /** The data and functions of the page for views. */
 export interface EntityHost {
@@ -73,7 +73,7 @@ export function makeEntityViews({ poses, eye, time, bodyGone, warn, changed }: E
     trace: new TraceView(poses, time),
     pointCloud: new PointCloudView(poses),
     marker: new MarkerView(poses, warn),
-    widget: new WatchedRecords<WidgetEntity>(),
+    widget: new Widgets(),
     plot: new WatchedRecords<PlotEntity>(),
     surface,
     paint: new PaintView(body),
@@ -82,6 +82,7 @@ export function makeEntityViews({ poses, eye, time, bodyGone, warn, changed }: E
     tube,
     viewpoint: new WatchedRecords<ViewpointEntity>(),
     stage: new WatchedRecords<StageEntity>(),
+    light: new Later<LightEntity>(() => import("./light.ts").then(({ LightView }) => new LightView(poses, () => body.size))),
     texture: new Later<TextureEntity>(() => import("./texture.ts").then(({ TextureView }) => new TextureView(changed, warn))),
   } satisfies EntityViews;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Controls and plots of the script: stored here, shown by the panel of the page.
 
-import type { Id } from "../../protocol/generated.ts";
+import type { Id, WidgetEntity } from "../../protocol/generated.ts";
 import { EntityRecords } from "./entity.ts";
 
 export class WatchedRecords<Record extends { readonly id: Id }> extends EntityRecords<Record> {
@@ -26,5 +26,12 @@ export class WatchedRecords<Record extends { readonly id: Id }> extends EntityRe
   /** In the order of creation. */
   all(): Record[] {
     return [...this.records_.values()].sort((a, b) => a.id.slot - b.id.slot);
+  }
+}
+
+/** Controls, each for all users or for one. */
+export class Widgets extends WatchedRecords<WidgetEntity> {
+  of(user: number): WidgetEntity[] {
+    return this.all().filter(({ client }) => client === 0 || client === user);
   }
 }

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is of one user alone, and where users are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from page_client import PageClient
+
+import iota
+
+Runner = Callable[[iota.World], str]
+
+
+def test_a_control_of_one_client_is_changed_by_nobody_else(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+    slider = world.slider("mine", 0, 1)
+    with PageClient(run_world(world)) as page, PageClient(world.url or "") as other:
+        world.call(lambda: setattr(slider, "client", page.id))
+        seen = page.wait_for(lambda: (w := page.entities["widget"].get(0)) and w["client"] and w)
+        assert seen["client"] == page.id
+        other.send("change", widget=seen["id"], value=0.7, text="")
+        page.send("change", widget=seen["id"], value=0.3, text="")
+        page.wait_for(lambda: page.entities["widget"][0]["value"] == 0.3)
+        other.send("change", widget=seen["id"], value=0.9, text="")
+        other.send("ping", client_time=1.0)
+        other.wait_for(lambda: "pong" in other.last)
+        world.call(lambda: None)
+        assert slider.value == 0.3
+
+
+def test_a_pulse_is_for_one_client_and_its_hand(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+    with PageClient(run_world(world)) as page, PageClient(world.url or "") as other:
+        mine = page.wait_for(lambda: [client for client in world.clients if client.id == page.id])[0]
+        world.call(lambda: mine.pulse("left", 0.75, 0.25))
+        seen = page.wait_for(lambda: page.last.get("pulse"))
+        assert seen["hand"] == "left" and (seen["strength"], seen["seconds"]) == (0.75, 0.25)
+        world.call(lambda: world.effect("grab", (0, 0, 0)))
+        other.wait_for(lambda: other.effects)
+        assert "pulse" not in other.last
+        with pytest.raises(ValueError, match="left, right or both"):
+            mine.pulse("foot")  # type: ignore[arg-type]
+        with pytest.raises(ValueError, match="strength from 0 to 1"):
+            mine.pulse(strength=2)
+
+
+def test_users_see_where_the_others_are(run_world: Runner) -> None:
+    world = iota.World(iota.System())
+    stance = {"head": (0.5, 1.5, 2.0), "rotation": (0.0, 0.0, 0.0, 1.0), "scale": 1.0, "hands": (1.0, 2.0, 3.0)}
+    with PageClient(run_world(world), name="Ada") as page, PageClient(world.url or "", name="Bo") as other:
+        page.send("presence", stance=stance)
+        (person,) = other.wait_for(lambda: other.last.get("people", {}).get("people"))
+        assert person["client"] == page.id
+        assert person["stance"]["head"] == (0.5, 1.5, 2.0) and list(person["stance"]["hands"]) == [1, 2, 3]
+        assert {client["name"] for client in other.last["clients"]["clients"]} == {"Ada", "Bo"}
+        page.send("presence", stance=stance | {"head": (3e9, 0, 0)})
+        page.wait_for(lambda: any("beyond 1e9 m" in notice["text"] for notice in page.notices))
+        page.close()
+        other.wait_for(lambda: not other.last["people"]["people"])
