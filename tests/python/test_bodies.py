@@ -193,3 +193,28 @@ def test_steps_in_a_row_end_with_the_one_whose_force_fails() -> None:
     with pytest.raises(iota.BondError, match="enough") as raised:
         system.step(0.01, count=100)
     assert system.step_count == raised.value.report.step == 6
+
+
+def test_a_large_body_that_grows_point_by_point_has_the_inertia_and_motion_of_all_its_points() -> None:
+    """From 64 points on a new one is tied to the body's basis, which is chosen anew only where it spans too little."""
+    random = np.random.default_rng(1)
+    places = random.normal(size=(300, 3))
+    places[:70] *= 0.01  # at first the basis spans little
+    masses = random.uniform(0.5, 1.5, 300)
+    system = iota.System(gravity=(0, 0, 0))
+    body = system.body()
+    middle = masses @ places / masses.sum()
+    for place, mass in zip(places, masses, strict=True):
+        body.particle(place, mass, np.cross((0.3, -1.0, 0.5), place - middle))
+    assert system.validate() == []
+    arms = places - middle
+    inertia = np.einsum("i,ij,ij->", masses, arms, arms) * np.eye(3) - np.einsum("i,ij,ik->jk", masses, arms, arms)
+    assert body.inertia == pytest.approx(inertia, rel=1e-12)
+    momentum = inertia @ (0.3, -1.0, 0.5)
+    for _ in range(60):
+        system.step(1 / 120)
+    assert tuple(body.angular_momentum) == pytest.approx(tuple(momentum), rel=1e-9)
+    now = np.array([tuple(particle.position) for particle in body.particles])
+    for other in (1, 100, 299):
+        apart = np.linalg.norm(now - now[other], axis=1)
+        assert apart == pytest.approx(np.linalg.norm(places - places[other], axis=1), abs=1e-9)
