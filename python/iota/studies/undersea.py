@@ -38,7 +38,7 @@ def build(fish: int = FISH) -> iota.World:
     for x, z in ((-3.0, 0.6), (1.6, -2.2), (-1.4, 1.3)):
         ribbon(world, weed, (x, 0, z))
     present(world)
-    world.camera = iota.Camera(position=(0.2, 1.3, 9.0), target=(0.2, 2.4, 0))
+    world.camera = iota.Camera(position=(0.2, 1.4, 8.5), target=(0.2, 2.5, 0))
     bubbles(world)
     world.draw_ties("spring", looks.capsule(0.018, "rubber", color="#5c8a4a"))
     meal = Meal(world, school, kelps)
