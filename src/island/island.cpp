@@ -16,12 +16,12 @@ using model::Ring;
 
 namespace {
 
-solver::Care care_of(const Model& model) {
+solver::IntegratorSettings settings_of(const Model& model) {
   switch (model.mode) {
-    case IntegrationMode::plausible: return solver::Care::plausible();
-    case IntegrationMode::robust: return solver::Care::robust();
-    case IntegrationMode::energy_keeping: return solver::Care::energy_keeping();
-    case IntegrationMode::accurate: return solver::Care::accurate(model.tolerance);
+    case IntegrationMode::plausible: return solver::IntegratorSettings::plausible();
+    case IntegrationMode::robust: return solver::IntegratorSettings::robust();
+    case IntegrationMode::energy_keeping: return solver::IntegratorSettings::energy_keeping();
+    case IntegrationMode::accurate: return solver::IntegratorSettings::accurate(model.tolerance);
   }
   return {};
 }
@@ -260,9 +260,9 @@ solver::AdvanceReport Island::advance_awake(Model& model, double h, Clock::time_
   }
   model::Articulate& memory = articulate(model);
   problem_.standing_gap = memory.standing_gap, problem_.standing_steps = memory.standing_steps;
-  solver::Care care = care_of(model);
-  care.max_iterations = model.budget.iterations, care.deadline = deadline;
-  auto report = integrator_->advance(problem_, h, care);
+  solver::IntegratorSettings settings = settings_of(model);
+  settings.max_iterations = model.budget.iterations, settings.deadline = deadline;
+  auto report = integrator_->advance(problem_, h, settings);
   memory.standing_gap = problem_.standing_gap, memory.standing_steps = problem_.standing_steps;
   if (velocity_jump(h) > 0) {  // if there was no solution
     given -= problem_.kinetic_energy();

@@ -11,8 +11,6 @@ namespace iota::solver {
 
 namespace {
 
-constexpr double closed_gap = 1e-6;  // relative: below it a bounded row is satisfied
-
 /// Whether velocities differ from the rate of a hold row by more than the curvature of its coordinate explains within a
 /// step. Otherwise the mid-point rule makes a motor that was just switched on oscillate around its target speed.
 template <class C>

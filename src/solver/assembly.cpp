@@ -13,7 +13,6 @@ namespace iota::solver {
 namespace {
 
 constexpr double largest_noise = 1e-8;  // of the scaled force residual
-constexpr double round_off = 4e-15;     // of the largest scaled force: below it a residual is noise
 
 struct NoGradients {
   NoGradients(const auto&, const Vec3*, double, const Vec3*, double) {}

@@ -48,7 +48,9 @@ bool Integrator::is_smooth(Problem& problem, double h) const {
   return smooth;
 }
 
-bool Integrator::has_closed_row(const Problem& problem) {
+namespace {
+
+bool has_closed_row(const Problem& problem) {
   bool closed = false;
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     if (!pool.has_laws()) return;
@@ -61,8 +63,6 @@ bool Integrator::has_closed_row(const Problem& problem) {
   });
   return closed;
 }
-
-namespace {
 
 bool is_internal(const Problem& problem) {
   bool internal = problem.items_of<GyroscopicForce>().empty();
@@ -93,7 +93,6 @@ double time_scale(const Problem& problem, std::span<const Vec3> accelerations) {
 double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport& report) {
   constexpr double shortest = 1.0 / 4096, safety = 0.9, least = 0.2, most = 5, first = 0.5;
   if (!is_smooth(problem, h)) return 0;
-  keep_start(problem);
   if (!runge_kutta_) runge_kutta_ = std::make_unique<RungeKutta>();
   RungeKutta& steps = *runge_kutta_;
   steps.begin(newton_, problem);
@@ -102,9 +101,9 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
   double time = 0, part = first * time_scale(problem, steps.accelerations());
   while (time < h) {
     part = (h - time) / std::ceil((h - time) / part * (1 - 1e-9));
-    if (!(part >= shortest * h) || is_out_of_budget()) break;
+    if (!(part >= shortest * h) || is_out_of_budget() || iterations_left_ < RungeKutta::solves) break;
     const AdvanceReport before = report;
-    const double energy = energy_, kinetic = kinetic_, missing = missing_, slack = slack_;
+    const EnergyBalance energy = energy_;
     const bool is_last = part == h - time;
     report.iterations += RungeKutta::solves, ++report.solves, iterations_left_ -= RungeKutta::solves;
     bool good = steps.step(newton_, problem, part);
@@ -112,7 +111,7 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
     keep_energy(problem, steps, report);
     steps.end(newton_, problem);
     const double error = steps.estimate_error(part).position / newton_.reference_length();
-    const double ratio = error / (care_.max_error * part);
+    const double ratio = error / (settings_.max_error * part);
     good = good && ratio <= 1 && !has_closed_row(problem);
     if (good) {
       time = is_last ? h : time + part;
@@ -122,13 +121,12 @@ double Integrator::advance_explicitly(Problem& problem, double h, AdvanceReport&
     } else {
       const int iterations = report.iterations, solves = report.solves;
       steps.reject(problem);
-      report = before, report.iterations = iterations, report.solves = solves;
-      energy_ = energy, kinetic_ = kinetic, missing_ = missing, slack_ = slack;
+      report = before, report.iterations = iterations, report.solves = solves, energy_ = energy;
       if (ratio <= 1) break;  // a row closes, or the constraints cannot be met
     }
     part *= std::clamp(safety * std::pow(ratio, -0.25), least, most);
   }
-  if (time > 0) book_rest(problem, time, report), is_instant_ = true;
+  if (time > 0) energy_.close(problem, reference_length(), time, report), is_instant_ = true;
   return time < h ? time / h : 1;
 }
 
@@ -146,11 +144,12 @@ void Integrator::keep_energy(Problem& problem, const RungeKutta& steps, AdvanceR
   constexpr double of_motion = 1e-9, round_off = 1e-14;
   constexpr double most = 1e-2;  // of the kinetic energy: the rest waits for the next step
   report.external_work += steps.external_work(), report.dissipated += steps.dissipated();
-  const double expected = energy_ + steps.external_work() - steps.dissipated();
-  measure_energy(problem, 1);
-  missing_ += expected - energy_;
-  slack_ += of_motion * kinetic_ + round_off * (std::abs(expected) + std::abs(energy_));
-  if (std::abs(missing_) <= most * kinetic_) (void)give_energy_back(problem, Stage::projection(), missing_, report);
+  const double expected = energy_.total + steps.external_work() - steps.dissipated();
+  energy_.measure(problem, 1);
+  energy_.missing += expected - energy_.total;
+  energy_.slack += of_motion * energy_.kinetic + round_off * (std::abs(expected) + std::abs(energy_.total));
+  if (std::abs(energy_.missing) <= most * energy_.kinetic)
+    (void)give_energy_back(problem, Stage::projection(), energy_.missing, report);
 }
 
 // Compares the solved step with one of half its length from the same start. With their accelerations a and a', the
@@ -170,7 +169,7 @@ bool Integrator::is_accurate(Problem& problem, const Stage& stage, AdvanceReport
     const Vec3 off = newton_.displacement()[i] - 0.25 * candidate_[i];
     worst = std::max(worst, dot(off, off));
   }
-  const double limit = care_.max_error * stage.h * newton_.reference_length() * 3 / 8;
+  const double limit = settings_.max_error * stage.h * newton_.reference_length() * 3 / 8;
   if (!solved || !(worst <= limit * limit)) return false;
   report.error += 8.0 / 3 * std::sqrt(worst) / (step_length_ * newton_.reference_length());
 

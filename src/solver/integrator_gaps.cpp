@@ -10,7 +10,6 @@ namespace iota::solver {
 
 namespace {
 
-constexpr double standing_gap = 1e-6;  // relative start gap beyond which positions are projected before the step
 constexpr std::uint64_t shortest_wait = 8, longest_wait = 256;  // steps until an unchanged conflict is tried again
 // Of a gap that moves; relaxes it by 10 %: at full extension the constraint gradient is singular.
 constexpr double relaxation = 1.1;
@@ -27,19 +26,19 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   holds_offsets_ = false;
   const double gap = problem.worst_gap(problem.position.data(), 0, true);
   const bool has_new_rows = std::exchange(problem.has_new_rows, false);
-  if (!(gap > standing_gap)) {
+  if (!(gap > closed_gap)) {
     problem.standing_gap = 0;
     if (!has_new_rows) return;
   }
   // Retry an unchanged, unsolvable constraint set with exponential back-off: trying costs tens of iterations.
-  const bool is_open = gap > standing_gap, stands = is_open && conservative_ && gap <= 1.001 * problem.standing_gap;
+  const bool is_open = gap > closed_gap, stands = is_open && is_conservative_ && gap <= 1.001 * problem.standing_gap;
   problem.standing_steps = stands ? problem.standing_steps + 1 : 0;
   if (stands && !is_due(problem.standing_steps)) {
     hold_offsets(problem, report);
     return;
   }
-  measure_energy(problem, 0);
-  const double before = energy_;
+  energy_.measure(problem, 0);
+  const double before = energy_.total;
   if (is_open) spin_.note(problem, holds_);
   problem.standing_gap = 0;
   if (!project_locally(problem, is_open)) {
@@ -50,12 +49,12 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     project_velocities(problem);
   }
   if (is_open) report.spin_lost = spin_.restore(problem);
-  measure_energy(problem, 0);
-  const double added = energy_ - before;
+  energy_.measure(problem, 0);
+  const double added = energy_.total - before;
   report.closing_energy += added;
-  if (holds_offsets_ && conservative_ && added > 0) {  // repeated attempts must not add energy without end
-    change_kinetic_energy(problem, added);
-    report.closing_energy -= std::exchange(missing_, 0);
+  if (holds_offsets_ && is_conservative_ && added > 0) {  // repeated attempts must not add energy without end
+    (void)change_kinetic_energy(problem, added);
+    report.closing_energy -= std::exchange(energy_.missing, 0);
   }
 }
 
@@ -69,24 +68,24 @@ void Integrator::hold_offsets(Problem& problem, AdvanceReport& report) {
   problem.for_each_constraint_pool([&](const auto& pool) {
     for (const auto& c : pool.items) moving = moving || c.is_moving();
   });
-  candidate_.assign(problem.position.begin(), problem.position.end());
+  saved_position_.assign(problem.position.begin(), problem.position.end());
   if (moving) {
     problem.copy_multipliers_to(multipliers_saved_);
     problem.clear_multipliers();
     problem.clear_offsets();
     (void)share_gaps(problem, 1, report);
-    problem.position.swap(candidate_);
+    problem.position.swap(saved_position_);
     problem.set_multipliers(multipliers_saved_);
   }
   problem.for_each_constraint_pool([&]<class C>(ConstraintPool<C>& pool) {
     pool.offsets.resize(pool.multipliers.size());
     for (std::size_t i = 0; i < pool.items.size(); ++i) {
       double* const offset = pool.offsets.data() + i * C::rows;
-      pool.items[i].value(candidate_.data(), moving ? 1 : 0, offset);
+      pool.items[i].value(saved_position_.data(), moving ? 1 : 0, offset);
       for (int r = 0; r < C::rows; ++r) {
         const auto row = static_cast<std::uint32_t>(i * C::rows + r);
         if (pool.has_laws() && pool.laws[row].violation(offset[r]) == 0) offset[r] = 0;
-        if (!moving || !(std::abs(offset[r]) > standing_gap * pool.items[i].reference_length())) continue;
+        if (!moving || !(std::abs(offset[r]) > closed_gap * pool.items[i].reference_length())) continue;
         RowLaw& law = pool.law(i)[r];
         if (law.lower_impulse() == 0 || law.upper_impulse() == 0) continue;  // already bounded
         (offset[r] > 0 ? law.lower : law.upper) = 0;
@@ -116,7 +115,7 @@ bool Integrator::share_gaps(Problem& problem, double fraction, AdvanceReport& re
   constexpr int most_rounds = 8;
   const auto size = static_cast<double>(problem.size());
   bool helped = false;
-  for (const double compliance : {1e-3, 1e-5, 1e-7, 1e-9}) {
+  for (const double compliance : {softer_rows[2], softer_rows[1], softer_rows[0]}) {
     bool solved = false;
     for (int round = 0; round < most_rounds && !solved; ++round) {
       problem.clear_multipliers();
@@ -135,7 +134,7 @@ bool Integrator::share_gaps(Problem& problem, double fraction, AdvanceReport& re
 }
 
 bool Integrator::project_locally(Problem& problem, bool positions, std::span<const std::uint32_t> nodes) {
-  constexpr double open = 0.1 * standing_gap;
+  constexpr double open = 0.1 * closed_gap;
   constexpr std::size_t most = 64;
   if (!LocalProjection::is_worthwhile(problem)) return false;
   center_.assign(nodes.begin(), nodes.end());
@@ -168,10 +167,10 @@ bool Integrator::project_positions(Problem& problem) {
     return solved;
   };
   // In one solve; if that fails, in parts; if that fails, by soft steps, which distribute the violation over the rows.
-  bool solved = attempt(1e-12, 20) || close_bit_by_bit(problem, attempt);
+  bool solved = attempt(exact_rows, 20) || close_bit_by_bit(problem, attempt);
   for (int soft = 0; soft < 3 && !solved; ++soft) {
     if (!share_gaps(problem, 0, ignored)) break;
-    solved = attempt(1e-12, 12);
+    solved = attempt(exact_rows, 12);
   }
   problem.set_multipliers(multipliers_saved_);
   return solved;
@@ -179,8 +178,8 @@ bool Integrator::project_positions(Problem& problem) {
 
 // Newton's method may diverge over a distance of many links, but converge over a part of it (a fine chain pulled together
 // over centimeters). Offsets hold the rest of the gap.
-template <class Attempt>
-bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
+template <class Try>
+bool Integrator::close_bit_by_bit(Problem& problem, Try attempt) {
   double remaining = 1, part = 0.25;
   bool solved = false;
   for (int tries = 0; tries < 60 && remaining > 0 && part > 2e-3; ++tries) {
@@ -196,7 +195,7 @@ bool Integrator::close_bit_by_bit(Problem& problem, Attempt attempt) {
         }
       }
     });
-    solved = attempt(1e-12, 10);
+    solved = attempt(exact_rows, 10);
     if (solved)
       remaining -= part, part *= 2;
     else

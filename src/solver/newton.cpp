@@ -15,11 +15,7 @@ namespace iota::solver {
 
 namespace {
 
-constexpr int max_halvings = 12;
-constexpr double near_by = 1e-2;            // residual below which Newton's exact direction is used
-constexpr double largest_violation = 1e-6;  // that still counts as satisfied
-constexpr double round_off_floor = 1e-8;    // a residual below it that no step reduces counts as zero
-constexpr double round_off = 4e-15;         // relative
+using Set = NewtonSettings;
 
 }  // namespace
 
@@ -81,7 +77,7 @@ template <bool Midpoint>
 bool Newton::find_step(const Problem& problem, const Stage& stage, Hessian hessian) {
   const bool good = assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), hessian);
   if (good || hessian != Hessian::exact) return false;
-  if (residual_.worst <= near_by) return true;
+  if (residual_.worst <= Set::exact_below) return true;
   measure<Midpoint>(problem, stage);  // the step has overwritten the residuals
   (void)assembly_.factor_and_solve<Midpoint>(problem, stage, x_.data(), Hessian::clamped);
   return false;
@@ -94,7 +90,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   measure<Midpoint>(problem, stage);
   Hessian hessian = Hessian::exact;
   bool stuck = false, settled = true, factor_will_do = false, served_on = false;
-  int most_iterations = stage.max_iterations;
+  int most_iterations = std::min(stage.max_iterations, stage.iterations_left);
   const double blur = blur_of_places(problem);
   while (true) {
     if (has_laws_ && report.iterations > 0) {
@@ -102,7 +98,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       if (!settled) {
         factor_will_do = false;
         measure<Midpoint>(problem, stage);
-        most_iterations = std::min(most_iterations + 1, 4 * stage.max_iterations);  // choosing sides takes turns, too
+        most_iterations = std::min({most_iterations + 1, Set::more_for_sides * stage.max_iterations, stage.iterations_left});
       }
     }
     if (!(residual_.worst > stage.tolerance) || report.iterations >= most_iterations) break;
@@ -117,7 +113,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
     take_step(problem, stage);
     measure<Midpoint>(problem, stage);
     const bool own_direction = std::exchange(hessian, Hessian::exact) == Hessian::exact && !served_on;
-    if (!(residual_.worst <= 0.5 * before)) {
+    if (!(residual_.worst <= Set::fast * before)) {
       if (assembly_.is_round_off_of_laws<Midpoint>(problem, stage, x_.data())) {
         residual_.worst = residual_.rows;
         stuck = true;
@@ -125,28 +121,28 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       }
       // If an exact Newton step does not reduce a residual below 10x the estimated round-off, treat it as converged: heavy
       // loads on small links leave ten times the estimate.
-      stuck = own_direction && before <= std::min(10 * blur * residual_.noise, round_off_floor);
+      stuck = own_direction && before <= std::min(Set::noise * blur * residual_.noise, Set::round_off_floor);
       if ((stuck || on_trial) && !(residual_.worst < before)) {
         take_back_step<Midpoint>(problem, stage);
         hessian = Hessian::clamped;
       } else if (!stuck) {
         const int halvings = shorten<Midpoint>(problem, stage, before);
-        stuck = halvings == max_halvings && !(residual_.worst < before);  // lost
+        stuck = halvings == Set::max_halvings && !(residual_.worst < before);  // lost
         // A full step with a small decrease is no reason to give up quadratic convergence; wrong pivots would be.
         if (halvings > 0 || !(residual_.worst < before)) hessian = Hessian::clamped;
       }
       if (stuck) break;
     }
     // Near the solution the old factor is reused if a factorization costs much more than an iteration.
-    factor_will_do = assembly_.is_dear() && residual_.worst <= (factor_will_do ? 0.1 : 0.03) * before;
+    factor_will_do = assembly_.is_dear() && residual_.worst <= (factor_will_do ? Set::reuse_again : Set::reuse_after) * before;
   }
   if (!stuck && !stage.is_projection() && (Midpoint || report.iterations == 0))
     polish<Midpoint>(problem, stage, report, served_on);
   report.residual = residual_.worst, report.violation = residual_.violation;
   if (has_laws_) report.met = ActiveSet::count_met(problem);
-  const bool exact = stage.compliance <= 1e-12;
-  report.converged = settled && report.residual <= std::max(stage.tolerance, stuck ? round_off_floor : 0) &&
-                     (!exact || report.violation <= largest_violation);
+  const bool exact = stage.compliance <= exact_rows;
+  report.converged = settled && report.residual <= std::max(stage.tolerance, stuck ? Set::round_off_floor : 0) &&
+                     (!exact || report.violation <= closed_gap);
   return report;
 }
 
@@ -163,7 +159,7 @@ int Newton::shorten(Problem& problem, const Stage& stage, double before) {
   double t = 1;
   int halvings = 0;
   while (!(residual_.worst < (1 - 1e-4 * t) * before) && !(merit(problem, stage, x_.data()) < merit_before) &&
-         halvings < max_halvings) {
+         halvings < Set::max_halvings) {
     t *= 0.5;
     ++halvings;
     halve_step(problem, stage);
@@ -258,11 +254,9 @@ bool Newton::is_balanced() const {
 // the energy of a four-bar linkage drifted by 4e-7 instead of 5e-11.
 template <bool Midpoint>
 void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, bool factor_is_old) {
-  constexpr int most_steps = 4;
-  constexpr double clean = 3e-13, noise = 1e-12, sufficient = 0.3;
   if (!(residual_.worst <= stage.tolerance)) return;
   bool needs_factor = report.iterations == 0;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < Set::polish_steps; ++step) {
     const bool met = residual_.rows <= round_off, balanced = is_balanced();
     if (met && balanced) return;
     const Residual before = residual_;
@@ -275,12 +269,12 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
     measure<Midpoint>(problem, stage);
     // Below 1e-12 the residual norm is noise. Keep the step anyway: it reduces the common error of all points, which
     // determines momentum and angular momentum (without it those of a tumbling mixture drifted twenty times as far).
-    const bool worse = !(residual_.worst <= std::max(before.worst, noise));
+    const bool worse = !(residual_.worst <= std::max(before.worst, Set::polish_noise));
     if (worse) take_back_step<Midpoint>(problem, stage);
-    if (!worse && ((!met && residual_.rows <= sufficient * before.rows) ||
-                   (!balanced && residual_.imbalance <= sufficient * before.imbalance)))
+    if (!worse && ((!met && residual_.rows <= Set::polish_fast * before.rows) ||
+                   (!balanced && residual_.imbalance <= Set::polish_fast * before.imbalance)))
       continue;  // it helps
-    if (!factor_is_old || residual_.worst <= clean) return;
+    if (!factor_is_old || residual_.worst <= Set::polish_clean) return;
     factor_is_old = false, needs_factor = true;
   }
 }
@@ -307,7 +301,7 @@ NewtonReport Newton::solve_externally(Problem& problem, const Stage& stage) {
   }
   report.violation = residual_.violation;
   if (has_laws_) report.met = ActiveSet::count_met(problem);
-  report.converged = settled && report.residual <= round_off_floor && report.violation <= largest_violation;
+  report.converged = settled && report.residual <= Set::round_off_floor && report.violation <= closed_gap;
   if (!report.converged) problem.set_multipliers(multipliers_saved_);
   return report;
 }

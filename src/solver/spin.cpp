@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/spin.h"
 
-#include "base/disjoint_sets.h"
+#include "solver/pieces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,26 +26,8 @@ double largest_share(double first, double second, double limit) {
 }  // namespace
 
 // Structure is searched once, who holds a piece at each step, as nails move.
-void Spin::find_pieces(const Problem& problem, const Holds& all) {
-  if (piece_of_.size() != problem.size()) {
-    DisjointSets connected(problem.size());
-    const auto join = [&](std::uint32_t a, std::uint32_t b) {
-      a = connected.root(a), b = connected.root(b);
-      connected.join(std::max(a, b), std::min(a, b));
-    };
-    problem.for_each_constraint_pool([&](const auto& pool) {
-      for (const auto& item : pool.items)
-        for (const std::uint32_t node : pool.nodes_of(item)) join(pool.nodes_of(item).front(), node);
-    });
-    for (const auto& c : problem.mass_couplings) join(c.a, c.b);
-    std::uint32_t count = 0;
-    piece_of_.resize(problem.size());
-    for (std::uint32_t node = 0; node < problem.size(); ++node) {
-      const std::uint32_t leader = connected.root(node);  // the lowest
-      piece_of_[node] = leader == node ? count++ : piece_of_[leader];
-    }
-    pieces_.resize(count);
-  }
+void Spin::find_holds(const Problem& problem, const Holds& all) {
+  if (piece_of_.size() != problem.size()) pieces_.resize(find_pieces(problem, Connection::rows, piece_of_));
   for (Piece& piece : pieces_) piece.holds = {};
   if (pieces_.size() == 1)
     pieces_.front().holds = all;
@@ -131,7 +113,7 @@ Vec3 Spin::turning(const Piece& piece, const Vec3& angular, const Vec3& gravity)
 
 bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
                      bool is_rigid) {
-  find_pieces(problem, all);
+  find_holds(problem, all);
   if (!find_losses(problem, displacement, h)) return false;
   find_motions(problem);
   // What swings on a nail keeps its motion, which includes the fall along the chord of the step: its reactions depend on it.
@@ -179,7 +161,7 @@ void Spin::add_momenta(const Problem& problem) {
 }
 
 void Spin::note(const Problem& problem, const Holds& all) {
-  find_pieces(problem, all);
+  find_holds(problem, all);
   add_momenta(problem);
   for (Piece& piece : pieces_) piece.wanted_momentum = piece.momentum, piece.wanted_angular = piece.angular;
 }

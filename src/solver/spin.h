@@ -47,7 +47,7 @@ class Spin {
     Vec3 velocity_change, turn;            ///< m/s, rad/s
     Vec3 velocity() const { return holds.count > 0 ? Vec3{} : (1 / mass) * momentum; }
   };
-  void find_pieces(const Problem&, const Holds& all);
+  void find_holds(const Problem&, const Holds& all);
   bool find_losses(const Problem&, std::span<const Vec3> displacement, double h);
   void find_motions(const Problem&);
   void add_momenta(const Problem&);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "solver/settings.h"
+
+#include <limits>
+
 namespace iota::solver {
 
 /// The equations of a Newton solve. With u = x - x0 - h v0:
@@ -12,10 +16,11 @@ struct Stage {
   bool midpoint = false;
   double fraction = 1;        ///< of the step, for targets that move during it
   double fraction_start = 0;  ///< start of this (sub-)step
-  double compliance = 1e-12;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
+  double compliance = exact_rows;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
 
   double tolerance = 1e-9;  ///< of the scaled residual; remaining gaps are about this fraction of a link
   int max_iterations = 60;
+  int iterations_left = std::numeric_limits<int>::max();  ///< of a budget
   double part = 1;  ///< of the whole step whose row compliance the stage has: a taut net stores energy in it
 
   bool is_projection() const { return h == 0; }
@@ -33,7 +38,7 @@ struct Stage {
             .tolerance = 1e-10,
             .max_iterations = 30};
   }
-  static Stage projection(double compliance = 1e-12) { return {.compliance = compliance}; }
+  static Stage projection(double compliance = exact_rows) { return {.compliance = compliance}; }
 };
 
 }  // namespace iota::solver

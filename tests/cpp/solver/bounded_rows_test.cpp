@@ -24,7 +24,7 @@ class Rows : public testing::TestWithParam<Scheme> {
   void SetUp() override { problem.gravity = {0, -g, 0}; }
   void start() { integrator.compile(problem); }
   void step(double h) {
-    const AdvanceReport report = integrator.advance(problem, h, Care{.scheme = GetParam()});
+    const AdvanceReport report = integrator.advance(problem, h, IntegratorSettings{.scheme = GetParam()});
     ASSERT_TRUE(report.converged);
     EXPECT_EQ(report.fallbacks, 0);
     total.dissipated += report.dissipated, total.lost += report.lost;

@@ -38,7 +38,7 @@ TEST(Integrator, mid_point_swings_an_oscillator_with_the_frequency_of_its_scheme
   Oscillator o;
   const double start = energy_of(o.problem), turn = 2 * std::atan(Oscillator::omega * Oscillator::h / 2);
   for (int n = 1; n <= 200; ++n) {
-    const AdvanceReport report = o.integrator.advance(o.problem, Oscillator::h, Care::energy_keeping());
+    const AdvanceReport report = o.integrator.advance(o.problem, Oscillator::h, IntegratorSettings::energy_keeping());
     ASSERT_TRUE(report.converged);
     EXPECT_EQ(report.fallbacks, 0);
     ASSERT_NEAR(o.stretch(), Oscillator::amplitude * std::cos(n * turn), 1e-9);
@@ -53,7 +53,7 @@ TEST(Integrator, end_point_damps_an_oscillator_by_the_factor_of_its_scheme) {
   double lost = 0;
   const double start = energy_of(o.problem);
   for (int n = 1; n <= 50; ++n) {
-    const AdvanceReport report = o.integrator.advance(o.problem, Oscillator::h, Care::robust());
+    const AdvanceReport report = o.integrator.advance(o.problem, Oscillator::h, IntegratorSettings::robust());
     ASSERT_TRUE(report.converged);
     EXPECT_GE(report.lost, 0);
     EXPECT_EQ(report.dissipated, 0) << "a spring takes nothing; the scheme does";
@@ -64,7 +64,7 @@ TEST(Integrator, end_point_damps_an_oscillator_by_the_factor_of_its_scheme) {
 }
 
 /// Position of a pendulum after 0.5 s, in so many steps.
-Vec3 swing(const Care& care, int steps) {
+Vec3 swing(const IntegratorSettings& settings, int steps) {
   Problem problem;
   problem.gravity = {0, -9.81, 0};
   const auto hook = add_point(problem, {}), bob = add_point(problem, {1, 0, 0});
@@ -72,14 +72,14 @@ Vec3 swing(const Care& care, int steps) {
   add_rod(problem, hook, bob, 1);
   Integrator integrator;
   integrator.compile(problem);
-  for (int i = 0; i < steps; ++i) EXPECT_TRUE(integrator.advance(problem, 0.5 / steps, care).converged);
+  for (int i = 0; i < steps; ++i) EXPECT_TRUE(integrator.advance(problem, 0.5 / steps, settings).converged);
   return problem.position[bob];
 }
 
 TEST(Integrator, mid_point_is_of_second_order_and_end_point_of_first) {
-  const Vec3 truth = swing(Care::energy_keeping(), 4000);
-  for (const auto& [care, order] : {std::pair{Care::energy_keeping(), 2.0}, std::pair{Care::robust(), 1.0}}) {
-    const double coarse = norm(swing(care, 100) - truth), fine = norm(swing(care, 200) - truth);
+  const Vec3 truth = swing(IntegratorSettings::energy_keeping(), 4000);
+  for (const auto& [settings, order] : {std::pair{IntegratorSettings::energy_keeping(), 2.0}, std::pair{IntegratorSettings::robust(), 1.0}}) {
+    const double coarse = norm(swing(settings, 100) - truth), fine = norm(swing(settings, 200) - truth);
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.1);
   }
 }
@@ -93,7 +93,7 @@ TEST(Integrator, halves_a_step_in_which_a_link_turns_too_far) {
     Integrator integrator;
     integrator.compile(problem);
     const double start = problem.kinetic_energy();
-    const AdvanceReport report = integrator.advance(problem, 1.0 / 60, Care::energy_keeping());
+    const AdvanceReport report = integrator.advance(problem, 1.0 / 60, IntegratorSettings::energy_keeping());
     EXPECT_TRUE(report.converged);
     EXPECT_EQ(report.fallbacks, 0);
     EXPECT_GE(report.substeps, substeps);
@@ -110,7 +110,7 @@ TEST(Integrator, falls_back_to_the_end_point_where_64_parts_are_too_few_and_neve
   Integrator integrator;
   integrator.compile(problem);
   const double start = problem.kinetic_energy();
-  const AdvanceReport report = integrator.advance(problem, 1.0 / 60, Care::energy_keeping());
+  const AdvanceReport report = integrator.advance(problem, 1.0 / 60, IntegratorSettings::energy_keeping());
   EXPECT_GT(report.fallbacks, 0);
   EXPECT_TRUE(is_finite(problem.position[a]) && is_finite(problem.velocity[a]));
   EXPECT_LE(problem.kinetic_energy(), start * (1 + 1e-12));
@@ -125,7 +125,7 @@ TEST(Integrator, closes_a_gap_by_moving_positions_only) {
   Integrator integrator;
   integrator.compile(problem);
   const double start = problem.kinetic_energy();
-  const AdvanceReport report = integrator.advance(problem, 1.0 / 60, Care::energy_keeping());
+  const AdvanceReport report = integrator.advance(problem, 1.0 / 60, IntegratorSettings::energy_keeping());
   EXPECT_TRUE(report.converged);
   EXPECT_NEAR(norm(problem.position[b] - problem.position[a]), 1, 1e-9);
   EXPECT_LT(norm(problem.velocity[b] - Vec3{0, 2, 0}), 1e-7) << "a gap gives no speed";
@@ -142,7 +142,7 @@ TEST(Integrator, holds_a_conflict_as_it_is_and_says_so) {
   integrator.compile(problem);
   bool always_converged = true;
   for (int i = 0; i < 60; ++i)
-    always_converged = integrator.advance(problem, 1.0 / 60, Care::energy_keeping()).converged && always_converged;
+    always_converged = integrator.advance(problem, 1.0 / 60, IntegratorSettings::energy_keeping()).converged && always_converged;
   EXPECT_FALSE(always_converged);
   EXPECT_LT(problem.kinetic_energy(), 1e-3) << "it neither shakes nor heats";
   EXPECT_NEAR(problem.position[b].x, 1, 0.02);
@@ -172,7 +172,7 @@ TEST(Integrator, that_is_warm_allocates_nothing_even_where_it_falls_back) {
     problem.position[a] = {-0.5, 0, 0}, problem.position[b] = {0.5, 0, 0};
     problem.velocity[a] = {0, -4000, 0}, problem.velocity[b] = {0, 4000, 0};
     const long before = allocations;
-    fallbacks += integrator.advance(problem, 1.0 / 60, Care::energy_keeping()).fallbacks;
+    fallbacks += integrator.advance(problem, 1.0 / 60, IntegratorSettings::energy_keeping()).fallbacks;
     if (i > 0) {
       EXPECT_EQ(allocations - before, 0);
     }

@@ -95,7 +95,7 @@ std::pair<double, Vec3> invariants(const Problem& problem) {
   return {problem.kinetic_energy() + problem.potential_energy(problem.position.data()), spin};
 }
 
-TEST(AccurateCare, keeps_energy_and_angular_momentum_of_a_free_body_to_round_off) {
+TEST(Accurate, keeps_energy_and_angular_momentum_of_a_free_body_to_round_off) {
   Problem problem;
   const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0, 0, 0.3}};
   const Vec3 spin{0.1, 3, 0.2};
@@ -107,7 +107,7 @@ TEST(AccurateCare, keeps_energy_and_angular_momentum_of_a_free_body_to_round_off
   const auto [energy, momentum] = invariants(problem);
   double error = 0;
   for (int i = 0; i < 600; ++i) {
-    const AdvanceReport report = integrator.advance(problem, 1.0 / 60, Care::accurate());
+    const AdvanceReport report = integrator.advance(problem, 1.0 / 60, IntegratorSettings::accurate());
     error = std::max(error, report.error);
     ASSERT_TRUE(report.converged);
   }
@@ -118,7 +118,7 @@ TEST(AccurateCare, keeps_energy_and_angular_momentum_of_a_free_body_to_round_off
   EXPECT_LE(error, 1e-4);
 }
 
-TEST(AccurateCare, falls_back_on_estimated_mid_point_steps_where_a_row_closes) {
+TEST(Accurate, falls_back_on_estimated_mid_point_steps_where_a_row_closes) {
   Problem problem = pendulum();  // that meets a stop at the bottom: x >= 0
   const std::size_t stop = add(problem, along(1, {1, 0, 0}, 0));
   pool<BilinearConstraint>(problem).law(stop)->upper = 0;
@@ -126,7 +126,7 @@ TEST(AccurateCare, falls_back_on_estimated_mid_point_steps_where_a_row_closes) {
   integrator.compile(problem);
   double lost = 0, lowest = 1;
   for (int i = 0; i < 120; ++i) {
-    const AdvanceReport report = integrator.advance(problem, 1.0 / 60, Care::accurate());
+    const AdvanceReport report = integrator.advance(problem, 1.0 / 60, IntegratorSettings::accurate());
     ASSERT_TRUE(report.converged);
     lost += report.dissipated;
     lowest = std::min(lowest, problem.position[1].x);
@@ -136,7 +136,7 @@ TEST(AccurateCare, falls_back_on_estimated_mid_point_steps_where_a_row_closes) {
   EXPECT_NEAR(problem.position[1].y, -1, 1e-3);
 }
 
-TEST(AccurateCare, steps_over_stiff_springs_by_the_mid_point_rule) {
+TEST(Accurate, steps_over_stiff_springs_by_the_mid_point_rule) {
   Problem problem;
   problem.gravity = {0, -9.81, 0};
   (void)add_point(problem, {}), (void)add_point(problem, {0, -1, 0}, 1e-3);
@@ -144,7 +144,7 @@ TEST(AccurateCare, steps_over_stiff_springs_by_the_mid_point_rule) {
   add_spring(problem, 0, 1, 1e8, 1);  // 50 000 oscillations a second
   Integrator integrator;
   integrator.compile(problem);
-  for (int i = 0; i < 5; ++i) (void)integrator.advance(problem, 1.0 / 60, Care::accurate());
+  for (int i = 0; i < 5; ++i) (void)integrator.advance(problem, 1.0 / 60, IntegratorSettings::accurate());
   EXPECT_NEAR(problem.position[1].y, -1, 1e-6);
 }
 

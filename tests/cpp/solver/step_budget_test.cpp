@@ -31,11 +31,11 @@ int work_hardest(int budget) {
   Problem problem = taut_net();
   Integrator integrator;
   integrator.compile(problem);
-  Care care = Care::energy_keeping();
-  care.max_iterations = budget;
+  IntegratorSettings settings = IntegratorSettings::energy_keeping();
+  settings.max_iterations = budget;
   int most = 0;
   for (int step = 0; step < 30; ++step) {
-    const AdvanceReport report = integrator.advance(problem, 1.0 / 60, care);
+    const AdvanceReport report = integrator.advance(problem, 1.0 / 60, settings);
     most = std::max(most, report.iterations);
     for (const Vec3& x : problem.position) EXPECT_LT(norm(x), 100);
   }

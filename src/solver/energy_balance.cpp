@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/energy_balance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace iota::solver {
+
+namespace {
+
+constexpr double round_off_of_energy = 1e-14;
+constexpr double of_motion = 1e-9;  // of the kinetic energy: what the tolerance of a solve may make
+constexpr double finest = 1e-12;    // of a length: motion below it is round-off
+
+/// One solved (sub-)step.
+struct Solved {
+  const Problem& problem;
+  const Newton& newton;
+  const Stage& stage;
+
+  const Vec3* start() const { return problem.position.data(); }
+  const Vec3* end() const { return newton.solution().data(); }
+  ForceStage force_stage() const { return {stage.h, stage.midpoint, false}; }
+  Vec3 velocity_at_end(std::size_t node) const {
+    return problem.velocity[node] + ((stage.midpoint ? 2 : 1) / stage.h) * newton.displacement()[node];
+  }
+  Vec3 mean_velocity(std::size_t node) const {
+    return problem.velocity[node] + (0.5 / stage.h) * newton.displacement()[node];
+  }
+  /// visit(constraint, its multipliers, its laws or null, its states or null, values before, values after)
+  template <class C, class Visit>
+  void for_each_row(const ConstraintPool<C>& pool, Visit visit) const {
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      double before[C::rows], after[C::rows];
+      pool.items[k].value(start(), stage.fraction_start, before);
+      pool.items[k].value(end(), stage.fraction, after);
+      visit(k, before, after);
+    }
+  }
+
+  double external_work() const;
+  double work_of_drives() const;
+  void add_dissipation(StepEnergy&) const;
+  template <class C>
+  void add_dissipation_of_rows(const ConstraintPool<C>&, StepEnergy&) const;
+  template <class C>
+  double mean_speed_across(const C&, int row) const;
+  double work_of_gaps() const;
+  double work_of_imbalance() const;
+};
+
+// Of grips, pushes of laws, targets of points and explicit forces.
+double Solved::external_work() const {
+  double work = 0;
+  for (const auto& f : problem.items_of<GripForce>()) {
+    const Vec3 e0 = f.arm.value(start()), e1 = f.arm.value(end());
+    work += dot(f.force(e0, e1, force_stage()), e1 - e0);
+  }
+  for (const auto& f : problem.items_of<RadialForce>())
+    work += f.push_work(f.arm.value(start()), f.arm.value(end()), force_stage());
+  const std::span<const AffineConstraint> affines = problem.items_of<AffineConstraint>();
+  for (std::size_t k = 0; k < affines.size(); ++k) {
+    const AffineConstraint& c = affines[k];
+    if (c.target == c.target_start) continue;
+    const double* const l = problem.pool_of<AffineConstraint>().multiplier(k);
+    Vec3 moved;
+    for (std::uint32_t i = 0; i < c.count; ++i) moved += c.weights[i] * (end()[c.nodes[i]] - start()[c.nodes[i]]);
+    work -= dot(Vec3{l[0], l[1], l[2]}, moved);
+  }
+  for (std::size_t i = 0; i < problem.force.size(); ++i) work += dot(problem.force[i], end()[i] - start()[i]);
+  return work;
+}
+
+// The work of moving targets, lambda dg/dt, J. A motor that does not reach its speed counts as a drive behind a slipping
+// clutch: the difference is dissipated.
+double Solved::work_of_drives() const {
+  double work = 0;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for (std::size_t k = 0; k < pool.items.size(); ++k) {
+      if constexpr (GeneralConstraint<C>)
+        if (pool.items[k].is_moving()) {
+          double before[C::rows], after[C::rows];
+          pool.items[k].value(end(), stage.fraction_start, before);
+          pool.items[k].value(end(), stage.fraction, after);
+          for (int r = 0; r < C::rows; ++r) work += pool.multiplier(k)[r] * (after[r] - before[r]);
+        }
+      if (pool.has_laws())
+        for (int r = 0; r < C::rows; ++r)
+          if (pool.law(k)[r].hold) work -= pool.multiplier(k)[r] * pool.law(k)[r].rate * stage.h;
+    }
+  });
+  return work;
+}
+
+void Solved::add_dissipation(StepEnergy& energy) const {
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    if (pool.has_laws() && pool.held.empty()) add_dissipation_of_rows(pool, energy);
+  });
+  problem.for_each_force_pool([&](const auto& pool) {
+    for (const auto& f : pool.items)
+      energy.dissipated += f.dissipation(f.arm.value(start()), f.arm.value(end()), force_stage());
+  });
+}
+
+// A row takes lambda dg. Of that a spring stores its part and a drive has given its rate. What is left are dashpots,
+// friction and slipping clutches. The impact of a row that has just met: in the mid-point rule lambda dg is its first half, a
+// projection takes the other; the end-point rule takes all at once, the impulse times the mean speed across the row.
+template <class C>
+void Solved::add_dissipation_of_rows(const ConstraintPool<C>& pool, StepEnergy& energy) const {
+  for_each_row(pool, [&](std::size_t k, const double* before, const double* after) {
+    for (int r = 0; r < C::rows; ++r) {
+      const RowLaw& law = pool.law(k)[r];
+      const RowState& state = pool.states[k * C::rows + r];
+      const double lambda = pool.multiplier(k)[r], moved = after[r] - before[r];
+      const bool is_free = state.side == 0;
+      if (law == RowLaw{} || law.is_off()) continue;
+      if (law.hold)
+        energy.dissipated += lambda * (moved - law.rate * stage.h);
+      else if (law.is_compliant())
+        energy.dissipated += is_free ? law.damping / stage.h * moved * moved
+                                     : std::max(0.0, lambda * moved - law.energy(after[r]) + law.energy(before[r]));
+      else if (is_free && state.side_before != 0)
+        energy.impact += lambda * (stage.midpoint ? moved : stage.h * mean_speed_across(pool.items[k], r));
+    }
+  });
+}
+
+/// Mean velocity of a row over the step, by its gradient at the end, m/s.
+template <class C>
+double Solved::mean_speed_across(const C& c, int row) const {
+  const Gradients<C> gradients(c, end(), stage.fraction);
+  double speed = 0;
+  for (int i = 0; i < c.node_count(); ++i) {
+    Vec3 rows[C::rows];
+    gradients.of_node(i, rows);
+    speed += dot(rows[row], mean_velocity(c.nodes[i]));
+  }
+  return speed;
+}
+
+// The work of constraint forces on gaps that open or close within the tolerance, J.
+double Solved::work_of_gaps() const {
+  double work = 0;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    for_each_row(pool, [&](std::size_t k, const double* before, const double* after) {
+      const double limit = 10 * stage.tolerance * pool.items[k].reference_length();
+      for (int r = 0; r < C::rows; ++r)
+        work += std::abs(pool.multiplier(k)[r]) * std::min(std::abs(after[r] - before[r]), limit);
+    });
+  });
+  return work;
+}
+
+// The work of the residual forces within the tolerance, J.
+double Solved::work_of_imbalance() const {
+  double work = 0;
+  for (std::size_t i = 0; i < problem.size(); ++i) work += problem.mass[i] * norm(end()[i] - start()[i]);
+  return work * stage.inertia * stage.tolerance * newton.reference_length();
+}
+
+}  // namespace
+
+void EnergyBalance::measure(const Problem& problem, double fraction) {
+  kinetic = problem.kinetic_energy();
+  total = kinetic + problem.potential_energy(problem.position.data()) +
+          problem.row_energy(problem.position.data(), fraction);
+}
+
+void EnergyBalance::measure_kinetic(const Problem& problem) {
+  const double before = std::exchange(kinetic, problem.kinetic_energy());
+  total += kinetic - before, missing += before - kinetic;
+}
+
+StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newton, const Stage& stage,
+                                      bool drives_rows) const {
+  const Solved step{problem, newton, stage};
+  StepEnergy energy{.kinetic_before = kinetic, .total_before = total};
+  energy.external_work = step.external_work() + (drives_rows ? step.work_of_drives() : 0);
+  step.add_dissipation(energy);
+  energy.kinetic = problem.kinetic_energy([&](std::size_t i) { return step.velocity_at_end(i); });
+  energy.total = energy.kinetic + problem.potential_energy(step.end()) + problem.row_energy(step.end(), stage.fraction);
+  energy.round_off = round_off_of_energy * energy.size();
+  energy.slack = of_motion * std::max(kinetic, energy.kinetic) + energy.round_off;
+  if (energy.made() > energy.slack)
+    energy.slack +=
+        step.work_of_gaps() + step.work_of_imbalance() + std::max(0.0, newton.strain_released(problem, stage));
+  return energy;
+}
+
+void EnergyBalance::take(const StepEnergy& step, AdvanceReport& report) {
+  kinetic = step.kinetic, total = step.total;
+  missing += step.missing(), slack += step.slack;
+  const double impact = std::clamp(missing, 0.0, std::max(0.0, step.impact));  // at most what is missing
+  missing -= impact;
+  report.external_work += step.external_work, report.dissipated += step.dissipated + impact;
+}
+
+void EnergyBalance::close(const Problem& problem, double reference_length, double h, AdvanceReport& report) {
+  if (missing < -slack) {
+    const double jitter = finest * reference_length / h;
+    slack += std::accumulate(problem.mass.begin(), problem.mass.end(), 0.0) * jitter * jitter;
+  }
+  (missing < -slack ? report.made : report.lost) += missing < -slack ? -missing : missing;
+  missing = slack = 0;
+}
+
+}  // namespace iota::solver

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solver/advance_report.h"
+#include "solver/newton.h"
+
+namespace iota::solver {
+
+/// The energies of a solved (sub-)step that is not committed, J.
+struct StepEnergy {
+  double kinetic_before = 0, total_before = 0;
+  double kinetic = 0, total = 0;  ///< at its end
+  double external_work = 0;       ///< of explicit forces, grips, drives and moving targets
+  double dissipated = 0;          ///< work of dampers, dashpots and friction
+  double impact = 0;              ///< upper bound of what rows that have just become active dissipate
+  double round_off = 0;
+  double slack = 0;  ///< what the tolerance of the solve explains, of energy that is made; with round-off
+
+  double missing() const { return total_before + external_work - dissipated - total; }
+  double made() const { return -missing(); }
+  /// Without what is dissipated, whose round-off is large in stiff dashpots: made for sure.
+  double gained() const { return total - total_before - external_work; }
+  double size() const { return std::abs(total_before) + std::abs(total) + std::abs(external_work - dissipated); }
+};
+
+/// The energy of a problem from one (sub-)step to the next, and what no law or force explains of its changes.
+struct EnergyBalance {
+  double kinetic = 0, total = 0;  ///< of the present state, J
+  double missing = 0;             ///< unexplained: lost, or made if negative, J
+  double slack = 0;               ///< of what is made: within the tolerance of the solves, J
+
+  /// Of the state, as a new start: differences are not counted.
+  void measure(const Problem&, double fraction);
+  /// After a change of velocities alone; what the change takes is missing.
+  void measure_kinetic(const Problem&);
+  /// Newton's solution is the end of the step, with the velocities of its scheme.
+  StepEnergy of_solution(const Problem&, const Newton&, const Stage&, bool drives_rows) const;
+  /// Continues from the end of a step.
+  void take(const StepEnergy&, AdvanceReport&);
+  /// The end of a (sub-)step of h seconds with its corrections: reports what is missing as lost, or as made. A surplus within
+  /// the slack is subtracted from `lost`, as its sign varies from step to step.
+  void close(const Problem&, double reference_length, double h, AdvanceReport&);
+};
+
+}  // namespace iota::solver

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Corrections of velocities at the end of a (sub-)step, and the energy that they take from the motion or return to it.
+#include "solver/integrator.h"
+
+#include "solver/pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace iota::solver {
+
+// The mid-point rule satisfies the rows by the mean velocity, not by the velocity at the end: the residual of a row
+// there would change its sign in each step, as a rate of stretch of rigid links (up to 30 % of the kinetic energy of a
+// whip) and as oscillating reactions. So velocities are projected, and the energy of that is returned to the motion.
+// Not in an impact, when a bounded row has just become active: that is inelastic, and the projection takes its energy.
+void Integrator::project_velocities_after_step(Problem& problem, const Stage& stage, bool met, AdvanceReport& report) {
+  const std::optional<double> kinetic = newton_.project_velocities_after(
+      problem, stage, {.kinetic = energy_.kinetic, .drives_rows = drives_rows_, .is_isolated = holds_.count == 0});
+  has_corrected_ = kinetic.has_value();
+  double taken = 0;
+  if (kinetic) {
+    taken = energy_.kinetic - *kinetic;
+    energy_.kinetic -= taken, energy_.total -= taken;
+    if (drives_rows_) {  // rows that move do work in it
+      const auto earlier = newton_.velocities_before();
+      const double own = problem.kinetic_energy([&](std::size_t i) { return problem.velocity[i] - earlier[i]; });
+      report.external_work += own - taken;
+      taken = own;
+    }
+  }
+  if (met)
+    report.dissipated += taken;
+  else
+    energy_.missing += taken;
+  if (!met && !drives_rows_ && give_energy_back(problem, stage, taken, report)) has_corrected_ = true;
+}
+
+// Newton's velocities before the correction become the correction.
+void Integrator::keep_correction(const Problem& problem) {
+  const auto changes = newton_.velocities_before();
+  for (std::size_t i = 0; i < changes.size(); ++i) changes[i] = problem.velocity[i] - changes[i];
+}
+
+// What the end-point rule has lost of the angular momentum; the energy of that is at most what the step has lost.
+void Integrator::give_spin_back(Problem& problem, const Stage& stage) {
+  std::copy(problem.velocity.begin(), problem.velocity.end(), newton_.velocities_before().begin());
+  const double lost = std::max(0.0, energy_.missing);
+  has_corrected_ = spin_.give_back(problem, newton_.displacement(), stage.h, holds_, lost, is_free_body_);
+  if (has_corrected_) energy_.measure_kinetic(problem);
+}
+
+// Also beside what dampers dissipate; down to half of the slack, as all of it would leave round-off above.
+void Integrator::remove_made_energy(Problem& problem, double energy_before) {
+  double made = drives_rows_ || -energy_.missing <= energy_.slack ? 0 : -energy_.missing - 0.5 * energy_.slack;
+  if (is_conservative_) made = std::max(made, energy_.total - energy_before);
+  if (made > 0) (void)change_kinetic_energy(problem, made);
+}
+
+// Removes `excess` from the kinetic energy, or adds it if negative: scales all velocities, in an isolated problem
+// relative to the rigid motion, so that momentum and angular momentum are kept. Velocities still satisfy the
+// constraints afterwards. If the rigid motion alone has too much energy, all of the velocities are scaled. False if the
+// motion has not so much energy.
+bool Integrator::change_kinetic_energy(Problem& problem, double excess, const std::optional<RigidMotion>& found) {
+  if (!scale_motion(problem, excess, found)) {
+    energy_.measure_kinetic(problem);
+    return false;
+  }
+  const double before = energy_.kinetic;
+  energy_.kinetic -= excess, energy_.total -= excess, energy_.missing += before - energy_.kinetic;
+  return true;
+}
+
+// Of what nothing outside holds, or one point at rest.
+std::optional<RigidMotion> Integrator::rigid_motion(const Problem& problem) const {
+  if (holds_.are_none()) return rigid_motion_of(problem);
+  if (const auto pivot = holds_.pivot()) return rigid_motion_about(problem, *pivot);
+  return {};
+}
+
+namespace {
+
+/// Scales what a point's velocity has beside a rigid motion.
+void scale_beside(const RigidMotion& rigid, double factor, Problem& problem, std::size_t node) {
+  const Vec3 shared = rigid.velocity_at(problem.position[node]);
+  problem.velocity[node] = shared + factor * (problem.velocity[node] - shared);
+}
+
+}  // namespace
+
+// Returns whether the kinetic energy is reduced by the excess, to round-off.
+bool Integrator::scale_motion(Problem& problem, double excess, const std::optional<RigidMotion>& found) {
+  RigidMotion rigid;
+  double rest = energy_.kinetic;
+  if (found) {
+    rigid = *found;
+    rest -= rigid.kinetic_energy();
+    if (!(rest > excess)) {
+      rest = energy_.kinetic - 0.5 * rigid.mass * dot(rigid.velocity, rigid.velocity);
+      rigid.turning = {};
+    }
+  }
+  constexpr double most_given = 1;  // of the kinetic energy of the motion
+  if (!(rest > 0 && -excess <= most_given * rest)) return false;
+  const double factor = std::sqrt(std::max(0.0, 1 - excess / rest));
+  for (std::size_t i = 0; i < problem.size(); ++i) scale_beside(rigid, factor, problem, i);
+  return excess < rest;
+}
+
+// Returns to the motion the energy that a projection of velocities has taken. Curves, surfaces and angles have no exact
+// discrete gradient: the error of the mean of two gradients is returned as well, limited if the motion reverses and has
+// little kinetic energy.
+bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double taken, AdvanceReport& report) {
+  constexpr double most = 0.1;  // of the kinetic energy: limit of the returned error on curves
+  const bool is_made = has_curved_rows_ && std::abs(energy_.missing) > energy_.slack;
+  const double missing = is_made ? std::clamp(energy_.missing, -most * energy_.kinetic, most * energy_.kinetic) : taken;
+  if (missing == 0) return false;
+  if (std::exchange(may_be_in_pieces_, false)) {
+    const std::uint32_t count = find_pieces(problem, Connection::rows_and_forces, piece_of_);
+    pieces_.resize(count > 1 ? count : 0);
+  }
+  if (!pieces_.empty()) {
+    give_energy_back_by_piece(problem);
+    return true;
+  }
+  const std::optional<RigidMotion> rigid = rigid_motion(problem);
+  if (rigid && problem.items_of<GripForce>().empty() && problem.items_of<GyroscopicForce>().empty()) {
+    if (!(energy_.kinetic - rigid->kinetic_energy() > std::abs(missing))) {
+      std::copy(problem.position.begin(), problem.position.end(), newton_.room().begin());
+      turn_for_energy(problem, missing, holds_.pivot());
+      double work = 0;
+      for (std::size_t i = 0; i < problem.force.size(); ++i)
+        work += dot(problem.force[i], problem.position[i] - newton_.room()[i]);
+      report.external_work += work;
+      const double before = energy_.total;
+      energy_.measure(problem, stage.fraction);
+      energy_.missing += before + work - energy_.total;
+      return true;
+    }
+  }
+  (void)change_kinetic_energy(problem, -missing, rigid);
+  return true;
+}
+
+// After a cut both halves stay in one problem for a while, but their energies are balanced separately.
+void Integrator::give_energy_back_by_piece(Problem& problem) {
+  const auto earlier = newton_.velocities_before();
+  for (Piece& piece : pieces_) piece = {};
+  problem.for_each_constraint_pool([&](const auto& pool) {
+    for (const auto& c : pool.items) pieces_[piece_of_[pool.nodes_of(c).front()]].holds.add(c);
+  });
+  const auto add = [&](double mass, std::uint32_t a, std::uint32_t b) {
+    Piece& piece = pieces_[piece_of_[a]];
+    const double kinetic = 0.5 * mass * dot(problem.velocity[a], problem.velocity[b]);
+    piece.kinetic += kinetic, piece.taken += 0.5 * mass * dot(earlier[a], earlier[b]) - kinetic;
+  };
+  for (std::uint32_t i = 0; i < problem.size(); ++i) add(problem.mass[i], i, i);
+  for (const auto& c : problem.mass_couplings) add(2 * c.mass, c.a, c.b);
+  for (std::uint32_t k = 0; k < pieces_.size(); ++k) {
+    const Piece& piece = pieces_[k];
+    if (!(piece.taken > 0)) continue;
+    RigidMotion rigid;
+    if (const auto pivot = piece.holds.pivot())
+      rigid = rigid_motion_about(problem, *pivot, piece_of_, k);
+    else if (piece.holds.are_none())
+      rigid = rigid_motion_of(problem, piece_of_, k);
+    const double rest = piece.kinetic - rigid.kinetic_energy();
+    if (!(piece.taken <= rest)) continue;
+    const double factor = std::sqrt(1 + piece.taken / rest);
+    for (std::size_t i = 0; i < problem.size(); ++i)
+      if (piece_of_[i] == k) scale_beside(rigid, factor, problem, i);
+  }
+  energy_.measure_kinetic(problem);
+}
+
+}  // namespace iota::solver

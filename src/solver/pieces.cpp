@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/pieces.h"
+
+#include "base/disjoint_sets.h"
+
+#include <algorithm>
+
+namespace iota::solver {
+
+std::uint32_t find_pieces(const Problem& problem, Connection connection, std::vector<std::uint32_t>& piece_of) {
+  DisjointSets connected(problem.size());
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {  // the lowest of a piece is its leader
+    a = connected.root(a), b = connected.root(b);
+    connected.join(std::max(a, b), std::min(a, b));
+  };
+  const auto join_all = [&](const auto& pool) {
+    for (const auto& item : pool.items)
+      for (const std::uint32_t node : pool.nodes_of(item)) join(pool.nodes_of(item).front(), node);
+  };
+  problem.for_each_constraint_pool(join_all);
+  if (connection == Connection::rows_and_forces) problem.for_each_force_pool(join_all);
+  for (const auto& c : problem.mass_couplings) join(c.a, c.b);
+  std::uint32_t count = 0;
+  piece_of.resize(problem.size());
+  for (std::uint32_t node = 0; node < problem.size(); ++node) {
+    const std::uint32_t leader = connected.root(node);
+    piece_of[node] = leader == node ? count++ : piece_of[leader];
+  }
+  return count;
+}
+
+}  // namespace iota::solver

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+
+// The limits by which the solver decides, each relative to lengths, masses, energies or times of the problem itself.
+// `docs/solver.md` gives the measurements behind them.
+
+namespace iota::solver {
+
+inline constexpr double closed_gap = 1e-6;  ///< of a reference length: a row with less is met
+inline constexpr double round_off = 4e-15;  ///< relative, of sums of forces and of rows
+
+/// Relative compliances (Stage::compliance). Rows that no step or projection can meet are tried softer and softer: then
+/// conflicting rows share the violation.
+inline constexpr double exact_rows = 1e-12;
+inline constexpr std::array softer_rows{1e-9, 1e-6, 1e-3};
+
+enum class Scheme : std::uint8_t {
+  end_point,  ///< backward Euler: v1 = (x1 - x0)/h
+  mid_point,  ///< energy-momentum: v1 = 2 (x1 - x0)/h - v0 (Betsch and Leyendecker 2006)
+};
+
+/// A way to solve a (sub-)step. One that is rejected is halved, if that may help; the shortest parts go to the next attempt.
+struct Attempt {
+  Scheme scheme;
+  double compliance;  ///< relative
+  bool is_halved;
+};
+/// In this order, from that of the settings' scheme. After the last one the points coast: see Integrator::coast.
+inline constexpr std::array attempts{
+    Attempt{Scheme::mid_point, exact_rows, true},
+    Attempt{Scheme::end_point, exact_rows, true},
+    Attempt{Scheme::end_point, softer_rows[0], false},
+    Attempt{Scheme::end_point, softer_rows[1], false},
+    Attempt{Scheme::end_point, softer_rows[2], false},
+};
+
+/// From plausible to accurate. `docs/solver.md` lists cost and accuracy of each.
+struct IntegratorSettings {
+  Scheme scheme = Scheme::mid_point;
+  double tolerance = 1;   ///< of Newton's method, as a multiple of 1e-9 (end point) and 1e-10 (mid-point)
+  double max_turn = 1.1;  ///< rad: a mid-point (sub-)step that turns a link further is halved
+  int max_depth = 6;      ///< sub-steps down to a 64th: a whip needs them, for a few steps
+  int patience = 400;     ///< Newton iterations after which sub-steps are no longer halved
+  double max_error = 0;   ///< estimated, of (sub-)steps, in link lengths per second; 0: no limit
+
+  int max_iterations = 0;  ///< of all solves of a step, without the last resort's; 0: unlimited
+  /// When all solves of a step have to end, but the last resort's.
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+
+  static constexpr int last_resort_iterations = 24;  ///< beyond `max_iterations`
+  static constexpr int last_resort_pieces = 8;       ///< of a (sub-)step
+  static constexpr double largest_violation = 1e-2;  ///< relative: a step with wider gaps is rejected
+
+  static IntegratorSettings plausible() { return {.scheme = Scheme::end_point, .tolerance = 100, .max_depth = 4}; }
+  static IntegratorSettings robust() { return {.scheme = Scheme::end_point}; }
+  static IntegratorSettings energy_keeping() { return {}; }
+  static IntegratorSettings accurate(double max_error = 1e-4) {
+    return {.tolerance = 0.1, .max_turn = 0.35, .max_depth = 10, .patience = 10000, .max_error = max_error};
+  }
+};
+
+/// Of Newton's method; residuals are scaled to displacements in link lengths.
+struct NewtonSettings {
+  static constexpr int max_halvings = 12;          ///< of a Newton step
+  static constexpr double exact_below = 1e-2;      ///< residual below which the exact Hessian is used with any pivots
+  static constexpr double fast = 0.5;              ///< convergence; slower steps are checked, and shortened
+  static constexpr double round_off_floor = 1e-8;  ///< a residual below it that no step reduces counts as zero
+  static constexpr double noise = 10;              ///< times the estimate of round-off: the same
+  /// A costly factor is used again after an iteration that reduced the residual to this part; then to the second.
+  static constexpr double reuse_after = 0.03, reuse_again = 0.1;
+  static constexpr int more_for_sides = 4;  ///< times max_iterations, while bounded rows change sides
+
+  static constexpr int polish_steps = 4;
+  static constexpr double polish_clean = 3e-13, polish_noise = 1e-12, polish_fast = 0.3;  ///< see Newton::polish
+};
+
+}  // namespace iota::solver

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The balance of single steps against their closed forms.
+#include "solver/energy_balance.h"
+
+#include "tests/cpp/solver/small_problem.h"
+
+#include <gtest/gtest.h>
+
+namespace iota::solver {
+namespace {
+
+constexpr double h = 0.01, g = 9.81, mass = 2;
+
+/// A ball that is thrown up.
+struct Throw {
+  Problem problem;
+  Newton newton;
+  EnergyBalance balance;
+
+  Throw() {
+    problem.gravity = {0, -g, 0};
+    add_point(problem, {1, 2, 3}, mass, {0.5, 3, 0});
+  }
+  StepEnergy step(const Stage& stage) {
+    newton.compile(problem);
+    std::fill(newton.displacement().begin(), newton.displacement().end(), Vec3{});
+    EXPECT_TRUE(newton.solve(problem, stage).converged);
+    balance.measure(problem, 0);
+    return balance.of_solution(problem, newton, stage, false);
+  }
+};
+
+TEST(EnergyBalance, of_a_throw_misses_nothing_by_the_mid_point_rule) {
+  Throw ball;
+  const StepEnergy energy = ball.step(Stage::mid_point(h, 0, 1));
+  EXPECT_NEAR(energy.missing(), 0, 1e-12);
+  EXPECT_NEAR(energy.kinetic, 0.5 * mass * (0.25 + (3 - g * h) * (3 - g * h)), 1e-12);
+}
+
+/// Backward Euler falls by h v1: the energy changes by -m (g h)^2 / 2.
+TEST(EnergyBalance, of_a_throw_misses_what_the_end_point_rule_loses) {
+  Throw ball;
+  const StepEnergy energy = ball.step(Stage::end_point(h, 0, 1));
+  EXPECT_NEAR(energy.missing(), 0.5 * mass * g * h * g * h, 1e-12);
+  AdvanceReport report;
+  ball.balance.take(energy, report);
+  ball.balance.close(ball.problem, 1, h, report);
+  EXPECT_NEAR(report.lost, 0.5 * mass * g * h * g * h, 1e-12);
+  EXPECT_EQ(report.made, 0);
+  EXPECT_EQ(ball.balance.missing, 0) << "it is told";
+}
+
+TEST(EnergyBalance, counts_the_work_of_an_explicit_force) {
+  Throw ball;
+  ball.problem.force[0] = {5, 0, 0};
+  const StepEnergy energy = ball.step(Stage::mid_point(h, 0, 1));
+  const double way = 0.5 * h + 0.5 * (5 / mass) * h * h;
+  EXPECT_NEAR(energy.external_work, 5 * way, 1e-12);
+  EXPECT_NEAR(energy.gained(), 0, 1e-12);
+}
+
+TEST(EnergyBalance, reports_as_made_only_what_the_tolerance_does_not_explain) {
+  Throw ball;
+  AdvanceReport report;
+  ball.balance.missing = -1, ball.balance.slack = 2;
+  ball.balance.close(ball.problem, 1, h, report);
+  EXPECT_EQ(report.made, 0);
+  EXPECT_EQ(report.lost, -1) << "its sign varies from step to step";
+  ball.balance.missing = -3, ball.balance.slack = 2;
+  ball.balance.close(ball.problem, 1, h, report);
+  EXPECT_EQ(report.made, 3);
+}
+
+}  // namespace
+}  // namespace iota::solver
