@@ -65,7 +65,8 @@ RestructureReport apply(Editor& e, const CombineParticles& c) {
                       [&](RestructureReport& made) { return combine_particles(model, p, q, made); });
   if (c.over > 0 && body_p != body_q) {
     const double distance = norm(model.position(q) - model.position(p));
-    if (distance > 1e-9) return begin_closing(e, p, q, distance, c.over);
+    const double extent = std::max(model.extent(body_p), model.extent(body_q));
+    if (distance > 1e-9 * extent) return begin_closing(e, p, q, distance, c.over);
   }
   return hinge(e, p, q);
 }

@@ -135,7 +135,7 @@ std::optional<Conserved> give_back_momenta(Editor& e, std::span<const std::uint3
     const Vec3 lost_spin = before.momenta.angular - now.momenta.angular - cross(center, lost);
     Vec3 turn = solve_semidefinite(inertia, lost_spin);
     // Bodies that were contracted nearly to a point would need an extreme spin to keep their angular momentum.
-    if (is_a_point || 0.5 * dot(turn, lost_spin) > 3 * (before.energies.kinetic + 1e-12)) turn = {};
+    if (is_a_point || 0.5 * dot(turn, lost_spin) > 3 * before.energies.kinetic) turn = {};
     for (const std::uint32_t ring : rings)
       model.rings[ring].velocity += (1 / mass) * lost + cross(turn, model.rings[ring].position - center);
   }

@@ -64,12 +64,15 @@ void Nails::refresh(Model& model, const IslandNodes& nodes, bool moved) const {
 // A static body's rings are nailed at the body's assigned place. Nailed at their present place in each step, they would
 // creep under load.
 void Nails::accept_assigned(Model& model, const IslandNodes& nodes) const {
-  constexpr double creep = 1e-7;  // m; a ring that is farther away was moved by the script
+  constexpr double creep = 1e-7;  // of the body's extent; a ring that is farther away was moved by the script
   nodes.for_each_pinned([&](std::uint32_t slot) {
     const model::Ring& ring = model.rings[slot];
     Nail& nail = model.nails.at(slot);
-    if (!ring.nailed && norm(ring.position - nail.position) > creep)
-      nail.position = nail.position_before = ring.position;
+    if (ring.nailed || ring.position == nail.position) return;
+    double extent = 0;
+    model.for_each_in_ring(slot,
+                           [&](std::uint32_t p) { extent = std::max(extent, model.extent(model.particles[p].body)); });
+    if (norm(ring.position - nail.position) > creep * extent) nail.position = nail.position_before = ring.position;
   });
 }
 

@@ -241,8 +241,13 @@ std::pair<Vec3, Vec3> Structure::carried(std::uint32_t particle) const {
 
 bool Structure::follows_basis(std::uint32_t particle) const {
   if (particles[particle].basis_index >= 0) return true;
+  constexpr double round_off = 1e-9, of_places = 1e-15;
+  const Body& body = bodies[particles[particle].body];
+  double speed = norm(velocity(particle));
+  for (int i = 0; i < body.rank; ++i) speed = std::max(speed, norm(rings[particles[body.basis[i]].ring].velocity));
   const auto [x, v] = carried(particle);
-  return norm(x - position(particle)) < 1e-9 && norm(v - velocity(particle)) < 1e-9;
+  return norm(x - position(particle)) <= round_off * extent(particles[particle].body) + of_places * norm(x) &&
+         norm(v - velocity(particle)) <= round_off * speed;
 }
 
 BodyId Structure::part_at(std::uint32_t body, const Vec3& place) const {

@@ -163,7 +163,9 @@ void Assembly::add_rows(const Problem& problem, const Stage& stage, const Constr
       unknowns_[pool.slots[k].unknown + r] = value;
       worst.add(std::abs(value) * per_length);
       violation.add(std::abs(gap) * per_length);
-      largest_multiplier = std::max(largest_multiplier, std::abs(lambda[r]));
+      // To N, as rows of angles and directions have no lengths.
+      const double size = GeneralConstraint<C> ? c.reference_length() / reference_length_ : 1;
+      largest_multiplier = std::max(largest_multiplier, size * std::abs(lambda[r]));
     }
   }
   worst_ = worst.value, violation_ = violation.value, largest_multiplier_ = largest_multiplier;

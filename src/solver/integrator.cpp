@@ -120,8 +120,8 @@ bool Integrator::may_halve(const Part& part, const AdvanceReport& report) const 
 
 bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt, AdvanceReport& report) {
   const bool is_mid_point = attempt.scheme == Scheme::mid_point, is_soft = attempt.compliance > exact_rows;
-  Stage stage = is_mid_point ? Stage::mid_point(part.h, part.from, part.to)
-                             : Stage::end_point(part.h, part.from, part.to);
+  Stage stage =
+      is_mid_point ? Stage::mid_point(part.h, part.from, part.to) : Stage::end_point(part.h, part.from, part.to);
   stage.tolerance *= settings_.tolerance, stage.compliance = attempt.compliance;
   stage.part = is_soft ? 1 : compliance_part(part);
   problem.copy_multipliers_to(multipliers_saved_);

@@ -14,7 +14,8 @@ struct Limit {
 
   double of(const StepEnergy& step) const {
     return of_kinetic * std::max(step.kinetic_before, step.kinetic) +
-           of_total * std::max(std::abs(step.total_before), std::abs(step.total)) + of_work * std::abs(step.external_work);
+           of_total * std::max(std::abs(step.total_before), std::abs(step.total)) +
+           of_work * std::abs(step.external_work);
   }
 };
 

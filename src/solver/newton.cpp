@@ -98,7 +98,8 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       if (!settled) {
         factor_will_do = false;
         measure<Midpoint>(problem, stage);
-        most_iterations = std::min({most_iterations + 1, Set::more_for_sides * stage.max_iterations, stage.iterations_left});
+        most_iterations =
+            std::min({most_iterations + 1, Set::more_for_sides * stage.max_iterations, stage.iterations_left});
       }
     }
     if (!(residual_.worst > stage.tolerance) || report.iterations >= most_iterations) break;
@@ -134,7 +135,8 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
       if (stuck) break;
     }
     // Near the solution the old factor is reused if a factorization costs much more than an iteration.
-    factor_will_do = assembly_.is_dear() && residual_.worst <= (factor_will_do ? Set::reuse_again : Set::reuse_after) * before;
+    factor_will_do =
+        assembly_.is_dear() && residual_.worst <= (factor_will_do ? Set::reuse_again : Set::reuse_after) * before;
   }
   if (!stuck && !stage.is_projection() && (Midpoint || report.iterations == 0))
     polish<Midpoint>(problem, stage, report, served_on);
@@ -274,7 +276,7 @@ void Newton::polish(Problem& problem, const Stage& stage, NewtonReport& report, 
     if (!worse && ((!met && residual_.rows <= Set::polish_fast * before.rows) ||
                    (!balanced && residual_.imbalance <= Set::polish_fast * before.imbalance)))
       continue;  // it helps
-    if (!factor_is_old || residual_.worst <= Set::polish_clean) return;
+    if (!factor_is_old || residual_.worst <= Set::polish_clean || report.iterations >= stage.iterations_left) return;
     factor_is_old = false, needs_factor = true;
   }
 }

@@ -181,7 +181,9 @@ double Newton::find_rates(const Problem& problem, const Wanted& wanted) {
           if (pool.law(k)[r].hold && !keeps_rate) row[r] -= pool.law(k)[r].rate;
           if (pool.states[k * C::rows + r].side != 0) row[r] = 0;
         }
-      for (int r = 0; r < C::rows; ++r) worst.add(std::abs(row[r]));
+      // To m/s, as rows of angles and directions have no lengths.
+      const double size = GeneralConstraint<C> ? reference_length() / c.reference_length() : 1;
+      for (int r = 0; r < C::rows; ++r) worst.add(size * std::abs(row[r]));
     }
   });
   Largest speed;

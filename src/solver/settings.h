@@ -32,10 +32,8 @@ struct Attempt {
 };
 /// In this order, from that of the settings' scheme. After the last one the points coast: see Integrator::coast.
 inline constexpr std::array attempts{
-    Attempt{Scheme::mid_point, exact_rows, true},
-    Attempt{Scheme::end_point, exact_rows, true},
-    Attempt{Scheme::end_point, softer_rows[0], false},
-    Attempt{Scheme::end_point, softer_rows[1], false},
+    Attempt{Scheme::mid_point, exact_rows, true},      Attempt{Scheme::end_point, exact_rows, true},
+    Attempt{Scheme::end_point, softer_rows[0], false}, Attempt{Scheme::end_point, softer_rows[1], false},
     Attempt{Scheme::end_point, softer_rows[2], false},
 };
 

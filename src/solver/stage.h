@@ -14,8 +14,8 @@ struct Stage {
   double h = 0;  ///< s; 0: a pure projection of positions, without velocities and forces
   double inertia = 1;
   bool midpoint = false;
-  double fraction = 1;        ///< of the step, for targets that move during it
-  double fraction_start = 0;  ///< start of this (sub-)step
+  double fraction = 1;             ///< of the step, for targets that move during it
+  double fraction_start = 0;       ///< start of this (sub-)step
   double compliance = exact_rows;  ///< relative: multiplies sum |G|^2 / (inertia m) of each row
 
   double tolerance = 1e-9;  ///< of the scaled residual; remaining gaps are about this fraction of a link

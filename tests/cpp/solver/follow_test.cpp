@@ -163,7 +163,8 @@ struct Changing {
 /// Of a step of each of two problems from the same state.
 double difference_after_a_step(const Structure& structure, Problem& a, Integrator& of_a, Problem& b, Integrator& of_b) {
   structure.load(a), structure.load(b);
-  (void)of_a.advance(a, 1.0 / 120, IntegratorSettings::robust()), (void)of_b.advance(b, 1.0 / 120, IntegratorSettings::robust());
+  (void)of_a.advance(a, 1.0 / 120, IntegratorSettings::robust()),
+      (void)of_b.advance(b, 1.0 / 120, IntegratorSettings::robust());
   double farthest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) farthest = std::max(farthest, norm(a.position[i] - b.position[i]));
   return farthest;

@@ -78,7 +78,8 @@ Vec3 swing(const IntegratorSettings& settings, int steps) {
 
 TEST(Integrator, mid_point_is_of_second_order_and_end_point_of_first) {
   const Vec3 truth = swing(IntegratorSettings::energy_keeping(), 4000);
-  for (const auto& [settings, order] : {std::pair{IntegratorSettings::energy_keeping(), 2.0}, std::pair{IntegratorSettings::robust(), 1.0}}) {
+  for (const auto& [settings, order] :
+       {std::pair{IntegratorSettings::energy_keeping(), 2.0}, std::pair{IntegratorSettings::robust(), 1.0}}) {
     const double coarse = norm(swing(settings, 100) - truth), fine = norm(swing(settings, 200) - truth);
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.1);
   }
@@ -142,7 +143,8 @@ TEST(Integrator, holds_a_conflict_as_it_is_and_says_so) {
   integrator.compile(problem);
   bool always_converged = true;
   for (int i = 0; i < 60; ++i)
-    always_converged = integrator.advance(problem, 1.0 / 60, IntegratorSettings::energy_keeping()).converged && always_converged;
+    always_converged =
+        integrator.advance(problem, 1.0 / 60, IntegratorSettings::energy_keeping()).converged && always_converged;
   EXPECT_FALSE(always_converged);
   EXPECT_LT(problem.kinetic_energy(), 1e-3) << "it neither shakes nor heats";
   EXPECT_NEAR(problem.position[b].x, 1, 0.02);

@@ -78,6 +78,82 @@ TEST(Scale, of_lengths_and_masses_changes_nothing_but_the_units) {
   }
 }
 
+/// Where two chains are that are brought together while the wall that holds one of them is moved by the script.
+std::vector<Vec3> edit_in_units(double length, double mass, IntegrationMode mode) {
+  const double time = std::sqrt(length);
+  System system({.mode = mode});
+  const BodyId wall = system.bodies().create({.kind = BodyKind::static_});
+  const ParticleId hook = system.particles().create(wall, {}, mass);
+  std::vector<ParticleId> points{hook};
+  const auto hang = [&](Vec3 from, int links) {
+    ParticleId last;
+    for (int i = 0; i < links; ++i) {
+      const BodyId body = system.bodies().create();
+      const Vec3 to = from + Vec3{0.1 * length, (i % 2 ? -0.02 : 0.02) * length, 0};
+      const ParticleId upper = system.particles().create(body, from, mass),
+                       lower = system.particles().create(body, to, mass);
+      if (i > 0) (void)system.edits().combine(last, upper);
+      points.push_back(upper), points.push_back(lower);
+      last = lower, from = to;
+    }
+    return last;
+  };
+  const ParticleId end = hang({}, 3);
+  (void)system.edits().combine(hook, points[1]);
+  const std::size_t other = points.size();
+  (void)hang({0.5 * length, 0.1 * length, 0}, 3);
+  (void)system.edits().combine(end, points[other], 0.2 * time);
+  for (int step = 0; step < 60; ++step) {
+    if (step == 30) system.particles().set_position(hook, {0, 0.03 * length, 0});
+    (void)system.step(time / 120);
+  }
+  std::vector<Vec3> places;
+  for (const ParticleId p : points) places.push_back((1 / length) * system.particles().position(p));
+  return places;
+}
+
+/// Two boxes on a hinge with stop, motor and friction, a rope with a weight and a dashpot, in the given units.
+std::vector<Vec3> run_machine_in_units(double length, double mass, IntegrationMode mode) {
+  const double time = std::sqrt(length), torque = mass * length;  // gravity stays, so forces are like masses
+  System system({.mode = mode});
+  const auto box = [&](Vec3 at) {
+    return system.bodies().create(Box{length * Vec3{0.2, 0.1, 0.3}}, {.mass = mass, .position = length * at});
+  };
+  const BodyId arm = box({0.1, 0, 0}), hand = box({0.3, 0, 0});
+  const Vec3 axis{0, 0, 1};
+  (void)system.joints().create(JointSpec{
+      .kind = ConstraintKind::revolute, .a = arm, .at = {}, .axis = axis, .angle = {.lower = -0.7, .upper = 0.3}});
+  (void)system.joints().create(
+      JointSpec{.kind = ConstraintKind::revolute,
+                .a = arm,
+                .b = hand,
+                .at = length * Vec3{0.2, 0, 0},
+                .axis = axis,
+                .angle = {.motor_speed = 2 / time, .motor_max = 0.5 * torque, .friction = 0.1 * torque}});
+  const ParticleId end = system.bodies().create_attachment(hand, length * Vec3{0.4, 0, 0});
+  const ParticleId weight =
+      system.particles().create(system.bodies().create(), length * Vec3{0.5, -0.1, 0}, 0.5 * mass);
+  (void)system.joints().create(
+      DistanceSpec{.kind = ConstraintKind::rope, .p = end, .q = weight, .length = 0.2 * length});
+  (void)system.bonds().create(end, weight, SpringLaw{.stiffness = mass / length, .damping = 0.2 * mass / time});
+  for (int step = 0; step < 90; ++step) (void)system.step(time / 120);
+  return {(1 / length) * system.particles().position(end), (1 / length) * system.particles().position(weight)};
+}
+
+/// Powers of two leave all digits as they are, and so all results, if no limit anywhere is in units.
+TEST(Scale, of_lengths_and_masses_changes_no_digit_of_an_edited_world) {
+  for (const IntegrationMode mode : modes) {
+    const std::vector<Vec3> usual = edit_in_units(1, 1, mode);
+    for (const auto& [length, mass] : {std::pair{0x1p-30, 0x1p-40}, {0x1p-20, 0x1p20}, {0x1p10, 0x1p-20}})
+      EXPECT_EQ(edit_in_units(length, mass, mode), usual)
+          << "unit of length " << length << ", of mass " << mass << ", mode " << static_cast<int>(mode);
+    const std::vector<Vec3> machine = run_machine_in_units(1, 1, mode);
+    for (const auto& [length, mass] : {std::pair{0x1p-24, 0x1p-40}, {0x1p-20, 0x1p20}, {0x1p10, 0x1p-20}})
+      EXPECT_EQ(run_machine_in_units(length, mass, mode), machine)
+          << "unit of length " << length << ", of mass " << mass << ", mode " << static_cast<int>(mode);
+  }
+}
+
 TEST(Scale, of_masses_over_twelve_decades_leaves_joints_closed) {
   for (const IntegrationMode mode : modes)
     for (const double ratio : {1e8, 1e10, 1e12})
