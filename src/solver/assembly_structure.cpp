@@ -144,7 +144,7 @@ void Assembly::weigh(const Problem& problem) {
   constexpr double usual = 1e7;
   double heaviest = 0, lightest = std::numeric_limits<double>::infinity();
   for (const double m : problem.mass) heaviest = std::max(heaviest, m), lightest = std::min(lightest, m);
-  row_compliance_ = lightest > 0 ? std::clamp(usual * lightest / heaviest, 1e-6, 1.0) : 1;
+  row_compliance_ = lightest > 0 ? std::clamp(usual * lightest / heaviest, 1e-8, 1.0) : 1;
 }
 
 void Assembly::follow(Problem& problem) {
