@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // iota_soak scenes [COUNT [FIRST_SEED]]: thousands of random scenes. On a failure: the seed, and the shortest script
-// found. iota_soak edits [COUNT [SEED]]: millions of random edits of the structure, compared with a brute-force twin.
+// found. iota_soak promises [COUNT [FIRST_SEED]]: the promises of motion on random scenes. iota_soak edits [COUNT [SEED]]: millions of random edits of the structure, compared with a brute-force twin.
+#include "scenes/promises.h"
 #include "scenes/random_scene.h"
 #include "soak/edit_twin.h"
 
@@ -39,6 +40,23 @@ int play_scenes(std::uint64_t count, std::uint64_t first) {
   return failures == 0 ? 0 : 1;
 }
 
+int keep_promises(std::uint64_t count, std::uint64_t first) {
+  using namespace iota::scenes;
+  int broken = 0;
+  for (int p = 0; p < static_cast<int>(Promise::count); ++p) {
+    int failures = 0;
+    const auto promise = static_cast<Promise>(p);
+    for (std::uint64_t seed = first; seed < first + count; ++seed)
+      if (const auto wrong = break_promise(promise, seed)) {
+        if (++failures <= 5)
+          std::printf("%s, seed %llu: %s\n", name_of(promise), static_cast<unsigned long long>(seed), wrong->c_str());
+      }
+    std::printf("%s: %llu scenes, %d broken\n", name_of(promise), static_cast<unsigned long long>(count), failures);
+    broken += failures;
+  }
+  return broken == 0 ? 0 : 1;
+}
+
 int make_edits(std::uint64_t count, std::uint64_t seed) {
   iota::soak::EditCount counted;
   constexpr std::uint64_t portion = 1'000'000;
@@ -63,6 +81,7 @@ int main(int count, char** words) {
   };
   if (what == "scenes") return play_scenes(number(2, 10'000), number(3, 1));
   if (what == "edits") return make_edits(number(2, 10'000'000), number(3, 1));
-  std::fprintf(stderr, "usage: iota_soak scenes|edits [COUNT [FIRST_SEED]]\n");
+  if (what == "promises") return keep_promises(number(2, 10'000), number(3, 1));
+  std::fprintf(stderr, "usage: iota_soak scenes|promises|edits [COUNT [FIRST_SEED]]\n");
   return 2;
 }

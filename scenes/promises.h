@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+/// The promises of motion, on random scenes: trees of rigid bodies on hinges, with springs, in all modes, with lengths and
+/// masses over decades. All is measured from outside, from places and velocities of particles and the masses that were given.
+namespace iota::scenes {
+
+enum class Promise : std::uint8_t {
+  energy,      ///< is not made, and what is lost is reported
+  velocities,  ///< are those of rigid bodies (modes that keep energy)
+  momenta,     ///< of what nothing holds stay
+  force,       ///< changes momentum and angular momentum, in every mode
+  conflict,    ///< is shared, held and reported
+  order,       ///< of arguments means nothing
+  count
+};
+const char* name_of(Promise);
+
+/// Returns how a random scene breaks a promise, in a sentence.
+std::optional<std::string> break_promise(Promise, std::uint64_t seed);
+
+}  // namespace iota::scenes

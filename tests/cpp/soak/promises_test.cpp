@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The promises of motion on random scenes; `make soak` tries 10 000 of each.
+#include "scenes/promises.h"
+
+#include <gtest/gtest.h>
+
+namespace iota::scenes {
+namespace {
+
+class Promises : public testing::TestWithParam<Promise> {};
+
+TEST_P(Promises, are_kept_in_four_hundred_random_scenes) {
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) EXPECT_EQ(break_promise(GetParam(), seed).value_or(""), "") << seed;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Promises,
+                         testing::Values(Promise::energy, Promise::velocities, Promise::momenta, Promise::force,
+                                         Promise::conflict, Promise::order),
+                         [](const auto& info) { return name_of(info.param); });
+
+}  // namespace
+}  // namespace iota::scenes
