@@ -169,8 +169,11 @@ def test_a_plug_that_is_let_go_near_its_socket_is_joined(system: iota.System, ru
 
         def carry(x: float) -> None:
             page.send("grab_start", hold=1, body=page.body(slot), local_point=(-0.5, 0, 0), target=(1, 1, 0))
-            ghost = page.wait_for(lambda: page.entities["marker"].get(0))
-            assert ghost["part"]["color"] == 0x2F9D92
+            ghost = page.wait_for(lambda: page.entities["marker"].get(0))["part"]
+            assert ghost["color"] & 0xFFFFFF == 0x2F9D92
+            assert ghost["shape"]["kind"] == "capsule" and ghost["shape"]["sizes"][1] == pytest.approx(1), (
+                "the cable's shape"
+            )
             began = time.monotonic()
             while abs(world.call(lambda: plug.position.x) - x) > 0.05 and time.monotonic() - began < 20:
                 page.send("grab_move", hold=1, target=(x, 1, 0))
@@ -181,7 +184,9 @@ def test_a_plug_that_is_let_go_near_its_socket_is_joined(system: iota.System, ru
         page.wait_for(lambda: not page.entities["marker"])
         assert page.parts() == 2 and not joined, "too far away"
         carry(0.1)
-        page.wait_for(lambda: page.entities["marker"][0]["part"]["color"] == 0xF2A324)
+        page.wait_for(lambda: page.entities["marker"][0]["part"]["color"] & 0xFFFFFF == 0xF2A324)
+        # Its middle, half a meter from the plug, as it would be once joined.
+        page.wait_for(lambda: page.entities["frame"][0]["at"]["point"] == pytest.approx((0.5, 1, 0), abs=0.02))
         page.send("grab_end", hold=1)
         page.wait_for(lambda: page.parts() == 1)
         assert world.call(lambda: joined == [plug])

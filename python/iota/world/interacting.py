@@ -9,12 +9,12 @@ from functools import cached_property
 from typing import Any
 
 from iota._core import Body, Bond, Particle, System, Vec3
-from iota.looks import sphere
 from iota.world.drawing import Drawing
 from iota.world.event import Event
+from iota.world.ghosts import Ghost
 from iota.world.joining import Joins, hinge_above, nearest_ends
 from iota.world.listening import Listening
-from iota.world.shown import Arrow, Label, Line, Marker
+from iota.world.shown import Arrow, Label, Line
 
 FREE, READY = "#2f9d92", "#f2a324"  # of a socket
 
@@ -62,7 +62,7 @@ class Interacting(Drawing, Listening):
         pull: float = 0.0,
     ) -> Socket:
         """A place that plugs snap into: a plug that a user releases within `within` m of it is joined to it. While a
-        plug is held, a ball shows the place, amber when a release would join it. on_snap gets the joined plug. pull: largest force that
+        plug is held, its body is shown as it would be once joined, amber when a release would join it. on_snap gets the joined plug. pull: largest force that
         draws a held plug to the place, N; it acts within twice the distance.
 
         world.socket(wall.particles[0], [cable.particles[-1]], within=0.2)
@@ -216,15 +216,26 @@ class Socket:
         self._bond: Bond | None = None
         self.place, self.within, self._world, self._on_snap = place, within, world, on_snap
         self.plugs = list(plugs)
-        self._ghost: Marker = world.shape(sphere(0.3 * within, "glass", color=FREE), on=place)
-        self._ghost.visible = False
+        self._ghost: Ghost | None = None
         self._drag = world.on_drag("anything")(self._dragged)
 
     def destroy(self) -> None:
         """Removes the socket; joined plugs stay joined."""
         self._world.forget(self._drag)
         self._draw(None)
-        self._ghost.destroy()
+        self._show(None, FREE)
+
+    def _show(self, plug: Particle | None, color: str) -> None:
+        """Shows the plug's body as it would be once joined; None: nothing any more."""
+        if self._ghost is not None and (plug is None or self._ghost.body != plug.body):
+            self._ghost.destroy()
+            self._ghost = None
+        if plug is None:
+            return
+        if self._ghost is None:
+            self._ghost = Ghost(self._world, plug.body, color)
+        self._ghost.paint(color)
+        self._ghost.follow(self.place.position - plug.position)
 
     def _draw(self, plug: Particle | None) -> None:
         """Draws a plug to the place, or none any more."""
@@ -246,14 +257,14 @@ class Socket:
 
     def _dragged(self, event: Event) -> None:
         plug = None if event.target is None else self._held(event.target)
-        self._ghost.visible = plug is not None and event.phase != "end"
         if plug is None:
             self._draw(None)
+            self._show(None, FREE)
             return
         apart = abs(plug.position - self.place.position)
         is_near = apart <= 2 * self.within and event.phase != "end"
         self._draw(plug if is_near and self.pull > 0 else None)
-        self._ghost.color = READY if apart <= self.within else FREE
+        self._show(None if event.phase == "end" else plug, READY if apart <= self.within else FREE)
         if event.phase != "end" or apart > self.within:
             return
         with self._world.system.edit():

@@ -10,10 +10,9 @@ import { others } from "./highlights.ts";
 import type { Session } from "./session.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
 
-/** Of a user, m: radius of a head, of a hand, height of the name's capitals. */
+/** Of a user, m: radius of a head, of a hand. */
 const headRadius = 0.1;
 const handRadius = 0.04;
-const nameHeight = 0.045;
 /** A head that is nearer to the own eyes is not drawn: who looks from the same place would be in it. */
 const tooNear = 0.4;
 const tellEverySeconds = 0.1;
@@ -146,7 +145,7 @@ export class People implements FramePart {
     if (at === null || text === "") return label.destroy(slot);
     const place = { body: NO_BODY, point: at.toArray() };
     const entity = {
-      id: { slot, generation: 1 }, a: place, b: place, offset: [0, 2 * headRadius * scale, 0] as Vec3, text, height: nameHeight * scale, color: NO_COLOR,
+      id: { slot, generation: 1 }, a: place, b: place, offset: [0, 2.2 * headRadius * scale, 0] as Vec3, text, height: 0, color: NO_COLOR,
     };
     if (label.textOf(slot) === undefined) label.create(entity);
     else label.change(entity);

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The shape of a body at a place where it is not: what a socket will hold."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from iota._core import Body, Vec3
+from iota.looks import Look, capsule
+from iota.world.drawing import Drawing
+from iota.world.frames import into_frame, relative_turn
+from iota.world.scene import listed
+from iota.world.shown import Marker
+
+SEEN_THROUGH = "a0"  # of a color #rrggbbaa
+
+Pose = tuple[Vec3, Sequence[float]]
+
+
+class Ghost:
+    """A body's shape, seen through, on a frame of its own."""
+
+    def __init__(self, world: Drawing, body: Body, color: str) -> None:
+        self.body = body
+        self.frame = world.frame()
+        self._color = ""
+        self._markers: list[Marker] = [
+            world.shape(look, position=tuple(position), rotation=rotation, on=self.frame)
+            for look, (position, rotation) in _shapes_of(world, body)
+        ]
+        self.paint(color)
+
+    def paint(self, color: str) -> None:
+        """Color: "#rrggbb"."""
+        if color != self._color:
+            self._color = color
+            for marker in self._markers:
+                marker.color = color + SEEN_THROUGH
+
+    def follow(self, shift: Vec3) -> None:
+        """Moves it to the place of its body, moved by `shift`, m."""
+        self.frame.at = self.body.center_of_mass + shift
+        self.frame.rotation = self.body.orientation
+
+    def destroy(self) -> None:
+        for marker in self._markers:
+            marker.destroy()
+        self.frame.destroy()
+
+
+def _shapes_of(world: Drawing, body: Body) -> list[tuple[Look, Pose]]:
+    """Its shapes as they are drawn, and their poses in its frame."""
+    middle, turn = body.center_of_mass, body.orientation
+    if body.solids:
+        return [
+            (
+                Look(solid.shape),
+                (into_frame(solid.position, middle, list(turn)), relative_turn(turn, solid.orientation)),
+            )
+            for solid in body.solids
+        ]
+    state = world._state
+    length = max((abs(p.position - body.particles[0].position) for p in body.particles), default=0.0)
+    styles = state.scene.looks_of(body) or {}
+    drawn = styles.get(state.style or "", styles.get("*", next(iter(styles.values()), [])))
+    looks = [look for look in listed(drawn) if look.shape is not None]
+    if not looks:
+        looks = [capsule(state.thickness_of(body), length=max(length, 1e-6 * state.thickness_of(body)))]
+    return [(look.of_length(length or look.length), (Vec3(*look.offset), tuple(look.rotation))) for look in looks]
