@@ -71,6 +71,7 @@ AIMS = (
     ("let go, likewise", r"follow/plain/", "let_go_ms_p99", 1, 1, "<="),
     ("begin a closing, likewise", r"follow/plain/", "close_ms_p99", 1, 1, "<="),
     ("interacting particles, steps a second", r"particles/", "particle_steps/s", 1, 5e6, ">="),
+    ("100 000 boids of 20 neighbors, steps of one a second", r"boids/100000", "boid_steps/s", 1, None, ">="),
     ("memory of a two-point link, robust, bytes", r"memory/robust/", "bytes_per_link", 1, 1024, "<="),
     ("memory of a two-point link, energy-keeping, bytes", r"memory/energy_keeping/", "bytes_per_link", 1, 1024, "<="),
 )

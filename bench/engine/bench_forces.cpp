@@ -37,6 +37,33 @@ void particles(benchmark::State& state, bool written) {
 BENCHMARK_CAPTURE(particles, built_in, false)->Arg(16)->Arg(32)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(particles, expression, true)->Arg(16)->Arg(32)->Unit(benchmark::kMillisecond);
 
+/// A shoal, as in the study of that name but without its script: each fish has about 20 neighbors within the cut-off.
+void boids(benchmark::State& state) {
+  System system(SystemOptions{.gravity = {}});
+  system.set_threads(1);
+  const auto n = static_cast<int>(state.range(0));
+  constexpr double cutoff = 0.9, neighbors = 20;
+  const double half = 0.5 * cutoff * std::cbrt(4.18879 / neighbors * n);
+  std::mt19937 random(1);
+  std::uniform_real_distribution within(-half, half), speed(-0.5, 0.5);
+  for (int i = 0; i < n; ++i) {
+    const Vec3 place{within(random), within(random), within(random)};
+    system.particles().create(system.bodies().create(), place, 0.1,
+                              Vec3{1 + speed(random), speed(random), speed(random)});
+  }
+  const std::vector<LawParameter> parameters{{"attraction", 0.03},
+                                             {"attraction_range", 0.8},
+                                             {"repulsion", 0.4},
+                                             {"repulsion_range", 0.15},
+                                             {"alignment", 0.02}};
+  system.pairs().create({system.laws().find("attract_repel"), parameters, {}}, {.cutoff = cutoff});
+  for (int i = 0; i < 3; ++i) (void)system.step(1.0 / 60);
+  for (auto _ : state) benchmark::DoNotOptimize(system.step(1.0 / 60));
+  state.counters["boid_steps/s"] =
+      benchmark::Counter(n * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(boids)->Arg(1000)->Arg(100'000)->Unit(benchmark::kMillisecond);
+
 void free_fall(benchmark::State& state) {
   System system;
   system.set_threads(1);

@@ -663,6 +663,18 @@ def test_what_a_urdf_has_that_we_have_not_is_listed(write: Write) -> None:
     assert slide.kind == "prismatic" and slide.options["limits"] == (-1, 2)
 
 
+def test_a_planar_joint_of_a_urdf_keeps_its_link_in_a_plane(write: Write) -> None:
+    path = write("table.urdf", PENDULUM_URDF.replace('"revolute"', '"planar"'))
+    system = iota.System()
+    made = shapelib.mechanism(path).realize(system)
+    begun = made["arm"].center_of_mass
+    for _ in range(60):
+        system.step(1 / 120)
+    fallen = begun - made["arm"].center_of_mass
+    # Its axis is level: it falls freely in an upright plane, and does not leave it.
+    assert fallen.y == pytest.approx(9.81 / 2 * 0.5**2, rel=1e-3) and abs(fallen.x) < 1e-9 and abs(fallen.z) < 1e-9
+
+
 def test_meshes_beside_a_urdf_are_drawn_but_never_ones_outside(write: Write, tmp_path: Path) -> None:
     write("lid.off", CUBE_OFF)
     cover = '<visual><geometry><mesh filename="{}" scale="2 2 2"/></geometry></visual></link>\n  <link name="arm">'

@@ -12,10 +12,19 @@ from iota.builder.points import Vector
 
 Law = str | Callable[..., Any]
 BodyKind = Literal["dynamic", "static", "scripted", "inactive", "resting"]
-JointKind = Literal["ball", "weld", "revolute", "prismatic", "cylindrical", "universal", "orientation"]
+JointKind = Literal["ball", "weld", "revolute", "prismatic", "cylindrical", "universal", "planar", "orientation"]
 TieKind = Literal["rod", "rope"]
 
-JOINT_KINDS: tuple[str, ...] = ("ball", "weld", "revolute", "prismatic", "cylindrical", "universal", "orientation")
+JOINT_KINDS: tuple[str, ...] = (
+    "ball",
+    "weld",
+    "revolute",
+    "prismatic",
+    "cylindrical",
+    "universal",
+    "planar",
+    "orientation",
+)
 TIE_KINDS: tuple[str, ...] = ("rod", "rope")
 
 

@@ -251,8 +251,7 @@ def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
     if not np.linalg.norm(axis) > 0:
         raise (axis_element or joint).wrong(f"the axis of {name} is zero")
     if kind == "planar":
-        notes.append(f"the joint {name} is planar, which is left out: its link is free")
-        return None
+        return LinkJoint("planar", name, child, b, frame.place, frame.turn @ axis)
     options: dict[str, object] = {}
     limit = joint.first("limit")
     if limit is not None and kind != "continuous" and {"lower", "upper"} & limit.attributes.keys():

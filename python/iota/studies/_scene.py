@@ -29,7 +29,7 @@ with system.edit():
 '''
 COORDINATES = {
     "ball": (), "weld": (), "orientation": (), "revolute": ("angle",), "prismatic": ("slide",),
-    "cylindrical": ("angle", "slide"),
+    "planar": ("angle",), "cylindrical": ("angle", "slide"),
 }  # fmt: skip
 """The joints that can be saved, and their coordinates."""
 
