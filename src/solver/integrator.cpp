@@ -189,13 +189,15 @@ void Integrator::track(Problem& problem, double fraction) {
 // on the constraints after each. If a piece cannot be taken, the points stay and lose half of their speed. First order and
 // without an energy balance, but plausible, finite and reported.
 void Integrator::coast(Problem& problem, double h, AdvanceReport& report) {
-  iterations_left_ = std::max(iterations_left_, resort_left_);
+  const int left = iterations_left_, allowed = std::max(left, resort_left_);
+  iterations_left_ = allowed;
   settings_.deadline = std::chrono::steady_clock::time_point::max();
   has_corrected_ = is_instant_ = false;
   bool goes_on = true;
   for (int piece = 0; piece < IntegratorSettings::last_resort_pieces && goes_on; ++piece)
     goes_on = coast_a_piece(problem, h / IntegratorSettings::last_resort_pieces);
   resort_left_ = std::min(resort_left_, iterations_left_);
+  iterations_left_ = std::max(0, left - (allowed - iterations_left_));
   energy_.close(problem, reference_length(), h, report);
   ++report.substeps;
 }

@@ -109,8 +109,7 @@ def test_a_budget_of_work_ends_a_hopeless_search_and_says_so() -> None:
     assert max(max(row) for row in unlimited[1]) > 60, "or the scene is no test"
     assert not any(report.cut_short for report in unlimited[0])
     reports, iterations, places = drag_on(10)
-    sides = 4  # while rows with bounds change sides, a solve may take so many times its iterations
-    assert max(max(row) for row in iterations) <= sides * (10 + last_resort)
+    assert max(max(row) for row in iterations) <= 10 + last_resort
     assert any(report.cut_short == 1 for report in reports)
     assert any("the budget of a step ended" in text for report in reports for text in report.warnings)
     assert np.isfinite(places).all()
