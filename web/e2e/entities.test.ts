@@ -146,6 +146,21 @@ describe("what a script draws", () => {
   });
 });
 
+describe("the panel of controls", () => {
+  it.each([[960, 540], [420, 480]])("leaves the bar and the figures free in a window of %s x %s", async (width, height) => {
+    await tab.page.setViewportSize({ width, height });
+    await tab.until("it ends above them", () => {
+      const panel = document.getElementById("panel") as HTMLDetailsElement;
+      // It folds where the window becomes narrow.
+      panel.open = true;
+      const { bottom, height } = panel.getBoundingClientRect();
+      const tops = ["bar", "meter"].map((id) => document.getElementById(id)!.getBoundingClientRect()).filter((box) => box.width > 0).map(({ top }) => top);
+      return height > 100 && tops.length > 0 && bottom <= Math.min(...tops);
+    });
+    await tab.page.setViewportSize({ width: 960, height: 540 });
+  });
+});
+
 describe("the script hears", () => {
   const told = async (text: string) => {
     await expect.poll(() => server.output, { message: `"${text}" is told to the script` }).toContain(text);

@@ -84,8 +84,11 @@ export class EdgeMarkers implements FramePart {
       y /= size;
     }
     const angle = Math.atan2(-y * innerHeight, x * innerWidth);
-    const left = Math.min(Math.max(((x + 1) / 2) * innerWidth, margin), innerWidth - margin);
     const top = Math.min(Math.max(((1 - y) / 2) * innerHeight, margin), innerHeight - margin - 70);
+    // Beside the panel of controls, not below it.
+    const panel = document.getElementById("panel")?.getBoundingClientRect();
+    const right = panel !== undefined && panel.width > 0 && top < panel.bottom + margin ? panel.left : innerWidth;
+    const left = Math.min(Math.max(((x + 1) / 2) * innerWidth, margin), right - margin);
     marker.style.transform = `translate(${Math.round(left - 22)}px, ${Math.round(top - 22)}px) rotate(${angle.toFixed(2)}rad)`;
   }
 

@@ -4,7 +4,7 @@
 import type { Page } from "../page/page.ts";
 import type { FramePart } from "../page/viewer.ts";
 import { WidgetKind, type PlotEntity, type WidgetEntity } from "../protocol/generated.ts";
-import { make } from "./dom.ts";
+import { byId, make } from "./dom.ts";
 import { drawPlot } from "./plot.ts";
 
 type PanelPage = Pick<Page, "world" | "session" | "viewer">;
@@ -50,6 +50,15 @@ export class Panel implements FramePart {
       this.plotsSeen_ = -1;
     });
     document.body.append(this.root_);
+    this.keepAbove_(byId("foot", HTMLElement));
+  }
+
+  /** Ends above the bar and the figures beside it, however high these are. */
+  private keepAbove_(foot: HTMLElement): void {
+    const fit = () => this.root_.style.setProperty("--foot", `${Math.ceil(innerHeight - foot.getBoundingClientRect().top)}px`);
+    new ResizeObserver(fit).observe(foot);
+    window.addEventListener("resize", fit);
+    fit();
   }
 
   draw(): void {
