@@ -19,9 +19,9 @@ std::span<const double> Integrator::lumped_masses(const Problem& problem) {
 // End point: the positions to which the forces of the last step would carry the points,
 //   x0 + h v0 + (f - G0' lambda) / (inertia m).
 // This saves half an iteration to one over x0 + h v0. Coupled masses are lumped, which is exact for neighbors with equal
-// accelerations. Mid-point: two sweeps over x0 + h v0 restore the lengths. The same guess would save 5 to 9 % of a step on
-// chains, but from the huge forces of a taut net Newton's method goes to solutions that make energy (of a net of 8 x 8 bars
-// that hangs from its corners 705 J in 2 s instead of 0.1).
+// accelerations. Mid-point: two sweeps over x0 + h v0 restore the lengths. From the same guess, whose forces are means of
+// the last step there, a chain of 4096 two-point links takes 3.8 iterations instead of 3.0, a net of 16 x 16 bars 19 instead
+// of 12; with two sweeps after it a hub 2.6 instead of 3.0, and the net 19 again.
 void Integrator::make_guess(const Problem& problem, const Stage& stage) {
   const std::size_t n = problem.size();
   const std::span<Vec3> guess = newton_.displacement();
