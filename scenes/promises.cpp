@@ -2,6 +2,7 @@
 #include "scenes/promises.h"
 
 #include "base/text.h"
+#include "scenes/chain.h"
 #include "scenes/dice.h"
 
 #include <iota/system.h>
@@ -237,21 +238,16 @@ Complaint check_conflict(std::uint64_t seed) {
   const int links = static_cast<int>(std::pow(10, dice.uniform(0.4, seed % 16 == 0 ? 2 : 1.3)));
   const double pull = 1 + std::pow(10, dice.uniform(-2, 0.3)), dt = std::sqrt(length) / 120;
   System system({.mode = modes[seed % modes.size()]});
-  std::vector<std::pair<ParticleId, ParticleId>> ends;
-  for (int i = 0; i < links; ++i) {
-    const BodyId body = system.bodies().create();
-    ends.emplace_back(system.particles().create(body, {i * length, 0, 0}, mass),
-                      system.particles().create(body, {(i + 1) * length, 0, 0}, mass));
-    if (i > 0) (void)system.edits().combine(ends[ends.size() - 2].second, ends.back().first);
-  }
-  system.particles().nail(ends.front().first), system.particles().nail(ends.back().second);
-  system.particles().nail(ends.back().second, {pull * links * length, 0, 0});
+  const Chain chain = make_chain(system, {.links = links, .link_length = length, .link_mass = 2 * mass});
+  system.particles().nail(chain.lower.back());
+  system.particles().nail(chain.lower.back(), {pull * links * length, 0, 0});
   StepReport report;
   for (int i = 0; i < 3; ++i) report = system.step(dt);
   if (report.unconverged == 0) return text("a chain pulled to ", pull, " times its length is not reported");
   double worst = 0, sum = 0;
-  for (const auto& [p, q] : ends) {
-    const double gap = std::abs(norm(system.particles().position(q) - system.particles().position(p)) / length - 1);
+  for (std::size_t i = 0; i < chain.links.size(); ++i) {
+    const Vec3 link = system.particles().position(chain.lower[i]) - system.particles().position(chain.upper[i]);
+    const double gap = std::abs(norm(link) / length - 1);
     worst = std::max(worst, gap), sum += gap / links;
   }
   if (!(worst <= 3 * sum + 1e-6)) return text("one of ", links, " links takes ", worst / sum, " times the mean gap");

@@ -48,9 +48,7 @@ def texture_of(image: Any, repeat: float | Sequence[float] = 1.0) -> Texture:
     if not isinstance(image, str | os.PathLike):
         raise TypeError(f"a texture is the path of a PNG or JPEG file, or an array, not {type(image).__name__}")
     try:
-        size = os.stat(image).st_size
-        if size > MOST_BYTES:
-            raise ValueError(f"has {size / 2**20:.1f} MiB, more than {MOST_BYTES >> 20}")
+        _check_bytes(os.stat(image).st_size)  # before it is read
         data = Path(image).read_bytes()
         check_image(data)
     except (OSError, ValueError) as error:
@@ -66,8 +64,7 @@ def material_name(material: str, texture: Texture | None) -> str:
 
 def check_image(data: bytes) -> None:
     """Raises ValueError unless it is a whole PNG or JPEG file of at most 4096 x 4096 pixels and 4 MiB."""
-    if len(data) > MOST_BYTES:
-        raise ValueError(f"has {len(data) / 2**20:.1f} MiB, more than {MOST_BYTES >> 20}")
+    _check_bytes(len(data))
     if data.startswith(PNG):
         size = _check_png(data)
     elif data.startswith(JPEG):
@@ -75,6 +72,11 @@ def check_image(data: bytes) -> None:
     else:
         raise ValueError("is neither a PNG nor a JPEG file")
     _check_size(*size)
+
+
+def _check_bytes(count: int) -> None:
+    if count > MOST_BYTES:
+        raise ValueError(f"has {count / 2**20:.1f} MiB, more than {MOST_BYTES >> 20}")
 
 
 def _check_size(width: int, height: int) -> None:

@@ -168,6 +168,16 @@ void EnergyBalance::measure(const Problem& problem, double fraction) {
           problem.row_energy(problem.position.data(), fraction);
 }
 
+void EnergyBalance::measure_change(const Problem& problem, double fraction, double work) {
+  const double expected = total + work;
+  measure(problem, fraction);
+  missing += expected - total;
+}
+
+double EnergyBalance::tolerance(double kinetic, double size) {
+  return of_motion * kinetic + round_off_of_energy * size;
+}
+
 void EnergyBalance::measure_kinetic(const Problem& problem) {
   const double before = std::exchange(kinetic, problem.kinetic_energy());
   total += kinetic - before, missing += before - kinetic;
@@ -182,7 +192,7 @@ StepEnergy EnergyBalance::of_solution(const Problem& problem, const Newton& newt
   energy.kinetic = problem.kinetic_energy([&](std::size_t i) { return step.velocity_at_end(i); });
   energy.total = energy.kinetic + problem.potential_energy(step.end()) + problem.row_energy(step.end(), stage.fraction);
   energy.round_off = round_off_of_energy * energy.size();
-  energy.slack = of_motion * std::max(kinetic, energy.kinetic) + energy.round_off;
+  energy.slack = tolerance(std::max(kinetic, energy.kinetic), energy.size());
   if (energy.made() > energy.slack)
     energy.slack +=
         step.work_of_gaps() + step.work_of_imbalance() + std::max(0.0, newton.strain_released(problem, stage));

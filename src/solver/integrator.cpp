@@ -130,27 +130,25 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
                     .is_conservative = is_conservative_,
                     .drives_rows = drives_rows_};
   StepEnergy energy;
-  if (!try_step(problem, stage, report) || !is_acceptable(problem, stage, attempt, trial, energy, report)) {
+  if (!try_step(problem, stage, report) || !is_acceptable(problem, stage, trial, energy, report)) {
     problem.set_multipliers(multipliers_saved_);
     return false;
   }
-  const double energy_before = energy_.total;
-  const bool met = met_ > 0;
   commit(problem, stage, energy, report);
   if (is_mid_point)
-    project_velocities_after_step(problem, stage, met, report);
+    project_velocities_after_step(problem, stage, report);
   else
     give_spin_back(problem, stage);
-  if (!is_mid_point || holds_offsets_) remove_made_energy(problem, energy_before);
+  if (!is_mid_point || holds_offsets_) remove_made_energy(problem, energy.total_before);
   if (has_corrected_) keep_correction(problem);
   energy_.close(problem, reference_length(), part.h, report);
   report.converged = report.converged && !is_soft;
   return true;
 }
 
-bool Integrator::is_acceptable(Problem& problem, const Stage& stage, const Attempt& attempt, Trial trial,
-                               StepEnergy& energy, AdvanceReport& report) {
-  if (attempt.compliance > exact_rows && violation_ > IntegratorSettings::largest_violation) return false;
+bool Integrator::is_acceptable(Problem& problem, const Stage& stage, Trial trial, StepEnergy& energy,
+                               AdvanceReport& report) {
+  if (stage.compliance > exact_rows && violation_ > IntegratorSettings::largest_violation) return false;
   if (stage.midpoint && turns_too_far(problem)) return false;
   if (stage.midpoint && settings_.max_error > 0 && !trial.is_finest && !is_accurate(problem, stage, report))
     return false;
@@ -213,9 +211,8 @@ bool Integrator::coast_a_piece(Problem& problem, double h) {
   bool is_taken = holds_offsets_ || project_positions(problem);
   if (is_taken) {
     project_velocities(problem);
-    energy_.measure(problem, 1);
+    energy_.measure_change(problem, 1);
     const double gained = energy_.total - before.total;
-    energy_.missing -= gained;
     // A projection may have raised the points by more than the motion can pay.
     is_taken = std::isfinite(gained) && (drives_rows_ || gained <= 0 || change_kinetic_energy(problem, gained));
   }

@@ -80,7 +80,7 @@ class Integrator {
   void advance_part(Problem&, const Part&, std::size_t attempt, AdvanceReport&);
   bool may_halve(const Part&, const AdvanceReport&) const;
   bool take(Problem&, const Part&, const Attempt&, AdvanceReport&);
-  bool is_acceptable(Problem&, const Stage&, const Attempt&, Trial, StepEnergy&, AdvanceReport&);
+  bool is_acceptable(Problem&, const Stage&, Trial, StepEnergy&, AdvanceReport&);
   void commit(Problem&, const Stage&, const StepEnergy&, AdvanceReport&);
   void coast(Problem&, double h, AdvanceReport&);
   bool coast_a_piece(Problem&, double h);
@@ -96,7 +96,7 @@ class Integrator {
   bool solve(Problem&, const Stage&, AdvanceReport&);
   bool is_out_of_budget();
 
-  void project_velocities_after_step(Problem&, const Stage&, bool met, AdvanceReport&);
+  void project_velocities_after_step(Problem&, const Stage&, AdvanceReport&);
   void give_spin_back(Problem&, const Stage&);
   void remove_made_energy(Problem&, double energy_before);
   bool change_kinetic_energy(Problem& problem, double excess) {

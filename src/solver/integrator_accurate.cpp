@@ -141,13 +141,11 @@ void Integrator::keep_momenta(Problem& problem, const RigidMotion& start, double
 
 // The work of a step is integrated with its weights, so its energy is known: the rest is its error, and is returned.
 void Integrator::keep_energy(Problem& problem, const RungeKutta& steps, AdvanceReport& report) {
-  constexpr double of_motion = 1e-9, round_off = 1e-14;
   constexpr double most = 1e-2;  // of the kinetic energy: the rest waits for the next step
   report.external_work += steps.external_work(), report.dissipated += steps.dissipated();
-  const double expected = energy_.total + steps.external_work() - steps.dissipated();
-  energy_.measure(problem, 1);
-  energy_.missing += expected - energy_.total;
-  energy_.slack += of_motion * energy_.kinetic + round_off * (std::abs(expected) + std::abs(energy_.total));
+  const double start = energy_.total, work = steps.external_work() - steps.dissipated();
+  energy_.measure_change(problem, 1, work);
+  energy_.slack += EnergyBalance::tolerance(energy_.kinetic, std::abs(start + work) + std::abs(energy_.total));
   if (std::abs(energy_.missing) <= most * energy_.kinetic)
     (void)give_energy_back(problem, Stage::projection(), energy_.missing, report);
 }

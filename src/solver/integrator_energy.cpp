@@ -14,7 +14,8 @@ namespace iota::solver {
 // there would change its sign in each step, as a rate of stretch of rigid links (up to 30 % of the kinetic energy of a
 // whip) and as oscillating reactions. So velocities are projected, and the energy of that is returned to the motion.
 // Not in an impact, when a bounded row has just become active: that is inelastic, and the projection takes its energy.
-void Integrator::project_velocities_after_step(Problem& problem, const Stage& stage, bool met, AdvanceReport& report) {
+void Integrator::project_velocities_after_step(Problem& problem, const Stage& stage, AdvanceReport& report) {
+  const bool met = met_ > 0;
   const std::optional<double> kinetic = newton_.project_velocities_after(
       problem, stage, {.kinetic = energy_.kinetic, .drives_rows = drives_rows_, .is_isolated = holds_.count == 0});
   has_corrected_ = kinetic.has_value();
@@ -132,9 +133,7 @@ bool Integrator::give_energy_back(Problem& problem, const Stage& stage, double t
       for (std::size_t i = 0; i < problem.force.size(); ++i)
         work += dot(problem.force[i], problem.position[i] - newton_.room()[i]);
       report.external_work += work;
-      const double before = energy_.total;
-      energy_.measure(problem, stage.fraction);
-      energy_.missing += before + work - energy_.total;
+      energy_.measure_change(problem, stage.fraction, work);
       return true;
     }
   }

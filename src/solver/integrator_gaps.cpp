@@ -115,7 +115,8 @@ bool Integrator::share_gaps(Problem& problem, double fraction, AdvanceReport& re
   constexpr int most_rounds = 8;
   const auto size = static_cast<double>(problem.size());
   bool helped = false;
-  for (const double compliance : {softer_rows[2], softer_rows[1], softer_rows[0]}) {
+  for (std::size_t rung = row_compliances.size() - 1; rung > 0; --rung) {
+    const double compliance = row_compliances[rung];
     bool solved = false;
     for (int round = 0; round < most_rounds && !solved; ++round) {
       problem.clear_multipliers();

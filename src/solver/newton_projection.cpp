@@ -100,7 +100,7 @@ void Newton::give_back_momentum(Problem& problem, std::span<const Vec3> impulses
 std::optional<double> Newton::project_onto_sides(Problem& problem, const Wanted& wanted, double energy) {
   constexpr double leverage = 10;  // of speeds relative to those that drive them
   double most = energy * (1 + 1e-9);
-  for (const double compliance : {exact_rows, softer_rows[0], softer_rows[1], softer_rows[2]}) {
+  for (const double compliance : row_compliances) {
     Stage stage = Stage::projection(compliance);
     stage.fraction = wanted.fraction();
     std::fill(impulses_.begin(), impulses_.end(), 0.0);

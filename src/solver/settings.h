@@ -16,8 +16,8 @@ inline constexpr double round_off = 4e-15;  ///< relative, of sums of forces and
 
 /// Relative compliances (Stage::compliance). Rows that no step or projection can meet are tried softer and softer: then
 /// conflicting rows share the violation.
-inline constexpr double exact_rows = 1e-12;
-inline constexpr std::array softer_rows{1e-9, 1e-6, 1e-3};
+inline constexpr std::array row_compliances{1e-12, 1e-9, 1e-6, 1e-3};
+inline constexpr double exact_rows = row_compliances.front();
 
 enum class Scheme : std::uint8_t {
   end_point,  ///< backward Euler: v1 = (x1 - x0)/h
@@ -32,9 +32,9 @@ struct Attempt {
 };
 /// In this order, from that of the settings' scheme. After the last one the points coast: see Integrator::coast.
 inline constexpr std::array attempts{
-    Attempt{Scheme::mid_point, exact_rows, true},      Attempt{Scheme::end_point, exact_rows, true},
-    Attempt{Scheme::end_point, softer_rows[0], false}, Attempt{Scheme::end_point, softer_rows[1], false},
-    Attempt{Scheme::end_point, softer_rows[2], false},
+    Attempt{Scheme::mid_point, exact_rows, true},          Attempt{Scheme::end_point, exact_rows, true},
+    Attempt{Scheme::end_point, row_compliances[1], false}, Attempt{Scheme::end_point, row_compliances[2], false},
+    Attempt{Scheme::end_point, row_compliances[3], false},
 };
 
 /// From plausible to accurate. `docs/solver.md` lists cost and accuracy of each.
