@@ -13,28 +13,34 @@ namespace iota::solver {
 
 namespace {
 
-/// target (rows x columns, row stride `stride`) -= a (rows x Pivot) * b (columns x Pivot)'.
-template <int Pivot>
-void subtract_product(double* target, int stride, const double* a, int rows, const double* b, int columns) {
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c) {
-      double sum = 0;
-      for (int k = 0; k < Pivot; ++k) sum += a[r * Pivot + k] * b[c * Pivot + k];
-      target[r * stride + c] -= sum;
-    }
+using Lanes = LanesOf<2>::Type;
+
+Lanes product(const TwoTriangles& a, const TwoTriangles& b) { return a.value * Lanes{b.value[1], b.value[0]}; }
+double product(double a, double b) { return a * b; }
+
+/// One row each of two blocks; unsymmetric: L21 times U12 in one lane, U12 times L21 in the other.
+template <int Pivot, class Number>
+auto row_product(const Number* a, const Number* b) {
+  auto sum = product(a[0], b[0]);
+  unroll<Pivot - 1>([&](auto k) { sum += product(a[k + 1], b[k + 1]); });
+  return sum;
 }
-/// The same for two nodes, the usual case: all in registers, since the compiler must assume that target, a and b alias.
-/// `Lower`: only the lower triangle; the rest of a symmetric diagonal block is never read.
-template <int Pivot, bool Lower>
-void subtract_product_3x3(double* target, int stride, const double* a, const double* b) {
-  double sum[3][3];
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < (Lower ? r + 1 : 3); ++c) {
-      sum[r][c] = a[r * Pivot] * b[c * Pivot];
-      for (int k = 1; k < Pivot; ++k) sum[r][c] += a[r * Pivot + k] * b[c * Pivot + k];
-    }
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < (Lower ? r + 1 : 3); ++c) target[r * stride + c] -= sum[r][c];
+
+/// subtract(r, c, row r of a times row c of b) for all r and c, or those of the lower triangle. The usual size, two nodes,
+/// is calculated whole before the first subtraction: the compiler must assume that the target aliases a and b.
+template <int Pivot, bool Lower, class Number, class Subtract>
+void for_each_product(const Number* a, int rows, const Number* b, int columns, Subtract subtract) {
+  if (rows == 3 && columns == 3) {
+    decltype(row_product<Pivot>(a, b)) sum[3][3];
+    unroll<3>([&](auto r) {
+      unroll<Lower ? r + 1 : 3>([&](auto c) { sum[r][c] = row_product<Pivot>(a + r * Pivot, b + c * Pivot); });
+    });
+    unroll<3>([&](auto r) { unroll<Lower ? r + 1 : 3>([&](auto c) { subtract(r, c, sum[r][c]); }); });
+    return;
+  }
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < (Lower ? r + 1 : columns); ++c)
+      subtract(r, c, row_product<Pivot>(a + r * Pivot, b + c * Pivot));
 }
 
 /// Calls f.template operator()<Pivot>() for the run-time size of a pivot block.
@@ -57,18 +63,18 @@ void BlockFactor::reset(const BlockPattern& pattern) {
   diagonals_.clear(), lower_.clear(), upper_.clear();
   resize_with_slack(diagonals_, pattern.diagonal_count());
   resize_with_slack(lower_, pattern.lower_count());
-  unscaled_.assign(static_cast<std::size_t>(pattern.widest_front()) * BlockPattern::max_pivot, 0);
-  size_panels();
+  size_fronts();
 }
 
 void BlockFactor::grow() {
   resize_with_slack(diagonals_, pattern_->diagonal_count());
   resize_with_slack(lower_, pattern_->lower_count());
-  unscaled_.resize(static_cast<std::size_t>(pattern_->widest_front()) * BlockPattern::max_pivot, 0);
-  size_panels();
+  size_fronts();
 }
 
-void BlockFactor::size_panels() {
+void BlockFactor::size_fronts() {
+  const auto widest = static_cast<std::size_t>(pattern_->widest_front()) * BlockPattern::max_pivot;
+  unscaled_.resize(widest), front_.resize(widest);
   std::size_t rows = 0, columns = 0;
   for (const BlockPattern::Panel& panel : pattern_->panels())
     rows = std::max<std::size_t>(rows, panel.rows), columns = std::max<std::size_t>(columns, panel.columns);
@@ -90,6 +96,7 @@ void BlockFactor::clear(bool symmetric) {
 
 template <int Pivot, bool Symmetric>
 [[gnu::flatten]] int BlockFactor::eliminate(const BlockPattern::Vertex& v) {
+  using Number = std::conditional_t<Symmetric, double, TwoTriangles>;
   double* const diagonal = diagonals_.data() + v.diagonal;
   int wrong = 0;
 
@@ -104,46 +111,66 @@ template <int Pivot, bool Symmetric>
   int rows = 0;
   for (const auto& e : entries) rows += e.width;
   double* const l21 = lower_.data() + entries.front().offset;  // the blocks of a front are contiguous
-  double* const u12 = Symmetric ? unscaled_.data() : upper_.data() + entries.front().offset;
-  for (int r = 0; r < rows; ++r) {
-    double l[Pivot], u[Pivot];
+  const Number *left, *right;                                  // the factors of the update
+  if constexpr (Symmetric) {
+    for (int r = 0; r < rows; ++r) {
+      double l[Pivot], u[Pivot];
+      unroll<Pivot>([&](auto k) { l[k] = l21[r * Pivot + k]; });
+      factor_row_below<true>(d, l, u);
+      unroll<Pivot>([&](auto k) { l21[r * Pivot + k] = l[k], unscaled_[r * Pivot + k] = u[k]; });
+    }
+    left = l21, right = unscaled_.data();
+  } else {
+    double* const u12 = upper_.data() + entries.front().offset;
+    Lanes pivots[Pivot][Pivot];
     unroll<Pivot>([&](auto k) {
-      l[k] = l21[r * Pivot + k];
-      if constexpr (!Symmetric) u[k] = u12[r * Pivot + k];
+      unroll<k>([&](auto j) { pivots[j][k] = Lanes{d[j][k], d[k][j]}; });
+      pivots[k][k] = Lanes{d[k][k], 1};
     });
-    factor_row_below<Symmetric>(d, l, u);
-    unroll<Pivot>([&](auto k) { l21[r * Pivot + k] = l[k], u12[r * Pivot + k] = u[k]; });
+    for (int r = 0; r < rows; ++r) {
+      Lanes x[Pivot];
+      unroll<Pivot>([&](auto k) {
+        x[k] = Lanes{l21[r * Pivot + k], u12[r * Pivot + k]};
+        unroll<k>([&](auto j) { x[k] -= x[j] * pivots[j][k]; });
+        x[k] *= pivots[k][k];
+      });
+      unroll<Pivot>([&](auto k) {
+        l21[r * Pivot + k] = x[k][0], u12[r * Pivot + k] = x[k][1];
+        front_[r * Pivot + k].value = x[k];
+      });
+    }
+    left = right = front_.data();
   }
 
   // Updates the later vertices.
   const std::uint32_t* target = pattern_->pair_targets().data() + v.first_pair;
   const auto vertices = pattern_->vertices();
-  const double* la = l21;
-  const double* ua = u12;
-  for (std::size_t a = 0; a < entries.size(); ++a) {
-    const int stride = vertices[entries[a].vertex].pivot;
-    const int width_a = entries[a].width;
+  for (auto a = entries.begin(); a != entries.end(); ++a) {
+    const int stride = vertices[a->vertex].pivot;
     double* const own = diagonals_.data() + *target++;
-    if (width_a == 3)
-      subtract_product_3x3<Pivot, Symmetric>(own, stride, la, ua);
-    else
-      subtract_product<Pivot>(own, stride, la, width_a, ua, width_a);
-    const double* lb = la + width_a * Pivot;
-    const double* ub = ua + width_a * Pivot;
-    for (std::size_t b = a + 1; b < entries.size(); ++b, ++target) {
-      const int width_b = entries[b].width;
-      if (width_a == 3 && width_b == 3) {
-        subtract_product_3x3<Pivot, false>(lower_.data() + *target, stride, lb, ua);
-        if constexpr (!Symmetric) subtract_product_3x3<Pivot, false>(upper_.data() + *target, stride, ub, la);
+    for_each_product<Pivot, true>(left, a->width, right, a->width, [&](int r, int c, const auto& product) {
+      if constexpr (Symmetric) {
+        own[r * stride + c] -= product;
       } else {
-        subtract_product<Pivot>(lower_.data() + *target, stride, lb, width_b, ua, width_a);
-        if constexpr (!Symmetric) subtract_product<Pivot>(upper_.data() + *target, stride, ub, width_b, la, width_a);
+        own[r * stride + c] -= product[0];
+        if (r != c) own[c * stride + r] -= product[1];
       }
-      lb += width_b * Pivot;
-      ub += width_b * Pivot;
+    });
+    const Number* below = left + a->width * Pivot;
+    for (auto b = a + 1; b != entries.end(); ++b, ++target) {
+      double* const lower = lower_.data() + *target;
+      [[maybe_unused]] double* const upper = upper_.data() + *target;
+      for_each_product<Pivot, false>(below, b->width, right, a->width, [&](int r, int c, const auto& product) {
+        if constexpr (Symmetric) {
+          lower[r * stride + c] -= product;
+        } else {
+          lower[r * stride + c] -= product[0];
+          upper[r * stride + c] -= product[1];
+        }
+      });
+      below += b->width * Pivot;
     }
-    la += width_a * Pivot;
-    ua += width_a * Pivot;
+    left += a->width * Pivot, right += a->width * Pivot;
   }
   return wrong;
 }
@@ -359,12 +386,17 @@ int BlockFactor::factorize(std::span<double> unknowns) {
   return wrong;
 }
 
+// Both substitutions keep the vertex' own unknowns in registers: the compiler must assume that the arrays alias, and
+// each sum would wait for its own store.
 template <int Pivot>
 void BlockFactor::forward(const BlockPattern::Vertex& v, double* b) const {
   const double* const d = diagonals_.data() + v.diagonal;
-  double* const y = b + v.unknown;
-  for (int k = 1; k < Pivot; ++k)
-    for (int j = 0; j < k; ++j) y[k] -= d[k * Pivot + j] * y[j];
+  double y[Pivot];
+  unroll<Pivot>([&](auto k) {
+    y[k] = b[v.unknown + k];
+    unroll<k>([&](auto j) { y[k] -= d[k * Pivot + j] * y[j]; });
+    b[v.unknown + k] = y[k];
+  });
   for (const auto& e : pattern_->entries().subspan(v.first_entry, v.entry_count)) {
     const double* l = lower_.data() + e.offset;
     for (int r = 0; r < e.width; ++r, l += Pivot) {
@@ -378,23 +410,28 @@ void BlockFactor::forward(const BlockPattern::Vertex& v, double* b) const {
 template <int Pivot, bool Symmetric>
 void BlockFactor::backward(const BlockPattern::Vertex& v, double* b) const {
   const double* const d = diagonals_.data() + v.diagonal;
-  double* const x = b + v.unknown;
-  if constexpr (Symmetric)
-    for (int k = 0; k < Pivot; ++k) x[k] *= d[k * Pivot + k];
+  double x[Pivot];
+  unroll<Pivot>([&](auto k) {
+    x[k] = b[v.unknown + k];
+    if constexpr (Symmetric) x[k] *= d[k * Pivot + k];
+  });
   const double* const off_diagonal = Symmetric ? lower_.data() : upper_.data();
   for (const auto& e : pattern_->entries().subspan(v.first_entry, v.entry_count)) {
     const double* u = off_diagonal + e.offset;
-    for (int r = 0; r < e.width; ++r, u += Pivot)
-      for (int k = 0; k < Pivot; ++k) x[k] -= u[k] * b[e.unknown + r];
-  }
-  for (int k = Pivot - 1; k >= 0; --k) {
-    if constexpr (Symmetric) {
-      for (int j = k + 1; j < Pivot; ++j) x[k] -= d[j * Pivot + k] * x[j];
-    } else {
-      for (int j = k + 1; j < Pivot; ++j) x[k] -= d[k * Pivot + j] * x[j];
-      x[k] *= d[k * Pivot + k];
+    for (int r = 0; r < e.width; ++r, u += Pivot) {
+      const double later = b[e.unknown + r];
+      unroll<Pivot>([&](auto k) { x[k] -= u[k] * later; });
     }
   }
+  unroll<Pivot>([&](auto from_last) {
+    constexpr int k = Pivot - 1 - from_last;
+    unroll<Pivot - 1 - k>([&](auto right) {
+      constexpr int j = k + 1 + right;
+      x[k] -= d[Symmetric ? j * Pivot + k : k * Pivot + j] * x[j];
+    });
+    if constexpr (!Symmetric) x[k] *= d[k * Pivot + k];
+    b[v.unknown + k] = x[k];
+  });
 }
 
 void BlockFactor::solve(std::span<double> unknowns) {

@@ -9,6 +9,11 @@
 
 namespace iota::solver {
 
+/// Element (r, k) of L21 and (k, r) of U12 in SIMD lanes: both triangles go through the same operations.
+struct TwoTriangles {
+  LanesOf<2>::Type value;
+};
+
 /// Values of a matrix with a `BlockPattern`, and its factors in place: L D L' for symmetric matrices, L U (without
 /// pivoting) for structurally symmetric ones. Nothing is allocated after `reset`.
 class BlockFactor {
@@ -57,7 +62,7 @@ class BlockFactor {
   void store(const BlockPattern::Panel&);
   template <bool Symmetric>
   void update_later(const BlockPattern::Panel&);
-  void size_panels();
+  void size_fronts();
   /// visit(vertex) for each in an order in which the right-hand side can be substituted forward.
   template <class Visit>
   void for_each_forward(Visit visit) const;
@@ -69,7 +74,8 @@ class BlockFactor {
   const BlockPattern* pattern_ = nullptr;
   bool symmetric_ = true;
   std::vector<double> diagonals_, lower_, upper_;
-  std::vector<double> unscaled_;  // L D of the front at hand, symmetric case
+  std::vector<double> unscaled_;     // L D of the front at hand, symmetric case
+  std::vector<TwoTriangles> front_;  // the front at hand, unsymmetric case
 
   // The panel at hand: by columns, `stride_` apart.
   std::vector<double> panel_lower_, panel_upper_, product_;  // L; L D or U'; what is left for later vertices
