@@ -745,9 +745,11 @@ void bind_makers(nb::class_<SystemObject>& type) {
       "with a motor or servo, a damper with a spring, or part of a coupling, such as a rope on a winch.");
   type.def(
       "couple",
-      [](SystemObject& self, TermsArgument terms, bool one_sided, double break_force, double break_torque) {
+      [](SystemObject& self, TermsArgument terms, std::optional<double> length, bool one_sided, double break_force,
+         double break_torque) {
         CouplingSpec spec;
         spec.kind = one_sided ? ConstraintKind::tackle : ConstraintKind::coupling;
+        if (length) spec.length = finite(*length, "length");
         for (nb::handle term : nb::iter(terms.value)) {
           double ratio = 0;
           if (!nb::isinstance<nb::tuple>(term) || nb::len(term) != 2 || !nb::try_cast(nb::object(term[1]), ratio))
@@ -758,9 +760,11 @@ void bind_makers(nb::class_<SystemObject>& type) {
         System& engine = self.use_between_steps("coupling");
         return ConstraintHandle{nb::find(self), &self, engine.joints().create(spec)};
       },
-      "terms"_a, nb::kw_only(), "one_sided"_a = false, "break_force"_a = infinity, "break_torque"_a = infinity,
-      "The sum of ratio times coordinate is constant, or with one_sided does not grow. terms: (joint.angle, ratio),\n"
-      "(joint.slide, ratio) ... A differential: [(left.angle, 1), (right.angle, 1), (carrier.angle, -2)].");
+      "terms"_a, nb::kw_only(), "length"_a.none() = nb::none(), "one_sided"_a = false, "break_force"_a = infinity,
+      "break_torque"_a = infinity,
+      "The sum of ratio times coordinate is length (None: what it is now), or with one_sided at most that. terms:\n"
+      "(joint.angle, ratio), (joint.slide, ratio) ... A differential: [(left.angle, 1), (right.angle, 1),\n"
+      "(carrier.angle, -2)].");
   type.def(
       "gear",
       [](SystemObject& self, CoordinateArgument a, CoordinateArgument b, double ratio, double break_torque) {

@@ -114,6 +114,45 @@ def test_merging_renumbers_and_renames(system: iota.System) -> None:
         row.merge(twice)
 
 
+def belt() -> iota.builder.Structure:
+    """Two wheels on axles; the small one turns three times as fast."""
+    s = iota.builder.Structure()
+    axles = []
+    for name, x in (("large", 0.0), ("small", 1.0)):
+        wheel = s.body(shape=iota.Sphere(0.1), mass=1, position=(x, 0, 0), name=name)
+        axles.append(s.joint("revolute", wheel, at=(x, 0, 0), axis=(0, 0, 1)))
+    s.couple((axles[0], "angle", 3), (axles[1], "angle", -1), name="belt")
+    return s
+
+
+def test_couplings_of_joints_are_merged_saved_and_kept(system: iota.System) -> None:
+    row = iota.builder.Structure()
+    for number in range(2):
+        row.merge(belt() + (0, number, 0), prefix=f"{number} ")
+    made = iota.builder.Structure.from_json(json.loads(json.dumps(row.to_json()))).realize(system)
+    assert made["1 belt"] == made.couplings[1] and made["1 belt"].kind == "coupling"
+    made["0 large"].angular_velocity = (0, 0, 1)
+    made["1 large"].angular_velocity = (0, 0, -2)
+    system.step(1 / 120)
+    for number in range(2):
+        speeds = [made[f"{number} {wheel}"].angular_velocity.z for wheel in ("large", "small")]
+        assert speeds[1] == pytest.approx(3 * speeds[0], rel=1e-5) and abs(speeds[0]) > 0.05
+
+
+def test_couplings_of_what_is_not_there_are_named() -> None:
+    s = belt()
+    s.couple((5, "angle", 1))
+    s.couple((0, "length", 1), name="odd")  # type: ignore[arg-type]
+    assert s.problems() == [
+        "coupling 1: there is no joint 5, only 2 joints",
+        "coupling 2 \"odd\": a coordinate must be one of angle, slide, second_angle, not 'length'",
+    ]
+    s = belt()
+    s.couple((0, "slide", 1), name="none")
+    with pytest.raises(ValueError, match=r'coupling 1 "none": .*slide'):
+        s.realize(iota.System())
+
+
 def test_a_structure_comes_back_from_json(system: iota.System) -> None:
     text = json.dumps(swing().to_json(), allow_nan=False)
     back = iota.builder.Structure.from_json(json.loads(text))

@@ -101,6 +101,21 @@ def test_rack_and_pinion(mode: str) -> None:
     assert pinion.angle.value == pytest.approx(slide.slide.value / 0.25, rel=1e-6)
 
 
+def test_a_sum_that_has_a_length_goes_there_or_ends_there() -> None:
+    for one_sided in (False, True):
+        system = iota.System(gravity=(0, 0, 0))
+        a, b = wheel(system, 0, 0.02), wheel(system, 1, 0.003)
+        system.couple([(a.angle, 1), (b.angle, 0.5)], length=0.3, one_sided=one_sided)
+        system.step()
+        assert a.angle.value + 0.5 * b.angle.value == pytest.approx(0 if one_sided else 0.3, abs=1e-6)
+        a.angle.motor = (1.0, 5)
+        b.angle.motor = (0.0, 100)
+        run(system, 1)
+        assert a.angle.value + 0.5 * b.angle.value == pytest.approx(0.3, abs=1e-4)
+    with pytest.raises(ValueError, match="length"):
+        system.couple([(a.angle, 1)], length=math.inf)
+
+
 @every_mode
 def test_a_nut_screws_itself_down(mode: str) -> None:
     system = iota.System(mode=mode)

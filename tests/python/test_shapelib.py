@@ -652,15 +652,72 @@ def test_what_a_urdf_has_that_we_have_not_is_listed(write: Write) -> None:
   <joint name="slide" type="prismatic"><parent link="arm"/><child link="finger"/><limit lower="-1" upper="2"/></joint>
   <joint name="copy" type="prismatic"><parent link="arm"/><child link="other"/><mimic joint="slide"/></joint>
   <joint name="lid" type="fixed"><parent link="arm"/><child link="cover"/></joint>
+  <link name="cover2"/>
+  <joint name="lid2" type="fixed"><parent link="arm"/><child link="cover2"/><mimic joint="slide"/></joint>
   <transmission name="t"/>
 </robot>"""
     found = shapelib.mechanism(write("more.urdf", PENDULUM_URDF.replace("</robot>", more)))
     assert found.counts["moving joints"] == 3 and found.counts["independent joints"] == 2
     text = " ".join(found.notes)
-    for part in ("copy mimics slide", "1 mesh is missing", "package://x/lid.stl", "1 <transmission>"):
+    for part in (
+        "lid2 mimics slide, but lid2 is fixed",
+        "1 mesh is missing",
+        "package://x/lid.stl",
+        "1 <transmission>",
+    ):
         assert part in text
     slide = next(joint for joint in found.joints if joint.name == "slide")
     assert slide.kind == "prismatic" and slide.options["limits"] == (-1, 2)
+
+
+GEARED_URDF = """\
+<robot name="geared">
+  <link name="base"/>
+  <link name="crank"><inertial><origin xyz="0.3 0 0"/><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
+  <link name="follower"><inertial><origin xyz="0.3 0 0"/><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
+  <link name="rack"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link>
+  <joint name="first" type="continuous"><parent link="base"/><child link="crank"/><axis xyz="0 0 1"/></joint>
+  <joint name="second" type="revolute"><parent link="base"/><child link="follower"/><origin xyz="1 0 0"/><axis xyz="0 0 2"/>
+    <limit lower="-2" upper="0.4"/><mimic joint="first" multiplier="-0.5" offset="0.3"/></joint>
+  <joint name="third" type="prismatic"><parent link="base"/><child link="rack"/><origin xyz="0 1 0"/><axis xyz="1 0 0"/>
+    <mimic joint="second" multiplier="0.2" offset="-0.1"/></joint>
+</robot>
+"""
+
+
+def turn_about_up(body: iota.Body, axle: float = 0.0) -> float:
+    """Where its center of mass is, as an angle about an upright axle at x = axle, rad."""
+    place = body.center_of_mass
+    return math.atan2(-place.z, place.x - axle)
+
+
+@pytest.mark.parametrize("scale", [1.0, 3.0])
+def test_joints_of_a_urdf_that_mimic_others_follow_them(write: Write, scale: float) -> None:
+    """Angles and places of the links themselves: second = 0.3 - 0.5 first, third = 0.2 second - 0.1."""
+    found = shapelib.mechanism(write("geared.urdf", GEARED_URDF), scale=scale)
+    assert found.counts["independent joints"] == 1 and found.notes == []
+    system = iota.System(gravity=(0, 0, 0))
+    made = found.realize(system)
+    crank, follower, rack = (made[name] for name in ("crank", "follower", "rack"))
+    assert turn_about_up(follower, scale) == pytest.approx(0.3) and rack.center_of_mass.x == pytest.approx(
+        -0.04 * scale
+    )
+    assert made["second"].angle.limits == pytest.approx((-2.3, 0.1))
+    assert made["second mimics first"].kind == "coupling"
+    made["first"].angle.motor = (2.0, 50)
+    for _ in range(120):
+        system.step(1 / 120)
+        second = 0.3 - 0.5 * turn_about_up(crank)
+        assert turn_about_up(follower, scale) == pytest.approx(second, abs=1e-5)
+        assert rack.center_of_mass.x == pytest.approx(scale * (0.2 * second - 0.1), abs=1e-5 * scale)
+    assert turn_about_up(crank) > 1.5
+    made["first"].angle.motor = (0.0, 1e5)
+    system.step(1 / 120)
+    made["first"].angle.motor, before = None, turn_about_up(crank)
+    for _ in range(12):  # who pushes a follower turns its leader
+        rack.apply_force((-100, 0, 0))
+        system.step(1 / 120)
+    assert turn_about_up(crank) > before + 1e-3
 
 
 def test_a_planar_joint_of_a_urdf_keeps_its_link_in_a_plane(write: Write) -> None:
@@ -713,6 +770,8 @@ def test_damaged_mechanisms_are_refused_with_file_and_line(write: Write) -> None
     fails(
         write("n.urdf", PENDULUM_URDF.replace("</joint>", mimic)), "shoulder mimics elbow, which is not another joint"
     )
+    circle = GEARED_URDF.replace("</joint>", '<mimic joint="third"/></joint>', 1)
+    fails(write("p.urdf", circle), "line 8", "in a circle: first, third, second, first")
     fails(write("o.urdf", PENDULUM_URDF.replace('link name="arm"', 'link name="${arm}"')), "line 3", "xacro")
 
 
@@ -789,8 +848,70 @@ def test_mjcf_loops_and_ropes_become_ours(write: Write) -> None:
     assert tied.problems() == []
 
 
+HANDS = """\
+<mujoco>
+  <compiler angle="radian"/><option gravity="0 0 0"/>
+  <worldbody>
+    <body name="a"><joint name="a" axis="0 0 1"/><geom type="box" pos=".2 0 0" size=".1 .1 .1"/></body>
+    <body name="b" pos="1 0 0"><joint name="b" axis="0 0 1" ref="0.5"/><geom type="box" pos=".2 0 0" size=".1 .1 .1"/></body>
+    <body name="c" pos="2 0 0"><joint name="c" type="slide" axis="1 0 0"/><geom type="box" size=".1 .1 .1"/></body>
+  </worldbody>
+  <tendon>
+    <fixed name="sum" limited="true" range="-0.1 0.65"><joint joint="b" coef="1"/><joint joint="c" coef="2"/></fixed>
+    <fixed name="turns"><joint joint="a" coef="3"/></fixed>
+  </tendon>
+  <equality>{}</equality>
+</mujoco>
+"""
+
+
+def test_joints_of_an_mjcf_file_that_are_equal_move_together(write: Write) -> None:
+    equal = '<joint name="gear" joint1="a" joint2="b" polycoef="0 -2 0 0 0"/>'
+    for text in (equal, '<tendon name="gear" tendon1="turns" tendon2="sum" polycoef="0 -2 0 0 0"/>'):
+        found = shapelib.mechanism(write("hands.xml", HANDS.format(text).replace("-0.1 0.65", "-100 100")))
+        assert found.notes == []
+        system = iota.System(gravity=(0, 0, 0))
+        made = found.realize(system)
+        made["b joint"].angle.motor = (1.0, 1e3)
+        made["c joint"].slide.motor = (0.25, 1e3)
+        for _ in range(60):
+            system.step(1 / 120)
+            a, b = turn_about_up(made["a"]), turn_about_up(made["b"], 1.0)
+            sum_of_other = b if text is equal else b + 2 * (made["c"].center_of_mass.x - 2)
+            assert a == pytest.approx(-2 * sum_of_other / (1 if text is equal else 3), abs=1e-6)
+        assert b == pytest.approx(0.5, abs=0.01)
+
+
+def test_limits_of_sums_of_joints_become_ours(write: Write) -> None:
+    """-0.1 < b + 2 c < 0.65, where b begins at 0.5: b can turn by 0.15 one way and by 0.6 the other, c helps it."""
+    found = shapelib.mechanism(write("hands.xml", HANDS.format("")))
+    for speed, end in ((1.0, 0.15), (-1.0, -0.6)):
+        system = iota.System(gravity=(0, 0, 0))
+        made = found.realize(system)
+        made["b joint"].angle.motor = (speed, 5.0)
+        made["c joint"].slide.motor = (0.0, 1e4)
+        for _ in range(240):
+            system.step(1 / 120)
+        assert turn_about_up(made["b"], 1.0) == pytest.approx(end, abs=1e-3)
+
+
+def test_couplings_of_an_mjcf_file_that_we_have_not_are_listed(write: Write) -> None:
+    bent = '<joint name="bent" joint1="a" joint2="b" polycoef="0 1 0.5 0 0"/>'
+    found = shapelib.mechanism(write("bent.xml", HANDS.format(bent)))
+    assert [note for note in found.notes if "bent" in note] == ["the equality bent is no linear one: left out"]
+    assert [coupling.name for coupling in found.couplings] == ["sum longest", "sum shortest"]
+    apart = '<joint name="apart" joint1="a" polycoef="0.3 0 0 0 0"/>'  # its initial pose is another
+    found = shapelib.mechanism(write("apart.xml", HANDS.format(apart)))
+    assert "apart is violated initially" in " ".join(found.notes)
+
+
 def test_structures_from_files_can_be_saved(write: Write) -> None:
-    for source in (write("a.xyz", WATER_XYZ), write("a.urdf", PENDULUM_URDF), write("a.off", CUBE_OFF)):
+    for source in (
+        write("geared.urdf", GEARED_URDF),
+        write("a.xyz", WATER_XYZ),
+        write("a.urdf", PENDULUM_URDF),
+        write("a.off", CUBE_OFF),
+    ):
         found = shapelib.load(source)
         again = iota.builder.Structure.from_json(json.loads(json.dumps(found.to_json())))
         assert (again.points.radius == found.points.radius).all() and (again.points.color == found.points.color).all()

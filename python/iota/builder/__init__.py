@@ -3,7 +3,7 @@
 
 from iota.builder.chain import chain
 from iota.builder.lines import ring, rope, snake
-from iota.builder.parts import Joint, RigidBody, SoftBond, Tie
+from iota.builder.parts import Coupling, Joint, RigidBody, SoftBond, Tie
 from iota.builder.points import Points
 from iota.builder.realized import Realized
 from iota.builder.sheets import cloth, leaf, net
@@ -11,6 +11,7 @@ from iota.builder.solids import bridge, cuboid, ladder, soft_block, tower, tree
 from iota.builder.structure import Shift, Structure
 
 __all__ = [
+    "Coupling",
     "Joint",
     "Points",
     "Realized",

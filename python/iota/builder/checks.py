@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from iota.builder.parts import JOINT_KINDS, TIE_KINDS
+from iota.builder.parts import COORDINATES, JOINT_KINDS, TIE_KINDS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +31,7 @@ def label(what: str, number: int, name: str = "") -> str:
 def problems(structure: Contents) -> Iterator[str]:
     """One sentence for each inconsistency; none for a structure that can be realized."""
     members = _members(structure)
-    wrong = [*_missing_points(structure, members), *_missing_bodies(structure)]
+    wrong = [*_missing_points(structure, members), *_missing_bodies(structure), *_missing_joints(structure)]
     if wrong:  # the other checks need valid indices
         yield from wrong
         return
@@ -96,6 +96,17 @@ def _missing_bodies(structure: Contents) -> Iterator[str]:
                 yield f"{label(joint.kind, number, joint.name)}: there is no body {body!r}, only {count} bodies"
 
 
+def _missing_joints(structure: Contents) -> Iterator[str]:
+    count = len(structure.joints)
+    for number, coupling in enumerate(structure.couplings):
+        for joint, coordinate, _ in coupling.terms:
+            owner = label("coupling", number, coupling.name)
+            if not 0 <= joint < count:
+                yield f"{owner}: there is no joint {joint!r}, only {count} joints"
+            elif coordinate not in COORDINATES:
+                yield f"{owner}: a coordinate must be one of {', '.join(COORDINATES)}, not {coordinate!r}"
+
+
 def _points(structure: Contents, members: Numbers) -> Iterator[str]:
     points = structure.points
     for name, rows in (("position", points.position), ("velocity", points.velocity)):
@@ -149,7 +160,7 @@ def _kinds(structure: Contents) -> Iterator[str]:
 
 
 def _names(structure: Contents) -> Iterator[str]:
-    named = (structure.bodies, structure.bonds, structure.joints, structure.ties)
+    named = (structure.bodies, structure.bonds, structure.joints, structure.ties, structure.couplings)
     names = Counter(item.name for items in named for item in items if item.name)
     names.update(structure.point_names.keys())
     for name, count in names.items():

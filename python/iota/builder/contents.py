@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from iota.builder.parts import Joint, RigidBody, SoftBond, Tie
+from iota.builder.parts import Coupling, Joint, RigidBody, SoftBond, Tie
 from iota.builder.points import Points
 from iota.looks import Drawn
 
@@ -20,6 +20,7 @@ class Contents:
     bonds: list[SoftBond] = field(default_factory=list)
     joints: list[Joint] = field(default_factory=list)
     ties: list[Tie] = field(default_factory=list)
+    couplings: list[Coupling] = field(default_factory=list)
     lines: list[tuple[int, int]] = field(default_factory=list)  # cosmetic bonds
     nails: list[int] = field(default_factory=list)  # points
     groups: dict[str, list[int]] = field(default_factory=dict)  # points, for fields and pair forces

@@ -15,9 +15,11 @@ from iota import looks, shapes
 from iota._core import Vec3
 from iota.builder.checks import label
 from iota.builder.contents import Contents
-from iota.builder.parts import Joint, RigidBody, SoftBond, Tie
+from iota.builder.parts import Coupling, Joint, RigidBody, SoftBond, Tie
 
-PARTS: dict[str, type[Any]] = {"bodies": RigidBody, "bonds": SoftBond, "joints": Joint, "ties": Tie}
+PARTS: dict[str, type[Any]] = {
+    "bodies": RigidBody, "bonds": SoftBond, "joints": Joint, "ties": Tie, "couplings": Coupling,
+}  # fmt: skip
 PAIRS = ("hinges", "lines")
 PLAIN = ("nails", "groups", "point_names")
 

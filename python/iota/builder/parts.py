@@ -14,7 +14,9 @@ Law = str | Callable[..., Any]
 BodyKind = Literal["dynamic", "static", "scripted", "inactive", "resting"]
 JointKind = Literal["ball", "weld", "revolute", "prismatic", "cylindrical", "universal", "planar", "orientation"]
 TieKind = Literal["rod", "rope"]
+Coordinate = Literal["angle", "slide", "second_angle"]
 
+COORDINATES: tuple[str, ...] = ("angle", "slide", "second_angle")
 JOINT_KINDS: tuple[str, ...] = (
     "ball",
     "weld",
@@ -69,6 +71,17 @@ class Joint:
     a: int
     b: int | None = None
     options: dict[str, Any] = field(default_factory=dict)  # at, axis, limits, motor ...
+    name: str = ""
+
+
+@dataclass
+class Coupling:
+    """A sum of ratio times coordinate that is kept, see `System.couple`. terms: the number of a joint, the name of its
+    coordinate, and the ratio, of each."""
+
+    terms: list[tuple[int, Coordinate, float]]
+    length: float | None = None  # None: the sum when it is realized
+    one_sided: bool = False
     name: str = ""
 
 

@@ -18,7 +18,7 @@ from iota.builder.contents import Contents
 from iota.builder.parts import RigidBody
 
 if TYPE_CHECKING:
-    from iota.builder.parts import Joint, SoftBond, Tie
+    from iota.builder.parts import Coupling, Joint, SoftBond, Tie
     from iota.world import World
 
 MOST_SHOWN = 5  # problems in one error
@@ -33,11 +33,12 @@ class Realized:
     bonds: list[_core.Bond] = field(default_factory=list)
     joints: list[_core.Constraint] = field(default_factory=list)
     ties: list[_core.Constraint] = field(default_factory=list)
+    couplings: list[_core.Constraint] = field(default_factory=list)
     groups: dict[str, _core.Group] = field(default_factory=dict)
     names: dict[str, Any] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Any:
-        """The point, body, bond, joint or tie of that name. Raises KeyError."""
+        """The point, body, bond, joint, tie or coupling of that name. Raises KeyError."""
         return self.names[name]
 
 
@@ -176,6 +177,10 @@ def _make_connections(structure: Contents, system: _core.System, made: Realized)
             what = label(tie.kind, number, tie.name)
             make = getattr(system, tie.kind)
             made.ties.append(make(points[tie.p], points[tie.q], tie.length, break_force=tie.break_force))
+        for number, coupling in enumerate(structure.couplings):
+            what = label("coupling", number, coupling.name)
+            terms = [(getattr(made.joints[joint], coordinate), ratio) for joint, coordinate, ratio in coupling.terms]
+            made.couplings.append(system.couple(terms, length=coupling.length, one_sided=coupling.one_sided))
         for number, bond in enumerate(structure.bonds):
             what = label("bond", number, bond.name)
             made.bonds.append(
@@ -188,14 +193,17 @@ def _make_connections(structure: Contents, system: _core.System, made: Realized)
                     **bond.parameters,
                 )
             )
+    except AttributeError as error:  # a coordinate that a joint does not have
+        raise ValueError(f"{what}: {error}") from None
     except (ValueError, TypeError) as error:
         raise type(error)(f"{what}: {error}") from None
     _name(made, structure.joints, made.joints)
     _name(made, structure.ties, made.ties)
+    _name(made, structure.couplings, made.couplings)
     _name(made, structure.bonds, made.bonds)
 
 
-def _name(made: Realized, parts: Sequence[Joint | Tie | SoftBond], handles: Sequence[Any]) -> None:
+def _name(made: Realized, parts: Sequence[Joint | Tie | Coupling | SoftBond], handles: Sequence[Any]) -> None:
     made.names |= {part.name: handle for part, handle in zip(parts, handles, strict=True) if part.name}
 
 

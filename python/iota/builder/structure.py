@@ -13,7 +13,7 @@ from iota._core import System, Vec3
 from iota.builder import exchange
 from iota.builder.checks import problems
 from iota.builder.contents import Contents
-from iota.builder.parts import Joint, JointKind, Law, RigidBody, SoftBond, Tie, TieKind
+from iota.builder.parts import Coordinate, Coupling, Joint, JointKind, Law, RigidBody, SoftBond, Tie, TieKind
 from iota.builder.points import Vector
 from iota.builder.realized import Realized, realize
 
@@ -96,6 +96,20 @@ class Structure(Contents):
         self.ties.append(Tie(kind, p, q, length, break_force, name))
         return len(self.ties) - 1
 
+    def couple(
+        self,
+        *terms: tuple[int, Coordinate, float],
+        length: float | None = None,
+        one_sided: bool = False,
+        name: str = "",
+    ) -> int:
+        """Keeps a sum of ratio times coordinate of joints, see `System.couple`.
+
+        cart.couple((left, "angle", 1), (right, "angle", 1), (carrier, "angle", -2))
+        """
+        self.couplings.append(Coupling(list(terms), length, one_sided, name))
+        return len(self.couplings) - 1
+
     def cosmetic_bond(self, p: int, q: int) -> None:
         """A line drawn between two points of one body."""
         self.lines.append((p, q))
@@ -131,6 +145,7 @@ class Structure(Contents):
         twin.bonds = [replace(bond, parameters=dict(bond.parameters)) for bond in self.bonds]
         twin.joints = [replace(joint, options=dict(joint.options)) for joint in self.joints]
         twin.ties = [replace(tie) for tie in self.ties]
+        twin.couplings = [replace(coupling, terms=list(coupling.terms)) for coupling in self.couplings]
         twin.hinges, twin.lines, twin.nails = list(self.hinges), list(self.lines), list(self.nails)
         twin.groups = {name: list(members) for name, members in self.groups.items()}
         twin.point_names, twin.looks = dict(self.point_names), dict(self.looks)
@@ -159,7 +174,7 @@ class Structure(Contents):
             if self.looks.setdefault(name, look) != look:
                 raise ValueError(f"the two structures have different looks {name!r}")
         other = other.copy()
-        points, bodies = self.points, len(self.bodies)
+        points, bodies, joints = self.points, len(self.bodies), len(self.joints)
         shift = Shift(len(points), bodies)
 
         def named(name: str) -> str:
@@ -183,6 +198,9 @@ class Structure(Contents):
         for joint in other.joints:
             b = None if joint.b is None else joint.b + bodies
             self.joints.append(replace(joint, a=joint.a + bodies, b=b, name=named(joint.name)))
+        for coupling in other.couplings:
+            terms = [(joint + joints, coordinate, ratio) for joint, coordinate, ratio in coupling.terms]
+            self.couplings.append(replace(coupling, terms=terms, name=named(coupling.name)))
         for name, members in other.groups.items():
             self.group(name, [member + shift.points for member in members])
         self.point_names |= {prefix + name: point + shift.points for name, point in other.point_names.items()}

@@ -51,6 +51,12 @@ def from_rpy(roll: float, pitch: float, yaw: float) -> Array:
     )
 
 
+def about(axis: Array, angle: float) -> Array:
+    """A turn by an angle (rad) about an axis of any length above 0."""
+    x, y, z = math.sin(angle / 2) * axis / np.linalg.norm(axis)
+    return from_quaternion(x, y, z, math.cos(angle / 2))
+
+
 def from_quaternion(x: float, y: float, z: float, w: float) -> Array:
     """The matrix of a quaternion of any length above 0."""
     x, y, z, w = np.array([x, y, z, w]) / math.sqrt(x * x + y * y + z * z + w * w)

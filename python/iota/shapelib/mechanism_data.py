@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from iota import looks
-from iota.builder.parts import BodyKind, JointKind, RigidBody
+from iota.builder.parts import BodyKind, Coordinate, JointKind, RigidBody
 from iota.shapelib.frames import Y_UP, Frame, LinkSolid, look_in, to_quaternion
 from iota.shapelib.imported import Imported
 
@@ -40,12 +40,24 @@ class LinkJoint:
 
 
 @dataclass
+class JointCoupling:
+    """As a coupling of iota: a sum of ratio times coordinate of revolute and prismatic joints, rad and m, that is kept, or
+    that stays at most `length`. terms: names of joints, ratios."""
+
+    name: str
+    terms: list[tuple[str, float]]
+    length: float | None = None
+    one_sided: bool = False
+
+
+@dataclass
 class Mechanism:
     """The content of a file. ropes: two pairs of a link and a place in the world, and a length in m."""
 
     title: str
     links: list[Link] = field(default_factory=list)
     joints: list[LinkJoint] = field(default_factory=list)
+    couplings: list[JointCoupling] = field(default_factory=list)
     ropes: list[tuple[str, tuple[str, Any], tuple[str, Any], float]] = field(default_factory=list)
     counts: dict[str, int | float | str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
@@ -59,6 +71,15 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
 
     def put(place: Any) -> tuple[float, ...]:
         return tuple((origin + scale * (Y_UP @ place)).tolist())
+
+    used = {link.name for link in mechanism.links}
+
+    def unused(name: str, what: str) -> str:
+        """In files a link, a joint and a coupling may have one name."""
+        while name in used:
+            name += f" {what}"
+        used.add(name)
+        return name
 
     def add(link: Link) -> None:
         solid = link.solid
@@ -90,7 +111,17 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
         if joint.kind == "prismatic" and "limits" in options:
             options["limits"] = tuple(scale * limit for limit in options["limits"])
         b = None if joint.b is None else number.get(joint.b)
-        structure.joint(joint.kind, number[joint.a], b, name=joint.name, **options)
+        structure.joint(joint.kind, number[joint.a], b, name=unused(joint.name, "joint"), **options)
+    joint_numbers = {joint.name: n for n, joint in enumerate(mechanism.joints)}
+    for coupling in mechanism.couplings:
+        terms: list[tuple[int, Coordinate, float]] = []
+        for joint_name, ratio in coupling.terms:
+            n = joint_numbers[joint_name]
+            is_slide = mechanism.joints[n].kind == "prismatic"
+            terms.append((n, "slide", ratio / scale) if is_slide else (n, "angle", ratio))
+        structure.couple(
+            *terms, length=coupling.length, one_sided=coupling.one_sided, name=unused(coupling.name, "coupling")
+        )
     for name, (a, p), (b_link, q), length in mechanism.ropes:
         ends: list[int] = []
         for link_name, place in ((a, p), (b_link, q)):
@@ -100,7 +131,7 @@ def to_structure(mechanism: Mechanism, at: Any, scale: float) -> Imported:
             else:
                 structure.nail(end)
             ends.append(end)
-        structure.tie("rope", ends[0], ends[1], length=scale * length, name=name)
+        structure.tie("rope", ends[0], ends[1], length=scale * length, name=unused(name, "rope"))
     return structure
 
 

@@ -26,12 +26,13 @@ def mechanism(
 ) -> Imported:
     """A robot or machine from a URDF or MJCF file: a body for each link that can move, with the mass, inertia and
     shapes of the file, and a joint of iota for each of its joints, with limits, damping and friction. Names are those
-    of the file. Files have z up, the structure has y up.
+    of the file; a joint with the name of a link is "NAME joint". Files have z up, the structure has y up.
 
     base: of URDF, whether root links are welded to the world ("fixed", the default) or free; MJCF files specify it.
     scale: of lengths; masses are kept. at: place of the file's origin, m. Unsupported parts are left out and listed in
-    `notes`: mimic joints, transmissions, actuators, contacts, tendons over pulleys, missing meshes. Raises `FileError`
-    that names file and line, ImportError without MuJoCo for MJCF.
+    `notes`: transmissions, actuators, contacts, tendons over pulleys, nonlinear equalities, missing meshes. Joints that
+    mimic others, equalities of joints and sums of joints (fixed tendons) become couplings. Raises `FileError` that names
+    file and line, ImportError without MuJoCo for MJCF.
 
         arm = iota.shapelib.mechanism("arm.urdf").realize(system, world)
         arm["elbow"].angle.motor = (1.0, 20)

@@ -14,13 +14,14 @@ from iota import looks
 from iota._core import Box, Capsule, Cylinder, Ellipsoid, Mesh, Shape, Sphere
 from iota.shapelib.files import FileError, PathLike, whole
 from iota.shapelib.frames import Frame, from_quaternion, solid_of
-from iota.shapelib.mechanism_data import Link, LinkJoint, Mechanism
+from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism
 from iota.shapelib.trees import Element, read_tree
 from iota.shapelib.urdf import LIGHTEST, X_TO_Z
 
 FREE, BALL, SLIDE, HINGE = range(4)  # mjtJoint
-CONNECT, WELD = 0, 1  # mjtEq
+CONNECT, WELD, EQUAL_JOINTS, EQUAL_TENDONS = range(4)  # mjtEq
 SITE = 6  # mjtObj
+WRAPPED_JOINT, WRAPPED_SITE = 1, 3  # mjtWrap
 MOST_COPIES, MOST_CELLS = 10_000, 1 << 24
 CARDAN = 1e-3  # share of a link's mass in each light ring between two joints of one link
 
@@ -190,7 +191,7 @@ class _Reader:
 
     def joint(self, joint: int, a: str, b: str | None) -> None:
         m = self.model
-        name, kind = m.joint(joint).name or f"joint {joint}", int(m.jnt_type[joint])
+        name, kind = self.joint_name(joint), int(m.jnt_type[joint])
         at, axis = self.state.xanchor[joint].copy(), self.state.xaxis[joint].copy()
         if kind == BALL:
             if m.jnt_limited[joint]:
@@ -221,11 +222,14 @@ class _Reader:
     def equality(self, number: int) -> None:
         m = self.model
         kind, name = int(m.eq_type[number]), m.equality(number).name or f"equality {number}"
-        if kind not in (CONNECT, WELD):
-            self.mechanism.notes.append(f"the equality {name} couples joints or tendons, which is left out")
-            return
         if not m.eq_active0[number]:
             self.mechanism.notes.append(f"the equality {name} is switched off, and left out")
+            return
+        if kind in (EQUAL_JOINTS, EQUAL_TENDONS):
+            self.coupling(number, name)
+            return
+        if kind not in (CONNECT, WELD):
+            self.mechanism.notes.append(f"the equality {name} is of deformable bodies: left out")
             return
         ends = [int(m.eq_obj1id[number]), int(m.eq_obj2id[number])]
         data = m.eq_data[number]
@@ -261,14 +265,69 @@ class _Reader:
         assert first is not None
         self.mechanism.joints.append(LinkJoint("ball" if kind == CONNECT else "weld", name, first, second, at))
 
-    def tendon(self, number: int) -> None:
-        """A tendon between two sites, without pulleys, with a largest length, becomes a rope."""
+    def coupling(self, number: int, name: str) -> None:
+        """An equality of two joints or of two fixed tendons, or of one and a constant: y - y0 = a + b (x - x0) + ..."""
         m = self.model
-        name = f"the tendon {m.tendon(number).name or number}"
+        a, b, *higher = (float(v) for v in m.eq_data[number][:5])
+        first, second = int(m.eq_obj1id[number]), int(m.eq_obj2id[number])
+        if any(higher) and second >= 0:
+            self.mechanism.notes.append(f"the equality {name} is no linear one: left out")
+            return
+        of = self.sum_of_tendon if int(m.eq_type[number]) == EQUAL_TENDONS else lambda joint: {joint: 1.0}
+        total, other = of(first), of(second) if second >= 0 else {}
+        if total is None or other is None:
+            self.mechanism.notes.append(f"the equality {name} is of tendons that are no sum of joints: left out")
+            return
+        for joint, ratio in other.items():
+            total[joint] = total.get(joint, 0.0) - b * ratio
+        if a != 0:
+            self.mechanism.notes.append(
+                f"the equality {name} is violated initially: it keeps the initial poses of its bodies"
+            )
+        self.mechanism.couplings.append(JointCoupling(name, self.terms(total)))
+
+    def sum_of_tendon(self, number: int) -> dict[int, float] | None:
+        """The ratios by joint of a fixed tendon; None for a tendon in space."""
+        m = self.model
         wraps = range(m.tendon_adr[number], m.tendon_adr[number] + m.tendon_num[number])
-        is_plain = len(wraps) == 2 and all(int(m.wrap_type[wrap]) == 3 for wrap in wraps)
+        if any(int(m.wrap_type[wrap]) != WRAPPED_JOINT for wrap in wraps):
+            return None
+        total: dict[int, float] = {}
+        for wrap in wraps:
+            joint = int(m.wrap_objid[wrap])
+            total[joint] = total.get(joint, 0.0) + float(m.wrap_prm[wrap])
+        return total
+
+    def terms(self, total: dict[int, float], side: float = 1.0) -> list[tuple[str, float]]:
+        return [(self.joint_name(joint), side * ratio) for joint, ratio in total.items() if ratio != 0]
+
+    def joint_name(self, joint: int) -> str:
+        return str(self.model.joint(joint).name or f"joint {joint}")
+
+    def tendon(self, number: int) -> None:
+        """A tendon between two sites, without pulleys, with a largest length, becomes a rope; the limits of a sum of joints
+        become a coupling for each."""
+        m = self.model
+        called = str(m.tendon(number).name or number)
+        name = f"the tendon {called}"
+        wraps = range(m.tendon_adr[number], m.tendon_adr[number] + m.tendon_num[number])
+        total = self.sum_of_tendon(number)
+        if total is not None:
+            if any(np.any(of[number] > 0) for of in (m.tendon_stiffness, m.tendon_damping, m.tendon_frictionloss)):
+                self.mechanism.notes.append(f"stiffness, damping and friction of {name} are left out")
+            if m.tendon_limited[number]:
+                # Coordinates are 0 in the initial pose, where the tendon has a length of its own.
+                low, high = (float(v) - float(m.tendon_length0[number]) for v in m.tendon_range[number])
+                if not low <= 0 <= high:
+                    self.mechanism.notes.append(f"the limits of {name} exclude the initial pose: left out")
+                    return
+                for side, end, limit in ((1, "longest", high), (-1, "shortest", -low)):
+                    coupling = JointCoupling(f"{called} {end}", self.terms(total, side), limit, one_sided=True)
+                    self.mechanism.couplings.append(coupling)
+            return
+        is_plain = len(wraps) == 2 and all(int(m.wrap_type[wrap]) == WRAPPED_SITE for wrap in wraps)
         if not (is_plain and m.tendon_limited[number]):
-            what = "has no largest length" if is_plain else "couples joints, or runs over more than two places"
+            what = "has no largest length" if is_plain else "runs over more than two places"
             self.mechanism.notes.append(f"{name} {what}: left out")
             return
         ends = []

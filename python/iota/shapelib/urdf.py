@@ -12,12 +12,13 @@ from iota import looks
 from iota._core import Box, Cylinder, Mesh, Shape, Sphere
 from iota.builder.parts import JointKind
 from iota.shapelib.files import FileError, PathLike
-from iota.shapelib.frames import Frame, from_rpy, solid_of
-from iota.shapelib.mechanism_data import Link, LinkJoint, Mechanism
+from iota.shapelib.frames import Frame, about, from_rpy, solid_of
+from iota.shapelib.mechanism_data import JointCoupling, Link, LinkJoint, Mechanism
 from iota.shapelib.surface_files import READERS, read_surface
 from iota.shapelib.trees import Element, read_tree
 
 JOINTS = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+ONE_COORDINATE = ("revolute", "continuous", "prismatic")
 MOST_LINKS = 10_000
 # The axis of a cylinder is z in URDF, and x in iota.
 X_TO_Z = np.array([[0.0, 0, -1], [0, 1, 0], [1, 0, 0]])
@@ -46,26 +47,24 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
     mechanism = Mechanism(robot.text("name", "") or Path(path).stem)
     colors = _materials(robot)
     missing: list[str] = []
+    mimics, initial = _mimics(joint_of, mechanism.notes)
+    mechanism.couplings = mimics
     frames: dict[str, Frame] = {name: Frame() for name in order if name not in joint_of}
     if world:
         frames["world"] = Frame()
     for name in order:
         joint = joint_of.get(name)
         if joint is not None:
-            frames[name] = frames[joint.need("parent").text("link")] @ _origin(joint)
+            moved = _moved(joint, initial[joint.text("name")])
+            frames[name] = frames[joint.need("parent").text("link")] @ _origin(joint) @ moved
         if name != "world":
             mechanism.links.append(_link(links[name], frames[name], colors, path, missing, mechanism.notes))
-    moving = mimics = 0
-    joints = {joint.text("name") for joint in joint_of.values()}
+    moving = 0
     for name in order:
         joint = joint_of.get(name)
         if joint is not None:
-            made = _joint(joint, frames[name], mechanism.notes)
+            made = _joint(joint, frames[name], initial[joint.text("name")], mechanism.notes)
             moving += joint.text("type") != "fixed"
-            if (mimic := joint.first("mimic")) is not None:
-                mimics += 1
-                if mimic.text("joint") not in joints - {joint.text("name")}:
-                    raise mimic.wrong(f"{joint.text('name')} mimics {mimic.text('joint')}, which is not another joint")
             if made is not None:
                 mechanism.joints.append(made)
         elif name != "world" and base != "free":
@@ -79,7 +78,7 @@ def read_urdf(path: PathLike, root: Element | None = None, base: str | None = No
             mechanism.notes.append(f"{count} <{tag}> {'is' if count == 1 else 'are'} left out")
     mechanism.counts = {
         "links": len(links) - ("world" in links), "joints": len(joint_of), "moving joints": moving,
-        "independent joints": moving - mimics,
+        "independent joints": moving - len(mimics),
         "mass": math.fsum(_mass(element) for element in links.values()), "missing meshes": len(missing),
     }  # fmt: skip
     return mechanism
@@ -237,8 +236,64 @@ def _hex(color: Element) -> str:
     return f"#{red:02x}{green:02x}{blue:02x}"
 
 
-def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
-    """frame: of its child, at the joint. None for a free joint."""
+def _mimics(joint_of: dict[str, Element], notes: list[str]) -> tuple[list[JointCoupling], dict[str, float]]:
+    """The couplings of joints that mimic others, and where each joint begins, rad or m: where its leader, at 0, puts it.
+    Raises FileError for leaders that do not exist or follow in a circle."""
+    joints = {joint.text("name"): joint for joint in joint_of.values()}
+    follows: dict[str, tuple[Element, str]] = {}
+    couplings: list[JointCoupling] = []
+    for name, joint in joints.items():
+        mimic = joint.first("mimic")
+        if mimic is None:
+            continue
+        leader = mimic.text("joint")
+        if leader not in joints or leader == name:
+            raise mimic.wrong(f"{name} mimics {leader}, which is not another joint")
+        unlike = [each for each in (name, leader) if joints[each].text("type") not in ONE_COORDINATE]
+        if unlike:
+            notes.append(f"{name} mimics {leader}, but {unlike[0]} is {joints[unlike[0]].text('type')}: left out")
+            continue
+        follows[name] = (mimic, leader)
+        couplings.append(JointCoupling(f"{name} mimics {leader}", [(name, 1.0), (leader, -_multiplier(mimic))]))
+    initial = {name: 0.0 for name in joints if name not in follows}
+    for name in follows:
+        chain = [name]
+        while chain[-1] not in initial:
+            mimic, leader = follows[chain[-1]]
+            if leader in chain:
+                raise mimic.wrong(f"joints mimic each other in a circle: {', '.join([*chain, leader])}")
+            chain.append(leader)
+        for each in reversed(chain[:-1]):
+            mimic, leader = follows[each]
+            initial[each] = _multiplier(mimic) * initial[leader] + mimic.number("offset", 0.0)
+    return couplings, initial
+
+
+def _multiplier(mimic: Element) -> float:
+    return mimic.number("multiplier", 1.0)
+
+
+def _axis(joint: Element) -> np.ndarray:
+    """In the joint's frame."""
+    element = joint.first("axis")
+    axis = np.array(element.numbers("xyz", 3)) if element else np.array([1.0, 0, 0])
+    if not np.linalg.norm(axis) > 0:
+        raise (element or joint).wrong(f"the axis of {joint.text('name')} is zero")
+    return axis
+
+
+def _moved(joint: Element, by: float) -> Frame:
+    """The pose of a joint whose coordinate is `by`, rad or m."""
+    if by == 0:
+        return Frame()
+    axis = _axis(joint)
+    if joint.text("type") == "prismatic":
+        return Frame(by * axis / np.linalg.norm(axis))
+    return Frame(turn=about(axis, by))
+
+
+def _joint(joint: Element, frame: Frame, initial: float, notes: list[str]) -> LinkJoint | None:
+    """frame: of its child, at the joint. initial: the joint's coordinate there. None for a free joint."""
     name, kind = joint.text("name"), joint.text("type")
     parent, child = joint.need("parent").text("link"), joint.need("child").text("link")
     b = None if parent == "world" else parent
@@ -246,10 +301,7 @@ def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
         return LinkJoint("weld", name, child, b, frame.place)
     if kind == "floating":
         return None
-    axis_element = joint.first("axis")
-    axis = np.array(axis_element.numbers("xyz", 3)) if axis_element else np.array([1.0, 0, 0])
-    if not np.linalg.norm(axis) > 0:
-        raise (axis_element or joint).wrong(f"the axis of {name} is zero")
+    axis = _axis(joint)
     if kind == "planar":
         return LinkJoint("planar", name, child, b, frame.place, frame.turn @ axis)
     options: dict[str, object] = {}
@@ -258,8 +310,8 @@ def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
         lower, upper = limit.number("lower", 0.0), limit.number("upper", 0.0)
         if lower > upper:
             raise limit.wrong(f"the lower limit of {name}, {lower}, is above the upper one, {upper}")
-        if lower <= 0 <= upper and lower < upper:
-            options["limits"] = (lower, upper)
+        if lower <= initial <= upper and lower < upper:
+            options["limits"] = (lower - initial, upper - initial)
         else:
             notes.append(
                 f"the limits of {name}, {lower} to {upper}, exclude its initial pose or leave no range: left out"
@@ -271,7 +323,5 @@ def _joint(joint: Element, frame: Frame, notes: list[str]) -> LinkJoint | None:
             options["spring"] = (0.0, damping, 0.0)
         if friction > 0:
             options["friction"] = friction
-    if joint.first("mimic") is not None:
-        notes.append(f"{name} mimics {joint.need('mimic').text('joint')}, which is left out: it moves independently")
     ours: JointKind = "prismatic" if kind == "prismatic" else "revolute"
     return LinkJoint(ours, name, child, b, frame.place, frame.turn @ axis, options)
