@@ -3,6 +3,7 @@
 // applied to a copy of the previous one. Nothing is allocated once it is large enough.
 
 import { forEachPose, type FrameEntity, type PosesBuffer } from "../protocol/generated.ts";
+import type { Poses } from "./anchors.ts";
 
 const frameCount = 8;
 /** Other bodies are drawn this many frame intervals late, so that there is nearly always a later frame to interpolate
@@ -63,10 +64,13 @@ export class PoseBuffer {
   count = 0;
   /** Whether bodies are drawn in their latest poses, as for a film. */
   exact = false;
+  /** The poses that arrived last, most of which are not drawn yet. */
+  readonly newest: Poses;
 
   private readonly frames_: Frame[] = [];
   private newest_ = 0;
   private arrived_ = 0;
+  private sampled_ = 0;
   /** One closure for all frames. */
   private readonly set_ = (body: number, position: Float32Array, rotation: Float32Array): void => {
     if (body >= mostSlots) return;
@@ -81,6 +85,24 @@ export class PoseBuffer {
     for (let index = 0; index < frameCount; index++) {
       this.frames_.push({ stamp: 0, position: new Float32Array(0), rotation: new Float32Array(0) });
     }
+    const latest = () => this.frames_[this.newest_];
+    const known = () => this.known;
+    this.newest = {
+      frames: this.frames,
+      get known() { return known(); },
+      get position() { return latest().position; },
+      get rotation() { return latest().rotation; },
+    };
+  }
+
+  /** When the newest poses arrived, smoothed, ms. */
+  get newestStamp(): number {
+    return this.frames_[this.newest_].stamp;
+  }
+
+  /** The stamp of the poses in which a body is drawn, ms. */
+  drawnStamp(body: number): number {
+    return this.exact ? Infinity : this.sampled_ - this.lateness.now[body] * this.intervalMs;
   }
 
   /** Drops all frames (a new connection), but keeps the drawn poses until the next frame arrives. */
@@ -128,12 +150,13 @@ export class PoseBuffer {
   /** Calculates the drawn poses at `now` (ms); `seconds` since the previous call. */
   sample(now: number, seconds: number): void {
     if (this.count === 0) return;
+    this.sampled_ = now;
     const ease = 1 - Math.exp(-seconds / easeSeconds);
     const { now: late, goal } = this.lateness;
     for (let body = 0; body < this.capacity; body++) {
       if (this.known[body] === 0) continue;
       late[body] += (goal[body] - late[body]) * ease;
-      this.sampleBody_(body, this.exact ? Infinity : now - late[body] * this.intervalMs);
+      this.sampleBody_(body, this.drawnStamp(body));
     }
   }
 

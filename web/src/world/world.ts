@@ -72,7 +72,7 @@ export class World {
     this.listener_ = listener;
     const warn = (title: string, text: string) => listener.warn(title, text);
     this.entities = makeEntityViews({
-      poses: this.poses, eye: this.eye, time: () => this.time, bodyGone: (body) => listener.bodyGone(body), warn,
+      poses: this.poses, eye: this.eye, bodyGone: (body) => listener.bodyGone(body), warn,
       changed: () => listener.changed("look"),
     });
     this.store_ = new EntityStore(this.entities, warn);
@@ -151,6 +151,7 @@ export class World {
     this.takeHolds_(poses);
     this.poses.push(poses, now);
     this.entities.particleSet.takeSparks(poses.sparks);
+    this.entities.trace.takePoses(poses.time);
   }
 
   private showLook_(look: string): void {

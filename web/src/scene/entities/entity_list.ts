@@ -35,8 +35,6 @@ export interface EntityHost {
   readonly poses: PoseBuffer;
   /** Place of the viewer, world, m; kept up to date. */
   readonly eye: Vector3;
-  /** Simulated, s. */
-  time(): number;
   /** A body was destroyed; called before its slot can be used again. */
   bodyGone(body: number): void;
   /** Something cannot be drawn: `title` says what, `text` why. */
@@ -49,7 +47,7 @@ export interface EntityHost {
 export type EntityViews = { readonly [K in EntityKind]: EntityView<EntityRecords[K]> };
 
 /** In the order of their frames: bodies are interpolated before things on them are drawn. */
-export function makeEntityViews({ poses, eye, time, bodyGone, warn, changed }: EntityHost) {
+export function makeEntityViews({ poses, eye, bodyGone, warn, changed }: EntityHost) {
   const style = new Styles(warn);
   const body = new BodyView(poses, style, bodyGone);
   const canHold = (slot: number) => body.canHold(slot);
@@ -70,7 +68,7 @@ export function makeEntityViews({ poses, eye, time, bodyGone, warn, changed }: E
     line: new LineView(poses),
     arrow: new ArrowView(poses),
     axes: new AxesView(poses),
-    trace: new TraceView(poses, time),
+    trace: new TraceView(poses),
     pointCloud: new PointCloudView(poses),
     marker: new MarkerView(poses, warn),
     widget: new Widgets(),

@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces: the past paths of points, recorded by this page. A trace is sent only once.
+// Traces: the past paths of points, recorded by this page from all poses that arrive, however rarely it draws. A trace is
+// sent only once.
 
 import { Vector3 } from "three";
-import type { TraceEntity } from "../../protocol/generated.ts";
-import { placeOf } from "../anchors.ts";
+import { NO_BODY, type TraceEntity } from "../../protocol/generated.ts";
+import { bodyOf, placeOf } from "../anchors.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { Strokes } from "../strokes.ts";
 import type { EntityView } from "./entity.ts";
 
 /** A point that has moved less is not added, m. */
 const still = 1e-6;
+/** Numbers of a point: place (m), simulated time (s), stamp of its poses (ms). */
+const stride = 5;
 
 interface Trace {
   entity: TraceEntity;
-  /** Four numbers each: place (m) and simulated time (s); a ring. */
+  /** A ring of points. */
   points: Float64Array;
   first: number;
   count: number;
+  /** The first points are drawn; the others are later than their body is drawn, whose place is the trace's end. */
+  shown: number;
+  end: Vector3;
 }
 
 /** Number of pieces for a bulge as high as long, and the maximum: a bulge of 0.2 % is drawn straight. */
@@ -25,13 +31,12 @@ const mostPieces = 8;
 
 /** Index of the numbers of a point, counted from the oldest. */
 function at({ first, entity: { capacity } }: Trace, index: number): number {
-  return 4 * ((first + index) % capacity);
+  return stride * ((first + index) % capacity);
 }
 
 export class TraceView implements EntityView<TraceEntity> {
   private readonly strokes_ = new Strokes();
   private readonly poses_: PoseBuffer;
-  private readonly time_: () => number;
   private readonly traces_ = new Map<number, Trace>();
   private readonly place_ = new Vector3();
   private readonly next_ = new Vector3();
@@ -40,23 +45,17 @@ export class TraceView implements EntityView<TraceEntity> {
   private lastTime_ = 0;
   private changed_ = false;
 
-  /** `time`: simulated, s. */
-  constructor(poses: PoseBuffer, time: () => number) {
+  constructor(poses: PoseBuffer) {
     this.poses_ = poses;
-    this.time_ = time;
   }
 
   get root() {
     return this.strokes_.mesh;
   }
 
-  /** Number of points of a trace. */
-  countOf(slot: number): number {
-    return this.traces_.get(slot)?.count ?? 0;
-  }
-
   create(entity: TraceEntity): void {
-    this.traces_.set(entity.id.slot, { entity, points: new Float64Array(4 * entity.capacity), first: 0, count: 0 });
+    const points = new Float64Array(stride * entity.capacity);
+    this.traces_.set(entity.id.slot, { entity, points, first: 0, count: 0, shown: 0, end: new Vector3() });
     this.changed_ = true;
   }
 
@@ -73,17 +72,18 @@ export class TraceView implements EntityView<TraceEntity> {
     this.changed_ = true;
   }
 
-  draw(): void {
-    const time = this.time_();
+  /** Adds the newest poses. `time`: simulated, s. */
+  takePoses(time: number): void {
     for (const trace of this.traces_.values()) {
       // Back in time: reset or undo.
-      if (time < this.lastTime_ && trace.count > 0) {
-        trace.count = 0;
-        this.changed_ = true;
-      }
+      if (time < this.lastTime_) trace.count = 0;
       this.extend_(trace, time);
     }
     this.lastTime_ = time;
+  }
+
+  draw(): void {
+    for (const trace of this.traces_.values()) this.update_(trace);
     if (!this.changed_) return;
     this.changed_ = false;
     this.strokes_.clear();
@@ -92,29 +92,45 @@ export class TraceView implements EntityView<TraceEntity> {
   }
 
   private extend_(trace: Trace, time: number): void {
-    const { points, entity: { at, capacity, seconds } } = trace;
+    const { points, entity: { at: anchor, capacity, seconds } } = trace;
     const { place_: place } = this;
-    while (seconds > 0 && trace.count > 0 && points[4 * trace.first + 3] < time - seconds) {
+    while (seconds > 0 && trace.count > 0 && points[at(trace, 0) + 3] < time - seconds) {
       trace.first = (trace.first + 1) % capacity;
       trace.count--;
       this.changed_ = true;
     }
-    if (!placeOf(this.poses_, at, place)) return;
-    const last = 4 * ((trace.first + trace.count - 1 + capacity) % capacity);
-    const moved = Math.hypot(place.x - points[last], place.y - points[last + 1], place.z - points[last + 2]);
-    if (trace.count > 0 && moved < still) return;
-    const next = 4 * ((trace.first + trace.count) % capacity);
-    place.toArray(points, next);
-    points[next + 3] = time;
-    if (trace.count < capacity) trace.count++;
-    else trace.first = (trace.first + 1) % capacity;
+    if (!placeOf(this.poses_.newest, anchor, place)) return;
+    if (trace.count > 0) {
+      const last = at(trace, trace.count - 1);
+      if (Math.hypot(place.x - points[last], place.y - points[last + 1], place.z - points[last + 2]) < still) return;
+    }
+    if (trace.count === capacity) trace.first = (trace.first + 1) % capacity;
+    else trace.count++;
+    const added = at(trace, trace.count - 1);
+    place.toArray(points, added);
+    points[added + 3] = time;
+    points[added + 4] = this.poses_.newestStamp;
+  }
+
+  /** Finds how much of a trace is drawn, and where it ends. */
+  private update_(trace: Trace): void {
+    const { points, entity: { at: anchor } } = trace;
+    const { place_: end } = this;
+    const body = bodyOf(this.poses_, anchor);
+    const when = body === NO_BODY ? Infinity : this.poses_.drawnStamp(body);
+    let shown = trace.count;
+    while (shown > 0 && points[at(trace, shown - 1) + 4] > when) shown--;
+    if (!placeOf(this.poses_, anchor, end)) shown = 0;
+    if (shown === trace.shown && end.distanceTo(trace.end) < still) return;
+    trace.shown = shown;
+    trace.end.copy(end);
     this.changed_ = true;
   }
 
   private write_(trace: Trace): void {
-    const { points, count, entity: { radius, color } } = trace;
+    const { points, shown, end, entity: { radius, color } } = trace;
     const { place_: from, next_: to } = this;
-    for (let index = 1; index < count; index++) {
+    for (let index = 1; index < shown; index++) {
       const a = at(trace, index - 1);
       const b = at(trace, index);
       from.fromArray(points, a);
@@ -125,11 +141,14 @@ export class TraceView implements EntityView<TraceEntity> {
         from.copy(to);
       }
     }
+    if (shown === 0) return;
+    from.fromArray(points, at(trace, shown - 1));
+    this.strokes_.add(from.x, from.y, from.z, end.x, end.y, end.z, radius, radius, color);
   }
 
   /**
    * Calculates the velocities at both ends of a piece from the points around them, and returns the number of straight
-   * lines for the curve between: a page that draws slowly has few points of a path.
+   * lines for the curve between: a page with a slow connection, or a fast world, has few points of a path.
    */
   private fitCurve_(trace: Trace, index: number, start: Vector3): number {
     const { points, count } = trace;
