@@ -3,6 +3,10 @@
 #include "pickled.h"
 #include "restructure_result.h"
 
+#include <iota/step_times.h>
+
+#include <memory>
+
 namespace iota::bindings {
 
 namespace {
@@ -54,6 +58,57 @@ void bind_energy(nb::module_& module) {
             "<Energy: kinetic %.6g J, potential %.6g J, dissipated %.6g J, lost %.6g J, made %.6g J, external work %.6g J, "
             "edits %.6g J>",
             e.kinetic, e.potential, e.dissipated, e.lost, e.made, e.external_work, e.edits);
+      });
+}
+
+/// The context manager of `StepTimes`.
+struct StepTimesScope {
+  StepTimes times;
+  std::unique_ptr<TimedSteps> timed = {};
+};
+
+template <class Member>
+auto time_of(Member StepTimes::* part) {
+  return [part](const StepTimesScope& self) { return self.times.*part; };
+}
+
+void bind_step_times(nb::module_& module) {
+  nb::class_<StepTimesScope>(
+      module, "StepTimes",
+      "Where the time of steps goes, s: of all steps that this thread takes in a with block, of any\n"
+      "system. They read the clock several times an iteration. Islands may be solved on several\n"
+      "threads: their times are summed.\n\n"
+      "    with iota.types.StepTimes() as times:\n"
+      "        system.step()\n"
+      "    print(times)")
+      .def(nb::init<>())
+      .def(
+          "__enter__",
+          [](nb::handle_t<StepTimesScope> self) {
+            auto& scope = *nb::inst_ptr<StepTimesScope>(self);
+            if (scope.timed) raise_runtime("these StepTimes are in use");
+            scope.timed = std::make_unique<TimedSteps>(scope.times);
+            return nb::borrow(self);
+          },
+          nb::sig("def __enter__(self) -> StepTimes"))
+      .def(
+          "__exit__", [](StepTimesScope& self, nb::handle, nb::handle, nb::handle) { self.timed.reset(); },
+          "type"_a.none(), "value"_a.none(), "traceback"_a.none(),
+          nb::sig("def __exit__(self, type: object, value: object, traceback: object) -> None"))
+      .def_prop_ro("forces", time_of(&StepTimes::forces),
+                   "Held forces; forces and constraints in the equations of a step.")
+      .def_prop_ro("analyze", time_of(&StepTimes::analyze),
+                   "Islands, and the structure of their matrices; only after changes.")
+      .def_prop_ro("factor", time_of(&StepTimes::factor),
+                   "Assembling and factoring matrices, with the first half of the solution for one right side.")
+      .def_prop_ro("solve", time_of(&StepTimes::solve), "The other solutions with these factors.")
+      .def_prop_ro("integrate", time_of(&StepTimes::integrate),
+                   "All else: loading and storing islands, guesses, energies, edits, the report.")
+      .def_prop_ro("total", [](const StepTimesScope& self) { return self.times.total(); })
+      .def("__repr__", [](const StepTimesScope& self) {
+        const StepTimes& t = self.times;
+        return text_of("<StepTimes: forces %.3g s, analyze %.3g s, factor %.3g s, solve %.3g s, integrate %.3g s>",
+                       t.forces, t.analyze, t.factor, t.solve, t.integrate);
       });
 }
 
@@ -294,6 +349,7 @@ void bind_diagnosis(nb::module_& module) {
 void bind_reports(nb::module_& module) {
   bind_diagnosis(module);
   bind_energy(module);
+  bind_step_times(module);
   bind_step_report(module);
   bind_restructure_report(module);
 }

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -61,8 +62,10 @@ float two_digits(double value) {
   return static_cast<float>(std::round(value / step) * step);
 }
 
-void set_state(RoomObject& self, bool paused, double speed, double step_ms, double dt) {
-  const protocol::WorldState state{paused, static_cast<float>(speed), two_digits(step_ms), dt};
+void set_state(RoomObject& self, bool paused, double speed, double step_ms, double dt,
+               const std::vector<std::pair<std::string, double>>& costs) {
+  protocol::WorldState state{paused, static_cast<float>(speed), two_digits(step_ms), dt, {}};
+  for (const auto& [part, ms] : costs) state.costs.push_back({part, two_digits(ms)});
   if (self.state == state) return;
   self.state = state;
   self.use().set(state);
@@ -190,19 +193,32 @@ void set_entity(RoomObject& self, const std::string& kind, std::uint32_t slot, s
   self.own.set(number, {slot, generation}, record);
 }
 
-/// The body of an event, or None once it is destroyed.
-nb::object body_of(RoomObject& self, const net::InputEvent& event, nb::object system) {
-  const std::optional<BodyId> body = self.presenter.body(event.body);
-  if (!body) return nb::none();
-  SystemObject* const object = to_system(system);
-  if (!object->use().bodies().contains(*body)) return nb::none();
-  return nb::cast(BodyHandle{std::move(system), object, *body});
+/// The bodies of an event that still exist, each once, in its order.
+std::vector<BodyId> ids_of(RoomObject& self, const net::InputEvent& event) {
+  std::vector<BodyId> ids;
+  std::set<std::uint32_t> seen;
+  const auto add = [&](const protocol::Id& id) {
+    const std::optional<BodyId> body = self.presenter.body(id);
+    if (body && seen.insert(body->slot).second) ids.push_back(*body);
+  };
+  add(event.body);
+  for (const protocol::Id& id : event.others) add(id);
+  return ids;
 }
 
-/// The slot of the simulator's body of an event, or None once it is destroyed.
-std::optional<std::uint32_t> slot_of(RoomObject& self, const net::InputEvent& event) {
-  const std::optional<BodyId> body = self.presenter.body(event.body);
-  return body ? std::optional(body->slot) : std::nullopt;
+nb::list bodies_of(RoomObject& self, const net::InputEvent& event, const nb::object& system) {
+  SystemObject* const object = to_system(system);
+  nb::list bodies;
+  for (const BodyId id : ids_of(self, event))
+    if (object->use().bodies().contains(id)) bodies.append(nb::cast(BodyHandle{system, object, id}));
+  return bodies;
+}
+
+/// The same of a simulator: slots.
+std::vector<std::uint32_t> slots_of(RoomObject& self, const net::InputEvent& event) {
+  std::vector<std::uint32_t> slots;
+  for (const BodyId id : ids_of(self, event)) slots.push_back(id.slot);
+  return slots;
 }
 
 }  // namespace
@@ -235,7 +251,7 @@ void bind_room(nb::module_& module) {
           "system"_a, "Tells its pages that the world has ended, and stops logging changes of its system.")
       .def("set_settings", &set_settings, nb::kw_only(), "title"_a, "looks"_a, "look"_a, "camera"_a.none(),
            "ground"_a.none())
-      .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a)
+      .def("set_state", &set_state, nb::kw_only(), "paused"_a, "speed"_a, "step_ms"_a, "dt"_a, "costs"_a)
       .def("set_actions", &set_actions, "actions"_a,
            "Tuples of name, key, label, help, whether it is on a body, and button.")
       .def(
@@ -289,10 +305,10 @@ void bind_room(nb::module_& module) {
           "needs_all",
           [](RoomObject& self) { return self.presenter.needs_all() || !self.presenter.assigned().empty(); },
           "Whether a simulator must send its bodies next time even without a change.")
-      .def("body_of", &body_of, "event"_a, "system"_a,
-           nb::sig("def body_of(self, event: InputEvent, system: System) -> Body | None"),
-           "The body of an event; None once it is destroyed.")
-      .def("slot_of", &slot_of, "event"_a, "The slot of the simulator's body of an event; None once it is destroyed.")
+      .def("bodies_of", &bodies_of, "event"_a, "system"_a,
+           nb::sig("def bodies_of(self, event: InputEvent, system: System) -> list[Body]"),
+           "The bodies of an event that still exist; an action may be on several.")
+      .def("slots_of", &slots_of, "event"_a, "The slots of the simulator's bodies of an event that still exist.")
       .def(
           "take_warnings", [](RoomObject& self) { return self.presenter.take_warnings(); },
           "Notices since the last call about things that could not be drawn exactly.")

@@ -42,6 +42,7 @@ const char* kind_name_of(InputEvent::Kind kind) {
     case InputEvent::Kind::pointer: return "pointer";
     case InputEvent::Kind::key: return "key";
     case InputEvent::Kind::picture: return "picture";
+    case InputEvent::Kind::profile: return "profile";
   }
   return "unknown";
 }
@@ -94,13 +95,13 @@ void bind_input(nb::module_& module) {
   nb::class_<InputEvent>(module, "InputEvent", "An input of a user, or a user joined or left.")
       .def_prop_ro(
           "kind", [](const InputEvent& e) { return kind_name_of(e.kind); },
-          "join, leave, select, grab_start, grab_move, grab_end, action, control, change, pointer, key or picture")
+          "join, leave, select, grab_start, grab_move, grab_end, action, control, change, pointer, key, picture or profile")
       .def_ro("client", &InputEvent::client, "From 1, never used twice in a world.")
       .def_ro("hold", &InputEvent::hold, "The client's own number for this grip.")
       .def_prop_ro(
           "names_body",
           [](const InputEvent& e) { return static_cast<bool>(e.body) && e.kind != InputEvent::Kind::change; },
-          "Whether it is on a body: `Room.body_of` returns it, if it still exists.")
+          "Whether it is on a body or several: `Room.bodies_of` returns those that still exist.")
       .def_prop_ro(
           "local_point", [](const InputEvent& e) { return widen(e.local_point); }, "Body frame, m.")
       .def_prop_ro(

@@ -87,8 +87,12 @@ CLIENT: list[Vector] = [
     (
         "action",
         "action",
-        b"\x06" + text("break") + identity(5, 2),
-        {"name": "break", "body": {"slot": 5, "generation": 2}},
+        b"\x06" + text("break") + identity(5, 2) + pack("<I", 2) + identity(6, 1) + identity(70000, 3),
+        {
+            "name": "break",
+            "body": {"slot": 5, "generation": 2},
+            "others": [{"slot": 6, "generation": 1}, {"slot": 70000, "generation": 3}],
+        },
     ),
     ("control_pause", "control", b"\x07\x00" + pack("<f", 0.0), {"command": 0, "value": 0.0}),
     ("control_speed", "control", b"\x07\x04" + pack("<f", 0.25), {"command": 4, "value": 0.25}),
@@ -120,6 +124,7 @@ CLIENT: list[Vector] = [
         {"request": 7, "is_last": True, "data": [80, 78, 71]},
     ),
     ("presence", "presence", b"\x0d" + STANCE_BYTES, {"stance": STANCE}),
+    ("profile", "profile", b"\x0e\x01", {"on": True}),
 ]
 
 BODIES = [
@@ -281,8 +286,8 @@ SERVER: list[Vector] = [
     (
         "world_state",
         "world_state",
-        b"\x4c\x01" + pack("<ffd", 0.5, 0.375, 1 / 120),
-        {"paused": True, "speed": 0.5, "step_ms": 0.375, "dt": 1 / 120},
+        b"\x4c\x01" + pack("<ffd", 0.5, 0.375, 1 / 120) + pack("<I", 1) + text("forces") + pack("<f", 0.25),
+        {"paused": True, "speed": 0.5, "step_ms": 0.375, "dt": 1 / 120, "costs": [{"part": "forces", "ms": 0.25}]},
     ),
     (
         "actions",
@@ -564,9 +569,9 @@ BAD: list[tuple[str, str, bytes, str]] = [
     ("bad_command", "client", b"\x07\x05" + bytes(4), "control.command has no meaning for the value 5"),
     ("bad_string_length", "client", b"\x06" + pack("<I", 100) + b"break", "action.name ends early"),
     ("bad_string_huge", "client", b"\x06\xff\xff\xff\xff" + b"break", "action.name has 4294967295 entries"),
-    ("bad_string_limit", "client", b"\x06" + text("a" * 129) + bytes(8), "action.name has 129 entries"),
-    ("bad_utf8", "client", b"\x06" + pack("<I", 2) + b"\xc0\x80" + bytes(8), "action.name is not UTF-8"),
-    ("bad_surrogate", "client", b"\x06" + pack("<I", 3) + b"\xed\xa0\x80" + bytes(8), "action.name is not UTF-8"),
+    ("bad_string_limit", "client", b"\x06" + text("a" * 129) + bytes(12), "action.name has 129 entries"),
+    ("bad_utf8", "client", b"\x06" + pack("<I", 2) + b"\xc0\x80" + bytes(12), "action.name is not UTF-8"),
+    ("bad_surrogate", "client", b"\x06" + pack("<I", 3) + b"\xed\xa0\x80" + bytes(12), "action.name is not UTF-8"),
     ("bad_count", "server", b"\x4a" + text("tie") + pack("<I", 100000) + bytes(8), "entities_destroyed.ids ends early"),
     (
         "bad_count_huge",

@@ -65,13 +65,16 @@ def material_name(material: str, texture: Texture | None) -> str:
 def check_image(data: bytes) -> None:
     """Raises ValueError unless it is a whole PNG or JPEG file of at most 4096 x 4096 pixels and 4 MiB."""
     _check_bytes(len(data))
+    _check_size(*size_of(data))
+
+
+def size_of(data: bytes) -> tuple[int, int]:
+    """Width and height of an image, pixels. Raises ValueError unless it is a whole PNG or JPEG file."""
     if data.startswith(PNG):
-        size = _check_png(data)
-    elif data.startswith(JPEG):
-        size = _check_jpeg(data)
-    else:
-        raise ValueError("is neither a PNG nor a JPEG file")
-    _check_size(*size)
+        return _check_png(data)
+    if data.startswith(JPEG):
+        return _check_jpeg(data)
+    raise ValueError("is neither a PNG nor a JPEG file")
 
 
 def _check_bytes(count: int) -> None:

@@ -22,6 +22,7 @@ from iota._core import (
     RestructureReport,
     Solid,
     StepReport,
+    StepTimes,
 )
 from iota.profiling import ForceCost, ForceProfile
 from iota.solvers import Solution
@@ -49,4 +50,5 @@ __all__ = [
     "Solid",
     "Solution",
     "StepReport",
+    "StepTimes",
 ]

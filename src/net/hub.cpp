@@ -359,6 +359,7 @@ void Hub::handle(std::uint32_t client, const protocol::Action& message) {
   if (!may_act(client)) return;
   InputEvent event{.kind = InputEvent::Kind::action, .client = client};
   event.body = message.body;
+  event.others = message.others;
   event.name = message.name;
   push_input(std::move(event));
 }
@@ -423,6 +424,12 @@ void Hub::handle(std::uint32_t client, const protocol::Presence& message) {
   if (stance.hands.size() % 3 != 0) return refuse_frame(client, "presence: a hand has three coordinates");
   clients_.at(client).stance = stance;
   tell_people();
+}
+
+void Hub::handle(std::uint32_t client, const protocol::Profile& message) {
+  InputEvent event{.kind = InputEvent::Kind::profile, .client = client};
+  event.value = message.on;
+  push_input(std::move(event));
 }
 
 void Hub::handle(std::uint32_t client, const protocol::Ping& message) {

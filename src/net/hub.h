@@ -134,6 +134,7 @@ class Hub {
   void handle(std::uint32_t client, const protocol::Key& message);
   void handle(std::uint32_t client, const protocol::Picture& message);
   void handle(std::uint32_t client, const protocol::Presence& message);
+  void handle(std::uint32_t client, const protocol::Profile& message);
 
   const std::string world_;
   const std::size_t max_clients_;

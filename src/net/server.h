@@ -50,20 +50,22 @@ struct InputEvent {
     change,
     pointer,
     key,
-    picture
+    picture,
+    profile
   };
   Kind kind = Kind::join;
-  std::uint32_t client = 0;        ///< from 1, never used twice in a world
-  std::uint32_t hold = 0;          ///< grab_...: the client's own number for this grip
-  protocol::Id body;               ///< of an entity that may no longer exist; null: none. change: of the widget
-  Vec3f local_point{};             ///< grab_start: body frame
-  Vec3f target{};                  ///< grab_start, grab_move: world frame; pointer: where it hit the body
-  Vec3f origin{}, direction{};     ///< pointer: its ray, world frame
-  std::string name;                ///< of the client (join), action, pointer or key; change: the text of a text field
-  std::vector<std::uint8_t> data;  ///< picture: a part of it
+  std::uint32_t client = 0;          ///< from 1, never used twice in a world
+  std::uint32_t hold = 0;            ///< grab_...: the client's own number for this grip
+  protocol::Id body;                 ///< of an entity that may no longer exist; null: none. change: of the widget
+  std::vector<protocol::Id> others;  ///< action: bodies selected together with that one
+  Vec3f local_point{};               ///< grab_start: body frame
+  Vec3f target{};                    ///< grab_start, grab_move: world frame; pointer: where it hit the body
+  Vec3f origin{}, direction{};       ///< pointer: its ray, world frame
+  std::string name;                  ///< of the client (join), action, pointer or key; change: the text of a text field
+  std::vector<std::uint8_t> data;    ///< picture: a part of it
   protocol::ControlCommand command{};
   protocol::PointerKind pointer{};
-  double value = 0;          ///< control: speed in times real time; change: of the widget
+  double value = 0;          ///< control: speed in times real time; change: of the widget; profile: 1, or 0 to end it
   bool is_final = false;     ///< key: released; picture: the last part
   std::uint32_t number = 0;  ///< picture: of the request
 };

@@ -57,6 +57,7 @@ void Assembly::add_momentum(const Problem& problem, const Stage& stage, const Ve
 
 template <bool Midpoint>
 Residual Assembly::residual(const Problem& problem, const Stage& stage, const Vec3* x, const Vec3* u) {
+  const Timed timed(times_, &StepTimes::forces);
   add_momentum<Midpoint>(problem, stage, x, u);
   if (has_extreme_masses()) resistance_.assign(problem.mass.begin(), problem.mass.end());
   worst_ = violation_ = largest_multiplier_ = 0;
@@ -426,8 +427,13 @@ void Assembly::assemble_rows(const Problem& problem, const Stage& stage, const C
 
 template <bool Midpoint>
 bool Assembly::factor_and_solve(const Problem& problem, const Stage& stage, const Vec3* x, Hessian hessian) {
-  assemble<Midpoint>(problem, stage, x, hessian);
-  const bool good = factor_.factorize(unknowns_) == 0;
+  bool good = false;
+  {
+    const Timed timed(times_, &StepTimes::factor);
+    assemble<Midpoint>(problem, stage, x, hessian);
+    good = factor_.factorize(unknowns_) == 0;
+  }
+  const Timed timed(times_, &StepTimes::solve);
   factor_.finish(unknowns_);
   return good;
 }

@@ -4,6 +4,7 @@
 #include "solver/problem.h"
 #include "solver/sparse/block_factor.h"
 #include "solver/stage.h"
+#include "solver/timed.h"
 
 #include <span>
 #include <vector>
@@ -34,6 +35,8 @@ class Assembly {
   void follow(Problem&);
   /// Gives slots to the forces that have none. False, without a change, if one couples points that were not coupled.
   bool place_forces(Problem&) const;
+  /// Where to add the times of forces, factors and solutions from now on; null: nowhere.
+  void add_times_to(StepTimes* times) { times_ = times; }
 
   /// At positions x = x0 + h v0 + u and the pools' multipliers; by unknown in `residuals()`.
   template <bool Midpoint>
@@ -51,7 +54,10 @@ class Assembly {
   template <bool Midpoint>
   void assemble(const Problem&, const Stage&, const Vec3* x, Hessian);
   /// Converts residuals to the Newton step, matrix^-1 residuals, to be subtracted: with the latest factors ...
-  void solve() { factor_.solve(unknowns_); }
+  void solve() {
+    const Timed timed(times_, &StepTimes::solve);
+    factor_.solve(unknowns_);
+  }
   /// ... or with new ones. False if the signs of pivots are not those of a constrained minimum.
   template <bool Midpoint>
   bool factor_and_solve(const Problem&, const Stage&, const Vec3* x, Hessian);
@@ -109,6 +115,7 @@ class Assembly {
   template <bool Midpoint, class F>
   void assemble_forces(const Problem&, const ForceStage&, const ForcePool<F>&, const Vec3* x);
 
+  StepTimes* times_ = nullptr;
   BlockPattern pattern_;
   BlockFactor factor_;
   std::vector<std::uint32_t> node_unknown_, node_diagonal_;

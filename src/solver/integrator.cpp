@@ -5,6 +5,7 @@
 #include "solver/integrator.h"
 
 #include "base/slack.h"
+#include "solver/timed.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,7 @@ void Integrator::make_room(const Problem& problem) {
 AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSettings& settings) {
   AdvanceReport report;
   settings_ = settings;
+  newton_.add_times_to(times_of_thread());
   largest_turn_cosine_ = std::cos(settings.max_turn);
   step_length_ = h;
   constexpr int unlimited = std::numeric_limits<int>::max();
@@ -75,6 +77,7 @@ AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSe
     report.gap = problem.worst_gap(problem.position.data());
   }
   iterations_left_ = unlimited;
+  newton_.add_times_to(nullptr);
   return report;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "ingredient/quantities.h"
+#include "solver/timed.h"
 #include "step/breaking.h"
 #include "step/closings.h"
 #include "step/contacts.h"
@@ -13,8 +14,11 @@
 
 namespace iota::step {
 
+using solver::Timed, solver::times_of_thread;
+
 StepReport Stepper::step(double dt) {
   if (!(dt > 0 && dt <= 1)) throw std::invalid_argument(text("step: dt must be above 0 and at most 1 s, got ", dt));
+  const Timed timed(times_of_thread(), &StepTimes::integrate, Timed::none);
   StepReport report;
   report.dt = dt;
   using Clock = island::Island::Clock;
@@ -33,7 +37,10 @@ StepReport Stepper::step(double dt) {
 }
 
 // 1. Functions of the script, and other held forces, at the start of the step.
-void Stepper::take_held_forces(StepReport& report) { editor_.held.begin_step(report); }
+void Stepper::take_held_forces(StepReport& report) {
+  const Timed timed(times_of_thread(), &StepTimes::forces);
+  editor_.held.begin_step(report);
+}
 
 // 2. Islands with a changed structure are analyzed again; assigned velocities are projected.
 void Stepper::update_islands() {
@@ -45,7 +52,10 @@ void Stepper::update_islands() {
     if (a.to_wake) woken_.push_back(slot);
     a.velocity_dirty = a.to_wake = 0;
   });
-  if (islands.update(model, editor_.parallel) || !dirty_.empty()) model.has_edits = 1;
+  {
+    const Timed timed(times_of_thread(), &StepTimes::analyze);
+    if (islands.update(model, editor_.parallel) || !dirty_.empty()) model.has_edits = 1;
+  }
   for (const std::uint32_t articulate : woken_) {
     if (island::Island* const island = islands.of_articulate(articulate))
       island->wake();
@@ -75,16 +85,42 @@ void tell_cut_short(const model::Model& model, std::span<island::Island* const> 
 
 }  // namespace
 
+namespace {
+
+/// Parallel::for_each, with the times of all threads.
+template <class Work>
+void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t grain, StepTimes& sum, Work work) {
+  std::vector<StepTimes> all(count);
+  {
+    const Timed timed(&sum, Timed::none);  // not this thread's alone
+    parallel.for_each(count, grain, [&](std::size_t i) {
+      const TimedSteps here(all[i]);
+      const Timed timed_island(&all[i], &StepTimes::integrate, Timed::none);
+      work(i);
+    });
+  }
+  for (const StepTimes& each : all)
+    for (const Timed::Part part :
+         {&StepTimes::forces, &StepTimes::analyze, &StepTimes::factor, &StepTimes::solve, &StepTimes::integrate})
+      sum.*part += each.*part;
+}
+
+}  // namespace
+
 // 3. Every island separately, on several threads if that is faster; reports are added up in a fixed order.
 void Stepper::advance_islands(StepReport& report) {
   model::Model& model = editor_.model;
   island::Islands& islands = editor_.islands;
   const auto all = islands.all();
   advanced_.resize(all.size()), resting_.resize(all.size());
-  editor_.parallel.for_each(all.size(), islands.grain(editor_.parallel), [&](std::size_t i) {
+  const auto advance = [&](std::size_t i) {
     advanced_[i] = all[i]->advance(model, report.dt, deadline_);
     resting_[i] = all[i]->is_asleep(model) ? all[i]->body_count() : 0;
-  });
+  };
+  if (StepTimes* const times = times_of_thread())
+    for_each_timed(editor_.parallel, all.size(), islands.grain(editor_.parallel), *times, advance);
+  else
+    editor_.parallel.for_each(all.size(), islands.grain(editor_.parallel), advance);
   if (model.corrections.lacks_room()) {
     model.corrections.make_room(model.rings.slot_count());
     for (std::size_t i = 0; i < all.size(); ++i)

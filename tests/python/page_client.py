@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
+from itertools import chain
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -40,11 +41,14 @@ def fields(name: str, described: list[dict[str, Any]], values: dict[str, Any]) -
     """Those of a message or of a struct."""
     out = b""
     for field in described:
-        value, kind = values.pop(field["name"]), field["type"]
+        kind = field["type"]
+        is_array = isinstance(kind, dict) and "array" in kind
+        value = values.pop(field["name"], ()) if is_array else values.pop(field["name"])
         if isinstance(kind, dict) and "struct" in kind:
             out += fields(kind["struct"], STRUCTS[kind["struct"]], dict(value))
-        elif isinstance(kind, dict):
-            out += struct.pack(f"<I{len(value)}{NUMBERS[kind['array']]}", len(value), *value)
+        elif is_array:
+            numbers = chain.from_iterable(value) if kind["array"] in GROUPS else value
+            out += struct.pack("<I" + NUMBERS[kind["array"]] * len(value), len(value), *numbers)
         elif kind in ("string", "bytes"):
             text = value.encode() if kind == "string" else value
             out += struct.pack("<I", len(text)) + text

@@ -50,6 +50,66 @@ def test_solids_are_joined_at_their_attachments_not_at_their_own_points(system: 
     assert nearest_ends(balls[0]) == (eyes[1], eyes[0])
 
 
+def test_an_action_on_several_bodies_is_one_edit(chain: list[iota.Body], run_world: Runner) -> None:
+    system = chain[0].system
+    world = iota.World(system)
+    world.offer()
+    seen: list[int] = []
+
+    @world.action("destroy", on="body")
+    def destroy(event: iota.Event) -> None:
+        seen.append(event.body.slot)
+        event.body.destroy()
+
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: len(page.entities["body"]) == 6 and page.parts() == 1)
+
+        def act_on(name: str, *links: int) -> None:
+            first, *others = (page.body(chain[link].slot) for link in links)
+            page.send("action", name=name, body=first, others=others)
+
+        before = world.call(lambda: system.undo_count)
+        for name, done in (
+            ("break", lambda: page.parts() == 4),
+            ("copy", lambda: len(page.entities["body"]) == 9),
+            ("destroy", lambda: len(page.entities["body"]) == 3),
+        ):
+            act_on(name, 1, 3, 5)
+            page.wait_for(done)
+            assert world.call(lambda: system.undo_count) == before + 1
+            act(page, "undo")
+            page.wait_for(lambda: page.parts() == 1 and len(page.entities["body"]) == 6)
+            assert world.call(lambda: system.undo_count) == before
+        assert seen == [chain[link].slot for link in (1, 3, 5)]
+        # One that is gone, and one twice: the others are meant.
+        gone = page.body(chain[5].slot)
+        world.call(chain[5].destroy)
+        page.wait_for(lambda: len(page.entities["body"]) == 5)
+        seen.clear()
+        page.send("action", name="destroy", body=gone, others=[page.body(chain[0].slot)] * 2)
+        page.wait_for(lambda: len(page.entities["body"]) == 4)
+        assert seen == [chain[0].slot]
+
+
+def test_an_action_that_raises_for_one_body_is_not_repeated_for_the_others(
+    chain: list[iota.Body], run_world: Runner
+) -> None:
+    world = iota.World(chain[0].system)
+    calls: list[int] = []
+
+    @world.action("poke")
+    def poke(event: iota.Event) -> None:
+        calls.append(event.body.slot)
+        if len(calls) == 2:
+            raise ArithmeticError("two")
+
+    with PageClient(run_world(world)) as page:
+        first, *others = (page.body(link.slot) for link in chain[:4])
+        page.send("action", name="poke", body=first, others=others)
+        notice = page.wait_for(lambda: page.notices)[0]
+        assert "'poke' failed" in notice["title"] and len(calls) == 2 and len(page.notices) == 1
+
+
 def test_users_break_join_and_take_it_back(chain: list[iota.Body], run_world: Runner) -> None:
     system = chain[0].system
     world = iota.World(system)

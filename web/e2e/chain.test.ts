@@ -135,11 +135,16 @@ describe("the page of a chain", () => {
   it("tells where the time of a frame goes", async () => {
     await tab.pause(false);
     await tab.page.keyboard.press("i");
-    await expect.poll(() => tab.page.textContent("#meter")).toMatch(/steps\d+\.\d\d ms {2}\d+ %network.+script.+drawing\d/);
+    const parts = "forces.+analyze.+factor.+solve.+integrate.+";
+    await expect.poll(() => tab.page.textContent("#meter")).toMatch(new RegExp(`steps\\d+\\.\\d\\d ms {2}\\d+ %${parts}network.+page script.+drawing\\d`));
+    const named = (kind: string) => tab.page.evaluate((name) => [...document.querySelectorAll(`#meter dd.${name}`)].map((line) => parseFloat(line.textContent!)), kind);
+    await expect.poll(async () => (await named("steps"))[0]).toBeGreaterThan(0);
+    const [[whole], ofSteps] = [await named("steps"), await named("step-part")];
+    expect(Math.abs(whole - ofSteps.reduce((sum, ms) => sum + ms, 0))).toBeLessThan(0.02 * ofSteps.length);
     const shares = () => tab.page.evaluate(() => [...document.querySelectorAll<HTMLElement>("#meter .split i")].map((part) => parseFloat(part.style.width)));
     await expect.poll(async () => {
-      const [steps, , script, drawing] = await shares();
-      return Math.min(steps, script, drawing);
+      const [drawing, script, , ...steps] = (await shares()).reverse();
+      return Math.min(steps.reduce((sum, share) => sum + share, 0), script, drawing);
     }).toBeGreaterThan(0);
     expect((await shares()).reduce((sum, share) => sum + share, 0)).toBeLessThan(100.1);
     await tab.picture("profile");
@@ -148,9 +153,10 @@ describe("the page of a chain", () => {
     await tab.pause(false);
     await tab.page.keyboard.press("i");
     await expect.poll(() => tab.page.textContent("#meter")).not.toContain("drawing");
+    await tab.until("nobody is told of the parts any more", () => iota.page.world.costs.length === 0);
   });
 
-  it("selects several links by a rectangle, and breaks all of them at once", async () => {
+  it("selects several links by a rectangle, breaks all of them at once, and takes that back at once", async () => {
     await tab.reset();
     await tab.freeze();
     const places = await Promise.all([6, 9].map((link) => tab.place(link)));
@@ -167,9 +173,23 @@ describe("the page of a chain", () => {
     await tab.pause(false);
     await tab.page.keyboard.press("b");
     await tab.until("each of them is off", () => new Set(iota.articulates().values()).size === 5);
+    await tab.page.keyboard.press("u");
+    await tab.until("all are on again", () => new Set(iota.articulates().values()).size === 1);
     await tab.page.keyboard.press("Escape");
     await tab.until("nothing is selected", () => iota.page.selection.several.size === 0);
     await tab.reset();
+  });
+
+  it("tells the user of a part of the page that cannot be fetched", async () => {
+    const other = await browser.open(server.url);
+    try {
+      await other.page.route("**/help-*.js", (route) => route.abort());
+      await other.page.keyboard.press("?");
+      await expect.poll(() => other.page.textContent("#cards")).toMatch(/A part of the page did not come.+help-.+Reload the page/);
+      await other.page.unroute("**/help-*.js");
+    } finally {
+      await other.page.close();
+    }
   });
 
   it("offers the same by buttons once something is selected, and in the help", async () => {

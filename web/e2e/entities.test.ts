@@ -108,6 +108,8 @@ describe("what a script draws", () => {
     ["its lower right", "marker", [1.17, 1.43, 0.15], [204, 178, 0]],
     ["the lower left of an image that is four times on a surface", "surface", [1.4375, 1.3875, 0], [0, 0, 204]],
     ["its upper right", "surface", [1.6625, 1.6125, 0], [204, 0, 0]],
+    ["a skin, between the places that it is around", "surface", [0.98, 0.2, 0.98], [76, 154, 82]],
+    ["and beside one of them", "surface", [0.84, 0.2, 0.95], [76, 154, 82]],
     ["a painted body of wood", "body", [-1.0, 0.2, 1.0], [138, 79, 176]],
   ])("%s is where it belongs, in its color", async (_, kind, place, color) => {
     const { shown, hidden } = await colorAt(kind, place, color);

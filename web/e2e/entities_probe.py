@@ -86,7 +86,11 @@ def draw_more(world: iota.World) -> None:
     # Green and red above, blue and yellow below.
     four = np.array([[(0.3, 0.6, 0.32), (0.8, 0, 0)], [(0, 0, 0.8), (0.8, 0.7, 0)]])
     world.shape(looks.box((0.3, 0.3, 0.3), texture=four), position=(1.1, 1.5, 0))
-    world.surface([(1.4, 1.35, 0), (1.7, 1.35, 0), (1.7, 1.65, 0), (1.4, 1.65, 0)], [(0, 1, 2), (0, 2, 3)], texture=four, repeat=2)
+    world.surface(
+        [(1.4, 1.35, 0), (1.7, 1.35, 0), (1.7, 1.65, 0), (1.4, 1.65, 0)], [(0, 1, 2), (0, 2, 3)], texture=four, repeat=2
+    )
+    # Two balls that have merged: between them is surface.
+    world.skin(lambda: [(0.9, 0.2, 0.9), (1.06, 0.2, 0.9)], 0.1, color="#4c9a52")
     painted = world.system.body(shape=iota.Box((0.2, 0.2, 0.2)), mass=1.0, position=(-1.0, 0.2, 0.9))
     world.draw(painted, looks.solid("wood"))
     world.paint(painted, "#8a4fb0")

@@ -169,7 +169,7 @@ describe('encoding', () => {
     expect(() => protocol.encodeSelect({ type: 'select', body: { slot: -1, generation: 1 } })).toThrow('select.body');
     expect(() => protocol.encodeSelect({ type: 'select', body: { slot: 0.5, generation: 1 } })).toThrow('select.body');
     expect(() => protocol.encodeGrabMove({ type: 'grabMove', hold: 1, target: [0, NaN, 0] })).toThrow('grab_move.target');
-    expect(() => protocol.encodeAction({ type: 'action', name: 'x'.repeat(129), body: { slot: 0, generation: 0 } })).toThrow('action.name');
+    expect(() => protocol.encodeAction({ type: 'action', name: 'x'.repeat(129), body: { slot: 0, generation: 0 }, others: [] })).toThrow('action.name');
   });
 
   it('survives long messages', () => {

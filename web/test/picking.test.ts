@@ -60,9 +60,9 @@ describe("picking with a ray", () => {
   it("agrees with a fine brute-force march for random bodies and rays", () => {
     let seed = 11;
     const random = () => ((seed = (seed * 16807) % 2147483647) / 2147483647) - 0.5;
-    const scene = new TestScene(Array.from({ length: 12 }, () => ({ kind: "capsule", sizes: [0.05, 0.3] })));
-    for (let trial = 0; trial < 60; trial++) {
-      for (let body = 0; body < 12; body++) {
+    const scene = new TestScene(Array.from({ length: 8 }, () => ({ kind: "capsule", sizes: [0.05, 0.3] })));
+    for (let trial = 0; trial < 15; trial++) {
+      for (let body = 0; body < 8; body++) {
         const q = [random(), random(), random(), random()];
         const norm = Math.hypot(...q);
         scene.place(body, [2 * random(), 2 * random(), -2 + 2 * random()], q.map((value) => value / norm));
@@ -75,7 +75,7 @@ describe("picking with a ray", () => {
       const found = pickRay(scene, [0, 0, 0], direction, 0, 6, hit);
       expect(found ? hit.body : -1).toBe(slow);
     }
-  }, 120_000);
+  });
 });
 
 describe("picking with a hand", () => {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import { BoxGeometry, Mesh, SphereGeometry, Vector3 } from "three";
+import { BoxGeometry, Mesh, PerspectiveCamera, SphereGeometry, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
+import { Navigation } from "../src/navigate/navigation.ts";
 import { wallsOf } from "../src/page/walking.ts";
 import { BodyKind } from "../src/protocol/generated.ts";
 import { Walls, type Obstacle } from "../src/scene/walls.ts";
@@ -96,6 +97,47 @@ describe("stairs", () => {
     const way = new Vector3(0, 0.1, 0);
     stairs(0.2).slide(at, way, 0.12);
     expect(way.distanceTo(new Vector3(0, 0.1, 0))).toBeLessThan(1e-12);
+  });
+});
+
+/** A platform of 4 x `height` x 4 m over the ground, with its edge at x = 2. */
+function platform(height: number): Walls {
+  const mesh = new Mesh(new BoxGeometry(4, height, 4));
+  mesh.position.set(0, height / 2, 0);
+  return new Walls(() => [mesh], () => [], () => 0);
+}
+
+/** Walks from the middle of a platform along +x, with the eyes `eyes` m over it; heights of the eyes after each 20 ms. */
+function walkOff(height: number, eyes: number, prepare: (navigation: Navigation) => void = () => undefined): number[] {
+  const camera = new PerspectiveCamera();
+  const navigation = new Navigation(camera);
+  navigation.setScene([0, 3, 0], 2);
+  navigation.walls = platform(height);
+  navigation.setHome({ pivot: [1, height + eyes, 0], distance: 1, yaw: -Math.PI / 2, pitch: 0 });
+  navigation.jumpHome();
+  navigation.walk.set(0, 0, 1);
+  prepare(navigation);
+  return Array.from({ length: 200 }, (_, frame) => {
+    if (frame === 100) navigation.walk.set(0, 0, 0);
+    navigation.update(0.02);
+    return camera.position.y;
+  });
+}
+
+describe("an edge", () => {
+  it("of a high platform is fallen off, as long as a fall takes, to the same height of the eyes", () => {
+    const heights = walkOff(2, 1.6);
+    expect(heights[20]).toBeCloseTo(3.6, 5);
+    expect(heights.at(-1)).toBeCloseTo(1.6, 3);
+    const [began, ended] = [heights.findIndex((y) => y < 3.59), heights.findIndex((y) => y < 1.61)];
+    // The view follows with a delay of some hundredths of a second.
+    expect(0.02 * (ended - began)).toBeCloseTo(Math.sqrt((2 * 2) / 9.81), 0);
+  });
+
+  it("is not for who looks from high above, flies, or goes up", () => {
+    expect(walkOff(2, 5).at(-1)).toBeCloseTo(7, 5);
+    expect(walkOff(2, 1.6, (navigation) => { navigation.flying = true; }).at(-1)).toBeCloseTo(3.6, 5);
+    expect(walkOff(2, 1.6, (navigation) => { navigation.walk.y = 0.01; }).at(-1)).toBeGreaterThan(3.6);
   });
 });
 

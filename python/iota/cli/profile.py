@@ -27,6 +27,7 @@ def profile(arguments: argparse.Namespace) -> None:
 
     def drive(world: World) -> None:
         world.serve()
+        world._state.costs.is_detailed = True
         begun = time.perf_counter()
         steps = max(1, round(1 / FRAMES / world.dt))
         first = world.system.step_count

@@ -16,6 +16,16 @@ from iota.shapelib.molecules import molecule
 from iota.shapelib.named import polyhedron_names
 from iota.shapelib.opening import load
 from iota.shapelib.polyhedra import polyhedron
-from iota.shapelib.surface_files import read_surface
+from iota.shapelib.surface_files import read_model, read_surface
 
-__all__ = ["FileError", "Imported", "load", "mechanism", "molecule", "polyhedron", "polyhedron_names", "read_surface"]
+__all__ = [
+    "FileError",
+    "Imported",
+    "load",
+    "mechanism",
+    "molecule",
+    "polyhedron",
+    "polyhedron_names",
+    "read_model",
+    "read_surface",
+]

@@ -4,7 +4,8 @@ and glTF by trimesh."""
 
 from __future__ import annotations
 
-import json
+import io
+import os
 import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from iota.shapelib.files import FileError, PathLike, number, read_bytes, read_text, whole, with_progress
+from iota.shapelib.gltf import PaintedSurface, read_gltf
 from iota.shapelib.surface import MOST_FACES, Surface
 
 
@@ -257,43 +259,36 @@ def _read_ply(path: PathLike) -> Surface:
     return _from_trimesh(mesh, path)
 
 
+def read_model(path: PathLike) -> list[PaintedSurface]:
+    """The surfaces of a glTF file, one for each material of each mesh, with their colors and images; of another file the
+    only one. Raises FileError."""
+    if Path(path).suffix.lower() in (".gltf", ".glb"):
+        return read_gltf(path, lambda data, kind: _load_gltf(data, kind, path))
+    surface = read_surface(path)
+    return [PaintedSurface(surface.vertices, surface.faces, surface.groups, surface.lines, surface.notes)]
+
+
 def _read_gltf(path: PathLike) -> Surface:
     """All meshes of the scene, transformed by its nodes."""
-    data = read_bytes(path)
-    if Path(path).suffix.lower() == ".glb":
-        if len(data) < 20 or data[:4] != b"glTF" or struct.unpack("<I", data[8:12])[0] != len(data):
-            raise FileError(path, "is not a binary glTF file, or is truncated")
-        data = data[20 : 20 + struct.unpack("<I", data[12:16])[0]]
-    try:
-        head = json.loads(data)
-    except (ValueError, RecursionError) as error:
-        raise FileError(path, f"is not glTF: {error}", getattr(error, "lineno", None)) from None
-    needed = head.get("extensionsRequired", []) if isinstance(head, dict) else None
-    if not isinstance(needed, list):
-        raise FileError(path, "is not glTF: an object with a list of required extensions must stand here")
-    if packed := [name for name in needed if "compression" in str(name)]:
-        raise FileError(path, f"its meshes are compressed ({', '.join(packed)}), which is not read; export it without")
-    scene = _load(path, force="scene")
-    if not scene.geometry:
-        raise FileError(path, "has no meshes")
     surface = Surface(np.empty((0, 3)), [])
-    for mesh in scene.dump():
-        if not hasattr(mesh, "faces"):
-            surface.notes.append("lines and points are left out")
-            continue
-        name = mesh.metadata.get("name") or ""
+    for part in read_model(path):
         offset = len(surface.vertices)
-        surface.vertices = np.concatenate([surface.vertices, mesh.vertices])
-        surface.faces += (np.asarray(mesh.faces) + offset).tolist()
-        surface.groups += [name] * len(mesh.faces)
-        _check_count(len(surface.faces), "triangles", path)
+        surface.vertices = np.concatenate([surface.vertices, part.vertices])
+        surface.faces += [[v + offset for v in face] for face in part.faces]
+        surface.groups += part.groups
+        surface.notes += part.notes
     return surface
 
 
-def _load(path: PathLike, **options: Any) -> Any:
+def _load_gltf(data: bytes, kind: str, path: PathLike) -> Any:
+    resolver = trimesh().resolvers.FilePathResolver(os.fspath(path))
+    return _load(path, io.BytesIO(data), file_type=kind, resolver=resolver, force="scene", skip_materials=True)
+
+
+def _load(path: PathLike, source: Any = None, **options: Any) -> Any:
     library = trimesh()
     try:
-        return library.load(Path(path), process=False, **options)
+        return library.load(Path(path) if source is None else source, process=False, **options)
     except Exception as error:  # trimesh raises any exception for a damaged file
         reason = f"{type(error).__name__}: {error}".split(" — ")[0].removesuffix(": ")
         raise FileError(path, f"trimesh cannot read it: {reason}") from None

@@ -14,10 +14,18 @@ class Costs:
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
+        self.is_detailed = False  # times the parts of each step of the simulator
         self._inner: list[float] = []
 
     def clear(self) -> None:
         self.seconds.clear()
+
+    def split(self, part: str, seconds: dict[str, float]) -> None:
+        """Counts seconds of a part under the names of its own parts instead: "part: NAME"."""
+        self.seconds[part] = self.seconds.get(part, 0.0) - sum(seconds.values())
+        for name, s in seconds.items():
+            key = f"{part}: {name}"
+            self.seconds[key] = self.seconds.get(key, 0.0) + s
 
     @contextmanager
     def of(self, part: str) -> Iterator[None]:

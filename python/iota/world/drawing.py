@@ -4,7 +4,8 @@ attribute updates the page."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -208,6 +209,21 @@ class Drawing:
             texture=None if texture is None else texture_of(texture, repeat),
             coordinates=coordinates,
         )
+
+    def model(self, surfaces: Iterable[Any], at: Place = None) -> list[Surface]:
+        """Draws the result of `iota.shapelib.read_model`: each surface in the color of its material, with its image if it has
+        one. at: origin and frame of all. Warns of what was left out when the file was read.
+
+        world.model(iota.shapelib.read_model("chair.glb"), at=body)
+        """
+        shown = []
+        for surface in surfaces:
+            for note in surface.notes:
+                warnings.warn(note, stacklevel=2)
+                self._state.notices.warn_once(note)
+            image = {"texture": surface.texture, "coordinates": surface.coordinates}
+            shown.append(self.surface(surface, at=at, color=surface.color, **image))
+        return shown
 
     def skin(
         self,

@@ -27,11 +27,13 @@ class Hold:
 
 @dataclass
 class Client:
-    """One open page. selected: its selection. holds: by the page's own number of the hand."""
+    """One open page. selected: its selection. is_profiling: it shows what the parts of a step cost. holds: by the page's
+    own number of the hand."""
 
     id: int
     name: str = ""
     selected: Body | None = None
+    is_profiling: bool = False
     holds: dict[int, Hold] = field(default_factory=dict)
     take_picture: TakePicture | None = field(default=None, repr=False, compare=False)
     send_pulse: SendPulse | None = field(default=None, repr=False, compare=False)
@@ -85,7 +87,7 @@ class Hands:
         self.send_pulse: SendPulse | None = None
 
     def take(self, event: InputEvent, body: Any) -> None:
-        """Handles an event of kind join, leave, select or grab_*. body: of the event, if any."""
+        """Handles an event of kind join, leave, select, profile or grab_*. body: of the event, if any."""
         if event.kind == "join":
             self.clients[event.client] = Client(
                 event.client, event.name, take_picture=self.take_picture, send_pulse=self.send_pulse
@@ -99,6 +101,8 @@ class Hands:
             del self.clients[event.client]
         elif event.kind == "select":
             client.selected = body
+        elif event.kind == "profile":
+            client.is_profiling = event.value != 0
         elif event.kind == "grab_start":
             self._grab(client, event, body)
         elif event.kind == "grab_move":
@@ -107,6 +111,11 @@ class Hands:
                 hold.grip.move(event.target)
         elif event.kind == "grab_end":
             self._release(client, event.hold)
+
+    @property
+    def is_profiled(self) -> bool:
+        """Whether a client shows what the parts of a step cost."""
+        return any(client.is_profiling for client in self.clients.values())
 
     def held(self, client: int | None = None) -> Body | None:
         """The body held last by a client, or by anyone."""

@@ -7,8 +7,9 @@ import queue
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from iota._core import InputEvent
+from iota._core import InputEvent, System
 from iota._protocol import ControlCommand, PointerKind
+from iota.world.actions import Action
 from iota.world.callbacks import Guard, one_line
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event
@@ -23,7 +24,7 @@ class Inputs:
 
     def __init__(self, state: State, guard: Guard, step: Callable[[], object], reset: Callable[[], None]) -> None:
         self._state, self._guard, self._step, self._reset = state, guard, step, reset
-        self._waiting: list[tuple[InputEvent, Any]] = []
+        self._waiting: list[tuple[InputEvent, list[Any]]] = []
         self._calls: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
 
     def call(self, function: Callable[[], None]) -> None:
@@ -34,10 +35,11 @@ class Inputs:
         while not self._calls.empty():
             self._calls.get()()
 
-    def take(self, events: Iterable[tuple[InputEvent, Any]]) -> None:
-        """Handles all events of users, each with its body, if that still exists."""
+    def take(self, events: Iterable[tuple[InputEvent, list[Any]]]) -> None:
+        """Handles all events of users, each with its bodies that still exist."""
         waited, self._waiting = self._waiting, []
-        for event, body in (*waited, *events):
+        for event, bodies in (*waited, *events):
+            body = bodies[0] if bodies else None
             if event.kind == "picture":
                 self._state.pictures.take(event)
                 continue
@@ -49,7 +51,7 @@ class Inputs:
                 if event.kind != "select":
                     continue
             if event.kind == "action":
-                self._act(event, body)
+                self._act(event, bodies)
             elif event.kind == "control":
                 self._control(event)
             elif event.kind == "change":
@@ -62,13 +64,13 @@ class Inputs:
             else:
                 self._take_hands(event, body)
 
-    def take_pictures(self, events: Iterable[tuple[InputEvent, Any]]) -> None:
+    def take_pictures(self, events: Iterable[tuple[InputEvent, list[Any]]]) -> None:
         """Handles only parts of pictures; all other events wait for `take`."""
-        for event, body in events:
+        for event, bodies in events:
             if event.kind == "picture":
                 self._state.pictures.take(event)
             else:
-                self._waiting.append((event, body))
+                self._waiting.append((event, bodies))
 
     def frame(self) -> None:
         """Calls the functions for each frame."""
@@ -153,22 +155,37 @@ class Inputs:
             title = "That cannot be held" if event.kind.startswith("grab") else "That cannot be done"
             self._state.notices.send(title, one_line(error), level="warning", client=event.client)
 
-    def _act(self, event: InputEvent, named: Any) -> None:
+    def _act(self, event: InputEvent, named: list[Any]) -> None:
+        """Runs an action: on several bodies as one edit, which is undone at once."""
         state = self._state
         action = state.actions.get(event.name)
         if action is None:
             text = f"This world has no action {event.name!r}."
             state.notices.send("Unknown action", text, client=event.client)
             return
-        body = named or state.hands.held(event.client) or state.hands.selected(event.client)
-        if body is None and action.on == "body":
+        meant = state.hands.held(event.client) or state.hands.selected(event.client)
+        bodies = named or ([] if meant is None else [meant])
+        if not bodies and action.on == "body":
             hint = f"Hold or select something, then press {action.key}." if action.key else ""
             title = f"Nothing to {action.label}"
             state.notices.send(title, "Nothing is held or selected.", hint, client=event.client)
             return
-        given = Event(state.system, action.name, event.client, body, notices=state.notices)
-        arguments = (given,) if action.hook.takes_event else ()
-        self._guard.call(f"The action {action.name!r}", action.hook.function, *arguments)
+        if len(bodies) > 1 and isinstance(state.system, System):
+            with state.system.edit():
+                self._act_on_all(action, event.client, bodies)
+        else:
+            self._act_on_all(action, event.client, bodies or [None])
+
+    def _act_on_all(self, action: Action, client: int, bodies: Iterable[Any]) -> None:
+        """On one after the other, until the script's function raises."""
+        state = self._state
+        for body in bodies:
+            if body is not None and alive(body) is None:  # destroyed with an earlier one
+                continue
+            given = Event(state.system, action.name, client, body, notices=state.notices)
+            arguments = (given,) if action.hook.takes_event else ()
+            if not self._guard.call(f"The action {action.name!r}", action.hook.function, *arguments):
+                return
 
     def _control(self, event: InputEvent) -> None:
         clock = self._state.clock

@@ -59,16 +59,22 @@ class Publisher:
             self._tell_settings()
             state.is_changed = False
         clock = state.clock
-        self.room.set_state(paused=clock.paused, speed=clock.speed, step_ms=state.step_ms, dt=clock.dt)
+        self.room.set_state(
+            paused=clock.paused,
+            speed=clock.speed,
+            step_ms=state.step_ms,
+            dt=clock.dt,
+            costs=list(state.step_costs.ms.items()),
+        )
         state.things.tell(self.room, state.system.structure_version, state.notices.warn_once)
         self._source.publish(self.room, state.shows_edits)
         for text in self.room.take_warnings():
             state.notices.warn_once(text)
 
-    def take_input(self) -> Iterator[tuple[InputEvent, Any]]:
-        """The events of users, each with its body, if that still exists."""
+    def take_input(self) -> Iterator[tuple[InputEvent, list[Any]]]:
+        """The events of users, each with its bodies that still exist; only actions have several."""
         for event in self.room.take_input():
-            yield event, self._source.body_of(self.room, event) if event.names_body else None
+            yield event, self._source.bodies_of(self.room, event) if event.names_body else []
 
     def _tell_settings(self) -> None:
         state = self._state

@@ -19,8 +19,8 @@ class Source(ABC):
         """Sends present poses and changes, and the effects of edits if they are shown."""
 
     @abstractmethod
-    def body_of(self, room: Room, event: InputEvent) -> Any:
-        """The body of an event; None once it is destroyed."""
+    def bodies_of(self, room: Room, event: InputEvent) -> list[Any]:
+        """The bodies of an event that still exist."""
 
 
 class EngineSource(Source):
@@ -32,8 +32,8 @@ class EngineSource(Source):
     def publish(self, room: Room, shows_edits: bool) -> None:
         room.publish(self._system, effects=shows_edits)
 
-    def body_of(self, room: Room, event: InputEvent) -> Any:
-        return room.body_of(event, self._system)
+    def bodies_of(self, room: Room, event: InputEvent) -> list[Any]:
+        return room.bodies_of(event, self._system)
 
 
 class SimulatorSource(Source):
@@ -64,9 +64,9 @@ class SimulatorSource(Source):
             extent=simulated.extent(simulator) if is_changed else 0.0,
         )
 
-    def body_of(self, room: Room, event: InputEvent) -> Any:
-        slot = room.slot_of(event)
-        return None if slot is None else self._simulator.body_at(slot)
+    def bodies_of(self, room: Room, event: InputEvent) -> list[Any]:
+        bodies = [self._simulator.body_at(slot) for slot in room.slots_of(event)]
+        return [body for body in bodies if body is not None]
 
 
 def source_of(system: System | Simulator) -> Source:

@@ -18,6 +18,7 @@ from iota.world.listeners import Listeners
 from iota.world.notices import Notices
 from iota.world.pictures import Pictures
 from iota.world.scene import Camera, Scene
+from iota.world.step_costs import StepCosts
 from iota.world.things import Things
 
 TIES = ("spring", "rope", "rod")  # drawn between two points, by classes of these names
@@ -49,6 +50,7 @@ class State:
     def __post_init__(self) -> None:
         self.scene = Scene()
         self.hands = Hands(self.system)
+        self.step_costs = StepCosts(self.costs)
 
     def thickness_of(self, body: Body) -> float:
         """Radius of the look of a body of particles, m; the page's default without a look."""

@@ -6,13 +6,14 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from iota._core import Broken, StepReport, System
+from iota._core import Broken, StepReport, StepTimes, System
 from iota.errors import ForceError
 from iota.world.callbacks import GO_ON, Guard, Hook
 from iota.world.event import Event
 from iota.world.floor import Floor
 from iota.world.schedule import Schedule
 from iota.world.state import State
+from iota.world.step_costs import EVERY, parts_of
 from iota.world.summary import RunSummary, Tally
 
 SWITCHED_OFF = "It is switched off until reset. Correct the script and run it again."
@@ -65,7 +66,7 @@ class Stepper:
                 self._floor.push(dt)
         try:
             with state.costs.of("simulator"):
-                report = state.system.step(dt)
+                report = self._step_system(dt)
         except ForceError as error:
             report = error.report
             self._guard.failed("A force", error, "It is switched off. " + GO_ON)
@@ -75,6 +76,23 @@ class Stepper:
         for warning in report.warnings:
             state.notices.warn_once(warning)
         self._tell_what_happened()
+        return report
+
+    def _step_system(self, dt: float) -> StepReport:
+        """Times the step if its costs are shown."""
+        state = self._state
+        is_shown = state.hands.is_profiled
+        if not is_shown and state.step_costs.ms:
+            state.step_costs.clear()
+        is_due = state.costs.is_detailed or (is_shown and state.system.step_count % EVERY == 0)
+        if not is_due or not isinstance(state.system, System):
+            return state.system.step(dt)
+        with StepTimes() as times:
+            report = state.system.step(dt)
+        if state.costs.is_detailed:
+            state.costs.split("simulator", parts_of(times))
+        if is_shown:
+            state.step_costs.take(times)
         return report
 
     def _tell_what_happened(self) -> None:

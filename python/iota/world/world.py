@@ -255,7 +255,7 @@ class World(Interacting):
     @property
     def costs(self) -> dict[str, float]:
         """Seconds that each part of the world has taken since it was made: "simulator", "floor", "pages", "script: ..." for each
-        of the script's functions. `iota profile` prints them as a table."""
+        of the script's functions. `iota profile` prints them as a table, with the parts of the simulator."""
         return dict(self._state.costs.seconds)
 
     @property

@@ -30,7 +30,7 @@ const std::map<std::string, ClientMessage>& client_vectors() {
       {"grab_start", GrabStart{7, {12, 1}, {0.5F, -0.25F, 0.0F}, {1.5F, -2.0F, 1024.125F}}},
       {"grab_move", GrabMove{7, {-0.125F, 3.0F, 0.0625F}}},
       {"grab_end", GrabEnd{4000000000}},
-      {"action", Action{"break", {5, 2}}},
+      {"action", Action{"break", {5, 2}, {{6, 1}, {70000, 3}}}},
       {"control_pause", Control{ControlCommand::pause, 0}},
       {"control_speed", Control{ControlCommand::speed, 0.25F}},
       {"ping", Ping{1234.5678}},
@@ -39,6 +39,7 @@ const std::map<std::string, ClientMessage>& client_vectors() {
       {"key", Key{"ArrowUp", true}},
       {"picture", Picture{7, true, {'P', 'N', 'G'}}},
       {"presence", Presence{stance}},
+      {"profile", Profile{true}},
   };
   return vectors;
 }
@@ -69,7 +70,7 @@ const std::map<std::string, ServerMessage>& server_vectors() {
       {"entities_destroyed", EntitiesDestroyed{"tie", {{7, 1}, {70000, 9}}}},
       {"world_settings",
        WorldSettings{"K\u00e4tte", {"rope", "chain"}, "rope", true, {2.5F, 1.5F, 3.5F}, {0, 1.25F, 0}, true, -0.5F}},
-      {"world_state", WorldState{true, 0.5F, 0.375F, 1.0 / 120}},
+      {"world_state", WorldState{true, 0.5F, 0.375F, 1.0 / 120, {{"forces", 0.25F}}}},
       {"actions", Actions{{{"push", "p", "push it", "", ActionTarget::body, ControllerButton::b}}}},
       {"listens", Listens{true, false, {"k", " "}}},
       {"ask_picture", AskPicture{7}},
@@ -231,8 +232,8 @@ TEST(Protocol, frames_that_are_cut_or_too_long_are_refused) {
 }
 
 TEST(Protocol, encoding_refuses_what_a_decoder_would_refuse) {
-  EXPECT_THROW(encode(Action{std::string(129, 'x'), {}}), std::length_error);
-  EXPECT_THROW(encode(Action{"\xff", {}}), std::invalid_argument);
+  EXPECT_THROW(encode(Action{std::string(129, 'x'), {}, {}}), std::length_error);
+  EXPECT_THROW(encode(Action{"\xff", {}, {}}), std::invalid_argument);
   EXPECT_THROW(encode(Effect{"break", {0, std::numeric_limits<float>::quiet_NaN(), 0}}), std::invalid_argument);
   EXPECT_THROW(encode(Ping{std::numeric_limits<double>::infinity()}), std::invalid_argument);
   std::vector<std::uint8_t> out{1, 2, 3};

@@ -515,7 +515,7 @@ TEST_F(ServerTest, notices_go_to_one_or_to_all) {
 TEST_F(ServerTest, a_late_joiner_gets_settings_entities_and_all_poses) {
   room_->set(protocol::WorldSettings{"old", {}, "", {}, {}, false, 0});
   room_->set(protocol::WorldSettings{"new", {"rope"}, "rope", {}, {}, true, -1});
-  room_->set(protocol::WorldState{false, 1, 0, 1.0 / 120});
+  room_->set(protocol::WorldState{false, 1, 0, 1.0 / 120, {}});
   room_->publish(make_snapshot(1, 3), told({body_id(2), protocol::BodyKind::dynamic, 0, false, 1}));
   room_->publish(make_snapshot(2, 3), told({body_id(2), protocol::BodyKind::static_, 4, true, 2}));
   EntityChanges gone;
@@ -634,7 +634,7 @@ TEST_F(ServerTest, two_worlds_on_one_server_do_not_mix) {
     EXPECT_EQ(hear<protocol::Welcome>(*client)->world, "moon");
     EXPECT_EQ(hear<protocol::Poses>(*client)->bodies.size(), 5U);
   }
-  say(*there, protocol::Action{"jump", {}});
+  say(*there, protocol::Action{"jump", {}, {}});
   ASSERT_TRUE(is_alive(*there));
   std::vector<std::string> actions;
   for (const auto& event : moon->take_input())
@@ -685,7 +685,7 @@ TEST_F(ServerTest, a_viewer_sees_and_selects_but_does_not_act) {
   EXPECT_EQ(hear<protocol::Notice>(*viewer)->title, "You only watch");
   say(*viewer, protocol::GrabMove{1, {}});
   say(*viewer, protocol::GrabEnd{1});
-  say(*viewer, protocol::Action{"push", {}});
+  say(*viewer, protocol::Action{"push", {}, {}});
   EXPECT_EQ(hear<protocol::Notice>(*viewer)->title, "You only watch");
   say(*viewer, protocol::Control{protocol::ControlCommand::pause, 0});
   EXPECT_EQ(hear<protocol::Notice>(*viewer)->title, "You only watch");
@@ -707,7 +707,7 @@ TEST_F(ServerTest, gestures_arrive_in_order_and_moves_of_one_hand_as_one) {
     say(*client, protocol::GrabMove{1, {static_cast<float>(i), 0, 0}});
     say(*client, protocol::GrabMove{2, {0, static_cast<float>(i), 0}});
   }
-  say(*client, protocol::Action{"break", body_id(5, 2)});
+  say(*client, protocol::Action{"break", body_id(5, 2), {body_id(6, 1)}});
   say(*client, protocol::Control{protocol::ControlCommand::speed, 0.5F});
   say(*client, protocol::GrabEnd{1});
   ASSERT_TRUE(is_alive(*client));
@@ -722,6 +722,7 @@ TEST_F(ServerTest, gestures_arrive_in_order_and_moves_of_one_hand_as_one) {
   EXPECT_EQ(events[4].target, (Vec3f{0, 100, 0}));
   EXPECT_EQ(events[5].name, "break");
   EXPECT_EQ(events[5].body, body_id(5, 2));
+  EXPECT_EQ(events[5].others, std::vector{body_id(6, 1)});
   EXPECT_EQ(events[6].command, protocol::ControlCommand::speed);
   EXPECT_EQ(events[6].value, 0.5F);
   EXPECT_EQ(events[7].hold, 1U);
@@ -746,7 +747,7 @@ TEST_F(ServerTest, a_client_that_floods_the_script_is_dropped_with_a_reason) {
   const auto client = join();
   const auto other = join();
   ASSERT_TRUE(hear<protocol::Welcome>(*client));
-  for (int i = 0; i < 5000 && say(*client, protocol::Action{"a", {}}); ++i) {
+  for (int i = 0; i < 5000 && say(*client, protocol::Action{"a", {}, {}}); ++i) {
   }
   while (client->receive()) {
   }

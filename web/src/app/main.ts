@@ -67,7 +67,9 @@ function wallsWhenWalking({ navigation, world }: Page): void {
       void import("../page/walking.ts").then(({ wallsOf }) => {
         navigation.walls = wallsOf(world);
       });
+      return false;
     },
+    floorBelow: () => -Infinity,
   };
 }
 
@@ -89,6 +91,10 @@ function main(): void {
     toggle: (body) => selection.toggle(body),
   });
   events.add(overlay);
+  window.addEventListener("vite:preloadError", ({ payload }) => {
+    const hint = "Reload the page. If the world has ended, start its script again.";
+    events.notice({ level: 1, title: "A part of the page did not come", text: payload.message, hint });
+  });
   gamepadWhenThere(page);
   wallsWhenWalking(page);
   viewer.add(panelWhenNeeded(page));

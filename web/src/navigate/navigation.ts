@@ -19,10 +19,14 @@ const headroom = 0.02;
 const pace = 0.75;
 /** And the distance that a walk keeps from walls. */
 const elbowroom = 0.03;
+/** Acceleration of a fall, m/s²; in a world that is smaller than a meter, in its sizes. */
+const gravity = 9.81;
 
 export interface Walls {
-  /** Shortens and bends a way from a place to one that a ball of a radius can go, m. */
-  slide(from: Vector3, way: Vector3, radius: number): void;
+  /** Shortens and bends a way from a place to one that a ball of a radius can go, m; whether it leads over an edge. */
+  slide(from: Vector3, way: Vector3, radius: number): boolean;
+  /** Height of what one stands on at a place, m; -Infinity: nothing. */
+  floorBelow(place: Vector3): number;
 }
 
 interface View {
@@ -68,6 +72,8 @@ export class Navigation {
   private size_ = 2;
   /** Who walks through a room does not creep because the thing on its table is small. */
   private walkSize_ = 2;
+  /** After a walk over an edge: the height over the floor where the eyes come to rest, m, and their speed, m/s. */
+  private fall_: { readonly height: number; speed: number } | null = null;
 
   constructor(camera: PerspectiveCamera) {
     this.camera_ = camera;
@@ -106,6 +112,7 @@ export class Navigation {
 
   /** Moves to a view, which then counts as chosen by the user. */
   goTo({ pivot, distance, yaw, pitch }: FittedView): void {
+    this.fall_ = null;
     this.touched = true;
     this.goal_.pivot.set(...pivot);
     this.goal_.distance = distance;
@@ -135,12 +142,14 @@ export class Navigation {
 
   /** Jumps to the first view. */
   jumpHome(): void {
+    this.fall_ = null;
     this.touched = false;
     copyView(this.home_, this.goal_);
     copyView(this.home_, this.now_);
   }
 
   reset(): void {
+    this.fall_ = null;
     this.touched = false;
     this.moves++;
     copyView(this.home_, this.goal_);
@@ -195,6 +204,7 @@ export class Navigation {
   /** Advances and places the camera; returns whether it moved. */
   update(seconds: number): boolean {
     if (this.walk.lengthSq() > 0) this.step_(seconds);
+    if (this.fall_ !== null) this.fallOn_(this.fall_, seconds);
     this.keepAbove_();
     const ease = 1 - Math.exp(-seconds / this.seconds_);
     const before = { turn: this.now_.yaw + this.now_.pitch, distance: this.now_.distance };
@@ -215,9 +225,20 @@ export class Navigation {
     const length = (this.walkingFast ? 3 : 1) * pace * this.walkSize_ * seconds;
     this.way_.copy(this.right_).multiplyScalar(this.walk.x * length).addScaledVector(this.direction_, -this.walk.z * length);
     this.way_.y += this.walk.y * length;
-    this.walls?.slide(this.eyeOf_(this.goal_, this.eye_), this.way_, elbowroom * this.walkSize_);
+    const eye = this.eyeOf_(this.goal_, this.eye_);
+    const isOverEdge = this.walls?.slide(eye, this.way_, elbowroom * this.walkSize_) === true;
+    if (this.walk.y !== 0) this.fall_ = null; // flies
+    else if (isOverEdge && !this.flying) this.fall_ ??= { height: eye.y - this.walls!.floorBelow(eye), speed: 0 };
     this.goal_.pivot.add(this.way_);
     this.keepNear_();
+  }
+
+  private fallOn_(fall: { readonly height: number; speed: number }, seconds: number): void {
+    const eye = this.eyeOf_(this.goal_, this.eye_);
+    const left = eye.y - (this.walls?.floorBelow(eye) ?? -Infinity) - fall.height;
+    fall.speed += gravity * Math.min(this.walkSize_, 1) * seconds;
+    this.goal_.pivot.y -= Math.max(0, Math.min(fall.speed * seconds, left));
+    if (fall.speed * seconds >= left || !Number.isFinite(left)) this.fall_ = null;
   }
 
   private touch_(): void {

@@ -246,11 +246,8 @@ export function scriptCommands(actions: readonly ActionEntry[], { session, selec
       title: () => action.label,
       offered: () => !onBody || selection.selected >= 0,
       enabled: () => !onBody || selection.actionBody >= 0,
-      run: () => {
-        if (!onBody) session.act(action.name, selection.actionBody);
-        else for (const body of selection.actionBodies) session.act(action.name, body);
-      },
+      run: () => session.act(action.name, onBody ? selection.actionBodies : [selection.actionBody].filter((body) => body >= 0)),
     };
-    return { ...command, onBody, button: faceButtons[action.button], runOn: (body) => session.act(action.name, body) };
+    return { ...command, onBody, button: faceButtons[action.button], runOn: (body) => session.act(action.name, [body]) };
   });
 }

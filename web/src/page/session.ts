@@ -10,6 +10,8 @@ import { sendPicture } from "./picture.ts";
 import { smooth, type Viewer } from "./viewer.ts";
 
 const noId: Id = { slot: 0, generation: 0 };
+/** In one message. */
+const mostBodies = 4096;
 
 export class Session implements ConnectionListener {
   readonly connection: Connection;
@@ -39,9 +41,12 @@ export class Session implements ConnectionListener {
     this.send({ type: "control", command, value });
   }
 
-  /** Runs an action of the script on a body, -1: none. */
-  act(name: string, body: number): void {
-    this.send({ type: "action", name, body: this.idOf(body) });
+  /** Runs an action of the script on these bodies, as one edit. */
+  act(name: string, bodies: readonly number[]): void {
+    for (let from = 0; from === 0 || from < bodies.length; from += mostBodies) {
+      const [body = noId, ...others] = bodies.slice(from, from + mostBodies).map((slot) => this.idOf(slot));
+      this.send({ type: "action", name, body, others });
+    }
   }
 
   /** Sends this page's selection to the server, -1: nothing. */

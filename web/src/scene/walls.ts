@@ -27,6 +27,9 @@ const mostPushes = 4;
 /** A floor that is higher or lower than the last one by this much is climbed, m; in a small world, by so many radii of the walker. */
 const stair = 0.4;
 const stairRadii = 4;
+/** Who has the eyes higher over the floor than this looks from above and does not fall off it, m; in a small world radii. */
+const tallest = 2.5;
+const tallestRadii = 40;
 /** How far below the eyes a floor is looked for where there is no ground, m. */
 const deepestFloor = 50;
 const mostTraces = 200;
@@ -54,8 +57,8 @@ export class Walls {
   }
 
   /** Shortens and bends `way` so that a ball of `radius` m that goes it from `from` slides along walls, and keeps its height over
-   * stairs. */
-  slide(from: Vector3, way: Vector3, radius: number): void {
+   * stairs. Whether it leads over an edge: the floor at its end is lower than by a stair. */
+  slide(from: Vector3, way: Vector3, radius: number): boolean {
     const { at_: at } = this;
     const floor = this.floorBelow(from);
     // Shorter than the radius, a step cannot jump over a wall.
@@ -69,6 +72,7 @@ export class Walls {
     const rise = this.floorBelow(at) - floor;
     if (Math.abs(rise) <= 1.001 * Math.min(stair, stairRadii * radius) && this.hasRoom_(this.before_.copy(at).setY(at.y + rise), radius)) at.y += rise;
     way.subVectors(at, from);
+    return Number.isFinite(rise) && rise < -1.001 * Math.min(stair, stairRadii * radius) && from.y - floor <= Math.min(tallest, tallestRadii * radius);
   }
 
   /** Height of what one stands on at a place, m; -Infinity: nothing. */

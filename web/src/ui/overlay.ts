@@ -23,7 +23,7 @@ const meterEveryMs = 250;
 const linkCard = "link";
 const levels: readonly CardLevel[] = ["info", "warning", "error"];
 
-type OverlayPage = Pick<Page, "world" | "selection" | "gestures" | "viewer" | "navigation" | "commands" | "sound" | "framing" | "setTheme">;
+type OverlayPage = Pick<Page, "world" | "session" | "selection" | "gestures" | "viewer" | "navigation" | "commands" | "sound" | "framing" | "setTheme">;
 
 export class Overlay implements PageListener, FramePart {
   readonly cards = new Cards(byId("cards", HTMLElement));
@@ -141,6 +141,7 @@ export class Overlay implements PageListener, FramePart {
         if (!this.everConnected_) window.setTimeout(() => this.ready(), 3000);
         this.everConnected_ = true;
         this.cards.remove(linkCard);
+        if (this.profiles_) this.page_.session.send({ type: "profile", on: true });
         break;
       case "lost":
         this.loading_.hidden = true;
@@ -196,6 +197,7 @@ export class Overlay implements PageListener, FramePart {
       active: () => this.profiles_,
       run: () => {
         this.profiles_ = !this.profiles_;
+        this.page_.session.send({ type: "profile", on: this.profiles_ });
         void import("./profile.ts").then(({ Profile }) => {
           this.profile_ ??= new Profile(this.page_);
           this.refreshMeter_();

@@ -3,7 +3,7 @@
 
 import { Vector3 } from "three";
 import {
-  NO_BODY, type ActionEntry, type ClientEntry, type Listens, type Person, type PosesBuffer, type ServerMessage, type WorldSettings,
+  NO_BODY, type ActionEntry, type ClientEntry, type Cost, type Listens, type Person, type PosesBuffer, type ServerMessage, type WorldSettings,
 } from "../protocol/generated.ts";
 import { makeEntityViews, type Entities } from "../scene/entities/entity_list.ts";
 import { PoseBuffer } from "../scene/pose_buffer.ts";
@@ -46,6 +46,8 @@ export class World {
   /** Times real time. */
   speed = 1;
   stepMs = 0;
+  /** Of a step, by its parts, while this page or another shows them. */
+  costs: readonly Cost[] = [];
   step = 0;
   /** Simulated, s. */
   time = 0;
@@ -110,6 +112,7 @@ export class World {
         this.paused = message.paused;
         this.speed = message.speed;
         this.stepMs = message.stepMs;
+        this.costs = message.costs;
         break;
       case "actions":
         this.actions = message.actions;

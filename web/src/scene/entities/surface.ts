@@ -5,7 +5,7 @@
 import {
   BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Group, Mesh, Quaternion, Ray, Triangle, Vector3, type MeshStandardMaterial,
 } from "three";
-import type { SurfaceEntity } from "../../protocol/generated.ts";
+import { NO_BODY, type SurfaceEntity } from "../../protocol/generated.ts";
 import { fromBody, moves, placeOf, turnOf } from "../anchors.ts";
 import { casterLayer } from "../contact_shadow.ts";
 import { materialOf } from "../materials.ts";
@@ -82,10 +82,10 @@ export class SurfaceView implements EntityView<SurfaceEntity>, Cover {
     }
   }
 
-  /** Points of those in the world. */
+  /** Points of those in the world: at one place, or each by itself, as those of a skin. */
   addPlaces(points: Points): void {
-    for (const { entity: { at, points: own }, bends } of this.surfaces_.values()) {
-      if (bends || moves(at)) continue;
+    for (const { entity: { at, bodies, points: own }, bends } of this.surfaces_.values()) {
+      if (bends ? bodies.some((body) => body !== NO_BODY) : moves(at)) continue;
       points.addSample(own, this.point_.fromArray(at.point));
     }
   }
