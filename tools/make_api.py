@@ -32,6 +32,7 @@ CONTENTS = {
     "shapelib": ("From file to world", ["iota.shapelib"]),
     "effects": ("Winds, sparks, soft matter", ["iota.effects"]),
     "film": ("Films", ["iota.film"]),
+    "testing": ("Tests without a headset", ["iota.testing"]),
     "types": ("What calls give back", ["iota.types"]),
     "errors": ("Errors", ["iota.errors"]),
     "simulator": ("A simulator of your own", ["iota.simulator"]),

@@ -56,6 +56,17 @@ describe("where a user stands at first", () => {
   });
 });
 
+it("a small scene high above the ground is before the eyes, a tall one is seen from the ground", () => {
+  const rig = new Object3D();
+  const head = new Matrix4().setPosition(0, 1.6, 0);
+  standBefore({ scale: 0.1, ground: 0, eye: [0, 1.2, 2], target: [0, 1.2, 0] }, head.elements, rig);
+  expect(rig.position.y + 0.1 * 1.6).toBeCloseTo(1.2 + 0.1 * 0.15);
+  standBefore({ scale: 0.1, ground: 0, eye: [0, 0.2, 2], target: [0, 0.2, 0] }, head.elements, rig);
+  expect(rig.position.y).toBe(0);
+  standBefore({ scale: 1, ground: 0, eye: [0, 9, 9], target: [0, 5, 0] }, head.elements, rig);
+  expect(rig.position.y).toBe(0);
+});
+
 describe("the wrist panel's layout", () => {
   const page = (looks: number): Entry[] => [
     { name: "play", places: ["bar", "panel"], title: () => "Pause", sign: () => "M0 0", run: () => {} },

@@ -61,28 +61,23 @@ class FilmPage:
 
 
 @contextmanager
-def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
-    """A page of that size, px. Raises Failed if no browser can be started."""
+def open_browser(purpose: str = "films") -> Iterator[Any]:
+    """A headless browser of Playwright, for one thread. Raises Failed if none can be started."""
     try:
         from playwright.sync_api import Error, sync_playwright
     except ImportError:
-        raise Failed("films need the package playwright. Try: pip install 'iota[film]'") from None
+        raise Failed(f"{purpose} need the package playwright. Try: pip install 'iota[film]'") from None
     environment = {**os.environ, "LIBGL_ALWAYS_SOFTWARE": os.environ.get("LIBGL_ALWAYS_SOFTWARE", "1")}
     with sync_playwright() as playwright:
         program = find_browser() or playwright.chromium.executable_path
         if not Path(program).is_file():
-            raise Failed("films need Chromium. Try: apt-get install chromium, or: playwright install chromium")
+            raise Failed(f"{purpose} need Chromium. Try: apt-get install chromium, or: playwright install chromium")
         try:
             browser = playwright.chromium.launch(executable_path=program, args=list(FLAGS), env=environment)
         except Error as error:
             raise Failed(f"{program} cannot be started: {error.message.splitlines()[0]}") from None
         try:
-            page = browser.new_page(viewport={"width": width, "height": height})
-            page.clock.install(time=0)
-            page.clock.pause_at(1)
-            film = FilmPage(page)
-            page.goto(url)
-            yield film
+            yield browser
         except KeyboardInterrupt:
             logging.getLogger(
                 "asyncio"
@@ -92,6 +87,18 @@ def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
             raise Failed(f"the browser failed: {error.message.splitlines()[0]}") from None
         finally:
             browser.close()
+
+
+@contextmanager
+def film_page(url: str, width: int, height: int) -> Iterator[FilmPage]:
+    """A page of that size, px. Raises Failed if no browser can be started."""
+    with open_browser() as browser:
+        page = browser.new_page(viewport={"width": width, "height": height})
+        page.clock.install(time=0)
+        page.clock.pause_at(1)
+        film = FilmPage(page)
+        page.goto(url)
+        yield film
 
 
 def find_browser() -> str | None:

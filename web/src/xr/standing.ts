@@ -21,8 +21,10 @@ const nearest = 0.9;
 const farthest = 1.6;
 /** A step is shorter than a camera's distance, as a headset has a wider view than a screen. */
 const ofCamera = 0.36;
-/** Without a ground, eyes are this far above the scene's center, m. */
+/** Without a ground in reach, eyes are this far above the scene's center, m. */
 const eyesAbove = 0.15;
+/** A small scene whose center is farther above the ground is out of reach from there, m of the user's. */
+const highest = 2.5;
 
 /** Scenes from the one to the other size (half their diagonal, m) are as large as they are; others are as large as a table. */
 const smallest = 0.12;
@@ -64,7 +66,8 @@ export function standBefore(settings: Standing, head: ArrayLike<number>, rig: Ri
   const x = scale * (Math.cos(yaw) * head[12] + Math.sin(yaw) * head[14]);
   const z = scale * (-Math.sin(yaw) * head[12] + Math.cos(yaw) * head[14]);
   rig.rotation.y = yaw;
-  rig.position.set(
-    target[0] + step * awayX - x, settings.ground ?? target[1] + scale * (eyesAbove - head[13]), target[2] + step * awayZ - z,
-  );
+  const { ground } = settings;
+  const isInReach = ground !== null && (scale >= 1 || target[1] - ground <= scale * highest);
+  const floor = isInReach ? ground : target[1] + scale * (eyesAbove - head[13]);
+  rig.position.set(target[0] + step * awayX - x, floor, target[2] + step * awayZ - z);
 }
