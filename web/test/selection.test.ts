@@ -80,10 +80,27 @@ describe("the selection", () => {
     bench.press(true);
     bench.set("body", bodyEntity(1, { id: id(1, 6) }));
     bench.poses([body(1, 3)]);
+    bench.selection.update();
     expect(bench.selection.held).toBe(-1);
     expect(bench.sent.filter((message) => message.type === "grabEnd")).toHaveLength(1);
     bench.aim(3.1); // the hand goes on, closed
     expect(bench.sent.filter((message) => message.type === "grabMove")).toEqual([]);
+  });
+
+  it("goes on holding what the held body became part of, as the server does", () => {
+    const bench = new Bench();
+    bench.aim(3);
+    bench.press(true);
+    const [{ hold }] = bench.selection.gestures.grabs;
+    bench.destroy("body", id(1, 5));
+    bench.selection.update(); // a picture before the poses come
+    expect(bench.selection.held).toBe(-1);
+    bench.poses([body(0, 1)], { holds: [{ client: 1, hold, body: 0, point: [1.5, 0, 0], target: [3, 0, 0], force: 2 }] });
+    bench.selection.update();
+    expect(bench.selection.held).toBe(0);
+    bench.aim(3.5);
+    expect(bench.sent.at(-1)).toMatchObject({ type: "grabMove", hold });
+    expect(bench.sent.filter((message) => message.type === "grabEnd")).toEqual([]);
   });
 
   it("points at nothing where the body that was pointed at is gone", () => {

@@ -54,7 +54,9 @@ export class Pointer {
 export class Grab {
   /** This client's number for the hold, as sent to the server. */
   readonly hold: number;
-  readonly body: number;
+  body: number;
+  /** The body was destroyed, or became part of another one. */
+  isGone = false;
   readonly pointer: Pointer;
   readonly near: boolean;
   /** In the body's frame, m. */
@@ -167,9 +169,9 @@ export class Gestures {
     for (const grab of this.grabs.slice()) this.release(grab.pointer);
   }
 
-  /** A body was destroyed: ends grabs on it and stops hovering over it. */
+  /** A body is no more: marks the grabs on it and stops hovering over it. */
   forget(body: number): void {
-    for (const grab of this.grabs.slice()) if (grab.body === body) this.release(grab.pointer);
+    for (const grab of this.grabs) if (grab.body === body) grab.isGone = true;
     for (const pointer of this.pointers_) {
       if (pointer.hovered !== body) continue;
       pointer.hovered = -1;

@@ -100,7 +100,7 @@ export class Highlights implements FramePart {
     for (const grab of this.selection_.gestures.grabs) {
       const force = this.selection_.confirmedForce(grab);
       if (force < 0 && now - grab.startedAt > confirmWithinMs) continue;
-      this.bodies_.setTint(grab.body, palette.held, 1);
+      if (!grab.isGone) this.bodies_.setTint(grab.body, palette.held, 1);
       this.selection_.gestures.grabbedPoint(grab, this.point_);
       this.lines_.add(this.point_, grab.target, Math.max(force, 0), this.eye_, 1);
     }

@@ -5,7 +5,7 @@ import { Gestures, type GestureListener, type Grab, type Pointer } from "../inte
 import type { LinkState } from "../net/connection.ts";
 import type { Vec3 } from "../protocol/generated.ts";
 import { usualLateness } from "../scene/pose_buffer.ts";
-import type { World } from "../world/world.ts";
+import type { Hold, World } from "../world/world.ts";
 import type { Events, PageListener } from "./events.ts";
 import type { Session } from "./session.ts";
 import type { FramePart, Viewer } from "./viewer.ts";
@@ -22,6 +22,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
   private selected_ = -1;
   /** Selected besides that one. */
   private readonly more_ = new Set<number>();
+  /** Stamp of the last poses before a body was gone, ms. */
+  private goneAt_ = 0;
 
   constructor(world: World, session: SelectionSession, viewer: Pick<Viewer, "invalidate">, events: Events) {
     this.world_ = world;
@@ -38,7 +40,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
 
   /** The body held by a hand of this page, the newest of several; -1: none. */
   get held(): number {
-    return this.gestures.grabs.at(-1)?.body ?? -1;
+    return this.gestures.grabs.findLast((grab) => !grab.isGone)?.body ?? -1;
   }
 
   /** The hovered body, -1: none. */
@@ -103,12 +105,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
 
   /** Force of a grab in the server's last message, N; -1 until the server has confirmed it. */
   confirmedForce(grab: Grab): number {
-    const { holds, holdCount } = this.world_;
-    for (let index = 0; index < holdCount; index++) {
-      const hold = holds[index];
-      if (hold.client === this.session_.clientId && hold.hold === grab.hold) return hold.force;
-    }
-    return -1;
+    return this.holdOf_(grab)?.force ?? -1;
   }
 
   /** Force of a grab in the server's last message, N. */
@@ -119,6 +116,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
   // --- FramePart
 
   update(): void {
+    for (const grab of this.gestures.grabs.slice()) if (grab.isGone) this.findBody_(grab);
     this.drawHeldAtOnce_();
     if (this.gestures.grabs.length > 0) this.viewer_.invalidate();
   }
@@ -132,6 +130,7 @@ export class Selection implements GestureListener, FramePart, PageListener {
   /** Drops everything about the body, so that nothing passes to the next body in its slot. */
   bodyGone(body: number): void {
     this.gestures.forget(body);
+    this.goneAt_ = this.world_.poses.newestStamp;
     this.more_.delete(body);
     if (this.selected_ === body) this.selectMany([...this.more_]);
   }
@@ -177,6 +176,27 @@ export class Selection implements GestureListener, FramePart, PageListener {
   }
 
   // --- inside
+
+  private holdOf_(grab: Grab): Hold | undefined {
+    const { holds, holdCount } = this.world_;
+    for (let index = 0; index < holdCount; index++) {
+      const hold = holds[index];
+      if (hold.client === this.session_.clientId && hold.hold === grab.hold) return hold;
+    }
+    return undefined;
+  }
+
+  /** Of a grab whose body is no more: the server's hold is on what that became part of; without one the grab ends. */
+  private findBody_(grab: Grab): void {
+    const { entities, poses } = this.world_;
+    if (poses.newestStamp === this.goneAt_) return;  // the holds that are known are from before that
+    const hold = this.holdOf_(grab);
+    if (hold === undefined || !entities.body.has(hold.body)) return this.gestures.release(grab.pointer);
+    grab.body = hold.body;
+    grab.localPoint.set(hold.point);
+    grab.isGone = false;
+    if (this.selected_ < 0) this.select(grab.body);
+  }
 
   /** Draws held bodies and their articulates without delay; otherwise a held body would seem to leave its neighbors. */
   private drawHeldAtOnce_(): void {
