@@ -59,11 +59,15 @@ export class Keys {
   }
 }
 
+/** Keys that move a slider. */
+const sliderKeys = /^(Arrow|Home|End|Page)/;
+
 /** A focused control keeps its own keys. */
 function isForElement(event: KeyboardEvent): boolean {
   const target = event.target;
   if (!(target instanceof HTMLElement)) return false;
   if (target.closest("dialog[open]") !== null) return true;
+  if (target instanceof HTMLInputElement && target.type === "range") return sliderKeys.test(event.key);
   if (target instanceof HTMLSelectElement || target instanceof HTMLInputElement) return event.key !== "Escape";
   return target instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter");
 }
