@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import iota
 from iota import looks, shapelib
+from iota.studies._story import Story
 
 FILE = Path(__file__).with_name("cyclooctane.xyz")
 SCALE = 0.13  # m for an angstrom
 NAIL = iota.Vec3(0, 1.15, 0)
 BREAKS = ((0, 7), (3, 4))  # bonds between carbon atoms
-TIMES = (6.0, 9.0)  # s, when they break
+TIMES = (6.0, 9.0)  # s, when they break if nobody touches anything
 
 
 def build(repeat: bool = True) -> iota.World:
@@ -31,13 +33,14 @@ def build(repeat: bool = True) -> iota.World:
                 bond.destroy()
                 return
 
+    story = Story(world, first=TIMES[0])
     for time, pair in zip(TIMES, BREAKS, strict=True):
-        world.at(time)(lambda pair=pair: snap(*pair))
-    if repeat:
-        world.at(TIMES[1] + 4.0)(world.reset)
+        story.at(time - TIMES[0])(partial(snap, *pair))
+    story.at(TIMES[1] - TIMES[0] + 4.0)(world.reset if repeat else lambda: None)
 
     @world.action("break", key="b", button="b", help="breaks the next bond of the ring", on="world")
     def break_next(event: iota.Event) -> None:
+        story.touch()
         there = {frozenset(bond.ends) for bond in system.cosmetic_bonds}
         for p, q in BREAKS:
             if {made.points[p], made.points[q]} in there:
