@@ -27,8 +27,10 @@ def present(world: iota.World) -> iota.World:
     for particle, color in zip(system.particles, ((0.9, 0.3, 0.2), (0.15, 0.5, 0.55)) * 2, strict=False):
         particle.radius, particle.color = 2.0, color
     world.draw_ties("spring", looks.capsule(0.3, "rope"))
-    for x in (-36, 58):
+    places = [particle.position.x for particle in system.particles]
+    left, right = min(places) - 5, max(places) + 5
+    for x in (left, right):
         world.add_strut((x, GROUND, -20), (x, 15, -20), looks.cylinder(0.8, "wood"))
-    world.add_strut((-38, 15, -20), (60, 15, -20), looks.cylinder(0.8, "wood"))
+    world.add_strut((left - 1, 15, -20), (right + 1, 15, -20), looks.cylinder(0.8, "wood"))
     world.camera = iota.Camera(position=(25, -5, 125), target=(11, -13, 0))
     return world

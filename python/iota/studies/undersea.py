@@ -16,7 +16,7 @@ from iota.studies.shoal import School, present
 
 FISH = 120
 KELPS = ((-2.2, -0.6), (2.6, -1.2), (0.7, 0.9))  # where they grow, m
-NODES, LENGTH = 10, 2.2  # of a kelp; m
+NODES, LENGTH = 16, 3.6  # of a kelp; m
 PIECE = 3  # links that a fish tears off
 BUOYANCY = 1.6  # m/s^2, upwards
 HIGHEST = 9.0  # m: what drifts away is gone there
@@ -58,7 +58,7 @@ def build(fish: int = FISH) -> iota.World:
 def leader_at(time: float) -> Any:
     """Where the shoal wants to be, m: round the seaweed, nearly as fast as a fish can swim."""
     turn = 2 * math.pi * time / 16
-    return np.array([2.6 * math.cos(turn), 2.8 + 0.4 * math.sin(3 * turn), 0.2 + 2.4 * math.sin(turn)])
+    return np.array([2.6 * math.cos(turn), 3.0 + 0.5 * math.sin(3 * turn), 0.2 + 2.4 * math.sin(turn)])
 
 
 class Meal:
@@ -69,7 +69,7 @@ class Meal:
         self._weed = next(group for group in world.system.groups if group.name == "weed")
         # What is carried is as heavy as water, and drags.
         self._load = world.system.group("load")
-        world.system.field("wind", group=self._load, drag=0.12)
+        world.system.field("wind", group=self._load, drag=0.16)
         self._label = world.label("", offset=(0, 0.3, 0))
         self._start()
         world.on_reset(self._start)
@@ -101,7 +101,7 @@ class Meal:
         tip = kelp[-1].particles[-1]
         self.fish = min(self._school.fish, key=lambda fish: abs(fish.position - tip.position))
         self._school.group.remove(self.fish)
-        self._say("leaves the shoal and feeds")
+        self._say("feeds")
         self.lure = self._world.system.bond(self.fish, tip, LURE, r0=0.18)
 
     def tear(self) -> None:
@@ -111,7 +111,7 @@ class Meal:
         self.piece = [kelp.pop() for _ in range(PIECE)][::-1]
         kelp[-1].particles[-1].separate(self.piece[0].particles[0])
         self.fish.combine(self.piece[-1].particles[-1], over=0.5)
-        self._say("lags behind: it carries a piece")
+        self._say("lags behind")
         self._weed.remove(*self.piece)
         self._load.add(*self.piece)
         self._end_lure()
@@ -163,7 +163,7 @@ class Meal:
 
 def kelp(world: iota.World, weed: iota.Group, x: float, z: float) -> list[iota.Body]:
     """An articulated chain of rigid links, each with a leaf, on the bed."""
-    stem = iota.builder.chain(NODES, LENGTH, top=(x, 0.02, z), direction=(0.1, 1, 0), mass=1.2)
+    stem = iota.builder.chain(NODES, LENGTH, top=(x, 0.02, z), direction=(0.1, 1, 0), mass=2.0)
     links = stem.realize(world.system).bodies
     link = LENGTH / NODES
     leaf = looks.Look(iota.Ellipsoid((0.16, 0.34, 0.02)), "rubber", "#7d8f2e", offset=(0.04, 0.15, 0), turn=math.pi)
@@ -221,5 +221,5 @@ def bubbles(world: iota.World) -> None:
     for x, z, rate in ((-3.6, 0.2, 9), (2.0, 1.6, 6)):
         world.system.emitter(
             rate=rate, source=iota.Sphere(0.08), position=(x, 0.4, z), velocity=(0, 0.7, 0), velocity_spread=0.12, mass=0.001,
-            lifetime=7, lifetime_spread=1, curve=[(0, 0.015, (0.8, 0.93, 1)), (1, 0.04, (0.9, 0.97, 1))],
+            lifetime=11, lifetime_spread=1, curve=[(0, 0.015, (0.8, 0.93, 1)), (1, 0.04, (0.9, 0.97, 1))],
         )  # fmt: skip
