@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A real `iota run ...` for a test, on a port of its own, with a state folder of its own.
 
-import { spawn, type ChildProcess } from "node:child_process";
+import { execFileSync, spawn, type ChildProcess } from "node:child_process";
 import { existsSync, mkdtempSync } from "node:fs";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
@@ -13,6 +13,11 @@ const startsWithinMs = 60_000;
 
 export const artifacts = path.join(root, "build", "artifacts");
 export const probe = path.join(import.meta.dirname, "chain_probe.py");
+
+/** The names that `iota list` shows. */
+export function studyNames(): string[] {
+  return execFileSync(iota, ["list"], { encoding: "utf8" }).split("\n").flatMap((line) => /^\S+/.exec(line)?.[0] ?? []);
+}
 
 export async function freePort(): Promise<number> {
   return new Promise((resolve, reject) => {
@@ -40,10 +45,12 @@ export class WorldServer {
   }
 
   /** Starts `iota run WHAT` and waits for its address. The state folder keeps the token over a restart. */
-  static async start(what: readonly string[], port: number, stateFolder = mkdtempSync(path.join(tmpdir(), "iota-state-"))): Promise<WorldServer> {
+  static async start(
+    what: readonly string[], port: number, stateFolder = mkdtempSync(path.join(tmpdir(), "iota-state-")), environment: Readonly<Record<string, string>> = {},
+  ): Promise<WorldServer> {
     if (!existsSync(iota)) throw new Error(`${iota} is missing: run make build first`);
     const process_ = spawn(iota, ["run", ...what, "--no-open", "--port", String(port)], {
-      cwd: root, env: { ...process.env, XDG_STATE_HOME: stateFolder, PYTHONUNBUFFERED: "1" },
+      cwd: root, env: { ...process.env, ...environment, XDG_STATE_HOME: stateFolder, PYTHONUNBUFFERED: "1" },
     });
     const lines: string[] = [];
     const url = await new Promise<string>((resolve, reject) => {

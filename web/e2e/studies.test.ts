@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every study as its user has it: something is dragged by mouse, and each of its keys and controls does what its help
+// says, in the world (Python), on the page, and in the picture.
+
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import { Browser, distance, small, type Place, type Tab } from "./browser.ts";
+import { freePort, studyNames, WorldServer } from "./server.ts";
+
+/** What study_probe.py tells. */
+interface Facts {
+  readonly time: number;
+  readonly bodies: number;
+  readonly dynamic: number;
+  readonly articulates: number;
+  readonly bonds: number;
+  readonly sticks: number;
+  readonly joints: number;
+  readonly nails: number;
+  readonly fields: readonly boolean[];
+  readonly groups: Readonly<Record<string, number>>;
+  readonly kinetic: number;
+  /** Slot and center of mass (m). */
+  readonly held: readonly [number, number, number, number] | null;
+}
+
+/** ms */
+const patience = 30_000;
+
+class Study {
+  readonly server: WorldServer;
+  readonly tab: Tab;
+
+  constructor(server: WorldServer, tab: Tab) {
+    this.server = server;
+    this.tab = tab;
+  }
+
+  get facts(): Facts {
+    const { report } = this.server;
+    if (report === null) throw new Error("Python has told nothing yet");
+    return report as unknown as Facts;
+  }
+
+  /** Waits until Python tells something. */
+  async knows(what: string, condition: (facts: Facts) => unknown): Promise<void> {
+    await expect.poll(() => Boolean(condition(this.facts)), { message: `waited until ${what}; ${JSON.stringify(this.facts)}`, timeout: patience }).toBe(true);
+  }
+
+  async key(name: string): Promise<void> {
+    await this.tab.page.keyboard.press(name);
+  }
+
+  /** Presses a key and waits until Python tells the change from what it told before. */
+  async does(key: string, what: string, change: (now: Facts, before: Facts) => unknown): Promise<void> {
+    const before = this.facts;
+    await this.key(key);
+    await this.knows(`${key}: ${what}`, (now) => change(now, before));
+  }
+
+  /** Sets a control of the panel as its user does. */
+  async set(label: string, value: string): Promise<void> {
+    const panel = this.tab.page.locator("#panel");
+    if (!(await panel.evaluate((element) => (element as HTMLDetailsElement).open))) await panel.locator("summary").click();
+    const control = panel.locator("label", { hasText: label }).locator("input, select");
+    if (await control.evaluate((element) => element.tagName === "SELECT")) await control.selectOption({ label: value });
+    else await control.fill(value);
+  }
+
+  /** Share of the picture's pixels that differ from those of the previous call. */
+  async changed(): Promise<number> {
+    return this.tab.page.evaluate(() => {
+      const { renderer, scene, camera } = iota.page.viewer;
+      const gl = renderer.getContext();
+      const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+      const pixels = new Uint8Array(4 * width * height);
+      renderer.render(scene, camera);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      const store = globalThis as { pixelsBefore?: Uint8Array };
+      const before = store.pixelsBefore;
+      store.pixelsBefore = pixels;
+      if (before?.length !== pixels.length) return 1;
+      let count = 0;
+      for (let at = 0; at < pixels.length; at += 4) {
+        if (Math.max(...[0, 1, 2].map((channel) => Math.abs(pixels[at + channel] - before[at + channel]))) > 12) count++;
+      }
+      return count / (width * height);
+    });
+  }
+
+  /** Holds one of the bodies that a user can see and take, of a paused world: the lowest one, since what hangs is free there.
+   * Returns it and where the mouse is. */
+  async take(wanted: (body: number) => boolean = () => true): Promise<{ body: number; at: Place }> {
+    const { page } = this.tab;
+    for (let trial = 0; trial < 20; trial++) {
+      await this.tab.freeze();
+      const seen = await page.evaluate(() => {
+        const { pickable, pickableCount } = iota.page.world.entities.body;
+        return [...pickable.subarray(0, pickableCount)].flatMap((body) => {
+          const at = iota.screenPosition(body);
+          const free = at !== null && at[0] > 40 && at[0] < innerWidth - 40 && at[1] > 30 && at[1] < innerHeight - 30 && document.elementFromPoint(...at)?.id === "view";
+          return free ? [{ body, at }] : [];
+        });
+      });
+      const centers = seen.filter(({ body }) => wanted(body)).toSorted((a, b) => b.at[1] - a.at[1]).slice(0, 20).map(({ at }) => at);
+      // The center of a ring is in its hole.
+      const around = centers.slice(0, 1).flatMap(([x, y]) => [20, 40, 60, 80].flatMap((far) => [0, 1, 2, 3, 4, 5, 6, 7].map((way): Place => (
+        [x + far * Math.cos((way * Math.PI) / 4), y + far * Math.sin((way * Math.PI) / 4)]))));
+      for (const at of [...centers, ...around]) {
+        await page.mouse.move(...at);
+        await page.mouse.down();
+        const held = await page.evaluate(() => iota.held);
+        if (held >= 0 && wanted(held)) return { body: held, at };
+        await page.mouse.up();
+      }
+      await this.tab.pause(false);
+      await this.tab.goOn(0.3);
+    }
+    throw new Error("nothing can be taken hold of");
+  }
+
+  /** Drags a body by the mouse, and checks that it comes along in Python and in the picture. */
+  async drag(by: readonly [number, number], wanted?: (body: number) => boolean): Promise<number> {
+    const { tab } = this;
+    const { body, at } = await this.take(wanted);
+    const from = await tab.position(body);
+    await this.changed();
+    await tab.pause(false);
+    await this.knows("Python knows what is held", ({ held }) => held !== null);
+    await tab.page.mouse.move(at[0] + by[0], at[1] + by[1], { steps: 5 });
+    await tab.until("the body has come some way towards the hand", (was) => {
+      const [hold] = iota.holds();
+      if (hold === undefined) return false;
+      const [now, way] = [iota.bodyPosition(hold.body), hold.target.map((value, axis) => value - was[axis])];
+      const moved = now.reduce((sum, value, axis) => sum + (value - was[axis]) * way[axis], 0);
+      return moved > 0.1 * way.reduce((sum, value) => sum + value * value, 0);
+    }, from, patience);
+    expect(await this.changed(), "share of changed pixels").toBeGreaterThan(5e-4);
+    return body;
+  }
+
+  async letGo(): Promise<void> {
+    await this.tab.page.mouse.up();
+    await this.knows("nothing is held", ({ held }) => held === null);
+  }
+
+  /** Place of the camera, m. */
+  eye(): Promise<number[]> {
+    return this.tab.eyeAtRest();
+  }
+}
+
+const some = 60; // css px
+
+/** What is particular to each: a drag, its keys and controls, and what they do. */
+const studies: Record<string, (study: Study) => Promise<void>> = {
+  "appendix-e1": async (study) => {
+    await study.drag([some, -some]);
+    await study.letGo();
+  },
+  "appendix-e2": async (study) => {
+    await study.drag([some, 0]);
+    await study.letGo();
+  },
+  "appendix-e3": async (study) => {
+    await study.drag([0, -some]);
+    await study.letGo();
+  },
+  bucky: async (study) => {
+    await study.drag([some, 0]);
+    await study.letGo();
+    // A breath at any time adds to the motion outwards; several at least double its energy.
+    const { kinetic } = study.facts;
+    await expect.poll(async () => {
+      await study.key("b");
+      return study.facts.kinetic;
+    }, { interval: 200 }).toBeGreaterThan(Math.max(2 * kinetic, 0.03));
+    const before = await study.eye();
+    await study.key("v");
+    await study.tab.until("the camera is within the ball", () => Math.hypot(...iota.page.viewer.camera.position.toArray().map((value, axis) => value - [0, 1.3, 0][axis])) < 0.3, undefined, patience);
+    expect(distance(before, await study.eye())).toBeGreaterThan(1);
+  },
+  chain: async (study) => {
+    await study.drag([some, -some]);
+    await study.letGo();
+    await study.does("t", "it falls apart", ({ articulates }) => articulates === 2);
+    await study.knows("it mends itself", ({ articulates }) => articulates === 1);
+  },
+  cloth: async (study) => {
+    await study.does("n", "the wind drops", ({ fields }, before) => fields.filter(Boolean).length < before.fields.filter(Boolean).length);
+    const { bonds } = study.facts;
+    await study.drag([some, some]);
+    await study.does("b", "threads tear", (now, before) => now.bonds < before.bonds);
+    await study.letGo();
+    await study.does("c", "a new cloth", (now) => now.bonds === bonds && now.time < 2);
+  },
+  cradle: async (study) => {
+    const lifted = (side: number) => study.tab.page.evaluate((way) => iota.bodies().filter((body) => way * iota.bodyPosition(body)[0] > 0.075).length, side);
+    await study.key("l");
+    await expect.poll(() => lifted(-1), { interval: 5 }).toBe(2);
+    await study.key("k");
+    await expect.poll(() => lifted(1), { interval: 5 }).toBe(1);
+    await study.drag([-some, 0]);
+    await study.letGo();
+  },
+  fireworks: async (study) => {
+    await study.does("b", "a rocket flies", ({ dynamic }) => dynamic >= 1);
+    await study.does("n", "all fly", ({ dynamic }) => dynamic >= 4);
+    await study.tab.until("sparks are drawn", () => iota.page.world.entities.particleSet.count > 300);
+    await study.drag([some, 0]);
+    await study.letGo();
+  },
+  lab: async (study) => {
+    await study.drag([some, 0], (body) => body < 7);  // of the ladder
+    await study.letGo();
+    await study.does("t", "the ladder's top block turns", (now, before) => now.kinetic > before.kinetic + 1e-3);
+    const before = await study.eye();
+    await study.key("v");
+    await study.tab.until("the view is another", (was) => Math.hypot(...iota.page.viewer.camera.position.toArray().map((value, axis) => value - was[axis])) > 0.2, before);
+  },
+  ladder: async (study) => {
+    await study.drag([some, 0]);
+    await study.letGo();
+    await study.knows("it hangs quietly", ({ time, kinetic }) => time > 4 && kinetic < 5e-4);
+    await study.does("t", "a ripple runs", ({ kinetic }) => kinetic > 3e-3);
+  },
+  mechanisms: async (study) => {
+    const weight = await study.tab.page.evaluate(() => iota.bodies().at(-1)!);
+    const { joints } = study.facts;
+    await study.drag([150, 110], (body) => body === weight);
+    await study.knows("its rope breaks", (now) => now.joints === joints - 1);
+    await study.letGo();
+    await study.does("c", "it hangs again", (now) => now.joints === joints);
+    const wheel = await study.tab.page.evaluate(() => iota.bodies()[0]);
+    const sense = () => study.tab.page.evaluate(async (body) => {
+      const turn = () => iota.bodyRotation(body);
+      const [was, began] = [turn(), iota.time];
+      while (iota.time < began + 0.15) await new Promise(requestAnimationFrame);
+      const now = turn();
+      return Math.sign(was[0] * now[1] - was[1] * now[0] + was[3] * now[2] - was[2] * now[3]);
+    }, wheel);
+    const before = await sense();
+    await study.key("x");
+    await expect.poll(sense).toBe(-before);
+  },
+  molecule: async (study) => {
+    await study.drag([some, -20]);
+    await study.letGo();
+    await study.does("b", "a bond breaks", (now, before) => now.sticks === before.sticks - 1 && now.articulates === 1);
+    await study.does("b", "half of it falls", ({ articulates }) => articulates === 2);
+    await study.does("r", "it is whole", ({ articulates, time }) => articulates === 1 && time < 2);
+  },
+  "physics-class": async (study) => {
+    /** Its label tells the period of the formula, and the measured one is that, longer by up to 4 % for a wide swing. */
+    const swings = async (seconds: number) => study.tab.until(`the pendulum swings in ${seconds} s`, (wanted) => {
+      const { label } = iota.page.world.entities;
+      const text = Array.from({ length: 9 }, (_, slot) => label.textOf(slot) ?? "").find((each) => each.startsWith("pendulum"));
+      const [, measured, ideal] = /pendulum ([\d.]+) s\nideal ([\d.]+) s/.exec(text ?? "")?.map(Number) ?? [];
+      return Math.abs(ideal - wanted) < 0.006 && measured > 0.99 * ideal && measured < 1.04 * ideal;
+    }, seconds);
+    await study.set("length", "0.5");
+    await swings(2 * Math.PI * Math.sqrt(0.5 / 9.81));
+    await study.set("gravity", "25");
+    await swings(2 * Math.PI * Math.sqrt(0.5 / 25));
+    await study.drag([40, -20], (body) => body === 0 || body === 2);  // the pendulum or the planet
+    await study.letGo();
+  },
+  playground: async (study) => {
+    const { bodies } = study.facts;
+    await study.set("place", "box");
+    await study.tab.page.mouse.click(120, 150);
+    await study.knows("a box is there", (now) => now.bodies === bodies + 1);
+    await study.does("z", "it is undone", (now) => now.bodies === bodies);
+    await study.does("y", "it is there again", (now) => now.bodies === bodies + 1);
+    await study.set("place", "nothing");
+    const body = await study.drag([0, -30]);
+    await study.does("k", "it is nailed", (now, before) => now.nails !== before.nails);
+    await study.letGo();
+    await study.tab.page.evaluate((id) => iota.select(id), body);
+    await study.does("x", "it is taken away", (now, before) => now.bodies < before.bodies);
+  },
+  shoal: async (study) => {
+    await study.does("c", "the current is off", ({ fields }, before) => fields.filter(Boolean).length < before.fields.filter(Boolean).length);
+    await study.does("x", "they scatter", (now, before) => now.kinetic > 1.5 * before.kinetic);
+    await study.drag([some, 0]);
+    await study.letGo();
+  },
+  "soft-molecule": async (study) => {
+    await study.drag([some, 0], (body) => body < 8);  // a carbon atom
+    await study.knows("it rests in the hand", ({ kinetic }) => kinetic < 1e-3);
+    await study.does("p", "what is held is pushed", (now, before) => now.kinetic > before.kinetic + 1e-3);
+    await study.letGo();
+  },
+  undersea: async (study) => {
+    await study.drag([some, 0], (body) => body < 120);  // a fish
+    await study.letGo();
+    const { shoal } = study.facts.groups;
+    await study.does("n", "a fish leaves and feeds", ({ groups }) => groups["shoal"] === shoal - 1);
+    await study.does("n", "it tears a piece off and follows the shoal", ({ groups, articulates }, before) => groups["shoal"] === shoal && groups["load"] > 0 && articulates >= before.articulates);
+    await study.does("n", "it lets go", ({ groups }) => groups["load"] === 0);
+  },
+  weather: async (study) => {
+    await study.does("n", "the wind drops", ({ fields }, before) => fields.filter(Boolean).length < before.fields.filter(Boolean).length);
+    await study.key("u");
+    await study.tab.until("the fountain has run dry", () => iota.page.world.entities.particleSet.count === 0);
+    await study.drag([20, some], (body) => body < 104 && body % 13 > 6);  // of the flag, far from its pole
+    await study.letGo();
+  },
+};
+
+let browser: Browser;
+
+beforeAll(async () => {
+  browser = await Browser.start(small);
+});
+
+afterAll(async () => {
+  await browser?.stop();
+});
+
+describe("the study", () => {
+  it.each(Object.keys(studies))("%s moves, can be taken hold of, and obeys its keys and controls", async (name) => {
+    const server = await WorldServer.start(["web/e2e/study_probe.py"], await freePort(), undefined, { IOTA_STUDY: name });
+    try {
+      const tab = await browser.open(server.url);
+      const study = new Study(server, tab);
+      await expect.poll(() => server.report).not.toBeNull();
+      await study.changed();
+      await expect.poll(() => study.changed(), { message: "it moves" }).toBeGreaterThan(1e-4);
+      await studies[name](study);
+      expect(tab.complaints).toEqual([]);
+      expect(server.output).not.toMatch(/Traceback|Error/);
+    } finally {
+      await server.stop();
+    }
+  }, 180_000);
+
+  it("that is listed is here", () => {
+    expect(Object.keys(studies).toSorted()).toEqual(studyNames().toSorted());
+  });
+});
