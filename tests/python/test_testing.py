@@ -51,7 +51,7 @@ def test_a_visitor_takes_a_body_by_ray_and_by_pinch_and_moves_it(run_world: Runn
         visitor.pinch("left", closed=False)
         visitor.wait_for(lambda: world.held() is None)
         visitor.picture(tmp_path / "eyes.png")
-        with pytest.raises(TimeoutError, match="did not become true within 0.1 s"):
+        with pytest.raises(TimeoutError, match=r"did not become true within 0\.1 s"):
             visitor.wait_for(lambda: False, 0.1)
     assert (tmp_path / "eyes.png").read_bytes().startswith(b"\x89PNG")
 

@@ -99,6 +99,33 @@ def test_thousands_are_set_by_one_array(rod: iota.Body, run_world: Runner) -> No
         page.wait_for(lambda: page.entities["point_cloud"][0]["points"][0] > seen["points"][0] + 0.5)
 
 
+def test_more_than_pages_take_is_refused_where_it_is_assigned(rod: iota.Body) -> None:
+    world = iota.World(rod.system)
+    many = np.zeros((1_100_000, 3), np.float32)
+    with pytest.raises(ValueError, match="points: may have 1048576 rows at most, not 1100000; draw them in several"):
+        world.points(many, radius=0.1)
+    with pytest.raises(ValueError, match="positions: may have 349525 rows at most"):
+        world.shapes(looks.sphere(0.1), many)
+    with pytest.raises(ValueError, match="points: may have 349525 rows"):
+        world.surface(many, [(0, 1, 2)])
+    with pytest.raises(ValueError, match="triangles: may have 349525 rows"):
+        world.surface(many[:3], np.zeros((400_000, 3), int))
+    shapes = world.shapes(looks.sphere(0.1), many[:100])
+    with pytest.raises(ValueError, match="positions: may have"):
+        shapes.positions = many
+    assert len(shapes.positions) == 100
+
+
+def test_a_thing_that_cannot_be_shown_is_told_to_pages_that_open_later(rod: iota.Body, run_world: Runner) -> None:
+    world = iota.World(rod.system)
+    world.points([(0, 0, 0)] * 3, radius=[0.1, 0.2])
+    url = run_world(world)
+    for _ in range(2):
+        with PageClient(url) as page:
+            notice = page.wait_for(lambda page=page: page.notices)[0]
+            assert "Points: radius must be one, or one for each of the 3 points" in notice["text"]
+
+
 def test_lines_axes_traces_and_shapes_have_the_records_of_the_protocol(rod: iota.Body, run_world: Runner) -> None:
     world = iota.World(rod.system)
     line = world.line(rod.particles[0], (0, 0, 0), radius=0.02, closed=True)

@@ -47,8 +47,8 @@ class Notices:
         if self.forget is not None:
             self.forget(title)
 
-    def warn_once(self, text: str) -> None:
-        """Shows a text only once."""
+    def warn_once(self, text: str, keep: bool = False) -> None:
+        """Shows a text only once. keep: pages that open later show it too, until `over`."""
         if text not in self._warnings and len(self._warnings) < MOST_WARNINGS:
             self._warnings.add(text)
-            self.send("Note", text, level="warning")
+            self.send("Note", text, level="warning", keep=keep)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 from iota._core import InputEvent, Room, Vec3
@@ -66,7 +67,7 @@ class Publisher:
             dt=clock.dt,
             costs=list(state.step_costs.ms.items()),
         )
-        state.things.tell(self.room, state.system.structure_version, state.notices.warn_once)
+        state.things.tell(self.room, state.system.structure_version, partial(state.notices.warn_once, keep=True))
         self._source.publish(self.room, state.shows_edits)
         for text in self.room.take_warnings():
             state.notices.warn_once(text)

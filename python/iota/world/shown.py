@@ -4,13 +4,14 @@ the protocol."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Vec3
-from iota._protocol import NO_BODY, NO_COLOR, LightKind
+from iota._protocol import ENTITIES, NO_BODY, NO_COLOR, LightKind
 from iota.looks import Look
 from iota.simulator import SimulatedBody
 from iota.textures import Texture, lay_flat, material_name, texture_of
@@ -49,6 +50,20 @@ class Label(Thing):
     def _record(self) -> dict[str, Any] | None:
         a, b = ends(self.at)
         return None if a is None or b is None else self._values | {"a": a, "b": b}
+
+
+def _limited(check: Callable[[Any], Any], kind: str, field: str) -> Callable[[Any], Any]:
+    """Also refuses more rows than pages take at once."""
+    most = next(most for name, _, most, _ in ENTITIES[kind] if name == field)
+
+    def checked(value: Any) -> Any:
+        rows = check(value)
+        if isinstance(rows, np.ndarray) and rows.size > most:
+            count = most // rows.shape[1]
+            raise ValueError(f"may have {count} rows at most, not {len(rows)}; draw them in several parts")
+        return rows
+
+    return checked
 
 
 def _points(value: Any) -> Any:
@@ -148,7 +163,7 @@ class Points(Thing):
     them: an array of shape (n, 3) from 0 to 1, or a list of n colors."""
 
     kind = "point_cloud"
-    at, points = Field(place), Field(points)
+    at, points = Field(place), Field(_limited(points, "point_cloud", "points"))
 
     @staticmethod
     def _radii(value: Any) -> NDArray[np.float32]:
@@ -248,7 +263,7 @@ class Shapes(Thing):
     array (n, 3) from 0 to 1."""
 
     kind = "shape_set"
-    look, at, positions = Field(_look), Field(place), Field(points)
+    look, at, positions = Field(_look), Field(place), Field(_limited(points, "shape_set", "places"))
 
     @staticmethod
     def _rotations(value: Any) -> NDArray[np.float64]:
@@ -297,7 +312,8 @@ class Surface(Thing):
     where they are when it is assigned."""
 
     kind = "surface"
-    at, points, color, material = Field(place), Field(_points), Field(color), Field(text)
+    at, points = Field(place), Field(_limited(_points, "surface", "points"))
+    color, material = Field(color), Field(text)
 
     @staticmethod
     def _triangles(value: Any) -> NDArray[np.int64]:
@@ -319,7 +335,8 @@ class Surface(Thing):
             raise ValueError("must have the shape (n, 2), all finite")
         return rows
 
-    triangles, threads, coordinates = Field(_triangles), Field(_threads), Field(_coordinates)
+    triangles = Field(_limited(_triangles, "surface", "triangles"))
+    threads, coordinates = Field(_threads), Field(_coordinates)
     texture = Field(lambda value: None if value is None else texture_of(value))
 
     def _texture(self) -> Texture | None:
