@@ -5,7 +5,7 @@ the protocol."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,8 @@ LAMPS = {"point": LightKind.POINT, "spot": LightKind.SPOT, "sun": LightKind.SUN}
 MOST_LIGHTS = 8
 MOST_SHADOWS = 2  # each is one more picture of the scene in every frame
 
+Rows = TypeVar("Rows")
+
 
 class Label(Thing):
     """A line of text. at: particle, body, bond (its middle) or a place. offset: world, m. height: of a capital, m; 0: a
@@ -52,11 +54,11 @@ class Label(Thing):
         return None if a is None or b is None else self._values | {"a": a, "b": b}
 
 
-def _limited(check: Callable[[Any], Any], kind: str, field: str) -> Callable[[Any], Any]:
+def _limited(check: Callable[[Any], Rows], kind: str, field: str) -> Callable[[Any], Rows]:
     """Also refuses more rows than pages take at once."""
     most = next(most for name, _, most, _ in ENTITIES[kind] if name == field)
 
-    def checked(value: Any) -> Any:
+    def checked(value: Any) -> Rows:
         rows = check(value)
         if isinstance(rows, np.ndarray) and rows.size > most:
             count = most // rows.shape[1]
