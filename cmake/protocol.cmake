@@ -17,6 +17,16 @@ add_custom_command(
   DEPENDS "${iota_protocol_generator}" ${iota_protocol_inputs}
   COMMENT "Generating iota_protocol.h"
   VERBATIM)
+# The values of the golden bytes, for tests.
+set(iota_protocol_vectors "${iota_generated_dir}/iota_protocol_vectors.h")
+add_custom_command(
+  OUTPUT "${iota_protocol_vectors}"
+  COMMAND "${Python_EXECUTABLE}" "${iota_protocol_generator}" --cpp-vectors "${iota_protocol_vectors}"
+  DEPENDS "${iota_protocol_generator}" ${iota_protocol_inputs} "${CMAKE_CURRENT_SOURCE_DIR}/protocol/golden/vectors.json"
+  COMMENT "Generating iota_protocol_vectors.h"
+  VERBATIM)
+add_custom_target(iota_protocol_vectors DEPENDS "${iota_protocol_vectors}")
+
 # The Python module beside the extension: see cmake/python.cmake.
 set(iota_protocol_module "${CMAKE_CURRENT_BINARY_DIR}/python/iota/_protocol.py")
 add_custom_command(

@@ -166,17 +166,14 @@ void Presenter::tell(std::uint32_t slot, Entity entity, bool is_other) {
   known.record = std::move(record);
 }
 
-void Presenter::forget(std::uint8_t kind, std::uint32_t slot) {
+template <class Entity>
+void Presenter::forget(std::uint32_t slot) {
+  constexpr std::uint8_t kind = entity_kind<Entity>();
   if (slot >= told_[kind].size() || !told_[kind][slot].is_there) return;
   Told& known = told_[kind][slot];
   known.is_there = false;
   known.record.clear();
   out_.destroy(kind, {slot, known.generation});
-}
-
-template <class Entity>
-void Presenter::forget(std::uint32_t slot) {
-  forget(entity_kind<Entity>(), slot);
 }
 
 EntityChanges Presenter::present(const SceneChanges& changes) {
@@ -197,28 +194,41 @@ EntityChanges Presenter::present(const SceneChanges& changes) {
   assigned_.clear();
   for (const DrawnBody& body : changes.bodies.set) present_body(body);
   for (const auto& [body, articulate] : changes.memberships) tell(body, protocol::MembershipEntity{{}, articulate});
-  for (const DrawnTie& tie : changes.ties.set)
-    tell(tie.slot, protocol::TieEntity{{},
-                                       kind_of(tie.kind),
-                                       tie_styles_[static_cast<std::size_t>(tie.kind)],
-                                       size(std::max(tie.length, 0.0)),
-                                       anchored(tie.a),
-                                       anchored(tie.b)});
-  for (const DrawnJoint& joint : changes.joints.set)
-    tell(joint.slot,
-         protocol::JointEntity{{}, joint.kind, anchored(joint.a), anchored(joint.b), unit_axis(joint.axis)});
-  for (const DrawnNail& nail : changes.nails.set) tell(nail.slot, protocol::NailEntity{{}, anchored(nail.at)});
-  for (const DrawnParticleSet& set : changes.particle_sets.set)
-    tell(set.slot, protocol::ParticleSetEntity{{}, set.active, set.capacity});
+  for_each_simple_kind(changes, [&](const auto& items, auto entity_of) {
+    for (const auto& item : items.set) tell(item.slot, entity_of(item));
+  });
   if (statics_changed_) present_statics();
 
   for (const std::uint32_t slot : changes.bodies.gone) forget_body(slot);
-  for (const std::uint32_t slot : changes.ties.gone) forget<protocol::TieEntity>(slot);
-  for (const std::uint32_t slot : changes.joints.gone) forget<protocol::JointEntity>(slot);
-  for (const std::uint32_t slot : changes.nails.gone) forget<protocol::NailEntity>(slot);
-  for (const std::uint32_t slot : changes.particle_sets.gone) forget<protocol::ParticleSetEntity>(slot);
-  if (changes.is_whole) forget_unlisted();
+  if (changes.is_whole)
+    for (std::uint32_t slot = 0; slot < bodies_.size(); ++slot)
+      if (!told<protocol::BodyEntity>()[slot].is_listed) forget_body(slot);
+  for_each_simple_kind(changes, [&](const auto& items, auto entity_of) {
+    using Entity = decltype(entity_of(items.set.front()));
+    for (const std::uint32_t slot : items.gone) forget<Entity>(slot);
+    if (changes.is_whole)  // what is not in a complete list no longer exists
+      for (std::uint32_t slot = 0; slot < told<Entity>().size(); ++slot)
+        if (!told<Entity>()[slot].is_listed) forget<Entity>(slot);
+  });
   return std::move(out_);
+}
+
+template <class Visit>
+void Presenter::for_each_simple_kind(const SceneChanges& changes, Visit visit) const {
+  visit(changes.ties, [&](const DrawnTie& tie) {
+    return protocol::TieEntity{{},
+                               kind_of(tie.kind),
+                               tie_styles_[static_cast<std::size_t>(tie.kind)],
+                               size(std::max(tie.length, 0.0)),
+                               anchored(tie.a),
+                               anchored(tie.b)};
+  });
+  visit(changes.joints, [&](const DrawnJoint& joint) {
+    return protocol::JointEntity{{}, joint.kind, anchored(joint.a), anchored(joint.b), unit_axis(joint.axis)};
+  });
+  visit(changes.nails, [&](const DrawnNail& nail) { return protocol::NailEntity{{}, anchored(nail.at)}; });
+  visit(changes.particle_sets,
+        [](const DrawnParticleSet& set) { return protocol::ParticleSetEntity{{}, set.active, set.capacity}; });
 }
 
 void Presenter::present_body(const DrawnBody& body) {
@@ -251,16 +261,6 @@ void Presenter::present_statics() {
   for (auto slot = static_cast<std::uint32_t>(statics_.size()); slot < told<protocol::StaticShapeEntity>().size();
        ++slot)
     forget<protocol::StaticShapeEntity>(slot);
-}
-
-/// After a complete list: entities that are not in it no longer exist. Styles and static shapes are not in such a list.
-void Presenter::forget_unlisted() {
-  for (std::uint32_t slot = 0; slot < bodies_.size(); ++slot)
-    if (!told<protocol::BodyEntity>()[slot].is_listed) forget_body(slot);
-  for (const std::uint8_t kind : {entity_kind<protocol::TieEntity>(), entity_kind<protocol::JointEntity>(),
-                                  entity_kind<protocol::NailEntity>(), entity_kind<protocol::ParticleSetEntity>()})
-    for (std::uint32_t slot = 0; slot < told_[kind].size(); ++slot)
-      if (!told_[kind][slot].is_listed) forget(kind, slot);
 }
 
 std::optional<BodyId> Presenter::body(protocol::Id id) const {

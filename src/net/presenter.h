@@ -71,17 +71,18 @@ class Presenter {
   void tell(std::uint32_t slot, Entity entity, bool is_other = false);
   template <class Entity>
   void forget(std::uint32_t slot);
-  void forget(std::uint8_t kind, std::uint32_t slot);
   template <class Entity>
   std::vector<Told>& told() {
     return told_[entity_kind<Entity>()];
   }
 
+  /// visit(items, entity_of), items: the changes of things that are one entity each, entity_of(item): its record. All
+  /// kinds that the engine describes, except bodies, which have styles.
+  template <class Visit>
+  void for_each_simple_kind(const SceneChanges& changes, Visit visit) const;
   void present_body(const DrawnBody& body);
   void forget_body(std::uint32_t slot);
-  void present_tie(const DrawnTie& tie);
   void present_statics();
-  void forget_unlisted();
 
   std::uint32_t style_of(const DrawnBody& body, const Assignment* assignment);
   std::vector<protocol::Part> parts_of_solids(const DrawnBody& body, const Class* like);

@@ -20,7 +20,7 @@ from websockets.sync.client import connect
 
 PROTOCOL = Path(__file__).resolve().parents[2] / "protocol"
 SCHEMA = json.loads((PROTOCOL / "schema.json").read_text())
-ENTITIES = {kind: json.loads((PROTOCOL / "entities" / f"{kind}.json").read_text()) for kind in SCHEMA["entities"]}
+ENTITIES = {path.stem: json.loads(path.read_text()) for path in (PROTOCOL / "entities").glob("*.json")}
 STRUCTS = {entry["name"]: entry["fields"] for entry in SCHEMA["structs"]}
 TO_SERVER = {entry["name"]: entry for entry in SCHEMA["client_messages"]}
 TO_CLIENT = {entry["type"]: entry for entry in SCHEMA["server_messages"]}

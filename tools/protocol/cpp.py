@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The C++ side: one header."""
+"""The C++ side: one header, and one with golden values for its tests."""
 
 from __future__ import annotations
 
+from typing import Any
+
 from protocol import fragment
-from protocol.schema import INTEGERS, REALS, Schema, Struct, Type, pascal
+from protocol.schema import INTEGERS, REALS, Schema, SchemaError, Struct, Type, pascal
 
 TYPES = {
     "u8": "std::uint8_t",
@@ -157,3 +159,62 @@ def decoder(direction: str, messages: tuple[Struct, ...]) -> list[str]:
         "  }",
         "}",
     ]
+
+
+def make_vectors(schema: Schema, vectors: dict[str, Any]) -> str:
+    """The values of protocol/golden/vectors.json: each message by its name, and a record of each kind of entities."""
+    lines = [
+        "// SPDX-License-Identifier: Apache-2.0",
+        "#pragma once",
+        "",
+        "#include <iota_protocol.h>",
+        "",
+        "#include <map>",
+        "#include <string>",
+        "#include <variant>",
+        "",
+        "namespace iota::protocol {",
+    ]
+    messages = {message.name: message for message in schema.messages}
+    for sender in ("client", "server"):
+        lines += ["", f"inline const std::map<std::string, {pascal(sender)}Message> {sender}_vectors{{"]
+        for vector in vectors["good"]:
+            if vector["sender"] == sender:
+                value = struct_literal(messages[vector["message"]], vector["values"], schema)
+                lines.append(f'    {{"{vector["name"]}", {value}}},')
+        lines.append("};")
+    records = {vector["kind"]: vector["values"] for vector in vectors["entities"]}
+    lines += ["", "inline const EntityKinds entity_vectors{"]
+    for entity in schema.entities:
+        if entity.kind not in records:
+            raise SchemaError(f"protocol/make_golden.py has no record of the kind {entity.kind!r}")
+        lines.append(f"    {struct_literal(entity, records[entity.kind], schema)},")
+    lines[-1] = lines[-1].removesuffix(",")
+    return "\n".join([*lines, "};", "", "}  // namespace iota::protocol", ""])
+
+
+def struct_literal(struct: Struct, values: dict[str, Any], schema: Schema) -> str:
+    if set(values) != {field.name for field in struct.fields}:
+        raise SchemaError(f"protocol/make_golden.py: {struct.name} has other fields than {', '.join(values)}")
+    fields = ", ".join(literal(field.type, values[field.name], schema) for field in struct.fields)
+    return f"{pascal(struct.name)}{{{fields}}}"
+
+
+def literal(type: Type, value: Any, schema: Schema) -> str:
+    if type.kind == "struct":
+        return struct_literal(schema.structs[type.struct], value, schema)
+    if type.kind in ("array", "bytes"):
+        item = Type("u8") if type.kind == "bytes" else type.element
+        return f"{type_name(type)}{{{', '.join(literal(item, each, schema) for each in value)}}}"
+    if type.kind == "string":
+        text = "".join(f"\\{byte:03o}" for byte in value.encode())
+        return f'std::string("{text}")'
+    if type.kind == "id":
+        return f"Id{{{value['slot']}U, {value['generation']}U}}"
+    if type.kind in ("vec3", "quat"):
+        return f"{type_name(type)}{{{', '.join(literal(Type('f32'), each, schema) for each in value)}}}"
+    if type.kind == "bool":
+        return "true" if value else "false"
+    if type.kind in REALS:
+        return f"{float(value)!r}{'F' if type.kind == 'f32' else ''}"
+    return f"{type_name(type)}{{{value}U{'LL' if type.kind == 'u64' else ''}}}"

@@ -127,7 +127,7 @@ def read_schema(path: Path) -> Schema:
     )
     enums = {entry["name"]: read_enum(entry) for entry in data["enums"]}
     structs = {entry["name"]: read_struct(entry, enums) for entry in data["structs"]}
-    entities = tuple(read_entity(path.parent / "entities" / f"{kind}.json", enums) for kind in data["entities"])
+    entities = read_entities(path.parent / "entities", enums)
     client = tuple(read_message(entry, enums) for entry in data["client_messages"])
     server = tuple(read_message(entry, enums) for entry in data["server_messages"])
     schema = Schema(int(data["version"]), constants, enums, structs, entities, client, server)
@@ -197,9 +197,17 @@ def read_struct(entry: dict[str, Any], enums: dict[str, Enum]) -> Struct:
     return Struct(checked_name(entry.get("name"), "struct"), entry.get("doc", ""), read_fields(entry, enums))
 
 
-def read_entity(path: Path, enums: dict[str, Enum]) -> Struct:
+def read_entities(folder: Path, enums: dict[str, Enum]) -> tuple[Struct, ...]:
+    """The kinds of entities in the order in which their records are sent: what one refers to comes before it."""
+    entries = {path: json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json"))}
+    order = {path: entry.get("order") for path, entry in entries.items()}
+    if sorted(order.values(), key=str) != sorted(range(len(order)), key=str):
+        raise SchemaError(f"{folder.name}: the kinds must have the orders 0 to {len(order) - 1}, each once")
+    return tuple(read_entity(path, entries[path], enums) for path in sorted(entries, key=lambda path: order[path]))
+
+
+def read_entity(path: Path, entry: dict[str, Any], enums: dict[str, Enum]) -> Struct:
     """A kind of entities. Its records start with the id."""
-    entry = json.loads(path.read_text(encoding="utf-8"))
     kind = checked_name(entry.get("name"), path.name)
     if kind != path.stem:
         raise SchemaError(f"{path.name}: names the kind {kind!r}")
