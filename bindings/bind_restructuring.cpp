@@ -78,14 +78,6 @@ RestructureResult separate(const ParticleHandle& p, const ParticleHandle& q) {
   return {p.system_object, p.system, p.use().edits().separate(p.id, q.id)};
 }
 
-template <class HandleType, class Read>
-auto all_of(Read read) {
-  return [read](nb::handle_t<SystemObject> self) {
-    SystemObject* object = nb::inst_ptr<SystemObject>(self);
-    return wrap_all<HandleType>(nb::borrow(self), object, read(object->use()));
-  };
-}
-
 /// The ends of all cosmetic bonds.
 std::vector<std::pair<ParticleHandle, ParticleHandle>> cosmetic_lines(nb::handle_t<SystemObject> self) {
   SystemObject* object = nb::inst_ptr<SystemObject>(self);

@@ -31,6 +31,7 @@ void bind_recording(nb::module_&);
 void bind_system(nb::module_&);
 void bind_body(nb::module_&);
 void bind_particle(nb::module_&);
+void bind_angle_springs(nb::module_&);
 void bind_bonds(nb::module_&);
 void bind_laws(nb::module_&);
 void bind_fields(nb::module_&);
@@ -98,6 +99,15 @@ void def_identity(nb::class_<HandleType>& type) {
       .def_prop_ro(
           "slot", [](const HandleType& self) { return self.id.slot; },
           "Its number, as error texts and the page show it. Reused after it is destroyed; handles are not.");
+}
+
+/// A property of System: the handles of all ids that `read(engine)` lists.
+template <class HandleType, class Read>
+auto all_of(Read read) {
+  return [read](nb::handle_t<SystemObject> self) {
+    SystemObject* object = nb::inst_ptr<SystemObject>(self);
+    return wrap_all<HandleType>(nb::borrow(self), object, read(object->use()));
+  };
 }
 
 /// `alive` and `survivor`, for kinds that can be absorbed.

@@ -17,6 +17,7 @@ NB_MODULE(_core, module) {
   bind_particle(module);
   bind_laws(module);
   bind_bonds(module);
+  bind_angle_springs(module);
   bind_fields(module);
   bind_grip(module);
   bind_constraints(module);

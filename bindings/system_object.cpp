@@ -18,10 +18,6 @@ nb::object error_class(const char* name) { return nb::module_::import_("iota.err
   throw nb::python_error();
 }
 
-[[noreturn]] void raise_stale_as(const std::string& text, const nb::object& survivor) {
-  raise_object(error_class("StaleIdError")(text, survivor));
-}
-
 /// Ctrl-C and other signals, which are not errors of the function in which they arrive.
 bool is_signal(const nb::object& raised) { return !PyObject_IsInstance(raised.ptr(), PyExc_Exception); }
 
@@ -47,6 +43,10 @@ template <class HandleType>
 }
 
 }  // namespace
+
+void raise_stale_as(const std::string& text, const nb::object& survivor) {
+  raise_object(error_class("StaleIdError")(text, survivor));
+}
 
 void register_errors() {
   nb::register_exception_translator([](const std::exception_ptr& pointer, void*) {
@@ -74,12 +74,6 @@ void raise_stale(const BondHandle& handle) {
       engine_text([&] { (void)handle.system->engine.bonds().is_active(handle.id); }, name_of(handle.id) + " is gone"),
       nb::none());
 }
-
-void raise_stale(const LawHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
-void raise_stale(const CosmeticBondHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
-void raise_stale(const GroupHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
-void raise_stale(const FieldHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
-void raise_stale(const PairsHandle& handle) { raise_stale_as(name_of(handle.id) + " is gone", nb::none()); }
 
 void raise_stale(const GripHandle& handle) {
   raise_stale_as(name_of(handle.id) + " was let go, or its body is gone", nb::none());

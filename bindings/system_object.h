@@ -129,22 +129,11 @@ using GripHandle = Handle<GripId>;
 using EmitterHandle = Handle<EmitterId>;
 using ConstraintHandle = Handle<ConstraintId>;
 using CosmeticBondHandle = Handle<CosmeticBondId>;
+using AngleSpringHandle = Handle<AngleSpringId>;
 
-constexpr const char* kind_name(BodyId) { return "body"; }
-constexpr const char* kind_name(ParticleId) { return "particle"; }
-constexpr const char* kind_name(BondId) { return "bond"; }
-constexpr const char* kind_name(EmitterId) { return "emitter"; }
-constexpr const char* kind_name(LawId) { return "law"; }
-constexpr const char* kind_name(GroupId) { return "group"; }
-constexpr const char* kind_name(FieldId) { return "field"; }
-constexpr const char* kind_name(PairsId) { return "pairwise force"; }
-constexpr const char* kind_name(GripId) { return "grip"; }
-constexpr const char* kind_name(CosmeticBondId) { return "cosmetic bond"; }
-constexpr const char* kind_name(ConstraintId) { return "constraint"; }
-
-template <class IdType>
-std::string name_of(IdType id) {
-  return std::string(kind_name(id)) + " " + std::to_string(id.slot);
+template <class Kind>
+std::string name_of(Id<Kind> id) {
+  return std::string(Kind::name) + " " + std::to_string(id.slot);
 }
 
 /// Translates the engine's StaleIdError into Python's.
@@ -165,16 +154,17 @@ Handle<IdType> sibling(const Other& handle, IdType id) {
   return {handle.system_object, handle.system, id};
 }
 
+/// Throws StaleIdError, which says what became of the object of a handle.
+[[noreturn]] void raise_stale_as(const std::string& text, const nb::object& survivor);
+template <class IdType>
+[[noreturn]] void raise_stale(const Handle<IdType>& handle) {
+  raise_stale_as(name_of(handle.id) + " is gone", nb::none());
+}
 [[noreturn]] void raise_stale(const BodyHandle&);
 [[noreturn]] void raise_stale(const ParticleHandle&);
 [[noreturn]] void raise_stale(const BondHandle&);
-[[noreturn]] void raise_stale(const LawHandle&);
-[[noreturn]] void raise_stale(const GroupHandle&);
-[[noreturn]] void raise_stale(const FieldHandle&);
-[[noreturn]] void raise_stale(const PairsHandle&);
 [[noreturn]] void raise_stale(const GripHandle&);
 [[noreturn]] void raise_stale(const EmitterHandle&);
-[[noreturn]] void raise_stale(const CosmeticBondHandle&);
 [[noreturn]] void raise_stale(const ConstraintHandle&);
 
 template <class Spec>

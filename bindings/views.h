@@ -10,6 +10,7 @@ inline Bodies view_of(System& system, BodyId) { return system.bodies(); }
 inline Particles view_of(System& system, ParticleId) { return system.particles(); }
 inline Bonds view_of(System& system, BondId) { return system.bonds(); }
 inline CosmeticBonds view_of(System& system, CosmeticBondId) { return system.cosmetic_bonds(); }
+inline AngleSprings view_of(System& system, AngleSpringId) { return system.angle_springs(); }
 inline Joints view_of(System& system, ConstraintId) { return system.joints(); }
 inline Laws view_of(System& system, LawId) { return system.laws(); }
 inline Fields view_of(System& system, FieldId) { return system.fields(); }

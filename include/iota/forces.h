@@ -16,7 +16,10 @@
 /// Laws of force and their uses. `docs/forces.md` lists the cost of each way to write a law.
 namespace iota {
 
-using LawId = Id<struct LawTag>;
+struct LawTag {
+  static constexpr const char* name = "law";
+};
+using LawId = Id<LawTag>;
 
 inline constexpr int max_law_parameters = 8;
 
@@ -91,9 +94,18 @@ struct SharedLaw {
 
 using BondLaw = std::variant<SpringLaw, DragLaw, ScriptedLaw, SharedLaw>;
 
-using GroupId = Id<struct GroupTag>;
-using FieldId = Id<struct FieldTag>;
-using PairsId = Id<struct PairsTag>;
+struct GroupTag {
+  static constexpr const char* name = "group";
+};
+using GroupId = Id<GroupTag>;
+struct FieldTag {
+  static constexpr const char* name = "field";
+};
+using FieldId = Id<FieldTag>;
+struct PairsTag {
+  static constexpr const char* name = "pairwise force";
+};
+using PairsId = Id<PairsTag>;
 
 inline constexpr int max_field_parameters = 12;
 inline constexpr int max_groups = 32;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iota/angle_springs.h>
 #include <iota/bodies.h>
 #include <iota/bonds.h>
 #include <iota/constraints.h>
@@ -84,6 +85,7 @@ class System {
   Particles particles() { return Particles(*core_); }
   Bonds bonds() { return Bonds(*core_); }
   CosmeticBonds cosmetic_bonds() { return CosmeticBonds(*core_); }
+  AngleSprings angle_springs() { return AngleSprings(*core_); }
   Joints joints() { return Joints(*core_); }
   Laws laws() { return Laws(*core_); }
   Fields fields() { return Fields(*core_); }
@@ -100,6 +102,7 @@ class System {
   const Particles particles() const { return Particles(*core_); }
   const Bonds bonds() const { return Bonds(*core_); }
   const CosmeticBonds cosmetic_bonds() const { return CosmeticBonds(*core_); }
+  const AngleSprings angle_springs() const { return AngleSprings(*core_); }
   const Joints joints() const { return Joints(*core_); }
   const Laws laws() const { return Laws(*core_); }
   const Fields fields() const { return Fields(*core_); }

@@ -18,6 +18,7 @@ from collections.abc import Sequence
 
 from iota import builder, looks, types
 from iota._core import (
+    AngleSpring,
     Articulate,
     Body,
     BodyArray,
@@ -64,6 +65,7 @@ from iota.world import Camera, Event, Server, World
 Sequence.register(Vec3)
 
 __all__ = [
+    "AngleSpring",
     "Articulate",
     "Body",
     "BodyArray",

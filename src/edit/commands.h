@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "edit/angle_springs.h"
 #include "edit/attributes.h"
 #include "edit/batches.h"
 #include "edit/bodies.h"
@@ -129,7 +130,10 @@ using Command = std::variant<
     CreateTackle,
     SetCompliance,
     SetTolerance,
-    SetBudget>;
+    SetBudget,
+    CreateAngleSpring,
+    SetAngleSpring,
+    Destroy<AngleSpringId>>;
 // clang-format on
 
 /// Whether a command may be requested during a step; it is then applied right after it. Such a command has its name for
@@ -137,7 +141,7 @@ using Command = std::variant<
 template <class C>
 inline constexpr bool is_queueable = requires { C::queued_as; };
 
-/// Whether a command does not change the energy of the system, so that no energy has to be summed up: hands do work
+/// Whether a command does not change the energy of the system, so that no energy has to be summed up: grips do work
 /// only in steps.
 template <class C>
 inline constexpr bool keeps_energy = requires { C::keeps_energy; };

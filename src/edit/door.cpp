@@ -129,7 +129,7 @@ namespace iota {
 
 namespace {
 
-constexpr Seal recording_seal{{'I', 'O', 'T', 'A', 'R', 'E', 'C', '5'}, "recording"};
+constexpr Seal recording_seal{{'I', 'O', 'T', 'A', 'R', 'E', 'C', '6'}, "recording"};
 
 }  // namespace
 

@@ -9,42 +9,42 @@ namespace iota::edit {
 
 namespace {
 
-constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '8'}, "snapshot"};
+constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '9'}, "snapshot"};
 
 /// `survivor()`: the object that absorbed it, called only for a stale id.
-template <class Table, class IdType, class Survivor>
-std::uint32_t slot_of(const Table& table, std::string_view kind, IdType id, Survivor survivor) {
+template <class Table, class Kind, class Survivor>
+std::uint32_t slot_of(const Table& table, Id<Kind> id, Survivor survivor) {
+  const std::string_view kind = Kind::name;
   if (table.contains(id)) return id.slot;
   if (!id) throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
-  if (const std::optional<IdType> other = survivor())
+  if (const std::optional<Id<Kind>> other = survivor())
     throw StaleIdError(text(kind, " ", id.slot, " is gone: it was absorbed by ", kind, " ", other->slot));
   throw StaleIdError(text(kind, " ", id.slot, " is gone: it was destroyed"));
 }
 
-template <class Table, class IdType>
-std::uint32_t slot_of(const Table& table, std::string_view kind, IdType id) {
-  return slot_of(table, kind, id, [] { return std::optional<IdType>(); });
+template <class Table, class Kind>
+std::uint32_t slot_of(const Table& table, Id<Kind> id) {
+  return slot_of(table, id, [] { return std::optional<Id<Kind>>(); });
 }
 
 }  // namespace
 
 std::uint32_t require(const model::Model& m, BodyId id) {
-  return slot_of(m.bodies, "body", id, [&] { return m.survivor_of(id); });
+  return slot_of(m.bodies, id, [&] { return m.survivor_of(id); });
 }
 std::uint32_t require(const model::Model& m, ParticleId id) {
-  return slot_of(m.particles, "particle", id, [&] { return m.survivor_of(id); });
+  return slot_of(m.particles, id, [&] { return m.survivor_of(id); });
 }
-std::uint32_t require(const model::Model& m, BondId id) { return slot_of(m.bonds, "bond", id); }
-std::uint32_t require(const model::Model& m, CosmeticBondId id) {
-  return slot_of(m.cosmetic_bonds, "cosmetic bond", id);
-}
-std::uint32_t require(const model::Model& m, LawId id) { return slot_of(m.laws, "law", id); }
-std::uint32_t require(const model::Model& m, GroupId id) { return slot_of(m.groups, "group", id); }
-std::uint32_t require(const model::Model& m, FieldId id) { return slot_of(m.fields, "field", id); }
-std::uint32_t require(const model::Model& m, PairsId id) { return slot_of(m.pairs, "pairwise force", id); }
-std::uint32_t require(const model::Model& m, ConstraintId id) { return slot_of(m.constraints, "constraint", id); }
-std::uint32_t require(const model::Model& m, GripId id) { return slot_of(m.grips, "grip", id); }
-std::uint32_t require(const model::Model& m, EmitterId id) { return slot_of(m.emitters, "emitter", id); }
+std::uint32_t require(const model::Model& m, BondId id) { return slot_of(m.bonds, id); }
+std::uint32_t require(const model::Model& m, CosmeticBondId id) { return slot_of(m.cosmetic_bonds, id); }
+std::uint32_t require(const model::Model& m, AngleSpringId id) { return slot_of(m.angle_springs, id); }
+std::uint32_t require(const model::Model& m, LawId id) { return slot_of(m.laws, id); }
+std::uint32_t require(const model::Model& m, GroupId id) { return slot_of(m.groups, id); }
+std::uint32_t require(const model::Model& m, FieldId id) { return slot_of(m.fields, id); }
+std::uint32_t require(const model::Model& m, PairsId id) { return slot_of(m.pairs, id); }
+std::uint32_t require(const model::Model& m, ConstraintId id) { return slot_of(m.constraints, id); }
+std::uint32_t require(const model::Model& m, GripId id) { return slot_of(m.grips, id); }
+std::uint32_t require(const model::Model& m, EmitterId id) { return slot_of(m.emitters, id); }
 
 void Editor::mark_velocity_dirty(std::uint32_t particle) {
   model::Articulate& a = model.articulates[model.bodies[model.particles[particle].body].articulate];

@@ -42,6 +42,7 @@ std::uint32_t require(const model::Model&, BodyId);
 std::uint32_t require(const model::Model&, ParticleId);
 std::uint32_t require(const model::Model&, BondId);
 std::uint32_t require(const model::Model&, CosmeticBondId);
+std::uint32_t require(const model::Model&, AngleSpringId);
 std::uint32_t require(const model::Model&, LawId);
 std::uint32_t require(const model::Model&, GroupId);
 std::uint32_t require(const model::Model&, FieldId);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "ingredient/angle_springs.h"
 #include "ingredient/bonds.h"
 #include "ingredient/closings.h"
 #include "ingredient/cosmetic_bonds.h"
@@ -41,7 +42,8 @@ using Ingredients = std::tuple<  //
     Emitters,                    //
     Grips,                       //
     Names,                       //
-    CosmeticBonds>;
+    CosmeticBonds,               //
+    AngleSprings>;
 
 template <class List>
 struct TypesOf;

@@ -15,11 +15,6 @@ Audit::Audit(const Structure& model)
       in_articulate_(model.articulates.slot_count(), 0),
       connected_(model.bodies.slot_count()) {}
 
-void Audit::require_ends(const char* what, std::uint32_t slot, const Ends& ends) {
-  require(model_.particles.is_alive(ends.p) && model_.particles.is_alive(ends.q) && ends.p != ends.q, what, " ", slot,
-          " joins ", ends.p, " and ", ends.q);
-}
-
 void Audit::require_group(const char* what, std::uint32_t slot, std::uint32_t group) {
   require(group == none || model_.groups.is_alive(group), what, " ", slot, " acts on no living group");
 }

@@ -50,7 +50,9 @@ class Audit {
       require(owners.is_alive(slot), what, " of ", slot, ", which does not live");
     });
   }
-  void require_ends(const char* what, std::uint32_t slot, const Ends&);
+  /// They are particles, each another one.
+  template <class T>
+  void require_ends(const char* what, std::uint32_t slot, const T& item);
   /// Every end of an item is only in the list of its particle.
   template <class T, class IdType>
   void require_listed(const char* what, const EndTable<T, IdType>& items);
@@ -110,16 +112,26 @@ void Audit::check_lists(const char* what, const std::vector<std::uint32_t>& firs
 template <class T, class IdType>
 void Audit::check_ends(const char* what, const EndTable<T, IdType>& items) {
   items.for_each([&](std::uint32_t slot, const T& item) {
-    require(model_.particles.is_alive(item.p) && model_.particles.is_alive(item.q), what, " ", slot, " joins ", item.p,
-            " and ", item.q);
+    for (std::uint32_t end = 0; end < T::count; ++end)
+      require(model_.particles.is_alive(item.at(end)), what, " ", slot, " joins ", item.at(end),
+              ", which does not live");
   });
   std::vector<std::uint32_t> firsts;
   items.heads.for_each([&](std::uint32_t, const ListHead& head) { firsts.push_back(head.first); });
   check_lists(
-      text(what, "s").c_str(), firsts, 2 * items.slot_count(),
-      [&](std::uint32_t link) { return items.is_alive(link / 2); },
-      [&](std::uint32_t link) { return items[link / 2].next[link % 2]; },
-      [&](std::uint32_t link) { return items[link / 2].previous[link % 2]; });
+      text(what, "s").c_str(), firsts, T::count * items.slot_count(),
+      [&](std::uint32_t link) { return items.is_alive(link / T::count); },
+      [&](std::uint32_t link) { return items[link / T::count].next[link % T::count]; },
+      [&](std::uint32_t link) { return items[link / T::count].previous[link % T::count]; });
+}
+
+template <class T>
+void Audit::require_ends(const char* what, std::uint32_t slot, const T& item) {
+  for (std::uint32_t end = 0; end < T::count; ++end) {
+    require(model_.particles.is_alive(item.at(end)), what, " ", slot, " joins ", item.at(end), ", which does not live");
+    for (std::uint32_t other = 0; other < end; ++other)
+      require(item.at(other) != item.at(end), what, " ", slot, " joins ", item.at(end), " to itself");
+  }
 }
 
 template <class T, class IdType>
@@ -127,13 +139,13 @@ void Audit::require_listed(const char* what, const EndTable<T, IdType>& items) {
   require_owners("lists", items.heads, model_.particles);
   std::uint32_t listed = 0;
   items.heads.for_each([&](std::uint32_t slot, const ListHead& head) {
-    for (std::uint32_t link = head.first; link != none; link = items[link / 2].next[link % 2]) {
-      const bool good = items.is_alive(link / 2) && items[link / 2].at(link % 2) == slot;
-      require(good, "particle ", slot, " lists ", what, " ", link / 2, ", which does not end there");
-      if (!good || ++listed > 2 * items.size()) return;
+    for (std::uint32_t link = head.first; link != none; link = items[link / T::count].next[link % T::count]) {
+      const bool good = items.is_alive(link / T::count) && items[link / T::count].at(link % T::count) == slot;
+      require(good, "particle ", slot, " lists ", what, " ", link / T::count, ", which does not end there");
+      if (!good || ++listed > T::count * items.size()) return;
     }
   });
-  require(listed == 2 * items.size(), "the particles list ", listed, " ends of ", items.size(), " ", what, "s");
+  require(listed == T::count * items.size(), "the particles list ", listed, " ends of ", items.size(), " ", what, "s");
 }
 
 }  // namespace iota::model

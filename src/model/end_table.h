@@ -11,13 +11,25 @@ namespace iota::model {
 
 inline constexpr std::uint32_t none = 0xffffffff;
 
-/// Two particles joined by an item. Each of them has a list of all items that end at it. A link is slot * 2 + end: the
-/// end of the next item at this particle.
+/// Two particles joined by an item. Each of them has a list of all items that end at it. A link is slot * count + end:
+/// the end of the next item at this particle.
 struct Ends {
+  static constexpr std::uint32_t count = 2;
   std::uint32_t p = none, q = none;
-  std::array<std::uint32_t, 2> next{none, none}, previous{none, none};
+  std::array<std::uint32_t, count> next{none, none}, previous{none, none};
 
   std::uint32_t at(std::uint32_t end) const { return end == 0 ? p : q; }
+  void set(std::uint32_t end, std::uint32_t particle) { (end == 0 ? p : q) = particle; }
+};
+
+/// The same with a third particle between the two.
+struct ThreeEnds {
+  static constexpr std::uint32_t count = 3;
+  std::array<std::uint32_t, count> particles{none, none, none};  ///< the middle one is the second
+  std::array<std::uint32_t, count> next{none, none, none}, previous{none, none, none};
+
+  std::uint32_t at(std::uint32_t end) const { return particles[end]; }
+  void set(std::uint32_t end, std::uint32_t particle) { particles[end] = particle; }
 };
 
 /// The head of the list of items at a particle.
@@ -25,11 +37,12 @@ struct ListHead {
   std::uint32_t first = none;
 };
 
-/// A table of items that join two particles (they inherit `Ends`), with the lists of the particles: visiting the items
-/// of one particle costs only their number.
+/// A table of items that join particles (they inherit `Ends` or `ThreeEnds`), with the lists of the particles: visiting
+/// the items of one particle costs only their number.
 template <class T, class IdType>
 class EndTable : private SlotTable<T, IdType> {
   using Items = SlotTable<T, IdType>;
+  static constexpr std::uint32_t count = T::count;
 
  public:
   using Items::contains, Items::for_each, Items::id, Items::ids, Items::is_alive, Items::size, Items::slot_count;
@@ -38,11 +51,11 @@ class EndTable : private SlotTable<T, IdType> {
   /// Returns the slot.
   std::uint32_t create(const T& item) {
     const std::uint32_t slot = Items::create(item).slot;
-    for (const std::uint32_t end : {0u, 1u}) link(slot, end);
+    for (std::uint32_t end = 0; end < count; ++end) link(slot, end);
     return slot;
   }
   void destroy(std::uint32_t slot) {
-    for (const std::uint32_t end : {0u, 1u}) unlink(slot, end);
+    for (std::uint32_t end = 0; end < count; ++end) unlink(slot, end);
     Items::destroy(slot);
   }
 
@@ -51,19 +64,21 @@ class EndTable : private SlotTable<T, IdType> {
   template <class Visit>
   void for_each_of(std::uint32_t particle, Visit visit) const {
     for (std::uint32_t link = heads[particle].first, next; link != none; link = next)
-      next = (*this)[link / 2].next[link % 2], visit(link / 2);
+      next = (*this)[link / count].next[link % count], visit(link / count);
   }
   /// The items of q become p's: moved(slot). Those that would join p to itself go to drop(slot), which destroys them.
   template <class Moved, class Drop>
   void redirect(std::uint32_t q, std::uint32_t p, Moved moved, Drop drop) {
     while (heads.has(q)) {
-      const std::uint32_t slot = heads[q].first / 2, end = heads[q].first % 2;
-      if ((*this)[slot].at(1 - end) == p) {
+      const std::uint32_t slot = heads[q].first / count, end = heads[q].first % count;
+      bool has_p = false;
+      for (std::uint32_t other = 0; other < count; ++other) has_p = has_p || (*this)[slot].at(other) == p;
+      if (has_p) {
         drop(slot);
         continue;
       }
       unlink(slot, end);
-      (end == 0 ? (*this)[slot].p : (*this)[slot].q) = p;
+      (*this)[slot].set(end, p);
       link(slot, end);
       moved(slot);
     }
@@ -81,18 +96,18 @@ class EndTable : private SlotTable<T, IdType> {
  private:
   /// Puts one end of an item at the front of its particle's list.
   void link(std::uint32_t slot, std::uint32_t end) {
-    Ends& item = (*this)[slot];
+    T& item = (*this)[slot];
     std::uint32_t& first = heads.make(item.at(end)).first;
     item.next[end] = first, item.previous[end] = none;
-    if (first != none) (*this)[first / 2].previous[first % 2] = 2 * slot + end;
-    first = 2 * slot + end;
+    if (first != none) (*this)[first / count].previous[first % count] = count * slot + end;
+    first = count * slot + end;
   }
   void unlink(std::uint32_t slot, std::uint32_t end) {
-    const Ends& item = (*this)[slot];
+    const T& item = (*this)[slot];
     const std::uint32_t before = item.previous[end], after = item.next[end];
-    if (after != none) (*this)[after / 2].previous[after % 2] = before;
+    if (after != none) (*this)[after / count].previous[after % count] = before;
     if (before != none)
-      (*this)[before / 2].next[before % 2] = after;
+      (*this)[before / count].next[before % count] = after;
     else if (after != none)
       heads.at(item.at(end)).first = after;
     else

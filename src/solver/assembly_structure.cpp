@@ -98,6 +98,14 @@ class Near {
   std::vector<Mark> mark_;
 };
 
+/// Largest distance between the points of an arm, m.
+double calc_extent(const ForceArm& arm, const Vec3* x) {
+  double extent = 0;
+  for (std::uint32_t i = 0; i < arm.count; ++i)
+    for (std::uint32_t j = 0; j < i; ++j) extent = std::max(extent, norm(x[arm.nodes[i]] - x[arm.nodes[j]]));
+  return extent;
+}
+
 /// Mean length of the bodies' rods; joints and curves have their own lengths. Without rods, of the forces between
 /// points; else 1 m.
 double mean_reference_length(const Problem& problem) {
@@ -107,7 +115,7 @@ double mean_reference_length(const Problem& problem) {
   if (count == 0)
     problem.for_each_force_pool([&](const auto& pool) {
       for (const auto& f : pool.items)
-        if (f.arm.is_internal()) sum += norm(f.arm.value(problem.position.data())), ++count;
+        if (f.arm.is_internal()) sum += calc_extent(f.arm, problem.position.data()), ++count;
     });
   return sum > 0 ? sum / static_cast<double>(count) : 1;
 }

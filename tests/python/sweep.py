@@ -36,6 +36,7 @@ class Scene:
         for place in ((0, 0, -3), (1, 0, -3), (0, 1, -3), (1, 1, -3)):
             self.plate.particle(place, mass=0.5)
         self.point = s.body().particle((3, 3, 3))
+        self.bend = s.angle_spring(self.p, self.q, self.point, 2.0, 0.1)
         self.line = s.cosmetic_bond(*self.plate.particles[:2])
         self.spring = s.bond(self.p, self.plate.particles[0], "spring", stiffness=50, damping=1)
         self.script = s.bond(self.q, self.corner, lambda bond: bond.direction * 0.5)
@@ -126,6 +127,10 @@ def calls(c: Scene) -> dict[str, Call]:
         "combine over": (c.point.combine, {"q": c.plate.particles[0], "over": 0.2}),
         "combine bodies": (c.rods[0].combine, {"other": c.rods[1]}),
         "separate": (c.p.separate, {"q": c.rods[1].particles[0]}),
+        "angle_spring": (
+            s.angle_spring,
+            {"p": c.p, "middle": c.q, "q": c.point, "stiffness": 2.0, "damping": 0.1, "rest": 1.0},
+        ),
         "cosmetic_bond": (s.cosmetic_bond, {"p": c.plate.particles[0], "q": c.plate.particles[1]}),
         "spring": (
             lambda p, q, stiffness, damping, length: s.bond(
@@ -282,13 +287,15 @@ def calls(c: Scene) -> dict[str, Call]:
     for name, value in (("rest_after", 1.0), ("rest_speed", 0.01)):
         table[f"System.{name}"] = (set_member(name), {"of": s, "value": value})
     table["emitter.rate"] = (set_member("rate"), {"of": c.fountain, "value": 20.0})
+    for name, value in (("stiffness", 3.0), ("damping", 0.2), ("rest", 2.0)):
+        table[f"angle_spring.{name}"] = (set_member(name), {"of": c.bend, "value": value})
     table["spring.break_force"] = (set_member("break_force"), {"of": c.spring, "value": 100.0})
     for name, thing in (("field", c.well), ("pair_force", c.pair_force), ("emitter", c.fountain), ("bond", c.written)):
         table[f"{name}.active"] = (set_member("active"), {"of": thing, "value": False})
     table["Bond.active"] = (set_member("active"), {"of": c.spring, "value": False})
     table["Constraint.active"] = (set_member("active"), {"of": c.hinge, "value": False})
     things = {
-        "body": c.box, "particle": c.p, "bond": c.spring, "cosmetic_bond": c.line, "grip": c.grip, "constraint": c.hinge,
+        "body": c.box, "particle": c.p, "bond": c.spring, "cosmetic_bond": c.line, "angle_spring": c.bend, "grip": c.grip, "constraint": c.hinge,
         "field": c.well, "pair_force": c.pair_force, "emitter": c.fountain, "law": c.unused_law, "group": c.nobody,
     }  # fmt: skip
     for name in things:
@@ -297,7 +304,7 @@ def calls(c: Scene) -> dict[str, Call]:
 
 
 OTHERS = (
-    iota.Bond, iota.Grip, iota.CosmeticBond, iota.Constraint, iota.Field, iota.PairForce, iota.Emitter, iota.Law, iota.Group
+    iota.AngleSpring, iota.Bond, iota.Grip, iota.CosmeticBond, iota.Constraint, iota.Field, iota.PairForce, iota.Emitter, iota.Law, iota.Group
 )  # fmt: skip
 HUGE = [1e300, -1e300, 1e12, 1e-12, 1e-300]
 

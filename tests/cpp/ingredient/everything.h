@@ -25,7 +25,7 @@ inline Model model_of(System& system) {
 /// One of everything that a system can hold, and the slots of what the tests damage; `fill` puts it into an empty system.
 struct Everything {
   std::uint32_t loner, hinged, hinge_partner, inner, corner, rod, corners_body, box;
-  std::uint32_t bond, scripted, cosmetic, joint, grip, field, pairs;
+  std::uint32_t bond, scripted, cosmetic, angle_spring, joint, grip, field, pairs;
   Model model;
 
   Everything() {
@@ -62,6 +62,7 @@ struct Everything {
     const ParticleId middle = system.particles().create(four, {0.3, 5.3, 0});
     inner = slot(middle), corner = slot(corners[0]), corners_body = slot(four);
     cosmetic = slot(system.cosmetic_bonds().create(corners[0], corners[1]));
+    angle_spring = slot(system.angle_springs().create(alone, corners[3], upper[2], {.stiffness = 1}));
     const GroupId group = system.groups().create("corners");
     system.groups().add(group, corners[0]);
     field = slot(system.fields().create("fx = m", {.group = group}));
