@@ -90,6 +90,37 @@ def test_folders_of_cpp_tests_are_those_of_the_sources() -> None:
     assert folders(ROOT / "tests" / "cpp", "*.cpp") - others <= folders(ROOT / "src", "*.h")
 
 
+# Sources that only tests of a whole system reach. The list may only become shorter.
+WITHOUT_TEST = set(
+    """
+    edit/attributes edit/bodies edit/body_forces edit/bonds edit/emitters edit/fields
+    edit/grips edit/laws edit/nails edit/settings expression/formula expression/parser held/bond_batches
+    held/particle_sets ingredient/cosmetic_bonds ingredient/fields ingredient/island_nodes
+    ingredient/joint_readings ingredient/model ingredient/nails ingredient/names ingredient/scene_view
+    island/free_particles island/island neighbors/pair_list net/connection read/attributes read/poses shape/mesh
+    solver/diagnosis solver/general/dense solver/general/kinsol solver/general/newton_raphson
+    solver/sparse/block_pattern 
+    step/closings step/contacts
+""".split()
+)
+
+
+def test_every_cpp_source_has_a_test_of_its_name() -> None:
+    """src/solver/judge.cpp: tests/cpp/solver/judge_test.cpp; a part of a class, integrator_gaps.cpp: integrator_test.cpp.
+    The functions in src/system pass commands and readings on, which have their own tests."""
+    sources, tests = ROOT / "src", ROOT / "tests" / "cpp"
+    tested = {path.relative_to(tests).as_posix().removesuffix("_test.cpp") for path in tests.rglob("*_test.cpp")}
+
+    def is_tested(name: str) -> bool:
+        words = name.split("_")
+        return any("_".join(words[:count]) in tested for count in range(len(words), 0, -1))
+
+    names = [path.relative_to(sources).with_suffix("").as_posix() for path in sources.rglob("*.cpp")]
+    without = {name for name in names if not name.startswith("system/") and not is_tested(name)}
+    assert sorted(without - WITHOUT_TEST) == [], "write a test, tests/cpp/NAME_test.cpp"
+    assert sorted(WITHOUT_TEST - without) == [], "these have a test, or are gone: remove them from WITHOUT_TEST"
+
+
 def test_the_protocol_is_told_whole() -> None:
     told = (ROOT / "protocol" / "README.md").read_text()
     schema = json.loads((ROOT / "protocol" / "schema.json").read_text())

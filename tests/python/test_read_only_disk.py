@@ -19,7 +19,7 @@ SCRIPT = """
 from pathlib import Path
 import iota
 from iota.studies import chain, playground
-from iota.world.hands import Client
+from iota.world.clients import Client
 
 world = {build}
 for _ in range(20):

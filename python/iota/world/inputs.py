@@ -13,7 +13,7 @@ from iota.world.actions import Action
 from iota.world.callbacks import Guard, one_line
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event
-from iota.world.hands import alive
+from iota.world.clients import alive
 from iota.world.listeners import Drag, Listener
 from iota.world.state import State
 from iota.world.widgets import Widget
@@ -105,7 +105,7 @@ class Inputs:
             self._tell(listener, event, body, point=point, pointer=event.name, phase=phase, **ray)
 
     def _take_hands(self, event: InputEvent, body: Any) -> None:
-        """Hands of users, joins and leaves. The script's listeners are called; they may replace the pull of a hand."""
+        """Hands of users, joins and leaves. The script's listeners are called; they may replace the grip of a hand."""
         listeners, kind = self._state.listeners, event.kind
         if kind == "grab_start" and body is not None and body.kind != "inactive":
             drag = Drag(body, list(listeners.of("drag", body)))
@@ -150,7 +150,7 @@ class Inputs:
     def _move_hands(self, event: InputEvent, body: Any) -> None:
         """If the system refuses a request of a page, only that page gets an error, not the script."""
         try:
-            self._state.hands.take(event, body)
+            self._state.clients.take(event, body)
         except (ValueError, RuntimeError, LookupError) as error:
             title = "That cannot be held" if event.kind.startswith("grab") else "That cannot be done"
             self._state.notices.send(title, one_line(error), level="warning", client=event.client)
@@ -163,7 +163,7 @@ class Inputs:
             text = f"This world has no action {event.name!r}."
             state.notices.send("Unknown action", text, client=event.client)
             return
-        meant = state.hands.held(event.client) or state.hands.selected(event.client)
+        meant = state.clients.held(event.client) or state.clients.selected(event.client)
         bodies = named or ([] if meant is None else [meant])
         if not bodies and action.on == "body":
             hint = f"Hold or select something, then press {action.key}." if action.key else ""

@@ -24,7 +24,7 @@ class Publisher:
         self.url = server.url if is_alone else server.url_of(room.world)
         self.lan_url = server.lan_url("" if is_alone else room.world)
         state.notices.show, state.notices.forget = room.notice, room.forget_notice
-        state.hands.send_pulse = room.pulse
+        state.clients.send_pulse = room.pulse
         state.scene.tell_anew()
         state.things.tell_anew()
         state.is_changed = True
@@ -48,7 +48,7 @@ class Publisher:
 
     def close(self) -> None:
         self._state.notices.show = self._state.notices.forget = None
-        self._state.hands.send_pulse = None
+        self._state.clients.send_pulse = None
         self.room.close(self._state.system)
         if self._is_alone:
             self._server.close()

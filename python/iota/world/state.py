@@ -13,7 +13,7 @@ from iota.looks import Looks
 from iota.world.actions import Actions
 from iota.world.clock import Clock
 from iota.world.costs import Costs
-from iota.world.hands import Hands
+from iota.world.clients import Clients
 from iota.world.listeners import Listeners
 from iota.world.notices import Notices
 from iota.world.pictures import Pictures
@@ -49,7 +49,7 @@ class State:
 
     def __post_init__(self) -> None:
         self.scene = Scene()
-        self.hands = Hands(self.system)
+        self.clients = Clients(self.system)
         self.step_costs = StepCosts(self.costs)
 
     def thickness_of(self, body: Body) -> float:
@@ -61,9 +61,9 @@ class State:
             self._usual_thickness = usual_thickness(self.system)
         return self._usual_thickness if len(body.particles) > 1 else 2 * self._usual_thickness
 
-    def forget_hands(self) -> None:
+    def forget_holds(self) -> None:
         """Call it after the system was restored: ends all holds."""
-        self.hands.forget()
+        self.clients.forget()
         self.listeners.drags.clear()
         self.is_changed = True
 

@@ -81,7 +81,7 @@ class Stepper:
     def _step_system(self, dt: float) -> StepReport:
         """Times the step if its costs are shown."""
         state = self._state
-        is_shown = state.hands.is_profiled
+        is_shown = state.clients.is_profiled
         if not is_shown and state.step_costs.ms:
             state.step_costs.clear()
         is_due = state.costs.is_detailed or (is_shown and state.system.step_count % EVERY == 0)
@@ -121,7 +121,7 @@ class Stepper:
         if self._start is None:
             return
         self._state.system.restore(self._start)
-        self._state.forget_hands()
+        self._state.forget_holds()
         if self._floor is not None:
             self._floor.forget()
         self.schedule.rewind()

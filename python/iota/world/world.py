@@ -22,7 +22,7 @@ from iota.world.callbacks import Guard, Hook
 from iota.world.clock import Clock
 from iota.world.floor import level_below
 from iota.world.frames import turn_from_x
-from iota.world.hands import Client
+from iota.world.clients import Client
 from iota.world.inputs import Inputs
 from iota.world.interacting import Interacting
 from iota.world.lan import Lan
@@ -80,7 +80,7 @@ class World(Interacting):
         )
         self._stepper = Stepper(self._state, self._guard)
         self._inputs = Inputs(self._state, self._guard, self._stepper.step, self._stepper.reset)
-        self._state.hands.take_picture = self._take_picture
+        self._state.clients.take_picture = self._take_picture
         self._publisher: Publisher | None = None
         self._runner: int | None = None
         self._background: threading.Thread | None = None
@@ -217,15 +217,15 @@ class World(Interacting):
     @property
     def clients(self) -> list[Client]:
         """The open pages."""
-        return list(self._state.hands.clients.values())
+        return list(self._state.clients.by_id.values())
 
     def held(self, client: int | None = None) -> Body | None:
         """The body that a client holds, or that anyone holds."""
-        return self._state.hands.held(client)
+        return self._state.clients.held(client)
 
     def selected(self, client: int) -> Body | None:
         """The body that a client has selected."""
-        return self._state.hands.selected(client)
+        return self._state.clients.selected(client)
 
     # --- control --------------------------------------------------------------------------------------------------
 
@@ -292,7 +292,7 @@ class World(Interacting):
 
     def _moved_in_history(self, moved: bool) -> bool:
         if moved:
-            self._state.forget_hands()
+            self._state.forget_holds()
         return moved
 
     # --- running --------------------------------------------------------------------------------------------------
@@ -448,8 +448,8 @@ class World(Interacting):
         self._stopping = False
         if self._publisher is not None:
             for client in self.clients:
-                self._state.hands.let_go(client)
-            self._state.hands.clients.clear()
+                self._state.clients.let_go(client)
+            self._state.clients.by_id.clear()
             self._publisher.close()
             self._publisher = None
             atexit.unregister(self.close)

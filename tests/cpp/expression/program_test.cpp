@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "expression/functions.h"
 #include "expression/program.h"
+#include "expression/functions.h"
 
 #include <gtest/gtest.h>
 

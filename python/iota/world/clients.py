@@ -19,7 +19,7 @@ LONGEST_PULSE = 5.0  # s
 
 @dataclass
 class Hold:
-    """One hand of a client on a body."""
+    """One grab of a client while it lasts, and the grip that it makes."""
 
     body: Body
     grip: Grip | SimulatedGrip
@@ -28,7 +28,7 @@ class Hold:
 @dataclass
 class Client:
     """One open page. selected: its selection. is_profiling: it shows what the parts of a step cost. holds: by the page's
-    own number of the hand."""
+    own number of the grab."""
 
     id: int
     name: str = ""
@@ -77,28 +77,28 @@ def alive(body: Body | None) -> Body | None:
     return None if body is None else body.survivor
 
 
-class Hands:
+class Clients:
     """Turns input events into grips. Each holder has a grip of its own, so their forces are added."""
 
     def __init__(self, system: System) -> None:
         self._system = system
-        self.clients: dict[int, Client] = {}
+        self.by_id: dict[int, Client] = {}
         self.take_picture: TakePicture | None = None
         self.send_pulse: SendPulse | None = None
 
     def take(self, event: InputEvent, body: Any) -> None:
         """Handles an event of kind join, leave, select, profile or grab_*. body: of the event, if any."""
         if event.kind == "join":
-            self.clients[event.client] = Client(
+            self.by_id[event.client] = Client(
                 event.client, event.name, take_picture=self.take_picture, send_pulse=self.send_pulse
             )
             return
-        client = self.clients.get(event.client)
+        client = self.by_id.get(event.client)
         if client is None:
             return
         if event.kind == "leave":
             self.let_go(client)
-            del self.clients[event.client]
+            del self.by_id[event.client]
         elif event.kind == "select":
             client.selected = body
         elif event.kind == "profile":
@@ -115,17 +115,17 @@ class Hands:
     @property
     def is_profiled(self) -> bool:
         """Whether a client shows what the parts of a step cost."""
-        return any(client.is_profiling for client in self.clients.values())
+        return any(client.is_profiling for client in self.by_id.values())
 
     def held(self, client: int | None = None) -> Body | None:
         """The body held last by a client, or by anyone."""
-        clients = self.clients.values() if client is None else [c for c in self.clients.values() if c.id == client]
+        clients = self.by_id.values() if client is None else [c for c in self.by_id.values() if c.id == client]
         bodies = [alive(hold.body) for c in clients for hold in c.holds.values() if hold.grip.alive]
         return next((body for body in reversed(bodies) if body is not None), None)
 
     def selected(self, client: int) -> Body | None:
         """The body selected by a client."""
-        found = self.clients.get(client)
+        found = self.by_id.get(client)
         return None if found is None else alive(found.selected)
 
     def let_go(self, client: Client) -> None:
@@ -133,8 +133,8 @@ class Hands:
             self._release(client, hold)
 
     def forget(self) -> None:
-        """Call it after the system was restored: the restored grips belong to no present hand."""
-        for client in self.clients.values():
+        """Call it after the system was restored: the restored grips belong to no present grab."""
+        for client in self.by_id.values():
             client.holds.clear()
 
     def _grab(self, client: Client, event: InputEvent, body: Any) -> None:

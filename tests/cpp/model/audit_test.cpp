@@ -93,6 +93,13 @@ const std::vector<Damage> damages{
     {"bond", [](Everything& e) { e.model.bonds[e.bond].q = e.model.bonds[e.bond].p; }},
     {"cosmetic bond",
      [](Everything& e) { e.model.cosmetic_bonds[e.cosmetic].q = e.model.cosmetic_bonds[e.cosmetic].p; }},
+    {"angle spring",
+     [](Everything& e) {
+       auto& ends = e.model.angle_springs[e.angle_spring].particles;
+       ends[2] = ends[0];
+     }},
+    {"a number out of its range", [](Everything& e) { e.model.angle_springs[e.angle_spring].rest = 4; }},
+    {"ends of 1 angle springs", [](Everything& e) { e.model.angle_springs.heads.at(e.loner).first = none; }},
     {"a list of bonds begins at", [](Everything& e) { e.model.bonds.heads.make(e.corner).first = 2 * e.bond; }},
     {"which does not end there",
      [](Everything& e) { e.model.bonds.heads.make(e.corner).first = e.model.bonds.heads.at(e.loner).first; }},

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The order of elimination.
+#include "solver/sparse/pattern_builder.h"
+
+#include "tests/cpp/solver/sparse/dense_twin.h"
+
+namespace iota::solver {
+namespace {
+
+TEST(Ordering, of_a_chain_makes_no_fill) {
+  const std::uint32_t n = 1000;
+  CouplingGraph graph;
+  graph.node_count = n;
+  for (std::uint32_t i = 0; i + 1 < n; ++i) graph.add(1, std::array{i, i + 1});
+  BlockPattern pattern;
+  pattern.analyze(graph);
+  EXPECT_EQ(pattern.entries().size(), n - 1);
+  EXPECT_EQ(pattern.widest_front(), 3u);
+}
+
+TEST(Ordering, of_a_star_keeps_the_hub_for_last) {
+  std::vector<Edge> edges;
+  for (std::uint32_t i = 1; i <= 5000; ++i) edges.push_back({0, i});
+  const auto order = elimination_order(5001, edges, {});
+  EXPECT_GE(std::find(order.begin(), order.end(), 0u) - order.begin(), 4999);
+}
+
+TEST(Ordering, is_a_permutation_of_any_graph) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 100; ++round) {
+    const CouplingGraph graph = random_graph(random);
+    auto order = elimination_order(graph.node_count, graph.couplings, {});
+    std::sort(order.begin(), order.end());
+    for (std::uint32_t i = 0; i < graph.node_count; ++i) ASSERT_EQ(order[i], i);
+  }
+}
+
+TEST(Ordering, is_a_permutation_of_a_net_that_is_dissected) {
+  const CouplingGraph graph = net(60, true, false);
+  auto order = elimination_order(graph.node_count, graph.couplings, graph.places);
+  ASSERT_EQ(order.size(), graph.node_count);
+  std::sort(order.begin(), order.end());
+  for (std::uint32_t i = 0; i < graph.node_count; ++i) ASSERT_EQ(order[i], i);
+}
+
+// Fill of a net grows as n log n by theory (George 1973).
+TEST(Ordering, makes_fill_of_a_net_grow_as_n_log_n) {
+  for (const std::uint32_t side : {20, 40, 80, 120}) {
+    CouplingGraph graph = net(side, false, false);
+    BlockPattern pattern;
+    pattern.analyze(graph);
+    const double n = side * side;
+    EXPECT_LT(static_cast<double>(pattern.entries().size()), 2.1 * n * std::log2(n)) << side;
+  }
+}
+
+TEST(Ordering, keeps_going_where_all_places_are_one_and_all_nodes_couple) {
+  CouplingGraph graph;
+  graph.node_count = 300;
+  graph.places.assign(300, {1, 2, 3});
+  for (std::uint32_t i = 0; i < 300; ++i)
+    for (std::uint32_t j = 0; j < i; ++j) graph.couplings.push_back({j, i});
+  BlockPattern pattern;
+  pattern.analyze(graph);
+  EXPECT_EQ(pattern.entries().size(), 300u * 299u / 2);
+}
+
+}  // namespace
+}  // namespace iota::solver
