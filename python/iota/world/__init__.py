@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`World`: runs a system in real time and shows it on a page, where users act on it."""
 
-from iota.world.event import Event
 from iota.world.clients import Client
+from iota.world.event import Event
 from iota.world.scene import Camera
 from iota.world.server import Server
 from iota.world.summary import RunSummary

@@ -11,9 +11,9 @@ from iota._core import InputEvent, System
 from iota._protocol import ControlCommand, PointerKind
 from iota.world.actions import Action
 from iota.world.callbacks import Guard, one_line
+from iota.world.clients import alive
 from iota.world.clock import MAX_SPEED
 from iota.world.event import Event
-from iota.world.clients import alive
 from iota.world.listeners import Drag, Listener
 from iota.world.state import State
 from iota.world.widgets import Widget

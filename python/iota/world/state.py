@@ -11,9 +11,9 @@ import numpy as np
 from iota._core import Body, System
 from iota.looks import Looks
 from iota.world.actions import Actions
+from iota.world.clients import Clients
 from iota.world.clock import Clock
 from iota.world.costs import Costs
-from iota.world.clients import Clients
 from iota.world.listeners import Listeners
 from iota.world.notices import Notices
 from iota.world.pictures import Pictures

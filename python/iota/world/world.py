@@ -19,10 +19,10 @@ from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import Simulator
 from iota.world import options as run_options
 from iota.world.callbacks import Guard, Hook
+from iota.world.clients import Client
 from iota.world.clock import Clock
 from iota.world.floor import level_below
 from iota.world.frames import turn_from_x
-from iota.world.clients import Client
 from iota.world.inputs import Inputs
 from iota.world.interacting import Interacting
 from iota.world.lan import Lan
