@@ -16,19 +16,26 @@ import json
 import os
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
-from protocol.schema import SchemaError, read_schema
+from protocol.schema import Schema, SchemaError, read_schema
 
 from protocol import cpp, python, typescript
 
 SCHEMA = Path(__file__).resolve().parent.parent / "protocol" / "schema.json"
 VECTORS = SCHEMA.parent / "golden" / "vectors.json"
-MAKERS = {
+
+
+def make_cpp_vectors(schema: Schema) -> str:
+    return cpp.make_vectors(schema, json.loads(VECTORS.read_text(encoding="utf-8")))
+
+
+MAKERS: dict[str, Callable[[Schema], str]] = {
     "cpp": cpp.make,
     "ts": typescript.make,
     "python": python.make,
-    "cpp_vectors": lambda schema: cpp.make_vectors(schema, json.loads(VECTORS.read_text(encoding="utf-8"))),
+    "cpp_vectors": make_cpp_vectors,
 }
 
 
