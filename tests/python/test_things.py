@@ -99,6 +99,21 @@ def test_thousands_are_set_by_one_array(rod: iota.Body, run_world: Runner) -> No
         page.wait_for(lambda: page.entities["point_cloud"][0]["points"][0] > seen["points"][0] + 0.5)
 
 
+def test_a_script_may_navigate_by_keys_and_a_camera_of_its_own(rod: iota.Body, run_world: Runner) -> None:
+    world = iota.World(rod.system, camera=iota.Camera((0, 1, 4), (0, 1, 0)))
+
+    @world.on_key("w")
+    def nearer() -> None:
+        assert world.camera is not None
+        world.camera = iota.Camera((0, 1, world.camera.position[2] - 1), (0, 1, 0))
+
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.last["listens"]["keys"] == ["w"])
+        for z in (3, 2):
+            page.send("key", key="w", down=True)
+            page.wait_for(lambda z=z: page.last["world_settings"]["camera_position"] == (0, 1, z))
+
+
 def test_more_than_pages_take_is_refused_where_it_is_assigned(rod: iota.Body) -> None:
     world = iota.World(rod.system)
     many = np.zeros((1_100_000, 3), np.float32)
