@@ -57,7 +57,7 @@ INGREDIENTS = [
     Thing("closings", ("closing", "closings", "close over"), ENGINE),
     Thing("joints", ("constraint rows", "joint rows", "constraint data", "joint data", "joint", "joints"), ENGINE),
     Thing("surfaces", ("surface", "surface data", "surface spec", "placed surface"), ENGINE),
-    Thing("bonds in the step", ("spring", "springs", "drag", "radial", "radials", "implicit bond"), ENGINE),
+    Thing("bonds in the step", ("=spring", "=springs", "spring law", "spring force", "drag", "radial", "radials", "implicit bond"), ENGINE),
     Thing("held laws", ("held force", "held forces", "held law", "held laws", "held bond"), ENGINE),
     Thing("fields", ("=Field", "=fields", "=fields_", "field law", "field id", "create field", "set field", "field data",
                      "field options"), ENGINE),
@@ -68,6 +68,7 @@ INGREDIENTS = [
     Thing("oriented particles", ("orient", "oriented", "particle sets", "turn data", "set turn", "oriented particle"),
           ENGINE),
     Thing("emitters", ("emitter",), ENGINE),
+    Thing("angle springs", ("angle spring", "angle springs"), ENGINE),
 ]  # fmt: skip
 
 SHAPES = [
