@@ -95,11 +95,9 @@ WITHOUT_TEST = {
     f"{folder}/{name}"
     for folder, names in {
         "edit": "attributes bodies body_forces bonds emitters fields grips laws nails settings",
-        "expression": "formula parser",
         "held": "bond_batches particle_sets",
         "ingredient": "cosmetic_bonds fields island_nodes joint_readings model nails names scene_view",
-        "island": "free_particles island",
-        "neighbors": "pair_list",
+        "island": "island",
         "net": "connection",
         "read": "attributes poses",
         "shape": "mesh",
