@@ -32,5 +32,6 @@ def present(world: iota.World) -> iota.World:
     for x in (left, right):
         world.add_strut((x, GROUND, -20), (x, 15, -20), looks.cylinder(0.8, "wood"))
     world.add_strut((left - 1, 15, -20), (right + 1, 15, -20), looks.cylinder(0.8, "wood"))
-    world.camera = iota.Camera(position=(25, -5, 125), target=(11, -13, 0))
+    middle = (left + right) / 2
+    world.camera = iota.Camera(position=(middle + 10, -5, 90), target=(middle, -13, 0))
     return world
