@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 
@@ -43,6 +43,25 @@ def test_a_spring_without_a_length_rests_where_it_was_made(space: iota.System, p
     space.bond(*pair, "spring", stiffness=1000)
     run(space, 0.1)
     assert pair[1].position == (1, 0, 0)
+
+
+@pytest.mark.parametrize("mode", ["energy_keeping", "accurate"])
+@pytest.mark.parametrize("law", ["spring", "energy = 0.5*stiffness*(r - length)^2; force = -damping*v"])
+@pytest.mark.parametrize("size", [1e-6, 1, 1e3])
+def test_a_damped_spring_takes_stretching_and_no_spin(
+    mode: Literal["energy_keeping", "accurate"], law: str, size: float
+) -> None:
+    """A dumbbell at 5 rad/s, 0.1 rad in a step, ends as a rigid one whose spring balances the centrifugal force."""
+    space = iota.System(gravity=(0, 0, 0), mode=mode)
+    p, q = (space.body().particle((x * size, 0, 0), velocity=(0, 5 * x * size, 0)) for x in (-0.25, 0.25))
+    space.bond(p, q, law, stiffness=100, damping=10, length=0.5 * size)
+    spin = space.angular_momentum.z
+    run(space, 4, 1 / 50)
+    assert space.angular_momentum.z == pytest.approx(spin, rel=1e-12)
+    distance = (q.position - p.position).length
+    rate = (q.velocity - p.velocity).length / distance
+    assert 0.5 * distance**2 * rate == pytest.approx(spin, rel=1e-7)  # it only turns
+    assert 100 * (distance - 0.5 * size) == pytest.approx(0.5 * rate**2 * distance, rel=1e-5)
 
 
 def test_a_drag_slows_exponentially(space: iota.System, pair: Pair) -> None:

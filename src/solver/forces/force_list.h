@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "solver/forces/dashpot.h"
 #include "solver/forces/force_arm.h"
 #include "solver/forces/gyroscopic.h"
 #include "solver/forces/radial.h"
@@ -13,8 +14,8 @@
 
 namespace iota::solver {
 
-/// F = -k (|e| - L) e/|e| - c n n.(e1 - e0)/h, n along e0. Mid-point: the discrete gradient of k/2 (|e|-L)^2, which is
-/// -k (1 - 2L/(|e0|+|e1|)) (e0+e1)/2, so that F.(e1-e0) is exactly minus the change of energy.
+/// F = -k (|e| - L) e/|e| - c n n.(e1 - e0)/h, n as Dashpot says. Mid-point: the discrete gradient of k/2 (|e|-L)^2, which
+/// is -k (1 - 2L/(|e0|+|e1|)) (e0+e1)/2, so that F.(e1-e0) is exactly minus the change of energy.
 struct SpringForce {
   static constexpr bool is_external = false;
   ForceArm arm;
@@ -28,16 +29,17 @@ struct SpringForce {
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r = s.midpoint ? (norm(e0) + norm(e1)) / 2 : norm(e1);
     const Vec3 e = s.midpoint ? 0.5 * (e0 + e1) : e1;
-    const Vec3 n = direction(s.instant ? e1 : e0);
-    return (-stiffness * factor(r)) * e - (damping / s.h * dot(n, e1 - e0)) * n;
+    const Dashpot dashpot(e0, e1, s, length == 0);
+    return (-stiffness * factor(r)) * e - (damping / s.h * dashpot.along) * dashpot.n;
   }
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
-    const double along = dot(direction(s.instant ? e1 : e0), e1 - e0);
+    const double along = Dashpot(e0, e1, s, length == 0).along;
     return damping / s.h * along * along;
   }
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
-    const Vec3 n0 = direction(e0), n1 = direction(e1);
-    Mat3 k = (damping / s.h) * Mat3::outer(n0, n0);
+    const Vec3 n1 = direction(e1);
+    const Dashpot dashpot(e0, e1, s, length == 0);
+    Mat3 k = dashpot.stiffness_matrix(e1, damping / s.h, damping / s.h * dashpot.along, s);
     if (s.midpoint) {
       const double r = (norm(e0) + norm(e1)) / 2;
       double across = factor(r);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "laws/pair_law.h"
+#include "solver/forces/dashpot.h"
 #include "solver/forces/force_arm.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace iota::solver {
 
 /// Any law between two points. With r = |e|, n = e/r, T = U'(r) - push(r) the pull, D the damping and c the drag:
-///   end point: F = -T(r1) n1 + D(r0, n0.(e1-e0)/h) n0 - c (e1-e0)/h
+///   end point: F = -T(r1) n1 + D(r0, n.(e1-e0)/h) n - c (e1-e0)/h, n as Dashpot says
 ///   mid-point: T(r1) n1 becomes T* (e0+e1)/(r0+r1), with T* = (U(r1)-U(r0))/(r1-r0) - push((r0+r1)/2), so that the work
 ///   of the elastic part is exactly minus the change of energy (Gonzalez 1996).
 /// If r1 is near r0 the quotient would be round-off: U' at the two Gauss points has the same value to (r1-r0)^4.
@@ -31,8 +32,8 @@ struct RadialForce {
     else
       f = (-pull(r1).value / (r1 + tiny)) * e1;
     if (law->has_damping()) {
-      const Vec3 n0 = (1 / (r0 + tiny)) * (s.instant ? e1 : e0);
-      f += law->damping(at(r0, dot(n0, e1 - e0) / s.h), parameters.data()).value * n0;
+      const Dashpot dashpot(e0, e1, s);
+      f += law->damping(at(r0, dashpot.along / s.h), parameters.data()).value * dashpot.n;
     }
     if (law->has_drag()) f -= (law->drag(at(r0), parameters.data()) / s.h) * (e1 - e0);
     return f;
@@ -40,8 +41,7 @@ struct RadialForce {
 
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     if (!law->has_damping() && !law->has_drag()) return 0;
-    const Vec3& now = s.instant ? e1 : e0;
-    const double r0 = norm(now), along = dot((1 / (r0 + tiny)) * now, e1 - e0);
+    const double r0 = norm(s.instant ? e1 : e0), along = Dashpot(e0, e1, s).along;
     double taken = 0;
     if (law->has_damping()) taken -= law->damping(at(r0, along / s.h), parameters.data()).value * along;
     if (law->has_drag()) taken += law->drag(at(r0), parameters.data()) / s.h * dot(e1 - e0, e1 - e0);
@@ -58,10 +58,10 @@ struct RadialForce {
     Mat3 k = Mat3::diagonal(across);
     k += (along - across) * Mat3::outer(s.midpoint ? (1 / length) * (e0 + e1) : n1, n1);
     if (law->has_damping()) {
-      const Vec3 n0 = (1 / (r0 + tiny)) * e0;
-      double rate = -law->damping(at(r0, dot(n0, e1 - e0) / s.h), parameters.data()).slope / s.h;
-      if (s.clamp) rate = std::max(rate, 0.0);
-      k += rate * Mat3::outer(n0, n0);
+      const Dashpot dashpot(e0, e1, s);
+      const Slope damping = law->damping(at(r0, dashpot.along / s.h), parameters.data());
+      const double rate = -damping.slope / s.h;
+      k += dashpot.stiffness_matrix(e1, s.clamp ? std::max(rate, 0.0) : rate, -damping.value, s);
     }
     if (law->has_drag()) k += Mat3::diagonal(law->drag(at(r0), parameters.data()) / s.h);
     return k;
