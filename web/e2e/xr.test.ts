@@ -353,14 +353,20 @@ describe("leaving and coming back", () => {
     await me.enter();
     await me.look(0.1, -0.1);
     await me.tab.freeze();
-    const [x, y] = await me.tab.page.evaluate((id) => {
-      const eye = iota.page.viewer.renderer.xr.getCamera().cameras[0];
-      const point = iota.page.viewer.camera.position.clone().set(...iota.bodyPosition(id)).project(eye);
-      return [((point.x + 1) / 4) * innerWidth, ((1 - point.y) / 2) * innerHeight];
-    }, link);
-    await me.tab.page.mouse.move(x + 20, y);
-    await me.tab.page.mouse.move(x, y);
-    await me.tab.until("the mouse's hand points at something", () => iotaXR!.inputs().some((input) => input.name === "right" && input.hovered >= 0));
+    // Again and again, as the eye may still be turning at the first time.
+    await expect.poll(async () => {
+      const [x, y] = await me.tab.page.evaluate((id) => {
+        const eye = iota.page.viewer.renderer.xr.getCamera().cameras[0];
+        const point = iota.page.viewer.camera.position.clone().set(...iota.bodyPosition(id)).project(eye);
+        return [((point.x + 1) / 4) * innerWidth, ((1 - point.y) / 2) * innerHeight];
+      }, link);
+      await me.tab.page.mouse.move(x + 20, y);
+      await me.tab.page.mouse.move(x, y);
+      return me.tab.page.evaluate(async () => {
+        for (let frame = 0; frame < 3; ++frame) await new Promise((done) => requestAnimationFrame(done));
+        return iotaXR!.inputs().some((input) => input.name === "right" && input.hovered >= 0);
+      });
+    }, { message: "the mouse's hand points at something" }).toBe(true);
     await me.tab.page.mouse.down();
     await me.tab.until("the mouse's hand holds something", () => iotaXR!.inputs().some((input) => input.name === "right" && input.held >= 0));
     await me.tab.page.mouse.up();
