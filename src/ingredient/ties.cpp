@@ -96,7 +96,7 @@ void Ties::validate(const Model& model, model::Audit& audit) {
   model.particles.for_each([&](std::uint32_t slot, const model::Particle& p) {
     audit.require((p.basis_index < 0) == model.ties.has(slot), "particle ", slot,
                   " is in a basis and tied to it, or neither");
-    double sum = 0, size = 1;  // weights of a place far outside of the basis cancel
+    double sum = 0, size = 0;  // weights of a place far outside of the basis cancel
     for (const double w : model.weights(slot)) sum += w, size += std::abs(w);
     audit.require(std::abs(sum - 1) < 1e-9 * size, "particle ", slot, " has basis weights that sum to ", sum);
   });
