@@ -13,6 +13,7 @@ on the machine. A frame that is slow only in time was slow for other reasons; `-
 from __future__ import annotations
 
 import argparse
+import itertools
 import math
 import random
 import statistics
@@ -118,33 +119,34 @@ def pulled_nail(system: iota.System) -> Scene:
         yield
 
 
-def taut_net(load: float, knots: int = 32) -> Callable[[iota.System], Scene]:
+def bars(system: iota.System, counts: tuple[int, int, int]) -> dict[tuple[int, ...], iota.Particle]:
+    """Knots in so many columns, layers downwards, and rows, 0.1 m apart, with a bar between neighbors; by their numbers."""
+    knots: dict[tuple[int, ...], iota.Particle] = {}
+    with system.edit():
+        for start in itertools.product(*map(range, counts)):
+            for axis in range(3):
+                end = tuple(number + (k == axis) for k, number in enumerate(start))
+                if end[axis] == counts[axis]:
+                    continue
+                body = system.body()
+                for at in (start, end):
+                    p = body.particle((0.1 * at[0], 2 - 0.1 * at[1], 0.1 * at[2]), mass=0.005)
+                    if at in knots:
+                        knots[at].combine(p)
+                    else:
+                        knots[at] = p
+    return knots
+
+
+def taut_net(load: float, count: int = 32) -> Callable[[iota.System], Scene]:
     """Of bars, nailed at its corners exactly taut, with a load in its middle."""
 
     def make(system: iota.System) -> Scene:
-        knot: dict[tuple[int, int], iota.Particle] = {}
-
-        def bar(a: tuple[int, int], b: tuple[int, int]) -> None:
-            body = system.body()
-            for at in (a, b):
-                p = body.particle((0.1 * at[0], 2, 0.1 * at[1]), mass=0.005)
-                if at in knot:
-                    knot[at].combine(p)
-                else:
-                    knot[at] = p
-
-        with system.edit():
-            for i in range(knots):
-                for j in range(knots):
-                    if i + 1 < knots:
-                        bar((i, j), (i + 1, j))
-                    if j + 1 < knots:
-                        bar((i, j), (i, j + 1))
-        last = knots - 1
-        for corner in ((0, 0), (0, last), (last, 0), (last, last)):
-            knot[corner].nail()
+        knots = bars(system, (count, 1, count))
+        for corner in itertools.product((0, count - 1), (0,), (0, count - 1)):
+            knots[corner].nail()
         if load > 0:
-            middle = knot[knots // 2, knots // 2]
+            middle = knots[count // 2, 0, count // 2]
             middle.combine(system.body().particle(middle.position, mass=load))
         yield from unchanged()
 
@@ -152,29 +154,10 @@ def taut_net(load: float, knots: int = 32) -> Callable[[iota.System], Scene]:
 
 
 def lattice(system: iota.System) -> Scene:
-    """6 x 6 x 6 knots with bars between them, nailed at the roof."""
-    knot: dict[tuple[int, int, int], iota.Particle] = {}
-    n = 6
-
-    def bar(a: tuple[int, int, int], b: tuple[int, int, int]) -> None:
-        body = system.body()
-        for at in (a, b):
-            p = body.particle((0.1 * at[0], 2 - 0.1 * at[1], 0.1 * at[2]), mass=0.005)
-            if at in knot:
-                knot[at].combine(p)
-            else:
-                knot[at] = p
-
-    with system.edit():
-        for i in range(n):
-            for j in range(n):
-                for k in range(n):
-                    for b in ((i + 1, j, k), (i, j + 1, k), (i, j, k + 1)):
-                        if max(b) < n:
-                            bar((i, j, k), b)
-    for (_, j, _), p in knot.items():
-        if j == 0:
-            p.nail()
+    """Nailed at its roof."""
+    for (_, layer, _), knot in bars(system, (6, 6, 6)).items():
+        if layer == 0:
+            knot.nail()
     yield from unchanged()
 
 

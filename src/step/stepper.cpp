@@ -83,10 +83,6 @@ void tell_cut_short(const model::Model& model, std::span<island::Island* const> 
   if (count > most) report.warnings.push_back(text("the budget of a step ended too early for ", count, " islands"));
 }
 
-}  // namespace
-
-namespace {
-
 /// Parallel::for_each, with the times of all threads.
 template <class Work>
 void for_each_timed(const Parallel& parallel, std::size_t count, std::size_t grain, StepTimes& sum, Work work) {

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from iota._core import Shape
 from iota.builder.points import Vector
@@ -16,18 +16,9 @@ JointKind = Literal["ball", "weld", "revolute", "prismatic", "cylindrical", "uni
 TieKind = Literal["rod", "rope"]
 Coordinate = Literal["angle", "slide", "second_angle"]
 
-COORDINATES: tuple[str, ...] = ("angle", "slide", "second_angle")
-JOINT_KINDS: tuple[str, ...] = (
-    "ball",
-    "weld",
-    "revolute",
-    "prismatic",
-    "cylindrical",
-    "universal",
-    "planar",
-    "orientation",
-)
-TIE_KINDS: tuple[str, ...] = ("rod", "rope")
+JOINT_KINDS: tuple[str, ...] = get_args(JointKind)
+TIE_KINDS: tuple[str, ...] = get_args(TieKind)
+COORDINATES: tuple[str, ...] = get_args(Coordinate)
 
 
 @dataclass

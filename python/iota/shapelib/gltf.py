@@ -96,7 +96,7 @@ def _without_materials(head: dict[str, Any]) -> dict[str, Any]:
     for at, mesh in enumerate(head.get("meshes", [])):
         made.append([])
         for part, primitive in enumerate(mesh["primitives"]):
-            attributes = {key: value for key, value in primitive["attributes"].items() if key in ("POSITION",)}
+            attributes = {key: value for key, value in primitive["attributes"].items() if key == "POSITION"}
             index = _coordinates_of(head, primitive)
             if index is not None:
                 attributes["_COORDINATES"] = index
