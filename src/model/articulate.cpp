@@ -110,43 +110,47 @@ void move_bodies(Structure& model, std::span<const std::uint32_t> moved, std::ui
 bool Structure::split_articulate(std::uint32_t body_a, std::uint32_t body_b) {
   if (body_a == body_b) return false;
   // Two breadth-first floods in turn, each a list of bodies that also serves as its queue. A mark says whose a body is.
+  // All bodies of a ring are found together, so the ring by which a body was found need not be visited again: the second
+  // half of a flood lists the particles in these rings.
   Marks& marks = body_marks_;
   const std::size_t slots = bodies.slot_count();
   if (marks.of.size() < slots) {
     marks.of.resize(slots, 0);
-    for (std::vector<std::uint32_t>& flood : floods_) flood.resize(slots);
+    for (std::vector<std::uint32_t>& flood : floods_) flood.resize(2 * slots);
   }
   if (marks.current > 0xfffffff0u) std::fill(marks.of.begin(), marks.of.end(), marks.current = 0);
   const std::uint32_t first_mark = marks.current + 1;
   marks.current += 2;
   std::uint32_t* const mark_of = marks.of.data();
+  const std::size_t half = floods_[0].size() / 2;
   const std::array flood{floods_[0].data(), floods_[1].data()};
   std::array<std::size_t, 2> next{0, 0}, end{1, 1};
-  flood[0][0] = body_a, mark_of[body_a] = first_mark;
-  flood[1][0] = body_b, mark_of[body_b] = first_mark + 1;
+  flood[0][0] = body_a, flood[0][half] = none, mark_of[body_a] = first_mark;
+  flood[1][0] = body_b, flood[1][half] = none, mark_of[body_b] = first_mark + 1;
   bool met = false;
   std::uint32_t which = 0;
   for (; !met && next[which] < end[which]; which = 1 - which) {
     const std::uint32_t own_mark = first_mark + which;
-    std::uint32_t* const found = flood[which];
-    const auto reach = [=](std::uint32_t body, std::size_t& count, bool& meets) {
+    std::uint32_t *const found = flood[which], *const found_by = found + half;
+    const auto reach = [=](std::uint32_t body, std::uint32_t by, std::size_t& count, bool& meets) {
       if (mark_of[body] < first_mark)
-        mark_of[body] = own_mark, found[count++] = body;
+        mark_of[body] = own_mark, found[count] = body, found_by[count++] = by;
       else
         meets = meets || mark_of[body] != own_mark;
     };
     std::size_t count = end[which];
     bool meets = false;
+    const std::uint32_t visited = found_by[next[which]];
     for (std::uint32_t p = bodies[found[next[which]++]].first; p != none;) {
       const Particle& particle = particles[p];
-      const Ring& ring = rings[particle.ring];
-      if (ring.count > 1)
-        for (std::uint32_t hinged = ring.first; hinged != none; hinged = particles[hinged].next_in_ring)
-          if (hinged != p) reach(particles[hinged].body, count, meets);
+      if (p != visited && rings[particle.ring].count > 1)
+        for (std::uint32_t q = rings[particle.ring].first; q != none; q = particles[q].next_in_ring)
+          if (q != p) reach(particles[q].body, q, count, meets);
       if (particle.uses > 0) {       // joins count as uses
         std::size_t joined = count;  // so that `count` can be in a register
         bool joined_meets = meets;
-        visit_joined(p, [&](std::uint32_t body) { reach(body, joined, joined_meets); });
+        visit_joined(p,
+                     [reach, &joined, &joined_meets](std::uint32_t body) { reach(body, none, joined, joined_meets); });
         count = joined, meets = joined_meets;
       }
       p = particle.next_in_body;
