@@ -208,7 +208,7 @@ TEST(Oriented, a_torque_turns_it_as_newton_says) {
   expect_near(s.system.particles().spin(s.p), {0, 0, 2}, 1e-12);  // for one step only
 }
 
-TEST(Oriented, its_normaliz_drawn_to_its_preferred_direction) {
+TEST(Oriented, is_drawn_with_its_normal_to_its_preferred_direction) {
   Surfel s;
   s.system.particles().align(s.p, {1, 0, 1}, 1e4, 10);  // far stiffer than a step resolves
   for (int i = 0; i < 300; ++i) (void)s.system.step(0.05);
