@@ -135,6 +135,8 @@ void def_applied(nb::class_<Array>& type, const char* name, Quantity quantity, c
 /// Length, members and slices. One member is a handle.
 template <class Array>
 void def_sequence(nb::class_<Array>& type, const char* name) {
+  using Member = decltype(sibling(std::declval<const Array&>(), typename decltype(Array::ids)::value_type{}));
+  const auto member = nb::cast<std::string>(nb::type<Member>().attr("__name__"));
   type.def("__len__", [](const Array& self) { return self.ids.size(); })
       .def(
           "__getitem__",
@@ -157,6 +159,14 @@ void def_sequence(nb::class_<Array>& type, const char* name) {
             return part;
           },
           "range"_a)
+      .def(
+          "__iter__",
+          [](const Array& self) {
+            nb::list members;
+            for (const auto id : self.ids) members.append(sibling(self, id));
+            return nb::iter(members);
+          },
+          nb::sig(("def __iter__(self) -> collections.abc.Iterator[" + std::string(member) + "]").c_str()))
       .def("__repr__", [name](const Array& self) {
         return "<" + std::string(name) + " of " + std::to_string(self.ids.size()) + ">";
       });

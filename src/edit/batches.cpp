@@ -20,8 +20,10 @@ RestructureReport apply(Editor& e, const EndEdit&) {
   e.held.book_edits();
   RestructureReport report = e.batch->finish(e.model);
   settle_batch(e, report);
-  e.undo.push(std::move(e.batch->before));
-  e.redo.clear();
+  if (!e.batch->is_empty) {
+    e.undo.push(std::move(e.batch->before));
+    e.redo.clear();
+  }
   e.batch.reset();
   return report;
 }

@@ -49,6 +49,9 @@ class Door {
   ResultOf<C> put_off(const C& command);
   template <class C>
   ResultOf<C> make(const C& command);
+  /// An open batch is no longer empty.
+  template <class C>
+  void note_edit();
   template <class C>
   void record(const C& command);
 
@@ -91,14 +94,22 @@ ResultOf<C> Door::make(const C& command) {
   }
   if constexpr (std::is_void_v<ResultOf<C>>) {
     apply(editor_, command);
+    note_edit<C>();
     record(command);
   } else {
     ResultOf<C> result = apply(editor_, command);
     if constexpr (std::is_same_v<ResultOf<C>, RestructureReport>)
       if (editor_.batch) editor_.batch->add(result);
+    note_edit<C>();
     record(command);
     return result;
   }
+}
+
+template <class C>
+void Door::note_edit() {
+  if constexpr (!std::is_same_v<C, BeginEdit> && !std::is_same_v<C, EndEdit>)
+    if (editor_.batch) editor_.batch->is_empty = false;
 }
 
 template <class C>

@@ -19,6 +19,7 @@ class Batch {
   RestructureReport finish(const model::Model&);
 
   int depth = 1;  ///< of nested batches
+  bool is_empty = true;
   Snapshot before;
 
  private:

@@ -180,3 +180,12 @@ def test_a_hundred_thousand_take_a_moment() -> None:
     grains = system.particle_array(places)
     assert seconds(lambda: system.bond_array(grains[:-1], grains[1:], "spring", stiffness=1.0)) < 0.2
     assert seconds(lambda: setattr(grains, "positions", grains.positions)) < 0.2
+
+
+def test_an_array_is_a_sequence_of_its_members() -> None:
+    system = iota.System()
+    rods = system.rod_array([(0, 0, 0), (1, 0, 0)], [(0, 1, 0), (1, 1, 0)])
+    assert list(rods) == system.bodies and list(rods.particles) == system.particles
+    world = iota.World(system)
+    world.draw(rods, iota.looks.cylinder(0.02, "steel"))
+    assert all(world.look_of(rod) is not None for rod in system.bodies)

@@ -61,6 +61,12 @@ def test_an_action_on_several_bodies_is_one_edit(chain: list[iota.Body], run_wor
         seen.append(event.body.slot)
         event.body.destroy()
 
+    looks: list[int] = []
+
+    @world.action("look", on="body")
+    def look(event: iota.Event) -> None:
+        looks.append(event.body.slot)
+
     with PageClient(run_world(world)) as page:
         page.wait_for(lambda: len(page.entities["body"]) == 6 and page.parts() == 1)
 
@@ -80,6 +86,13 @@ def test_an_action_on_several_bodies_is_one_edit(chain: list[iota.Body], run_wor
             act(page, "undo")
             page.wait_for(lambda: page.parts() == 1 and len(page.entities["body"]) == 6)
             assert world.call(lambda: system.undo_count) == before
+        act_on("look", 1, 3, 5)
+        page.wait_for(lambda: len(looks) == 3)
+        act(page, "redo")
+        page.wait_for(lambda: len(page.entities["body"]) == 3)
+        act(page, "undo")
+        page.wait_for(lambda: len(page.entities["body"]) == 6)
+        assert world.call(lambda: system.undo_count) == before, "an action without an edit is not undone"
         assert seen == [chain[link].slot for link in (1, 3, 5)]
         # One that is gone, and one twice: the others are meant.
         gone = page.body(chain[5].slot)

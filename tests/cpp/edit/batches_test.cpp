@@ -56,9 +56,17 @@ TEST(EditBatch, undo_and_redo_give_the_same_hash) {
   EXPECT_EQ(system.state_hash(), after);
   EXPECT_FALSE(system.edits().redo());
   EXPECT_TRUE(system.edits().undo());
+  system.edits().begin();  // an empty one is no edit
+  system.edits().begin();
+  (void)system.edits().end();
+  (void)system.edits().end();
+  EXPECT_EQ(system.edits().redo_count(), 1u);
+  EXPECT_EQ(system.edits().undo_count(), 0u);
   system.edits().begin();  // a new edit ends the way forward
+  (void)system.bodies().create();
   (void)system.edits().end();
   EXPECT_EQ(system.edits().redo_count(), 0u);
+  EXPECT_EQ(system.edits().undo_count(), 1u);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(system.step(0.01).unconverged, 0);
 }
 
