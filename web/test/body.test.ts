@@ -133,3 +133,20 @@ describe("bodies", () => {
     expect(test.world.entities.body.has(4)).toBe(true);
   });
 });
+
+describe("thousands of bodies", () => {
+  it("have few triangles each, however near they are", () => {
+    const trianglesOf = (count: number) => {
+      const test = told(count);
+      const view = test.world.entities.body;
+      for (let frame = 0; frame < 20; frame++) {
+        view.update(0.016, frame * 16);
+        view.draw(0.016);
+      }
+      return test.meshes().reduce((sum, { geometry }) => sum + geometry.index!.count / 3, 0);
+    };
+    const few = trianglesOf(10);
+    expect(few).toBeGreaterThan(300);
+    expect(2000 * trianglesOf(2000)).toBeLessThan(250_000);
+  });
+});

@@ -24,6 +24,8 @@ const fineCount = 24;
 const coarseCount = 160;
 const coarsePixels = 5;
 const clearly = 1.25;
+/** More of one part are never drawn coarse: a headset draws each of them three times, for two eyes and for shadows. */
+const coarseUpTo = 1500;
 /** For rods of at least this half length in radii, the thickness counts. */
 const thinness = 6;
 /** Frames between two measurements of a batch's size on the screen, and the number of measured members. */
@@ -82,7 +84,7 @@ class Batch {
     const fine = finePixels * Math.sqrt(Math.max(this.pool.count / fineCount, 1)) * (now === "fine" ? 1 : clearly);
     const coarse = coarsePixels * Math.sqrt(Math.max(this.pool.count / coarseCount, 1)) * (now === "tiny" ? clearly : 1);
     const few = this.pool.count <= fineUpTo;
-    const wanted: Detail = pixels >= fine && few ? "fine" : pixels >= coarse ? "coarse" : "tiny";
+    const wanted: Detail = pixels >= fine && few ? "fine" : pixels >= coarse && this.pool.count <= coarseUpTo ? "coarse" : "tiny";
     if (wanted === now) return;
     this.detail_ = wanted;
     this.pool.setGeometry(makeGeometry(this.shape_, wanted));

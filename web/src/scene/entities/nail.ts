@@ -10,6 +10,11 @@ import { materialOf } from "../materials.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { EntityRecords } from "./entity.ts";
 
+/** Corners of a pin's equator: many pins have few triangles each. */
+function aroundOf(count: number): number {
+  return count <= 100 ? 20 : count <= 500 ? 10 : 6;
+}
+
 export class NailView extends EntityRecords<NailEntity> {
   readonly root = new Group();
   /** m; follows the size of the scene. */
@@ -17,6 +22,7 @@ export class NailView extends EntityRecords<NailEntity> {
 
   private readonly poses_: PoseBuffer;
   private readonly pool_: InstancePool;
+  private around_ = aroundOf(0);
   private readonly indices_ = new Map<number, number>();
   private readonly matrix_ = new Matrix4();
   private readonly place_ = new Vector3();
@@ -24,7 +30,11 @@ export class NailView extends EntityRecords<NailEntity> {
   constructor(poses: PoseBuffer) {
     super();
     this.poses_ = poses;
-    this.pool_ = new InstancePool(new SphereGeometry(1, 20, 14), materialOf({ material: "brass", color: null }), 16).addTo(this.root);
+    this.pool_ = new InstancePool(this.makePin_(), materialOf({ material: "brass", color: null }), 16).addTo(this.root);
+  }
+
+  private makePin_(): SphereGeometry {
+    return new SphereGeometry(1, this.around_, Math.round(0.7 * this.around_));
   }
 
   override create(entity: NailEntity): void {
@@ -43,6 +53,11 @@ export class NailView extends EntityRecords<NailEntity> {
   }
 
   draw(): void {
+    const around = aroundOf(this.pool_.count);
+    if (around !== this.around_) {
+      this.around_ = around;
+      this.pool_.setGeometry(this.makePin_());
+    }
     const { members, count, mesh } = this.pool_;
     const radius = this.pinRadius;
     for (let index = 0; index < count; index++) {
