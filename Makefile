@@ -42,15 +42,16 @@ test: ## build, then run every test of every language (SUITES="cpp python" for s
 	@$(PYTHON) tools/build.py test
 	@.venv/bin/python tools/run_tests.py $(SUITES)
 
-bench: ## build, then measure engine and packaged peers in one run (BENCH="--quick")
+bench: ## build, then measure engine, packaged peers, server and page in one run (BENCH="--quick")
 	@$(PYTHON) tools/build.py bench
 	@.venv/bin/python bench/run_bench.py $(BENCH)
+	@.venv/bin/npm --prefix web run --silent capacity
 
 verify: ## build, compare with what is known, renew docs/verification.md (VERIFY="--quick")
 	@$(PYTHON) tools/build.py verify
 	@$(iota) verify $(VERIFY)
 
-soak: ## build, then for some hours: random scenes, promises of motion, edits by the million, linkages and studies for ten minutes (SOAK="scenes edits")
+soak: ## build, then for some hours: random scenes, promises of motion, edits by the million, linkages and studies for ten minutes, an open page for thirty (SOAK="scenes edits")
 	@$(PYTHON) tools/build.py soak
 	@.venv/bin/python tools/soak.py $(SOAK)
 

@@ -479,7 +479,7 @@ def steps_for(goal: str, preset: str) -> list[Step]:
             cmake_build(f"cpp-{preset}", title, preset, "iota_tests"),
         ]
     steps = [
-        system_packages("build", "test") if goal in ("test", "films") else system_packages("build"),
+        system_packages("build", "test") if goal in ("test", "films", "soak", "bench") else system_packages("build"),
         python_environment("build"),
         sundials(),
         page_packages(),
@@ -498,7 +498,7 @@ def steps_for(goal: str, preset: str) -> list[Step]:
         steps.insert(2, python_environment("verify"))
         steps.append(cmake_build("soak", "building the long runs", "release", "iota_soak"))
     elif goal == "bench":
-        steps.insert(2, python_environment("bench"))
+        steps.insert(2, python_environment("bench", "film"))
         steps.append(peer_packages())
         steps.append(cmake_build("bench", "building the benchmarks", "release", "iota_bench"))
     elif goal == "wheel":

@@ -81,6 +81,11 @@ export class WorldServer {
     return line === undefined ? null : (JSON.parse(line) as { articulates: number; held: number; structure_version: number });
   }
 
+  get pid(): number {
+    if (this.process_.pid === undefined) throw new Error("iota run has not started");
+    return this.process_.pid;
+  }
+
   get output(): string {
     return this.lines_.join("\n");
   }
