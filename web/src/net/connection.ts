@@ -107,6 +107,13 @@ export class Connection {
     this.open();
   }
 
+  /** For good. */
+  close(): void {
+    this.close_();
+    window.clearTimeout(this.retry_);
+    this.retry_ = undefined;
+  }
+
   private sendNow_(message: ClientMessage): void {
     if (this.socket_?.readyState === WebSocket.OPEN) this.socket_.send(encodeClientMessage(message));
   }
