@@ -60,7 +60,7 @@ from iota.errors import (
 )
 from iota.simulator import SimulatedBody, SimulatedGrip, SimulatedParticle, Simulator
 from iota.solvers import Problem, solve, solver, solver_names
-from iota.world import Camera, Event, Server, World
+from iota.world import Camera, Event, Server, View, World
 
 Sequence.register(Vec3)
 
@@ -108,6 +108,7 @@ __all__ = [
     "System",
     "Torus",
     "Vec3",
+    "View",
     "World",
     "WrongThreadError",
     "__version__",

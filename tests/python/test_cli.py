@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import textwrap
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -264,6 +265,91 @@ def test_watch_runs_a_script_anew_when_it_is_saved_and_pages_find_it(tmp_path: P
         finally:
             process.send_signal(signal.SIGINT)
             process.wait(20)
+
+
+def test_a_saved_script_goes_on_where_it_was_if_it_starts_its_world_the_same_way(tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    text = textwrap.dedent("""
+        import iota
+        system = iota.System(gravity=(0, 0, 0))
+        ball = system.body().particle((0, 1, 0), velocity=(1, 0, 0))
+        world = iota.World(system, title="TITLE")
+        @world.at(0.1)
+        def once(): print("once", flush=True)
+        @world.on_step
+        def say():
+            if system.step_count % 12 == 0: print("at", ball.position.x, flush=True)
+        CUT
+        world.run()
+        """)
+    path.write_text(text.replace("CUT", ""))
+    words = [sys.executable, "-m", "iota", "run", str(path), "--watch", "--port", "0", "--no-open"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+        assert process.stdout is not None
+        lines = process.stdout
+        try:
+
+            def until(wanted: Callable[[str], bool]) -> list[str]:
+                """The lines up to that one."""
+                said: list[str] = []
+                while not (said and wanted(said[-1])):
+                    said.append(lines.readline())
+                    assert said[-1], said
+                return said
+
+            def place(line: str) -> float:
+                return float(line.split()[1])
+
+            begun = until(lambda line: line.startswith("at") and place(line) > 0.5)
+            assert "once\n" in begun
+            for change, goes_on in (("TITLE", True), ("(0, 1, 0)", False)):
+                now = text.replace("CUT", "").replace(change, {"TITLE": "other", "(0, 1, 0)": "(0, 2, 0)"}[change])
+                path.write_text(now)
+                until(lambda line: "token=" in line)
+                after = until(lambda line: line.startswith("at"))
+                assert (place(after[-1]) > 0.4) == goes_on, after
+                assert not goes_on or "once\n" not in after, "an event before now has been"
+                until(lambda line: line.startswith("at") and place(line) > 0.5)
+            path.write_text(text.replace("CUT", "world.after(0.05)(lambda: system.body().particle((5, 5, 5)))"))
+            until(lambda line: "token=" in line)
+            until(lambda line: line.startswith("at") and place(line) > 0.5)
+            path.write_text(text.replace("CUT", "world.after(0.05)(lambda: system.body().particle((5, 5, 6)))"))
+            until(lambda line: "token=" in line)
+            assert place(until(lambda line: line.startswith("at"))[-1]) < 0.2, "the script does not know of the body"
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.wait(20)
+
+
+def test_a_prompt_acts_on_the_running_world(tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text(
+        textwrap.dedent("""
+        import iota
+        system = iota.System(gravity=(0, 0, 0))
+        ball = system.body().particle((0, 1, 0))
+        world = iota.World(system, title="mine")
+        world.run()
+        """)
+    )
+    command = [sys.executable, "-m", "iota", "run", "--prompt", "--port", "0"]
+    with subprocess.Popen([*command, path], stdin=-1, stdout=-1, stderr=-1, text=True) as process:
+        assert process.stdin and process.stdout and process.stderr
+        with PageClient(process.stdout.readline().removeprefix("mine: ").strip()) as page:
+            process.stdin.write("1 / 0\nball.velocity = (2, 0, 0)\nball.destroy\n")
+            process.stdin.flush()
+            page.wait_for(lambda: page.places[0][0] > 0.1)
+            process.stdin.close()
+            assert page.closed.wait(20)
+        assert process.wait(20) == 0
+        said = process.stderr.read()
+        assert "ZeroDivisionError" in said and "WrongThreadError" not in said
+    done = subprocess.run(
+        [*command, "chain"], input="build.__name__\nexit()\n", capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 0 and "'build'" in done.stdout
+    done = subprocess.run([*command, "chain", "--watch"], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2 and "--prompt" in done.stderr
 
 
 def test_the_token_can_be_renewed() -> None:

@@ -68,9 +68,13 @@ def make_parser() -> Parser:
     running.add_argument("--port", type=port, help="of the page; 0 for any free one (default: 8080)")
     running.add_argument("--seconds", type=positive, help="stop after this time")
     running.add_argument("--no-open", action="store_true", help="do not open the page in a browser")
-    running.add_argument(
+    way = running.add_mutually_exclusive_group()
+    way.add_argument(
         "--headless", action="store_true", help="serve nothing; run --seconds of simulated time (default: 10)"
     )
+    way.add_argument("--watch", action="store_true", help="run the file again whenever it is saved")
+    way.add_argument("--prompt", action="store_true", help="a Python prompt on the running world")
+    way.add_argument("--terminal", action="store_true", help="show it in this terminal, without a page")
     running.add_argument("--json", action="store_true", help="print the run's figures as one JSON object at its end")
     running.add_argument(
         "--lan", action="store_true", help="let phones, headsets and other computers in, by https; shows a QR code"
@@ -79,7 +83,7 @@ def make_parser() -> Parser:
         "--cert", type=Path, metavar="FILE.pem", help="a certificate for --lan, instead of a self-signed one"
     )
     running.add_argument("--key", type=Path, metavar="FILE.pem", help="the key of --cert")
-    running.add_argument("--watch", action="store_true", help="run the file again whenever it is saved")
+    running.add_argument("--keep", type=Path, help=argparse.SUPPRESS)  # from --watch
     running.set_defaults(function=lambda a: (watch.watch if a.watch else run.run)(a))
 
     showing = commands.add_parser("gallery", help="serves a page with pictures of all studies, which a click starts")

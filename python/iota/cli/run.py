@@ -15,16 +15,18 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from types import FunctionType
 
 from iota import studies
 from iota._core import kept_token, renew_token
+from iota.cli import prompt
 from iota.cli.failure import Failure
 from iota.errors import PageMissingError
+from iota.terminal import TerminalView
 from iota.world import World
 from iota.world.callbacks import print_error
 from iota.world.lan import Lan
-from iota.world.options import RunOptions, use
+from iota.world.options import RunOptions, current, use
 
 NOT_MAIN = "__iota__"  # run name of a script whose build() is called for it
 
@@ -45,7 +47,12 @@ def run(arguments: argparse.Namespace) -> None:
         open=not arguments.no_open and not arguments.headless and can_show_a_page(),
         headless=arguments.headless,
         lan=lan(arguments),
+        kept=arguments.keep,
+        drive=prompt.drive if arguments.prompt else None,
+        view=TerminalView() if arguments.terminal else None,
     )
+    if arguments.prompt and arguments.seconds is not None:
+        raise Failure("--prompt runs a world until the prompt ends, so it takes no --seconds")
     start = find(arguments.what)
     with use(options), plain_failures(arguments.port):
         start(arguments.links)
@@ -115,8 +122,6 @@ def run_file(path: Path, links: int | None) -> None:
     sys.argv = [str(path)]
     sys.path.insert(0, str(path.resolve().parent))
     space = runpy.run_path(str(path), run_name="__main__" if links is None else NOT_MAIN)
-    from iota.world.options import current
-
     if not current().ran and has_build:
         build_and_run(space["build"], links, str(path))
 
@@ -130,12 +135,13 @@ def parse(path: Path) -> ast.Module:
         raise Failure(f"{path} cannot be read: {error}") from None
 
 
-def build_and_run(build: Callable[..., Any], links: int | None, name: str) -> None:
+def build_and_run(build: FunctionType, links: int | None, name: str) -> None:
     given: dict[str, int] = {}
     if links is not None:
         if "links" not in inspect.signature(build).parameters:
             raise Failure(f"build() of {name} takes no links")
         given["links"] = links
+    current().names = build.__globals__
     world = build(**given)
     if not isinstance(world, World):
         raise Failure(f"build() of {name} must return a World, not {type(world).__name__}")

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`iota run --watch`: runs a script in its own process, and again whenever it or a module beside it is saved.
 
-The address stays the same, so open pages show the new world and keep their camera. If the script cannot be read, the
+The address stays the same, so open pages show the new world and keep their camera. If the changed script starts its world
+in the same state as before, the world goes on where it was. If the script cannot be read, the
 previous world continues; if it fails, the next save is waited for.
 """
 
@@ -14,6 +15,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from iota.cli import run
 from iota.cli.failure import Failure
@@ -31,6 +33,12 @@ def watch(arguments: argparse.Namespace) -> None:
         raise Failure(f"--watch needs a file, and there is no {arguments.what}")
     run.parse(path)
     arguments.port = free_port() if arguments.port == 0 else arguments.port
+    with TemporaryDirectory(prefix="iota-watch-") as folder:
+        arguments.keep = Path(folder, "world")
+        watch_files(arguments, path)
+
+
+def watch_files(arguments: argparse.Namespace, path: Path) -> None:
     seen = stamps(path)
     child: subprocess.Popen[bytes] | None = start(arguments, is_first=True)
     try:
@@ -51,7 +59,7 @@ def watch(arguments: argparse.Namespace) -> None:
 
 def start(arguments: argparse.Namespace, is_first: bool) -> subprocess.Popen[bytes]:
     words = [sys.executable, "-m", "iota", "run", arguments.what]
-    for name in ("links", "port", "seconds", "cert", "key"):
+    for name in ("links", "port", "seconds", "cert", "key", "keep"):
         value = getattr(arguments, name)
         words += [] if value is None else [f"--{name}", str(value)]
     words += ["--lan"] if arguments.lan else []

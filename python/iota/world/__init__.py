@@ -6,6 +6,7 @@ from iota.world.event import Event
 from iota.world.scene import Camera
 from iota.world.server import Server
 from iota.world.summary import RunSummary
+from iota.world.view import View
 from iota.world.world import World
 
-__all__ = ["Camera", "Client", "Event", "RunSummary", "Server", "World"]
+__all__ = ["Camera", "Client", "Event", "RunSummary", "Server", "View", "World"]

@@ -164,17 +164,21 @@ class Inputs:
             state.notices.send("Unknown action", text, client=event.client)
             return
         meant = state.clients.held(event.client) or state.clients.selected(event.client)
-        bodies = named or ([] if meant is None else [meant])
+        self.act(action, event.client, named or ([] if meant is None else [meant]))
+
+    def act(self, action: Action, client: int, bodies: list[Any]) -> None:
+        """client: 0 for none."""
+        state = self._state
         if not bodies and action.on == "body":
             hint = f"Hold or select something, then press {action.key}." if action.key else ""
             title = f"Nothing to {action.label}"
-            state.notices.send(title, "Nothing is held or selected.", hint, client=event.client)
+            state.notices.send(title, "Nothing is held or selected.", hint, client=client)
             return
         if len(bodies) > 1 and isinstance(state.system, System):
             with state.system.edit():
-                self._act_on_all(action, event.client, bodies)
+                self._act_on_all(action, client, bodies)
         else:
-            self._act_on_all(action, event.client, bodies or [None])
+            self._act_on_all(action, client, bodies or [None])
 
     def _act_on_all(self, action: Action, client: int, bodies: Iterable[Any]) -> None:
         """On one after the other, until the script's function raises."""

@@ -6,17 +6,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from iota.world.lan import Lan
     from iota.world.summary import RunSummary
+    from iota.world.view import View
 
 
 @dataclass
 class RunOptions:
-    """None: the script's value. drive: runs a World instead of in real time, see `iota.film`. `ran`, `summary`: set by
-    the World that ran."""
+    """None: the script's value. drive: runs a World instead of in real time, see `iota.film`. view: as of `World.run`. kept: a file for the state in
+    which a world ends and the next one begins, see `iota.world.keeping`. names: of the module whose build() made the
+    World. `ran`, `summary`: set by the World that ran."""
 
     port: int | None = None
     seconds: float | None = None
@@ -24,6 +27,9 @@ class RunOptions:
     headless: bool = False
     lan: Lan | None = None
     drive: Callable[[Any], None] | None = None
+    view: View | None = None
+    kept: Path | None = None
+    names: dict[str, Any] | None = None
     ran: bool = False
     summary: RunSummary | None = None
 

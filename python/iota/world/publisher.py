@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import ExitStack
 from functools import partial
 from typing import Any
 
 from iota._core import InputEvent, Room, Vec3
+from iota.world.client_modules import page_with
 from iota.world.lan import Lan, announcement
 from iota.world.server import Server
 from iota.world.source import source_of
@@ -19,6 +21,7 @@ class Publisher:
 
     def __init__(self, state: State, server: Server, room: Room, is_alone: bool) -> None:
         self._state, self._server, self._is_alone = state, server, is_alone
+        self._folder = ExitStack()  # of the page, if it is not the built one
         self._source = source_of(state.system)
         self.room = room
         self.url = server.url if is_alone else server.url_of(room.world)
@@ -32,12 +35,19 @@ class Publisher:
     @classmethod
     def open(cls, state: State, host: str, port: int, lan: bool | Lan) -> Publisher:
         """Starts a server. Raises OSError if the port is in use, PageMissingError if the page is not built."""
-        server = Server(host, port, lan=lan)
-        return cls(state, server, server.open("default"), is_alone=True)
+        with ExitStack() as stack:
+            folder = stack.enter_context(page_with(state.client_modules)) if state.client_modules else None
+            server = Server(host, port, folder=folder, lan=lan)
+            publisher = cls(state, server, server.open("default"), is_alone=True)
+            publisher._folder = stack.pop_all()
+        return publisher
 
     @classmethod
     def join(cls, state: State, server: Server, id: str) -> Publisher:
-        """Opens a world on a server, which may have others. Raises ValueError for an id in use."""
+        """Opens a world on a server, which may have others. Raises ValueError for an id in use, and for a world with
+        client modules."""
+        if state.client_modules:
+            raise ValueError("a world with client modules needs a server of its own, as its page loads them")
         return cls(state, server, server.open(id), is_alone=False)
 
     def announce_lan(self, shows_code: bool) -> list[str]:
@@ -52,6 +62,7 @@ class Publisher:
         self.room.close(self._state.system)
         if self._is_alone:
             self._server.close()
+        self._folder.close()
 
     def frame(self) -> None:
         """Sends one frame: changes and poses."""

@@ -45,6 +45,16 @@ class Schedule:
     def begin(self) -> None:
         self._begun = True
 
+    def skip(self, time: float) -> None:
+        """Goes to a time without the tasks before it."""
+        waiting, self._waiting = self._waiting, []
+        for task in waiting:
+            if task.time <= time and task.period is not None:
+                periods = math.floor((time - task.time) / task.period) + 1
+                task = Task(task.time + periods * task.period, task.order, task.hook, task.period)
+            if task.time > time:
+                heapq.heappush(self._waiting, task)
+
     def rewind(self) -> None:
         """Restores the tasks at `begin`; a call of `due` that is under way ends."""
         self._run += 1

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,7 @@ class State:
     pictures: Pictures = field(default_factory=Pictures)
     notices: Notices = field(default_factory=Notices)
     costs: Costs = field(default_factory=Costs)
+    client_modules: list[Path] = field(default_factory=list)
     shows_edits: bool = True  # by effects
     step_ms: float = 0.0  # of a step, smoothed
     is_changed: bool = True  # pages need more than new poses

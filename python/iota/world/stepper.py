@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from iota._core import Broken, StepReport, StepTimes, System
 from iota.errors import ForceError
-from iota.world.callbacks import GO_ON, Guard, Hook
+from iota.world.callbacks import GO_ON, Guard, Hook, print_on_terminal
 from iota.world.event import Event
 from iota.world.floor import Floor
+from iota.world.keeping import keep, take
 from iota.world.schedule import Schedule
 from iota.world.state import State
 from iota.world.step_costs import EVERY, parts_of
@@ -30,20 +33,37 @@ class Stepper:
         self._off: set[Hook] = set()  # functions that raised since the last reset
         self._floor: Floor | None = None
         self._start: bytes | None = None
+        self._structure = 0
         self._tally: Tally | None = None
 
     @property
     def has_begun(self) -> bool:
         return self._tally is not None
 
-    def begin(self) -> None:
-        """Starts a run; `reset` returns to this state."""
+    def begin(self, kept: Path | None = None) -> None:
+        """Starts a run; `reset` returns to this state. kept: the file of `keep`; where it fits, the run goes on from it."""
         state = self._state
         self._tally = Tally(state.system)
         if state.ground is not None and isinstance(state.system, System):
             self._floor = Floor(state.system, state.ground, state.thickness_of)
         self._start = self._state.system.snapshot()
+        self._structure = state.system.structure_version
         self.schedule.begin()
+        before = None if kept is None or not isinstance(state.system, System) else take(kept, self._start)
+        if before is not None:
+            state.system.restore(before)
+            self.schedule.skip(state.system.time)
+            print_on_terminal(f"iota: the world goes on at {state.system.time:.1f} s; r on the page resets it\n")
+
+    def keep(self, file: Path | None) -> None:
+        """Writes the state for the run of a changed script. A world with new joins, breaks or bodies is not kept, since its
+        script would not know of them."""
+        system = self._state.system
+        if file is None or not isinstance(system, System) or self._start is None:
+            return
+        if system.structure_version == self._structure:
+            with suppress(OSError):
+                keep(file, self._start, system.snapshot())
 
     def summary(self) -> RunSummary:
         """Whether there were steps since `begin`."""

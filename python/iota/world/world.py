@@ -12,13 +12,16 @@ import threading
 import time
 import webbrowser
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from typing import Any, Literal, TypeVar, cast
 
 from iota._core import Body, StepReport, System, Vec3
 from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import Simulator
 from iota.world import options as run_options
+from iota.world.actions import Action
 from iota.world.callbacks import Guard, Hook
+from iota.world.client_modules import add_module
 from iota.world.clients import Client
 from iota.world.clock import Clock
 from iota.world.floor import level_below
@@ -34,6 +37,7 @@ from iota.world.state import TIES, State
 from iota.world.stepper import Stepper
 from iota.world.summary import RunSummary
 from iota.world.things import vector
+from iota.world.view import View
 from iota.world.widgets import Plot
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
@@ -212,6 +216,17 @@ class World(Interacting):
         if self._publisher is not None:
             self._publisher.room.effect(kind, place)
 
+    def client_module(self, file: str | Path) -> None:
+        """Lets pages load a JavaScript module (.js or .mjs, at most 4 MiB), before the world is served. A relative path is
+        searched in the folder of the running script. The module finds the page in `iota`, which web/README.md
+        describes. Whoever can reach the server can read it. Raises FileNotFoundError, ValueError for other files.
+
+        world.client_module("halo.js")
+        """
+        if self._publisher is not None:
+            raise RuntimeError("pages load modules when they open: call client_module before the world is served")
+        add_module(self._state.client_modules, Path(file))
+
     # --- clients ---------------------------------------------------------------------------------------------
 
     @property
@@ -226,6 +241,16 @@ class World(Interacting):
     def selected(self, client: int) -> Body | None:
         """The body that a client has selected."""
         return self._state.clients.selected(client)
+
+    @property
+    def actions(self) -> list[Action]:
+        """What users can do, in the order of creation."""
+        return list(self._state.actions)
+
+    def act(self, name: str, body: Body | None = None) -> None:
+        """Runs an action as a user does, on a body or without one. Raises LookupError for an unknown one. An action that
+        raises is reported as one that a user runs."""
+        self._inputs.act(self._state.actions[name], 0, [] if body is None else [body])
 
     # --- control --------------------------------------------------------------------------------------------------
 
@@ -298,12 +323,17 @@ class World(Interacting):
     # --- running --------------------------------------------------------------------------------------------------
 
     def run(
-        self, seconds: float | None = None, port: int = 8080, open: bool = False, lan: bool | Lan = False
+        self,
+        seconds: float | None = None,
+        port: int = 8080,
+        open: bool = False,
+        lan: bool | Lan = False,
+        view: View | None = None,
     ) -> RunSummary:
         """Runs until Ctrl-C, `stop()`, or for `seconds` of real time; prints the page's address and the keys.
 
         port: 0 for any free one. open: shows the page in the system's browser. lan: for phones, headsets and other
-        computers too, by https; prints their address and a QR code of it. Under `iota run --headless` nothing is
+        computers too, by https; prints their address and a QR code of it. view: shows the world instead of the page. Under `iota run --headless` nothing is
         served and `seconds` are simulated, as fast as possible. Raises OSError for a port in use.
         """
         options = run_options.current()
@@ -316,6 +346,8 @@ class World(Interacting):
             elif options.drive is not None:
                 options.drive(self)
                 summary = self._stepper.summary()
+            elif view is not None or options.view is not None:
+                summary = self._run_viewed(options.view or cast(View, view), math.inf if seconds is None else seconds)
             else:
                 self.serve(port, lan=lan)
                 self._announce(open if options.open is None else options.open)
@@ -450,6 +482,7 @@ class World(Interacting):
             for client in self.clients:
                 self._state.clients.let_go(client)
             self._state.clients.by_id.clear()
+            self._stepper.keep(run_options.current().kept)
             self._publisher.close()
             self._publisher = None
             atexit.unregister(self.close)
@@ -462,7 +495,7 @@ class World(Interacting):
         if self._finds_ground:
             self._finds_ground = False
             self._state.ground = level_below(self.system)
-        self._stepper.begin()
+        self._stepper.begin(run_options.current().kept)
         self._state.clock.restart()
 
     def _run_headless(self, seconds: float) -> RunSummary:
@@ -485,6 +518,28 @@ class World(Interacting):
                 clock.sleep()
         except KeyboardInterrupt:
             pass
+        return self._stepper.summary()
+
+    def _run_viewed(self, view: View, seconds: float) -> RunSummary:
+        notices, clock = self._state.notices, self._state.clock
+        self._begin()
+        notices.show = lambda client, level, title, text, hint, keep: view.notice(title, text, hint)
+        end = time.monotonic() + seconds
+        view.open(self)
+        try:
+            while not self._stopping and time.monotonic() < end:
+                self._inputs.take_calls()
+                for _ in range(clock.due()):
+                    self._stepper.step()
+                if clock.frame_due():
+                    self._inputs.frame()
+                    view.frame(self)
+                clock.sleep()
+        except KeyboardInterrupt:
+            pass
+        finally:
+            notices.show = None
+            view.close()
         return self._stepper.summary()
 
     def _pace_one_step(self) -> None:

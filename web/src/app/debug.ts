@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // window.iota: the page seen from a browser's console and from tests. Documented in README.md.
 
-import { Vector3 } from "three";
+import {
+  BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, CylinderGeometry, Group, Matrix4, Mesh,
+  MeshBasicMaterial, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
+} from "three";
 import type { Page } from "../page/page.ts";
 import { takeFilmFrame } from "../page/picture.ts";
+
+const three = {
+  BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, CylinderGeometry, Group, Matrix4, Mesh,
+  MeshBasicMaterial, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
+};
 
 export interface IotaDebug {
   readonly clientId: number;
@@ -42,8 +50,10 @@ export interface IotaDebug {
   /** The next frame of a film, as the address of a JPEG; afterwards the page draws only on this call. For
    * `iota record`. `plots`: with those of the script. */
   filmFrame(plots?: boolean): Promise<string> | string;
-  /** The parts of the page, for the console. */
+  /** The parts of the page, for the console and for modules of the script. */
   readonly page: Page;
+  /** What the page itself uses of three.js, so that a module of the script needs no copy of its own. */
+  readonly three: typeof three;
 }
 
 declare global {
@@ -62,6 +72,7 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
   };
   return {
     page,
+    three,
     get clientId() { return page.session.connection.clientId; },
     get connected() { return page.session.connection.connected; },
     get step() { return page.world.step; },

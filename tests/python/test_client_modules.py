@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""JavaScript modules that a script adds to its page."""
+
+from __future__ import annotations
+
+import tempfile
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+import iota
+from iota.film import browser
+from iota.film.browser import open_browser
+
+HALO = """
+const { page, three } = globalThis.iota;
+const halo = new three.Mesh(new three.SphereGeometry(0.3), new three.MeshBasicMaterial({ color: "#00ff00" }));
+halo.name = "halo";
+page.viewer.add({ root: halo, draw: () => {
+  if (iota.bodies().length > 0) halo.position.set(...iota.bodyPosition(iota.bodies()[0]));
+} });
+"""
+
+
+def make_world() -> tuple[iota.World, iota.Particle]:
+    system = iota.System(gravity=(0, 0, 0))
+    ball = system.body().particle((0, 1, 0), velocity=(0.5, 0, 0))
+    return iota.World(system, title="halo", ground=None), ball
+
+
+@pytest.mark.skipif(browser.find_browser() is None, reason="there is no Chromium")
+def test_a_module_of_the_script_draws_in_the_page(tmp_path: Path) -> None:
+    pytest.importorskip("playwright.sync_api")
+    (tmp_path / "halo.js").write_text(HALO)
+    world, _ = make_world()
+    world.client_module(tmp_path / "halo.js")
+    url = world.start(port=0)
+    try:
+        with open_browser("tests") as chromium:
+            page = chromium.new_page(viewport={"width": 320, "height": 240})
+            complaints: list[str] = []
+            page.on("pageerror", lambda error: complaints.append(str(error)))
+            page.on("console", lambda told: complaints.append(told.text) if told.type == "error" else None)
+            page.goto(url)
+            halo = "iota.page.viewer.scene.getObjectByName('halo').position.x"
+            page.wait_for_function(f"() => globalThis.iota?.connected && {halo} > 0.2", timeout=60_000)
+            assert page.evaluate(f"{halo} - iota.bodyPosition(iota.bodies()[0])[0]") == pytest.approx(0, abs=0.05)
+            assert complaints == []
+    finally:
+        world.stop()
+
+
+def test_only_the_named_modules_are_served_and_gone_afterwards(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    for name in ("halo.js", "secret.js", "other.mjs"):
+        (tmp_path / name).write_text(HALO)
+    world, _ = make_world()
+    world.client_module(tmp_path / "halo.js")
+    world.client_module(tmp_path / "other.mjs")
+    world.client_module(tmp_path / "halo.js")
+    base = world.serve(port=0).split("?")[0]
+    try:
+        index = urllib.request.urlopen(base).read().decode()
+        assert index.count("modules/halo.js") == 1 and index.index("halo.js") < index.index("other.mjs")
+        assert urllib.request.urlopen(f"{base}modules/halo.js").read().decode() == HALO
+        for name in ("secret.js", "", "../index.html", "%2e%2e/%2e%2e/etc/passwd"):
+            with pytest.raises(urllib.error.HTTPError):
+                urllib.request.urlopen(f"{base}modules/{name}")
+        with pytest.raises(RuntimeError, match="before"):
+            world.client_module(tmp_path / "secret.js")
+        assert len(list(temporary.iterdir())) == 1
+    finally:
+        world.close()
+    assert list(temporary.iterdir()) == []
+
+
+def test_what_is_no_module_is_refused_where_it_is_named(tmp_path: Path) -> None:
+    world, _ = make_world()
+    (tmp_path / "a.py").write_text("")
+    (tmp_path / "huge.js").write_bytes(bytes((4 << 20) + 1))
+    (tmp_path / "same.js").write_text("")
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep" / "same.js").write_text("")
+    with pytest.raises(ValueError, match=r"\.js or \.mjs"):
+        world.client_module(tmp_path / "a.py")
+    with pytest.raises(FileNotFoundError, match=r"none\.js"):
+        world.client_module("none.js")
+    with pytest.raises(ValueError, match="4 MiB"):
+        world.client_module(tmp_path / "huge.js")
+    world.client_module(tmp_path / "same.js")
+    with pytest.raises(ValueError, match="already"):
+        world.client_module(tmp_path / "deep" / "same.js")
+    server = iota.Server(port=0)
+    with pytest.raises(ValueError, match="server of its own"):
+        world.serve(server=server)
+    server.close()
