@@ -148,3 +148,32 @@ def test_a_body_without_particles_steps() -> None:
     body = system.body()
     system.step()
     assert body.particles == [] and system.validate() == []
+
+
+def test_a_callback_that_is_registered_twice_for_the_same_events_is_refused() -> None:
+    system = iota.System()
+    ball, other = (system.body(shape=iota.Sphere(0.1), position=(x, 0, 0)) for x in (0, 1))
+    world = iota.World(system)
+
+    class Game:
+        def hit(self) -> None:
+            pass
+
+    game = Game()
+    for register in (
+        world.on_step,
+        world.on_reset,
+        world.on_frame,
+        world.on_join,
+        world.on_click(ball),
+        world.on_key("k"),
+    ):
+        register(game.hit)
+        with pytest.raises(ValueError, match=r"hit is registered by on_\w+ already"):
+            register(game.hit)
+    world.on_click(other)(game.hit)
+    world.on_drag(ball)(game.hit)
+    world.on_key("k", release=True)(game.hit)
+    world.on_click(ball)(Game().hit)
+    assert world.forget(game.hit) and not world.forget(game.hit)
+    world.on_click(ball)(game.hit)

@@ -67,3 +67,66 @@ def test_a_pull_that_is_far_too_far_explodes_nothing(run_world: Runner, mass: fl
         reach, kinetic = world.call(figures)
         # At most a hundred lengths of the chain or so in a second; targets were 100 000 of them away.
         assert kinetic < 0.5 * mass * (200 * size) ** 2 and reach <= size * 1.001
+
+
+def test_a_body_that_is_destroyed_in_two_users_hands_ends_their_holds_and_nothing_else(run_world: Runner) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    ball = system.body(shape=iota.Sphere(0.05), mass=0.2, position=(0, 1, 0))
+    system.body(shape=iota.Sphere(0.05), mass=0.2, position=(1, 1, 0))
+    world = iota.World(system, ground=None)
+
+    def holds() -> int:
+        return world.call(lambda: sum(hold.grip.alive for client in world.clients for hold in client.holds.values()))
+
+    url = run_world(world)
+    with PageClient(url, "Ada") as ada, PageClient(url, "Bob") as bob:
+        for page, x in ((ada, 0.2), (bob, -0.1)):
+            page.send("grab_start", hold=1, body=page.body(0), local_point=(0, 0, 0), target=(x, 1, 0))
+        ada.wait_for(lambda: holds() == 2)
+        gone = ada.body(0)
+        world.call(ball.destroy)
+        for page in (ada, bob):
+            page.wait_for(lambda page=page: 0 not in page.entities["body"] and page.last["poses"]["holds"] == [])
+        for page in (ada, bob):  # both hands are still closed, and do not know yet
+            page.send("grab_move", hold=1, target=(0.5, 1, 0))
+        ada.send("grab_start", hold=2, body=gone, local_point=(0, 0, 0), target=(0, 1, 0))
+        ada.wait_for(lambda: any(notice["title"] == "It no longer exists" for notice in ada.notices))
+        ada.send("grab_end", hold=1)
+        assert holds() == 0 and bob.notices == []
+        bob.send("grab_end", hold=1)
+        bob.send("grab_start", hold=1, body=bob.body(1), local_point=(0, 0, 0), target=(1.2, 1, 0))
+        bob.wait_for(lambda: bob.places[1][0] > 1.05)
+        assert world.call(lambda: world.held() == system.bodies[0]) and not ada.closed.is_set()
+
+
+def test_two_users_hold_one_body_and_one_who_leaves_takes_only_his_own_hand(run_world: Runner) -> None:
+    system = iota.System(gravity=(0, 0, 0), damping=2)
+    system.body(shape=iota.Sphere(0.05), mass=0.2, position=(0, 1, 0))
+    world = iota.World(system, ground=None)
+    url = run_world(world)
+    with PageClient(url, "Ada") as ada:
+        with PageClient(url, "Bob") as bob:
+            for page, x in ((ada, 1.0), (bob, -1.0)):
+                page.send("grab_start", hold=1, body=page.body(0), local_point=(0, 0, 0), target=(x, 1, 0))
+            ada.wait_for(lambda: len(ada.last["poses"]["holds"]) == 2)
+            time.sleep(0.3)
+            assert abs(ada.places[0][0]) < 0.2, "in balance between both"
+        ada.wait_for(lambda: len(ada.last["poses"]["holds"]) == 1 and ada.places[0][0] > 0.9)
+
+
+@pytest.mark.parametrize("target", [(math.nan, 0, 0), (0, math.inf, 0), (3e38, 0, 0), (0, -1e12, 0)])
+def test_a_hand_that_is_nowhere_is_its_own_users_error_alone(run_world: Runner, target: tuple[float, ...]) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    system.body(shape=iota.Sphere(0.05), mass=0.2, position=(0, 1, 0))
+    world = iota.World(system, ground=None)
+    url = run_world(world)
+    with PageClient(url, "Ada") as ada, PageClient(url, "Bob") as bob:
+        bob.send("grab_start", hold=1, body=bob.body(0), local_point=(0, 0, 0), target=target)
+        bob.wait_for(lambda: len(bob.notices) == 1)
+        bob.send("grab_start", hold=2, body=bob.body(0), local_point=(0, 0, 0), target=(0.2, 1, 0))
+        bob.wait_for(lambda: len(bob.last["poses"]["holds"]) == 1)
+        bob.send("grab_move", hold=2, target=target)
+        bob.wait_for(lambda: len(bob.notices) == 2 and abs(bob.places[0][0] - 0.2) < 0.1)
+        step = ada.last["poses"]["step"]
+        ada.wait_for(lambda: ada.last["poses"]["step"] > step + 10)
+        assert ada.notices == [] and all(map(math.isfinite, ada.places[0]))

@@ -306,6 +306,25 @@ def test_a_socket_pulls_a_held_plug_that_is_near_with_a_bounded_force(
         world.socket(place, [plug], pull=-1)
 
 
+@pytest.mark.parametrize("end", ["destroy", "reset"])
+def test_a_plug_that_leaves_the_hand_without_being_let_go_leaves_no_ghost(
+    system: iota.System, run_world: Runner, end: str
+) -> None:
+    system.gravity = (0, 0, 0)
+    place = system.body().particle((0, 1, 0))
+    place.nail()
+    plug = system.body().particle((0.3, 1, 0))
+    slot = plug.body.slot
+    world = iota.World(system, ground=None)
+    world.socket(place, [plug], within=0.2, pull=1.0)
+    with PageClient(run_world(world)) as page:
+        page.send("grab_start", hold=1, body=page.body(slot), local_point=(0, 0, 0), target=(0.3, 1, 0))
+        page.wait_for(lambda: page.entities["marker"])
+        world.call(lambda: plug.body.destroy() if end == "destroy" else world.reset())
+        page.wait_for(lambda: not page.entities["marker"])
+        assert world.call(lambda: not list(system.bonds)), "nothing draws it any more"
+
+
 def test_forces_are_shown_as_they_are(chain: list[iota.Body], run_world: Runner) -> None:
     system = chain[0].system
     for _ in range(2400):

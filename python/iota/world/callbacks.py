@@ -53,6 +53,18 @@ class Hook:
         return cls(function, wants_event(function), function_name(function))
 
 
+def add_once(hooks: list[Hook], function: Callable[..., Any], kind: str) -> None:
+    """Registers a function. Raises ValueError if it is there already."""
+    hook = Hook.of(function)
+    if any(each.function == function for each in hooks):
+        raise twice(hook, kind)
+    hooks.append(hook)
+
+
+def twice(hook: Hook, kind: str) -> ValueError:
+    return ValueError(f"{hook.name} is registered by {kind} already, and would be called twice")
+
+
 def slow_title(what: str) -> str:
     return f"{what} is slow"
 

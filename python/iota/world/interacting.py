@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from iota._core import Body, Bond, Particle, System, Vec3
+from iota.world.clients import alive
 from iota.world.drawing import Drawing
 from iota.world.event import Event
 from iota.world.ghosts import Ghost
@@ -218,10 +219,12 @@ class Socket:
         self.plugs = list(plugs)
         self._ghost: Ghost | None = None
         self._drag = world.on_drag("anything")(self._dragged)
+        self._frame = world.on_frame(self._end_with_plug)
 
     def destroy(self) -> None:
         """Removes the socket; joined plugs stay joined."""
         self._world.forget(self._drag)
+        self._world.forget(self._frame)
         self._draw(None)
         self._show(None, FREE)
 
@@ -254,6 +257,16 @@ class Socket:
         mine = [p for p in self.plugs if p.alive and self.place.alive and p.body.articulate == body.articulate]
         free = [p for p in mine if p.body != self.place.body and p not in self.place.ring]
         return min(free, key=lambda p: abs(p.position - self.place.position), default=None)
+
+    def _end_with_plug(self) -> None:
+        """A plug that is destroyed in the hand, or taken out of it by a reset or an undo, is not let go of."""
+        if self._ghost is None:
+            return
+        plug, drags = self._ghost.body, self._world._state.listeners.drags.values()
+        held = [body for body in (alive(drag.body) for drag in drags) if body is not None]
+        if not plug.alive or all(body.articulate != plug.articulate for body in held):
+            self._draw(None)
+            self._show(None, FREE)
 
     def _dragged(self, event: Event) -> None:
         plug = None if event.target is None else self._held(event.target)

@@ -10,7 +10,7 @@ from typing import Any
 
 from iota._core import Body, Constraint, Particle
 from iota.simulator import SimulatedBody
-from iota.world.callbacks import Hook
+from iota.world.callbacks import Hook, twice
 
 KINDS = ("click", "press", "release", "drag", "hover", "key", "join", "leave", "frame", "contact", "break")
 
@@ -26,6 +26,11 @@ class Listener:
     key: str | None = None
     on_release: bool = False
     takes_over: bool = False
+
+    def is_same_as(self, other: Listener) -> bool:
+        """Whether both call one function for the same events."""
+        mine, theirs = ((each.hook.function, each.bodies, each.key, each.on_release) for each in (self, other))
+        return self.kind == other.kind and mine == theirs
 
     def hears(self, body: Any) -> bool:
         if self.kind in ("join", "leave", "frame"):
@@ -85,6 +90,9 @@ class Listeners:
         self.version = 0
 
     def add(self, listener: Listener) -> None:
+        """Raises ValueError for a function that is registered for the same events already."""
+        if any(each.is_same_as(listener) for each in self._by_kind[listener.kind]):
+            raise twice(listener.hook, f"on_{listener.kind}")
         self._by_kind[listener.kind].append(listener)
         self.version += 1
 
@@ -92,7 +100,7 @@ class Listeners:
         """Removes a function from all events; False if it is not known."""
         before = sum(map(len, self._by_kind.values()))
         for kind, listeners in self._by_kind.items():
-            self._by_kind[kind] = [each for each in listeners if each.hook.function is not function]
+            self._by_kind[kind] = [each for each in listeners if each.hook.function != function]
         self.version += 1
         return sum(map(len, self._by_kind.values())) < before
 

@@ -20,7 +20,7 @@ from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import Simulator
 from iota.world import options as run_options
 from iota.world.actions import Action
-from iota.world.callbacks import Guard, Hook
+from iota.world.callbacks import Guard, Hook, add_once
 from iota.world.client_modules import add_module
 from iota.world.clients import Client
 from iota.world.clock import Clock
@@ -150,12 +150,12 @@ class World(Interacting):
 
     def on_step(self, function: Callback) -> Callback:
         """Decorator: calls a function before each step."""
-        self._stepper.on_step.append(Hook.of(function))
+        add_once(self._stepper.on_step, function, "on_step")
         return function
 
     def on_reset(self, function: Callback) -> Callback:
         """Decorator: calls a function after each reset, for the script's own state."""
-        self._stepper.on_reset.append(Hook.of(function))
+        add_once(self._stepper.on_reset, function, "on_reset")
         return function
 
     def draw(self, bodies: Body | Iterable[Body], look: Drawn) -> None:
