@@ -30,8 +30,10 @@ void apply(Editor& e, const Destroy<LawId>& c) {
   const ingredient::Law& law = model.laws[slot];
   if (slot <= ingredient::scripted_law) throw std::invalid_argument("a predefined law cannot be destroyed");
   if (law.uses > 0)
-    throw std::invalid_argument(text("the law ", law.name.data(), " cannot be destroyed: ", law.uses,
-                                     law.uses == 1 ? " bond has it" : " bonds have it", "; destroy those first"));
+    throw std::invalid_argument(
+        text("the law ", law.name.data(), " cannot be destroyed: ", law.uses,
+             law.uses == 1 ? " bond or pairwise force has it" : " bonds or pairwise forces have it",
+             "; destroy those first"));
   e.drop_function(e.held.functions.of_laws, law.function);
   model.laws.destroy(slot);
 }

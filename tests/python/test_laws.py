@@ -137,7 +137,7 @@ def test_an_expression_is_made_once_for_all_its_bonds(space: iota.System, pair: 
     second = space.bond(*pair, "energy = k*r^4", k=2)
     assert first.law == second.law and first.parameters == {"k": 1} and second.parameters == {"k": 2}
     assert "energy = k*r^4" in repr(first.law) and first.law.text == "energy = k*r^4"
-    with pytest.raises(ValueError, match="2 bonds have it"):
+    with pytest.raises(ValueError, match="2 bonds or pairwise forces have it"):
         first.law.destroy()
 
 

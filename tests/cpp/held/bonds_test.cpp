@@ -310,7 +310,7 @@ TEST(Law, bad_ones_are_refused_before_anything_changes) {
   const LawId code = system.laws().create(&compiled_spring, {"code", {{"k", 1}, {"r0", 1}}});
   refuses([&] { system.bonds().create(p, q, SharedLaw{code, {}, true}); }, "cannot be implicit");
   const BondId bond = system.bonds().create(p, q, SharedLaw{code});
-  refuses([&] { system.laws().destroy(code); }, "1 bond has it");
+  refuses([&] { system.laws().destroy(code); }, "1 bond or pairwise force has it");
   system.bonds().destroy(bond);
   system.laws().destroy(code);
   EXPECT_THROW(system.bonds().create(p, q, SharedLaw{code}), StaleIdError);
