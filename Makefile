@@ -14,6 +14,9 @@ SUITES ?=
 BENCH ?=
 VERIFY ?=
 SOAK ?=
+# How many damaged snapshots, and recordings of each of five kinds, `make hostile` tries, and from which seed.
+HOSTILE ?= 10000
+SEED ?= 1
 # Which studies `make films` records; all when empty. `make films FILMS="chain cradle"`
 FILMS ?=
 
@@ -21,7 +24,7 @@ iota = .venv/bin/iota
 cpp_presets = debug asan ubsan tsan coverage strict
 
 .DEFAULT_GOAL := help
-.PHONY: help build demo films test bench verify soak check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
+.PHONY: help build demo films test bench verify soak hostile check-determinism wheel format lint tidy clean distclean $(addprefix check-,$(cpp_presets))
 
 help: ## what there is to make (this list)
 	@awk 'BEGIN { FS = ":.*## " } /^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -54,6 +57,10 @@ verify: ## build, compare with what is known, renew docs/verification.md (VERIFY
 soak: ## build, then for some hours: random scenes, promises of motion, edits by the million, linkages and studies for ten minutes, an open page for thirty (SOAK="scenes edits")
 	@$(PYTHON) tools/build.py soak
 	@.venv/bin/python tools/soak.py $(SOAK)
+
+hostile: ## damaged snapshots and recordings under the address sanitizer, some minutes (HOSTILE=100000 SEED=2)
+	@$(PYTHON) tools/build.py cpp --preset asan
+	@IOTA_HOSTILE_COUNT=$(HOSTILE) IOTA_HOSTILE_SEED=$(SEED) build/asan/iota_tests --gtest_brief=1 --gtest_filter='Restore.*:*DamagedRecording.*'
 
 check-determinism: ## the same bits from gcc and clang at -O1 and -O3
 	@$(PYTHON) tools/check_determinism.py
