@@ -64,7 +64,8 @@ INGREDIENTS = [
     Thing("pairs", ("=Pairs", "=pairs", "=pairs_", "pairs id", "create pairs", "set pairs", "pair set", "pair sum",
                     "pair list", "pairs data"), ENGINE),
     Thing("grips", ("grip",), ENGINE),
-    Thing("rod spins", ("spin", "spins", "spinning", "rod spin"), ENGINE),
+    # Bodies and oriented particles have a spin, too.
+    Thing("rod spins", ("rod spin", "rod spins", "=spins", "spin energy", "spin momentum"), ENGINE),
     Thing("oriented particles", ("orient", "oriented", "particle sets", "turn data", "set turn", "oriented particle"),
           ENGINE),
     Thing("emitters", ("emitter",), ENGINE),
