@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/general/dense.h"
-
-#include <iota/solver.h>
+#include "tests/cpp/solver/general/given_equations.h"
 
 #include <gtest/gtest.h>
 
@@ -14,31 +12,6 @@
 
 namespace iota {
 namespace {
-
-using Equations = std::function<void(std::span<const double>, std::span<double>)>;
-
-struct Given : NonlinearProblem {
-  Given(std::size_t n, Equations f, Equations j = nullptr) : n(n), f(std::move(f)), j(std::move(j)) {}
-  std::size_t size() const override { return n; }
-  void evaluate(std::span<const double> x, std::span<double> out) override { f(x, out); }
-  bool jacobian(std::span<const double> x, std::span<double> out) override {
-    if (j) j(x, out);
-    return static_cast<bool>(j);
-  }
-  std::size_t n;
-  Equations f, j;
-};
-
-Given rosenbrock() {
-  return {2, [](auto x, auto f) { f[0] = 10 * (x[1] - x[0] * x[0]), f[1] = 1 - x[0]; },
-          [](auto x, auto j) { j[0] = -20 * x[0], j[1] = 10, j[2] = -1, j[3] = 0; }};
-}
-
-Given cube_roots_of_one() {
-  return {2, [](auto x, auto f) {
-            f[0] = x[0] * x[0] * x[0] - 3 * x[0] * x[1] * x[1] - 1, f[1] = 3 * x[0] * x[0] * x[1] - x[1] * x[1] * x[1];
-          }};
-}
 
 // Every test below holds for each solver that this build has.
 class AnySolver : public testing::TestWithParam<std::string> {
@@ -156,24 +129,6 @@ TEST_P(AnySolver, has_nothing_to_do_for_no_equations) {
   EXPECT_TRUE(solve(problem, x).converged);
 }
 
-TEST(NewtonRaphson, takes_the_shortest_step_where_the_jacobian_is_singular) {
-  // x + y = 2 twice: a line of roots; the nearest to (3, 0) is (2.5, -0.5).
-  Given problem{2, [](auto x, auto f) { f[0] = x[0] + x[1] - 2, f[1] = 2 * f[0]; },
-                [](auto, auto j) { j[0] = j[1] = 1, j[2] = j[3] = 2; }};
-  std::vector<double> x{3, 0};
-  EXPECT_TRUE(make_solver("newton")->solve(problem, x).converged);
-  EXPECT_NEAR(x[0], 2.5, 1e-12);
-  EXPECT_NEAR(x[1], -0.5, 1e-12);
-}
-
-TEST(NewtonRaphson, says_that_it_stands_at_a_minimum_of_the_size_and_no_root) {
-  Given problem = cube_roots_of_one();
-  std::vector<double> x{0, 0};  // f' = 0
-  const SolverReport report = make_solver("newton")->solve(problem, x);
-  EXPECT_FALSE(report.converged);
-  EXPECT_NE(report.reason.find("minimum"), std::string::npos) << report.reason;
-}
-
 TEST(Solvers, can_be_registered_under_a_name_of_ones_own) {
   struct Bisection final : Solver {
     Ending search(NonlinearProblem& problem, std::span<double> x, const SolverOptions& options) override {
@@ -209,52 +164,6 @@ TEST(Solvers, are_refused_by_name_with_the_names_that_there_are) {
   EXPECT_THROW(register_solver("direct", factory), std::invalid_argument);
   EXPECT_THROW(register_solver(std::string(40, 'x'), factory), std::invalid_argument);
   EXPECT_THROW(register_solver("none", nullptr), std::invalid_argument);
-}
-
-TEST(Svd, rebuilds_random_matrices_of_any_shape) {
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> number(-1, 1);
-  for (const auto& [rows, columns] : {std::pair{1, 1}, {4, 4}, {7, 3}, {3, 7}, {12, 12}}) {
-    solver::Dense a(static_cast<std::size_t>(rows), static_cast<std::size_t>(columns));
-    for (double& v : a.values) v = number(random);
-    const solver::Svd svd = solver::calc_svd(a);
-    EXPECT_TRUE(std::is_sorted(svd.s.rbegin(), svd.s.rend()));
-    for (std::size_t i = 0; i < a.rows; ++i)
-      for (std::size_t j = 0; j < a.columns; ++j) {
-        double value = 0;
-        for (std::size_t k = 0; k < svd.s.size(); ++k) value += svd.u(i, k) * svd.s[k] * svd.v(j, k);
-        EXPECT_NEAR(value, a(i, j), 1e-14);
-      }
-  }
-}
-
-TEST(Svd, knows_the_condition_of_a_hilbert_matrix) {
-  solver::Dense hilbert(8, 8);
-  for (std::size_t i = 0; i < 8; ++i)
-    for (std::size_t j = 0; j < 8; ++j) hilbert(i, j) = 1.0 / static_cast<double>(i + j + 1);
-  const solver::Svd svd = solver::calc_svd(hilbert);
-  EXPECT_NEAR(svd.s.front() / svd.s.back() / 1.5257575e10, 1, 1e-5);  // e.g. Higham 2002, table 28.1
-}
-
-TEST(Svd, counts_the_rank_of_redundant_rows) {
-  solver::Dense a(4, 3);
-  for (std::size_t j = 0; j < 3; ++j)
-    a(0, j) = 1.0 + double(j), a(1, j) = double(j * j), a(2, j) = a(0, j) - 2 * a(1, j);
-  const solver::Svd svd = solver::calc_svd(a);
-  EXPECT_EQ(svd.rank(1e-12), 2u);
-}
-
-TEST(DenseLu, refuses_singular_matrices_and_solves_others) {
-  solver::Dense a(2, 2);
-  a(0, 1) = 2, a(1, 0) = 3, a(1, 1) = 1;
-  solver::DenseLu lu;
-  ASSERT_TRUE(lu.factorize(a));
-  std::vector<double> b{4, 5};
-  lu.solve(b);
-  EXPECT_NEAR(b[0], 1, 1e-15);
-  EXPECT_NEAR(b[1], 2, 1e-15);
-  a(0, 1) = 0;
-  EXPECT_FALSE(lu.factorize(a));
 }
 
 }  // namespace

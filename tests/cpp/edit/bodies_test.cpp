@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/bodies.h"
+
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace iota {
+namespace {
+
+Vec3 cross_of(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+void expect_refused(const std::function<void()>& call, const char* words) {
+  try {
+    call();
+    ADD_FAILURE() << "not refused: " << words;
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
+TEST(Solid, is_created_with_its_mass_pose_and_motion) {
+  System system;
+  const double angle = 0.7;
+  const Quaternion turn{0, std::sin(angle / 2), 0, std::cos(angle / 2)};
+  const Vec3 velocity{1, 2, 3}, spin{0.5, -1, 2}, position{4, 5, 6};
+  const BodyId box = system.bodies().create(Box{{0.2, 0.4, 0.6}}, {.density = 500,
+                                                                   .position = position,
+                                                                   .orientation = turn,
+                                                                   .velocity = velocity,
+                                                                   .spin = spin,
+                                                                   .attachments = {{0.1, 0, 0}}});
+  EXPECT_NEAR(system.bodies().mass(box), 500 * 0.2 * 0.4 * 0.6, 1e-12);
+  EXPECT_LT(norm(system.bodies().center_of_mass(box) - position), 1e-14);
+  EXPECT_LT(norm(system.bodies().velocity(box) - velocity), 1e-14);
+  EXPECT_LT(norm(system.bodies().angular_velocity(box) - spin), 1e-13);
+  const ParticleId corner = system.bodies().attachments(box)[0];
+  const Vec3 lever{0.1 * std::cos(angle), 0, -0.1 * std::sin(angle)};
+  EXPECT_LT(norm(system.particles().position(corner) - position - lever), 1e-14);
+  EXPECT_LT(norm(system.particles().velocity(corner) - velocity - cross_of(spin, lever)), 1e-13);
+}
+
+TEST(Rod, has_the_moment_of_inertia_of_a_cylinder_about_its_center) {
+  for (const double size : {1e-3, 1.0, 1e3}) {
+    System system;
+    const BodyId rod = system.bodies().create();
+    const double length = 2 * size, radius = 0.3 * size, mass = 5;
+    system.particles().create(rod, {0, 0, 0}, 1, {0, -size, 0});
+    system.particles().create(rod, {length, 0, 0}, 1, {0, size, 0});  // turns by 1 rad/s about z
+    system.bodies().set_rod(rod, mass, radius);
+    EXPECT_NEAR(system.bodies().mass(rod), mass, 1e-14);
+    const double moment = mass * (3 * radius * radius + length * length) / 12;
+    EXPECT_NEAR(system.bodies().angular_momentum(rod).z / moment, 1, 1e-13);
+    EXPECT_NEAR(system.energy().kinetic / (0.5 * moment), 1, 1e-13);
+  }
+}
+
+TEST(Pose, that_is_assigned_turns_velocities_along_and_keeps_the_energy) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId box = system.bodies().create(
+      Box{{0.2, 0.4, 0.6}}, {.position = {1, 0, 0}, .velocity = {1, 2, 3}, .spin = {0, 0, 4}, .attachments = {{}}});
+  const double kinetic = system.energy().kinetic;
+  const double half = std::numbers::pi / 4;  // a quarter turn about x: y becomes z
+  system.bodies().set_pose(box, {7, 8, 9}, {std::sin(half), 0, 0, std::cos(half)});
+  EXPECT_LT(norm(system.bodies().center_of_mass(box) - Vec3{7, 8, 9}), 1e-13);
+  EXPECT_LT(norm(system.bodies().angular_velocity(box) - Vec3{0, -4, 0}), 1e-12);
+  EXPECT_LT(norm(system.bodies().velocity(box) - Vec3{1, 2, 3}), 1e-13);
+  EXPECT_NEAR(system.energy().kinetic / kinetic, 1, 1e-13);
+}
+
+TEST(Velocities, that_are_assigned_change_only_what_they_name) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId box =
+      system.bodies().create(Box{{0.2, 0.4, 0.6}}, {.velocity = {1, 2, 3}, .spin = {3, 0, 4}, .attachments = {{}}});
+  system.bodies().set_velocity(box, {-1, 0, 0});
+  EXPECT_LT(norm(system.bodies().velocity(box) - Vec3{-1, 0, 0}), 1e-14);
+  EXPECT_LT(norm(system.bodies().angular_velocity(box) - Vec3{3, 0, 4}), 1e-12);
+  system.bodies().set_angular_velocity(box, {0, 5, 0});
+  EXPECT_LT(norm(system.bodies().velocity(box) - Vec3{-1, 0, 0}), 1e-14);
+  EXPECT_LT(norm(system.bodies().angular_velocity(box) - Vec3{0, 5, 0}), 1e-12);
+}
+
+TEST(Kind, that_a_body_cannot_have_is_refused_with_the_way_out) {
+  System system;
+  const BodyId ground = system.bodies().create(HalfSpace{}, {.mass = 1, .kind = BodyKind::static_});
+  const BodyId body = system.bodies().create();
+  system.particles().create(body, {});
+  system.bodies().set_kind(body, BodyKind::static_);
+  const std::uint64_t before = system.state_hash();
+  expect_refused([&] { system.bodies().set_kind(ground, BodyKind::dynamic); }, "it can only be static or scripted");
+  expect_refused([&] { system.bodies().set_kind(body, BodyKind::resting); }, "make it dynamic first");
+  EXPECT_EQ(system.state_hash(), before);
+  system.bodies().set_kind(ground, BodyKind::scripted);
+  EXPECT_EQ(system.bodies().kind(ground), BodyKind::scripted);
+}
+
+TEST(Shape, or_rod_that_no_body_can_have_is_refused_before_anything_changes) {
+  System system;
+  const BodyId three = system.bodies().create();
+  for (const double x : {0.0, 1.0, 3.0}) system.particles().create(three, {x, 0, 0});
+  const std::uint64_t before = system.state_hash();
+  expect_refused([&] { system.bodies().set_rod(three, 1, 0.1); }, "exactly two massive particles");
+  expect_refused([&] { system.bodies().set_rod(three, 1, 0); }, "radius must be above 0");
+  expect_refused([&] { system.bodies().create(Box{}, {.density = 0}); }, "density");
+  expect_refused([&] { system.bodies().create(Box{}, {.mass = -1}); }, "mass");
+  expect_refused([&] { system.bodies().create(Box{}, {.orientation = {0, 0, 0, 0}}); }, "orientation");
+  expect_refused([&] { (void)system.bodies().create_attachment(three, {}); }, "use create_particle");
+  EXPECT_EQ(system.state_hash(), before);
+}
+
+TEST(Body, that_is_destroyed_takes_its_momentum_and_energy_out_of_the_book) {
+  System system{SystemOptions{.gravity = {}}};
+  const BodyId kept = system.bodies().create(), gone = system.bodies().create();
+  system.particles().create(kept, {}, 2, {1, 0, 0});
+  system.particles().create(gone, {5, 0, 0}, 3, {0, 2, 0});
+  (void)system.step(0.01);
+  system.bodies().destroy(gone);
+  (void)system.step(0.01);
+  EXPECT_FALSE(system.bodies().contains(gone));
+  EXPECT_LT(norm(system.momentum() - Vec3{2, 0, 0}), 1e-15);
+  EXPECT_NEAR(system.energy().kinetic, 1, 1e-15);
+  EXPECT_NEAR(system.energy().balance(), 0, 1e-14);
+}
+
+}  // namespace
+}  // namespace iota

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit/grips.h"
+
+#include <iota/system.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace iota {
+namespace {
+
+TEST(Grip, holds_the_place_of_a_turned_body_that_it_was_given_in_that_bodys_frame) {
+  System system{SystemOptions{.gravity = {}}};
+  const double half = 0.4;
+  const BodyId box = system.bodies().create(
+      Box{{0.2, 0.4, 0.6}}, {.position = {1, 2, 3}, .orientation = {0, 0, std::sin(half), std::cos(half)}});
+  (void)system.grips().create(box, {0.1, 0, 0.3}, {5, 5, 5}, {.client = 7, .hold = 2});
+  const PoseSnapshot poses = system.viewer().poses();
+  ASSERT_EQ(poses.holds.size(), 1u);
+  const HoldPose& hold = poses.holds[0];
+  EXPECT_EQ(hold.client, 7u);
+  EXPECT_EQ(hold.hold, 2u);
+  EXPECT_EQ(hold.body, box.slot);
+  EXPECT_NEAR(hold.point[0], 1 + 0.1 * std::cos(2 * half), 1e-6);
+  EXPECT_NEAR(hold.point[1], 2 + 0.1 * std::sin(2 * half), 1e-6);
+  EXPECT_NEAR(hold.point[2], 3.3, 1e-6);
+  EXPECT_EQ(hold.target[0], 5);
+}
+
+TEST(Grip, with_numbers_that_no_hand_has_is_refused_and_changes_nothing) {
+  System system;
+  const BodyId empty = system.bodies().create(), body = system.bodies().create(Sphere{0.1});
+  const std::uint64_t before = system.state_hash();
+  EXPECT_THROW(system.grips().create(empty, {}, {}), std::invalid_argument);
+  EXPECT_THROW(system.grips().create(body, {}, {}, {.frequency = 0}), std::invalid_argument);
+  EXPECT_THROW(system.grips().create(body, {}, {}, {.max_acceleration = -1}), std::invalid_argument);
+  EXPECT_THROW(system.grips().create(body, {}, {std::nan(""), 0, 0}), std::invalid_argument);
+  EXPECT_EQ(system.state_hash(), before);
+  const GripId grip = system.grips().create(body, {}, {});
+  EXPECT_THROW(system.grips().move(grip, {std::nan(""), 0, 0}), std::invalid_argument);
+  system.grips().destroy(grip);
+  EXPECT_THROW(system.grips().move(grip, {}), StaleIdError);
+}
+
+}  // namespace
+}  // namespace iota
