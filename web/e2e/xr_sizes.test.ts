@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A headset in scenes from a molecule to a valley: the user stands before each as before a table, and holds its parts as well; and the
-// controls of a script on its panel.
+// A headset in scenes from a molecule to a valley: the user stands before each as before a table, and holds its parts as well; the first
+// view of low, small and huge studies; and the controls of a script on its panel.
 
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { Browser } from "./browser.ts";
@@ -35,9 +35,12 @@ describe("a headset", () => {
       return { scale: room.scale.x, size: stage.size / room.scale.x, away: Math.hypot(...middle.map((value, axis) => value - head[axis])) };
     });
     expect(scene.scale === 1, JSON.stringify(scene)).toBe(!isScaled);
-    if (isScaled) expect(scene.size).toBeCloseTo(0.7, 1);
+    if (isScaled) {
+      expect(scene.size).toBeGreaterThan(0.5);
+      expect(scene.size).toBeLessThan(1.2);
+    }
     expect(scene.away).toBeGreaterThan(0.6);
-    expect(scene.away).toBeLessThan(6);
+    expect(scene.away).toBeLessThan(12);
 
     const body = 4;
     await me.pointAtBody("right", [0.2, 1.3, -0.3], body);
@@ -56,6 +59,47 @@ describe("a headset", () => {
     await me.tab.until("it is let go", () => iota.held === -1 && iota.holds().length === 0);
     expect(me.tab.complaints).toEqual([]);
     await me.tab.page.close();
+  });
+
+  it.each(["cradle", "ladder", "mechanisms", "soft-molecule", "appendix-e2"])("sees the study %s whole at first, and not small, and stays as high above the floor when it teleports", async (name) => {
+    const study = await WorldServer.start([name], await freePort());
+    try {
+      const me = await HeadsetTab.open(browser, study.url);
+      await me.tab.until("it has been drawn", () => !document.getElementById("view")!.classList.contains("waiting"));
+      await me.enter();
+      await me.frames(3);
+      await me.picture(`xr-study-${name}`);
+      const { farthest, across } = await me.tab.page.evaluate(() => {
+        const eyes = iota.page.viewer.renderer.xr.getCamera().cameras;
+        const places: { x: number; y: number }[][] = [];
+        const corners = {
+          add: (...corner: [number, number, number]) => places.push(eyes.map((eye) => eye.position.clone().set(...corner).project(eye))),
+        };
+        iota.page.world.entities.body.addPoints(corners as never, true);
+        const along = (axis: "x" | "y") => places.map(([left]) => left[axis]);
+        return {
+          // In the eye that sees more of it.
+          farthest: Math.max(...places.map((seen) => Math.min(...seen.map(({ x, y }) => Math.max(Math.abs(x), Math.abs(y)))))),
+          across: Math.max(Math.max(...along("x")) - Math.min(...along("x")), Math.max(...along("y")) - Math.min(...along("y"))),
+        };
+      });
+      expect(farthest, "1 is the edge of the view").toBeLessThan(1);
+      expect(across, "2 is the whole view").toBeGreaterThan(0.35);
+      const before = await me.tab.page.evaluate(() => iotaXR!.head());
+      await me.point("left", [-0.2, 1.32, -0.38], [-0.6, 1.2, -1.5]);
+      await me.stick("left", 0, -1);
+      await me.tab.until("the arc lands", () => iotaXR!.landing() !== null);
+      // A bench is a floor too.
+      const floor = await me.tab.page.evaluate(() => iotaXR!.landing()![1] - iota.page.world.ground!);
+      await me.stick("left", 0, 0);
+      const { head: after, scale } = await me.tab.page.evaluate(() => ({ head: iotaXR!.head(), scale: iotaXR!.rig().scale }));
+      expect(Math.hypot(after[0] - before[0], after[2] - before[2])).toBeGreaterThan(0.5 * scale);
+      expect(Math.abs(after[1] - before[1] - floor)).toBeLessThan(1e-3 * scale);
+      expect(me.tab.complaints).toEqual([]);
+      await me.tab.page.close();
+    } finally {
+      await study.stop();
+    }
   });
 
   it("has the controls of the script at the wrist", async () => {

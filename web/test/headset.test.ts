@@ -10,21 +10,21 @@ import { fitScale, standBefore, type Standing } from "../src/xr/standing.ts";
 
 const settings: Standing = { scale: 1, ground: 0.5, eye: [3, 1.7, 4], target: [0.2, 1.5, 0] };
 
-function stand(world: Standing, head: Matrix4): { head: Vector3; ahead: Vector3; rig: Object3D } {
+function stand(world: Standing, head: Matrix4, raised = 0): { head: Vector3; ahead: Vector3; rig: Object3D } {
   const rig = new Object3D();
-  standBefore(world, head.elements, rig);
+  standBefore(world, head.elements, raised, rig);
   rig.updateMatrixWorld();
   const seen = new Matrix4().multiplyMatrices(rig.matrixWorld, head);
   return { rig, head: new Vector3().setFromMatrixPosition(seen), ahead: new Vector3().setFromMatrixColumn(seen, 2).negate() };
 }
 
 describe("where a user stands at first", () => {
-  it("is a step before the thing on the camera's side, facing it, wherever the head is and looks", () => {
+  it("is before the thing on the camera's side, nearer than that, facing it, wherever the head is and looks", () => {
     for (const turn of [0, 1, -2.5]) {
       const { head, ahead, rig } = stand(settings, new Matrix4().makeRotationY(turn).setPosition(0.7, 1.6, -0.4));
       const away = new Vector3(head.x - 0.2, 0, head.z);
-      expect(away.length()).toBeGreaterThan(0.85);
-      expect(away.length()).toBeLessThan(1.65);
+      expect(away.length()).toBeGreaterThan(0.6 * Math.hypot(2.8, 4));
+      expect(away.length()).toBeLessThan(0.9 * Math.hypot(2.8, 4));
       expect(away.clone().normalize().dot(new Vector3(2.8, 0, 4).normalize())).toBeCloseTo(1);
       expect(ahead.dot(away.normalize())).toBeCloseTo(-1);
       expect(rig.position.y).toBe(0.5);
@@ -38,7 +38,7 @@ describe("where a user stands at first", () => {
       const times = (values: readonly number[]) => values.map((value) => scale * value) as [number, number, number];
       const head = new Matrix4().setPosition(0.3, 1.6, 0);
       const rig = new Object3D();
-      standBefore({ scale, ground: scale * 0.5, eye: times(settings.eye), target: times(settings.target) }, head.elements, rig);
+      standBefore({ scale, ground: scale * 0.5, eye: times(settings.eye), target: times(settings.target) }, head.elements, 0, rig);
       const room = new Object3D();
       room.scale.setScalar(scale);
       rig.add(room);
@@ -46,7 +46,7 @@ describe("where a user stands at first", () => {
       const seen = new Vector3().setFromMatrixPosition(head).applyMatrix4(room.matrixWorld).divideScalar(scale);
       expect(seen.distanceTo(real.head)).toBeLessThan(1e-6);
     }
-    expect([1e-9, 0.15, 2, 15, 1e3].map(fitScale)).toEqual([1e-9 / 0.7, 1, 1, 1, 1e3 / 0.7]);
+    expect([1e-9, 0.5, 1.5, 4, 15, 1e3].map(fitScale)).toEqual([1e-9 / 2, 0.25, 1, 1, 1, 1e3 / 2]);
   });
 
   it("has the thing at eye height where there is no ground", () => {
@@ -56,15 +56,40 @@ describe("where a user stands at first", () => {
   });
 });
 
-it("a small scene high above the ground is before the eyes, a tall one is seen from the ground", () => {
-  const rig = new Object3D();
+describe("the height of the eyes at first", () => {
   const head = new Matrix4().setPosition(0, 1.6, 0);
-  standBefore({ scale: 0.1, ground: 0, eye: [0, 1.2, 2], target: [0, 1.2, 0] }, head.elements, rig);
-  expect(rig.position.y + 0.1 * 1.6).toBeCloseTo(1.2 + 0.1 * 0.15);
-  standBefore({ scale: 0.1, ground: 0, eye: [0, 0.2, 2], target: [0, 0.2, 0] }, head.elements, rig);
-  expect(rig.position.y).toBe(0);
-  standBefore({ scale: 1, ground: 0, eye: [0, 9, 9], target: [0, 5, 0] }, head.elements, rig);
-  expect(rig.position.y).toBe(0);
+  /** Of a scene whose center is at a height, seen from a distance: height of the eyes above the ground, and angle from them down to the center, rad. */
+  const eyes = (scale: number, height: number, away: number, raised = 0, at = head) => {
+    const rig = new Object3D();
+    standBefore({ scale, ground: 0.3, eye: [0, 0.3 + height, away], target: [0, 0.3 + height, 0] }, at.elements, raised, rig);
+    const above = rig.position.y + scale * at.elements[13] - 0.3;
+    return { above, down: Math.atan2(above - height, rig.position.z + scale * at.elements[14]) };
+  };
+
+  it("is the user's own where that shows the scene, or its foot if it is tall", () => {
+    expect(eyes(1, 1.1, 4).above).toBeCloseTo(1.6);
+    expect(eyes(1, 5, 9).above).toBeCloseTo(1.6);
+    expect(eyes(0.1, 0.2, 2).above).toBeCloseTo(0.16);
+  });
+
+  it("comes down to a low scene, so that it is in view, but not to the ground, on which hands would lie", () => {
+    const low = eyes(1, 0.6, 2.4);
+    expect(low.above).toBeGreaterThan(0.7);
+    expect((low.down * 180) / Math.PI).toBeCloseTo(16.7, 1);
+    for (const scale of [1, 0.2]) expect(eyes(scale, 0, 0.5).above).toBeCloseTo(0.6 * scale);
+  });
+
+  it("is that of who stands for who sits", () => {
+    const sitting = new Matrix4().setPosition(0, 1.2, 0);
+    for (const [height, away] of [[1.1, 4], [0.6, 2.4]]) {
+      expect(eyes(1, height, away, 0.4, sitting).above).toBeCloseTo(eyes(1, height, away).above);
+    }
+    expect(eyes(1, 1.1, 4, 0, sitting).above).toBeCloseTo(1.2);
+  });
+
+  it("is that of a small scene high above the ground", () => {
+    expect(eyes(0.1, 1.2, 2).above).toBeCloseTo(1.2 + 0.1 * 0.15);
+  });
 });
 
 describe("the wrist panel's layout", () => {

@@ -32,9 +32,9 @@ export function emulate(page: Pick<Page, "viewer" | "world" | "commands">, canva
 
 /** Hands at their places for a standing user. */
 function restHands(device: XRDevice): void {
-  for (const [side, x] of [["left", -0.2], ["right", 0.2]] as const) {
-    device.controllers[side]?.position.set(x, eyeHeight - 0.28, -0.38);
-    device.hands[side]?.position.set(x, eyeHeight - 0.28, -0.38);
+  for (const [side, x] of [["left", -0.26], ["right", 0.26]] as const) {
+    device.controllers[side]?.position.set(x, eyeHeight - 0.36, -0.38);
+    device.hands[side]?.position.set(x, eyeHeight - 0.36, -0.38);
   }
 }
 

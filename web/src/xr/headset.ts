@@ -54,6 +54,8 @@ export class Headset implements PageListener, FramePart {
   private space_: XRReferenceSpace | null = null;
   private readonly wayHome_ = new WayHome();
   private toPlace_ = false;
+  /** Raises the eyes of who sits to those of who stands, m of the user's. */
+  private raised_ = 0;
   private pressedBy_: Input | null = null;
   private everConnected_ = false;
   private helped_ = false;
@@ -82,14 +84,13 @@ export class Headset implements PageListener, FramePart {
       nextTurn: () => {
         locomotion.turnBy = turns[(turns.indexOf(locomotion.turnBy) + 1) % turns.length];
       },
-      seated: () => locomotion.lift !== 0,
+      seated: () => this.raised_ !== 0,
       sit: () => this.sit_(),
       isRealSize: () => page.viewer.room.scale.x === 1,
       changeSize: () => {
-        const { room, size } = page.viewer;
-        this.place_(room.scale.x === 1 ? tableScale(size) : 1);
+        this.place_(page.viewer.room.scale.x === 1 ? tableScale(page.navigation.home.distance) : 1);
       },
-      home: () => this.place_(fitScale(page.viewer.size)),
+      home: () => this.goHome_(),
       aimTeleport: () => {
         if (this.pressedBy_ !== null) this.locomotion.arm(this.pressedBy_);
       },
@@ -161,7 +162,7 @@ export class Headset implements PageListener, FramePart {
     const { viewer } = this.page_;
     const isNew = frame.getViewerPose(this.space_) !== null;
     if (isNew) this.readHead_();
-    if (this.toPlace_) this.place_(fitScale(viewer.size));
+    if (this.toPlace_) this.goHome_();
     for (const input of this.inputs) {
       input.read(frame, this.space_);
       input.lift(viewer.room.matrixWorld, viewer.room.scale.x);
@@ -349,13 +350,18 @@ export class Headset implements PageListener, FramePart {
   /** Who sits sees from the height of who stands; or back. */
   private sit_(): void {
     const { rig, room } = this.page_.viewer;
-    const { locomotion } = this;
-    const before = locomotion.lift;
-    locomotion.lift = before === 0 ? standingEyes - this.headLocal_.elements[13] : 0;
-    rig.position.y += room.scale.x * (locomotion.lift - before);
+    const before = this.raised_;
+    this.raised_ = before === 0 ? standingEyes - this.headLocal_.elements[13] : 0;
+    this.locomotion.lift += this.raised_ - before;
+    rig.position.y += room.scale.x * (this.raised_ - before);
     this.moved_();
   }
 
+  private goHome_(): void {
+    this.place_(fitScale(this.page_.navigation.home.distance));
+  }
+
+  /** Before the scene, at a scale. */
   private place_(scale: number): void {
     this.toPlace_ = false;
     const { world, navigation, viewer: { rig, room } } = this.page_;
@@ -363,8 +369,9 @@ export class Headset implements PageListener, FramePart {
     const { pivot, distance, yaw, pitch } = navigation.home;
     const flat = distance * Math.cos(pitch);
     const eye = [pivot[0] + flat * Math.sin(yaw), pivot[1] + distance * Math.sin(pitch), pivot[2] + flat * Math.cos(yaw)] as const;
-    standBefore({ scale, eye: [...eye], target: [...pivot], ground: world.ground }, this.headLocal_.elements, rig);
-    rig.position.y += scale * this.locomotion.lift;
+    const { ground } = world;
+    standBefore({ scale, eye: [...eye], target: [...pivot], ground }, this.headLocal_.elements, this.raised_, rig);
+    this.locomotion.lift = ground === null ? this.raised_ : (rig.position.y - ground) / scale;
     this.panel.snap();
     this.moved_();
   }
@@ -386,7 +393,8 @@ export class Headset implements PageListener, FramePart {
   }
 
   private floor_(): number {
-    return this.page_.world.ground ?? this.page_.viewer.rig.position.y;
+    const { world, viewer: { rig, room } } = this.page_;
+    return world.ground ?? rig.position.y - room.scale.x * this.locomotion.lift;
   }
 
   /** Finds the panel that a hand points at or touches; presses it when a fingertip passes through. */

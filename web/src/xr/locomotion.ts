@@ -38,7 +38,7 @@ export class Locomotion {
   turnBy: (typeof turns)[number] = 30;
   /** The view is turning by itself. */
   gliding = false;
-  /** Raises the eyes of who sits, m of the user's. */
+  /** Of the user's floor above the ground that is stood on, m of the user's: who sits is raised, who is before a low scene is lowered. */
   lift = 0;
   /** Where to face at the end of a teleport, rad to the left of the head's direction. */
   facing = 0;

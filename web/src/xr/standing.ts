@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The user's place at the start of a session: a step in front of the scene, facing it. Pure functions.
+// The user's place at the start of a session and at "home": before the scene, facing it, so far away and so low that it is whole in the
+// view without a turn of the head. Pure functions.
 
 import type { Vec3 } from "../protocol/generated.ts";
 
@@ -17,47 +18,54 @@ export interface Rig {
   readonly rotation: { y: number };
 }
 
+/** Of a step from the scene, m of the user's. */
 const nearest = 0.9;
-const farthest = 1.6;
 /** A step is shorter than a camera's distance, as a headset has a wider view than a screen. */
-const ofCamera = 0.36;
+const ofCamera = 0.75;
 /** Without a ground in reach, eyes are this far above the scene's center, m. */
 const eyesAbove = 0.15;
 /** A small scene whose center is farther above the ground is out of reach from there, m of the user's. */
 const highest = 2.5;
+/** Eyes are at most this far above the scene's center, in steps from it: 17 degrees, as its lower half has to be in view too. */
+const steepest = 0.3;
+/** Eyes never come nearer to the ground, since hands hang below them, m of the user's. */
+const lowest = 0.6;
 
-/** Scenes from the one to the other size (half their diagonal, m) are as large as they are; others are as large as a table. */
-const smallest = 0.12;
-const largest = 20;
-const tableSize = 0.7;
+/**
+ * Scenes that the script's camera sees from the one to the other distance, m, are as large as they are; others are as large as a table.
+ * Not by what is there at the moment: rockets that fly or a rod that falls would change it.
+ */
+const closest = 1.2;
+const remotest = 25;
+const tableDistance = 2;
 
-/** Meters of the world in one of the user's, so that a scene of a size can be looked at and worked on. */
-export function fitScale(size: number): number {
-  return size >= smallest && size <= largest ? 1 : tableScale(size);
+/** Meters of the world in one of the user's, so that a scene seen from a distance by the script's camera can be looked at and worked on. */
+export function fitScale(distance: number): number {
+  return distance >= closest && distance <= remotest ? 1 : tableScale(distance);
 }
 
-export function tableScale(size: number): number {
-  return size / tableSize;
+export function tableScale(distance: number): number {
+  return distance / tableDistance;
 }
 
 /**
- * Moves and turns the rig so that the head (its transform in the reference space, column by column)
- * is in front of the center of the world's view, on the side of the script's camera.
+ * Moves and turns the rig so that the head (its transform in the reference space, column by column) is in front of the center of the
+ * world's view, on the side of the script's camera. On the world's ground, raised by `raised` if the user sits (m of the user's); but a
+ * low scene is brought up to the eyes: then the ground is above the user's floor, as a table is.
  */
-export function standBefore(settings: Standing, head: ArrayLike<number>, rig: Rig): void {
-  const { eye, target } = settings;
+export function standBefore(settings: Standing, head: ArrayLike<number>, raised: number, rig: Rig): void {
+  const { eye, target, scale, ground } = settings;
   let awayX = eye[0] - target[0];
   let awayZ = eye[2] - target[2];
   const far = Math.hypot(awayX, awayZ);
-  if (far > 1e-6 * settings.scale) {
+  if (far > 1e-6 * scale) {
     awayX /= far;
     awayZ /= far;
   } else {
     awayX = 0;
     awayZ = 1;
   }
-  const { scale } = settings;
-  const step = scale * Math.min(Math.max((ofCamera * far) / scale, nearest), farthest);
+  const step = Math.max(ofCamera * far, scale * nearest);
   // The head looks along -z of its own frame; turned about y by `yaw`, -z points to (-sin yaw, -cos yaw).
   const facing = Math.atan2(awayX, awayZ);
   const flat = Math.hypot(head[8], head[10]);
@@ -66,8 +74,9 @@ export function standBefore(settings: Standing, head: ArrayLike<number>, rig: Ri
   const x = scale * (Math.cos(yaw) * head[12] + Math.sin(yaw) * head[14]);
   const z = scale * (-Math.sin(yaw) * head[12] + Math.cos(yaw) * head[14]);
   rig.rotation.y = yaw;
-  const { ground } = settings;
   const isInReach = ground !== null && (scale >= 1 || target[1] - ground <= scale * highest);
-  const floor = isInReach ? ground : target[1] + scale * (eyesAbove - head[13]);
-  rig.position.set(target[0] + step * awayX - x, floor, target[2] + step * awayZ - z);
+  const eyes = isInReach
+    ? Math.min(ground + scale * (head[13] + raised), Math.max(target[1] + steepest * step, ground + scale * lowest))
+    : target[1] + scale * eyesAbove;
+  rig.position.set(target[0] + step * awayX - x, eyes - scale * head[13], target[2] + step * awayZ - z);
 }
