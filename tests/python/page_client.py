@@ -8,6 +8,7 @@ import ssl
 import struct
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable
 from contextlib import ExitStack
 from itertools import chain
@@ -105,7 +106,8 @@ def records(kind: str, data: bytes) -> list[dict[str, Any]]:
 class PageClient:
     """Connects, keeps what the server last said of each message and entity, and sends what a user does.
 
-    entities: by kind and slot. told, pose_frames: how many records and frames came so far. places: of bodies, by slot."""
+    entities: by kind and slot. told, pose_frames: how many records and frames came so far; messages: how many of each name.
+    places: of bodies, by slot."""
 
     def __init__(self, url: str, name: str = "test", role: int = 0, trust: ssl.SSLContext | None = None) -> None:
         """trust: for https, whose certificates count."""
@@ -118,6 +120,7 @@ class PageClient:
         self.told = self.pose_frames = 0
         self.places: dict[int, tuple[float, ...]] = {}
         self.last: dict[str, dict[str, Any]] = {}
+        self.messages: Counter[str] = Counter()
         self.notices: list[dict[str, Any]] = []
         self.effects: list[dict[str, Any]] = []
         self.closed = threading.Event()
@@ -185,6 +188,7 @@ class PageClient:
 
     def _take(self, name: str, values: dict[str, Any]) -> None:
         self.last[name] = values
+        self.messages[name] += 1
         if name == "entities_set":
             for entity in records(values["kind"], values["records"]):
                 self.entities[values["kind"]][entity["id"][0]] = entity

@@ -65,6 +65,19 @@ def test_b_breaks_and_c_rejoins_in_python_and_on_the_page(world: iota.World, run
         assert page.notices == []
 
 
+def test_a_script_that_changes_looks_does_not_tell_pages_its_actions_anew(world: iota.World, run_world: Runner) -> None:
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.parts() == 1)
+        styles = page.entities["body"][0]["style"]
+        before = page.messages.copy()
+        world.call(lambda: world.draw(world.system.bodies[0], iota.looks.solid("steel")))
+        page.wait_for(lambda: page.entities["body"][0]["style"] != styles)
+        for name in ("actions", "world_settings", "listens"):
+            assert before[name] >= 1 and page.messages[name] == before[name], name
+        world.call(lambda: world.action("wave", key="h", on="world")(lambda: None))
+        page.wait_for(lambda: "h" in [action["key"] for action in page.last["actions"]["actions"]])
+
+
 def test_edits_that_are_a_mechanism_show_no_rings_and_those_that_the_script_chooses_do(
     world: iota.World, run_world: Runner
 ) -> None:

@@ -23,6 +23,7 @@ class Publisher:
         self._state, self._server, self._is_alone = state, server, is_alone
         self._folder = ExitStack()  # of the page, if it is not the built one
         self._source = source_of(state.system)
+        self._told: dict[str, dict[str, Any]] = {}
         self.room = room
         self.url = server.url if is_alone else server.url_of(room.world)
         self.lan_url = server.lan_url("" if is_alone else room.world)
@@ -91,7 +92,8 @@ class Publisher:
     def _tell_settings(self) -> None:
         state = self._state
         looks = list(dict.fromkeys(name for styles in state.scene.classes.values() for name in styles if name != "*"))
-        self.room.set_settings(
+        self._tell_if_new(
+            "set_settings",
             title=state.title,
             looks=looks,
             look=state.style or (looks[0] if looks else ""),
@@ -100,8 +102,15 @@ class Publisher:
         )
         listeners = state.listeners
         clicks, hovers = listeners.has("click"), listeners.has("hover")
-        self.room.set_listens(clicks=clicks, hovers=hovers, keys=listeners.keys)
-        self.room.set_actions([action.describe() for action in state.actions])
+        self._tell_if_new("set_listens", clicks=clicks, hovers=hovers, keys=list(listeners.keys))
+        self._tell_if_new("set_actions", actions=[action.describe() for action in state.actions])
         state.scene.tell(self.room, state.statics)
         for texture in state.scene.textures():
             state.things.images.use(texture.name, texture)
+
+    def _tell_if_new(self, setter: str, **values: Any) -> None:
+        """Pages make their buttons anew at each message: a script that changes how things are drawn would take them away
+        under the mouse."""
+        if self._told.get(setter) != values:
+            self._told[setter] = values
+            getattr(self.room, setter)(**values)
