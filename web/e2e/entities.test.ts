@@ -197,6 +197,25 @@ describe("the script hears", () => {
     await told('{"key": "k"}');
   });
 
+  it("of its keys while a slider, a check box or a button has the focus, but not of what is written into a text", async () => {
+    const count = () => server.output.split('{"key": "k"}').length - 1;
+    const panel = tab.page.locator("#panel");
+    let heard = count();
+    for (const control of [panel.getByLabel("gravity"), panel.getByLabel("wind"), panel.getByRole("button", { name: "throw" })]) {
+      await control.focus();
+      await tab.page.keyboard.press("k");
+      heard++;
+      await expect.poll(count).toBe(heard);
+    }
+    await panel.getByLabel("name").focus();
+    await tab.page.keyboard.type("kk");
+    await tab.page.keyboard.press("Enter");
+    await told('{"text": "Zo\\u00ebkk"}');
+    await panel.getByLabel("gravity").focus();
+    await tab.page.keyboard.press("k");
+    await expect.poll(count).toBe(heard + 1);
+  });
+
   it("gives the world its surroundings, and takes them back", async () => {
     const light = async () => tab.page.evaluate(() => {
       const { viewer: { renderer, scene, camera } } = iota.page;

@@ -4,6 +4,7 @@
 import type { Grab, Pointer } from "../interact/gestures.ts";
 import { PointerKind, type Vec3 } from "../protocol/generated.ts";
 import type { PageListener } from "./events.ts";
+import { keepsKey } from "./focus.ts";
 import type { PageParts } from "./page_parts.ts";
 import type { FramePart } from "./viewer.ts";
 
@@ -88,18 +89,13 @@ export class Reports implements PageListener, FramePart {
       return;
     }
     if (!down || !this.parts_.world.listens.keys.includes(key)) return;
-    if (event.ctrlKey || event.metaKey || event.altKey || isForElement(event.target)) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || keepsKey(event)) return;
     event.preventDefault();
     event.stopImmediatePropagation();
     if (event.repeat) return;
     this.down_.add(key);
     this.parts_.session.send({ type: "key", key, down: true });
   }
-}
-
-/** A focused text field, or a dialog, keeps its keys. */
-function isForElement(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && target.closest("input, select, textarea, button, summary, dialog[open]") !== null;
 }
 
 function vec3(from: ArrayLike<number>): Vec3 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keyboard: runs commands, and walks while a key is held down. Keys of the script have priority over the page's.
 
+import { keepsKey } from "../page/focus.ts";
 import type { Page } from "../page/page.ts";
 
 /** Right, up, forward. */
@@ -34,7 +35,7 @@ export class Keys {
   }
 
   private press_(event: KeyboardEvent): void {
-    if (event.ctrlKey || event.metaKey || event.altKey || isForElement(event)) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || keepsKey(event)) return;
     const { commands, navigation } = this.page_;
     const walking = event.key.toLowerCase();
     if (walking in walkKeys && commands.scriptOfKey(event.key) === undefined) {
@@ -57,17 +58,4 @@ export class Keys {
       walk.set(walk.x + x, walk.y + y, walk.z + z);
     }
   }
-}
-
-/** Keys that move a slider. */
-const sliderKeys = /^(Arrow|Home|End|Page)/;
-
-/** A focused control keeps its own keys. */
-function isForElement(event: KeyboardEvent): boolean {
-  const target = event.target;
-  if (!(target instanceof HTMLElement)) return false;
-  if (target.closest("dialog[open]") !== null) return true;
-  if (target instanceof HTMLInputElement && target.type === "range") return sliderKeys.test(event.key);
-  if (target instanceof HTMLSelectElement || target instanceof HTMLInputElement) return event.key !== "Escape";
-  return target instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter");
 }
