@@ -19,6 +19,11 @@ class Round {
     this.view.create({ id: id(0), at: { body: 0, point: [0, 0, 0] }, seconds: 0, capacity: 500, radius: 0.01, color: NO_COLOR, ...extra });
   }
 
+  /** Goes on without poses: the connection is slow. */
+  lose(frames: number): void {
+    this.step += frames;
+  }
+
   go(frames: number, every: number): void {
     for (let count = 0; count < frames; count++, this.step++) {
       const turn = (2 * Math.PI * this.step) / 60;
@@ -49,6 +54,15 @@ describe("a trace", () => {
       const half = [0, 1].map((axis) => (from[axis] + to[axis]) / 2 - middle);
       expect(Math.abs(Math.hypot(...half) / radius - 1)).toBeLessThan(2e-3);
     }
+  });
+
+  it("stays round where the poses of a sixth of a turn were lost", () => {
+    const round = new Round();
+    round.go(20, 1);
+    round.lose(9);
+    round.go(20, 1);
+    const off = round.lines().map(({ from, to }) => Math.hypot(...[0, 1].map((axis) => (from[axis] + to[axis]) / 2 - middle)) / radius - 1);
+    expect(Math.max(...off.map(Math.abs))).toBeLessThan(1e-2);
   });
 
   it("ends at its body as drawn, which is later than the newest poses", () => {

@@ -34,6 +34,17 @@ function at({ first, entity: { capacity } }: Trace, index: number): number {
   return stride * ((first + index) % capacity);
 }
 
+/**
+ * Along an axis, m/s: at the second of three points of a path, of the parabola through them. They may be far apart in time on one side,
+ * where poses were lost. At an end of the path, where it is twice the same point, the mean between the others.
+ */
+function velocityAt(points: Float64Array, before: number, now: number, after: number, axis: number): number {
+  const [past, coming] = [points[now + 3] - points[before + 3], points[after + 3] - points[now + 3]];
+  const [came, goes] = [points[now + axis] - points[before + axis], points[after + axis] - points[now + axis]];
+  if (past === 0 || coming === 0) return (came + goes) / Math.max(past + coming, 1e-12);
+  return ((came / past) * coming + (goes / coming) * past) / (past + coming);
+}
+
 export class TraceView implements EntityView<TraceEntity> {
   private readonly strokes_ = new Strokes();
   private readonly poses_: PoseBuffer;
@@ -158,8 +169,8 @@ export class TraceView implements EntityView<TraceEntity> {
     const after = at(trace, Math.min(index + 1, count - 1));
     const seconds = points[b + 3] - points[a + 3];
     for (let axis = 0; axis < 3; axis++) {
-      this.slopes_[axis] = (seconds * (points[b + axis] - points[before + axis])) / Math.max(points[b + 3] - points[before + 3], 1e-12);
-      this.slopes_[3 + axis] = (seconds * (points[after + axis] - points[a + axis])) / Math.max(points[after + 3] - points[a + 3], 1e-12);
+      this.slopes_[axis] = seconds * velocityAt(points, before, a, b, axis);
+      this.slopes_[3 + axis] = seconds * velocityAt(points, a, b, after, axis);
     }
     const length = Math.hypot(points[b] - start.x, points[b + 1] - start.y, points[b + 2] - start.z);
     this.onCurve_(points, a, b, 0.5, this.next_);
