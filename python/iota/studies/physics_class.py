@@ -32,7 +32,7 @@ def build() -> iota.World:
     orbit(world)
     spring(world, heavy)
     world.plot("energy", {"moving": lambda: system.energy.kinetic, "total": lambda: system.energy.total}, unit="J")
-    world.camera = iota.Camera(position=(0.5, 1.6, 4.7), target=(0.35, 1.2, 0))
+    world.camera = iota.Camera(position=(0.47, 1.6, 4.35), target=(0.33, 1.22, 0))
     return world
 
 

@@ -123,7 +123,7 @@ def fish_looks() -> list[looks.Look]:
 
 def present(world: iota.World) -> None:
     """A bed of sand with stones, and the blue of the water around."""
-    for x, z, size in ((-2, -2, 0.8), (1.6, 1.5, 0.6), (3.2, -3, 1.1), (-3.2, 1.2, 0.8), (0.3, -5, 1.3)):
+    for x, z, size in ((-1.5, -2, 0.8), (1.3, 1.5, 0.6), (2.0, -3, 1.1), (-1.9, 1.2, 0.8), (0.1, -5, 1.3)):
         stone = looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c")
         world.add_static(stone, (x, 0.25 * size, z))
     world.stage(sky="#7fc1cf", horizon="#2f6f88", ground="#a39a76", light=0.9)

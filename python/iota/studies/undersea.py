@@ -15,7 +15,7 @@ from iota.studies._story import Story
 from iota.studies.shoal import School, present
 
 FISH = 120
-KELPS = ((-2.2, -0.6), (2.6, -1.2), (0.7, 0.9))  # where they grow, m
+KELPS = ((-1.5, -0.8), (1.7, -1.5), (0.5, 0.9))  # where they grow, m
 NODES, LENGTH = 16, 3.6  # of a kelp; m
 PIECE = 3  # links that a fish tears off
 BUOYANCY = 1.6  # m/s^2, upwards
@@ -33,12 +33,12 @@ def build(fish: int = FISH) -> iota.World:
     system.field("current", group=weed, velocity=(0.1, 0, 0), drag=0.02, speed=0.4, size=1.5, octaves=2, evolution=0.4)
     school.current.set(speed=0.3)
     kelps = [kelp(world, weed, x, z) for x, z in KELPS]
-    bush(world, weed, (-0.7, 0, -1.6))
-    bush(world, weed, (3.4, 0, 0.4))
-    for x, z in ((-3.0, 0.6), (1.6, -2.2), (-1.4, 1.3)):
+    bush(world, weed, (-0.6, 0, -1.8))
+    bush(world, weed, (1.9, 0, 0.5))
+    for x, z in ((-2.0, 0.4), (0.9, -2.4), (-1.2, 1.4)):
         ribbon(world, weed, (x, 0, z))
     present(world)
-    world.camera = iota.Camera(position=(0.2, 1.4, 8.5), target=(0.2, 2.5, 0))
+    world.camera = iota.Camera(position=(0, 1.4, 8.2), target=(0, 2.4, 0))
     bubbles(world)
     world.draw_ties("spring", looks.capsule(0.018, "rubber", color="#5c8a4a"))
     meal = Meal(world, school, kelps)
@@ -58,7 +58,7 @@ def build(fish: int = FISH) -> iota.World:
 def leader_at(time: float) -> Any:
     """Where the shoal wants to be, m: round the seaweed, nearly as fast as a fish can swim."""
     turn = 2 * math.pi * time / 16
-    return np.array([2.6 * math.cos(turn), 3.0 + 0.5 * math.sin(3 * turn), 0.2 + 2.4 * math.sin(turn)])
+    return np.array([1.9 * math.cos(turn), 2.7 + 0.5 * math.sin(3 * turn), 2.2 * math.sin(turn) - 0.4])
 
 
 class Meal:
@@ -218,7 +218,7 @@ def strand(
 
 def bubbles(world: iota.World) -> None:
     """They rise from between the stones."""
-    for x, z, rate in ((-3.6, 0.2, 9), (2.0, 1.6, 6)):
+    for x, z, rate in ((-2.2, 0.2, 9), (1.3, 1.6, 6)):
         world.system.emitter(
             rate=rate, source=iota.Sphere(0.08), position=(x, 0.4, z), velocity=(0, 0.7, 0), velocity_spread=0.12, mass=0.001,
             lifetime=11, lifetime_spread=1, curve=[(0, 0.015, (0.8, 0.93, 1)), (1, 0.04, (0.9, 0.97, 1))],

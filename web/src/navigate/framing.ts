@@ -71,12 +71,12 @@ export function distanceToShow({ xyz, count }: Points, { pivot, yaw, pitch }: Om
 }
 
 /** Place of the horizon for a camera that looks up, as a share of the frame below its center. */
-const lowHorizon = 0.55;
+const lowHorizon = 0.35;
 
 /**
  * The view of a camera at `eye` that looks at `target`; if not all points are within the frame, moved sideways until they are in the
  * middle, and back as far as needed, to at most `farther` times the distance. It goes back along its line of sight. One that looks up
- * goes back on the level, so that it is never lower than it was, with the horizon in the lower third: half of a tall picture would be
+ * goes back on the level, so that it is never lower than it was, with the horizon below the middle: half of a tall picture would be
  * ground otherwise.
  */
 export function standBack(
