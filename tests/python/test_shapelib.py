@@ -212,6 +212,14 @@ def test_a_smiles_string_gets_hydrogens_and_a_shape() -> None:
     assert (found.points.position == again.points.position).all()
 
 
+def test_parts_of_a_smiles_without_a_bond_between_them_are_beside_each_other() -> None:
+    found = shapelib.molecule("[Na+].[Cl-].CCO", scale=1.0)
+    places = found.points.position
+    assert found.counts["pieces"] == 3 and len(places) == 2 + 9
+    assert min(np.linalg.norm(places[p] - places[q]) for p in range(2, 11) for q in (0, 1)) > 3.9
+    assert np.linalg.norm(places[0] - places[1]) > 3.9
+
+
 def test_a_flexible_molecule_turns_about_its_bonds_and_keeps_all_lengths_and_angles() -> None:
     chain = shapelib.molecule("CCCC", kind="flexible", at=(0, 2, 0))
     atoms = int(chain.counts["atoms"])
@@ -279,6 +287,7 @@ def test_damaged_molecules_are_refused_with_file_and_line(write: Write) -> None:
     fails(write("l.mol", CARBON_MONOXIDE_MOL.replace("M  END\n", "")), "truncated")
     fails(write("m.mol", CARBON_MONOXIDE_MOL[:80]), "ends before")
     fails(write("n.mol", "a picture\n"), "four lines")
+    fails(write("u.mol", CARBON_MONOXIDE_MOL.replace("C   0  0", "C   0  é")), "RDKit cannot read it")
     fails(write("o.cif", GLYCINE_CIF.replace(" 1.6 0.0\n", " 1.6\n")), "line 17", "9 values for 10 names")
     fails(write("p.cif", GLYCINE_CIF.replace("data_gly\n", "")), "line 1", "data_")
     fails(write("q.cif", SALT_CIF.replace("slanting cell\n;", "slanting cell\n")), "line 9", "no end")

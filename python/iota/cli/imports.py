@@ -5,13 +5,12 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import tempfile
 from pathlib import Path
 
 import iota
 from iota.cli.failure import Failure
 from iota.cli.run import can_show_a_page
+from iota.saving import replacing
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -44,18 +43,11 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def save(structure: iota.builder.Structure, path: str) -> None:
-    """Writes a new file and renames it, so that the file is complete or unchanged."""
-    text = json.dumps(structure.to_json())
-    part = None
     try:
-        with tempfile.NamedTemporaryFile("w", dir=Path(path).resolve().parent, suffix=".part", delete=False) as file:
-            part = file.name
-            file.write(text)
-        os.replace(part, path)
+        with replacing(Path(path)) as fresh:
+            fresh.write_text(json.dumps(structure.to_json()))
     except OSError as error:
-        if part is not None:
-            Path(part).unlink(missing_ok=True)
-        raise Failure(f"{path} cannot be written: {error.strerror}") from None
+        raise Failure(str(error)) from None
 
 
 def show(structure: iota.shapelib.Imported, port: int | None) -> None:

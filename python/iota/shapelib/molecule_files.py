@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,8 @@ from iota.shapelib import cif
 from iota.shapelib.chemistry import Element, complaints, element, rdkit
 from iota.shapelib.files import FileError, PathLike, number, read_text, whole, with_progress
 from iota.shapelib.molecule_data import Molecule, check_count, check_places, perceive_bonds
+
+GAP = 4.0  # angstrom, between parts of a SMILES that no bond connects
 
 
 def read_molecule(path: PathLike) -> Molecule:
@@ -50,9 +53,17 @@ def parse_smiles(text: str, seed: int = 1) -> Molecule:
         if fields.MMFFHasAllMoleculeParams(found):
             fields.MMFFOptimizeMolecule(found)
     molecule = _from_rdkit(found)
+    _put_apart(molecule, chem.GetMolFrags(found))
     molecule.title = text
     check_places(molecule, f"SMILES {text[:60]!r}")
     return molecule
+
+
+def _put_apart(molecule: Molecule, parts: Sequence[Sequence[int]]) -> None:
+    """Parts without a bond between them, as the ions of a salt, all come about the origin: they are put in a row along x."""
+    x = molecule.position[:, 0]
+    for before, part in pairwise(map(list, parts)):
+        x[part] += x[before].max() + GAP - x[part].min()
 
 
 def _reason(said: list[str]) -> str:
@@ -185,8 +196,10 @@ def _read_sdf(text: str, path: PathLike) -> Molecule:
     end_at = next((at for at, line in enumerate(lines) if line.startswith("M  END")), None)
     if end_at is None:
         raise FileError(path, "has no 'M  END': it is truncated", len(lines))
+    # RDKit cuts long lines for its error messages, also within a character of several bytes.
+    block = "\n".join(lines[: end_at + 1]).encode("ascii", "replace").decode()
     with complaints() as said:
-        found = rdkit().MolFromMolBlock("\n".join(lines[: end_at + 1]), sanitize=False, removeHs=False)
+        found = rdkit().MolFromMolBlock(block, sanitize=False, removeHs=False)
     if found is None:
         raise FileError(path, f"RDKit cannot read it{_reason(said)}")
     if found.GetNumAtoms() == 0:

@@ -55,7 +55,7 @@ def named_polyhedron(name: str) -> Surface:
     hint = (
         f"; did you mean {near[0]!r}?"
         if near
-        else "; polyhedron_names() lists them, and files end in .off, .obj, .stl ..."
+        else "; polyhedron_names() lists them, files end in .off, .obj, .stl ..., and a molecule's text begins with smiles:"
     )
     raise ValueError(f"there is no polyhedron named {name[:60]!r}{hint}")
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,8 @@ def load(source: PathLike, **options: Any) -> Imported:
         iota.shapelib.load("J27")
         iota.shapelib.load("smiles:CCO")
     """
+    if not os.fspath(source):
+        raise ValueError("a source must be named: a file, a polyhedron, or smiles: and a text")
     ending = Path(source).suffix.lower()
     if isinstance(source, str) and source.lower().startswith("smiles:"):
         return molecule(source[len("smiles:") :], **options)
