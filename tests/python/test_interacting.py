@@ -306,6 +306,36 @@ def test_a_socket_pulls_a_held_plug_that_is_near_with_a_bounded_force(
         world.socket(place, [plug], pull=-1)
 
 
+def test_a_world_goes_back_by_a_second_at_a_time_to_where_it_was(system: iota.System, run_world: Runner) -> None:
+    system.gravity = (0, 0, 0)
+    ball = system.body().particle((0, 1, 0), velocity=(0.5, 0, 0))
+    world = iota.World(system, ground=None)
+    world.offer("rewind")
+
+    def now() -> tuple[float, float]:
+        return world.call(lambda: (system.time, ball.position.x))
+
+    def go_back() -> tuple[float, float, float]:
+        before = now()[0]
+        act(page, "rewind")
+        page.wait_for(lambda: now()[0] < before - 0.3)
+        return (before, *now())
+
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: now()[0] > 3)
+        page.send("grab_start", hold=1, body=page.body(0), local_point=(0, 0, 0), target=(now()[1], 1, 0))
+        page.wait_for(lambda: world.call(lambda: world.held() is not None))
+        world.call(lambda: setattr(world, "paused", True))
+        before, time_now, x = go_back()
+        assert 0.9 <= before - time_now <= 1.6 and x == pytest.approx(0.5 * time_now, abs=1e-6)
+        assert world.call(lambda: world.held() is None), "the hands of that time are not those of now"
+        while now()[0] > 0.1:
+            before, time_now, x = go_back()
+            assert x == pytest.approx(0.5 * time_now, abs=1e-6)
+        act(page, "rewind")
+        page.wait_for(lambda: [notice["title"] for notice in page.notices] == ["Nothing to go back to"])
+
+
 @pytest.mark.parametrize("end", ["destroy", "reset"])
 def test_a_plug_that_leaves_the_hand_without_being_let_go_leaves_no_ghost(
     system: iota.System, run_world: Runner, end: str

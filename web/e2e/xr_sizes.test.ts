@@ -102,6 +102,24 @@ describe("a headset", () => {
     }
   });
 
+  it("is asked for 90 pictures a second at most, and for coarser pixels at the edge", async () => {
+    const me = await HeadsetTab.open(browser, `${server.url}&world=1`);
+    const asked = await me.tab.page.evaluateHandle(() => {
+      const rates: number[] = [];
+      const own = XRSession.prototype.updateTargetFrameRate;
+      XRSession.prototype.updateTargetFrameRate = function (rate) {
+        rates.push(rate);
+        return own.call(this, rate);
+      };
+      return rates;
+    });
+    await me.enter();
+    expect(await asked.jsonValue()).toEqual([90]);
+    expect(await me.tab.page.evaluate(() => iota.page.viewer.renderer.xr.getFoveation())).toBeCloseTo(0.6, 2);
+    expect(me.tab.complaints).toEqual([]);
+    await me.tab.page.close();
+  });
+
   it("has the controls of the script at the wrist", async () => {
     const entities = await WorldServer.start(["web/e2e/entities_probe.py"], await freePort());
     try {

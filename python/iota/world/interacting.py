@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from typing import Any
@@ -17,6 +18,8 @@ from iota.world.joining import Joins, hinge_above, nearest_ends
 from iota.world.listening import Listening
 from iota.world.shown import Arrow, Label, Line
 
+REWIND, REWIND_EVERY, REWIND_LONGEST = 1.0, 0.5, 10.0  # s, simulated
+REWIND_BYTES = 64 << 20
 FREE, READY = "#2f9d92", "#f2a324"  # of a socket
 
 
@@ -44,7 +47,8 @@ class Interacting(Drawing, Listening):
 
     def offer(self, *parts: str) -> None:
         """Lets users break ("break", key b), join ("join", c) and copy ("copy", n) the held or selected body, measure
-        ("measure", v) between two bodies, and undo ("undo", z) and redo ("redo", y) these edits and those of the script
+        ("measure", v) between two bodies, go back by a second, up to ten ("rewind", Backspace; this forgets undone
+        edits), and undo ("undo", z) and redo ("redo", y) these edits and those of the script
         in `with world.system.edit():`. Without names all of them. Raises ValueError for other names.
 
         world.offer("break", "join")
@@ -164,8 +168,38 @@ def _measure(world: Interacting) -> None:
     world.on_reset(clear)
 
 
+def _rewind(world: Interacting) -> None:
+    kept: deque[tuple[float, Any, int]] = deque()  # simulated time, snapshot, its bytes
+
+    @world.on_frame
+    def keep() -> None:
+        now = world.system.time
+        while kept and kept[-1][0] > now:  # after an undo
+            kept.pop()
+        if kept and now - kept[-1][0] < REWIND_EVERY:
+            return
+        snapshot = world.system.snapshot()
+        kept.append((now, snapshot, len(snapshot) if isinstance(snapshot, bytes) else 0))
+        while kept[0][0] < now - REWIND_LONGEST or (sum(size for *_, size in kept) > REWIND_BYTES and len(kept) > 1):
+            kept.popleft()
+
+    @world.action("rewind", key="Backspace", help="goes back by a second, up to ten", on="world")
+    def rewind(event: Event) -> None:
+        now = world.system.time
+        while len(kept) > 1 and kept[-1][0] > now - REWIND:
+            kept.pop()
+        if not kept or kept[-1][0] >= now:
+            event.notice("Nothing to go back to")
+            return
+        world.system.restore(kept[-1][1])
+        world._state.forget_holds()
+
+    world.on_reset(kept.clear)
+
+
 PARTS: dict[str, Callable[[Interacting], None]] = {
     "break": _break, "join": _join, "copy": _copy, "undo": _undo, "redo": _redo, "measure": _measure,
+    "rewind": _rewind,
 }  # fmt: skip
 
 

@@ -37,6 +37,10 @@ const nearest = 0.03;
 const farthest = 60;
 /** Height of a standing person's eyes, m. */
 const standingEyes = 1.6;
+/** Pictures a second. */
+const fastestRate = 90;
+/** From 0 to 1. */
+const foveation = 0.6;
 
 export class Headset implements PageListener, FramePart {
   readonly inputs: Input[] = [];
@@ -138,6 +142,7 @@ export class Headset implements PageListener, FramePart {
       await session.end().catch(() => {});
       throw error;
     }
+    this.easeDrawing_(session);
     this.space_ = xr.getReferenceSpace();
     this.space_?.addEventListener("reset", () => {
       this.toPlace_ = true;
@@ -149,6 +154,15 @@ export class Headset implements PageListener, FramePart {
     for (const source of session.inputSources) this.add_(source);
     this.panel.arrange();
     this.link(this.page_.session.connection.state, "");
+  }
+
+  /** The quickest rate that usual scenes keep, and coarser pixels at the edge of the view, where headsets offer them. */
+  private easeDrawing_(session: XRSession): void {
+    const { xr } = this.page_.viewer.renderer;
+    xr.setFoveation(foveation);
+    const rates = [...(session.supportedFrameRates ?? [])].filter((rate) => rate <= fastestRate);
+    // Refused by some while a session begins; the headset then keeps its own.
+    if (rates.length > 0) void session.updateTargetFrameRate?.(Math.max(...rates)).catch(() => {});
   }
 
   async leave(): Promise<void> {
