@@ -20,6 +20,7 @@ from iota.looks import Drawn, Look, Looks, by_style
 from iota.simulator import Simulator
 from iota.world import options as run_options
 from iota.world.actions import Action
+from iota.world.asking import Asking
 from iota.world.callbacks import Guard, Hook, add_once
 from iota.world.client_modules import add_module
 from iota.world.clients import Client
@@ -47,7 +48,7 @@ EFFECTS = ("break", "join", "grab")
 HEADLESS_SECONDS = 10.0  # default
 
 
-class World(Interacting):
+class World(Interacting, Asking):
     """Runs a system in real time and serves a page that shows it.
 
     system: a System, or any other Simulator. title: on the page. dt: length of a step, s. style: the style of
