@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -95,6 +96,39 @@ def test_each_material_brings_its_color_and_its_image_wherever_that_is(tmp_path:
             assert part.faces == [[0, 1, 2], [0, 2, 3]] and part.name == "wall" and part.notes == []
         whole = shapelib.read_surface(path)
         assert len(whole.vertices) == 8 and len(whole.faces) == 4
+
+
+@pytest.mark.parametrize(
+    ("factors", "material"),
+    [
+        ({"metallicFactor": 1, "roughnessFactor": 0.2}, "steel"),
+        ({"roughnessFactor": 0.5}, "steel"),  # metal is the default
+        ({"metallicFactor": 0.1, "roughnessFactor": 0.2}, "paint"),
+        ({"metallicFactor": 1, "roughnessFactor": 0.9}, "paint"),
+        ({"metallicFactor": 1}, "paint"),
+        ({"roughnessFactor": 0.2, "metallicRoughnessTexture": {"index": 0}}, "paint"),
+    ],
+)
+def test_metal_that_is_not_rough_is_drawn_as_metal(
+    tmp_path: Path, factors: dict[str, Any], material: str, run_world: Runner
+) -> None:
+    head, buffer = described(None, CHECK)
+    head["materials"][0]["pbrMetallicRoughness"] |= factors
+    red, checked = shapelib.read_model(write_glb(tmp_path / "a.glb", head, buffer))
+    assert (red.material, checked.material) == (material, "paint")
+    world = iota.World(iota.System())
+    world.model([red])
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.entities["surface"])
+        assert page.entities["surface"][0]["material"] == material
+
+
+@pytest.mark.parametrize("factor", [-0.1, 1.5, math.nan, "much", None])
+def test_a_metal_that_is_no_number_from_0_to_1_is_refused(tmp_path: Path, factor: Any) -> None:
+    head, buffer = described(None, CHECK)
+    head["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = factor
+    with pytest.raises(shapelib.FileError, match="from 0 to 1"):
+        shapelib.read_model(write_glb(tmp_path / "a.glb", head, buffer))
 
 
 def test_coordinates_may_be_whole_numbers(tmp_path: Path) -> None:

@@ -22,17 +22,20 @@ from iota.textures import Texture, check_image, size_of
 if TYPE_CHECKING:
     from iota.shapelib.surface import Array
 
+MOST_ROUGH = 0.6  # of metal that shines
 MOST_PIXELS = 1 << 26  # of all images of a file: 256 MiB on the graphics card
 WHOLE = {"b": 127, "B": 255, "h": 32767, "H": 65535}  # 1 in coordinates of whole numbers
 
 
 @dataclass
 class PaintedSurface(Surface):
-    """A surface of one material. name: of its mesh. color: of its material, "#rrggbbaa", None: unknown. coordinates: of
+    """A surface of one material. name: of its mesh. color: of its material, "#rrggbbaa", None: unknown. material: "steel"
+    for metal that is not rough, else "paint", as pages have no shades between. coordinates: of
     the texture at each vertex, (n, 2), from the lower left corner (0, 0) to (1, 1)."""
 
     name: str = ""
     color: str | None = None
+    material: str = "paint"
     texture: Texture | None = None
     coordinates: Array | None = None
 
@@ -140,10 +143,11 @@ class _Materials:
         self._head, self._binary, self._path = head, binary, path
         self._images: dict[int, Texture | None] = {}
         self._pixels = 0
-        self.parts: dict[tuple[int, int], tuple[str, str | None, Texture | None]] = {}
+        self.parts: dict[tuple[int, int], tuple[str, str | None, str, Texture | None]] = {}
         for at, mesh in enumerate(head.get("meshes", [])):
             for part, primitive in enumerate(mesh["primitives"]):
-                self.parts[at, part] = (str(mesh.get("name") or ""), self._color(primitive), self._image(primitive))
+                name = str(mesh.get("name") or "")
+                self.parts[at, part] = (name, self._color(primitive), self._material(primitive), self._image(primitive))
 
     def _color(self, primitive: dict[str, Any]) -> str | None:
         if "material" not in primitive:
@@ -158,6 +162,18 @@ class _Materials:
         # Factors are linear, colors of pages are as screens take them (IEC 61966-2-1).
         rgb = np.where(rgba[:3] <= 0.0031308, 12.92 * rgba[:3], 1.055 * rgba[:3] ** (1 / 2.4) - 0.055)
         return "#" + "".join(f"{round(255 * value):02x}" for value in (*rgb, rgba[3]))
+
+    def _material(self, primitive: dict[str, Any]) -> str:
+        if "material" not in primitive:
+            return "paint"
+        described = self._head["materials"][primitive["material"]].get("pbrMetallicRoughness", {})
+        metal, rough = (described.get(name, 1) for name in ("metallicFactor", "roughnessFactor"))
+        for number in (metal, rough):
+            if not isinstance(number, int | float) or not 0 <= number <= 1:
+                raise FileError(self._path, f"metal and roughness are numbers from 0 to 1, not {number}")
+        # An image of both may have any values.
+        is_metal = metal >= 0.5 and rough <= MOST_ROUGH and "metallicRoughnessTexture" not in described
+        return "steel" if is_metal else "paint"
 
     def _image(self, primitive: dict[str, Any]) -> Texture | None:
         used = _texture_of(self._head, primitive)
@@ -252,7 +268,7 @@ def _surfaces(scene: Any, materials: _Materials, path: PathLike) -> Iterator[Pai
             raise FileError(path, f"triangle {wrong[0] + 1} (of {len(faces)}) uses a vertex that does not exist")
         if not np.isfinite(places).all():
             raise FileError(path, f"vertex {np.flatnonzero(~np.isfinite(places).all(axis=1))[0]} is not finite")
-        name, color, texture = materials.parts[mesh.metadata["mesh"], mesh.metadata["part"]]
+        name, color, material, texture = materials.parts[mesh.metadata["mesh"], mesh.metadata["part"]]
         laid = mesh.vertex_attributes.get("_COORDINATES")
         if texture is not None and (laid is None or laid.shape != (len(places), 2) or not np.isfinite(laid).all()):
             raise FileError(
@@ -268,6 +284,7 @@ def _surfaces(scene: Any, materials: _Materials, path: PathLike) -> Iterator[Pai
             [name] * len(faces),
             name=name,
             color=color,
+            material=material,
             texture=texture,
             coordinates=coordinates,
         )

@@ -211,8 +211,8 @@ class Drawing:
         )
 
     def model(self, surfaces: Iterable[Any], at: Place = None) -> list[Surface]:
-        """Draws the result of `iota.shapelib.read_model`: each surface in the color of its material, with its image if it has
-        one. at: origin and frame of all. Warns of what was left out when the file was read.
+        """Draws the result of `iota.shapelib.read_model`: each surface in the color of its material, as metal if it is, with its
+        image if it has one. at: origin and frame of all. Warns of what was left out when the file was read.
 
         world.model(iota.shapelib.read_model("chair.glb"), at=body)
         """
@@ -222,7 +222,7 @@ class Drawing:
                 warnings.warn(note, stacklevel=2)
                 self._state.notices.warn_once(note)
             image = {"texture": surface.texture, "coordinates": surface.coordinates}
-            shown.append(self.surface(surface, at=at, color=surface.color, **image))
+            shown.append(self.surface(surface, at=at, color=surface.color, material=surface.material, **image))
         return shown
 
     def skin(
