@@ -5,6 +5,7 @@ import type { Entry, ScriptCommand } from "../src/commands/command.ts";
 import { Commands } from "../src/commands/commands.ts";
 import { WidgetKind, type WidgetEntity } from "../src/protocol/generated.ts";
 import { controlRows } from "../src/xr/controls.ts";
+import { ratioOf } from "../src/xr/headset_commands.ts";
 import { layoutPanel, panelWidth } from "../src/xr/panel_layout.ts";
 import { fitScale, standBefore, type Standing } from "../src/xr/standing.ts";
 
@@ -90,6 +91,10 @@ describe("the height of the eyes at first", () => {
   it("is that of a small scene high above the ground", () => {
     expect(eyes(0.1, 1.2, 2).above).toBeCloseTo(1.2 + 0.1 * 0.15);
   });
+});
+
+it("the ratio of sizes is told as on a map", () => {
+  expect([1, 0.24, 45.5, 2e-9, 1.25].map(ratioOf)).toEqual(["1 : 1", "4.2 : 1", "1 : 46", "5e8 : 1", "1 : 1.3"]);
 });
 
 describe("the wrist panel's layout", () => {

@@ -12,7 +12,7 @@ import type { Pointer } from "../interact/gestures.ts";
 import type { Board } from "./board.ts";
 import { ControllerView } from "./controllers.ts";
 import { HandView } from "./hands.ts";
-import { headsetCommands } from "./headset_commands.ts";
+import { headsetCommands, ratioOf } from "./headset_commands.ts";
 import { Input, type FaceButton } from "./input.ts";
 import { Locomotion, turns } from "./locomotion.ts";
 import { Notices } from "./notices.ts";
@@ -60,6 +60,8 @@ export class Headset implements PageListener, FramePart {
   private toPlace_ = false;
   /** Raises the eyes of who sits to those of who stands, m of the user's. */
   private raised_ = 0;
+  /** That the panel shows. */
+  private ratio_ = "";
   private pressedBy_: Input | null = null;
   private everConnected_ = false;
   private helped_ = false;
@@ -90,7 +92,7 @@ export class Headset implements PageListener, FramePart {
       },
       seated: () => this.raised_ !== 0,
       sit: () => this.sit_(),
-      isRealSize: () => page.viewer.room.scale.x === 1,
+      scale: () => page.viewer.room.scale.x,
       changeSize: () => {
         this.place_(page.viewer.room.scale.x === 1 ? tableScale(page.navigation.home.distance) : 1);
       },
@@ -394,6 +396,9 @@ export class Headset implements PageListener, FramePart {
   private moved_(): void {
     const { rig, room } = this.page_.viewer;
     rig.updateMatrixWorld();
+    const ratio = ratioOf(room.scale.x);
+    if (ratio !== this.ratio_) this.panel.board.repaint();
+    this.ratio_ = ratio;
     this.head.setFromMatrixPosition(this.headLocal_).applyMatrix4(room.matrixWorld);
     this.eye_.copy(this.head);
     for (const input of this.inputs) input.lift(room.matrixWorld, room.scale.x);

@@ -19,12 +19,18 @@ export interface HeadsetActs {
   nextTurn(): void;
   seated(): boolean;
   sit(): void;
-  /** A meter of the world is one of the user's. */
-  isRealSize(): boolean;
+  /** Meters of the world in one of the user's. */
+  scale(): number;
   /** To that, or from it to the size of a table. */
   changeSize(): void;
   home(): void;
   leave(): void;
+}
+
+/** As on a map: "1 : 45" of what is that much larger than it looks; "4 : 1" of what looks larger than it is. */
+export function ratioOf(scale: number): string {
+  const times = (factor: number) => (factor < 1e4 ? String(Number(factor.toPrecision(2))) : factor.toExponential(0).replace("+", ""));
+  return scale < 1 ? `${times(1 / scale)} : 1` : `1 : ${times(scale)}`;
 }
 
 export function headsetCommands(acts: HeadsetActs): Entry[] {
@@ -37,7 +43,7 @@ export function headsetCommands(acts: HeadsetActs): Entry[] {
       name: "turn by", places: ["panel foot"], title: () => (acts.turnBy() === 0 ? "Smooth" : `${acts.turnBy()}°`), run: () => acts.nextTurn(),
     },
     { name: "seated", places: ["panel foot"], title: () => "Seated", active: () => acts.seated(), run: () => acts.sit() },
-    { name: "size", places: ["panel foot"], title: () => "1 : 1", active: () => acts.isRealSize(), run: () => acts.changeSize() },
+    { name: "size", places: ["panel foot"], title: () => ratioOf(acts.scale()), active: () => acts.scale() === 1, run: () => acts.changeSize() },
     { name: "leave", places: ["panel foot"], title: () => "Leave", run: () => acts.leave() },
   ];
 }
