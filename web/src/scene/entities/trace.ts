@@ -39,8 +39,10 @@ function at({ first, entity: { capacity } }: Trace, index: number): number {
  * where poses were lost. At an end of the path, where it is twice the same point, the mean between the others.
  */
 function velocityAt(points: Float64Array, before: number, now: number, after: number, axis: number): number {
-  const [past, coming] = [points[now + 3] - points[before + 3], points[after + 3] - points[now + 3]];
-  const [came, goes] = [points[now + axis] - points[before + axis], points[after + axis] - points[now + axis]];
+  const past = points[now + 3] - points[before + 3];
+  const coming = points[after + 3] - points[now + 3];
+  const came = points[now + axis] - points[before + axis];
+  const goes = points[after + axis] - points[now + axis];
   if (past === 0 || coming === 0) return (came + goes) / Math.max(past + coming, 1e-12);
   return ((came / past) * coming + (goes / coming) * past) / (past + coming);
 }
