@@ -141,7 +141,7 @@ bool Integrator::take(Problem& problem, const Part& part, const Attempt& attempt
   if (is_mid_point)
     project_velocities_after_step(problem, stage, report);
   else
-    give_spin_back(problem, stage);
+    give_spin_back(problem, stage, energy.dissipated, report);
   if (!is_mid_point || holds_offsets_) remove_made_energy(problem, energy.total_before);
   if (has_corrected_) keep_correction(problem);
   energy_.close(problem, reference_length(), part.h, report);

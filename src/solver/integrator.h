@@ -97,7 +97,7 @@ class Integrator {
   bool is_out_of_budget();
 
   void project_velocities_after_step(Problem&, const Stage&, AdvanceReport&);
-  void give_spin_back(Problem&, const Stage&);
+  void give_spin_back(Problem&, const Stage&, double dissipated, AdvanceReport&);
   void remove_made_energy(Problem&, double energy_before);
   bool change_kinetic_energy(Problem& problem, double excess) {
     return change_kinetic_energy(problem, excess, rigid_motion(problem));
@@ -119,8 +119,9 @@ class Integrator {
   void hold_offsets(Problem&, AdvanceReport&);
   void restore_bounds(Problem&);
   bool share_gaps(Problem&, double fraction, AdvanceReport&);
-  template <class Try>
-  bool close_bit_by_bit(Problem&, Try);
+  bool try_projection(Problem&, int iterations);
+  bool project_in_one_solve(Problem&);
+  bool close_bit_by_bit(Problem&);
 
   Newton newton_;
   std::unique_ptr<LocalProjection> local_;   // if it was needed

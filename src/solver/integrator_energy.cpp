@@ -44,11 +44,16 @@ void Integrator::keep_correction(const Problem& problem) {
 }
 
 // What the end-point rule has lost of the angular momentum; the energy of that is at most what the step has lost.
-void Integrator::give_spin_back(Problem& problem, const Stage& stage) {
+// Also of what dashpots took, as they act along the line at the start of the step, and so on the rotation.
+void Integrator::give_spin_back(Problem& problem, const Stage& stage, double dissipated, AdvanceReport& report) {
   std::copy(problem.velocity.begin(), problem.velocity.end(), newton_.velocities_before().begin());
   const double lost = std::max(0.0, energy_.missing);
-  has_corrected_ = spin_.give_back(problem, newton_.displacement(), stage.h, holds_, lost, is_free_body_);
-  if (has_corrected_) energy_.measure_kinetic(problem);
+  has_corrected_ =
+      spin_.give_back(problem, newton_.displacement(), stage.h, holds_, lost + std::max(0.0, dissipated), is_free_body_);
+  if (!has_corrected_) return;
+  energy_.measure_kinetic(problem);
+  const double refunded = std::clamp(-energy_.missing, 0.0, std::max(0.0, dissipated));
+  energy_.missing += refunded, report.dissipated -= refunded;
 }
 
 // Also beside what dampers dissipate; down to half of the slack, as all of it would leave round-off above.

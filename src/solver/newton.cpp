@@ -144,7 +144,7 @@ NewtonReport Newton::solve_as(Problem& problem, const Stage& stage) {
   if (has_laws_) report.met = ActiveSet::count_met(problem);
   const bool exact = stage.compliance <= exact_rows;
   report.converged = settled && report.residual <= std::max(stage.tolerance, stuck ? Set::round_off_floor : 0) &&
-                     (!exact || report.violation <= closed_gap);
+                     (!exact || report.violation <= (Midpoint || stage.is_projection() ? closed_gap : strained_gap));
   return report;
 }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/spin.h"
 
-#include "solver/pieces.h"
-
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace iota::solver {
 
@@ -25,145 +24,190 @@ double largest_share(double first, double second, double limit) {
 
 }  // namespace
 
-// Structure is searched once, who holds a piece at each step, as nails move.
-void Spin::find_holds(const Problem& problem, const Holds& all) {
-  if (piece_of_.size() != problem.size()) pieces_.resize(find_pieces(problem, Connection::rows, piece_of_));
-  for (Piece& piece : pieces_) piece.holds = {};
-  if (pieces_.size() == 1)
-    pieces_.front().holds = all;
+// Structure is searched once, who holds a part at each step, as nails move.
+void Spin::find_parts(const Problem& problem, Connection connection, const Holds& all, Parts& all_parts) {
+  auto& [parts, part_of] = all_parts;
+  if (part_of.size() != problem.size()) parts.resize(find_pieces(problem, connection, part_of));
+  for (Part& part : parts) part.holds = {};
+  if (parts.size() == 1)
+    parts.front().holds = all;
   else
     problem.for_each_constraint_pool([&](const auto& pool) {
-      for (const auto& c : pool.items) pieces_[piece_of_[pool.nodes_of(c).front()]].holds.add(c);
+      for (const auto& c : pool.items) parts[part_of[pool.nodes_of(c).front()]].holds.add(c);
     });
-  for (Piece& piece : pieces_) piece.is_kept = piece.holds.are_none() || piece.holds.pivot();
+  for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot();
+}
+
+/// Whether forces connect pieces, or damp them. What a spring holds to the world is no cluster: it may be stiff as a nail.
+bool Spin::find_clusters(const Problem& problem, const Holds& all) {
+  if (!problem.has_used<SpringForce>() && !problem.has_used<RadialForce>()) return false;
+  find_parts(problem, Connection::rows_and_forces, all, clusters_);
+  const auto drop_held = [&](const auto& forces) {
+    for (const auto& f : forces)
+      if (!f.arm.is_internal()) clusters_.of(f.arm.nodes[0]).is_kept = false;
+  };
+  drop_held(problem.items_of<SpringForce>()), drop_held(problem.items_of<RadialForce>());
+  return true;
 }
 
 // The end-point rule gives sum m x1 x (v1 - v0) = h moment, that is L1 - L0 = h moment + h sum m v1 x v0.
-bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacement, double h) {
+bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacement, double h, Parts& parts) {
   constexpr double round_off = 1e-13;
   const auto start_velocity = [&](std::uint32_t i) { return problem.velocity[i] - (1 / h) * displacement[i]; };
-  for (Piece& piece : pieces_) {
-    piece.mass = piece.kinetic = 0;
-    piece.center = piece.momentum = piece.wanted_momentum = piece.lost = {};
+  for (Part& part : parts.parts) {
+    part.mass = part.kinetic = 0;
+    part.center = part.momentum = part.wanted_momentum = part.lost = {};
   }
-  const auto add = [&](Piece& piece, double mass, std::uint32_t i, const Vec3& start) {
+  const auto add = [&](Part& part, double mass, std::uint32_t i, const Vec3& start) {
     const Vec3& v = problem.velocity[i];
-    piece.mass += mass;
-    piece.center += mass * problem.position[i];
-    piece.momentum += mass * v, piece.wanted_momentum += mass * start;
+    part.mass += mass;
+    part.center += mass * problem.position[i];
+    part.momentum += mass * v, part.wanted_momentum += mass * start;
   };
   for (std::uint32_t i = 0; i < problem.size(); ++i) {
-    Piece& piece = pieces_[piece_of_[i]];
+    Part& part = parts.of(i);
     const Vec3 &v = problem.velocity[i], start = start_velocity(i);
     const double mass = problem.mass[i];
-    add(piece, mass, i, start);
-    piece.lost += (mass * h) * cross(v, start), piece.kinetic += mass * dot(v, v);
+    add(part, mass, i, start);
+    part.lost += (mass * h) * cross(v, start), part.kinetic += mass * dot(v, v);
   }
   for (const auto& c : problem.mass_couplings) {
-    Piece& piece = pieces_[piece_of_[c.a]];
+    Part& part = parts.of(c.a);
     const Vec3 start_a = start_velocity(c.a), start_b = start_velocity(c.b);
-    add(piece, c.mass, c.a, start_a), add(piece, c.mass, c.b, start_b);
-    piece.lost += (c.mass * h) * (cross(problem.velocity[c.a], start_b) + cross(problem.velocity[c.b], start_a));
+    add(part, c.mass, c.a, start_a), add(part, c.mass, c.b, start_b);
+    part.lost += (c.mass * h) * (cross(problem.velocity[c.a], start_b) + cross(problem.velocity[c.b], start_a));
   }
+  const auto start = [&](std::uint32_t i) { return problem.position[i] - h * problem.velocity[i]; };
+  const ForceStage stage{.h = h};
   for (const GyroscopicForce& f :
        problem.items_of<GyroscopicForce>()) {  // its moment should be minus the change of the spin
-    const auto start = [&](std::uint32_t i) { return problem.position[i] - h * problem.velocity[i]; };
     const Vec3 e1 = f.arm.value(problem.position.data()), e0 = start(f.arm.nodes[1]) - start(f.arm.nodes[0]);
-    pieces_[piece_of_[f.arm.nodes[0]]].lost += cross(e1, h * f.force(e0, e1, {h, false, false})) + f.spin * (e1 - e0);
+    parts.of(f.arm.nodes[0]).lost += cross(e1, h * f.force(e0, e1, stage)) + f.spin * (e1 - e0);
   }
-  bool any = false;
-  for (Piece& piece : pieces_) {
-    piece.is_due = piece.is_kept && piece.mass > 0;
-    if (!piece.is_due) continue;
-    if (const auto pivot = piece.holds.pivot()) {
-      piece.center = *pivot;
-      const double g = dot(problem.gravity, problem.gravity);  // which changes the other components
-      if (g > 0) piece.lost = (dot(piece.lost, problem.gravity) / g) * problem.gravity;
-    } else {
-      piece.center *= 1 / piece.mass;
-      piece.lost -= (h / piece.mass) * cross(piece.momentum, piece.wanted_momentum);
+  const auto add_dashpots = [&](const auto& forces) {  // whose moment should be zero
+    for (const auto& f : forces) {
+      const auto nodes = std::span(f.arm.nodes).first(f.arm.count);
+      const std::uint32_t part = parts.part_of[nodes.front()];
+      if (!f.has_dashpot() || std::any_of(nodes.begin(), nodes.end(), [&](auto i) { return parts.part_of[i] != part; }))
+        continue;
+      const Vec3 e1 = f.arm.value(problem.position.data()), e0 = e1 - h * f.arm.rate(problem.velocity.data());
+      parts.parts[part].lost += cross(e1, h * f.dashpot_force(e0, e1, stage));
     }
-    piece.is_due = norm(piece.lost) > round_off * h * piece.kinetic;
-    any = any || piece.is_due;
+  };
+  add_dashpots(problem.items_of<SpringForce>()), add_dashpots(problem.items_of<RadialForce>());
+  bool any = false;
+  for (Part& part : parts.parts) {
+    part.is_due = part.is_kept && part.mass > 0;
+    if (!part.is_due) continue;
+    if (const auto pivot = part.holds.pivot()) {
+      part.center = *pivot;
+      const double g = dot(problem.gravity, problem.gravity);  // which changes the other components
+      if (g > 0) part.lost = (dot(part.lost, problem.gravity) / g) * problem.gravity;
+    } else {
+      part.center *= 1 / part.mass;
+      part.lost -= (h / part.mass) * cross(part.momentum, part.wanted_momentum);
+    }
+    part.is_due = norm(part.lost) > round_off * h * part.kinetic;
+    any = any || part.is_due;
   }
   return any;
 }
 
-// Of pieces that are due.
-void Spin::find_motions(const Problem& problem) {
-  for (Piece& piece : pieces_) piece.kinetic = 0, piece.angular = {}, piece.inertia = {};
+// Of parts that are due.
+void Spin::find_motions(const Problem& problem, Parts& parts) {
+  for (Part& part : parts.parts) part.kinetic = 0, part.angular = {}, part.inertia = {};
   for_each_mass(problem, [&](double mass, std::uint32_t a, std::uint32_t b) {
-    Piece& piece = pieces_[piece_of_[a]];
-    if (!piece.is_due) return;
-    const Vec3 ra = problem.position[a] - piece.center, rb = problem.position[b] - piece.center, v = piece.velocity();
+    Part& part = parts.of(a);
+    if (!part.is_due) return;
+    const Vec3 ra = problem.position[a] - part.center, rb = problem.position[b] - part.center, v = part.velocity();
     const Vec3 va = problem.velocity[a] - v, vb = problem.velocity[b] - v;
-    piece.kinetic += 0.5 * mass * dot(va, vb);
-    piece.angular += mass * cross(ra, vb);
-    piece.inertia += mass * (Mat3::diagonal(dot(ra, rb)) + -1.0 * Mat3::outer(rb, ra));
+    part.kinetic += 0.5 * mass * dot(va, vb);
+    part.angular += mass * cross(ra, vb);
+    part.inertia += mass * (Mat3::diagonal(dot(ra, rb)) + -1.0 * Mat3::outer(rb, ra));
   });
 }
 
 // On a single point in gravity, about the direction of that.
-Vec3 Spin::turning(const Piece& piece, const Vec3& angular, const Vec3& gravity) const {
+Vec3 Spin::turning(const Part& part, const Vec3& angular, const Vec3& gravity) {
   const double g = dot(gravity, gravity);
-  if (piece.holds.count == 0 || g == 0) return solve_semidefinite(piece.inertia, angular, 1e-12);
-  const double inertia = dot(gravity, piece.inertia * gravity);
+  if (part.holds.count == 0 || g == 0) return solve_semidefinite(part.inertia, angular, 1e-12);
+  const double inertia = dot(gravity, part.inertia * gravity);
   return inertia > 0 ? (dot(angular, gravity) / inertia) * gravity : Vec3{};
 }
 
 bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
                      bool is_rigid) {
-  find_holds(problem, all);
-  if (!find_losses(problem, displacement, h)) return false;
-  find_motions(problem);
+  find_parts(problem, Connection::rows, all, pieces_);
+  const bool are_pieces_due = find_losses(problem, displacement, h, pieces_);
+  const bool are_clusters_due = find_clusters(problem, all) && find_losses(problem, displacement, h, clusters_);
+  if (are_pieces_due) most_gain -= turn_parts(problem, most_gain, is_rigid ? Rest::gives_all : Rest::gives, pieces_);
+  if (are_clusters_due) {
+    if (are_pieces_due)
+      for (std::uint32_t i = 0; i < problem.size(); ++i) {
+        Part& piece = pieces_.of(i);
+        if (std::exchange(piece.is_due, false)) clusters_.of(i).lost += piece.inertia * piece.turn;
+      }
+    (void)turn_parts(problem, most_gain, Rest::is_kept, clusters_);
+  }
+  return are_pieces_due || are_clusters_due;
+}
+
+/// Returns the kinetic energy that this adds, J.
+double Spin::turn_parts(Problem& problem, double most_gain, Rest rest_of_motion, Parts& parts) {
+  find_motions(problem, parts);
   // What swings on a nail keeps its motion, which includes the fall along the chord of the step: its reactions depend on it.
-  const auto gives = [&](const Piece& piece) { return piece.holds.count == 0 || problem.gravity == Vec3{}; };
+  const auto gives = [&](const Part& part) {
+    return rest_of_motion != Rest::is_kept && (part.holds.count == 0 || problem.gravity == Vec3{});
+  };
   double first = 0, second = 0, rest = 0;
-  for (Piece& piece : pieces_) {
-    if (!piece.is_due) continue;
-    piece.turn = turning(piece, -piece.lost, problem.gravity);
-    first += dot(piece.turn, piece.angular), second += 0.5 * dot(piece.turn, piece.inertia * piece.turn);
-    piece.velocity_change = turning(piece, piece.angular, problem.gravity);  // the rigid motion that is there
-    if (gives(piece)) rest += piece.kinetic - 0.5 * dot(piece.velocity_change, piece.angular);
+  for (Part& part : parts.parts) {
+    if (!part.is_due) continue;
+    part.turn = turning(part, -part.lost, problem.gravity);
+    first += dot(part.turn, part.angular), second += 0.5 * dot(part.turn, part.inertia * part.turn);
+    part.velocity_change = turning(part, part.angular, problem.gravity);  // the rigid motion that is there
+    if (gives(part)) rest += part.kinetic - 0.5 * dot(part.velocity_change, part.angular);
   }
   constexpr double little = 1e-9;  // a straight chain that begins to turn needs just all of the rest
   const double share = largest_share(first, second, most_gain + (1 + little) * rest);
-  const double excess = share * (first + share * second) - most_gain;
-  const double factor = is_rigid ? 0 : excess > 0 ? std::sqrt(std::max(0.0, 1 - excess / std::max(rest, 1e-300))) : 1;
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    const Piece& piece = pieces_[piece_of_[i]];
-    if (!piece.is_due) continue;
-    const Vec3 place = problem.position[i] - piece.center;
-    const Vec3 shared = piece.velocity() + cross(piece.velocity_change, place);
+  const double gain = share * (first + share * second), excess = gain - most_gain;
+  const double factor = rest_of_motion == Rest::gives_all ? 0
+                        : excess > 0 ? std::sqrt(std::max(0.0, 1 - excess / std::max(rest, 1e-300)))
+                                     : 1;
+  for (std::uint32_t i = 0; i < problem.size(); ++i) {
+    const Part& part = parts.of(i);
+    if (!part.is_due) continue;
+    const Vec3 place = problem.position[i] - part.center;
+    const Vec3 shared = part.velocity() + cross(part.velocity_change, place);
     problem.velocity[i] =
-        shared + (gives(piece) ? factor : 1) * (problem.velocity[i] - shared) + share * cross(piece.turn, place);
+        shared + (gives(part) ? factor : 1) * (problem.velocity[i] - shared) + share * cross(part.turn, place);
   }
-  return true;
+  for (Part& part : parts.parts) part.turn *= share;
+  return std::min(gain, most_gain);
 }
 
 // Of pieces that are due: mass, center, momentum and angular momentum, with the spins of rods, about the origin or the pivot.
 void Spin::add_momenta(const Problem& problem) {
-  for (Piece& piece : pieces_) {
+  for (Part& piece : pieces_.parts) {
     piece.is_due = piece.is_kept;
     piece.mass = 0;
     piece.center = piece.momentum = piece.angular = {};
   }
-  const auto about = [](const Piece& piece) { return piece.holds.pivot().value_or(Vec3{}); };
+  const auto about = [](const Part& piece) { return piece.holds.pivot().value_or(Vec3{}); };
   for_each_mass(problem, [&](double mass, std::uint32_t a, std::uint32_t b) {
-    Piece& piece = pieces_[piece_of_[a]];
+    Part& piece = pieces_.of(a);
     piece.mass += mass;
     piece.center += mass * problem.position[a];
     piece.momentum += mass * problem.velocity[a];
     piece.angular += mass * cross(problem.position[a] - about(piece), problem.velocity[b]);
   });
   for (const GyroscopicForce& f : problem.items_of<GyroscopicForce>())
-    pieces_[piece_of_[f.arm.nodes[0]]].angular += f.spin * f.arm.value(problem.position.data());
+    pieces_.of(f.arm.nodes[0]).angular += f.spin * f.arm.value(problem.position.data());
 }
 
 void Spin::note(const Problem& problem, const Holds& all) {
-  find_holds(problem, all);
+  find_parts(problem, Connection::rows, all, pieces_);
   add_momenta(problem);
-  for (Piece& piece : pieces_) piece.wanted_momentum = piece.momentum, piece.wanted_angular = piece.angular;
+  for (Part& piece : pieces_.parts) piece.wanted_momentum = piece.momentum, piece.wanted_angular = piece.angular;
 }
 
 double Spin::restore(Problem& problem) {
@@ -174,7 +218,7 @@ double Spin::restore(Problem& problem) {
   double most_lost = 0;
   for (const double most_gain : most_gains) {
     add_momenta(problem);
-    for (Piece& piece : pieces_) {
+    for (Part& piece : pieces_.parts) {
       piece.is_due = piece.is_due && piece.mass > 0;
       if (!piece.is_due) continue;
       piece.lost = piece.wanted_angular - piece.angular;
@@ -186,9 +230,9 @@ double Spin::restore(Problem& problem) {
         piece.lost -= cross(piece.center, push), piece.velocity_change = (1 / piece.mass) * push;
       }
     }
-    find_motions(problem);
+    find_motions(problem, pieces_);
     most_lost = 0;
-    for (Piece& piece : pieces_) {
+    for (Part& piece : pieces_.parts) {
       if (!piece.is_due) continue;
       piece.turn = solve_semidefinite(piece.inertia, piece.lost, 1e-12);
       const double first = dot(piece.turn, piece.angular), second = 0.5 * dot(piece.turn, piece.inertia * piece.turn);
@@ -197,7 +241,7 @@ double Spin::restore(Problem& problem) {
       if (remains > tolerance * norm(piece.wanted_angular)) most_lost = std::max(most_lost, remains);
     }
     for (std::size_t i = 0; i < problem.size(); ++i) {
-      const Piece& piece = pieces_[piece_of_[i]];
+      const Part& piece = pieces_.of(i);
       if (piece.is_due)
         problem.velocity[i] += piece.velocity_change + cross(piece.turn, problem.position[i] - piece.center);
     }

@@ -29,8 +29,12 @@ struct SpringForce {
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r = s.midpoint ? (norm(e0) + norm(e1)) / 2 : norm(e1);
     const Vec3 e = s.midpoint ? 0.5 * (e0 + e1) : e1;
+    return (-stiffness * factor(r)) * e + dashpot_force(e0, e1, s);
+  }
+  bool has_dashpot() const { return damping > 0; }
+  Vec3 dashpot_force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const Dashpot dashpot(e0, e1, s, length == 0);
-    return (-stiffness * factor(r)) * e - (damping / s.h * dashpot.along) * dashpot.n;
+    return (-damping / s.h * dashpot.along) * dashpot.n;
   }
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double along = Dashpot(e0, e1, s, length == 0).along;

@@ -31,12 +31,15 @@ struct RadialForce {
       f = (-pull_between(r0, r1).value / (r0 + r1 + tiny)) * (e0 + e1);
     else
       f = (-pull(r1).value / (r1 + tiny)) * e1;
-    if (law->has_damping()) {
-      const Dashpot dashpot(e0, e1, s);
-      f += law->damping(at(r0, dashpot.along / s.h), parameters.data()).value * dashpot.n;
-    }
+    if (has_dashpot()) f += dashpot_force(e0, e1, s);
     if (law->has_drag()) f -= (law->drag(at(r0), parameters.data()) / s.h) * (e1 - e0);
     return f;
+  }
+
+  bool has_dashpot() const { return law->has_damping(); }
+  Vec3 dashpot_force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    const Dashpot dashpot(e0, e1, s);
+    return law->damping(at(norm(s.instant ? e1 : e0), dashpot.along / s.h), parameters.data()).value * dashpot.n;
   }
 
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
