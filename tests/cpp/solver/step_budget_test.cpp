@@ -5,18 +5,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace iota::solver {
 namespace {
 
-/// A net of rods nailed at its corners, taut, with a heavy knot in its middle: a step of hundreds of iterations.
-Problem taut_net() {
+/// A net of rods nailed at its corners, taut, with 100 kg in its middle: a step of hundreds of iterations.
+Problem taut_net(double knot) {
   constexpr std::uint32_t side = 12;
   Problem problem;
   problem.gravity = {0, -9.81, 0};
   for (std::uint32_t i = 0; i < side; ++i)
     for (std::uint32_t j = 0; j < side; ++j)
-      (void)add_point(problem, {0.1 * i, 0, 0.1 * j}, i == side / 2 && j == side / 2 ? 100 : 0.1);
+      (void)add_point(problem, {0.1 * i, 0, 0.1 * j}, i == side / 2 && j == side / 2 ? 100 : knot);
   for (const std::uint32_t corner : {0u, side - 1, side * (side - 1), side * side - 1}) nail(problem, corner);
   for (std::uint32_t i = 0; i < side; ++i)
     for (std::uint32_t j = 0; j < side; ++j) {
@@ -28,7 +29,7 @@ Problem taut_net() {
 
 /// The most iterations of a step.
 int work_hardest(int budget) {
-  Problem problem = taut_net();
+  Problem problem = taut_net(0.1);
   Integrator integrator;
   integrator.compile(problem);
   IntegratorSettings settings = IntegratorSettings::energy_keeping();
@@ -46,6 +47,47 @@ TEST(StepBudget, bounds_the_iterations_of_a_step) {
   EXPECT_GT(work_hardest(0), 60) << "or the scene is no test";
   for (const int budget : {1, 5, 20, 50})
     EXPECT_LE(work_hardest(budget), budget + IntegratorSettings::last_resort_iterations);
+}
+
+/// In steps of 1/60 s after the first, which finds the shape.
+struct Costs {
+  int usual = 0;      ///< median of their iterations
+  int cut_short = 0;  ///< steps that needed more than `budget`, with the solves that close gaps
+};
+Costs costs_of_steps(Problem problem, int steps, IntegratorSettings settings, int budget = 0) {
+  Integrator integrator;
+  integrator.compile(problem);
+  (void)integrator.advance(problem, 1.0 / 60, settings);
+  settings.max_iterations = budget;
+  Costs costs;
+  std::vector<int> iterations;
+  for (int step = 0; step < steps; ++step) {
+    const AdvanceReport report = integrator.advance(problem, 1.0 / 60, settings);
+    iterations.push_back(report.iterations), costs.cut_short += report.cut_short;
+  }
+  const auto middle = iterations.begin() + steps / 2;
+  std::nth_element(iterations.begin(), middle, iterations.end());
+  costs.usual = *middle;
+  return costs;
+}
+void expect_steady(const Problem& problem, int steps) {
+  for (const auto& settings : {IntegratorSettings::robust(), IntegratorSettings::energy_keeping()}) {
+    const int usual = 1 + costs_of_steps(problem, steps, settings).usual;  // and an evaluation of the equations
+    EXPECT_EQ(costs_of_steps(problem, steps, settings, 10 * usual).cut_short, 0) << "usual: " << usual;
+  }
+}
+
+TEST(StepCost, of_a_load_that_falls_into_a_taut_net_stays_below_ten_usual_steps) { expect_steady(taut_net(0.01), 40); }
+
+TEST(StepCost, of_an_unchanged_conflict_stays_below_ten_usual_steps) {
+  for (const std::uint32_t links : {2u, 20u, 100u}) {  // of 1 m in all, between nails 1.5 m apart
+    Problem problem;
+    problem.gravity = {0, -9.81, 0};
+    for (std::uint32_t i = 0; i <= links; ++i) (void)add_point(problem, {1.5 * i / links, 0, 0}, 0.1 / links);
+    for (std::uint32_t i = 0; i < links; ++i) (void)add_rod(problem, i, i + 1, 1.0 / links);
+    nail(problem, 0), nail(problem, links);
+    expect_steady(problem, 300);
+  }
 }
 
 }  // namespace
