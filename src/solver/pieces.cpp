@@ -17,7 +17,10 @@ std::uint32_t find_pieces(const Problem& problem, Connection connection, std::ve
     for (const auto& item : pool.items)
       for (const std::uint32_t node : pool.nodes_of(item)) join(pool.nodes_of(item).front(), node);
   };
-  problem.for_each_constraint_pool(join_all);
+  if (connection == Connection::lengths)
+    join_all(problem.pool_of<DistanceConstraint>());
+  else
+    problem.for_each_constraint_pool(join_all);
   if (connection == Connection::rows_and_forces) problem.for_each_force_pool(join_all);
   for (const auto& c : problem.mass_couplings) join(c.a, c.b);
   std::uint32_t count = 0;

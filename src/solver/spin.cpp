@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace iota::solver {
@@ -36,6 +37,77 @@ void Spin::find_parts(const Problem& problem, Connection connection, const Holds
       for (const auto& c : pool.items) parts[part_of[pool.nodes_of(c).front()]].holds.add(c);
     });
   for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot();
+}
+
+/// Whether there are any beside pieces that are one member and already get all.
+bool Spin::find_members(const Problem& problem) {
+  if (!problem.has_used_constraints()) return false;
+  if (members_.part_of.size() != problem.size()) {
+    members_.parts.resize(find_pieces(problem, Connection::lengths, members_.part_of));
+    piece_of_.resize(members_.parts.size());
+    for (std::uint32_t i = 0; i < problem.size(); ++i) piece_of_[members_.part_of[i]] = pieces_.part_of[i];
+  }
+  bool any = false;
+  for (std::size_t k = 0; k < members_.parts.size(); ++k) {
+    bool& is_kept = members_.parts[k].is_kept;
+    is_kept = members_.parts.size() > pieces_.parts.size() || !pieces_.parts[piece_of_[k]].is_kept;
+    any = any || is_kept;
+  }
+  return any;
+}
+
+// Rows with a law count while they are equations. Those that another one contains add nothing.
+void Spin::find_supports(const Problem& problem) {
+  constexpr double independent = 1e-12;  // of the square of a norm
+  supports_.assign(members_.parts.size(), {});
+  const auto product = [](const Part& part, const Wrench& a, const Wrench& b) {
+    return (1 / part.mass) * dot(a.force, b.force) + dot(a.torque, solve_semidefinite(part.inertia, b.torque, 1e-12));
+  };
+  const auto add = [&](std::uint32_t member, Wrench wrench) {
+    const Part& part = members_.parts[member];
+    Support& support = supports_[member];
+    if (!part.is_due || support.count == 6) return;
+    const double size = product(part, wrench, wrench);
+    for (int pass = 0; pass < 2; ++pass)  // the second removes round-off
+      for (int k = 0; k < support.count; ++k) {
+        const double share = product(part, support.wrenches[k], wrench);
+        wrench.force -= share * support.wrenches[k].force, wrench.torque -= share * support.wrenches[k].torque;
+      }
+    const double rest = product(part, wrench, wrench);
+    if (!(rest > independent * size)) return;
+    const double scale = 1 / std::sqrt(rest);
+    support.wrenches[support.count++] = {scale * wrench.force, scale * wrench.torque};
+  };
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    if constexpr (!std::is_same_v<C, DistanceConstraint>)
+      for (std::size_t k = 0; k < pool.items.size(); ++k) {
+        const auto nodes = pool.nodes_of(pool.items[k]);
+        if (std::none_of(nodes.begin(), nodes.end(), [&](auto i) { return members_.of(i).is_due; })) continue;
+        const Gradients<C> gradients(pool.items[k], problem.position.data(), 1);
+        for (std::size_t first = 0; first < nodes.size(); ++first) {
+          const std::uint32_t member = members_.part_of[nodes[first]];
+          const auto is_of_member = [&](std::uint32_t i) { return members_.part_of[i] == member; };
+          if (std::any_of(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(first), is_of_member)) continue;
+          Wrench wrenches[C::rows];
+          for (std::size_t i = first; i < nodes.size(); ++i) {
+            if (!is_of_member(nodes[i])) continue;
+            Vec3 rows[C::rows];
+            gradients.of_node(static_cast<int>(i), rows);
+            const Vec3 arm = problem.position[nodes[i]] - members_.parts[member].center;
+            for (int r = 0; r < C::rows; ++r) wrenches[r].force += rows[r], wrenches[r].torque += cross(arm, rows[r]);
+          }
+          for (int r = 0; r < C::rows; ++r) {
+            if (pool.has_laws()) {
+              const RowLaw& law = pool.law(k)[r];
+              if (law.is_off() || law.is_compliant() ||
+                  pool.states[k * C::rows + static_cast<std::size_t>(r)].side != 0)
+                continue;
+            }
+            add(member, wrenches[r]);
+          }
+        }
+      }
+  });
 }
 
 /// Whether forces connect pieces, or damp them. What a spring holds to the world is no cluster: it may be stiff as a nail.
@@ -105,7 +177,8 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
       if (g > 0) part.lost = (dot(part.lost, problem.gravity) / g) * problem.gravity;
     } else {
       part.center *= 1 / part.mass;
-      part.lost -= (h / part.mass) * cross(part.momentum, part.wanted_momentum);
+      part.lost_of_center = (h / part.mass) * cross(part.momentum, part.wanted_momentum);
+      part.lost -= part.lost_of_center;
     }
     part.is_due = norm(part.lost) > round_off * h * part.kinetic;
     any = any || part.is_due;
@@ -140,6 +213,8 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, doubl
   find_parts(problem, Connection::rows, all, pieces_);
   const bool are_pieces_due = find_losses(problem, displacement, h, pieces_);
   const bool are_clusters_due = find_clusters(problem, all) && find_losses(problem, displacement, h, clusters_);
+  const bool are_members_due = find_members(problem) && find_losses(problem, displacement, h, members_);
+  if (are_members_due) most_gain -= turn_members(problem, most_gain);
   if (are_pieces_due) most_gain -= turn_parts(problem, most_gain, is_rigid ? Rest::gives_all : Rest::gives, pieces_);
   if (are_clusters_due) {
     if (are_pieces_due)
@@ -149,7 +224,50 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, doubl
       }
     (void)turn_parts(problem, most_gain, Rest::is_kept, clusters_);
   }
-  return are_pieces_due || are_clusters_due;
+  return are_pieces_due || are_clusters_due || are_members_due;
+}
+
+/// By the angular impulse that each has lost, while its supports do not move. What that pushes a free piece is taken back from all
+/// of it. Returns the kinetic energy that this adds, J.
+double Spin::turn_members(Problem& problem, double most_gain) {
+  find_motions(problem, members_);
+  find_supports(problem);
+  double first = 0, second = 0;
+  for (std::size_t k = 0; k < members_.parts.size(); ++k) {
+    Part& part = members_.parts[k];
+    // What hangs on a point swings: see turn_parts.
+    part.is_due = part.is_due && supports_[k].count >= 4;
+    if (!part.is_due) continue;
+    const bool is_on_fixed_axle = !pieces_.parts[piece_of_[k]].is_kept && problem.gravity == Vec3{};
+    Wrench impulse{{}, is_on_fixed_axle ? -part.lost - part.lost_of_center : -part.lost};
+    const Vec3 turn = solve_semidefinite(part.inertia, impulse.torque, 1e-12);
+    for (int i = 0; i < supports_[k].count; ++i) {
+      const Wrench& support = supports_[k].wrenches[i];
+      const double share = dot(support.torque, turn);
+      impulse.force -= share * support.force, impulse.torque -= share * support.torque;
+    }
+    part.velocity_change = (1 / part.mass) * impulse.force;
+    part.turn = solve_semidefinite(part.inertia, impulse.torque, 1e-12);
+    first += dot(part.velocity_change, part.momentum) + dot(part.turn, part.angular);
+    second += 0.5 * (dot(part.velocity_change, impulse.force) + dot(part.turn, part.inertia * part.turn));
+  }
+  const double share = largest_share(first, second, most_gain);
+  for (Part& piece : pieces_.parts) piece.velocity_change = {};
+  for (std::size_t k = 0; k < members_.parts.size(); ++k) {
+    Part& part = members_.parts[k];
+    if (!part.is_due) continue;
+    Part& piece = pieces_.parts[piece_of_[k]];
+    const Vec3 push = (share * part.mass) * part.velocity_change;
+    piece.lost += share * (part.inertia * part.turn) + cross(part.center - piece.center, push);
+    if (piece.is_kept && piece.holds.count == 0) piece.velocity_change -= (1 / piece.mass) * push;
+  }
+  for (std::uint32_t i = 0; i < problem.size(); ++i) {
+    const Part& part = members_.of(i);
+    problem.velocity[i] += pieces_.of(i).velocity_change;
+    if (part.is_due)
+      problem.velocity[i] += share * (part.velocity_change + cross(part.turn, problem.position[i] - part.center));
+  }
+  return share * (first + share * second);
 }
 
 /// Returns the kinetic energy that this adds, J.

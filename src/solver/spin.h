@@ -6,6 +6,7 @@
 #include "solver/pieces.h"
 #include "solver/problem.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -15,18 +16,19 @@ namespace iota::solver {
 
 /// The angular momentum of the pieces of a problem, and of its clusters: a piece is what rows connect, a cluster what rows and
 /// forces connect. Nothing within them changes their momentum and angular momentum. If outside holds one at a single point,
-/// that is the angular momentum about this point.
+/// that is the angular momentum about this point. The members of a piece, which only lengths connect, have their own spin as far
+/// as no other row notices: a wheel on an axle.
 /// What a scheme or a projection has changed is returned as the velocities of a rigid motion, which no row notices.
 class Spin {
  public:
   /// After a change of structure.
-  void forget() { pieces_.part_of.clear(), clusters_.part_of.clear(); }
+  void forget() { pieces_.part_of.clear(), clusters_.part_of.clear(), members_.part_of.clear(); }
 
   /// Returns what a step of the end-point rule has lost: it takes moments where the step ends, and so counts the angular
   /// momentum of x1 - x0 with M v0 as lost (a ball at 30 rad/s kept 13 % of its own for 2 s at 60 Hz), and its dashpots act
-  /// along the line at the start. Pieces get theirs first, clusters the remainder. Velocities are those after the step,
+  /// along the line at the start. Members get theirs first, then pieces and clusters the remainder. Velocities are those after the step,
   /// v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; what is above the rest of a
-  /// piece's motion gives, and a cluster forgoes. `is_rigid`: the motion has no rest. Returns whether velocities have changed.
+  /// piece's motion gives, and others forgo. `is_rigid`: the motion has no rest. Returns whether velocities have changed.
   bool give_back(Problem&, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
                  bool is_rigid);
 
@@ -44,7 +46,8 @@ class Spin {
     Vec3 center;                           ///< of mass, or that point, m
     double mass = 0, kinetic = 0;          ///< of the motion relative to the center
     Vec3 momentum, angular;                ///< about the center
-    Vec3 lost;                             ///< angular momentum, kg m^2/s
+    Vec3 lost;                             ///< angular momentum about the center, kg m^2/s
+    Vec3 lost_of_center;                   ///< by the motion of the center of mass
     Mat3 inertia;                          ///< about the center
     Vec3 wanted_momentum, wanted_angular;  ///< about the origin, or the point that holds it
     Vec3 velocity_change, turn;            ///< m/s, rad/s
@@ -55,7 +58,19 @@ class Spin {
     std::vector<std::uint32_t> part_of;  // of each node
     Part& of(std::uint32_t node) { return parts[part_of[node]]; }
   };
+  /// A force and a torque about the center, or what a row makes of a multiplier of 1.
+  struct Wrench {
+    Vec3 force, torque;
+  };
+  /// The rows that notice a member's rigid motion: orthonormal, in the norm of the motion that a wrench causes.
+  struct Support {
+    std::array<Wrench, 6> wrenches;
+    int count = 0;
+  };
   static void find_parts(const Problem&, Connection, const Holds& all, Parts&);
+  bool find_members(const Problem&);
+  void find_supports(const Problem&);
+  double turn_members(Problem&, double most_gain);
   bool find_clusters(const Problem&, const Holds& all);
   static bool find_losses(const Problem&, std::span<const Vec3> displacement, double h, Parts&);
   static void find_motions(const Problem&, Parts&);
@@ -64,7 +79,9 @@ class Spin {
   static Vec3 turning(const Part&, const Vec3& angular, const Vec3& gravity);
   void add_momenta(const Problem&);
 
-  Parts pieces_, clusters_;
+  Parts pieces_, clusters_, members_;
+  std::vector<Support> supports_;        // of members
+  std::vector<std::uint32_t> piece_of_;  // of each member
 };
 
 }  // namespace iota::solver
