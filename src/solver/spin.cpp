@@ -23,6 +23,26 @@ double largest_share(double first, double second, double limit) {
   return (std::sqrt(first * first + 4 * second * limit) - first) / (2 * second + 1e-300);
 }
 
+/// visit(part): each part of which some of the nodes are.
+template <class Visit>
+void for_each_once(std::span<const std::uint32_t> nodes, std::span<const std::uint32_t> part_of, Visit visit) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto is_seen = [&](std::uint32_t node) { return part_of[node] == part_of[nodes[i]]; };
+    if (std::none_of(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(i), is_seen)) visit(part_of[nodes[i]]);
+  }
+}
+
+/// Of an inertia; of points on a line zero along that.
+Mat3 pseudoinverse(const Mat3& inertia) {
+  const SymmetricEigen eigen = symmetric_eigen(inertia);
+  Mat3 inverse;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 column = solve_semidefinite(eigen, {double(k == 0), double(k == 1), double(k == 2)}, 1e-12);
+    inverse.m[0][k] = column.x, inverse.m[1][k] = column.y, inverse.m[2][k] = column.z;
+  }
+  return inverse;
+}
+
 }  // namespace
 
 // Structure is searched once, who holds a part at each step, as nails move.
@@ -39,19 +59,32 @@ void Spin::find_parts(const Problem& problem, Connection connection, const Holds
   for (Part& part : parts) part.is_kept = part.holds.are_none() || part.holds.pivot();
 }
 
-/// Whether there are any beside pieces that are one member and already get all.
+/// Whether any single body may be left one or two motions by its rows, beside pieces of one member, which already get all.
 bool Spin::find_members(const Problem& problem) {
+  constexpr std::uint32_t most_nodes = 4, fewest_rows = 4;
   if (!problem.has_used_constraints()) return false;
-  if (members_.part_of.size() != problem.size()) {
-    members_.parts.resize(find_pieces(problem, Connection::lengths, members_.part_of));
-    piece_of_.resize(members_.parts.size());
-    for (std::uint32_t i = 0; i < problem.size(); ++i) piece_of_[members_.part_of[i]] = pieces_.part_of[i];
+  auto& [members, member_of] = members_;
+  if (member_of.size() != problem.size()) {
+    members.resize(find_pieces(problem, Connection::lengths, member_of));
+    piece_of_.resize(members.size());
+    std::vector<std::uint32_t> nodes(members.size()), rows(members.size());
+    for (std::uint32_t i = 0; i < problem.size(); ++i) {
+      piece_of_[member_of[i]] = pieces_.part_of[i];
+      ++nodes[member_of[i]];
+    }
+    problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+      if constexpr (!std::is_same_v<C, DistanceConstraint>)
+        for (const C& item : pool.items)
+          for_each_once(pool.nodes_of(item), member_of, [&](std::uint32_t member) { rows[member] += C::rows; });
+    });
+    may_turn_.resize(members.size());
+    for (std::size_t k = 0; k < members.size(); ++k) may_turn_[k] = nodes[k] <= most_nodes && rows[k] >= fewest_rows;
   }
   bool any = false;
-  for (std::size_t k = 0; k < members_.parts.size(); ++k) {
-    bool& is_kept = members_.parts[k].is_kept;
-    is_kept = members_.parts.size() > pieces_.parts.size() || !pieces_.parts[piece_of_[k]].is_kept;
-    any = any || is_kept;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const bool gets_all = members.size() == pieces_.parts.size() && pieces_.parts[piece_of_[k]].is_kept;
+    members[k].is_kept = may_turn_[k] && !gets_all;
+    any = any || members[k].is_kept;
   }
   return any;
 }
@@ -59,53 +92,58 @@ bool Spin::find_members(const Problem& problem) {
 // Rows with a law count while they are equations. Those that another one contains add nothing.
 void Spin::find_supports(const Problem& problem) {
   constexpr double independent = 1e-12;  // of the square of a norm
-  supports_.assign(members_.parts.size(), {});
-  const auto product = [](const Part& part, const Wrench& a, const Wrench& b) {
-    return (1 / part.mass) * dot(a.force, b.force) + dot(a.torque, solve_semidefinite(part.inertia, b.torque, 1e-12));
+  supports_.resize(members_.parts.size());
+  for (std::size_t k = 0; k < supports_.size(); ++k) {
+    supports_[k].count = 0;
+    if (members_.parts[k].is_due) supports_[k].by_inertia = pseudoinverse(members_.parts[k].inertia);
+  }
+  const auto product = [&](std::uint32_t member, const Wrench& a, const Wrench& b) {
+    return (1 / members_.parts[member].mass) * dot(a.force, b.force) +
+           dot(a.torque, supports_[member].by_inertia * b.torque);
+  };
+  const auto is_open = [&](std::uint32_t member) {
+    return members_.parts[member].is_due && supports_[member].count < 6;
   };
   const auto add = [&](std::uint32_t member, Wrench wrench) {
-    const Part& part = members_.parts[member];
     Support& support = supports_[member];
-    if (!part.is_due || support.count == 6) return;
-    const double size = product(part, wrench, wrench);
+    if (!is_open(member)) return;
+    const double size = product(member, wrench, wrench);
     for (int pass = 0; pass < 2; ++pass)  // the second removes round-off
       for (int k = 0; k < support.count; ++k) {
-        const double share = product(part, support.wrenches[k], wrench);
+        const double share = product(member, support.wrenches[k], wrench);
         wrench.force -= share * support.wrenches[k].force, wrench.torque -= share * support.wrenches[k].torque;
       }
-    const double rest = product(part, wrench, wrench);
+    const double rest = product(member, wrench, wrench);
     if (!(rest > independent * size)) return;
     const double scale = 1 / std::sqrt(rest);
     support.wrenches[support.count++] = {scale * wrench.force, scale * wrench.torque};
   };
   problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
     if constexpr (!std::is_same_v<C, DistanceConstraint>)
-      for (std::size_t k = 0; k < pool.items.size(); ++k) {
-        const auto nodes = pool.nodes_of(pool.items[k]);
-        if (std::none_of(nodes.begin(), nodes.end(), [&](auto i) { return members_.of(i).is_due; })) continue;
-        const Gradients<C> gradients(pool.items[k], problem.position.data(), 1);
-        for (std::size_t first = 0; first < nodes.size(); ++first) {
-          const std::uint32_t member = members_.part_of[nodes[first]];
-          const auto is_of_member = [&](std::uint32_t i) { return members_.part_of[i] == member; };
-          if (std::any_of(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(first), is_of_member)) continue;
+      for (std::size_t item = 0; item < pool.items.size(); ++item) {
+        const auto nodes = pool.nodes_of(pool.items[item]);
+        if (std::none_of(nodes.begin(), nodes.end(), [&](auto i) { return is_open(members_.part_of[i]); })) continue;
+        const Gradients<C> gradients(pool.items[item], problem.position.data(), 1);
+        for_each_once(nodes, members_.part_of, [&](std::uint32_t member) {
+          if (!is_open(member)) return;
           Wrench wrenches[C::rows];
-          for (std::size_t i = first; i < nodes.size(); ++i) {
-            if (!is_of_member(nodes[i])) continue;
+          for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (members_.part_of[nodes[i]] != member) continue;
             Vec3 rows[C::rows];
             gradients.of_node(static_cast<int>(i), rows);
             const Vec3 arm = problem.position[nodes[i]] - members_.parts[member].center;
             for (int r = 0; r < C::rows; ++r) wrenches[r].force += rows[r], wrenches[r].torque += cross(arm, rows[r]);
           }
           for (int r = 0; r < C::rows; ++r) {
-            if (pool.has_laws()) {
-              const RowLaw& law = pool.law(k)[r];
-              if (law.is_off() || law.is_compliant() ||
-                  pool.states[k * C::rows + static_cast<std::size_t>(r)].side != 0)
-                continue;
-            }
-            add(member, wrenches[r]);
+            const auto is_equation = [&] {
+              if (!pool.has_laws()) return true;
+              const RowLaw& law = pool.law(item)[r];
+              return !law.is_off() && !law.is_compliant() &&
+                     pool.states[item * C::rows + static_cast<std::size_t>(r)].side == 0;
+            };
+            if (is_equation()) add(member, wrenches[r]);
           }
-        }
+        });
       }
   });
 }
@@ -240,14 +278,14 @@ double Spin::turn_members(Problem& problem, double most_gain) {
     if (!part.is_due) continue;
     const bool is_on_fixed_axle = !pieces_.parts[piece_of_[k]].is_kept && problem.gravity == Vec3{};
     Wrench impulse{{}, is_on_fixed_axle ? -part.lost - part.lost_of_center : -part.lost};
-    const Vec3 turn = solve_semidefinite(part.inertia, impulse.torque, 1e-12);
+    const Vec3 turn = supports_[k].by_inertia * impulse.torque;
     for (int i = 0; i < supports_[k].count; ++i) {
       const Wrench& support = supports_[k].wrenches[i];
       const double share = dot(support.torque, turn);
       impulse.force -= share * support.force, impulse.torque -= share * support.torque;
     }
     part.velocity_change = (1 / part.mass) * impulse.force;
-    part.turn = solve_semidefinite(part.inertia, impulse.torque, 1e-12);
+    part.turn = supports_[k].by_inertia * impulse.torque;
     first += dot(part.velocity_change, part.momentum) + dot(part.turn, part.angular);
     second += 0.5 * (dot(part.velocity_change, impulse.force) + dot(part.turn, part.inertia * part.turn));
   }

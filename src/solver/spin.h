@@ -66,6 +66,7 @@ class Spin {
   struct Support {
     std::array<Wrench, 6> wrenches;
     int count = 0;
+    Mat3 by_inertia;  ///< inverse of the member's inertia, 1/(kg m^2)
   };
   static void find_parts(const Problem&, Connection, const Holds& all, Parts&);
   bool find_members(const Problem&);
@@ -80,8 +81,10 @@ class Spin {
   void add_momenta(const Problem&);
 
   Parts pieces_, clusters_, members_;
-  std::vector<Support> supports_;        // of members
-  std::vector<std::uint32_t> piece_of_;  // of each member
+  // Of each member.
+  std::vector<Support> supports_;
+  std::vector<std::uint32_t> piece_of_;
+  std::vector<std::uint8_t> may_turn_;
 };
 
 }  // namespace iota::solver
