@@ -48,7 +48,7 @@ void Integrator::follow(Problem& problem) {
 
 void Integrator::make_room(const Problem& problem) {
   if (local_) local_->forget();
-  spin_.forget();
+  if (spin_) spin_->forget();
   lumped_mass_.clear();
   multipliers_saved_.resize(problem.multiplier_count());
 }

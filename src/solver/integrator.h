@@ -97,6 +97,10 @@ class Integrator {
   bool is_out_of_budget();
 
   void project_velocities_after_step(Problem&, const Stage&, AdvanceReport&);
+  Spin& spin() {
+    if (!spin_) spin_ = std::make_unique<Spin>();
+    return *spin_;
+  }
   void give_spin_back(Problem&, const Stage&, double dissipated, AdvanceReport&);
   void remove_made_energy(Problem&, double energy_before);
   bool change_kinetic_energy(Problem& problem, double excess) {
@@ -152,7 +156,7 @@ class Integrator {
   double violation_ = 0;        ///< relative, left by the latest solve
   int met_ = 0;                 ///< bounded rows that became active in the latest solve
 
-  Spin spin_;
+  std::unique_ptr<Spin> spin_;  // if it was needed
   bool may_be_in_pieces_ = false;
   struct Piece {
     Holds holds;

@@ -48,8 +48,8 @@ void Integrator::keep_correction(const Problem& problem) {
 void Integrator::give_spin_back(Problem& problem, const Stage& stage, double dissipated, AdvanceReport& report) {
   std::copy(problem.velocity.begin(), problem.velocity.end(), newton_.velocities_before().begin());
   const double lost = std::max(0.0, energy_.missing);
-  has_corrected_ = spin_.give_back(problem, newton_.displacement(), stage.h, holds_, lost + std::max(0.0, dissipated),
-                                   is_free_body_);
+  has_corrected_ = spin().give_back(problem, newton_.displacement(), stage.h, holds_, lost + std::max(0.0, dissipated),
+                                    is_free_body_);
   if (!has_corrected_) return;
   energy_.measure_kinetic(problem);
   const double refunded = std::clamp(-energy_.missing, 0.0, std::max(0.0, dissipated));

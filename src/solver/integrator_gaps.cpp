@@ -40,7 +40,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
   }
   energy_.measure(problem, 0);
   const double before = energy_.total;
-  if (is_open) spin_.note(problem, holds_);
+  if (is_open) spin().note(problem, holds_);
   problem.standing_gap = 0;
   if (!project_locally(problem, is_open)) {
     if (is_open && !(stands ? project_in_one_solve(problem) : project_positions(problem))) {
@@ -49,7 +49,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     }
     project_velocities(problem);
   }
-  if (is_open) report.spin_lost = spin_.restore(problem);
+  if (is_open) report.spin_lost = spin().restore(problem);
   energy_.measure(problem, 0);
   const double added = energy_.total - before;
   report.closing_energy += added;

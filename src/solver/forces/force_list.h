@@ -29,7 +29,8 @@ struct SpringForce {
   Vec3 force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const double r = s.midpoint ? (norm(e0) + norm(e1)) / 2 : norm(e1);
     const Vec3 e = s.midpoint ? 0.5 * (e0 + e1) : e1;
-    return (-stiffness * factor(r)) * e + dashpot_force(e0, e1, s);
+    const Vec3 elastic = (-stiffness * factor(r)) * e;
+    return has_dashpot() ? elastic + dashpot_force(e0, e1, s) : elastic;
   }
   bool has_dashpot() const { return damping > 0; }
   Vec3 dashpot_force(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
@@ -37,13 +38,17 @@ struct SpringForce {
     return (-damping / s.h * dashpot.along) * dashpot.n;
   }
   double dissipation(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
+    if (!has_dashpot()) return 0;
     const double along = Dashpot(e0, e1, s, length == 0).along;
     return damping / s.h * along * along;
   }
   Mat3 stiffness_matrix(const Vec3& e0, const Vec3& e1, const ForceStage& s) const {
     const Vec3 n1 = direction(e1);
-    const Dashpot dashpot(e0, e1, s, length == 0);
-    Mat3 k = dashpot.stiffness_matrix(e1, damping / s.h, damping / s.h * dashpot.along, s);
+    Mat3 k;
+    if (has_dashpot()) {
+      const Dashpot dashpot(e0, e1, s, length == 0);
+      k = dashpot.stiffness_matrix(e1, damping / s.h, damping / s.h * dashpot.along, s);
+    }
     if (s.midpoint) {
       const double r = (norm(e0) + norm(e1)) / 2;
       double across = factor(r);
