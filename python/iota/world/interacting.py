@@ -7,6 +7,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
+from time import perf_counter
 from typing import Any
 
 from iota._core import Body, Bond, Particle, System, Vec3
@@ -20,6 +21,7 @@ from iota.world.shown import Arrow, Label, Line
 
 REWIND, REWIND_EVERY, REWIND_LONGEST = 1.0, 0.5, 10.0  # s, simulated
 REWIND_BYTES = 64 << 20
+REWIND_SHARE = 0.01  # of the time: what copies of the world may take
 FREE, READY = "#2f9d92", "#f2a324"  # of a socket
 
 
@@ -170,15 +172,19 @@ def _measure(world: Interacting) -> None:
 
 def _rewind(world: Interacting) -> None:
     kept: deque[tuple[float, Any, int]] = deque()  # simulated time, snapshot, its bytes
+    every = REWIND_EVERY
 
     @world.on_frame
     def keep() -> None:
+        nonlocal every
         now = world.system.time
         while kept and kept[-1][0] > now:  # after an undo
             kept.pop()
-        if kept and now - kept[-1][0] < REWIND_EVERY:
+        if kept and now - kept[-1][0] < every:
             return
+        start = perf_counter()
         snapshot = world.system.snapshot()
+        every = max(REWIND_EVERY, (perf_counter() - start) / REWIND_SHARE)
         kept.append((now, snapshot, len(snapshot) if isinstance(snapshot, bytes) else 0))
         while kept[0][0] < now - REWIND_LONGEST or (sum(size for *_, size in kept) > REWIND_BYTES and len(kept) > 1):
             kept.popleft()
