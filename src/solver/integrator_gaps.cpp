@@ -31,7 +31,7 @@ void Integrator::close_gaps(Problem& problem, AdvanceReport& report) {
     problem.standing_gap = 0;
     if (!has_new_rows) return;
   }
-  // Retry an unchanged, unsolvable constraint set with exponential back-off: trying costs tens of iterations.
+  // An unchanged, unsolvable constraint set is tried again with exponential back-off, by one short solve.
   const bool stands = is_open && is_conservative_ && gap <= 1.001 * problem.standing_gap;
   problem.standing_steps = stands ? problem.standing_steps + 1 : 0;
   if (stands && !is_due(problem.standing_steps)) {

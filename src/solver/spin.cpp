@@ -166,7 +166,7 @@ bool Spin::find_losses(const Problem& problem, std::span<const Vec3> displacemen
   const auto start_velocity = [&](std::uint32_t i) { return problem.velocity[i] - (1 / h) * displacement[i]; };
   for (Part& part : parts.parts) {
     part.mass = part.kinetic = 0;
-    part.center = part.momentum = part.wanted_momentum = part.lost = {};
+    part.center = part.momentum = part.wanted_momentum = part.lost = part.given = {};
   }
   const auto add = [&](Part& part, double mass, std::uint32_t i, const Vec3& start) {
     const Vec3& v = problem.velocity[i];
@@ -255,11 +255,8 @@ bool Spin::give_back(Problem& problem, std::span<const Vec3> displacement, doubl
   if (are_members_due) most_gain -= turn_members(problem, most_gain);
   if (are_pieces_due) most_gain -= turn_parts(problem, most_gain, is_rigid ? Rest::gives_all : Rest::gives, pieces_);
   if (are_clusters_due) {
-    if (are_pieces_due)
-      for (std::uint32_t i = 0; i < problem.size(); ++i) {
-        Part& piece = pieces_.of(i);
-        if (std::exchange(piece.is_due, false)) clusters_.of(i).lost += piece.inertia * piece.turn;
-      }
+    for (std::uint32_t i = 0; i < problem.size(); ++i)
+      clusters_.of(i).lost += std::exchange(pieces_.of(i).given, Vec3{});
     (void)turn_parts(problem, most_gain, Rest::is_kept, clusters_);
   }
   return are_pieces_due || are_clusters_due || are_members_due;
@@ -296,7 +293,8 @@ double Spin::turn_members(Problem& problem, double most_gain) {
     if (!part.is_due) continue;
     Part& piece = pieces_.parts[piece_of_[k]];
     const Vec3 push = (share * part.mass) * part.velocity_change;
-    piece.lost += share * (part.inertia * part.turn) + cross(part.center - piece.center, push);
+    const Vec3 given = share * (part.inertia * part.turn) + cross(part.center - piece.center, push);
+    piece.lost += given, piece.given += given;
     if (piece.is_kept && piece.holds.count == 0) piece.velocity_change -= (1 / piece.mass) * push;
   }
   for (std::uint32_t i = 0; i < problem.size(); ++i) {
@@ -337,7 +335,8 @@ double Spin::turn_parts(Problem& problem, double most_gain, Rest rest_of_motion,
     problem.velocity[i] =
         shared + (gives(part) ? factor : 1) * (problem.velocity[i] - shared) + share * cross(part.turn, place);
   }
-  for (Part& part : parts.parts) part.turn *= share;
+  for (Part& part : parts.parts)
+    if (part.is_due) part.given += share * (part.inertia * part.turn);
   return std::min(gain, most_gain);
 }
 

@@ -26,8 +26,8 @@ class Spin {
 
   /// Returns what a step of the end-point rule has lost: it takes moments where the step ends, and so counts the angular
   /// momentum of x1 - x0 with M v0 as lost (a ball at 30 rad/s kept 13 % of its own for 2 s at 60 Hz), and its dashpots act
-  /// along the line at the start. Members get theirs first, then pieces and clusters the remainder. Velocities are those after the step,
-  /// v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; what is above the rest of a
+  /// along the line at the start. Members get theirs first, then pieces and clusters the remainder. Velocities are those after
+  /// the step, v1 = (x1 - x0)/h = v0 + displacement/h. The energy rises by `most_gain` at most, J; what is above, the rest of a
   /// piece's motion gives, and others forgo. `is_rigid`: the motion has no rest. Returns whether velocities have changed.
   bool give_back(Problem&, std::span<const Vec3> displacement, double h, const Holds& all, double most_gain,
                  bool is_rigid);
@@ -39,7 +39,7 @@ class Spin {
   double restore(Problem&);
 
  private:
-  struct Part {  // a piece, or a cluster
+  struct Part {  // a piece, a cluster or a member
     Holds holds;
     bool is_kept = false;                  ///< nothing holds it, or a single point at rest
     bool is_due = false;                   ///< it has lost something
@@ -48,6 +48,7 @@ class Spin {
     Vec3 momentum, angular;                ///< about the center
     Vec3 lost;                             ///< angular momentum about the center, kg m^2/s
     Vec3 lost_of_center;                   ///< by the motion of the center of mass
+    Vec3 given;                            ///< back of what is lost, to it and to its members
     Mat3 inertia;                          ///< about the center
     Vec3 wanted_momentum, wanted_angular;  ///< about the origin, or the point that holds it
     Vec3 velocity_change, turn;            ///< m/s, rad/s

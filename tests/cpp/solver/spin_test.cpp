@@ -223,6 +223,27 @@ TEST(Spin, of_a_wheel_on_an_axle_nearly_stays) {
             }
 }
 
+/// Also if springs connect the frame with others: what the wheel gets back is not given to the whole once more.
+TEST(Spin, of_a_wheel_in_a_frame_on_a_spring_is_given_back_once) {
+  for (const IntegrationMode mode : end_point_modes)
+    for (const int hertz : {60, 240}) {
+      System system{SystemOptions{.gravity = {}, .mode = mode}};
+      const BodyId wheel = system.bodies().create(Cylinder{0.3, 0.1}, {.mass = 1});
+      const BodyId frame =
+          system.bodies().create(Box{{0.2, 0.2, 2}}, {.mass = 2, .position = {0, 0, 0.5}, .attachments = {{0, 0, 1}}});
+      (void)system.joints().create(
+          JointSpec{.kind = ConstraintKind::revolute, .a = wheel, .b = frame, .at = {}, .axis = {0, 1, 0}});
+      const ParticleId weight = system.particles().create(system.bodies().create(), {0, 0, 3}, 1, {0.5, 0, 0});
+      (void)system.bonds().create(system.bodies().particles(frame)[4], weight,
+                                  SpringLaw{.stiffness = 100, .damping = 5, .length = 1.5});
+      system.bodies().set_angular_velocity(wheel, {0, 30, 0});
+      const Vec3 start = system.angular_momentum();
+      for (int i = 0; i < 2 * hertz; ++i) (void)system.step(1.0 / hertz);
+      EXPECT_NEAR(norm(system.angular_momentum() - start), 0, 0.05 * norm(start)) << hertz << " Hz";
+      EXPECT_EQ(system.energy().made, 0);
+    }
+}
+
 /// Bodies of two to five particles in random places, hinged in a random order by slow combinations.
 TEST(Spin, and_momentum_stay_while_random_bodies_are_brought_together) {
   int closings = 0;
