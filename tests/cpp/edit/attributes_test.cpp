@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/attributes.h"
+#include "tests/cpp/refused.h"
 
 #include <iota/system.h>
 
@@ -7,8 +8,6 @@
 
 #include <cmath>
 #include <functional>
-#include <stdexcept>
-#include <string>
 
 namespace iota {
 namespace {
@@ -34,14 +33,8 @@ TEST(Orientation, when_it_is_given_comes_with_the_moment_of_a_ball) {
 
 TEST(Orientation, is_needed_for_all_that_turns_and_its_numbers_are_checked) {
   One one;
-  const std::uint64_t before = one.system.state_hash();
   const auto refused = [&](const std::function<void()>& call, const char* words) {
-    try {
-      call();
-      ADD_FAILURE() << words;
-    } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
+    expect_refused(one.system, call, words);
   };
   refused([&] { one.particles.set_spin(one.p, {}); }, "spin needs an oriented particle");
   refused([&] { one.particles.apply_torque(one.p, {}); }, "a torque needs an oriented particle");
@@ -52,7 +45,6 @@ TEST(Orientation, is_needed_for_all_that_turns_and_its_numbers_are_checked) {
   refused([&] { one.particles.set_attributes(one.p, {.lifetime = 0}); }, "lifetime must be above 0");
   refused([&] { one.particles.set_attributes(one.p, {.radius = -1}); }, "radius");
   refused([&] { one.particles.set_attributes(one.p, {.age = -1}); }, "age");
-  EXPECT_EQ(one.system.state_hash(), before);
   one.particles.set_orientation(one.p, {0, 0, 0, 1});
   refused([&] { one.particles.align(one.p, {0, 0, 0}, 1, 1); }, "the length of the preferred direction");
   refused([&] { one.particles.set_moment(one.p, 0); }, "moment");

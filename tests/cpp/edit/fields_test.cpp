@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edit/fields.h"
+#include "tests/cpp/refused.h"
 
 #include <iota/system.h>
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <stdexcept>
 #include <string>
 
 namespace iota {
 namespace {
-
-void expect_refused(System& system, const std::function<void()>& call, const char* words) {
-  const std::uint64_t before = system.state_hash();
-  try {
-    call();
-    ADD_FAILURE() << "not refused: " << words;
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-  }
-  EXPECT_EQ(system.state_hash(), before) << words;
-}
 
 TEST(Group, has_a_name_of_its_own_and_there_are_only_so_many) {
   System system;

@@ -141,19 +141,6 @@ TEST(Emitter, the_energy_book_adds_up_through_births_and_deaths) {
   EXPECT_NEAR(book(system), 0, 1e-9);
 }
 
-TEST(Emitter, stops_and_moves) {
-  System system;
-  const EmitterId emitter = system.emitters().create(fountain);
-  system.emitters().set_active(emitter, false);
-  (void)system.step(0.1);
-  EXPECT_EQ(system.emitters().born(emitter), 0u);
-  system.emitters().set_active(emitter, true);
-  system.emitters().move(emitter, {5, 0, 0}, {});
-  (void)system.step(0.1);
-  EXPECT_EQ(system.emitters().born(emitter), 20u);
-  EXPECT_NEAR(system.particles().position(system.emitters().particles(emitter)[0]).x, 5, 0.2);
-}
-
 TEST(Lifetime, any_particle_dies_at_its_time_and_takes_its_bonds_along) {
   System system({.gravity = {}});
   const BodyId a = system.bodies().create(), b = system.bodies().create();
