@@ -58,7 +58,7 @@ soak: ## build, then for some hours: random scenes, promises of motion, edits by
 	@$(PYTHON) tools/build.py soak
 	@.venv/bin/python tools/soak.py $(SOAK)
 
-hostile: ## damaged snapshots and recordings under the address sanitizer, some minutes (HOSTILE=100000 SEED=2)
+hostile: ## damaged snapshots and recordings under the address sanitizer, up to half an hour (HOSTILE=100000 SEED=2)
 	@$(PYTHON) tools/build.py cpp --preset asan
 	@IOTA_HOSTILE_COUNT=$(HOSTILE) IOTA_HOSTILE_SEED=$(SEED) build/asan/iota_tests --gtest_brief=1 --gtest_filter='Restore.*:*DamagedRecording.*'
 

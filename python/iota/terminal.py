@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, Box, Grip, Mesh, Solid, Sphere, Vec3
+from iota.world.frames import axes_of
 from iota.world.view import View
 from iota.world.world import World
 
@@ -213,12 +214,6 @@ def outline(solid: Solid) -> Iterator[Points]:
         reach = radius if radius is not None else max(map(float, shape.numbers), default=0.0)
         ends = [reach * circle + [x, 0, 0] for x in (-half, half)]
         local = [*ends, *(np.stack([ends[0][side], ends[1][side]]) for side in range(0, 24, 6))]
+    axes = axes_of(solid.orientation)
     for line in local:
-        yield turned(line, solid.orientation) + list(solid.position)
-
-
-def turned(points: Points, rotation: Sequence[float]) -> Points:
-    """By a quaternion x y z w."""
-    axis, w = np.array(rotation[:3]), rotation[3]
-    twice = 2 * np.cross(axis, points)
-    return np.asarray(points + w * twice + np.cross(axis, twice))
+        yield line @ axes.T + list(solid.position)

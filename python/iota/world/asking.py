@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iota._core import Body, HalfSpace, Mesh, Vec3
+from iota.world.frames import axes_of
 from iota.world.state import State
 
 CLOSE = 1e-6  # of the body's size: a ray that comes so near has met it
@@ -124,15 +125,7 @@ class _Solid(_Shape):
     def __init__(self, body: Body, solid: Any) -> None:
         self.body, self._shape = body, solid.shape
         self.center = np.array(list(solid.position))
-        x, y, z, w = solid.orientation
-        # Columns: the shape's axes in the world.
-        self._axes = np.array(
-            [
-                [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-            ]
-        )
+        self._axes = axes_of(solid.orientation)
         if isinstance(self._shape, Mesh):
             self.reach = float(np.linalg.norm(self._shape.vertices, axis=1).max())
         else:

@@ -5,6 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from iota._core import Vec3
 
 Quaternion = Sequence[float]
@@ -23,6 +26,11 @@ def turned(q: Quaternion, v: Vec3) -> Vec3:
     axis = Vec3(q[0], q[1], q[2])
     twice = axis.cross(v) * 2.0
     return v + twice * q[3] + axis.cross(twice)
+
+
+def axes_of(q: Quaternion) -> NDArray[np.float64]:
+    """The axes of a frame in the world, as columns of (3, 3)."""
+    return np.column_stack([list(turned(q, Vec3(*axis))) for axis in np.eye(3)])
 
 
 def turn_from_x(direction: Vec3) -> tuple[float, float, float, float]:

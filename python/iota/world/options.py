@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 @dataclass
 class RunOptions:
-    """None: the script's value. drive: runs a World instead of in real time, see `iota.film`. view: as of `World.run`. kept: a file for the state in
-    which a world ends and the next one begins, see `iota.world.keeping`. names: of the module whose build() made the
-    World. `ran`, `summary`: set by the World that ran."""
+    """None: the script's value. drive: runs a World instead of in real time, see `iota.film`. view: as of `World.run`.
+    kept: a file for the state in which a world ends and the next one begins, see `iota.world.keeping`. names: of the
+    module whose build() made the World. `ran`, `summary`: set by the World that ran."""
 
     port: int | None = None
     seconds: float | None = None
