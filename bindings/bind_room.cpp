@@ -287,10 +287,10 @@ void bind_room(nb::module_& module) {
           "kind"_a, "slot"_a, "generation"_a, "Destroys an entity.")
       .def(
           "set_listens",
-          [](RoomObject& self, bool clicks, bool hovers, std::vector<std::string> keys) {
-            self.use().set(protocol::Listens{clicks, hovers, std::move(keys)});
+          [](RoomObject& self, bool clicks, bool hovers, bool moves, std::vector<std::string> keys) {
+            self.use().set(protocol::Listens{clicks, hovers, moves, std::move(keys)});
           },
-          nb::kw_only(), "clicks"_a, "hovers"_a, "keys"_a, "Enables further input events of pages.")
+          nb::kw_only(), "clicks"_a, "hovers"_a, "moves"_a, "keys"_a, "Enables further input events of pages.")
       .def(
           "ask_picture",
           [](RoomObject& self, std::uint32_t client, std::uint32_t number) { self.use().ask_picture(client, number); },
@@ -325,10 +325,11 @@ void bind_room(nb::module_& module) {
           "title"_a, "Kept cards with this title, or all for an empty one, are not shown to pages that open later.")
       .def(
           "effect",
-          [](RoomObject& self, const std::string& kind, VectorArgument position) {
-            self.use().effect(kind, narrow(to_vec3(position, "position")));
+          [](RoomObject& self, const std::string& kind, VectorArgument position, double volume) {
+            self.use().effect(kind, narrow(to_vec3(position, "position")), static_cast<float>(volume));
           },
-          "kind"_a, "position"_a, "Flash, sound and haptic pulse: 'break', 'join' or 'grab' at a place (m).")
+          "kind"_a, "position"_a, "volume"_a = 1.0,
+          "Flash, sound and haptic pulse: 'break', 'join', 'grab' or 'impact' at a place (m); '#NAME' plays a sound.")
       .def(
           "pulse",
           [](RoomObject& self, std::uint32_t client, const std::string& hand, double strength, double seconds) {

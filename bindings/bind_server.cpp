@@ -112,6 +112,16 @@ void bind_input(nb::module_& module) {
           "direction", [](const InputEvent& e) { return widen(e.direction); },
           "Of a pointer's ray, unit vector, world frame.")
       .def_prop_ro(
+          "rotation",
+          [](const InputEvent& e) {
+            const auto& [x, y, z, w] = e.rotation;
+            return std::tuple(x, y, z, w);
+          },
+          "Of a hand or controller, quaternion x y z w, world frame.")
+      .def_ro("buttons", &InputEvent::buttons, "Of a pointer, 0 to 1 each.")
+      .def_ro("axes", &InputEvent::axes, "Of a pointer, -1 to 1 each.")
+      .def_ro("joints", &InputEvent::joints, "Of a bare hand, three numbers each, world frame, m.")
+      .def_prop_ro(
           "widget", [](const InputEvent& e) { return std::pair(e.body.slot, e.body.generation); },
           "Slot and generation of the control that was changed.")
       .def_prop_ro(

@@ -106,7 +106,14 @@ CLIENT: list[Vector] = [
     (
         "pointer",
         "pointer",
-        b"\x0a\x01" + identity(12, 1) + text("mouse") + vec3([0.5, 1, 2]) + vec3([0, 1.5, 4]) + vec3([0, 0, -1]),
+        b"\x0a\x01"
+        + identity(12, 1)
+        + text("mouse")
+        + vec3([0.5, 1, 2])
+        + vec3([0, 1.5, 4])
+        + vec3([0, 0, -1])
+        + quat([0, 0, 0, 1])
+        + bytes(12),
         {
             "kind": 1,
             "body": {"slot": 12, "generation": 1},
@@ -114,6 +121,36 @@ CLIENT: list[Vector] = [
             "point": [0.5, 1.0, 2.0],
             "origin": [0.0, 1.5, 4.0],
             "direction": [0.0, 0.0, -1.0],
+            "rotation": [0.0, 0.0, 0.0, 1.0],
+            "buttons": [],
+            "axes": [],
+            "joints": [],
+        },
+    ),
+    (
+        "pointer_move",
+        "pointer",
+        b"\x0a\x03"
+        + bytes(8)
+        + text("left hand")
+        + vec3([0.5, 1, 2])
+        + vec3([0, 1.5, 4])
+        + vec3([0, 0, -1])
+        + quat([0.5, 0.5, 0.5, 0.5])
+        + array("f", [0.25, 1])
+        + array("f", [-1, 0.5])
+        + array("f", [1, 2, 3]),
+        {
+            "kind": 3,
+            "body": NOTHING,
+            "name": "left hand",
+            "point": [0.5, 1.0, 2.0],
+            "origin": [0.0, 1.5, 4.0],
+            "direction": [0.0, 0.0, -1.0],
+            "rotation": [0.5, 0.5, 0.5, 0.5],
+            "buttons": [0.25, 1.0],
+            "axes": [-1.0, 0.5],
+            "joints": [1.0, 2.0, 3.0],
         },
     ),
     ("key", "key", b"\x0b" + text("ArrowUp") + b"\x01", {"key": "ArrowUp", "down": True}),
@@ -217,8 +254,8 @@ SERVER: list[Vector] = [
     (
         "effect",
         "effect",
-        b"\x46" + text("break") + vec3([0.0, 1.5, -0.5]),
-        {"kind": "break", "position": [0.0, 1.5, -0.5]},
+        b"\x46" + text("break") + vec3([0.0, 1.5, -0.5]) + pack("<f", 0.5),
+        {"kind": "break", "position": [0.0, 1.5, -0.5], "volume": 0.5},
     ),
     (
         "pong",
@@ -298,8 +335,8 @@ SERVER: list[Vector] = [
     (
         "listens",
         "listens",
-        b"\x4e\x01\x00" + pack("<I", 2) + text("k") + text(" "),
-        {"clicks": True, "hovers": False, "keys": ["k", " "]},
+        b"\x4e\x01\x00\x01" + pack("<I", 2) + text("k") + text(" "),
+        {"clicks": True, "hovers": False, "moves": True, "keys": ["k", " "]},
     ),
     ("ask_picture", "ask_picture", b"\x4f" + pack("<I", 7), {"request": 7}),
     (
@@ -550,6 +587,16 @@ ENTITIES: list[tuple[str, bytes, dict[str, Any]]] = [
             "angle": 0.25,
             "shadow": True,
         },
+    ),
+    (
+        "sound",
+        text("0a1b") + pack("<I", 3) + b"Ogg" + pack("<f", 0.5),
+        {"name": "0a1b", "file": [0x4F, 0x67, 0x67], "reach": 0.5},
+    ),
+    (
+        "custom",
+        text("flower") + anchor(A) + quat([0.5, 0.5, 0.5, 0.5]) + text('{"petals":7}'),
+        {"class_name": "flower", "at": A, "rotation": [0.5, 0.5, 0.5, 0.5], "values": '{"petals":7}'},
     ),
     ("frame", anchor(A) + quat([0.5, 0.5, 0.5, 0.5]), {"at": A, "rotation": [0.5, 0.5, 0.5, 0.5]}),
 ]

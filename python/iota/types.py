@@ -27,6 +27,7 @@ from iota._core import (
 from iota.profiling import ForceCost, ForceProfile
 from iota.solvers import Solution
 from iota.world import Client, RunSummary
+from iota.world.event import Hand
 
 __all__ = [
     "BondBatch",
@@ -39,6 +40,7 @@ __all__ = [
     "Energy",
     "ForceCost",
     "ForceProfile",
+    "Hand",
     "IslandReport",
     "JointCoordinate",
     "MassProperties",

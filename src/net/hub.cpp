@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <utility>
 #include <variant>
 
@@ -40,8 +41,15 @@ std::string fit_text(std::string_view text, std::size_t max_bytes) {
   return out.append(ellipsis);
 }
 
-bool is_near(const protocol::Vec3& place) {
-  return std::ranges::all_of(place, [](float x) { return std::abs(x) <= farthest; });
+/// Coordinates of one place or several.
+bool is_near(std::span<const float> places) {
+  return std::ranges::all_of(places, [](float x) { return std::abs(x) <= farthest; });
+}
+
+/// Of a grip or of a pointer: only the newest counts.
+bool is_move(const InputEvent& event) {
+  return event.kind == InputEvent::Kind::grab_move ||
+         (event.kind == InputEvent::Kind::pointer && event.pointer == protocol::PointerKind::move);
 }
 
 /// Whether the same client has already sent the same request since the script last read its input: at most one single
@@ -128,8 +136,8 @@ bool Hub::ask_picture(std::uint32_t client, std::uint32_t number) {
   });
 }
 
-bool Hub::effect(std::string_view kind, const Vec3f& position) {
-  return post([this, frame = make_frame(protocol::Effect{std::string(kind), position})] { broadcast(frame); });
+bool Hub::effect(std::string_view kind, const Vec3f& position, float volume) {
+  return post([this, frame = make_frame(protocol::Effect{std::string(kind), position, volume})] { broadcast(frame); });
 }
 
 bool Hub::pulse(std::uint32_t client, const protocol::Pulse& pulse) {
@@ -279,11 +287,11 @@ void Hub::push_input(InputEvent event) {
   const std::uint32_t client = event.client;
   {
     const std::lock_guard lock(in_mutex_);
-    if (event.kind == InputEvent::Kind::grab_move) {
-      // Only the newest place of a grip counts; moves of different grips may be reordered.
-      for (auto i = input_.rbegin(); i != input_.rend() && i->kind == InputEvent::Kind::grab_move; ++i) {
-        if (i->client != client || i->hold != event.hold) continue;
-        i->target = event.target;
+    if (is_move(event)) {
+      // Moves of different grips and pointers may be reordered.
+      for (auto i = input_.rbegin(); i != input_.rend() && is_move(*i); ++i) {
+        if (i->kind != event.kind || i->client != client || i->hold != event.hold || i->name != event.name) continue;
+        *i = std::move(event);
         return;
       }
     }
@@ -384,7 +392,9 @@ void Hub::handle(std::uint32_t client, const protocol::Change& message) {
 
 void Hub::handle(std::uint32_t client, const protocol::Pointer& message) {
   if (clients_.at(client).role == protocol::Role::viewer) return;
-  if (!is_near(message.point) || !is_near(message.origin)) return refuse_frame(client, "pointer: it is beyond 1e9 m");
+  if (!is_near(message.point) || !is_near(message.origin) || !is_near(message.joints))
+    return refuse_frame(client, "pointer: it is beyond 1e9 m");
+  if (message.joints.size() % 3 != 0) return refuse_frame(client, "pointer: a joint has three coordinates");
   InputEvent event{.kind = InputEvent::Kind::pointer, .client = client};
   event.pointer = message.kind;
   event.body = message.body;
@@ -392,6 +402,10 @@ void Hub::handle(std::uint32_t client, const protocol::Pointer& message) {
   event.target = message.point;
   event.origin = message.origin;
   event.direction = message.direction;
+  event.rotation = message.rotation;
+  event.buttons = message.buttons;
+  event.axes = message.axes;
+  event.joints = message.joints;
   push_input(std::move(event));
 }
 
@@ -419,8 +433,7 @@ void Hub::handle(std::uint32_t client, const protocol::Picture& message) {
 
 void Hub::handle(std::uint32_t client, const protocol::Presence& message) {
   const protocol::Stance& stance = message.stance;
-  const bool are_hands_near = std::ranges::all_of(stance.hands, [](float x) { return std::abs(x) <= farthest; });
-  if (!is_near(stance.head) || !are_hands_near) return refuse_frame(client, "presence: it is beyond 1e9 m");
+  if (!is_near(stance.head) || !is_near(stance.hands)) return refuse_frame(client, "presence: it is beyond 1e9 m");
   if (stance.hands.size() % 3 != 0) return refuse_frame(client, "presence: a hand has three coordinates");
   clients_.at(client).stance = stance;
   tell_people();

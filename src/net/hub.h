@@ -67,7 +67,7 @@ class Hub {
   /// Removes the kept notices with this title, or all for an empty one.
   [[nodiscard]] bool forget_notice(std::string_view title);
   [[nodiscard]] bool ask_picture(std::uint32_t client, std::uint32_t number);
-  [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position);
+  [[nodiscard]] bool effect(std::string_view kind, const Vec3f& position, float volume = 1);
   [[nodiscard]] bool pulse(std::uint32_t client, const protocol::Pulse& pulse);
   std::vector<InputEvent> take_input();
 

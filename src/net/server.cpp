@@ -313,7 +313,9 @@ void Room::notice(std::uint32_t client, std::uint8_t level, std::string_view tit
 
 void Room::forget_notice(std::string_view title) { deliver_if(hub_->forget_notice(title)); }
 
-void Room::effect(std::string_view kind, const Vec3f& position) { deliver_if(hub_->effect(kind, position)); }
+void Room::effect(std::string_view kind, const Vec3f& position, float volume) {
+  deliver_if(hub_->effect(kind, position, volume));
+}
 
 void Room::pulse(std::uint32_t client, const protocol::Pulse& pulse) { deliver_if(hub_->pulse(client, pulse)); }
 

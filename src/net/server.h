@@ -54,15 +54,17 @@ struct InputEvent {
     profile
   };
   Kind kind = Kind::join;
-  std::uint32_t client = 0;          ///< from 1, never used twice in a world
-  std::uint32_t hold = 0;            ///< grab_...: the client's own number for this grip
-  protocol::Id body;                 ///< of an entity that may no longer exist; null: none. change: of the widget
-  std::vector<protocol::Id> others;  ///< action: bodies selected together with that one
-  Vec3f local_point{};               ///< grab_start: body frame
-  Vec3f target{};                    ///< grab_start, grab_move: world frame; pointer: where it hit the body
-  Vec3f origin{}, direction{};       ///< pointer: its ray, world frame
-  std::string name;                  ///< of the client (join), action, pointer or key; change: the text of a text field
-  std::vector<std::uint8_t> data;    ///< picture: a part of it
+  std::uint32_t client = 0;             ///< from 1, never used twice in a world
+  std::uint32_t hold = 0;               ///< grab_...: the client's own number for this grip
+  protocol::Id body;                    ///< of an entity that may no longer exist; null: none. change: of the widget
+  std::vector<protocol::Id> others;     ///< action: bodies selected together with that one
+  Vec3f local_point{};                  ///< grab_start: body frame
+  Vec3f target{};                       ///< grab_start, grab_move: world frame; pointer: where it hit the body, or is
+  Vec3f origin{}, direction{};          ///< pointer: its ray, world frame
+  protocol::Quat rotation{0, 0, 0, 1};  ///< pointer: of a hand or controller, world frame
+  std::vector<float> buttons, axes, joints;  ///< pointer: as in its message
+  std::string name;                ///< of the client (join), action, pointer or key; change: the text of a text field
+  std::vector<std::uint8_t> data;  ///< picture: a part of it
   protocol::ControlCommand command{};
   protocol::PointerKind pointer{};
   double value = 0;          ///< control: speed in times real time; change: of the widget; profile: 1, or 0 to end it
@@ -111,7 +113,7 @@ class Room {
   void forget_notice(std::string_view title);
   /// Flash, sound and haptic pulse: "break", "join" or "grab" at a place in the world. Throws std::invalid_argument
   /// for a place that is not finite, std::length_error for a kind above 32 bytes.
-  void effect(std::string_view kind, const Vec3f& position);
+  void effect(std::string_view kind, const Vec3f& position, float volume = 1);
   /// A haptic pulse in the hands of one user. Throws std::invalid_argument for numbers that are not finite,
   /// std::length_error for a hand above 32 bytes.
   void pulse(std::uint32_t client, const protocol::Pulse& pulse);

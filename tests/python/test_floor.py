@@ -138,3 +138,16 @@ def test_emitted_sparks_pass_and_the_rest_is_held() -> None:
     run(iota.World(system, ground=0.0), 2)
     assert point.position.y == pytest.approx(0, abs=0.1)
     assert system.positions[:, 1].min() < -0.5
+
+
+@pytest.mark.parametrize("size", [0.02, 0.3, 3.0])
+def test_a_fall_on_the_ground_is_heard_once_where_it_is_and_rest_is_silent(size: float) -> None:
+    world, body = dropped(iota.Sphere(size), 5 * size)
+    still = world.system.body(shape=iota.Box((size, size, size)), density=1000, position=(9 * size, 0.5 * size, 0))
+    heard: list[tuple[str, iota.Vec3, float]] = []
+    world._state.things.effect = lambda kind, place, volume: heard.append((kind, place, volume))
+    run(world, 2 * math.sqrt(8 * size / 9.81))
+    assert [kind for kind, *_ in heard] == ["impact"]
+    place = heard[0][1]
+    assert abs(place - iota.Vec3(body.center_of_mass.x, 0, body.center_of_mass.z)) < 0.01 * size
+    assert 0.3 < heard[0][2] <= 1 and still.alive

@@ -370,3 +370,64 @@ def test_forces_are_shown_as_they_are(chain: list[iota.Body], run_world: Runner)
         page.wait_for(lambda: len(page.entities["arrow"]) == 1 + 2 * 4)
         world.call(forces.destroy)
         page.wait_for(lambda: not page.entities["arrow"])
+
+
+def test_articulates_have_colors_of_their_own_also_after_a_break(chain: list[iota.Body], run_world: Runner) -> None:
+    world = iota.World(chain[0].system)
+    shown = world.show_articulates()
+
+    def colors(page: PageClient) -> dict[int, int]:
+        return {
+            slot: paint["colors"][index if len(paint["colors"]) > 1 else 0]
+            for paint in page.entities["paint"].values()
+            for index, slot in enumerate(paint["bodies"])
+        }
+
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: len(colors(page)) == 6)
+        assert len(set(colors(page).values())) == 1
+        world.call(lambda: chain[2].particles[1].separate(chain[3].particles[0]))
+        page.wait_for(lambda: len(set(colors(page).values())) == 2)
+        for part in (chain[:3], chain[3:]):
+            assert len({colors(page)[link.slot] for link in part}) == 1
+        world.call(shown.destroy)
+        page.wait_for(lambda: not page.entities["paint"])
+
+
+def test_what_is_carried_follows_the_hand_exactly_with_what_hangs_on_it_and_is_thrown(run_world: Runner) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    links = iota.builder.chain(3, 0.6, top=(0, 2, 0), nailed=False).realize(system).bodies
+    other = system.body(shape=iota.Sphere(0.1), mass=1.0, position=(3, 2, 0))
+    world = iota.World(system, ground=0.0)
+    carry = world.carry(links[0])
+    start = links[0].center_of_mass
+    with PageClient(run_world(world)) as page:
+        grip = (start.x, start.y + 0.05, start.z)
+        page.send("grab_start", hold=1, body=page.body(links[0].slot), local_point=(0.05, 0, 0), target=grip)
+        page.wait_for(lambda: world.call(lambda: links[0].kind == "scripted"))
+        page.send("grab_move", hold=1, target=(grip[0] + 0.5, grip[1] + 1.0, grip[2]))
+        moved = start + iota.Vec3(0.5, 1.0, 0)
+        page.wait_for(lambda: world.call(lambda: abs(links[0].center_of_mass - moved) < 1e-6))
+        assert world.call(lambda: abs(links[2].center_of_mass - links[0].center_of_mass)) < 0.45, (
+            "the others hang on it"
+        )
+        # Thrown: the hand goes on while it lets go.
+        for step in range(1, 60):
+            page.send("grab_move", hold=1, target=(grip[0] + 0.5 + 0.02 * step, grip[1] + 1.0, grip[2]))
+            time.sleep(0.005)
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: world.call(lambda: links[0].kind == "dynamic"))
+        assert world.call(lambda: sum(link.velocity.x for link in links)) > 0.3
+        # Others are still pulled by a spring; a reset takes all out of the hand.
+        page.send("grab_start", hold=2, body=page.body(other.slot), local_point=(0, 0, 0), target=(3, 2, 0))
+        page.wait_for(lambda: world.call(lambda: world.held() == other))
+        assert world.call(lambda: other.kind) == "dynamic"
+        page.send("grab_start", hold=3, body=page.body(links[0].slot), local_point=(0, 0, 0), target=grip)
+        page.wait_for(lambda: world.call(lambda: links[0].kind == "scripted"))
+        world.call(world.reset)
+        page.wait_for(lambda: world.call(lambda: not carry._held))
+        assert world.call(lambda: links[0].kind) == "dynamic"
+        page.send("grab_start", hold=4, body=page.body(links[0].slot), local_point=(0, 0, 0), target=grip)
+        page.wait_for(lambda: world.call(lambda: links[0].kind == "scripted"))
+        world.call(carry.destroy)
+        assert world.call(lambda: links[0].kind) == "dynamic"

@@ -273,7 +273,7 @@ def test_a_plot_samples_by_itself_and_begins_anew_after_reset(run_world: Runner)
 
 
 def point(page: PageClient, kind: PointerKind, body: tuple[int, int] = NOTHING) -> None:
-    places = {"point": (1, 2, 3), "origin": (0, 1, 5), "direction": (0, 0, -1)}
+    places = {"point": (1, 2, 3), "origin": (0, 1, 5), "direction": (0, 0, -1), "rotation": (0, 0, 0, 1)}
     page.send("pointer", kind=kind, body=body, name="mouse", **places)
 
 
@@ -288,7 +288,12 @@ def test_clicks_and_hovers_reach_who_asked_for_that_body(rod: iota.Body, run_wor
     world.on_click([other])(lambda: heard.append("other"))
     world.on_hover(rod)(lambda e: heard.append(e.phase))
     with PageClient(run_world(world)) as page:
-        assert page.wait_for(lambda: page.last.get("listens")) == {"clicks": True, "hovers": True, "keys": []}
+        assert page.wait_for(lambda: page.last.get("listens")) == {
+            "clicks": True,
+            "hovers": True,
+            "moves": False,
+            "keys": [],
+        }
         point(page, PointerKind.CLICK, page.body(rod.slot))
         point(page, PointerKind.CLICK)
         point(page, PointerKind.HOVER, page.body(rod.slot))
@@ -325,6 +330,86 @@ def test_a_drag_may_be_the_scripts_own(rod: iota.Body, run_world: Runner) -> Non
             break
         time.sleep(0.02)
     assert heard[7:] == [("end", None), "release"], "a page that leaves lets go"
+
+
+def test_a_drag_ends_with_a_reason_when_the_body_is_taken_out_of_the_hand(
+    system: iota.System, run_world: Runner
+) -> None:
+    system.gravity = (0, 0, 0)
+    first, second, third = (system.body().particle((x, 0, 0)).body for x in range(3))
+    world = iota.World(system, ground=None)
+    heard: list[Any] = []
+    world.on_drag(lambda e: heard.append((e.phase, e.target and e.target.slot, e.reason)))
+    world.on_release(first)(lambda e: heard.append(("released", e.target, e.reason)))
+    with PageClient(run_world(world)) as page:
+        for hold, body in enumerate((first, second, third)):
+            page.send("grab_start", hold=hold, body=page.body(body.slot), local_point=(0, 0, 0), target=(hold, 0, 0))
+        page.wait_for(lambda: len(heard) == 3)
+        del heard[:]
+        world.call(first.destroy)
+        page.wait_for(lambda: len(heard) == 2)
+        assert heard == [("end", None, "destroyed"), ("released", None, "destroyed")]
+        page.send("grab_end", hold=0)  # late
+        page.send("grab_end", hold=1)
+        page.wait_for(lambda: len(heard) == 3)
+        assert heard[2] == ("end", second.slot, "released")
+        world.call(world.reset)
+        page.wait_for(lambda: len(heard) == 4)
+        assert heard[3] == ("end", third.slot, "reset")
+        page.send("grab_start", hold=7, body=page.body(third.slot), local_point=(0, 0, 0), target=(2, 0, 0))
+        page.wait_for(lambda: len(heard) == 5)
+    for _ in range(500):
+        if len(heard) == 6:
+            break
+        time.sleep(0.02)
+    assert heard[5] == ("end", third.slot, "left")
+
+
+def test_a_pointer_is_seen_by_the_script_and_a_particle_that_bonds_pull_at(run_world: Runner) -> None:
+    system = iota.System(gravity=(0, 0, 0))
+    finger = system.body().particle((0, 1, 0))
+    finger.body.kind = "scripted"
+    ball = system.body().particle((0.5, 1, 0), 0.1)
+    system.bond(finger, ball, "spring", stiffness=20.0, length=0.0, damping=1.0)
+    world = iota.World(system, ground=None)
+    heard: list[iota.Event] = []
+
+    @world.on_pointer
+    def follow(event: iota.Event) -> None:
+        heard.append(event)
+        if event.pointer == "right hand":
+            finger.position = event.point
+
+    joints = [float(number) for number in range(75)]
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: page.last.get("listens", {}).get("moves"))
+        common = {"kind": PointerKind.MOVE, "body": NOTHING, "origin": (0, 2, 1), "direction": (0, 0, -1)}
+        page.send(
+            "pointer",
+            name="right hand",
+            point=(3, 1, 0),
+            rotation=(1, 0, 0, 0),
+            buttons=[0.75],
+            joints=joints,
+            **common,
+        )
+        page.send(
+            "pointer", name="left", point=(1, 1, 1), rotation=(0, 0, 0, 1), buttons=[0, 1], axes=[0.5, -0.25], **common
+        )
+        page.wait_for(lambda: len(heard) == 2)
+        hand, controller = heard
+        assert (hand.client, hand.pointer, hand.target, tuple(hand.point)) == (page.id, "right hand", None, (3, 1, 0))
+        assert hand.hand is not None and controller.hand is not None
+        assert (hand.hand.trigger, hand.hand.grip, hand.hand.stick, hand.hand.rotation) == (
+            0.75,
+            0,
+            (0, 0),
+            (1, 0, 0, 0),
+        )
+        assert hand.hand.joints.shape == (25, 3) and hand.hand.joints[8].tolist() == [24, 25, 26]
+        assert (controller.hand.grip, controller.hand.stick, controller.hand.joints.shape) == (1, (0.5, 0.25), (0, 3))
+        assert tuple(controller.origin) == (0, 2, 1)
+        page.wait_for(lambda: world.call(lambda: abs(ball.position - iota.Vec3(3, 1, 0))) < 0.5)
 
 
 def test_keys_joins_and_frames_are_told_until_forgotten(run_world: Runner) -> None:
@@ -378,7 +463,7 @@ def test_effects_of_the_script_reach_all_pages(run_world: Runner) -> None:
         for page in (one, two):
             (effect,) = page.wait_for(lambda page=page: page.effects)
             assert effect["kind"] == "break" and effect["position"] == pytest.approx((1, 2, 3))
-    with pytest.raises(ValueError, match="kind must be one of 'break', 'join', 'grab', not 'boom'"):
+    with pytest.raises(ValueError, match="kind must be one of 'break', 'join', 'grab', 'impact', not 'boom'"):
         world.effect("boom", (0, 0, 0))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="finite"):
         world.effect("join", (0, float("nan"), 0))
@@ -541,3 +626,56 @@ def test_looks_of_all_shapes_enclose_their_volume() -> None:
     for look, wanted in volume.items():
         body = iota.System().body(shape=look.shape, density=1.0)
         assert body.mass == pytest.approx(wanted, rel=0.01), look
+
+
+ON = ("particle", "body", "bond", "frame", "place in a frame", "nothing")
+DRAWINGS: dict[str, tuple[Callable[[iota.World, Any], Any], Callable[[dict[str, Any]], Any]]] = {
+    "label": (lambda w, at: w.label("text", at=at), lambda e: e["a"]),
+    "line": (lambda w, at: w.line(at, (9, 9, 9)), lambda e: {"body": e["bodies"][0] if e["bodies"] else NO_BODY}),
+    "tube": (
+        lambda w, at: w.tube(at, (9, 9, 9), radius=0.1),
+        lambda e: {"body": e["bodies"][0] if e["bodies"] else NO_BODY},
+    ),
+    "arrow": (lambda w, at: w.arrow(at, vector=(1, 0, 0)), lambda e: e["a"]),
+    "axes": (lambda w, at: w.axes(at), lambda e: e["at"]),
+    "trace": (lambda w, at: w.trace(at), lambda e: e["at"]),
+    "point_cloud": (lambda w, at: w.points([(0, 0, 0)], at=at), lambda e: e["at"]),
+    "marker": (lambda w, at: w.shape(looks.sphere(0.1), on=at), lambda e: e),
+    "shape_set": (lambda w, at: w.shapes(looks.sphere(0.1), [(0, 0, 0)], at=at), lambda e: e["at"]),
+    "strut": (lambda w, at: w.strut(at, (9, 9, 9), looks.cylinder(0.1)), lambda e: e["a"]),
+    "surface": (lambda w, at: w.surface(np.eye(3), [(0, 1, 2)], at=at), lambda e: e["at"]),
+    "light": (lambda w, at: w.light(at=at or (0, 0, 0)), lambda e: e["at"]),
+    "frame": (lambda w, at: w.frame(at), lambda e: e["at"]),
+    "custom": (lambda w, at: w.custom("own", at=at), lambda e: e["at"]),
+    "viewpoint": (lambda w, at: w.viewpoint("here", at or (0, 0, 0), (9, 9, 9)), lambda e: e["eye"]),
+}
+
+
+@pytest.mark.parametrize("kind", DRAWINGS)
+def test_every_drawing_is_on_a_particle_a_body_a_bond_a_frame_or_nothing(
+    kind: str, rod: iota.Body, run_world: Runner
+) -> None:
+    system = rod.system
+    other = system.body().particle((0, 3, 0))
+    other.nail()
+    bond = system.bond(rod.particles[1], other, "spring", stiffness=1.0, length=1.0)
+    world = iota.World(system)
+    frame = world.frame((5, 5, 5))
+    places = {
+        "particle": rod.particles[1], "body": rod, "bond": bond, "frame": frame, "place in a frame": frame.point((1, 0, 0)), "nothing": None,
+    }  # fmt: skip
+    make, anchor_of = DRAWINGS[kind]
+    things = {
+        on: make(world, (0, 0, 0) if at is None and kind in ("line", "tube", "strut", "arrow") else at)
+        for on, at in places.items()
+    }
+    slots = {on: world._state.things.slot_of(thing) for on, thing in things.items()}
+    with PageClient(run_world(world)) as page:
+        page.wait_for(lambda: set(slots.values()) <= set(page.entities[kind]))
+        bodies = {on: anchor_of(page.entities[kind][slot])["body"] for on, slot in slots.items()}
+        expected = dict.fromkeys(ON[:3], rod.slot) | dict.fromkeys(ON[3:5], FIRST_FRAME) | {"nothing": NO_BODY}
+        assert bodies == expected
+        # What is on something ends with it.
+        world.call(rod.destroy)
+        page.wait_for(lambda: not {slots[on] for on in ON[:3]} & set(page.entities[kind]))
+        assert {slots[on] for on in ON[3:]} <= set(page.entities[kind])

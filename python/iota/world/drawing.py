@@ -11,7 +11,9 @@ from typing import Any, Literal
 
 from iota.looks import Look, material_of
 from iota.simulator import SimulatedBody
+from iota.sounds import sound_file
 from iota.textures import texture_of
+from iota.world.custom import Custom, Sound
 from iota.world.shown import (
     Arrow,
     Axes,
@@ -52,8 +54,8 @@ def _triangles_of(surface: Any) -> tuple[Any, Any]:
 
 
 class Drawing:
-    """Labels, lines, tubes, arrows, axes, traces, points, shapes, struts, surfaces, skins, lights, colors of bodies, frames; buttons, sliders,
-    check boxes, choices, texts and plots.
+    """Labels, lines, tubes, arrows, axes, traces, points, shapes, struts, surfaces, skins, lights, colors of bodies, frames, objects of own classes,
+    sounds; buttons, sliders, check boxes, choices, texts and plots.
 
     A place is a particle, a body, a bond, a frame or a point of the world (m). A thing on one of these moves with it,
     without cost, stays on it when bodies are cut and joined, and ends with it. `handle.destroy()` removes a thing from
@@ -306,6 +308,35 @@ class Drawing:
             reach=reach,
             angle=angle,
         )
+
+    def custom(
+        self,
+        class_name: str,
+        at: Place = None,
+        rotation: Sequence[float] = (0, 0, 0, 1),
+        values: Mapping[str, Any] | None = None,
+    ) -> Custom:
+        """An object of a class of your own: a module of `World.client_module` defines how it is drawn, its bounds, what a ray or a
+        hand meets, and what happens when it is selected; see web/README.md. On a body it stands for it: a hit holds
+        and selects the body. rotation: quaternion x y z w. values: the object's data.
+
+        world.client_module("flower.js")  # has iota.define("flower", {...})
+        flower = world.custom("flower", at=stem, values={"petals": 7})
+        flower.values = {"petals": 8}
+        """
+        return Custom(self._state.things, class_name=class_name, at=at, rotation=rotation, values=values or {})
+
+    # --- sounds ---------------------------------------------------------------------------------------------------
+
+    def sound(self, source: Any, rate: float = 44_100, reach: float = 0.0) -> Sound:
+        """A sound of your own: a WAV, MP3, Ogg or FLAC file of at most 1 MiB and a minute, or an array of samples from -1 to 1,
+        (n,) or (n, 2), `rate` of them a second. reach: distance up to which it is not fainter, m; 0: half the diagonal of
+        the scene. Raises ValueError for a file that cannot be used.
+
+        bell = world.sound("bell.ogg")
+        world.on_contact(gong)(lambda event: bell.play(event.contact.position, volume=0.5))
+        """
+        return Sound(self._state.things, sound_file(source, rate), reach=reach)
 
     # --- controls for users -----------------------------------------------------------------------------------
 

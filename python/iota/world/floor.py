@@ -51,6 +51,14 @@ class Carrier:
     is_joined: bool  # other bodies are hinged to its body
 
 
+@dataclass(frozen=True)
+class Impact:
+    """A body that fell on the floor. position: m. speed: m/s."""
+
+    position: Vec3
+    speed: float
+
+
 class Touches:
     """All points, as arrays with a row for each, and what is remembered of each."""
 
@@ -71,15 +79,18 @@ class Touches:
         self.is_joined = np.array([each.is_joined for each in carriers], bool)[of]
         self.load = np.zeros(len(of))  # down, besides the weight of the body, N
         self.was_above = np.zeros(len(of), bool)
+        self.is_touching = np.ones(len(of), bool)  # nothing that begins on the floor has fallen on it
         self.is_new = True
         known = {} if before is None else {key: index for index, key in enumerate(before.keys)}
         for index, key in enumerate(self.keys):
             if before is not None and (old := known.get(key)) is not None:
                 self.load[index], self.was_above[index] = before.load[old], before.was_above[old]
+                self.is_touching[index] = before.is_touching[old]
 
     def leave(self) -> None:
         """Resets the state: all points are above the floor."""
         self.load[:] = 0
+        self.is_touching[:] = False
         self.was_above[:] = True
 
 
@@ -118,6 +129,7 @@ class Floor:
         self._slots: Indices = np.empty((0, 4), np.intp)  # of the particles in `rows`
         self._particle_count = 0
         self._reach = 0.0  # largest distance of a point from the particles of its body, m
+        self.impact: Impact | None = None  # the hardest of the last step
 
     def forget(self) -> None:
         """Call it after the system was restored."""
@@ -126,6 +138,7 @@ class Floor:
 
     def push(self, dt: float) -> None:
         """Adds the floor's forces to the next step of dt s."""
+        self.impact = None
         gravity = -self._system.gravity.y
         positions = self._system.positions
         if not (gravity > 0 and len(positions)):
@@ -159,6 +172,8 @@ class Floor:
         is_near = touches.was_above & ((heights < 0) | (heights + speeds * dt < 0))
         touches.was_above |= heights >= 0
         touches.load[~is_near] = 0
+        self._find_impact(touches, positions, np.where(is_near & ~touches.is_touching, -speeds, 0), gravity, dt)
+        touches.is_touching[:] = is_near
         near = np.flatnonzero(is_near)
         if not near.size:
             return
@@ -207,6 +222,14 @@ class Floor:
         pushes = np.clip(pushes, -MOST_FORCE, MOST_FORCE)
         for row in np.unique(rows):
             self._particles[row].apply_force(Vec3(*pushes[row]))
+
+    def _find_impact(self, touches: Touches, positions: Array, speeds: Array, gravity: float, dt: float) -> None:
+        """speeds: downwards, of points that come to the floor in this step, others 0, m/s."""
+        hardest = int(speeds.argmax())
+        # What merely settles in a step is no impact.
+        if speeds[hardest] > 4 * gravity * dt:
+            place = touches.weights[hardest] @ positions[touches.rows[hardest]]
+            self.impact = Impact(Vec3(float(place[0]), self.height, float(place[2])), float(speeds[hardest]))
 
     # --- touch points -------------------------------------------------------------------------------------
 

@@ -7,13 +7,15 @@ import queue
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from iota._core import InputEvent, System
+import numpy as np
+
+from iota._core import InputEvent, System, Vec3
 from iota._protocol import ControlCommand, PointerKind
 from iota.world.actions import Action
 from iota.world.callbacks import Guard, one_line
 from iota.world.clients import alive
 from iota.world.clock import MAX_SPEED
-from iota.world.event import Event
+from iota.world.event import Event, Hand
 from iota.world.listeners import Drag, Listener
 from iota.world.state import State
 from iota.world.widgets import Widget
@@ -60,7 +62,7 @@ class Inputs:
                 self._point(event, body)
             elif event.kind == "key":
                 for listener in self._state.listeners.of_key(event.name, event.is_final):
-                    self._tell(listener, event, key=event.name)
+                    self._tell(listener, event.client, key=event.name)
             else:
                 self._take_hands(event, body)
 
@@ -75,15 +77,16 @@ class Inputs:
     def frame(self) -> None:
         """Calls the functions for each frame."""
         state = self._state
+        self._end_gone()
         for listener in state.listeners.of("frame"):
             arguments = (Event(state.system, "frame", notices=state.notices),) if listener.hook.takes_event else ()
             if not self._guard.call(f"on_frame ({listener.hook.name})", listener.hook.function, *arguments):
                 state.listeners.remove(listener.hook.function)  # avoids an error in each frame
 
-    def _tell(self, listener: Listener, event: InputEvent, body: Any = None, **more: Any) -> None:
+    def _tell(self, listener: Listener, client: int, body: Any = None, **more: Any) -> None:
         """Calls one of the script's functions."""
         state, hook = self._state, listener.hook
-        given = Event(state.system, listener.kind, event.client, body, notices=state.notices, **more)
+        given = Event(state.system, listener.kind, client, body, notices=state.notices, **more)
         self._guard.call(f"on_{listener.kind} ({hook.name})", hook.function, *((given,) if hook.takes_event else ()))
 
     def _change(self, event: InputEvent) -> None:
@@ -97,12 +100,21 @@ class Inputs:
         widget.take(event.value, event.name, given, self._guard)
 
     def _point(self, event: InputEvent, body: Any) -> None:
+        if event.pointer == PointerKind.MOVE:
+            return self._move(event)
         kind = "click" if event.pointer == PointerKind.CLICK else "hover"
         phase = {PointerKind.HOVER: "start", PointerKind.HOVER_END: "end"}.get(PointerKind(event.pointer), "")
         point = None if body is None else event.target
         ray = {"origin": event.origin, "direction": event.direction}
         for listener in self._state.listeners.of(kind, body):
-            self._tell(listener, event, body, point=point, pointer=event.name, phase=phase, **ray)
+            self._tell(listener, event.client, body, point=point, pointer=event.name, phase=phase, **ray)
+
+    def _move(self, event: InputEvent) -> None:
+        joints = np.array(event.joints).reshape(-1, 3)
+        hand = Hand(event.rotation, tuple(event.buttons), tuple(event.axes), joints)
+        ray = {"origin": event.origin, "direction": event.direction}
+        for listener in self._state.listeners.of("pointer"):
+            self._tell(listener, event.client, point=event.target, pointer=event.name, hand=hand, **ray)
 
     def _take_hands(self, event: InputEvent, body: Any) -> None:
         """Hands of users, joins and leaves. The script's listeners are called; they may replace the grip of a hand."""
@@ -113,39 +125,48 @@ class Inputs:
             listeners.drags[event.client, event.hold] = drag
             if not is_taken:
                 self._move_hands(event, body)
-            self._tell_of_hand("press", event, drag)
-            self._tell_drag("start", event, drag)
+            self._tell_of_hand("press", (event.client, event.hold), drag, event.target)
+            self._tell_drag("start", (event.client, event.hold), drag, event.target)
         elif kind in ("grab_move", "grab_end"):
             self._move_hands(event, body)
             found = listeners.drags.get((event.client, event.hold))
             if found is not None and kind == "grab_move":
-                self._tell_drag("update", event, found)
+                self._tell_drag("update", (event.client, event.hold), found, event.target)
             elif found is not None:
-                self._end(event, (event.client, event.hold))
+                self._end((event.client, event.hold), listeners.drags.pop((event.client, event.hold)), "released")
         else:
             if kind == "leave":
                 for hand in [hand for hand in listeners.drags if hand[0] == event.client]:
-                    self._end(event, hand)
+                    self._end(hand, listeners.drags.pop(hand), "left")
             self._move_hands(event, body)
             if kind in ("join", "leave"):
                 for listener in listeners.of(kind):
-                    self._tell(listener, event)
+                    self._tell(listener, event.client)
 
-    def _end(self, event: InputEvent, hand: tuple[int, int]) -> None:
-        drag = self._state.listeners.drags.pop(hand)
-        self._tell_drag("end", event, drag)
-        self._tell_of_hand("release", event, drag)
+    def _end_gone(self) -> None:
+        """Ends the drags whose body was destroyed, and tells of all that did not end by their user."""
+        listeners = self._state.listeners
+        listeners.take_away("destroyed", [hand for hand, drag in listeners.drags.items() if alive(drag.body) is None])
+        taken, listeners.taken_away = listeners.taken_away, []
+        for hand, drag, reason in taken:
+            self._end(hand, drag, reason)
 
-    def _tell_of_hand(self, kind: str, event: InputEvent, drag: Drag) -> None:
+    def _end(self, hand: tuple[int, int], drag: Drag, reason: str) -> None:
+        self._tell_drag("end", hand, drag, None, reason)
+        self._tell_of_hand("release", hand, drag, None, reason)
+
+    def _tell_of_hand(self, kind: str, hand: tuple[int, int], drag: Drag, point: Vec3 | None, reason: str = "") -> None:
+        client, hold = hand
         body = alive(drag.body)
-        for listener in self._state.listeners.of(kind, body) if body is not None else ():
-            self._tell(listener, event, body, point=event.target if kind == "press" else None, hold=event.hold)
+        # A destroyed body is still that for which a function was registered.
+        for listener in self._state.listeners.of(kind, drag.body if body is None else body):
+            self._tell(listener, client, body, point=point, hold=hold, reason=reason)
 
-    def _tell_drag(self, phase: str, event: InputEvent, drag: Drag) -> None:
+    def _tell_drag(self, phase: str, hand: tuple[int, int], drag: Drag, point: Vec3 | None, reason: str = "") -> None:
+        client, hold = hand
         body = alive(drag.body)
-        point = None if phase == "end" else event.target
-        for listener in drag.listeners if body is not None else ():
-            self._tell(listener, event, body, point=point, phase=phase, hold=event.hold)
+        for listener in drag.listeners if body is not None or phase == "end" else ():
+            self._tell(listener, client, body, point=point, phase=phase, hold=hold, reason=reason)
 
     def _move_hands(self, event: InputEvent, body: Any) -> None:
         """If the system refuses a request of a page, only that page gets an error, not the script."""

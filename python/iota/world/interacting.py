@@ -23,6 +23,16 @@ REWIND, REWIND_EVERY, REWIND_LONGEST = 1.0, 0.5, 10.0  # s, simulated
 REWIND_BYTES = 64 << 20
 REWIND_SHARE = 0.01  # of the time: what copies of the world may take
 FREE, READY = "#2f9d92", "#f2a324"  # of a socket
+PARTS_COLORS = (
+    "#d0402b",
+    "#3f7fd0",
+    "#4c9a52",
+    "#f2a324",
+    "#8a4fb0",
+    "#2f9d92",
+    "#c0508e",
+    "#8a8f94",
+)  # of articulates
 
 
 class Interacting(Drawing, Listening):
@@ -83,6 +93,19 @@ class Interacting(Drawing, Listening):
         forces = world.show_forces()
         """
         return Forces(self, bodies, scale)
+
+    def show_articulates(self) -> Articulates:
+        """Colors bodies by the articulate that they are in: those that hinges connect have one color, another after a break or
+        a join. `articulates.destroy()` removes the colors."""
+        return Articulates(self)
+
+    def carry(self, bodies: Any = "anything") -> Carry:
+        """Lets users move bodies exactly, whatever hangs on them, instead of pulling at them by a spring: while held they are
+        scripted. A release throws them. bodies: one, several, or "anything". `carry.destroy()` ends it.
+
+        world.carry(chess_pieces)
+        """
+        return Carry(self, bodies)
 
 
 # --- parts --------------------------------------------------------------------------------------------------------------
@@ -318,7 +341,7 @@ class Socket:
         is_near = apart <= 2 * self.within and event.phase != "end"
         self._draw(plug if is_near and self.pull > 0 else None)
         self._show(None if event.phase == "end" else plug, READY if apart <= self.within else FREE)
-        if event.phase != "end" or apart > self.within:
+        if event.phase != "end" or event.reason == "reset" or apart > self.within:
             return
         with self._world.system.edit():
             self._world._joins.begin(self.place, plug, shortest=0.1)
@@ -363,6 +386,71 @@ class Forces:
                 colors = {"nail": "#d0402b", "hinge": "#3f7fd0"}
                 arrow = self._arrows[key] = self._world.arrow(key[0], color=colors[key[1]])
             arrow.vector = force * scale
+
+
+class Articulates:
+    """Colors of bodies by the articulate that they are in."""
+
+    def __init__(self, world: Interacting) -> None:
+        self._world = world
+        self._version = -1
+        self._paint = world.paint([], PARTS_COLORS[0])
+        self._follow = world.on_frame(self._write)
+        self._write()
+
+    def destroy(self) -> None:
+        """Removes them."""
+        self._world.forget(self._follow)
+        self._paint.destroy()
+
+    def _write(self) -> None:
+        system = self._world.system
+        if system.structure_version == self._version:
+            return
+        self._version = system.structure_version
+        parts = [[body for body in part if not body.is_spark] for part in system.articulates]
+        parts = [part for part in parts if part]
+        self._paint.destroy()
+        colors = [PARTS_COLORS[index % len(PARTS_COLORS)] for index, part in enumerate(parts) for _ in part]
+        self._paint = self._world.paint([body for part in parts for body in part], colors or PARTS_COLORS[0])
+
+
+class Carry:
+    """Bodies that follow hands exactly."""
+
+    def __init__(self, world: Interacting, bodies: Any) -> None:
+        self._world = world
+        # By client and hold: the body, its center relative to the hand, its kind before.
+        self._held: dict[tuple[int, int], tuple[Body, Vec3, Any]] = {}
+        self._drag = world.on_drag(bodies, grab=False)(self._dragged)
+
+    def destroy(self) -> None:
+        """Users pull at the bodies again; those in hands are let go."""
+        self._world.forget(self._drag)
+        for hand in list(self._held):
+            self._let_go(hand)
+
+    def _dragged(self, event: Event) -> None:
+        hand = (event.client, event.hold)
+        if event.phase == "start" and event.point is not None:
+            # A second hand on the same body only watches.
+            if all(alive(body) != event.body for body, *_ in self._held.values()):
+                self._held[hand] = (event.body, event.body.center_of_mass - event.point, event.body.kind)
+                event.body.kind = "scripted"
+        elif event.phase == "update" and event.point is not None and hand in self._held:
+            event.body.set_pose(event.point + self._held[hand][1])
+        elif event.phase == "end" and event.reason == "reset":
+            self._held.pop(hand, None)
+        elif event.phase == "end":
+            self._let_go(hand)
+
+    def _let_go(self, hand: tuple[int, int]) -> None:
+        if hand not in self._held:
+            return
+        body, _, kind = self._held.pop(hand)
+        now = alive(body)
+        if now is not None:
+            now.kind = "dynamic" if kind == "resting" else kind
 
 
 def _size(world: Interacting) -> float:

@@ -12,7 +12,7 @@ from iota._core import Body, Constraint, Particle
 from iota.simulator import SimulatedBody
 from iota.world.callbacks import Hook, twice
 
-KINDS = ("click", "press", "release", "drag", "hover", "key", "join", "leave", "frame", "contact", "break")
+KINDS = ("click", "press", "release", "drag", "hover", "pointer", "key", "join", "leave", "frame", "contact", "break")
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class Listener:
         return self.kind == other.kind and mine == theirs
 
     def hears(self, body: Any) -> bool:
-        if self.kind in ("join", "leave", "frame"):
+        if self.kind in ("join", "leave", "frame", "pointer"):
             return True
         if body is None:
             return self.bodies is not None and not self.bodies
@@ -87,6 +87,9 @@ class Listeners:
     def __init__(self) -> None:
         self._by_kind: dict[str, list[Listener]] = {kind: [] for kind in KINDS}
         self.drags: dict[tuple[int, int], Drag] = {}  # by client and hold
+        self.taken_away: list[
+            tuple[tuple[int, int], Drag, str]
+        ] = []  # with the reason; their functions wait to be told
         self.version = 0
 
     def add(self, listener: Listener) -> None:
@@ -103,6 +106,11 @@ class Listeners:
             self._by_kind[kind] = [each for each in listeners if each.hook.function != function]
         self.version += 1
         return sum(map(len, self._by_kind.values())) < before
+
+    def take_away(self, reason: str, hands: Iterable[tuple[int, int]] | None = None) -> None:
+        """Ends drags of these hands, or all, without their users."""
+        for hand in list(self.drags if hands is None else hands):
+            self.taken_away.append((hand, self.drags.pop(hand), reason))
 
     def of(self, kind: str, body: Any = None) -> Iterator[Listener]:
         """Those for a kind and a body; None: no hit, or an event without a body."""

@@ -62,17 +62,31 @@ class Listening:
         return self._listen("press", on)
 
     def on_release(self, on: Any = "anything") -> Any:
-        """Decorator: the hand releases it."""
+        """Decorator: the hand releases it, or it is taken out of the hand: event.reason says why."""
         return self._listen("release", on)
 
     def on_drag(self, on: Any = "anything", grab: bool = True) -> Any:
-        """Decorator: a hand grabs a body (event.phase "start"), moves ("update") and releases it ("end"); event.point
-        is the place of the hand, world, m. grab: the hand also pulls with its spring; False: only the function acts."""
+        """Decorator: a hand grabs a body (event.phase "start"), moves ("update") and releases it ("end"), or it is
+        taken out of the hand (see event.reason); event.point is the place of the hand, world, m. grab: the hand also pulls with its spring; False: only the function acts."""
         return self._listen("drag", on, takes_over=not grab)
 
     def on_hover(self, on: Any = "anything") -> Any:
         """Decorator: a pointer enters a body (event.phase "start") or leaves it ("end")."""
         return self._listen("hover", on)
+
+    def on_pointer(self, function: Callback) -> Callback:
+        """Decorator: a pointer of a user moved, or its buttons: the mouse, a finger, a controller, a bare hand, a gamepad
+        (event.pointer); at most once a frame for each. event.point is where it is, for a mouse on what it points at or beside the
+        middle of the scene; event.origin and event.direction its ray; event.hand has buttons, sticks and joints.
+
+        finger = system.body().particle((0, 1, 0))  # a pointer as a particle, which bonds can pull at
+        finger.body.kind = "scripted"
+
+        @world.on_pointer
+        def follow(event):
+            if event.pointer == "right": finger.position = event.point
+        """
+        return self._add("pointer")(function)
 
     def on_key(self, key: str, release: bool = False) -> Callable[[Callback], Callback]:
         """Decorator: a key is pressed, or released; the page then does not use this key. key: by its name in browsers:

@@ -29,6 +29,7 @@ class Publisher:
         self.lan_url = server.lan_url("" if is_alone else room.world)
         state.notices.show, state.notices.forget = room.notice, room.forget_notice
         state.clients.send_pulse = room.pulse
+        state.things.effect = room.effect
         state.scene.tell_anew()
         state.things.tell_anew()
         state.is_changed = True
@@ -60,6 +61,7 @@ class Publisher:
     def close(self) -> None:
         self._state.notices.show = self._state.notices.forget = None
         self._state.clients.send_pulse = None
+        self._state.things.effect = None
         self.room.close(self._state.system)
         if self._is_alone:
             self._server.close()
@@ -101,8 +103,8 @@ class Publisher:
             ground=state.ground,
         )
         listeners = state.listeners
-        clicks, hovers = listeners.has("click"), listeners.has("hover")
-        self._tell_if_new("set_listens", clicks=clicks, hovers=hovers, keys=list(listeners.keys))
+        clicks, hovers, moves = (listeners.has(kind) for kind in ("click", "hover", "pointer"))
+        self._tell_if_new("set_listens", clicks=clicks, hovers=hovers, moves=moves, keys=list(listeners.keys))
         self._tell_if_new("set_actions", actions=[action.describe() for action in state.actions])
         state.scene.tell(self.room, state.statics)
         for texture in state.scene.textures():

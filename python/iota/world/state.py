@@ -66,7 +66,7 @@ class State:
     def forget_holds(self) -> None:
         """Call it after the system was restored: ends all holds."""
         self.clients.forget()
-        self.listeners.drags.clear()
+        self.listeners.take_away("reset")
         self.is_changed = True
 
     def class_of(self, looks: Looks) -> str:

@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import math
 import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from iota._core import Broken, StepReport, StepTimes, System
 from iota.errors import ForceError
@@ -19,6 +22,7 @@ from iota.world.state import State
 from iota.world.step_costs import EVERY, parts_of
 from iota.world.summary import RunSummary, Tally
 
+IMPACTS_EVERY = 0.05  # s, simulated
 SWITCHED_OFF = "It is switched off until reset. Correct the script and run it again."
 
 
@@ -35,6 +39,7 @@ class Stepper:
         self._start: bytes | None = None
         self._structure = 0
         self._tally: Tally | None = None
+        self._impact_at = -math.inf  # s
 
     @property
     def has_begun(self) -> bool:
@@ -84,6 +89,7 @@ class Stepper:
         if self._floor is not None:
             with state.costs.of("floor"):
                 self._floor.push(dt)
+            self._tell_impact(self._floor)
         try:
             with state.costs.of("simulator"):
                 report = self._step_system(dt)
@@ -114,6 +120,17 @@ class Stepper:
         if is_shown:
             state.step_costs.take(times)
         return report
+
+    def _tell_impact(self, floor: Floor) -> None:
+        """The sound of what falls on the floor, as loud as it is fast; as many as ears tell apart."""
+        system, impact = self._state.system, floor.impact
+        if impact is None or not self._state.shows_edits or 0 <= system.time - self._impact_at < IMPACTS_EVERY:
+            return
+        self._impact_at = system.time
+        # A fall from half the size of the scene or higher is as loud as usual.
+        size = float(np.linalg.norm(np.ptp(system.positions, axis=0)))
+        usual = math.sqrt(-system.gravity.y * size)
+        self._state.things.play("impact", impact.position, impact.speed / max(usual, impact.speed))
 
     def _tell_what_happened(self) -> None:
         """Calls the script's functions for contacts and breaks."""

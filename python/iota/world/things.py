@@ -155,6 +155,7 @@ class Things:
         self._gone: list[tuple[str, int, int]] = []
         self._told: dict[Thing, bytes] = {}
         self._structure = -1
+        self.effect: Callable[[str, Vec3, float], object] | None = None  # while the world is served
 
     def __iter__(self) -> Iterator[Thing]:
         return iter(self._ids)
@@ -194,6 +195,11 @@ class Things:
     def find(self, kind: str, id: tuple[int, int]) -> Thing | None:
         """Finds a thing by its number on pages."""
         return next((thing for thing, known in self._ids.items() if known == id and thing.kind == kind), None)
+
+    def play(self, kind: str, at: Vec3, volume: float) -> None:
+        """An effect on all pages, see `World.effect`."""
+        if self.effect is not None:
+            self.effect(kind, at, volume)
 
     def tell_anew(self) -> None:
         """Forgets what was sent: the next room is empty."""
@@ -268,6 +274,14 @@ def place(value: Any) -> Place:
     if isinstance(value, Attachable):
         return value
     return vector((0, 0, 0) if value is None else value)
+
+
+def place_of(value: Any) -> Vec3:
+    """Where a particle, a body (its center of mass) or a place is now, m."""
+    found = getattr(value, "position", getattr(value, "center_of_mass", value))
+    if isinstance(value, Frame | FramePoint | Bond) or isinstance(found, str):
+        raise TypeError(f"must be a particle, a body or a place, not {type(value).__name__}")
+    return vector(found)
 
 
 def color(value: Any) -> int:

@@ -25,6 +25,7 @@ from iota.world.callbacks import Guard, Hook, add_once
 from iota.world.client_modules import add_module
 from iota.world.clients import Client
 from iota.world.clock import Clock
+from iota.world.custom import checked_volume
 from iota.world.floor import level_below
 from iota.world.frames import turn_from_x
 from iota.world.inputs import Inputs
@@ -44,7 +45,7 @@ from iota.world.widgets import Plot
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 Result = TypeVar("Result")
 
-EFFECTS = ("break", "join", "grab")
+EFFECTS = ("break", "join", "grab", "impact")
 HEADLESS_SECONDS = 10.0  # default
 
 
@@ -205,17 +206,17 @@ class World(Interacting, Asking):
         """Shows a small card on all pages, or on one client's. level: "info", "warning" or "error"."""
         self._state.notices.send(title, text, hint, level, client)
 
-    def effect(self, kind: Literal["break", "join", "grab"], position: Sequence[float]) -> None:
-        """A ring of light at a place (m), with the sound and the pulse in users' hands of a break, a join or a grab; on all
-        pages.
+    def effect(
+        self, kind: Literal["break", "join", "grab", "impact"], position: Sequence[float], volume: float = 1.0
+    ) -> None:
+        """The sound and the pulse in users' hands of a break, a join, a grab or an impact at a place (m), on all pages; with a
+        ring of light, but for an impact. volume: from 0 to 10. For sounds of your own see `sound`.
 
-            world.on_contact(door_hinge)(lambda event: world.effect("join", event.contact.position))
+            world.on_contact(door_hinge)(lambda event: world.effect("impact", event.contact.position))
         """
         if kind not in EFFECTS:
             raise ValueError(f"kind must be one of {', '.join(map(repr, EFFECTS))}, not {kind!r}")
-        place = vector(position)
-        if self._publisher is not None:
-            self._publisher.room.effect(kind, place)
+        self._state.things.play(kind, vector(position), checked_volume(volume))
 
     def client_module(self, file: str | Path) -> None:
         """Lets pages load a JavaScript module (.js or .mjs, at most 4 MiB), before the world is served. A relative path is

@@ -218,6 +218,37 @@ TEST_F(HubTest, keeps_the_newest_place_of_each_grip) {
   EXPECT_EQ(events[5].target[0], 9);
 }
 
+TEST_F(HubTest, keeps_the_newest_place_of_each_pointer_also_among_those_of_grips) {
+  Link link;
+  const std::uint32_t client = join(link);
+  receive(client, protocol::GrabStart{1, {7, 1}, {}, {}});
+  const auto move = [](const std::string& name, float x) {
+    return protocol::Pointer{
+        protocol::PointerKind::move, {}, name, {x, 0, 0}, {}, {0, 0, -1}, {0, 0, 0, 1}, {x}, {}, {}};
+  };
+  for (float x = 1; x <= 100; ++x) {
+    receive(client, move("left", x));
+    receive(client, protocol::GrabMove{1, {x, 0, 0}});
+    receive(client, move("right", -x));
+  }
+  const auto events = take_gestures();
+  ASSERT_EQ(events.size(), 4u) << "the start, one of the grip and of each pointer";
+  for (const InputEvent& event : events) {
+    if (event.kind == InputEvent::Kind::grab_move) EXPECT_EQ(event.target[0], 100);
+    if (event.kind != InputEvent::Kind::pointer) continue;
+    EXPECT_EQ(event.target[0], event.name == "left" ? 100 : -100);
+    EXPECT_EQ(event.buttons, std::vector<float>{event.target[0]});
+  }
+  protocol::Pointer wrong = move("left", 1);
+  wrong.joints = {1, 2};
+  receive(client, wrong);
+  wrong.joints = {1, 2, 2e9F};
+  receive(client, wrong);
+  EXPECT_TRUE(take_gestures().empty());
+  EXPECT_TRUE(link.dropped.empty());
+  EXPECT_NE(link.last_notice().find("beyond 1e9 m"), std::string::npos) << link.last_notice();
+}
+
 TEST_F(HubTest, refuses_grips_that_do_not_fit_and_the_client_stays) {
   Link link;
   const std::uint32_t client = join(link);

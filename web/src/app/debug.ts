@@ -6,6 +6,7 @@ import {
   MeshBasicMaterial, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
 import type { Page } from "../page/page.ts";
+import type { CustomClass } from "../scene/entities/custom.ts";
 import { takeFilmFrame } from "../page/picture.ts";
 
 const three = {
@@ -52,6 +53,8 @@ export interface IotaDebug {
   filmFrame(plots?: boolean): Promise<string> | string;
   /** The parts of the page, for the console and for modules of the script. */
   readonly page: Page;
+  /** Defines a class of objects that the script makes with `World.custom`; see README.md. */
+  define(name: string, made: CustomClass): void;
   /** What the page itself uses of three.js, so that a module of the script needs no copy of its own. */
   readonly three: typeof three;
 }
@@ -109,6 +112,7 @@ export function makeDebug(page: Page, canvas: HTMLCanvasElement): IotaDebug {
     },
     setLook: (look) => page.world.setLook(look),
     select: (body) => page.selection.select(body),
+    define: (name, made) => void import("../scene/entities/custom.ts").then(({ defineClass }) => defineClass(name, made)),
     filmFrame: (plots = false) => (plots ? takeFrameWithPlots(page) : takeFilmFrame(page)),
   };
 }

@@ -35,6 +35,11 @@ export class Pointer {
   readonly facing = new Float32Array([0, 0, -1]);
   /** Distance by which the held body is pushed away from the viewer, m; the pointer's owner adds to it (wheel, thumbstick). */
   depth = 0;
+  /** Of a hand or controller, for scripts: x y z w in the world; how far its buttons are pressed; its sticks; its joints in the world, m. */
+  readonly rotation: [number, number, number, number] = [0, 0, 0, 1];
+  buttons: ArrayLike<number> = [];
+  axes: ArrayLike<number> = [];
+  joints: ArrayLike<number> = [];
   /** A haptic pulse; strength 0..1. */
   pulse: (strength: number, milliseconds: number) => void = () => {};
 

@@ -32,8 +32,8 @@ export interface PageListener {
   /** The connection to the server; `reason` is a sentence for the user, may be empty. */
   link?(state: LinkState, reason: string): void;
   notice?(notice: PageNotice): void;
-  /** break, join or grab at a place (world, m). */
-  effect?(kind: string, position: Readonly<Vec3>): void;
+  /** break, join, grab, impact, or a sound of the script behind a #, at a place (world, m); volume: 1 is usual. */
+  effect?(kind: string, position: Readonly<Vec3>, volume: number): void;
   /** The script's: in the left or right hand, or with an empty name in both; strength from 0 to 1. */
   pulse?(hand: string, strength: number, seconds: number): void;
   hover?(pointer: Pointer, body: number): void;
@@ -72,11 +72,13 @@ export class Events implements Required<PageListener> {
   }
 
   /** Frequent breaks and joins are normal in some worlds: then they have no flash or sound. */
-  effect(kind: string, position: Readonly<Vec3>): void {
-    const now = performance.now();
-    while (this.effects_.length > 0 && now - this.effects_[0] > calmMs) this.effects_.shift();
-    if (this.effects_.push(now) > mostEffects) return;
-    for (const listener of this.listeners_) listener.effect?.(kind, position);
+  effect(kind: string, position: Readonly<Vec3>, volume = 1): void {
+    if (kind === "break" || kind === "join") {
+      const now = performance.now();
+      while (this.effects_.length > 0 && now - this.effects_[0] > calmMs) this.effects_.shift();
+      if (this.effects_.push(now) > mostEffects) return;
+    }
+    for (const listener of this.listeners_) listener.effect?.(kind, position, volume);
   }
 
   pulse(hand: string, strength: number, seconds: number): void {

@@ -221,6 +221,7 @@ export class Framing implements FramePart, PageListener {
     entities.body.addPoints(points, true, every);
     if (points.count === 0) entities.particleSet.addPoints(points);
     if (points.count === 0) entities.body.addPoints(points, false, every);
+    for (const view of Object.values<EntityView<never>>(entities)) view.addMoving?.(points);
     if (points.count === 0) this.addDrawn_(points);
     let bounds = points.bounds();
     if (bounds === null) return null;

@@ -43,7 +43,7 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
     warn: (title, text) => events.notice({ level: NoticeLevel.error, title, text, hint: "" }),
   });
   const flashes = new Flashes(viewer.camera);
-  const sound = new Sound();
+  const sound = new Sound(viewer, world.entities.sound, events);
   const navigation = new Navigation(viewer.camera);
   const session = new Session(socketUrl, request, world, viewer, events);
   const selection = new Selection(world, session, viewer, events);
@@ -65,7 +65,7 @@ export function makePage(canvas: HTMLCanvasElement, socketUrl: string, request: 
   const themes = new Themes(parts, highlights);
   viewer.add(themes, { draw: () => void viewer.camera.getWorldPosition(world.eye) });
   // Bodies are updated before the camera is placed.
-  viewer.add(new Reports(parts), selection, ...Object.values<EntityView<never>>(world.entities), framing, viewpoints, flatCamera(parts), highlights, flashes);
+  viewer.add(new Reports(parts), selection, ...Object.values<EntityView<never>>(world.entities), framing, viewpoints, flatCamera(parts), highlights, flashes, sound);
   return {
     ...parts,
     commands,
@@ -145,6 +145,7 @@ function flashesOf(flashes: Flashes, { world, viewer }: PageParts): PageListener
   const place = new Float32Array(3);
   return {
     effect: (kind, position) => {
+      if (kind !== "break" && kind !== "join" && kind !== "grab") return;
       const { size } = viewer;
       if (!pickPoint(bodies, position, 0.1 * size, hit)) return flashes.show(kind, position, size);
       const { body } = hit;

@@ -6,11 +6,14 @@ import { PointerKind, type Vec3 } from "../protocol/generated.ts";
 import type { PageListener } from "./events.ts";
 import { keepsKey } from "./focus.ts";
 import type { PageParts } from "./page_parts.ts";
+import type { PointerMoves } from "./pointer_moves.ts";
 import type { FramePart } from "./viewer.ts";
 
 /** A press that is shorter than this, and whose ray turns less, is a click. */
 const clickMs = 350;
 const clickTurn = 0.02;
+
+const noNumbers = new Float32Array(0);
 
 interface Press {
   readonly at: number;
@@ -20,12 +23,14 @@ interface Press {
 }
 
 export class Reports implements PageListener, FramePart {
-  private readonly parts_: Pick<PageParts, "world" | "session" | "gestures">;
+  private readonly parts_: Pick<PageParts, "world" | "session" | "gestures" | "viewer">;
   private readonly presses_ = new Map<Pointer, Press>();
   private readonly hovered_ = new Map<Pointer, number>();
   private readonly down_ = new Set<string>();
+  private moves_: PointerMoves | null = null;
+  private fetched_: Promise<void> | null = null;
 
-  constructor(parts: Pick<PageParts, "world" | "session" | "gestures" | "events">) {
+  constructor(parts: Pick<PageParts, "world" | "session" | "gestures" | "viewer" | "events">) {
     this.parts_ = parts;
     parts.events.add(this);
     // Before the page's own keys, since the script's have priority.
@@ -60,6 +65,7 @@ export class Reports implements PageListener, FramePart {
 
   /** A press on empty space has no grab whose end could be seen. */
   interact(): void {
+    if (this.parts_.world.listens.moves) this.tellMoves_();
     for (const [pointer, { grab }] of this.presses_) if (grab === null && !(pointer.active && pointer.pressed)) this.release_(pointer);
   }
 
@@ -79,6 +85,15 @@ export class Reports implements PageListener, FramePart {
     this.parts_.session.send({
       type: "pointer", kind, body: this.parts_.session.idOf(body), name: pointer.name.slice(0, 16),
       point: body >= 0 ? vec3(point ?? pointer.hit.point) : origin, origin, direction: vec3(pointer.direction),
+      rotation: [0, 0, 0, 1], buttons: noNumbers, axes: noNumbers, joints: noNumbers,
+    });
+  }
+
+  /** By code that is fetched for the first script that listens to it. */
+  private tellMoves_(): void {
+    if (this.moves_ !== null) return this.moves_.tell();
+    this.fetched_ ??= import("./pointer_moves.ts").then(({ PointerMoves }) => {
+      this.moves_ = new PointerMoves(this.parts_);
     });
   }
 

@@ -123,6 +123,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
 
   interact(): void {
     this.gestures.updateAll();
+    const { hovered, selected, held } = this;
+    Object.assign(this.world_.marks, { hovered, selected, held });
   }
 
   // --- PageListener

@@ -65,7 +65,7 @@ export class Session implements ConnectionListener {
     this.viewer_.invalidate();
     if (message.type === "notice") this.events_.notice(message);
     else if (message.type === "askPicture") void sendPicture(this.viewer_, message.request, (part) => this.send(part));
-    else if (message.type === "effect") this.events_.effect(message.kind, message.position);
+    else if (message.type === "effect") this.events_.effect(message.kind, message.position, message.volume);
     else if (message.type === "pulse") this.events_.pulse(message.hand, message.strength, message.seconds);
     else this.world_.take(message);
   }

@@ -60,8 +60,10 @@ export class World {
   readonly poses = new PoseBuffer();
   /** Place of the viewer, world, m; written by the page. */
   readonly eye = new Vector3();
+  /** Bodies that this page's user points at, has selected and holds, -1: none; written by the page. */
+  readonly marks = { hovered: -1, selected: -1, held: -1 };
   /** The events that the script listens to, besides holds and selections. */
-  listens: Pick<Listens, "clicks" | "hovers" | "keys"> = { clicks: false, hovers: false, keys: [] };
+  listens: Pick<Listens, "clicks" | "hovers" | "moves" | "keys"> = { clicks: false, hovers: false, moves: false, keys: [] };
   readonly entities: Entities;
 
   private readonly store_: EntityStore;
@@ -74,7 +76,7 @@ export class World {
     this.listener_ = listener;
     const warn = (title: string, text: string) => listener.warn(title, text);
     this.entities = makeEntityViews({
-      poses: this.poses, eye: this.eye, bodyGone: (body) => listener.bodyGone(body), warn,
+      poses: this.poses, eye: this.eye, marks: this.marks, bodyGone: (body) => listener.bodyGone(body), warn,
       changed: () => listener.changed("look"),
     });
     this.store_ = new EntityStore(this.entities, warn);

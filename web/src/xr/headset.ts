@@ -221,7 +221,7 @@ export class Headset implements PageListener, FramePart {
   }
 
   effect(kind: string): void {
-    if (!this.presenting || kind === "grab") return;
+    if (!this.presenting || kind === "grab" || kind.startsWith("#")) return;
     const strength = kind === "break" ? 0.9 : 0.5;
     for (const input of this.inputs) input.pulse(input.pointer.grab === null ? strength / 2 : strength, kind === "break" ? 60 : 35);
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One hand of the user, with a controller or bare: its pose, its buttons, and its pointer.
 
-import { Matrix4, Vector3 } from "three";
+import { Matrix4, Quaternion, Vector3 } from "three";
 import { Pointer } from "../interact/gestures.ts";
 import type { Board } from "./board.ts";
-import { HandJoints, indexTip, thumbTip } from "./hand_joints.ts";
+import { HandJoints, indexTip, jointNames, thumbTip } from "./hand_joints.ts";
 import { Poke, Spot } from "./plate.ts";
 
 /** A near grab wins within this distance of a controller's tip and of a pinch, m. */
@@ -52,6 +52,7 @@ export class Input {
   private readonly wasDown_: Record<FaceButton, boolean> = { a: false, b: false };
   private readonly reach_: number;
   private scale_ = 1;
+  private readonly turn_ = new Quaternion();
   private readonly at_ = new Vector3();
   private readonly other_ = new Vector3();
 
@@ -109,6 +110,7 @@ export class Input {
       this.finger[axis] = pointer.tip[axis];
     }
     pointer.active = this.tracked;
+    this.describe_(room);
     if (this.joints === null || !this.joints.tracked) return;
     this.jointAt_(indexTip, at_).applyMatrix4(room).toArray(this.finger);
     at_.add(this.jointAt_(thumbTip, this.other_).applyMatrix4(room)).multiplyScalar(0.5).toArray(pointer.tip);
@@ -143,6 +145,23 @@ export class Input {
     const edge = down && !this.wasDown_[button];
     this.wasDown_[button] = down;
     return edge;
+  }
+
+  /** For scripts. */
+  private describe_(room: Matrix4): void {
+    const { pointer, joints, at_ } = this;
+    this.ray.decompose(at_, this.turn_, this.other_);
+    this.turn_.toArray(pointer.rotation);
+    const pad = this.source.gamepad;
+    const buttons = pointer.buttons as number[];
+    const axes = pointer.axes as number[];
+    buttons[0] = this.selecting ? 1 : 0;
+    for (let index = 0; index < (pad?.buttons.length ?? 0); index++) buttons[index] = pad!.buttons[index].value;
+    // The stick comes first; the touchpad that WebXR names before it is rare.
+    for (let index = 0; index < (pad?.axes.length ?? 0); index++) axes[index] = pad!.axes[(index + stickAxes) % pad!.axes.length];
+    if (joints === null || !joints.tracked) return;
+    const places = pointer.joints as number[];
+    for (let joint = 0; joint < jointNames.length; joint++) this.jointAt_(joint, at_).applyMatrix4(room).toArray(places, 3 * joint);
   }
 
   private jointAt_(joint: number, out: Vector3): Vector3 {

@@ -27,6 +27,8 @@ export interface EntityView<Record extends Entity> {
   draw?(seconds: number): void;
   /** Adds places of its drawings besides bodies, world, m, for the camera's framing. */
   addPlaces?(points: Points): void;
+  /** The same of those on bodies that reach farther than these. */
+  addMoving?(points: Points): void;
 }
 
 /** Keeps the records of a kind that is not drawn. */

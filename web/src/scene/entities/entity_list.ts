@@ -3,10 +3,11 @@
 
 import type { Vector3 } from "three";
 import type { EntityKind, EntityRecords } from "../../protocol/generated.ts";
-import type { LightEntity, PlotEntity, StageEntity, TextureEntity, ViewpointEntity } from "../../protocol/generated.ts";
+import type { CustomEntity, LightEntity, PlotEntity, SoundEntity, StageEntity, TextureEntity, ViewpointEntity } from "../../protocol/generated.ts";
 import type { PoseBuffer } from "../pose_buffer.ts";
 import { ArrowView } from "./arrow.ts";
 import { AxesView } from "./axes.ts";
+import type { CustomView, Marks } from "./custom.ts";
 import { BodyView } from "./body.ts";
 import type { EntityView } from "./entity.ts";
 import { FrameView } from "./frame.ts";
@@ -35,6 +36,7 @@ export interface EntityHost {
   readonly poses: PoseBuffer;
   /** Place of the viewer, world, m; kept up to date. */
   readonly eye: Vector3;
+  readonly marks: Marks;
   /** A body was destroyed; called before its slot can be used again. */
   bodyGone(body: number): void;
   /** Something cannot be drawn: `title` says what, `text` why. */
@@ -47,7 +49,7 @@ export interface EntityHost {
 export type EntityViews = { readonly [K in EntityKind]: EntityView<EntityRecords[K]> };
 
 /** In the order of their frames: bodies are interpolated before things on them are drawn. */
-export function makeEntityViews({ poses, eye, bodyGone, warn, changed }: EntityHost) {
+export function makeEntityViews({ poses, eye, marks, bodyGone, warn, changed }: EntityHost) {
   const style = new Styles(warn);
   const body = new BodyView(poses, style, bodyGone);
   const canHold = (slot: number) => body.canHold(slot);
@@ -81,6 +83,12 @@ export function makeEntityViews({ poses, eye, bodyGone, warn, changed }: EntityH
     viewpoint: new WatchedRecords<ViewpointEntity>(),
     stage: new WatchedRecords<StageEntity>(),
     light: new Later<LightEntity>(() => import("./light.ts").then(({ LightView }) => new LightView(poses, () => body.size))),
+    sound: new WatchedRecords<SoundEntity>(),
+    custom: new Later<CustomEntity, CustomView>(() => import("./custom.ts").then((custom) => {
+      const view = new custom.CustomView(poses, marks, canHold, warn, changed);
+      body.covers.push(view);
+      return view;
+    })),
     texture: new Later<TextureEntity>(() => import("./texture.ts").then(({ TextureView }) => new TextureView(changed, warn))),
   } satisfies EntityViews;
 }

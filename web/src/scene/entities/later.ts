@@ -2,18 +2,24 @@
 // A view whose code is fetched with its first entity, as most worlds have none of its kind.
 
 import { Group } from "three";
+import type { Points } from "../points.ts";
 import type { Entity, EntityView } from "./entity.ts";
 
-export class Later<Record extends Entity> implements EntityView<Record> {
+export class Later<Record extends Entity, View extends EntityView<Record> = EntityView<Record>> implements EntityView<Record> {
   readonly root = new Group();
 
-  private readonly fetch_: () => Promise<EntityView<Record>>;
+  private readonly fetch_: () => Promise<View>;
   private readonly waiting_ = new Map<number, Record>();
-  private view_: EntityView<Record> | null = null;
+  private view_: View | null = null;
   private fetched_: Promise<void> | null = null;
 
-  constructor(fetch: () => Promise<EntityView<Record>>) {
+  constructor(fetch: () => Promise<View>) {
     this.fetch_ = fetch;
+  }
+
+  /** Null until its code has come. */
+  get view(): View | null {
+    return this.view_;
   }
 
   create(entity: Record): void {
@@ -39,5 +45,13 @@ export class Later<Record extends Entity> implements EntityView<Record> {
 
   draw(seconds: number): void {
     this.view_?.draw?.(seconds);
+  }
+
+  addPlaces(points: Points): void {
+    this.view_?.addPlaces?.(points);
+  }
+
+  addMoving(points: Points): void {
+    this.view_?.addMoving?.(points);
   }
 }

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first picture of each study is as the kept one, e2e/kept/study_*.jpg.
+
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import { Browser, small, type Tab } from "./browser.ts";
+import { addressOf, compare, expectKept, isAlike, pictureOf } from "./kept.ts";
+import { freePort, studyNames, WorldServer } from "./server.ts";
+
+let browser: Browser;
+
+beforeAll(async () => {
+  browser = await Browser.start({ ...small, density: 1 });
+});
+
+afterAll(async () => {
+  await browser?.stop();
+});
+
+const drawn = (tab: Tab) => tab.until("it has been drawn", () => globalThis.iota?.connected && !document.getElementById("view")!.classList.contains("waiting"));
+const take = (tab: Tab) => pictureOf(tab, 320, 180);
+
+/** A page that comes to the study at its start. */
+async function withStart(study: string, look: (tab: Tab) => Promise<void>): Promise<void> {
+  const server = await WorldServer.start([study], await freePort());
+  try {
+    const tab = await browser.open(server.url);
+    await drawn(tab);
+    await tab.pause(true);
+    await tab.page.evaluate(() => iota.page.commands.run("reset"));
+    await tab.until("it has begun anew", () => iota.time === 0);
+    await tab.page.reload();
+    await drawn(tab);
+    await tab.eyeAtRest();
+    await look(tab);
+    expect(tab.complaints).toEqual([]);
+  } finally {
+    await server.stop();
+  }
+}
+
+describe("the first picture", () => {
+  it.each(studyNames())("of %s is the kept one", async (study) => {
+    await withStart(study, (tab) => expectKept(tab, `study_${study}`, () => take(tab)));
+  });
+
+  it("is not the kept one where something is missing, black or elsewhere", async () => {
+    await withStart("cradle", async (tab) => {
+      const kept = addressOf("study_cradle");
+      const alike = async () => isAlike(await compare(tab, kept, await take(tab)));
+      await expect.poll(alike).toBe(true);
+      const bodies = (change: string) => tab.page.evaluate(`{ const { root } = iota.page.world.entities.body; ${change} }`);
+      await bodies("root.visible = false");
+      expect(await alike(), "missing").toBe(false);
+      await bodies("root.visible = true; root.traverse(({ material }) => material?.color?.multiplyScalar(0))");
+      expect(await alike(), "black").toBe(false);
+      await tab.page.reload();
+      await drawn(tab);
+      await tab.eyeAtRest();
+      await expect.poll(alike).toBe(true);
+      await bodies("root.position.x = 0.3 * iota.page.viewer.size");
+      expect(await alike(), "elsewhere").toBe(false);
+    });
+  });
+});
