@@ -304,6 +304,10 @@ def test_a_file_of_a_million_atoms_is_refused_before_it_is_read_through(
     fails(write("big.xyz", f"100001\n\n{rows}"), "more than 100000 atoms")
     fails(write("big.mol", V3000_MOL.replace("COUNTS 2", "COUNTS 1000000")), "line 6", "more than 100000 atoms")
     monkeypatch.setattr(cif, "MOST_ROWS", 100)
+    atoms = "data_x\nloop_\n_atom_site.group_PDB\n" + "ATOM \n" * 60 + "HETATM \n" * 41
+    with monkeypatch.context() as unread:
+        unread.setattr(cif, "_tokens", None)
+        fails(write("atoms.cif", atoms), "line 104", "more than 100 rows")
     fails(write("big.cif", "data_x\nloop_\n_other.a\n" + "1\n" * 101), "line 104", "more than 100 rows")
 
 
@@ -398,14 +402,19 @@ def test_uniform_polyhedra_have_regular_faces_and_one_kind_of_corner() -> None:
 def test_johnson_solids_have_regular_faces_and_no_two_are_alike() -> None:
     known = {uniform_signature(uniform(name)) for name in [*UNIFORM, *SNUB]}
     assert len(known) == 18
-    for number in range(1, 88):
+    for number in range(1, 93):
         solid = johnson(number)
         assert_regular(solid)
         known.add(uniform_signature(solid))
-    assert len(known) == 18 + 87
+    assert len(known) == 18 + 92
     assert faces_of(johnson(5)) == {3: 5, 4: 5, 5: 1, 10: 1}
-    assert faces_of(johnson(84)) == {3: 12}
-    with pytest.raises(ValueError, match="J1 to J87, not J93"):
+    # The last ones, of roots of equations, have the faces that their names say (Johnson 1966, table III).
+    for number, faces in {
+        84: {3: 12}, 85: {3: 24, 4: 2}, 86: {3: 12, 4: 2}, 87: {3: 16, 4: 1}, 88: {3: 16, 4: 2}, 89: {3: 18, 4: 3},
+        90: {3: 20, 4: 4}, 91: {3: 8, 4: 2, 5: 4}, 92: {3: 13, 4: 3, 5: 3, 6: 1},
+    }.items():  # fmt: skip
+        assert faces_of(johnson(number)) == faces
+    with pytest.raises(ValueError, match="J1 to J92, not J93"):
         johnson(93)
 
 

@@ -37,6 +37,7 @@ def read_first_block(text: str, path: PathLike) -> dict[str, Table]:
     """The tables of the first data block by their categories, the part of a name before its dot; old names without a
     dot are sorted by their prefix: `_atom_site_fract_x` is in `_atom_site`. Raises FileError."""
     tables: dict[str, Table] = {}
+    _check_rows(text, path)
     tokens = _tokens(text, path)
     token = next(tokens, None)
     if token is None or not token[0].lower().startswith("data_"):
@@ -66,6 +67,22 @@ def read_first_block(text: str, path: PathLike) -> dict[str, Table]:
     return tables
 
 
+def _check_rows(text: str, path: PathLike) -> None:
+    """Raises FileError for more atoms in the first block than a loop may have, before they are read, which takes much longer."""
+    rows = blocks = 0
+    for at, line in enumerate(text.splitlines(), 1):
+        rows += line.startswith(("ATOM ", "HETATM "))
+        blocks += line.startswith("data_")
+        if blocks > 1:
+            return
+        if rows > MOST_ROWS:
+            raise too_long(path, at)
+
+
+def too_long(path: PathLike, line: int) -> FileError:
+    return FileError(path, f"a loop has more than {MOST_ROWS} rows; cut out what you need", line)
+
+
 def _read_loop(tokens: Iterator[Token], tables: dict[str, Table], path: PathLike, line: int) -> Token | None:
     """Reads a loop; returns the token after it."""
     names: list[str] = []
@@ -89,7 +106,7 @@ def _read_loop(tokens: Iterator[Token], tables: dict[str, Table], path: PathLike
             table.rows.append(row)
             row = []
             if len(table.rows) > MOST_ROWS:
-                raise FileError(path, f"a loop has more than {MOST_ROWS} rows; cut out what you need", token[2])
+                raise too_long(path, token[2])
         token = next(tokens, None)
     if row:
         raise FileError(path, f"the last row of a loop has {len(row)} values for {len(names)} names", table.lines[-1])
@@ -127,6 +144,10 @@ def _tokens(text: str, path: PathLike) -> Iterator[Token]:
                 raise FileError(path, "the text that begins here has no end", at)
             yield "\n".join(parts), True, at
             at, line = at + len(parts), last[1:]
+        if not any(mark in line for mark in "'\"#"):
+            for word in line.split():
+                yield word, False, at
+            continue
         place = 0
         while place < len(line):
             found = TOKEN.match(line, place)

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Johnson solids (Johnson, Convex polyhedra with regular faces, 1966): caps and belts set on each other, pieces added to,
 turned on and cut from uniform polyhedra. All edges have length 1. Those outside of these families (J84 to J92) are
-roots of equations; the first four of them are included."""
+roots of equations: coordinates that make edges 1 long, by Newton's method."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
@@ -100,11 +101,11 @@ GYRATED: dict[int, tuple[int, int, str]] = {
     78: (1, 1, "meta"), 79: (2, 1, "meta"), 80: (0, 2, "para"), 81: (0, 2, "meta"), 82: (1, 2, "meta"), 83: (0, 3, "meta"),
 }  # fmt: skip
 
-LAST = 87
+LAST = 92
 
 
 def johnson(number: int) -> Surface:
-    """J1 to J87, in Johnson's numbering. Raises ValueError."""
+    """J1 to J92, in Johnson's numbering. Raises ValueError."""
     if number in STACKS:
         return hull(_stacked(*STACKS[number]))
     if number in AUGMENTED:
@@ -126,9 +127,9 @@ def johnson(number: int) -> Surface:
             at for at, face in enumerate(solid.faces) if all(len(five & set(face)) == 2 for five in pentagons)
         )
         return _augmented(solid, [middle])
-    if number in ROOTS:
-        return ROOTS[number]()
-    raise ValueError(f"Johnson solids are computed from J1 to J{LAST}, not J{number}")
+    if number in MADE:
+        return MADE[number]()
+    raise ValueError(f"there are Johnson solids from J1 to J{LAST}, not J{number}")
 
 
 def prism(n: int) -> Array:
@@ -224,66 +225,108 @@ def _gyrated(turned: int, cut: int, how: str) -> Surface:
 
 # --- roots of equations -----------------------------------------------------------------------------------------------
 
-
-def _root(polynomial: list[float], near: float) -> float:
-    """The real root of a polynomial, highest power first, that is nearest to a number."""
-    roots = np.roots(polynomial)
-    real = roots[np.abs(roots.imag) < 1e-9].real
-    return float(real[np.argmin(np.abs(real - near))])
+Place = tuple[float, float, float]
+GOLDEN = (1 + math.sqrt(5)) / 2
 
 
-def _snub_disphenoid() -> Surface:
-    q = _root([2, 11, 4, -1], 0.169)
-    r, s, t = math.sqrt(q), math.sqrt((1 - q) / (2 * q)), math.sqrt(2 - 2 * q)
-    points = [(t, r, 0), (-t, r, 0), (0, -r, t), (0, -r, -t), (1, -s, 0), (-1, -s, 0), (0, s, 1), (0, s, -1)]
-    return hull(np.array(points) / 2)
+@dataclass(frozen=True)
+class Solved:
+    """Corners by letters, as functions of unknowns; `near`: what these are nearly. Each edge, two letters, is an
+    equation: its length is 1. Mirrors in x = 0 and y = 0 give the other corners, and, with `turns`, turning by a full
+    turn over that number with z reversed."""
+
+    corners: Callable[..., dict[str, Place]]
+    edges: str
+    near: tuple[float, ...]
+    turns: int = 1
+
+    def surface(self) -> Surface:
+        def miss(unknown: Array) -> Array:
+            at = {name: np.array(place) for name, place in self.corners(*unknown).items()}
+            return np.array([np.linalg.norm(at[edge[0]] - at[edge[1]]) - 1 for edge in self.edges.split()])
+
+        unknown = np.array(self.near)
+        for _ in range(12):
+            slope = [(miss(unknown + 1e-6 * e) - miss(unknown - 1e-6 * e)) / 2e-6 for e in np.eye(len(unknown))]
+            unknown = unknown - np.linalg.solve(np.stack(slope, axis=1), miss(unknown))
+        return hull(_images(list(self.corners(*unknown).values()), self.turns))
 
 
-def _snub_square_antiprism() -> Surface:
-    """Two squares and, between them, two rings of four: its three unknown lengths by Newton's method."""
-
-    def rings(unknown: Array) -> Array:
-        radius, outer, inner = unknown
-        corner = math.sqrt(0.5)
-        quarter = np.arange(4) * math.pi / 2
-
-        def level(r: float, z: float, turn: float) -> Array:
-            return np.stack([r * np.cos(quarter + turn), r * np.sin(quarter + turn), np.full(4, z)], axis=1)
-
-        return np.concatenate(
-            [
-                level(corner, outer, 0), level(radius, inner, math.pi / 4), level(radius, -inner, 0),
-                level(corner, -outer, math.pi / 4),
-            ]
-        )  # fmt: skip
-
-    def miss(unknown: Array) -> Array:
-        p = rings(unknown)
-        return np.array([np.linalg.norm(p[a] - p[b]) - 1 for a, b in ((0, 4), (0, 8), (4, 8))])
-
-    unknown = np.array([1.1, 0.7, 0.2])
-    for _ in range(60):
-        now = miss(unknown)
-        slope = np.stack([(miss(unknown + 1e-7 * e) - now) / 1e-7 for e in np.eye(3)], axis=1)
-        unknown = unknown - np.linalg.solve(slope, now)
-    return hull(rings(unknown))
+def _images(places: list[Place], turns: int) -> Array:
+    """Of corners, as `Solved` says."""
+    points = np.array([[sx * x, sy * y, z] for x, y, z in places for sx in (1, -1) for sy in (1, -1)])
+    found = []
+    for turn in range(turns):
+        c, s = math.cos(2 * math.pi * turn / turns), math.sin(2 * math.pi * turn / turns)
+        found.append(points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, (-1) ** turn]]))
+    return np.concatenate(found)
 
 
-def _sphenocorona() -> Surface:
-    k = _root([60, -48, -100, 56, 23], 0.85273)
-    u = math.sqrt(1 - k * k)
-    quarter = [
-        (0, 1, 2 * u), (2 * k, 1, 0), (0, 1 + math.sqrt(3 - 4 * k * k) / u, (1 - 2 * k * k) / u),
-        (1, 0, -math.sqrt(2 + 4 * k - 4 * k * k)),
-    ]  # fmt: skip
-    return hull(np.array([(sx * x, sy * y, z) for x, y, z in quarter for sx in (1, -1) for sy in (1, -1)]) / 2)
+DIAGONAL = math.sqrt(0.5)
+SOLVED: dict[int, Solved] = {
+    # Snub disphenoid.
+    84: Solved(
+        lambda s, t, r: {"A": (0.5, 0, -s), "B": (t, 0, r), "C": (0, t, -r)}, "AB AC BC", (0.78, 0.64, 0.21), turns=4
+    ),
+    # Snub square antiprism.
+    85: Solved(
+        lambda u, r, v: {"A": (DIAGONAL, 0, u), "B": (DIAGONAL * r, DIAGONAL * r, v), "C": (r, 0, -v)}, "AB AC BC",
+        (0.7, 1.1, 0.2), turns=8,
+    ),
+    # Sphenocorona.
+    86: Solved(
+        lambda k, u, p, q, d: {"A": (0, 0.5, u), "B": (k, 0.5, 0), "C": (0, p, q), "D": (0.5, 0, d)}, "AB AC BC BD CD",
+        (0.85, 0.52, 0.79, -0.43, -0.79),
+    ),
+    # Sphenomegacorona.
+    88: Solved(
+        lambda k, u, p, q, d, s, t: {
+            "A": (0, 0.5, u), "B": (k, 0.5, 0), "C": (0, p, q), "D": (0.5, 0, d), "E": (0, s, t),
+        },
+        "AB AC BC BD CE BE DE", (0.59, 0.8, 1.28, 0.18, -0.86, 0.85, -0.72),
+    ),
+    # Hebesphenomegacorona.
+    89: Solved(
+        lambda k, u, p, q, d, s, t: {
+            "A": (0.5, 0.5, u), "B": (0.5 + k, 0.5, 0), "C": (0, p, q), "D": (0.5, 0, d), "E": (0, s, t),
+        },
+        "AB AC BC BD CE BE DE", (0.22, 0.98, 1.1, 0.35, -0.84, 0.84, -0.61),
+    ),
+    # Disphenocingulum; D and E are images of A and C.
+    90: Solved(
+        lambda a, u, r, t, s: {
+            "A": (0.5, a, u), "B": (0.5, 0, r), "C": (t, 0, s), "D": (a, 0.5, -u), "E": (0, t, -s),
+        },
+        "AB BC AC AD AE", (0.77, 0.46, 1.1, 1.13, 0.33), turns=4,
+    ),
+}  # fmt: skip
 
 
 def _augmented_sphenocorona() -> Surface:
-    solid = _sphenocorona()
+    solid = SOLVED[86].surface()
     return _augmented(solid, [next(at for at, face in enumerate(solid.faces) if len(face) == 4)])
 
 
-ROOTS: dict[int, Callable[[], Surface]] = {
-    84: _snub_disphenoid, 85: _snub_square_antiprism, 86: _sphenocorona, 87: _augmented_sphenocorona,
+def _bilunabirotunda() -> Surface:
+    return hull(_images([(0.5, GOLDEN / 2, 0.5), (0, 0.5, GOLDEN**2 / 2), (GOLDEN / 2, 0, 0)], turns=2))
+
+
+def _triangular_hebesphenorotunda() -> Surface:
+    """What an icosidodecahedron has above the hexagon about an axis through a triangle, over a smaller hexagon."""
+    own = uniform("icosidodecahedron")
+    triangle = own.vertices[next(face for face in own.faces if len(face) == 3)]
+    z = triangle.mean(axis=0)
+    x = triangle[0] - z
+    x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
+    points = own.vertices @ np.stack([x, np.cross(z, x), z], axis=1)
+    upper = points[points[:, 2] > 1e-6]
+    # The edge below the triangle's first corner is over an edge of the hexagon: a square is between them.
+    edge = max((place for place in upper if abs(place[1] - 0.5) < 1e-6), key=lambda place: float(place[0]))
+    height = edge[2] - math.sqrt(1 - (edge[0] - math.sqrt(0.75)) ** 2)
+    return hull(np.concatenate([upper, ring(6, height)]))
+
+
+MADE: dict[int, Callable[[], Surface]] = {
+    **{number: solved.surface for number, solved in SOLVED.items()},
+    87: _augmented_sphenocorona, 91: _bilunabirotunda, 92: _triangular_hebesphenorotunda,
 }  # fmt: skip

@@ -307,7 +307,8 @@ def _read_cif(text: str, path: PathLike) -> Molecule:
     table = tables.get("_atom_site")
     if table is None or not table.rows:
         raise FileError(path, "has no _atom_site table: no atoms")
-    symbols = table.column("type_symbol") or table.column("label")
+    elements = table.column("type_symbol")
+    symbols = elements or table.column("label")
     if symbols is None:
         raise FileError(path, "_atom_site has neither type_symbol nor label", table.lines[0])
     columns = [table.column(f"cartn_{axis}") for axis in "xyz"]
@@ -336,7 +337,7 @@ def _read_cif(text: str, path: PathLike) -> Molecule:
             others += 1
             continue
         seen.add(key)
-        symbol = symbols[row] if table.column("type_symbol") else re.sub(r"[^A-Za-z].*", "", symbols[row])
+        symbol = symbols[row] if elements else re.sub(r"[^A-Za-z].*", "", symbols[row])
         atoms.append(_element_at(re.sub(r"\d*[+-]?$", "", symbol), path, at))
         check_count(len(atoms), path, at)
         # A number may have its uncertainty in parentheses: 0.1234(5).
