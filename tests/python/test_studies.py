@@ -26,3 +26,15 @@ def test_it_goes_on(name: str) -> None:
     assert system.validate() == []
     places = system.positions
     assert np.isfinite(places).all() and np.abs(places).max() < 100, "nothing flies away"
+
+
+@pytest.mark.parametrize("name", studies.names())
+def test_something_moves_within_two_seconds(name: str) -> None:
+    world = studies.module(name).build()
+    begin = {particle: particle.position for particle in world.system.particles}
+    size = float(np.linalg.norm(np.ptp([tuple(place) for place in begin.values()], axis=0)))
+    farthest = 0.0
+    while world.system.time < 2 and farthest < 0.02 * size:
+        world.step()
+        farthest = max(abs(particle.position - place) for particle, place in begin.items() if particle.alive)
+    assert farthest >= 0.02 * size, f"{farthest / size:.3f} of its size"

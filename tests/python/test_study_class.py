@@ -129,6 +129,8 @@ def test_a_story_waits_tells_itself_and_stops_when_it_is_touched() -> None:
     ball = system.body().particle((0, 1, 0))
     world = iota.World(system)
     told: list[str] = []
+    cards: list[str] = []
+    world._state.notices.show = lambda client, level, title, text, *more, **rest: cards.append(title)
     story = Story(world, wait=1.0, on_stop=lambda: told.append("stopped"))
     story.at(0.5)(lambda: told.append("one"))
     story.at(1.0)(lambda: told.append("two"))
@@ -141,6 +143,7 @@ def test_a_story_waits_tells_itself_and_stops_when_it_is_touched() -> None:
     run(world, 0.6)
     story.touch()
     assert told == ["one", "two", "one", "stopped"] and not story.is_told
+    assert cards == ["The story begins", "The story begins", "The story stops"]
     run(world, 0.5)
     world.reset()
     run(world, 0.9)
@@ -155,7 +158,9 @@ def test_stories_and_helpers_are_no_studies() -> None:
     assert not any("story" in name for name in studies.names())
 
 
-@pytest.mark.parametrize("name", ["cloth", "fireworks", "physics-class", "shoal", "undersea", "weather"])
+@pytest.mark.parametrize("name", studies.names())
 def test_studies_leave_the_page_its_keys(name: str) -> None:
+    """But for l, which changes between looks, where there are none, and r where it does the same."""
     world = studies.module(name).build()
-    assert [action.key for action in world._state.actions if action.key in PAGE_KEYS] == []
+    taken = {action.key for action in world._state.actions if action.key in PAGE_KEYS}
+    assert taken <= ({"molecule": {"r"}, "cradle": {"l"}, "lab": {"l"}}.get(name) or set())

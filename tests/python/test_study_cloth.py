@@ -1,10 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
+"""The studies cloth and shoal."""
+
 from __future__ import annotations
 
+import gc
+from typing import Any
+
 import numpy as np
+import pytest
 
 import iota
 from iota.studies import cloth, shoal
+
+
+@pytest.fixture
+def swimming() -> tuple[iota.World, shoal.School]:
+    """The shoal of the study, after 10 s."""
+    world = shoal.build()
+    (school,) = (thing for thing in gc.get_objects() if type(thing) is shoal.School and thing._system is world.system)
+    for _ in range(600):
+        world.step()
+    return world, school
 
 
 def test_the_cloth_hangs_in_the_wind_without_tearing_and_tears_where_it_is_pulled() -> None:
@@ -22,18 +38,18 @@ def test_the_cloth_hangs_in_the_wind_without_tearing_and_tears_where_it_is_pulle
     assert 0 < torn < 0.5 * len(system.bonds)
 
 
-def test_the_shoal_stays_together_apart_and_behind_its_leader() -> None:
-    world = shoal.build(300)
-    system = world.system
-    for _ in range(600):
-        world.step()
+def test_the_shoal_stays_together_apart_and_behind_its_leader(swimming: tuple[iota.World, shoal.School]) -> None:
+    system = swimming[0].system
     places = system.positions
+    assert len(places) == shoal.FISH == 1000
     apart = np.linalg.norm(places[:, None] - places[None], axis=2) + 10 * np.eye(len(places))
     nearest = apart.min(axis=1)
     assert np.median(nearest) > 0.12 and np.quantile(nearest, 0.95) < 1.5
     middle = places.mean(axis=0)
     assert np.quantile(np.linalg.norm(places - middle, axis=1), 0.9) < 4
-    assert np.linalg.norm(middle - shoal.leader_at(system.time)) < 6
+    lags = np.linspace(-8, 8, 81)  # s
+    apart_from = [np.linalg.norm(middle - shoal.leader_at(system.time - lag)) for lag in lags]
+    assert min(apart_from) < 1.5 and 0 < lags[np.argmin(apart_from)] < 6, "where the leader was before"
     speeds = np.linalg.norm(system.velocities, axis=1)
     assert 0.6 * shoal.CRUISE < speeds.mean() < 1.8 * shoal.CRUISE
     # Fish look where they swim, within their wag and bank.
@@ -41,6 +57,61 @@ def test_the_shoal_stays_together_apart_and_behind_its_leader() -> None:
     x = np.stack([1 - 2 * (q[:, 1] ** 2 + q[:, 2] ** 2), 2 * (q[:, 0] * q[:, 1] + q[:, 2] * q[:, 3])], axis=1)
     ahead = system.velocities[:, :2] / speeds[:, None]
     assert np.median(np.abs(x - ahead)) < 0.25
+
+
+def test_the_shoal_drifts_with_the_current(swimming: tuple[iota.World, shoal.School]) -> None:
+    """The flow at each fish, from what it does to the velocity in a step, and where it takes them in two seconds."""
+    world, school = swimming
+    system, before = world.system, world.system.snapshot()
+    velocities, places = [], []
+    for active in (False, True):
+        system.restore(before)
+        school.current.active = active
+        system.step(1 / 60)
+        velocities.append(system.velocities)
+        for _ in range(120):
+            world.step()
+        places.append(system.positions)
+    system.restore(before)
+    flow = (velocities[1] - velocities[0]) * 60 * shoal.MASS / 0.15 + system.velocities
+    assert 0.3 < np.linalg.norm(flow, axis=1).mean() < 2.0
+    # It is smooth: neighbors have the same flow, fish that are far apart have not.
+    now = system.positions
+    apart = np.linalg.norm(now[:, None] - now[None], axis=2)
+    unlike = np.linalg.norm(flow[:, None] - flow[None], axis=2)
+    assert unlike[(apart > 0) & (apart < 0.3)].mean() < 0.5 * unlike[apart > 2.5].mean()
+    drift = places[1] - places[0]
+    assert np.mean(np.sum(drift * flow, axis=1) > 0) > 0.65
+    assert np.mean(np.linalg.norm(drift, axis=1)) > 0.05
+
+
+def right_of(way: Any) -> Any:
+    """Unit vectors, level, to the right of each way: (n, 3)."""
+    right = np.cross(way, [0, 1, 0])
+    return right / np.linalg.norm(right, axis=1, keepdims=True)
+
+
+def test_fish_bank_into_their_turns_and_undulate_each_by_itself(swimming: tuple[iota.World, shoal.School]) -> None:
+    world, school = swimming
+    wags: Any = []
+    velocities, rolls = [], []
+    for _ in range(120):
+        world.step()
+        x, y, z, w = school.headings().T
+        nose = np.arctan2(2 * (w * y - x * z), 1 - 2 * (y * y + z * z))  # of the body's x axis, from above
+        velocity = world.system.velocities
+        wags.append(np.angle(np.exp(1j * (nose - np.arctan2(-velocity[:, 2], velocity[:, 0])))))
+        velocities.append(velocity)
+        back = np.stack([2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=1)
+        rolls.append(np.sum(back * right_of(velocity), axis=1))
+    wags = np.array(wags)
+    assert 0.12 < wags.std() < 0.2 and np.abs(wags).max() < 0.25, "0.22 rad / sqrt(2)"
+    assert np.abs(wags.mean(axis=1)).max() < 0.06, "never all to one side at once"
+    beats = (np.diff(np.sign(wags), axis=0) != 0).sum(axis=0)
+    assert beats.min() >= 3 and beats.max() <= 7 and len(set(beats)) > 2, "0.9 to 1.5 beats a second, not all alike"
+    for since in range(0, 120, 30):
+        pull = np.sum((velocities[since + 29] - velocities[since]) * right_of(velocities[since + 15]), axis=1)
+        assert np.corrcoef(pull, np.mean(rolls[since : since + 30], axis=0))[0, 1] > 0.6
 
 
 def test_a_thousand_fish_are_drawn_of_few_triangles() -> None:

@@ -43,6 +43,23 @@ def energy(made: cradle.Cradle) -> float:
     )
 
 
+def watch_swaps(made: cradle.Cradle) -> list[int]:
+    """Each swap keeps energy and momentum; the list gets the number of groups at each."""
+    collide, swaps = made.collide, []
+
+    def sums() -> tuple[float, float]:
+        return energy(made), sum(len(group.numbers) * group.speed for group in made.groups)
+
+    def watched(held: set[int]) -> bool:
+        before, has_met = sums(), collide(held)
+        assert sums() == pytest.approx(before, rel=1e-12)
+        swaps.extend([len(made.groups)] * has_met)
+        return has_met
+
+    made.collide = watched  # type: ignore[method-assign]
+    return swaps
+
+
 def test_balls_touch_at_rest_and_hang_from_the_bars() -> None:
     world, made = build(0, 0)
     for p, q in pairwise(made.balls):
@@ -57,6 +74,7 @@ def test_balls_touch_at_rest_and_hang_from_the_bars() -> None:
 )
 def test_as_many_balls_leave_as_arrive(balls: int, left: int, right: int) -> None:
     world, made = build(left, right, balls)
+    swaps = watch_swaps(made)
     start, before = energy(made), (0, 0)
     seen: list[tuple[int, int]] = []
     for _ in range(700):
@@ -79,6 +97,7 @@ def test_as_many_balls_leave_as_arrive(balls: int, left: int, right: int) -> Non
     else:
         assert seen[:3] == [moves[0], moves[1], moves[0]]
     assert energy(made) == pytest.approx(start, rel=1e-3)
+    assert len(swaps) >= 3
 
 
 def test_groups_that_meet_swap_and_keep_energy_and_momentum() -> None:

@@ -57,6 +57,23 @@ def test_both_toys_are_where_they_should_be_and_alive() -> None:
     assert max(swings) > 0.05  # the ball on the other side has left
 
 
+def test_the_ladder_goes_on_by_itself_only_while_nobody_plays_with_the_cradle() -> None:
+    world = lab.build()
+    (axle,) = [joint for joint in world.system.constraints if joint.kind == "revolute" and joint.b is None]
+
+    def run(until: float) -> None:
+        while world.system.time < until:
+            world.step()
+
+    run(7.5)
+    assert axle.angle.value == pytest.approx(math.pi, abs=0.02)
+    world._state.actions["lift left"].hook.function()  # half a second before its story begins
+    run(7.4 + ladder.PATIENCE)
+    assert axle.angle.value == pytest.approx(math.pi, abs=0.02)
+    run(9.5 + ladder.PATIENCE)
+    assert axle.angle.value == pytest.approx(0, abs=0.02)
+
+
 def test_together_they_cost_little_more_than_alone() -> None:
     def seconds(build: object) -> float:
         world = build()  # type: ignore[operator]

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from iota import studies
+from iota.world.actions import PAGE_KEYS
 from iota.world.options import RunOptions, use
 
 ROOT = Path(__file__).parents[2]
@@ -64,7 +66,29 @@ def test_a_tutorial_runs_and_has_its_picture(page: Path, tmp_path: Path, monkeyp
     assert (page.parent / picture).is_file()
 
 
-@pytest.mark.parametrize("page", sorted((ROOT / "docs" / "studies").glob("*.md")), ids=lambda page: page.stem)
+STUDY_PAGES = sorted((ROOT / "docs" / "studies").glob("*.md"))
+
+
+def studies_of(page: Path) -> list[str]:
+    """The studies that a page is about."""
+    return re.findall(r"`iota run ([\w-]+)`", page.read_text())
+
+
+@pytest.mark.parametrize("page", STUDY_PAGES, ids=lambda page: page.stem)
+def test_the_page_on_a_study_shows_it_names_its_keys_and_says_what_to_try(page: Path) -> None:
+    text = page.read_text()
+    actions = [action for name in studies_of(page) for action in studies.module(name).build()._state.actions]
+    keys = {action.key for action in actions if action.key is not None and len(action.key) == 1}
+    assert keys <= set(re.findall(r"`([a-z])`", text)) <= keys | set(PAGE_KEYS)
+    assert re.search(r"^(Try|What to try|## What to try)", text, re.M)
+    assert all((page.parent / picture).is_file() for picture in re.findall(r"!\[.+\]\((.+)\)", text) or ["none"])
+
+
+def test_every_study_has_a_page() -> None:
+    assert sorted(name for page in STUDY_PAGES for name in studies_of(page)) == studies.names()
+
+
+@pytest.mark.parametrize("page", STUDY_PAGES, ids=lambda page: page.stem)
 def test_the_blocks_of_the_page_on_a_study_run(page: Path) -> None:
     names: dict[str, object] = {}
     for number, block in enumerate(blocks(page), start=1):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -26,15 +27,18 @@ def build(left: int = 1, right: int = 0, balls: int = BALLS) -> iota.World:
     world = iota.World(iota.System(), title="cradle: the balls are 24 mm thick", dt=1 / 240, ground=0.0)
     cradle = Cradle(world, balls=balls)
     add_actions(world, cradle, left, right)
-    world.camera = iota.Camera(position=(0.18, 0.24, 0.42), target=(0, 0.09, 0))
+    world.camera = iota.Camera(position=(0.15, 0.21, 0.35), target=(0, 0.09, 0))
     return world
 
 
-def add_actions(world: iota.World, cradle: Cradle, left: int = 1, right: int = 0) -> None:
-    """Lifts balls at first and at each reset, and by keys and buttons."""
+def add_actions(
+    world: iota.World, cradle: Cradle, left: int = 1, right: int = 0, on_lift: Callable[[], None] = lambda: None
+) -> None:
+    """Lifts balls at first and at each reset, and by keys and buttons. on_lift: called before a user does."""
     counts = [left, right]
 
     def lift_more(side: int) -> None:
+        on_lift()
         counts[side] = (counts[side] + 1) % len(cradle.balls)
         counts[1 - side] = min(counts[1 - side], len(cradle.balls) - counts[side])
         cradle.lift(*counts)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rockets climb, burst and rain down; b fires one, n all of them. They fire by themselves while nobody does."""
+"""Rockets climb, burst and rain down; b fires one, n all of them. One greets; the others fire by themselves while nobody does."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def build() -> iota.World:
     for x in (-2.6, 2.6):
         effects.fire(system, at=(x, 0.62, 0), size=0.16)
     present(world, places)
-    story = Story(world, wait=4.0, first=0.5)
+    story = Story(world, wait=4.0, first=2.5)
 
     @world.on_step
     def follow() -> None:
@@ -90,6 +90,7 @@ def build() -> iota.World:
         for number in range(len(rockets)):
             world.after(0.15 * number)(lambda: fire(0))
 
+    world.at(0.5)(partial(fire, 0))
     for number, time in enumerate((0, 1.2, 1.5, 3.2, 4.0, 4.2, 4.4, 6.0)):
         story.at(time)(partial(fire, 2 * number + 1))
     return world

@@ -25,8 +25,8 @@ def build() -> iota.World:
     room.show(world)
     _laboratory.furnish(world)
     world.add_strut(tuple(LADDER - (0, 0, 0.06)), tuple(LADDER + (0, 0, 0.035)), looks.cylinder(0.003, "steel"))
-    ladder.add_actions(world, ladder.Ladder(world, 7, LADDER))
-    cradle.add_actions(world, cradle.Cradle(world, CRADLE))
+    story = ladder.add_actions(world, ladder.Ladder(world, 7, LADDER))
+    cradle.add_actions(world, cradle.Cradle(world, CRADLE), on_lift=story.touch)
     world.camera, view = VIEWS[0], 0
 
     @world.action("view", key="v", help="looks at the ladder, at the cradle, at the whole room", on="world")

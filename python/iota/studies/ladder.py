@@ -34,8 +34,8 @@ def build(blocks: int = 7) -> iota.World:
     return world
 
 
-def add_actions(world: iota.World, ladder: Ladder) -> None:
-    """A key that tips it; it tips once at first, and by itself while nobody touches anything."""
+def add_actions(world: iota.World, ladder: Ladder) -> Story:
+    """A key that tips it; it tips once at first, and by itself while nobody touches anything. Returns that story."""
     story = Story(world, wait=PATIENCE)
     for number in range(10):
         story.at(4.0 * number)(ladder.tip)
@@ -46,6 +46,7 @@ def add_actions(world: iota.World, ladder: Ladder) -> None:
         ladder.tip()
 
     world.at(0.6)(ladder.tip)
+    return story
 
 
 class Block:
@@ -252,4 +253,4 @@ def present(world: iota.World) -> None:
     world.add_static(looks.box((0.025, 0.5, 0.003), "paint", color="#d8a53a"), (x - 0.1, 0.27, back))
     for mark in range(1, 5):
         world.add_static(looks.box((0.025, 0.0015, 0.0036), "rubber"), (x - 0.1, 0.02 + 0.1 * mark, back))
-    world.camera = iota.Camera(position=(0.56, 0.43, 0.69), target=(0, 0.275, 0))
+    world.camera = iota.Camera(position=(0.56, 0.44, 0.69), target=(0, 0.285, 0))

@@ -17,8 +17,9 @@ MASS = 0.3  # kg, of a fish
 CRUISE = 1.2  # m/s
 KEEN = 2.0  # 1/s, how soon a fish has its speed again
 FOLLOW = 0.9  # m/s^2, towards the leader
-MIDDLE = np.array([0.0, 3.4, 0.0])  # of the leader's path, m
-WAY = np.array([2.6, 0.7, 2.6])  # how far it goes from there, m
+LEAN = 0.3  # s, how soon a fish leans into a turn
+MIDDLE = np.array([0.0, 3.1, 0.0])  # of the leader's path, m
+WAY = np.array([2.6, 0.5, 2.2])  # how far it goes from there, m
 BODY = (
     (0.09, 0.034, 0.017),
     (0.02, 0.05, 0.025),
@@ -75,7 +76,10 @@ class School:
             "current", group=self.group, drag=0.15, speed=0.6, size=2.5, octaves=3, evolution=0.2
         )
         world.draw([fish.body for fish in self.fish], fish_looks())
+        self._between = 2 * world.dt  # s, between two looks at the way
+        self._forget()
         world.on_step(self._steer)
+        world.on_reset(self._forget)
 
     def _swim(self, batch: iota.types.ParticleBatch) -> Any:
         """Each keeps its speed along its way and turns towards the leader, by its own strength, whatever it has to carry."""
@@ -85,9 +89,15 @@ class School:
         push = KEEN * (CRUISE / np.maximum(speed, 0.05) - 1) * batch.velocity
         return MASS * (push + FOLLOW * to_leader / np.maximum(distance, 0.5))
 
+    def _forget(self) -> None:
+        self._way, self._turn = self._bodies.velocities, np.zeros(len(self._bodies.velocities))
+
     def _steer(self) -> None:
         """Fish look along their way: every other step is enough."""
         if self._system.step_count % 2 == 0:
+            before, self._way = self._way, self._bodies.velocities
+            turn = np.cross(before, self._way)[:, 1] / np.maximum((self._way**2).sum(axis=1), 1e-6) / self._between
+            self._turn += self._between / LEAN * (turn - self._turn)  # rad/s, to the left
             self._bodies.orientations = self.headings()
 
     def headings(self) -> Any:
@@ -97,8 +107,7 @@ class School:
         wag = 0.22 * np.sin(2 * math.pi * (1.2 + 0.3 * np.sin(self._phase)) * time + self._phase)
         yaw = np.arctan2(-velocity[:, 2], velocity[:, 0]) + wag
         pitch = np.arcsin(np.clip(velocity[:, 1] / speed, -0.9, 0.9))
-        sideways = np.cross(self._leader(time) - self._bodies.positions, velocity)[:, 1]
-        roll = 0.5 * np.tanh(sideways / (3 * speed))
+        roll = -0.6 * np.tanh(self._turn)
         (cy, cp, cr), (sy, sp, sr) = ([f(angle / 2) for angle in (yaw, pitch, roll)] for f in (np.cos, np.sin))
         # Roll about x, then pitch about z, then yaw about y.
         x, y = sr * cp * cy + cr * sp * sy, cr * cp * sy + sr * sp * cy
@@ -127,4 +136,4 @@ def present(world: iota.World) -> None:
         stone = looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c")
         world.add_static(stone, (x, 0.25 * size, z))
     world.stage(sky="#7fc1cf", horizon="#2f6f88", ground="#a39a76", light=0.9)
-    world.camera = iota.Camera(position=(0, 1.2, 11.5), target=(0, 3.3, 0))
+    world.camera = iota.Camera(position=(0, 1.6, 12.5), target=(0, 3.2, 0))

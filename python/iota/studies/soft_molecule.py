@@ -18,8 +18,8 @@ def build() -> iota.World:
     present(world)
     world.draw_ties("spring", looks.capsule(0.022, "rubber", color="#c8842c"))
 
-    @world.action("push", key="p", help="pushes what you hold, or what you have selected")
-    def push(event: iota.Event) -> None:
+    @world.action("nudge", key="n", help="nudges what you hold, or what you have selected")
+    def nudge(event: iota.Event) -> None:
         for particle in event.body.particles:
             particle.velocity += (1.5, 0, 0)
 

@@ -93,9 +93,10 @@ def beads(world: iota.World, middle: iota.Vec3) -> None:
     group = system.group("beads")
     golden = math.pi * (3 - math.sqrt(5))
     for i in range(BEADS):
-        height, turn = 1 - 2 * (i + 0.5) / BEADS, i * golden
+        height, turn = (i + 0.5) / BEADS - 1, i * golden
         around = math.sqrt(1 - height**2)
-        place = middle + iota.Vec3(around * math.cos(turn), height, around * math.sin(turn)) * (0.7 * BOWL)
+        far = (BOWL - BEAD) * ((i * 0.618) % 1) ** (1 / 3)  # evenly in the lower half
+        place = middle + iota.Vec3(around * math.cos(turn), height, around * math.sin(turn)) * far
         bead = point(system, place, mass=0.05, radius=BEAD)
         system.inside(bead, iota.Sphere(BOWL - BEAD), at=middle)
         group.add(bead)
