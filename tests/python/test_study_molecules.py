@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -109,3 +110,7 @@ def test_the_soft_molecule_settles_longer_than_the_rigid_one() -> None:
         settle(system)
         lengths.append(molecule.NAIL.y - min(particle.position.y for particle in system.particles))
     assert lengths[1] > 1.1 * lengths[0]
+    # No part of it lies in another one: atoms without a bond between them keep more than a bond's length apart.
+    bonded = {frozenset(bond.ends) for bond in system.bonds if bond.law.name == "spring"}
+    pairs = [pair for pair in combinations(system.particles, 2) if frozenset(pair) not in bonded]
+    assert min(abs(p.position - q.position) for p, q in pairs) > 0.9 * soft_molecule.ROOM

@@ -6,6 +6,7 @@ import { existsSync, mkdtempSync } from "node:fs";
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import path from "node:path";
+import { createInterface } from "node:readline";
 
 const root = path.resolve(import.meta.dirname, "..", "..");
 const iota = path.join(root, ".venv", "bin", "iota");
@@ -34,14 +35,17 @@ export class WorldServer {
   readonly port: number;
   /** The page's address with its token. */
   readonly url: string;
+  /** The JSON objects that the script has printed, oldest first. */
+  readonly reports: readonly object[];
   private readonly process_: ChildProcess;
   private readonly lines_: string[];
 
-  private constructor(port: number, url: string, process: ChildProcess, lines: string[]) {
+  private constructor(port: number, url: string, process: ChildProcess, lines: string[], reports: object[]) {
     this.port = port;
     this.url = url;
     this.process_ = process;
     this.lines_ = lines;
+    this.reports = reports;
   }
 
   /** Starts `iota run WHAT` and waits for its address. The state folder keeps the token over a restart. */
@@ -53,32 +57,29 @@ export class WorldServer {
       cwd: root, env: { ...process.env, ...environment, XDG_STATE_HOME: stateFolder, PYTHONUNBUFFERED: "1" },
     });
     const lines: string[] = [];
+    const reports: object[] = [];
     const url = await new Promise<string>((resolve, reject) => {
       const timer = setTimeout(() => reject(new Error(`no address after ${startsWithinMs} ms:\n${lines.join("\n")}`)), startsWithinMs);
-      const take = (chunk: Buffer) => {
-        for (const line of chunk.toString().split("\n")) {
-          if (line === "") continue;
-          lines.push(line);
-          const found = /https?:\/\/\S*[?&]token=\S+/.exec(line);
-          if (found === null) continue;
-          clearTimeout(timer);
-          resolve(found[0]);
-        }
+      const take = (line: string) => {
+        lines.push(line);
+        if (line.startsWith("{")) reports.push(JSON.parse(line) as object);
+        const found = /https?:\/\/\S*[?&]token=\S+/.exec(line);
+        if (found === null) return;
+        clearTimeout(timer);
+        resolve(found[0]);
       };
-      process_.stdout.on("data", take);
-      process_.stderr.on("data", take);
+      for (const input of [process_.stdout, process_.stderr]) createInterface({ input }).on("line", take);
       process_.on("exit", (code) => {
         clearTimeout(timer);
         reject(new Error(`iota run ended with ${code}:\n${lines.join("\n")}`));
       });
     });
-    return new WorldServer(port, url, process_, lines);
+    return new WorldServer(port, url, process_, lines, reports);
   }
 
-  /** The newest JSON object that the script printed. */
+  /** The newest of them. */
   get report(): { articulates: number; held: number; structure_version: number } | null {
-    const line = this.lines_.findLast((text) => text.startsWith("{"));
-    return line === undefined ? null : (JSON.parse(line) as { articulates: number; held: number; structure_version: number });
+    return (this.reports.at(-1) ?? null) as { articulates: number; held: number; structure_version: number } | null;
   }
 
   get pid(): number {

@@ -61,4 +61,4 @@ def present(world: iota.World, nail: iota.Vec3 = NAIL) -> None:
     world.add_strut((x, y, z - 0.5), (x, y, z), looks.cylinder(0.012, "steel"))
     world.add_strut((x, 0, z - 0.5), (x, y + 0.06, z - 0.5), looks.cylinder(0.025, "wood"))
     world.add_static(looks.box((0.7, 0.03, 0.5), "wood"), (x, 0.015, z - 0.5))
-    world.camera = iota.Camera(position=(0.75, 1.0, 1.75), target=(x, y - 0.42, z - 0.1))
+    world.camera = iota.Camera(position=(0.8, 1.05, 2.1), target=(x, y - 0.53, z - 0.1))

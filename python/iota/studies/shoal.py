@@ -17,9 +17,11 @@ MASS = 0.3  # kg, of a fish
 CRUISE = 1.2  # m/s
 KEEN = 2.0  # 1/s, how soon a fish has its speed again
 FOLLOW = 0.9  # m/s^2, towards the leader
+LEVEL = np.array([0.0, 1.0, 0.0])  # 1/s, how soon a fish swims level again
+BED = 0.7  # m: below, a fish rises
 LEAN = 0.3  # s, how soon a fish leans into a turn
 MIDDLE = np.array([0.0, 3.1, 0.0])  # of the leader's path, m
-WAY = np.array([2.6, 0.5, 2.2])  # how far it goes from there, m
+WAY = np.array([2.2, 0.5, 1.8])  # how far it goes from there, m
 BODY = (
     (0.09, 0.034, 0.017),
     (0.02, 0.05, 0.025),
@@ -86,7 +88,8 @@ class School:
         speed = np.linalg.norm(batch.velocity, axis=1, keepdims=True)
         to_leader = self._leader(batch.time) - batch.position
         distance = np.linalg.norm(to_leader, axis=1, keepdims=True)
-        push = KEEN * (CRUISE / np.maximum(speed, 0.05) - 1) * batch.velocity
+        push = (KEEN * (CRUISE / np.maximum(speed, 0.05) - 1) - LEVEL) * batch.velocity
+        push[:, 1] += 8 * np.maximum(BED - batch.position[:, 1], 0)
         return MASS * (push + FOLLOW * to_leader / np.maximum(distance, 0.5))
 
     def _forget(self) -> None:
@@ -136,4 +139,4 @@ def present(world: iota.World) -> None:
         stone = looks.Look(iota.Ellipsoid((2 * size, size, 1.6 * size)), "rubber", "#5a6a5c")
         world.add_static(stone, (x, 0.25 * size, z))
     world.stage(sky="#7fc1cf", horizon="#2f6f88", ground="#a39a76", light=0.9)
-    world.camera = iota.Camera(position=(0, 1.6, 12.5), target=(0, 3.2, 0))
+    world.camera = iota.Camera(position=(0, 2.0, 15.0), target=(0, 3.4, 0))

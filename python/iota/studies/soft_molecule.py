@@ -3,9 +3,14 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import iota
 from iota import looks, shapelib
 from iota.studies.molecule import FILE, NAIL, SCALE, present
+
+REPULSION = "energy = 0.5*k*max(r0 - r, 0)^2"
+ROOM = 0.22  # m, a little more than a bond: nearer, atoms without one push each other away
 
 
 def build() -> iota.World:
@@ -15,6 +20,9 @@ def build() -> iota.World:
     ring = shapelib.molecule(FILE, "soft", scale=SCALE, damping=0.02)
     made = (ring + (NAIL - ring.points.position[1])).realize(system, world)
     made.points[1].nail()
+    for p, q in combinations(made.points, 2):
+        if abs(p.position - q.position) > ROOM:
+            system.bond(p, q, REPULSION, k=20, r0=ROOM)
     present(world)
     world.draw_ties("spring", looks.capsule(0.022, "rubber", color="#c8842c"))
 

@@ -38,7 +38,7 @@ def build(fish: int = FISH) -> iota.World:
     for x, z in ((-2.0, 0.4), (0.9, -2.4), (-1.2, 1.4)):
         ribbon(world, weed, (x, 0, z))
     present(world)
-    world.camera = iota.Camera(position=(0, 1.4, 8.2), target=(0, 2.4, 0))
+    world.camera = iota.Camera(position=(0, 1.5, 9.0), target=(0, 2.5, 0))
     bubbles(world)
     world.draw_ties("spring", looks.capsule(0.018, "rubber", color="#5c8a4a"))
     meal = Meal(world, school, kelps)

@@ -24,6 +24,8 @@ const mostBodies = 1500;
 /** A change of size by this factor, or of place by this many sizes, is a new scene. */
 const otherSize = 2.5;
 const otherPlace = 3;
+/** A scene is at least so large, in distances from the script's camera to its target: a single rocket that flies has another size. */
+const smallest = 0.25;
 /** Radius of the pins at nails, in sizes of the scene. */
 const pinSize = 0.008;
 /** Places that widened the view of a narrow window; enough for a motion's reach. */
@@ -106,7 +108,9 @@ export class Framing implements FramePart, PageListener {
       this.kept_.clear();
       this.framed_ = bounds;
     }
-    const size = Math.max(bounds.radius, 1e-12);
+    const { hasCamera, cameraPosition: eye, cameraTarget: target } = this.world_.settings;
+    const chosen = hasCamera ? smallest * Math.hypot(...eye.map((value, axis) => value - target[axis])) : 0;
+    const size = Math.max(bounds.radius, chosen, 1e-12);
     this.viewer_.stage.setScene(bounds.center, size);
     this.world_.entities.body.size = this.viewer_.size;
     this.world_.entities.nail.pinRadius = pinSize * this.viewer_.size;
@@ -117,7 +121,7 @@ export class Framing implements FramePart, PageListener {
     } else if (isOther) {
       this.frame_(false);
     } else if (!this.navigation_.touched && !this.viewer_.presenting) {
-      if (this.world_.settings.hasCamera) this.widen_();
+      if (hasCamera) this.widen_();
       else this.follow_(bounds);
     }
   }

@@ -141,7 +141,7 @@ export class Viewer {
     const started = performance.now();
     const elapsed = this.last_ === 0 ? 16.7 : now - this.last_;
     this.last_ = now;
-    const seconds = Math.min(Math.max(elapsed, 0), longestFrameMs) / 1000;
+    const seconds = Math.min(Math.max(elapsed, 0), this.filming ? Infinity : longestFrameMs) / 1000;
     const { timing, parts_: parts } = this;
     timing.frameMs = smooth(timing.frameMs, Math.min(elapsed, 1000));
     if (this.presenting) this.invalidate();

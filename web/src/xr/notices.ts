@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page's cards in the headset: a card in front of the user, a little below the gaze, which keeps its place and
-// follows only when the user has turned away from it.
+// The page's cards in the headset: a card in front of the user, above the work, which keeps its place and follows only
+// when the user has turned away from it.
 
 import { Vector3, type Matrix4, type Object3D } from "three";
 import { Board, font, roundedBox, wrapText, type Colors } from "./board.ts";
@@ -25,7 +25,8 @@ const density = width / 0.5;
 const shownSeconds = [6, 9, Infinity];
 const most = 3;
 const away = 0.95;
-const below = 0.3;
+/** The work is at the height of the eyes or below, see standing.ts: the card's lower edge is some 15 degrees above them. */
+const above = 0.34;
 /** To the right: the wrist panel is at the left. */
 const aside = 0.24;
 /** Cosine of the angle from which on it follows: 38 degrees. */
@@ -105,7 +106,7 @@ export class Notices {
       this.goal_.copy(this.head_).addScaledVector(this.ahead_, away);
       this.goal_.x -= aside * this.ahead_.z;
       this.goal_.z += aside * this.ahead_.x;
-      this.goal_.y -= below;
+      this.goal_.y += above;
       if (this.placed_) this.at_.lerp(this.goal_, 1 - Math.exp(-seconds / easeSeconds));
       else this.at_.copy(this.goal_);
       this.placed_ = true;
