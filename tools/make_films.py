@@ -20,24 +20,44 @@ IOTA = [sys.executable, "-m", "iota"]
 FILMS = ROOT / "build" / "films"
 THUMBNAILS = ROOT / "python" / "iota" / "studies" / "pictures"
 SHEETS = ROOT / "docs" / "pictures" / "studies"
+# As wide as the page that the studies' cameras are chosen for.
+SIZE, THUMBNAIL_SIZE = "640x360", "480x270"
+COLUMNS = 3  # of a sheet
+# What a film shows of a study, if not only what happens by itself.
+SCRIPTS = {
+    "chain": """from iota import looks
+from iota.studies import chain
+
+world = chain.build(demonstrate=True)
+links = world.system.bodies
+world.at(8.5)(lambda: world.draw(links, looks.chain_link(chain.LENGTH / len(links))))
+world.run()
+""",
+}
+OPTIONS = {"physics-class": ["--plots"]}
 # Duration of a film, s, and time of its thumbnail, if they differ from the defaults.
-SECONDS = {"molecule": 12.0, "undersea": 28.0}
+SECONDS = {"chain": 12.0, "molecule": 12.0, "undersea": 28.0}
 USUAL = 10.0
-MOMENT = {"chain": 0.6, "fireworks": 2.2, "physics-class": 3.5, "playground": 0.6, "undersea": 6.4}
+MOMENT = {"chain": 0.6, "fireworks": 5.1, "physics-class": 3.5, "playground": 0.6, "undersea": 6.4}
 USUAL_MOMENT = 2.0
 
 
-def record(name: str, *arguments: str | Path) -> None:
-    command = [*IOTA, "record", name, *map(str, arguments)]
+def record(what: str | Path, *arguments: str | Path) -> None:
+    command = [*IOTA, "record", *map(str, (what, *arguments))]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 
 
 def make(name: str, with_film: bool) -> None:
     """A sheet of twelve pictures from the film, or, without a film, from twelve frames."""
     seconds = SECONDS.get(name, USUAL)
-    film = ["-o", FILMS / f"{name}.mp4"] if with_film else ["--rate", "2"]
-    record(name, "--seconds", str(seconds), "--sheet", SHEETS / f"{name}.jpg", *film)
-    once = ["--pictures", "1", "--size", "480x270", "--rate", "5"]
+    what: str | Path = name
+    if name in SCRIPTS:
+        what = FILMS / f"{name}.py"
+        what.write_text(SCRIPTS[name])
+    film = ["-o", FILMS / f"{name}.mp4"] if with_film else ["--rate", "10"]
+    sheet = ["--sheet", SHEETS / f"{name}.jpg", "--columns", str(COLUMNS), "--size", SIZE, *OPTIONS.get(name, [])]
+    record(what, "--seconds", str(seconds), *sheet, *film)
+    once = ["--pictures", "1", "--size", THUMBNAIL_SIZE, "--rate", "5"]
     record(name, "--seconds", str(2 * MOMENT.get(name, USUAL_MOMENT)), "--sheet", THUMBNAILS / f"{name}.jpg", *once)
 
 
