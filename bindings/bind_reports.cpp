@@ -194,16 +194,16 @@ auto field(Member RestructureReport::* member) {
   return [member](const RestructureResult& self) { return self.report.*member; };
 }
 
-template <class Tag>
-nb::object id_state(Id<Tag> id) {
+template <KindName kind>
+nb::object id_state(Id<kind> id) {
   return nb::make_tuple(id.slot, id.generation);
 }
 template <class Absorbed>
 nb::object id_state(const Absorbed& pair) {
   return nb::make_tuple(id_state(pair.retired), id_state(pair.survivor));
 }
-template <class Tag>
-void read_id(Id<Tag>& id, nb::handle state) {
+template <KindName kind>
+void read_id(Id<kind>& id, nb::handle state) {
   id.slot = nb::cast<std::uint32_t>(state[0]), id.generation = nb::cast<std::uint32_t>(state[1]);
 }
 template <class Absorbed>

@@ -131,9 +131,9 @@ using ConstraintHandle = Handle<ConstraintId>;
 using CosmeticBondHandle = Handle<CosmeticBondId>;
 using AngleSpringHandle = Handle<AngleSpringId>;
 
-template <class Kind>
-std::string name_of(Id<Kind> id) {
-  return std::string(Kind::name) + " " + std::to_string(id.slot);
+template <KindName kind>
+std::string name_of(Id<kind> id) {
+  return std::string(kind.text) + " " + std::to_string(id.slot);
 }
 
 /// Translates the engine's StaleIdError into Python's.

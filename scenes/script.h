@@ -61,8 +61,8 @@ class WatchedSystem {
   std::optional<std::string> check() const;
 
  private:
-  template <class Kind>
-  static void write(std::ostream& out, const Id<Kind>& id) {
+  template <KindName kind>
+  static void write(std::ostream& out, const Id<kind>& id) {
     out << ' ' << id.slot << '.' << id.generation;
   }
   static void write(std::ostream& out, const Vec3& v) { out << ' ' << v.x << ' ' << v.y << ' ' << v.z; }

@@ -16,10 +16,7 @@
 /// Laws of force and their uses. `docs/forces.md` lists the cost of each way to write a law.
 namespace iota {
 
-struct LawTag {
-  static constexpr const char* name = "law";
-};
-using LawId = Id<LawTag>;
+using LawId = Id<"law">;
 
 inline constexpr int max_law_parameters = 8;
 
@@ -94,18 +91,9 @@ struct SharedLaw {
 
 using BondLaw = std::variant<SpringLaw, DragLaw, ScriptedLaw, SharedLaw>;
 
-struct GroupTag {
-  static constexpr const char* name = "group";
-};
-using GroupId = Id<GroupTag>;
-struct FieldTag {
-  static constexpr const char* name = "field";
-};
-using FieldId = Id<FieldTag>;
-struct PairsTag {
-  static constexpr const char* name = "pairwise force";
-};
-using PairsId = Id<PairsTag>;
+using GroupId = Id<"group">;
+using FieldId = Id<"field">;
+using PairsId = Id<"pairwise force">;
 
 inline constexpr int max_field_parameters = 12;
 inline constexpr int max_groups = 32;

@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 
 namespace iota {
 
-/// Identifies an object of a `System`: slot + generation, one distinct type per kind.
-/// `Kind::name` is the kind's word in error texts. A default-constructed id is null. An id stays valid over snapshot and
-/// restore; once its object is destroyed it is *stale* for ever, since a reused slot gets a new generation.
-template <class Kind>
+/// The word of a kind in error texts, as an argument of a template.
+template <std::size_t size>
+struct KindName {
+  char text[size];
+  consteval KindName(const char (&word)[size]) { std::copy_n(word, size, text); }  // implicit: Id<"body">
+};
+
+/// Identifies an object of a `System`: slot + generation, one distinct type per kind. A default-constructed id is null.
+/// An id stays valid over snapshot and restore; once its object is destroyed it is *stale* for ever, since a reused slot
+/// gets a new generation.
+template <KindName kind>
 struct Id {
   std::uint32_t slot = 0;
   std::uint32_t generation = 0;
@@ -24,37 +33,13 @@ struct StaleIdError : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-struct BodyTag {
-  static constexpr const char* name = "body";
-};
-using BodyId = Id<BodyTag>;
-struct ParticleTag {
-  static constexpr const char* name = "particle";
-};
-using ParticleId = Id<ParticleTag>;  ///< one body's point of a (possibly shared) particle
-struct BondTag {
-  static constexpr const char* name = "bond";
-};
-using BondId = Id<BondTag>;
-struct CosmeticBondTag {
-  static constexpr const char* name = "cosmetic bond";
-};
-using CosmeticBondId = Id<CosmeticBondTag>;
-struct AngleSpringTag {
-  static constexpr const char* name = "angle spring";
-};
-using AngleSpringId = Id<AngleSpringTag>;
-struct EmitterTag {
-  static constexpr const char* name = "emitter";
-};
-using EmitterId = Id<EmitterTag>;
-struct GripTag {
-  static constexpr const char* name = "grip";
-};
-using GripId = Id<GripTag>;
-struct ConstraintTag {
-  static constexpr const char* name = "constraint";
-};
-using ConstraintId = Id<ConstraintTag>;
+using BodyId = Id<"body">;
+using ParticleId = Id<"particle">;  ///< one body's point of a (possibly shared) particle
+using BondId = Id<"bond">;
+using CosmeticBondId = Id<"cosmetic bond">;
+using AngleSpringId = Id<"angle spring">;
+using EmitterId = Id<"emitter">;
+using GripId = Id<"grip">;
+using ConstraintId = Id<"constraint">;
 
 }  // namespace iota

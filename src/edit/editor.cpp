@@ -12,19 +12,19 @@ namespace {
 constexpr Seal snapshot_seal{{'I', 'O', 'T', 'A', 'S', 'N', 'P', '9'}, "snapshot"};
 
 /// `survivor()`: the object that absorbed it, called only for a stale id.
-template <class Table, class Kind, class Survivor>
-std::uint32_t slot_of(const Table& table, Id<Kind> id, Survivor survivor) {
-  const std::string_view kind = Kind::name;
+template <class Table, KindName name, class Survivor>
+std::uint32_t slot_of(const Table& table, Id<name> id, Survivor survivor) {
+  const std::string_view kind = name.text;
   if (table.contains(id)) return id.slot;
   if (!id) throw StaleIdError(text("this ", kind, " id is null: it never named a ", kind));
-  if (const std::optional<Id<Kind>> other = survivor())
+  if (const std::optional<Id<name>> other = survivor())
     throw StaleIdError(text(kind, " ", id.slot, " is gone: it was absorbed by ", kind, " ", other->slot));
   throw StaleIdError(text(kind, " ", id.slot, " is gone: it was destroyed"));
 }
 
-template <class Table, class Kind>
-std::uint32_t slot_of(const Table& table, Id<Kind> id) {
-  return slot_of(table, id, [] { return std::optional<Id<Kind>>(); });
+template <class Table, KindName name>
+std::uint32_t slot_of(const Table& table, Id<name> id) {
+  return slot_of(table, id, [] { return std::optional<Id<name>>(); });
 }
 
 }  // namespace

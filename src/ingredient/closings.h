@@ -16,7 +16,7 @@ struct Closing : model::Ends {
 class Closings : public NoAnswers {
  public:
   struct Tables {
-    model::EndTable<Closing, Id<Closing>> closings;
+    model::EndTable<Closing, Id<"closing">> closings;
 
     template <class Archive>
     void archive(Archive& ar, const Structure& structure) {

@@ -18,7 +18,7 @@ class Joints : public NoAnswers {
     SlotTable<Constraint, ConstraintId> constraints;
     SideTable<model::ListHead> places;  ///< of particles: the head of the list of their places
     std::vector<Vec3> curve_points;     ///< of paths, m
-    SlotTable<CoupledTerm, Id<CoupledTerm>> coupled_terms;
+    SlotTable<CoupledTerm, Id<"coupled term">> coupled_terms;
     /// Of function surfaces, by key; not saved.
     std::map<std::uint64_t, SurfaceFunction> surface_functions;
     std::vector<ConstraintGeometry> geometries;  ///< by slot of the constraint; not saved

@@ -151,16 +151,16 @@ class Structure {
   SlotTable<Particle, ParticleId> particles;
   SideTable<Tie> ties;      ///< of particles outside of a basis
   SideTable<double> fuses;  ///< breaking load of the hinge or nail of a particle, N
-  SlotTable<Ring, Id<Ring>> rings;
+  SlotTable<Ring, Id<"ring">> rings;
   SlotTable<Body, BodyId> bodies;
   SideTable<MoreRows> more_rows;   ///< of bodies
   SideTable<double> body_damping;  ///< of bodies, 1/s
   Corrections corrections;         ///< of rings
-  SlotTable<InertiaPair, Id<InertiaPair>> inertia_pairs;
-  SlotTable<Solid, Id<Solid>> solids;
-  SlotTable<Twin, Id<Twin>> twins;
-  SlotTable<Attributes, Id<Attributes>> attributes;
-  SlotTable<Articulate, Id<Articulate>> articulates;
+  SlotTable<InertiaPair, Id<"inertia pair">> inertia_pairs;
+  SlotTable<Solid, Id<"solid">> solids;
+  SlotTable<Twin, Id<"twin">> twins;
+  SlotTable<Attributes, Id<"attributes">> attributes;
+  SlotTable<Articulate, Id<"articulate">> articulates;
   SlotTable<Group, GroupId> groups;
   std::uint32_t structure_version = 1;
   std::uint32_t spark_changes = 0;     ///< rises of `structure_version` by births and deaths of sparks

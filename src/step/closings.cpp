@@ -8,7 +8,7 @@ namespace iota::step {
 
 void finish_closings(edit::Editor& editor, StepReport& report) {
   model::Model& model = editor.model;
-  std::vector<std::pair<Id<ingredient::Closing>, edit::CombineParticles>> due;
+  std::vector<std::pair<Id<"closing">, edit::CombineParticles>> due;
   model.closings.for_each([&](std::uint32_t slot, ingredient::Closing& c) {
     c.elapsed += report.dt;
     if (c.elapsed >= c.duration)

@@ -12,7 +12,7 @@
 namespace iota {
 namespace {
 
-using TestId = Id<struct TestTag>;
+using TestId = Id<"test">;
 using Table = SlotTable<double, TestId>;
 
 std::vector<std::byte> saved(Table& table) {
