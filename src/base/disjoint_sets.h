@@ -18,7 +18,9 @@ class DisjointSets {
     return i;
   }
   /// The root of the second one's set becomes that of both.
-  void join(std::uint32_t a, std::uint32_t b) { parent_[root(a)] = root(b); }
+  void join(std::uint32_t a, std::uint32_t b) { set_parent(root(a), root(b)); }
+  /// The same of two roots.
+  void set_parent(std::uint32_t root, std::uint32_t parent) { parent_[root] = parent; }
 
  private:
   std::vector<std::uint32_t> parent_;

@@ -55,9 +55,9 @@ void Integrator::make_room(const Problem& problem) {
 
 AdvanceReport Integrator::advance(Problem& problem, double h, const IntegratorSettings& settings) {
   AdvanceReport report;
+  if (settings.max_turn != settings_.max_turn) least_turn_cosine_ = std::cos(settings.max_turn);
   settings_ = settings;
   newton_.add_times_to(times_of_thread());
-  largest_turn_cosine_ = std::cos(settings.max_turn);
   step_length_ = h;
   constexpr int unlimited = std::numeric_limits<int>::max();
   iterations_left_ = settings.max_iterations > 0 ? settings.max_iterations : unlimited;
@@ -248,7 +248,7 @@ bool Integrator::will_turn_too_far(const Problem& problem, double h) const {
 
 bool Integrator::turns_too_far(const Problem& problem) const {
   const auto x1 = newton_.solution();
-  const double least = largest_turn_cosine_ * largest_turn_cosine_;
+  const double least = least_turn_cosine_ * least_turn_cosine_;
   for (const auto& c : problem.items_of<DistanceConstraint>()) {
     const Vec3 d0 = problem.position[c.nodes[1]] - problem.position[c.nodes[0]];
     const Vec3 d1 = x1[c.nodes[1]] - x1[c.nodes[0]];

@@ -12,6 +12,7 @@
 #include "solver/settings.h"
 #include "solver/spin.h"
 
+#include <cmath>
 #include <limits>
 #include <memory>
 
@@ -139,7 +140,7 @@ class Integrator {
 
   // Of the present step.
   IntegratorSettings settings_;
-  double largest_turn_cosine_ = 0;
+  double least_turn_cosine_ = std::cos(settings_.max_turn);
   double step_length_ = 0;  ///< s
   EnergyBalance energy_;
   Holds holds_;

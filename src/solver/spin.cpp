@@ -62,7 +62,11 @@ void Spin::find_parts(const Problem& problem, Connection connection, const Holds
 /// Whether any single body may be left one or two motions by its rows, beside pieces of one member, which already get all.
 bool Spin::find_members(const Problem& problem) {
   constexpr std::uint32_t most_nodes = 4, fewest_rows = 4;
-  if (!problem.has_used_constraints()) return false;
+  std::size_t rows_of_joints = 0;
+  problem.for_each_constraint_pool([&]<class C>(const ConstraintPool<C>& pool) {
+    if constexpr (!std::is_same_v<C, DistanceConstraint>) rows_of_joints += pool.items.size() * C::rows;
+  });
+  if (rows_of_joints < fewest_rows) return false;
   auto& [members, member_of] = members_;
   if (member_of.size() != problem.size()) {
     members.resize(find_pieces(problem, Connection::lengths, member_of));
