@@ -101,7 +101,7 @@ class Newton {
   template <bool Midpoint>
   bool find_step(const Problem&, const Stage&, Hessian);
   template <bool Midpoint>
-  int shorten(Problem&, const Stage&, double before);
+  int stretch(Problem&, const Stage&, double before, bool is_clamped);
   double merit(const Problem&, const Stage&, const Vec3* x) const;
   bool is_balanced() const;
   /// Factor of round-off for links far from the origin; at least 1.
@@ -110,7 +110,7 @@ class Newton {
   template <bool Midpoint>
   void polish(Problem&, const Stage&, NewtonReport&, bool factor_is_old);
   void take_step(Problem&, const Stage&);
-  void halve_step(Problem&, const Stage&);
+  void scale_step(Problem&, const Stage&, double factor);
   template <bool Midpoint>
   void take_back_step(Problem&, const Stage&);
 

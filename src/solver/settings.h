@@ -68,8 +68,9 @@ struct IntegratorSettings {
 /// Of Newton's method; residuals are scaled to displacements in link lengths.
 struct NewtonSettings {
   static constexpr int max_halvings = 12;          ///< of a Newton step
+  static constexpr int max_doublings = 12;         ///< of one with a clamped Hessian
   static constexpr double exact_below = 1e-2;      ///< residual below which the exact Hessian is used with any pivots
-  static constexpr double fast = 0.5;              ///< convergence; slower steps are checked, and shortened
+  static constexpr double fast = 0.5;              ///< convergence; slower steps are checked, and stretched
   static constexpr double round_off_floor = 1e-8;  ///< a residual below it that no step reduces counts as zero
   static constexpr double noise = 10;              ///< times the estimate of round-off: the same
   /// A costly factor is used again after an iteration that reduced the residual to this part; then to the second.

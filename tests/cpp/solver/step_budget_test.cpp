@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace iota::solver {
@@ -78,6 +79,24 @@ void expect_steady(const Problem& problem, int steps) {
 }
 
 TEST(StepCost, of_a_load_that_falls_into_a_taut_net_stays_below_ten_usual_steps) { expect_steady(taut_net(0.01), 40); }
+
+/// It took 200 iterations, whose steps beside saddles were a small part of the way to go.
+TEST(StepCost, of_cloth_that_buckles_is_below_a_hundred_iterations) {
+  constexpr std::uint32_t side = 32;
+  Problem problem;
+  problem.gravity = {0, -9.81, 0};
+  for (std::uint32_t i = 0; i < side; ++i)
+    for (std::uint32_t j = 0; j < side; ++j) (void)add_point(problem, {1.0 * i / side, 2, 1.0 * j / side}, 1e-3);
+  for (std::uint32_t i = 0; i < side; ++i)
+    for (std::uint32_t j = 0; j < side; ++j)
+      for (const auto [x, y] : {std::pair{i + 1, j}, {i, j + 1}, {i + 1, j + 1}})
+        if (x < side && y < side) {
+          const std::uint32_t p = side * i + j, q = side * x + y;
+          add_spring(problem, p, q, 1e4, norm(problem.position[q] - problem.position[p]));
+        }
+  nail(problem, 0), nail(problem, side * (side - 1));
+  EXPECT_EQ(costs_of_steps(problem, 40, IntegratorSettings::robust(), 100).cut_short, 0);
+}
 
 TEST(StepCost, of_an_unchanged_conflict_stays_below_ten_usual_steps) {
   for (const std::uint32_t links : {2u, 20u, 100u}) {  // of 1 m in all, between nails 1.5 m apart
