@@ -107,14 +107,58 @@ describe("the page", () => {
     await visit({ width: 1000, height: 640, dark }, async (tab) => {
       await tab.page.keyboard.press("?");
       await tab.page.locator("#help[open]").waitFor();
-      await tab.page.waitForTimeout(400);
+      await tab.untilShown();
       expect(await tab.page.evaluate(faint)).toEqual([]);
+    });
+  });
+
+  it("tells a screen reader what each of its controls, panels and pictures is", async () => {
+    await visit({ width: 1000, height: 640 }, async (tab) => {
+      await tab.page.evaluate(() => iota.select(iota.bodies()[0]));
+      await tab.page.keyboard.press("?");
+      await tab.page.locator("#help[open]").waitFor();
+      const cdp = await tab.page.context().newCDPSession(tab.page);
+      const { nodes } = await cdp.send("Accessibility.getFullAXTree");
+      const named = ["button", "slider", "checkbox", "combobox", "textbox", "dialog", "toolbar", "img", "image", "menu", "Canvas", "DisclosureTriangle"];
+      const seen = nodes.filter(({ ignored, role }) => !ignored && named.includes(String(role?.value)));
+      // While the dialog is open, the rest is out of reach; both are looked at.
+      await tab.page.keyboard.press("Escape");
+      await tab.page.locator("#help[open]").waitFor({ state: "detached" }).catch(() => {});
+      const { nodes: others } = await cdp.send("Accessibility.getFullAXTree");
+      seen.push(...others.filter(({ ignored, role }) => !ignored && named.includes(String(role?.value))));
+      const roles = new Set(seen.map(({ role }) => String(role?.value)));
+      for (const role of ["button", "slider", "checkbox", "combobox", "textbox", "dialog", "toolbar"]) expect(roles, role).toContain(role);
+      expect(seen.filter(({ name }) => String(name?.value ?? "").trim() === "").map(({ role, backendDOMNodeId }) => `${String(role?.value)} ${backendDOMNodeId}`)).toEqual([]);
+    });
+  });
+
+  it.each([["at 200 % zoom", { width: 500, height: 320 }], ["on a phone", { width: 390, height: 844, touch: true }]])("has its help, its script's controls and its cards wholly in the window, or they scroll: %s", async (_, options) => {
+    await visit(options, async (tab) => {
+      const outside = (selector: string) => tab.page.evaluate((chosen) => {
+        const found: string[] = [];
+        const element = document.querySelector<HTMLElement>(chosen)!;
+        const { left, top, right, bottom } = element.getBoundingClientRect();
+        if (left < -0.5 || top < -0.5 || right > innerWidth + 0.5 || bottom > innerHeight + 0.5) found.push(`${chosen}: ${[left, top, right, bottom].map(Math.round).join(" ")}`);
+        const scrolls = (each: HTMLElement) => ["auto", "scroll"].includes(getComputedStyle(each).overflowY);
+        if (element.scrollHeight > element.clientHeight + 2 && ![element, ...element.querySelectorAll<HTMLElement>("*")].some(scrolls)) found.push(`${chosen} is cut off`);
+        return found;
+      }, selector);
+      await tab.untilShown();
+      const panel = tab.page.locator("#panel");
+      if (!(await panel.evaluate((element) => (element as HTMLDetailsElement).open))) await panel.locator("summary").click();
+      await tab.untilShown();
+      expect(await outside("#panel")).toEqual([]);
+      expect(await outside("#cards .card")).toEqual([]);
+      await tab.page.keyboard.press("?");
+      await tab.page.locator("#help[open]").waitFor();
+      await tab.untilShown();
+      expect(await outside("#help")).toEqual([]);
     });
   });
 
   it.each([["at 200 % zoom", { width: 640, height: 360 }, 24], ["on a phone", { width: 390, height: 844, touch: true }, 40], ["on a phone that lies", { width: 844, height: 390, touch: true }, 40]])("has all its controls %s", async (name, options, least) => {
     await visit(options, async (tab) => {
-      await tab.page.waitForTimeout(500);
+      await tab.untilShown();
       await tab.picture(`page_access_${name.replaceAll(/\W+/g, "_")}`);
       expect(await tab.page.evaluate(misplaced, least)).toEqual([]);
     });

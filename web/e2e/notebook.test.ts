@@ -29,7 +29,14 @@ describe("a cell of a notebook", () => {
     await page.mouse.move(300, 300);
     await frame.evaluate(() => iota.page.commands.run("play"));
     await frame.waitForFunction(() => iota.paused);
-    await page.waitForTimeout(700);
+    // The drawn poses come to rest a little later.
+    let before = "";
+    await expect.poll(async () => {
+      const now = await frame.evaluate(() => iota.bodyPosition(5).join());
+      const isStill = now === before;
+      before = now;
+      return isStill;
+    }, { interval: 100 }).toBe(true);
     const [x, y] = await frame.evaluate(() => iota.screenPosition(5)!);
     const box = (await page.locator("iframe").boundingBox())!;
     await page.mouse.move(box.x + x, box.y + y);

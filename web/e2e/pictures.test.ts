@@ -37,13 +37,13 @@ async function picture(name: string): Promise<void> {
 
 describe("pictures", () => {
   it("show both looks, a drag, the dark theme and a phone", async () => {
-    await tab.page.waitForTimeout(1200);
+    await tab.goOn(0.5);
     await picture("rope");
     await tab.page.keyboard.press("l");
     await tab.pause(false);
     const [x, y] = await tab.take(15);
     await tab.page.mouse.move(x + 60, y - 90, { steps: 5 });
-    await tab.page.waitForTimeout(900);
+    await tab.goOn(0.5);
     await picture("chain_drag");
     await tab.page.emulateMedia({ colorScheme: "dark" });
     await picture("dark");

@@ -36,7 +36,7 @@ describe("iota run chain", () => {
   it("is found again by an open page after the server was killed", async () => {
     await server.stop("SIGKILL");
     await tab.until("the page says so", () => !iota.connected && document.querySelector("#cards .card") !== null);
-    await tab.page.waitForTimeout(700);
+    await tab.untilShown();
     await tab.picture("server_gone");
     expect(await tab.page.evaluate(() => document.querySelector("#view")?.classList.contains("away"))).toBe(true);
     server = await WorldServer.start(["chain"], port, state);

@@ -65,7 +65,7 @@ describe("on a phone", () => {
     await tab.touch("touchStart", [nothing]);
     for (let step = 1; step <= 5; step++) await tab.touch("touchMove", [[nothing[0] - 20 * step, nothing[1]]]);
     await tab.lift();
-    await tab.page.waitForTimeout(600);
+    await tab.eyeAtRest();
     const orbited = await eye();
     expect(distance(before, orbited)).toBeGreaterThan(0.3);
     const range = async () => tab.page.evaluate(() => iota.page.viewer.camera.position.length());
@@ -73,10 +73,10 @@ describe("on a phone", () => {
     await tab.touch("touchStart", [[60, 700], [330, 700]]);
     for (let step = 1; step <= 5; step++) await tab.touch("touchMove", [[60 + 20 * step, 700], [330 - 20 * step, 700]]);
     await tab.lift();
-    await tab.page.waitForTimeout(600);
+    await tab.eyeAtRest();
     expect(await range()).toBeGreaterThan(far * 1.2);
     await tab.page.keyboard.press("Home");
-    await tab.page.waitForTimeout(800);
+    await tab.eyeAtRest();
   });
 
   it("a long press opens the actions, and a tap on one breaks the chain", async () => {

@@ -149,6 +149,28 @@ describe("an emulated headset", () => {
     await me.look(0, 0);
   });
 
+  it("selects several by the panel and the trigger", async () => {
+    await me.tab.page.evaluate(() => iota.select(-1));
+    const press = async () => {
+      await me.look(0.3, -0.25);
+      await me.pointAtPanel("right", [0.12, 1.38, -0.2], "select several");
+      await me.click("right", "trigger");
+      await me.look(0, 0);
+    };
+    await press();
+    for (const body of [8, link]) {
+      await pointAtLink(body);
+      await me.click("right", "trigger");
+    }
+    await me.tab.until("both are selected", (both) => JSON.stringify(iota.page.selection.actionBodies) === JSON.stringify(both), [8, link]);
+    await press();
+    await pointAtLink(link);
+    await me.click("right", "trigger");
+    await pointAtLink(10);
+    await me.click("right", "trigger");
+    await me.tab.until("one is", () => JSON.stringify(iota.page.selection.actionBodies) === "[10]");
+  });
+
   it("turns by 30 degrees about the head with the stick", async () => {
     const before = await me.tab.page.evaluate(() => ({ rig: iotaXR!.rig(), head: iotaXR!.head() }));
     await me.stick("right", 1, 0);

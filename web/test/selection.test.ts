@@ -131,6 +131,25 @@ describe("the selection", () => {
     expect(selected).toEqual([0, 1, 0]);
   });
 
+  it("is added to by each press while several are selected", () => {
+    const bench = new Bench();
+    const { selection } = bench;
+    const take = (x: number) => {
+      bench.aim(x);
+      bench.press(true);
+      bench.press(false);
+    };
+    selection.adding = true;
+    take(1);
+    take(3);
+    expect(selection.actionBodies).toEqual([0, 1]);
+    take(1);
+    expect(selection.actionBodies).toEqual([1]);
+    selection.adding = false;
+    take(1);
+    expect(selection.actionBodies).toEqual([0]);
+  });
+
   it("may be of several bodies, which an action is about, and which go one by one", () => {
     const bench = new Bench();
     const { selection } = bench;

@@ -10,7 +10,7 @@ from typing import Any
 from iota.sounds import SoundFile
 from iota.world.things import Field, Place, Thing, anchor, length, place, place_of, text, unit_quaternion
 
-MOST_VALUES = 65_536  # characters, as JSON
+MOST_VALUES = 65_536  # bytes, as JSON
 
 
 class Custom(Thing):
@@ -21,36 +21,25 @@ class Custom(Thing):
     class_name, at, rotation = Field(text), Field(place), Field(unit_quaternion)
 
     @staticmethod
-    def _values_of(value: Any) -> str:
+    def _checked(value: Any) -> dict[str, Any]:
+        """A copy of it, as pages get it."""
         try:
             written = json.dumps(dict(value), allow_nan=False)
         except (TypeError, ValueError) as error:
             raise ValueError(
                 f"must be a dictionary of finite numbers, texts, lists and dictionaries: {error}"
             ) from None
-        if len(written.encode()) > MOST_VALUES:
-            raise ValueError(f"may have {MOST_VALUES} bytes at most, not {len(written.encode())}")
-        return written
+        if len(written) > MOST_VALUES:
+            raise ValueError(f"may have {MOST_VALUES} bytes at most, not {len(written)}")
+        return json.loads(written)  # type: ignore[no-any-return]
 
-    _written = Field(_values_of)
-
-    @property
-    def values(self) -> dict[str, Any]:
-        """A copy; change it by assigning one."""
-        return json.loads(self._written)  # type: ignore[no-any-return]
-
-    @values.setter
-    def values(self, values: dict[str, Any]) -> None:
-        try:
-            self._written = values
-        except ValueError as error:
-            raise ValueError(str(error).replace("_written", "values", 1)) from None
+    values = Field(_checked)
 
     def _record(self) -> dict[str, Any] | None:
         at = anchor(self.at)
         if at is None:
             return None
-        return {"class_name": self.class_name, "at": at, "rotation": self.rotation, "values": self._written}
+        return {"class_name": self.class_name, "at": at, "rotation": self.rotation, "values": json.dumps(self.values)}
 
 
 class Sound(Thing):

@@ -87,7 +87,7 @@ class Interacting(Drawing, Listening):
         return Socket(self, place, plugs, within, on_snap, pull)
 
     def show_forces(self, bodies: Iterable[Body] | None = None, scale: float | None = None) -> Forces:
-        """Arrows for the forces of nails (red), hinges (blue) and hands on bodies (None: all), of length force times
+        """Arrows for the forces of nails (red) and hinges (blue) on bodies (None: all), of length force times
         `scale` (m/N; None: the largest is a fifth of the scene). `forces.destroy()` removes them.
 
         forces = world.show_forces()

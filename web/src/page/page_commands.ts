@@ -202,17 +202,17 @@ export function pageCommands({ world, session, selection, viewer, navigation, fr
     },
     {
       name: "select several",
-      help: "a drag on nothing selects all within; so does Ctrl and a drag, and Ctrl and a click adds one",
+      help: "a drag on nothing selects all within, a press adds one; so do Ctrl and a drag, Ctrl and a click",
       keys: ["o"],
-      places: ["bar"],
+      places: ["bar", "panel foot"],
       title: () => "Select several",
       sign: () => signs.several,
       // Without a keyboard there is no Ctrl.
-      offered: () => matchMedia("(pointer: coarse)").matches,
+      offered: () => viewer.presenting || matchMedia("(pointer: coarse)").matches,
       active: () => navigation.banding,
       run: () => {
-        navigation.banding = !navigation.banding;
-        say("band", navigation.banding ? "A drag on nothing selects all within" : "Orbit: drag turns the view");
+        selection.adding = navigation.banding = !navigation.banding;
+        say("band", navigation.banding ? "A press adds a body, a drag on nothing selects all within" : "A press selects one body");
       },
     },
     {

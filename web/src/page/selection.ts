@@ -19,6 +19,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
   private readonly session_: SelectionSession;
   private readonly viewer_: Pick<Viewer, "invalidate">;
   private readonly events_: Events;
+  /** A press on a body adds it to the selection, or takes it out. */
+  adding = false;
   private selected_ = -1;
   /** Selected besides that one. */
   private readonly more_ = new Set<number>();
@@ -156,7 +158,8 @@ export class Selection implements GestureListener, FramePart, PageListener {
 
   grabStarted(grab: Grab): void {
     // A hand on one of several keeps them all: an action is about them.
-    if (grab.body !== this.selected_ && !this.more_.has(grab.body)) this.select(grab.body);
+    if (this.adding) this.toggle(grab.body);
+    else if (grab.body !== this.selected_ && !this.more_.has(grab.body)) this.select(grab.body);
     this.session_.send({
       type: "grabStart", hold: grab.hold, body: this.session_.idOf(grab.body), localPoint: vec3(grab.localPoint), target: vec3(grab.target),
     });

@@ -26,16 +26,17 @@ export const headHeight = 92;
 const edge = 26;
 const gap = 14;
 const row = 124;
-const narrow = 96;
-const reading = 112;
+const pictogram = 106;
+const narrow = 84;
+const reading = 104;
 const actionsInRow = 3;
-const footInRow = 4;
+const footInRow = 5;
 
 /** Width of a command's button, px; 0: an equal share of the remaining width of its row. */
 function widthOf(command: Entry): number {
   if (isChoice(command)) return command.wide === true ? 0 : reading;
   if (command.sign === undefined) return 0;
-  return command.narrow === true ? narrow : row;
+  return command.narrow === true ? narrow : pictogram;
 }
 
 /** Spreads commands over a row. A command that is not offered now keeps its place, so that the others do not jump. */

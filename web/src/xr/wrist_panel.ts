@@ -18,6 +18,11 @@ const readEverySeconds = 0.25;
 
 type PanelPage = Pick<Page, "world" | "session" | "selection" | "gestures" | "viewer" | "commands">;
 
+/** px */
+const labelSize = 44;
+/** Of that size. */
+const smallestLabel = 0.65;
+
 export class WristPanel {
   readonly board = new Board(density);
 
@@ -186,12 +191,17 @@ export class WristPanel {
       return;
     }
     context.globalAlpha = dim ? 0.6 : 1;
-    context.font = `600 44px ${font}`;
+    context.font = `600 ${labelSize}px ${font}`;
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.fillStyle = ink;
     const badgeRoom = button.badge === "" ? 0 : 74;
-    context.fillText(fitText(context, command.label?.() ?? command.title(), button.width - 28 - badgeRoom), x - badgeRoom / 2, y + 2);
+    const label = command.label?.() ?? command.title();
+    const room = button.width - 28 - badgeRoom;
+    // A long one is written smaller before it is cut.
+    const share = Math.max(room / context.measureText(label).width, smallestLabel);
+    if (share < 1) context.font = `600 ${share * labelSize}px ${font}`;
+    context.fillText(fitText(context, label, room), x - badgeRoom / 2, y + 2);
     if (button.badge !== "") {
       const side = 54;
       roundedBox(context, { x: button.x + button.width - side - 22, y: y - side / 2, width: side, height: side }, side / 2, on ? colors.onCalm : colors.paper);

@@ -336,7 +336,10 @@ export class BodyView implements EntityView<BodyEntity>, Pickable, StyleUser {
   /** "link 12"; empty if there is no such body. */
   nameOf(body: number): string {
     const entity = this.bodies_.get(body)?.entity;
-    return entity === undefined ? "" : `${this.styles_.nameOf(entity.style)} ${body}`;
+    if (entity === undefined) return "";
+    const name = this.styles_.nameOf(entity.style);
+    // Those that the world makes up mean nothing to users.
+    return `${/^class \d+$/.test(name) ? "body" : name} ${body}`;
   }
 
   addOutline(outline: Outline): void {
