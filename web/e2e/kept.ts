@@ -95,7 +95,7 @@ export async function compare(tab: Tab, one: string, other: string, grid = usual
   }, [one, other, far, grid] as const);
 }
 
-/** The drawn world at a third of the window's size, without what the page has around it; in the flat page or the headset. */
+/** The drawn world, at its full resolution and then reduced to this size, without what the page has around it. */
 export async function pictureOf(tab: Tab, width: number, height: number): Promise<string> {
   return tab.page.evaluate(async ([wide, high]) => {
     const image = new Image();

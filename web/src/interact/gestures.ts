@@ -37,9 +37,9 @@ export class Pointer {
   depth = 0;
   /** Of a hand or controller, for scripts: x y z w in the world; how far its buttons are pressed; its sticks; its joints in the world, m. */
   readonly rotation: [number, number, number, number] = [0, 0, 0, 1];
-  buttons: ArrayLike<number> = [];
-  axes: ArrayLike<number> = [];
-  joints: ArrayLike<number> = [];
+  readonly buttons: number[] = [];
+  readonly axes: number[] = [];
+  readonly joints: number[] = [];
   /** A haptic pulse; strength 0..1. */
   pulse: (strength: number, milliseconds: number) => void = () => {};
 

@@ -153,15 +153,13 @@ export class Input {
     this.ray.decompose(at_, this.turn_, this.other_);
     this.turn_.toArray(pointer.rotation);
     const pad = this.source.gamepad;
-    const buttons = pointer.buttons as number[];
-    const axes = pointer.axes as number[];
+    const { buttons, axes } = pointer;
     buttons[0] = this.selecting ? 1 : 0;
     for (let index = 0; index < (pad?.buttons.length ?? 0); index++) buttons[index] = pad!.buttons[index].value;
     // The stick comes first; the touchpad that WebXR names before it is rare.
     for (let index = 0; index < (pad?.axes.length ?? 0); index++) axes[index] = pad!.axes[(index + stickAxes) % pad!.axes.length];
     if (joints === null || !joints.tracked) return;
-    const places = pointer.joints as number[];
-    for (let joint = 0; joint < jointNames.length; joint++) this.jointAt_(joint, at_).applyMatrix4(room).toArray(places, 3 * joint);
+    for (let joint = 0; joint < jointNames.length; joint++) this.jointAt_(joint, at_).applyMatrix4(room).toArray(pointer.joints, 3 * joint);
   }
 
   private jointAt_(joint: number, out: Vector3): Vector3 {
