@@ -306,10 +306,12 @@ const studies: Record<string, (study: Study) => Promise<void>> = {
     await study.letGo();
   },
   "soft-molecule": async (study) => {
-    await study.drag([some, 0], (body) => body < 8);  // a carbon atom
-    await study.knows("it rests in the hand", ({ kinetic }) => kinetic < 1e-3);
-    await study.does("n", "what is held is nudged", (now, before) => now.kinetic > before.kinetic + 1e-3);
+    const body = await study.drag([some, 0], (body) => body < 8);  // a carbon atom
     await study.letGo();
+    await study.knows("it hangs quietly", ({ kinetic }) => kinetic < 3e-3);
+    // Not in the hand, which stops it before Python tells of it.
+    await study.tab.page.evaluate((id) => iota.select(id), body);
+    await study.does("n", "what is selected is nudged", (now, before) => now.kinetic > before.kinetic + 4e-3);
   },
   undersea: async (study) => {
     await study.drag([some, 0], (body) => body < 120);  // a fish
