@@ -12,6 +12,7 @@ beam = looks.cylinder(0.02, "wood")
 world.add_strut((-2.6, 2.0, 0), (2.6, 2.0, 0), beam)
 for x in (-2.6, 2.6):
     world.add_strut((x, 0, 0), (x, 2.04, 0), beam)
+world.draw_ties("spring", looks.cylinder(0.005, "steel"))
 
 # Emitters.
 effects.fire(system, at=(-2.2, 0.1, 0.6), size=0.12)
@@ -56,7 +57,7 @@ world.add_static(looks.box((0.5, 0.04, 0.5), "paint", color="#c8502c"), (0, 0.7,
 
 @world.on_step
 def warm():
-    ice.heat((0, 0.8, 0), radius=0.3, energy=120 * world.dt)
+    ice.heat((0, 0.8, 0), radius=0.3, energy=6000 * world.dt)
     ice.step(world.dt)
 
 
@@ -64,9 +65,11 @@ def warm():
 for x, creeps in ((0.8, True), (1.1, False)):
     hook, weight = system.body().particle((x, 2, 0)), system.body().particle((x, 1.6, 0))
     hook.nail()
+    hook.radius = 0.03
     weight.radius, weight.color = 0.06, (0.8, 0.3, 0.2) if creeps else (0.3, 0.4, 0.5)
     if creeps:
-        effects.viscoelastic(system, hook, weight, stiffness=15, creep_stiffness=150, viscosity=150)
+        unit = effects.viscoelastic(system, hook, weight, stiffness=15, creep_stiffness=150, viscosity=150)
+        unit.middle.radius = 0.01
     else:
         system.bond(hook, weight, "spring", stiffness=15, damping=0.5)
 
